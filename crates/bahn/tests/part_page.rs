@@ -47,7 +47,7 @@ fn opened(browser: &Browser, folder: &Folder, size: [u32; 2], phone: bool) -> Pa
 
 /// Where a point of the blank is in the window.
 fn pixel(page: &mut Page, point: [f64; 3]) -> [f64; 2] {
-    let [left, top, ..] = page.bounds("#canvas").unwrap();
+    let [left, top, ..] = page.bounds(".stage canvas").unwrap();
     let at = page
         .evaluate(&format!("bahn.view.camera.project({point:?})"))
         .unwrap();
@@ -278,7 +278,7 @@ fn fingers_keys_and_a_narrow_window_suffice() {
     assert_eq!(page.evaluate(nameless).unwrap(), serde_json::json!([]));
 
     let turned = |page: &mut Page| page.number("bahn.view.camera.azimuth").unwrap();
-    let [x, y] = page.middle("#canvas").unwrap();
+    let [x, y] = page.middle(".stage canvas").unwrap();
     let before = turned(&mut page);
     page.swipe(&[[[x - 40.0, y], [x + 60.0, y]]]).unwrap();
     assert!((turned(&mut page) - before).abs() > 20.0, "{}", turned(&mut page));
@@ -289,7 +289,7 @@ fn fingers_keys_and_a_narrow_window_suffice() {
     // The fingers were 40 pixels apart, then 160.
     assert!((closer - 4.0).abs() < 0.4, "{closer}");
 
-    page.evaluate("document.querySelector('#canvas').focus()")
+    page.evaluate("document.querySelector('.stage canvas').focus()")
         .unwrap();
     for (key, stands) in [("2", [0, 90]), ("3", [0, 0]), ("4", [90, 0]), ("0", [30, 38])] {
         page.press(key).unwrap();
@@ -304,7 +304,7 @@ fn fingers_keys_and_a_narrow_window_suffice() {
     page.evaluate("document.querySelector('[data-control=measure]').focus()")
         .unwrap();
     page.press("Enter").unwrap();
-    page.evaluate("document.querySelector('#canvas').focus()")
+    page.evaluate("document.querySelector('.stage canvas').focus()")
         .unwrap();
     page.press("Enter").unwrap();
     assert!(

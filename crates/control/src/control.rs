@@ -18,6 +18,7 @@ use crate::command::{Command, Mode};
 use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
 use crate::kernel::Kernel;
+use crate::key_code::KeyCode;
 use crate::message::{Message, Shown};
 use crate::oscilloscope::OscilloscopeKeys;
 use crate::progress::RunState;
@@ -604,9 +605,9 @@ impl Control {
         &self.kernel.machine.plc.machine
     }
 
-    /// Takes the key of the keyboard, by its code, that the PLC has simulated and nobody inhibits: it is for whoever has
+    /// Takes the key of the keyboard that the PLC has simulated and nobody inhibits: it is for whoever has
     /// the keyboard [000:7406-7440].
-    pub fn take_key(&mut self) -> Option<u16> {
+    pub fn take_key(&mut self) -> Option<KeyCode> {
         self.kernel.channels.first_mut().desk.take_key()
     }
 

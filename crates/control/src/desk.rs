@@ -1,6 +1,6 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
-use bahn_exchange::{Bit, BitArea, Exchange, Image, signal};
+use bahn_exchange::{Exchange, Image, signal};
 use bahn_parameters::ParameterList;
 use bahn_parameters::operation::OperationParameters;
 use bahn_path::{Axis, BlockRef, Position};
@@ -10,6 +10,7 @@ use crate::axes::OwnAxes;
 use crate::axis::Mover;
 use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
+use crate::key_code::KeyCode;
 use crate::kinematics::Chain;
 use crate::leaning::Leaning;
 use crate::manual::Manual;
@@ -28,13 +29,6 @@ use crate::status;
 const ERASE_MEMORY: u32 = 531_210;
 const OFFSET_ADJUSTMENT: u32 = 75_368;
 const CODE_84159: u32 = 84_159;
-/// Marker of a key = code + this [000:7326-7404].
-const KEY_MARKER: u16 = 2796;
-const KEYS: std::ops::RangeInclusive<u16> = 58..=127;
-/// Codes of the soft keys M, S and TOUCH PROBE [000:7424-7436].
-const BY_HAND: [u16; 3] = [0x0100, 0x0200, 0x0300];
-/// Lower byte of a code of the alphabetic keyboard; the upper one is the character [000:7406-7410].
-const ALPHABETIC: u8 = 0x50;
 
 /// The operator's side of a channel.
 #[derive(Clone)]
@@ -52,7 +46,7 @@ pub(crate) struct Desk {
     reference: ReferenceRun,
     stylus: Stylus,
     /// The key that was pressed or simulated last, for whoever has the keyboard.
-    key: Option<u16>,
+    key: Option<KeyCode>,
 }
 
 impl Desk {
@@ -310,29 +304,24 @@ impl Desk {
     /// M2832 to M2839; any other is left for whoever has the keyboard. `false` for codes that are none and soft keys that
     /// are not on the screen.
     pub fn press_key(&mut self, code: u16, exchange: &mut Exchange) -> bool {
-        let [character, kind] = code.to_be_bytes();
-        let marker = match code {
-            _ if BY_HAND.contains(&code) => {
-                let is_shown = matches!(self.mode, Mode::Manual | Mode::Handwheel);
-                self.key = is_shown.then_some(code).or(self.key);
-                return is_shown;
-            }
-            _ if kind == ALPHABETIC && character.is_ascii_graphic() => Some(signal::INHIBIT_ALPHA_KEYBOARD),
-            _ if KEYS.contains(&code) => Bit::new(BitArea::M, KEY_MARKER + code),
-            _ => return false,
+        let Some(key) = KeyCode::of(code) else {
+            return false;
         };
-        if marker.is_some_and(|marker| exchange.nc().bit(marker)) {
+        if matches!(key, KeyCode::SoftKey(_)) && !matches!(self.mode, Mode::Manual | Mode::Handwheel) {
+            return false;
+        }
+        if key.inhibit().is_some_and(|marker| exchange.nc().bit(marker)) {
             exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
             marker_codes::INHIBITED_KEY.put(code.into(), exchange);
             exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);
         } else {
-            self.key = Some(code);
+            self.key = Some(key);
         }
         true
     }
 
     /// Takes the key that is left.
-    pub fn take_key(&mut self) -> Option<u16> {
+    pub fn take_key(&mut self) -> Option<KeyCode> {
         self.key.take()
     }
 

@@ -41,8 +41,6 @@
 mod blocks;
 mod capture;
 mod check;
-#[cfg(test)]
-mod complete;
 mod cycles;
 mod dialogue;
 mod draft;
@@ -61,6 +59,8 @@ mod section;
 mod setting;
 mod show;
 mod soft_keys;
+#[cfg(test)]
+mod tests;
 mod typing;
 mod view;
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use bahn_control::{
-    Cartesian, ChannelSetup, Command, Control, Programs, Remembered, ServoSampler, Setup, Snapshot,
+    Cartesian, ChannelSetup, Command, Control, KeyCode, Programs, Remembered, ServoSampler, Setup, Snapshot,
     SpindleWiring,
 };
 use bahn_interpreter::Warning;
@@ -427,8 +427,8 @@ impl<P: Operable> Host<P> {
         &self.control
     }
 
-    /// Takes the key that the PLC has simulated, by its code; see [`Control::take_key`].
-    pub fn take_key(&mut self) -> Option<u16> {
+    /// Takes the key that the PLC has simulated; see [`Control::take_key`].
+    pub fn take_key(&mut self) -> Option<KeyCode> {
         self.control.take_key()
     }
 

@@ -321,13 +321,13 @@ impl Console {
         }
     }
 
-    /// The part that the graphics of a side show.
+    /// What the graphics of a side show: that of the page that is shown. Those of the mode below make room for a menu.
     pub fn subject(&self, side: Side) -> Option<Subject> {
         let stack = match side {
             Side::Machine => &self.machine,
             Side::Programming => self.programming.as_ref().map(|(_, stack)| stack)?,
         };
-        stack.shown().subject().or_else(|| stack.base.subject())
+        stack.shown().subject()
     }
 
     /// The soft-key row of the side that has the keys.

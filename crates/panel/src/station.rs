@@ -316,6 +316,7 @@ impl Station {
             &self.settings,
             &self.shown.status,
         );
+        status.position_type = texts::translate(self.language(), &status.position_type);
         if self.plc.records() {
             status.flags.push(RECORDING.to_owned());
         }

@@ -144,3 +144,32 @@ fn no_key_waits_for_a_long_program() {
     }
     assert!(longest < 0.5, "a key took {longest} s");
 }
+
+/// MP7363.0 to .2: the ground of the drawing, contour, subprograms; a byte of six bits each for red, green and blue.
+#[test]
+fn the_program_has_the_colours_of_mp7363() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let path = folder.join("parameters.mp");
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        text += "MP7363.0 : $0000015\nMP7363.1 : $03F0000\n";
+        std::fs::write(path, text).unwrap();
+    });
+    trainee.write("programs/PLATE.H", PLATE);
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR P L A T E ENT").wait(0.3);
+    trainee
+        .press("GOTO 4 ENT GRAPHICS L X 9 0 ENT NO_ENT 2 0 0 ENT NO_ENT UP")
+        .wait(1.0);
+    trainee.press("SK_LEFT SK2").wait(1.0);
+    let pixels = trainee
+        .station
+        .picture()
+        .unwrap()
+        .pixels(640, 480)
+        .unwrap()
+        .unwrap();
+    let count = |colour: [u8; 3]| pixels.iter().filter(|pixel| **pixel == colour).count();
+    // 15 hexadecimal of 3F is 85 of 255.
+    assert!(count([0, 0, 85]) > 640 * 480 / 2, "{:?}", pixels[0]);
+    assert!(count([255, 0, 0]) > 100);
+}

@@ -37,6 +37,7 @@ fn display_unit_and_language() {
     trainee.press("ENT");
     assert_eq!(trainee.screen().mode, "MANUELLER BETRIEB");
     assert_eq!(trainee.menu_value("DIALOG-SPRACHE"), "DEUTSCH");
+    assert_eq!(trainee.screen().status.position_type, "IST");
     // It is kept, and MOD leaves the menu.
     trainee.press("MOD");
     assert_eq!(trainee.screen().program.title, "");

@@ -1,6 +1,6 @@
 //! How every stage pulls path elements from the stage before it.
 
-use crate::{BlockRef, PathElement, Position, ScanJob, Scanned};
+use crate::{BlockRef, PathElement, Position, ScanFault, ScanJob, ScanPoint, Scanned};
 
 /// A stage that yields path elements. Everything is pulled: a stage asks for the next element only
 /// when it has room, so programs of any length run in constant memory. Stages that split, join or
@@ -108,6 +108,17 @@ pub struct LiveData {
     pub scan: Option<Scanned>,
     /// Q parameters that were written meanwhile (by the PLC: Q100-Q107): number, value.
     pub q_values: Vec<(u16, f64)>,
+}
+
+impl LiveData {
+    /// Of a scan that could not begin: where the stylus stayed.
+    pub fn not_scanned(at: ScanPoint) -> LiveData {
+        let fault = Some(ScanFault::Inaccessible);
+        LiveData {
+            scan: Some(Scanned { at, fault }),
+            ..LiveData::default()
+        }
+    }
 }
 
 /// A touch of the probe.

@@ -1,11 +1,16 @@
 //! The page and its modules, embedded: there is no way to any other file.
 
+use std::sync::LazyLock;
+
 use axum::extract::Path;
 use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, X_CONTENT_TYPE_OPTIONS};
 use axum::response::{IntoResponse, Response};
+use bahn_viewer::{STAGE, STAGE_PLACE};
 
-const PAGE: &str = include_str!("../web/index.html");
+/// The page, with the stage of the viewer in it.
+static PAGE: LazyLock<String> =
+    LazyLock::new(|| include_str!("../web/index.html").replace(STAGE_PLACE, STAGE));
 
 macro_rules! modules {
     ($($name:literal),+ $(,)?) => {
@@ -36,7 +41,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; c
 
 /// The page.
 pub(crate) async fn page() -> Response {
-    served("text/html; charset=utf-8", PAGE)
+    served("text/html; charset=utf-8", &PAGE)
 }
 
 /// One of its modules.

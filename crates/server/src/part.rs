@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use bahn_panel::{BeingCut, Link, Station};
 use bahn_viewer::{PartStream, Sent};
-use serde::Serialize;
 use tokio::sync::watch;
+
+use crate::regions::region;
 
 /// Between two looks at the part: 15 a second.
 const EVERY: Duration = Duration::from_millis(66);
@@ -157,11 +158,11 @@ impl State {
             // There is no part; that is said once.
             let first = *sent != Sent::default();
             *sent = Sent::default();
-            return first.then(|| encode(&None::<()>));
+            return first.then(|| region("part", &None::<()>));
         };
         let at = seen.cut.tool_at();
         let news = seen.cut.with_trail(|trail| stream.news(trail, at, sent))?;
-        Some(encode(&news))
+        Some(region("part", &news))
     }
 }
 
@@ -184,10 +185,6 @@ impl Drop for Looking {
         let mut viewers = lock(&self.shared.viewers);
         *viewers = viewers.saturating_sub(1);
     }
-}
-
-fn encode<T: Serialize>(value: &T) -> Region {
-    rmp_serde::to_vec_named(&("part", value)).unwrap_or_default()
 }
 
 fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -24,19 +24,19 @@ impl Regions {
         let line = &screen.timeline;
         let time = (screen.serial, screen.time_s, line.to_s);
         let encoded = [
-            encode("time", &time),
-            encode("header", &(&screen.mode, &screen.headings, &screen.messages)),
-            encode("dialogue", &screen.dialogue),
-            encode("program", &(&screen.program, &screen.beside)),
-            encode("status", &screen.status),
-            encode("softkeys", &screen.soft_keys),
-            encode("plc", &screen.plc_window),
-            encode("graphics", &screen.graphics),
-            encode("machine", &(&screen.machine, &screen.lamps)),
-            encode("timeline", &(&line.marks, &line.branches)),
-            encode("why", &screen.why),
-            encode("lesson", &screen.lesson),
-            encode("look", &screen.look),
+            region("time", &time),
+            region("header", &(&screen.mode, &screen.headings, &screen.messages)),
+            region("dialogue", &screen.dialogue),
+            region("program", &(&screen.program, &screen.beside)),
+            region("status", &screen.status),
+            region("softkeys", &screen.soft_keys),
+            region("plc", &screen.plc_window),
+            region("graphics", &screen.graphics),
+            region("machine", &(&screen.machine, &screen.lamps)),
+            region("timeline", &(&line.marks, &line.branches)),
+            region("why", &screen.why),
+            region("lesson", &screen.lesson),
+            region("look", &screen.look),
         ];
         let parts = encoded
             .into_iter()
@@ -59,19 +59,18 @@ impl Regions {
     }
 }
 
-/// An array of regions that are encoded already.
+/// An array of regions that are encoded already; one that could not be is left out.
 pub(crate) fn message(regions: &[&[u8]]) -> Vec<u8> {
     let mut message = Vec::new();
+    let whole = || regions.iter().filter(|region| !region.is_empty());
     // Nothing but memory is written to.
-    let _ = rmp::encode::write_array_len(&mut message, regions.len() as u32);
-    regions
-        .iter()
-        .for_each(|region| message.extend_from_slice(region));
+    let _ = rmp::encode::write_array_len(&mut message, whole().count() as u32);
+    whole().for_each(|region| message.extend_from_slice(region));
     message
 }
 
-/// Structures become maps by name; what cannot be encoded is left out, which no screen can be.
-fn encode<T: Serialize>(name: &str, value: &T) -> Vec<u8> {
+/// A region: its name and its value, structures as maps by name. Empty when it cannot be encoded, which none of ours is.
+pub(crate) fn region<T: Serialize>(name: &str, value: &T) -> Vec<u8> {
     rmp_serde::to_vec_named(&(name, value)).unwrap_or_default()
 }
 
@@ -99,8 +98,10 @@ mod tests {
     /// The head of an array has one byte up to 15 elements, three bytes from 16 on.
     #[test]
     fn any_number_of_regions_is_an_array() {
+        // What could not be encoded does not count.
+        assert_eq!(message(&[&[]]), [0x90]);
         for count in [0, 1, 15, 16, 17, 40, 70_000] {
-            let regions: Vec<Vec<u8>> = (0..count).map(|k| encode("region", &k)).collect();
+            let regions: Vec<Vec<u8>> = (0..count).map(|k| region("region", &k)).collect();
             let regions: Vec<&[u8]> = regions.iter().map(Vec::as_slice).collect();
             let bytes = message(&regions);
             let read: Vec<(String, u32)> = rmp_serde::from_slice(&bytes).unwrap();

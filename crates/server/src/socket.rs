@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::crew::{Crew, Taking};
 use crate::part::Looking;
-use crate::regions::message;
+use crate::regions::{message, region};
 use crate::shared::Shared;
 
 /// Longest message of a viewer, bytes.
@@ -213,7 +213,7 @@ impl Viewer {
     }
 
     fn taken_message(&self) -> Message {
-        region("taken", &self.taken)
+        told("taken", &self.taken)
     }
 
     async fn news_of_the_part(&mut self) -> Option<Message> {
@@ -230,7 +230,7 @@ impl Viewer {
             operator,
             asks,
         };
-        let encoded = encode("crew", &role);
+        let encoded = alone("crew", &role);
         (encoded != self.role).then(|| {
             self.role.clone_from(&encoded);
             Message::Binary(encoded.into())
@@ -249,16 +249,16 @@ async fn part_changes(looking: &mut Option<Looking>) {
 }
 
 fn refused(why: &str) -> Message {
-    region("refused", &why)
+    told("refused", &why)
 }
 
-fn region<T: Serialize>(name: &str, value: &T) -> Message {
-    Message::Binary(encode(name, value).into())
+fn told<T: Serialize>(name: &str, value: &T) -> Message {
+    Message::Binary(alone(name, value).into())
 }
 
-/// An array of one region.
-fn encode<T: Serialize>(name: &str, value: &T) -> Vec<u8> {
-    rmp_serde::to_vec_named(&[(name, value)]).unwrap_or_default()
+/// A message of one region.
+fn alone<T: Serialize>(name: &str, value: &T) -> Vec<u8> {
+    message(&[&region(name, value)])
 }
 
 fn lock(crew: &Mutex<Crew>) -> MutexGuard<'_, Crew> {

@@ -34,7 +34,7 @@ mod machine;
 mod palette;
 mod panel;
 #[cfg(test)]
-mod screens;
+mod tests;
 mod window;
 
 pub use panel::{check, show};

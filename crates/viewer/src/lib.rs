@@ -32,7 +32,7 @@ mod trail;
 
 pub use bytes::base64;
 pub use coder::PartCoder;
-pub use page::{FILES, WebFile, escaped, write_page};
+pub use page::{FILES, STAGE, STAGE_PLACE, WebFile, escaped, write_page};
 pub use scene::{About, Listing, Recording, Remark};
 pub use sheet::{TILE, WHOLE};
 pub use stream::{Bytes, PartNews, PartStream, Sent};

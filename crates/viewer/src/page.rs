@@ -45,6 +45,12 @@ files! {
 /// The body of the page.
 const BODY: &str = include_str!("../web/page.html");
 
+/// What stands around the part: canvas, keys and readout, in a page of any other, too, at its [`STAGE_PLACE`].
+pub const STAGE: &str = include_str!("../web/stage.html");
+
+/// Where the stage stands in a page.
+pub const STAGE_PLACE: &str = "<!-- stage -->\n";
+
 /// Nothing is fetched from anywhere.
 const POLICY: &str =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
@@ -74,9 +80,10 @@ pub fn write_page(
     }
     write!(
         out,
-        "</style>\n</head>\n<body>\n{BODY}<script id=\"data\" type=\"application/octet-stream\">{}</script>\n\
+        "</style>\n</head>\n<body>\n{body}<script id=\"data\" type=\"application/octet-stream\">{}</script>\n\
          <script type=\"module\">\n",
-        base64(&data)
+        base64(&data),
+        body = BODY.replace(STAGE_PLACE, STAGE)
     )?;
     for file in FILES.iter().filter(|file| file.mime == "text/javascript") {
         out.write_all(as_one(file.text).as_bytes())?;

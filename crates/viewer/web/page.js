@@ -24,8 +24,8 @@ class Run {
   constructor(scene) {
     Object.assign(this, scene);
     const { head } = this;
-    this.view = new PartView(find('#canvas'), { size: head.size, cells: head.cells });
-    this.overlay = new Overlay(find('#overlay'), this.view, head.axes);
+    this.view = new PartView(find('.stage canvas'), { size: head.size, cells: head.cells });
+    this.overlay = new Overlay(find('.stage svg'), this.view, head.axes);
     if (head.cells) this.history = new History(this.view.sheet, this.moments);
     this.view.markColours(head.marks.flatMap(({ marks, colours }) => marks.map((mark, k) => [mark, colours[k]])));
     this.view.path(this.path);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanFault, ScanJob, Scanned};
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanJob};
 use bahn_program::{Operation, Program};
 use bahn_viewer::Recording;
 use bahn_workpiece::{Columns, Cutting, Memory, Part};
@@ -319,12 +319,7 @@ impl TestRun {
         };
         let Some(part) = self.solid.clone().or_else(part) else {
             self.record.warn(block, Notice::NothingToProbe, 1);
-            let at = job.begin();
-            let fault = Some(ScanFault::Inaccessible);
-            return Ok(Some(LiveData {
-                scan: Some(Scanned { at, fault }),
-                ..LiveData::default()
-            }));
+            return Ok(Some(LiveData::not_scanned(job.begin())));
         };
         let done = digitize(job, part, self.digitized.as_deref(), &self.company.stop)?;
         self.record.machining_time_s += done.time_s;

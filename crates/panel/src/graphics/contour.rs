@@ -9,8 +9,7 @@ use bahn_control::{Control, Programs, Tool};
 use bahn_host::LoadedMachine;
 use bahn_interpreter::{Interpreter, Library, Rules, Settings};
 use bahn_path::{
-    Barrier, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Plane, Point2, ScanFault,
-    Scanned, Step, Touch,
+    Barrier, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Plane, Point2, Step, Touch,
 };
 use bahn_program::{Edit, Program};
 
@@ -303,13 +302,7 @@ fn live_data(barrier: &Barrier) -> LiveData {
             touch: Some(Touch { position: *to }),
             ..LiveData::default()
         },
-        Barrier::Scan { job, .. } => LiveData {
-            scan: Some(Scanned {
-                at: job.begin(),
-                fault: Some(ScanFault::Inaccessible),
-            }),
-            ..LiveData::default()
-        },
+        Barrier::Scan { job, .. } => LiveData::not_scanned(job.begin()),
         _ => LiveData::default(),
     }
 }

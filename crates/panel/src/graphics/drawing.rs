@@ -5,10 +5,10 @@ use bahn_picture::{Anchor, Colour, Image};
 
 use super::contour::{Kind, Lines};
 
-/// Standard colours of the interactive graphics, MP7363.0 to .2, in which a channel has 64 steps [000:6361-6366].
-const BACKGROUND: Colour = [0, 0, 0];
-const CONTOUR: Colour = [255, 255, 255];
-const CALLED: Colour = [0, 255, 0];
+/// Colours of the interactive graphics: background, contour, subprograms [000:6361-6366].
+pub(crate) type LineColours = [Colour; 3];
+/// The standard values of MP7363.0 to .2, for a control that has none.
+pub(super) const STANDARD: LineColours = [[0, 0, 0], [255, 255, 255], [0, 255, 0]];
 /// The block at the cursor, rapid traverse, and the blank (inferred).
 const CURRENT: Colour = [255, 200, 0];
 const RAPID: Colour = [110, 110, 130];
@@ -91,8 +91,15 @@ enum Layer {
 }
 
 /// Draws the lines; those of the current block stand out.
-pub(super) fn draw(lines: &Lines, sheet: &Sheet, size: [u32; 2], title: &str, current: Option<u32>) -> Image {
-    let mut image = Image::new(size[0], size[1], BACKGROUND);
+pub(super) fn draw(
+    lines: &Lines,
+    sheet: &Sheet,
+    size: [u32; 2],
+    title: &str,
+    current: Option<u32>,
+    [background, contour, called]: LineColours,
+) -> Image {
+    let mut image = Image::new(size[0], size[1], background);
     if let Some([min, max]) = lines.blank {
         let corners = [min, [max[0], min[1]], max, [min[0], max[1]], min];
         let corners = corners.map(|corner| sheet.at(corner));
@@ -104,8 +111,8 @@ pub(super) fn draw(lines: &Lines, sheet: &Sheet, size: [u32; 2], title: &str, cu
             let is_current = stroke.block.is_some() && stroke.block == current;
             let (width, colour) = match (layer, stroke.kind) {
                 (Layer::Rapid, Kind::Rapid) => (1.0, RAPID),
-                (Layer::Contour, Kind::Feed) => (2.0, CONTOUR),
-                (Layer::Contour, Kind::Called) => (2.0, CALLED),
+                (Layer::Contour, Kind::Feed) => (2.0, contour),
+                (Layer::Contour, Kind::Called) => (2.0, called),
                 (Layer::Current, Kind::Feed) if is_current => (3.0, CURRENT),
                 _ => continue,
             };
@@ -116,7 +123,7 @@ pub(super) fn draw(lines: &Lines, sheet: &Sheet, size: [u32; 2], title: &str, cu
             }
         }
     }
-    image.text([MARGIN, TITLE], Anchor::Left, 13.0, CONTOUR, title);
+    image.text([MARGIN, TITLE], Anchor::Left, 13.0, contour, title);
     image
 }
 
@@ -169,15 +176,15 @@ mod tests {
     #[test]
     fn each_kind_of_line_has_its_colour() {
         let sheet = Sheet::of(&lines(), [648.0, 400.0], 1.0, false);
-        let image = draw(&lines(), &sheet, [648, 400], "PGM 7", Some(3));
+        let image = draw(&lines(), &sheet, [648, 400], "PGM 7", Some(3), STANDARD);
         let pixel = |point: Point2| {
             let [x, y] = sheet.at(point);
             image.pixels()[y as usize * 648 + x as usize]
         };
-        assert_eq!(pixel([50.0, 10.0]), CONTOUR);
+        assert_eq!(pixel([50.0, 10.0]), [255; 3]);
         assert_eq!(pixel([90.0, 25.0]), CURRENT);
-        assert_eq!(pixel([70.0, 40.0]), CALLED);
-        assert_eq!(pixel([30.0, 30.0]), BACKGROUND);
+        assert_eq!(pixel([70.0, 40.0]), [0, 255, 0]);
+        assert_eq!(pixel([30.0, 30.0]), [0; 3]);
     }
 
     #[test]
@@ -189,7 +196,7 @@ mod tests {
         for lines in [Lines::default(), point] {
             let sheet = Sheet::of(&lines, [100.0, 100.0], 1.0, false);
             assert!(sheet.at([5.0, 5.0]).iter().all(|pixel| pixel.is_finite()));
-            assert_eq!(draw(&lines, &sheet, [100, 100], "", None).width(), 100);
+            assert_eq!(draw(&lines, &sheet, [100, 100], "", None, STANDARD).width(), 100);
         }
     }
 }

@@ -327,7 +327,13 @@ impl Graphics {
                 let colours = [0, 1, 2, 3, 4].map(|index| colour(list, 7361, index).unwrap_or_default());
                 Some(Picture::of_curves(self.scope.curves(), colours))
             }
-            Subject::Programmed => self.programmed.picture(self.sight.magn, settings.plane_rotated),
+            Subject::Programmed => {
+                let [background, contour, called] = drawing::STANDARD;
+                let colours = [(0, background), (1, contour), (2, called)];
+                let colours = colours.map(|(index, standard)| colour(list, 7363, index).unwrap_or(standard));
+                self.programmed
+                    .picture(self.sight.magn, settings.plane_rotated, colours)
+            }
             Subject::Run => of_part(self.follower.stock()?, self.follower.program(), None),
             Subject::Test => {
                 let trial = self.trial.as_ref()?;

@@ -7,7 +7,7 @@ use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, ThreePlanes, View3d};
 
 use super::contour::{Lines, lock};
-use super::drawing::{Sheet, draw};
+use super::drawing::{LineColours, Sheet, draw};
 use super::scope::{Curves, ScopeColours};
 use super::stock::Stock;
 use super::{PartView, figure};
@@ -68,6 +68,7 @@ struct LinesPicture {
     current: Option<u32>,
     magn: u8,
     turned: bool,
+    colours: LineColours,
 }
 
 struct PartPicture {
@@ -128,6 +129,7 @@ impl Picture {
         current: Option<u32>,
         magn: u8,
         turned: bool,
+        colours: LineColours,
     ) -> Picture {
         Picture(Kind::Lines(LinesPicture {
             lines,
@@ -135,6 +137,7 @@ impl Picture {
             current,
             magn,
             turned,
+            colours,
         }))
     }
 
@@ -193,7 +196,7 @@ impl LinesPicture {
     fn draw(&self, size: [u32; 2]) -> Image {
         let lines = lock(&self.lines);
         let sheet = Sheet::of(&lines, size.map(f64::from), f64::from(self.magn), self.turned);
-        draw(&lines, &sheet, size, &self.title, self.current)
+        draw(&lines, &sheet, size, &self.title, self.current, self.colours)
     }
 }
 

@@ -7,6 +7,7 @@ use bahn_control::{Control, Programs};
 use bahn_host::LoadedMachine;
 
 use super::contour::{self, Lines, Sketch, Wish};
+use super::drawing::LineColours;
 use super::picture::Picture;
 use crate::programs::ProgramMemory;
 use crate::screen::GraphicsView;
@@ -79,12 +80,19 @@ impl Programmed {
     }
 
     /// The picture of it.
-    pub fn picture(&self, magn: u8, turned: bool) -> Option<Picture> {
+    pub fn picture(&self, magn: u8, turned: bool, colours: LineColours) -> Option<Picture> {
         if let Some((cycle, id)) = self.asked {
             return Picture::of_cycle(cycle, id);
         }
         let (lines, title, upto) = self.shown.as_ref().filter(|_| self.on)?;
-        Some(Picture::of_lines(Arc::clone(lines), title, *upto, magn, turned))
+        Some(Picture::of_lines(
+            Arc::clone(lines),
+            title,
+            *upto,
+            magn,
+            turned,
+            colours,
+        ))
     }
 
     /// Goes on; whether there is another picture.

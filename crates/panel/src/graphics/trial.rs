@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bahn_control::Control;
 use bahn_interpreter::Interpreter;
 use bahn_motion::{AuxiliaryTimes, PlannedStep, Planner};
-use bahn_path::{Barrier, LiveData, PathElement, ScanFault, Scanned};
+use bahn_path::{Barrier, LiveData, PathElement};
 
 use super::stock::{Heard, Stock};
 
@@ -203,13 +203,7 @@ impl Run {
                 stylus_radius,
                 ..
             } => self.stock.touch(from, to, *stylus_radius),
-            Barrier::Scan { job, .. } => LiveData {
-                scan: Some(Scanned {
-                    at: job.begin(),
-                    fault: Some(ScanFault::Inaccessible),
-                }),
-                ..LiveData::default()
-            },
+            Barrier::Scan { job, .. } => LiveData::not_scanned(job.begin()),
             _ => LiveData::default(),
         }
     }

@@ -140,29 +140,45 @@ pub(crate) fn name(signal: ServoSignal) -> &'static str {
     }
 }
 
+/// Round values of a division, ascending.
+fn scales() -> Vec<f64> {
+    DECADES
+        .flat_map(|decade| STEPS.map(|step| step * 10_f64.powi(decade)))
+        .collect()
+}
+
+/// The finest scale at which all of a range is in the picture.
+fn optimal(scales: &[f64], range: f64) -> i32 {
+    let place = scales.iter().position(|step| range / step <= USED);
+    place.unwrap_or(scales.len() - 1) as i32
+}
+
 impl Lane {
     /// The value of a division, and the value in the middle of the picture.
     pub fn scale(&self) -> (f64, f64) {
-        let finite = || {
-            self.recorded
-                .samples
-                .iter()
-                .copied()
-                .filter(|value| value.is_finite())
-        };
-        let (min, max) = (
-            finite().fold(f64::INFINITY, f64::min),
-            finite().fold(f64::NEG_INFINITY, f64::max),
-        );
-        let (min, max) = if min <= max { (min, max) } else { (0.0, 0.0) };
-        let steps: Vec<f64> = DECADES
-            .flat_map(|decade| STEPS.map(|step| step * 10_f64.powi(decade)))
-            .collect();
-        let optimal = steps.iter().position(|step| (max - min) / step <= USED);
-        let optimal = optimal.unwrap_or(steps.len() - 1) as i32;
-        let place = (optimal + self.zoom).clamp(0, steps.len() as i32 - 1) as usize;
-        let step = steps.get(place).copied().unwrap_or(1.0);
+        let (min, max) = self.range();
+        let scales = scales();
+        let place = optimal(&scales, max - min) + self.zoom;
+        let place = place.clamp(0, scales.len() as i32 - 1) as usize;
+        let step = scales.get(place).copied().unwrap_or(1.0);
         (step, (0.5 * (min + max) / step).round() * step)
+    }
+
+    /// The zoom so many scales coarser, or finer when negative; `None` where there are no more.
+    pub fn zoomed(&self, scales_by: i32) -> Option<i32> {
+        let (min, max) = self.range();
+        let scales = scales();
+        let zoom = self.zoom + scales_by;
+        let place = optimal(&scales, max - min) + zoom;
+        (0..scales.len() as i32).contains(&place).then_some(zoom)
+    }
+
+    fn range(&self) -> (f64, f64) {
+        let samples = self.recorded.samples.iter().copied();
+        let finite = samples.filter(|value| value.is_finite());
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let (min, max) = finite.fold(none, |(min, max), value| (min.min(value), max.max(value)));
+        if min <= max { (min, max) } else { (0.0, 0.0) }
     }
 
     /// `CH 1  X V ACTUAL  500 mm/min`.
@@ -322,6 +338,13 @@ mod tests {
         let mut coarser = lane(vec![0.0, 7.0]);
         coarser.zoom = 2;
         assert!((coarser.scale().0 - 5.0).abs() < 1e-9);
+        // There is an end on both sides.
+        for (by, last) in [(1, scales().len() as i32 - 1), (-1, 0)] {
+            while let Some(zoom) = coarser.zoomed(by) {
+                coarser.zoom = zoom;
+            }
+            assert!((coarser.scale().0 / scales()[last as usize] - 1.0).abs() < 1e-9);
+        }
     }
 
     /// From 4096 samples down to 64 and back; the cursor is never out of sight, nor the window out of the memory.

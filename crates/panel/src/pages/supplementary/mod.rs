@@ -127,9 +127,10 @@ impl Function {
     fn item(self, site: &Site) -> Item {
         let settings = &*site.settings;
         match self {
-            Function::PositionDisplay => {
-                Item::new(site.words("POSITION DISPLAY"), settings.position_type.name())
-            }
+            Function::PositionDisplay => Item::new(
+                site.words("POSITION DISPLAY"),
+                site.words(settings.position_type.name()),
+            ),
             Function::Unit => Item::new(
                 site.words("CHANGE MM/INCH"),
                 if settings.inch { "INCH" } else { "MM" },

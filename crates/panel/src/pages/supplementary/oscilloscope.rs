@@ -375,7 +375,15 @@ impl Act {
             Act::Stretch(closer) => scope.sight.stretch(closer),
             Act::Go(forward) => scope.sight.go(forward),
             Act::Invert => scope.sight.inverted[selected] ^= true,
-            Act::Scale(steps) => scope.sight.zoom[selected] += steps,
+            Act::Scale(by) => {
+                let curves = scope.curves();
+                let mut lanes = curves.lanes.iter();
+                let lane = lanes.find(|lane| lane.number == selected);
+                let Some(zoom) = lane.and_then(|lane| lane.zoomed(by)) else {
+                    return Turn::Refused;
+                };
+                scope.sight.zoom[selected] = zoom;
+            }
             Act::Centre => scope.sight.zoom[selected] = 0,
             Act::Cursor => scope.sight.cursor(),
             Act::SecondCursor => scope.sight.second_cursor(),
