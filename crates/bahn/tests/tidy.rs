@@ -50,6 +50,18 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "link",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "exchange",
+            "plc",
+            "control",
+            "host",
+        ],
+    ),
+    (
         "panel",
         &[
             "path",
@@ -91,6 +103,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machines",
             "control",
             "host",
+            "link",
             "panel",
             "server",
             "terminal",

@@ -1,0 +1,13 @@
+//! Data interfaces: the control speaks with the devices of its time and with clients of today, and plays such a device for
+//! a real control.
+//!
+//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter.
+
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "citations as [000:7188] look like links"
+)]
+
+mod file_type;
+
+pub use file_type::FileType;
