@@ -1,6 +1,13 @@
 //! Data interfaces: the control speaks with the devices of its time and with clients of today, and plays such a device for
 //! a real control.
 //!
+//! ```
+//! use bahn_link::FileType;
+//!
+//! let types: Vec<_> = FileType::all().filter(|kind| kind.code() == 'A').collect();
+//! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
+//! ```
+//!
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter.
 
 #![allow(
