@@ -1,7 +1,8 @@
 //! Data interfaces: the control speaks with the devices of its time and with clients of today, and plays such a device for
 //! a real control.
 //!
-//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter.
+//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
+//! - [`store`] is the file service that all protocols share.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -9,5 +10,6 @@
 )]
 
 mod file_type;
+pub mod store;
 
 pub use file_type::FileType;
