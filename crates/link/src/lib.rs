@@ -8,7 +8,8 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
-//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter.
+//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
+//! - [`store`] is the file service that all protocols share.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -16,5 +17,6 @@
 )]
 
 mod file_type;
+pub mod store;
 
 pub use file_type::FileType;
