@@ -124,7 +124,7 @@ fn the_status_follows_the_line() {
     assert_eq!(status(&mut bench), 0b1100_1111);
 }
 
-/// While a transfer of the operator has the line, the PLC does not get it, and the other way round.
+/// While a transfer of the operator has the line, the PLC does not get it (9100), and the other way round until 9101.
 #[test]
 fn one_line_has_one_user() {
     let mut bench = Bench::new(&assign(), &call(&[RS422], 9101, &[]));
