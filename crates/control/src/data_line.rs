@@ -80,6 +80,11 @@ pub enum DataLineOrder {
         /// The text, without end character.
         text: Vec<u8>,
     },
+    /// The PLC has taken what was received: another text finds place.
+    Taken {
+        /// 0 RS-232-C/V.24, 1 RS-422/V.11.
+        line: usize,
+    },
 }
 
 /// How the PLC wants to use a line [000:15609-15636].
@@ -93,7 +98,16 @@ pub struct LineSetup {
 
 /// What of the interfaces has been ordered, to find what is new.
 #[derive(Clone, Debug, Default)]
-pub struct OrderedLines([(Option<LineSetup>, u32, u32); 2]);
+pub struct OrderedLines([Known; 2]);
+
+/// What is known of a line: its setup, and how often something was so.
+#[derive(Clone, Copy, Debug, Default)]
+struct Known {
+    setup: Option<LineSetup>,
+    assigned: u32,
+    begun: u32,
+    taken: u32,
+}
 
 impl OrderedLines {
     /// Tells the orders since the last call. A line that has nothing new costs a comparison.
@@ -104,12 +118,16 @@ impl OrderedLines {
                 baud: interface.baud,
                 of_mode: interface.format_of_mode,
             });
-            if (known.0, known.1) != (setup, interface.assigned) {
-                (known.0, known.1) = (setup, interface.assigned);
+            if (known.setup, known.assigned) != (setup, interface.assigned) {
+                (known.setup, known.assigned) = (setup, interface.assigned);
                 tell(DataLineOrder::Assigned { line, setup });
             }
-            if known.2 != interface.begun {
-                known.2 = interface.begun;
+            if known.taken != interface.taken {
+                known.taken = interface.taken;
+                tell(DataLineOrder::Taken { line });
+            }
+            if known.begun != interface.begun {
+                known.begun = interface.begun;
                 if !interface.transmit.is_empty() {
                     let text = interface.transmit.clone();
                     tell(DataLineOrder::Send { line, text });

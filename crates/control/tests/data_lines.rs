@@ -98,7 +98,8 @@ fn bytes_come_and_go() {
     bench.rig.command("W126=0");
     assert!(bench.job("B").1, "nothing has come");
     bench.rig.command("rs422 received \"FA81\"");
-    assert!(!bench.job("B").1);
+    let taken = DataLineOrder::Taken { line: 1 };
+    assert_eq!(bench.job("B"), (vec![taken], false));
     assert_eq!(bench.rig.number("B410"), 2);
     // A word has its high byte first.
     assert_eq!(bench.rig.number("W126"), i32::from(0xFA81_u16 as i16));

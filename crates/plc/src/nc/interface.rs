@@ -42,6 +42,8 @@ pub struct DataInterface {
     pub assigned: u32,
     /// How many texts were begun to be sent.
     pub begun: u32,
+    /// How many received texts the PLC has taken.
+    pub taken: u32,
 }
 
 impl DataInterface {
@@ -56,6 +58,7 @@ impl DataInterface {
             format_of_mode,
             assigned: self.assigned.wrapping_add(1),
             begun: self.begun,
+            taken: self.taken,
             ..DataInterface::default()
         };
     }
@@ -85,6 +88,7 @@ impl DataInterface {
     pub(crate) fn clear_received(&mut self) {
         self.receive.clear();
         self.received = false;
+        self.taken = self.taken.wrapping_add(1);
     }
 }
 
