@@ -370,7 +370,8 @@ impl ProgramRun {
             return false;
         }
         let mdi = site.now.mode == Mode::Mdi;
-        let Ok(program) = self.open(mdi) else {
+        let ready = self.source.may_begin(mdi);
+        let Some(program) = self.open(mdi).ok().filter(|_| ready) else {
             return false;
         };
         // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.

@@ -129,7 +129,7 @@ fn whole(blocks: &str) -> Vec<PathElement> {
 #[test]
 fn the_path_is_that_of_the_whole_program() {
     let expected = bits(&whole(BLOCKS));
-    assert!(expected.len() > 20, "{}", expected.len());
+    assert!(expected.len() > 15, "{}", expected.len());
     let text = text(BLOCKS);
     for seed in 0..12 {
         let mut rig = rig(Build::mill());
@@ -167,7 +167,7 @@ fn a_path_that_starves_slows_to_a_stop_and_goes_on() {
     let start = "BEGIN PGM 1 MM\nTOOL CALL 0 Z\nL X+100 Y+100 Z+200 R0 F6000\n";
     let blocks: Vec<String> = (0..200).map(|at| format!("L X+{} Y+100\n", 100.0 + f64::from(at))).collect();
     for pause in [0, 150] {
-        let mut rig = rig(Build::mill().mp("MP7460=180"));
+        let mut rig = rig(Build::mill());
         rig.command("dnc begin 1.H");
         assert!(give(&mut rig, start));
         for block in &blocks[..100] {
@@ -195,7 +195,7 @@ fn a_path_that_starves_slows_to_a_stop_and_goes_on() {
                 next += 1;
                 waits = 0;
             }
-            assert!(rig.control.time_us() < 400_000_000, "{:?} {next}", rig.messages());
+            assert!(rig.control.time_us() < 400_000_000, "{:?} {next} {pause} {:?}", rig.messages(), rig.control.snapshot());
         }
         assert_eq!(stood > 0, pause > 0, "{pause}: {stood}");
     }
@@ -206,13 +206,14 @@ fn a_path_that_starves_slows_to_a_stop_and_goes_on() {
 fn a_full_memory_wants_more_when_256_bytes_are_free() {
     let mut rig = rig(Build::mill().mp("MP7228.1=2"));
     rig.command("dnc begin 1.H");
-    assert!(give(&mut rig, "BEGIN PGM 1 MM\nTOOL CALL 0 Z\nL X+100 Y+100 Z+200 R0 F3000\n"));
+    let start = "BEGIN PGM 1 MM\nTOOL CALL 0 Z\nL X+100 Y+100 Z+200 R0 F3000\n";
+    assert!(give(&mut rig, start));
     let mut at = 0;
     let mut next = || {
         at += 1;
         format!("L X+{} Y+{}\n", 100 + at % 50, 100 + at % 7)
     };
-    let mut given = 62;
+    let mut given = start.len();
     while state(&rig).wants_more {
         let block = next();
         given += block.len();
@@ -275,25 +276,25 @@ fn limits_of_programs_that_are_transferred() {
     let tools = |count: u32| (1..=count).map(|tool| format!("TOOL DEF {tool} L+0 R+1\n")).collect::<String>();
     let refused = "NOT IN BLOCKWISE TRANSFER";
     let cases = [
-        ("LBL 1\nL X+110 R0 F1000\nLBL 0\nCALL LBL 1\n".to_owned(), Some(refused), Some(refused)),
-        ("LBL 1\nL X+110 R0 F1000\nCALL LBL 1 REP 2/2\n".into(), Some(refused), Some(refused)),
+        ("LBL 1\nL X+20 R0 F1000\nLBL 0\nCALL LBL 1\n".to_owned(), Some(refused), Some(refused)),
+        ("LBL 1\nL X+20 R0 F1000\nCALL LBL 1 REP 2/2\n".into(), Some(refused), Some(refused)),
         ("LBL 1\nFN 9: IF +0 EQU +0 GOTO LBL 1\n".into(), Some("LABEL NUMBER NOT ALLOCATED"), Some("LABEL NUMBER NOT ALLOCATED")),
         ("FN 15: PRINT 1\n".into(), Some(refused), None),
         ("TCH PROBE 5.0 RANGE\n".into(), Some(refused), None),
         (tools(20), None, None),
         (tools(21), Some(refused), None),
-        ("65534 L X+100 R0 F1000\n1 L X+101\n".into(), None, None),
-        ("L X+100 R0 F1000\n65535 L X+101\n".into(), Some("ENTRY VALUE INCORRECT"), None),
+        ("65534 L X+10 R0 F1000\n1 L X+11\n".into(), None, None),
+        ("L X+10 R0 F1000\n65535 L X+11\n".into(), Some("ENTRY VALUE INCORRECT"), None),
         ("CALL PGM 7\n".into(), None, None),
         ("CALL PGM 8\n".into(), Some("PROGRAM NOT FOUND"), Some("PROGRAM NOT FOUND")),
     ];
     for (blocks, on_360, on_415) in cases {
         for (model, expected) in [(ControlModel::Tnc360, on_360), (ControlModel::Tnc415b, on_415)] {
             let build = match model {
-                ControlModel::Tnc360 => Build::of("small-mill", model),
+                ControlModel::Tnc360 => Build::of("mill-tnc360", model),
                 _ => Build::mill(),
             };
-            let mut rig = rig(build.program("7", "LBL 4\nL X+105 R0 F1000\nLBL 0\nCALL LBL 4\n"));
+            let mut rig = rig(build.program("7", "LBL 4\nL X+15 R0 F1000\nLBL 0\nCALL LBL 4\n"));
             rig.command("dnc begin 1.H");
             assert!(give(&mut rig, &format!("0 BEGIN PGM 1 MM\n{blocks}END PGM 1 MM\n")));
             rig.command("dnc end");
@@ -365,12 +366,11 @@ fn stops_in_between() {
                 rig.command("stop");
             }
             _ => {
-                rig.event("emergency-stop press");
+                rig.event("emergency press");
                 rig.seconds(0.5);
-                rig.event("emergency-stop release");
+                rig.event("emergency release");
                 rig.seconds(0.5);
                 rig.command("ce");
-                rig.event("key CONTROL_ON tap");
                 rig.seconds(1.0);
             }
         }
@@ -395,7 +395,7 @@ fn earlier_blocks_are_ignored() {
     let lines: String = (1..2000).map(|at| format!("{at} L X+{} F3000\n", 100 + at % 40)).collect();
     let text = format!("BEGIN PGM 1 MM\n{lines}L X+123\nEND PGM 1 MM\n");
     for from in ["goto 1990", "restore-at 1990"] {
-        let mut rig = rig(Build::mill().mp("MP7228.1=4"));
+        let mut rig = rig(Build::mill().mp("MP7228.1=4").mp("MP7680=%0000110"));
         rig.command("dnc begin 1.H");
         let mut line = Line::new(&text, 1);
         if from.starts_with("goto") {
