@@ -41,7 +41,9 @@ impl Dnc {
             "begin" if !rest.trim().is_empty() => Ok(Dnc::Begin(rest.trim().to_owned())),
             "text" => unescape(rest)
                 .map(|bytes| Dnc::Text(bytes.into()))
-                .ok_or_else(|| "`dnc text` takes text with the escapes of a byte string, as `L X+5\\n`".to_owned()),
+                .ok_or_else(|| {
+                    "`dnc text` takes text with the escapes of a byte string, as `L X+5\\n`".to_owned()
+                }),
             "end" if rest.is_empty() => Ok(Dnc::End),
             "broken" if rest.is_empty() => Ok(Dnc::Broken),
             _ => Err("`dnc` takes `begin` and a name, `text` and text, `end` or `broken`".to_owned()),
@@ -310,10 +312,7 @@ struct BlockNumbers {
 
 impl BlockNumbers {
     fn new(max: Option<u32>) -> BlockNumbers {
-        BlockNumbers {
-            max,
-            number: Some(0),
-        }
+        BlockNumbers { max, number: Some(0) }
     }
 
     /// How many bytes of a text come before a number that is too high.
@@ -331,7 +330,9 @@ impl BlockNumbers {
                 _ => None,
             };
             if self.number.is_some_and(|number| number > max) {
-                let line = text.get(..at).and_then(|text| text.iter().rposition(|byte| *byte == b'\n'));
+                let line = text
+                    .get(..at)
+                    .and_then(|text| text.iter().rposition(|byte| *byte == b'\n'));
                 return line.map_or(0, |line| line + 1);
             }
         }

@@ -36,7 +36,10 @@ L X+210 R0 FMAX M9
 L X+Q1 M5";
 
 fn text(blocks: &str) -> String {
-    format!("0 BEGIN PGM 1 MM\r\n{}\r\n9 END PGM 1 MM\r\n", blocks.replace('\n', "\r\n"))
+    format!(
+        "0 BEGIN PGM 1 MM\r\n{}\r\n9 END PGM 1 MM\r\n",
+        blocks.replace('\n', "\r\n")
+    )
 }
 
 fn rig(build: Build) -> Rig {
@@ -54,7 +57,8 @@ fn state(rig: &Rig) -> DripFeedState {
 }
 
 fn give(rig: &mut Rig, text: &str) -> bool {
-    rig.control.command(Command::Dnc(Dnc::Text(text.as_bytes().into())))
+    rig.control
+        .command(Command::Dnc(Dnc::Text(text.as_bytes().into())))
 }
 
 /// What a test does with a machine on which a program runs.
@@ -91,7 +95,11 @@ impl<'a> Line<'a> {
             let (piece, rest) = self.rest.split_at(size);
             assert!(give(rig, piece));
             self.rest = rest;
-            self.pause = if self.random(6) == 0 { self.random(400) } else { self.random(8) };
+            self.pause = if self.random(6) == 0 {
+                self.random(400)
+            } else {
+                self.random(8)
+            };
         } else if self.rest.is_empty() && !self.ended {
             rig.command("dnc end");
             self.ended = true;
@@ -152,7 +160,12 @@ fn the_path_is_that_of_the_whole_program() {
                 (2, 590) => rig.command("mode full"),
                 _ => {}
             }
-            assert!(cycles < 300_000, "{seed}: {:?} {:?}", rig.messages(), rig.control.snapshot());
+            assert!(
+                cycles < 300_000,
+                "{seed}: {:?} {:?}",
+                rig.messages(),
+                rig.control.snapshot()
+            );
         }
         assert!(bits(&path) == expected, "{seed}");
         rig.cycle();
@@ -165,7 +178,9 @@ fn the_path_is_that_of_the_whole_program() {
 #[test]
 fn a_path_that_starves_slows_to_a_stop_and_goes_on() {
     let start = "BEGIN PGM 1 MM\nTOOL CALL 0 Z\nL X+100 Y+100 Z+200 R0 F6000\n";
-    let blocks: Vec<String> = (0..200).map(|at| format!("L X+{} Y+100\n", 100.0 + f64::from(at))).collect();
+    let blocks: Vec<String> = (0..200)
+        .map(|at| format!("L X+{} Y+100\n", 100.0 + f64::from(at)))
+        .collect();
     for pause in [0, 150] {
         let mut rig = rig(Build::mill());
         rig.command("dnc begin 1.H");
@@ -195,7 +210,12 @@ fn a_path_that_starves_slows_to_a_stop_and_goes_on() {
                 next += 1;
                 waits = 0;
             }
-            assert!(rig.control.time_us() < 400_000_000, "{:?} {next} {pause} {:?}", rig.messages(), rig.control.snapshot());
+            assert!(
+                rig.control.time_us() < 400_000_000,
+                "{:?} {next} {pause} {:?}",
+                rig.messages(),
+                rig.control.snapshot()
+            );
         }
         assert_eq!(stood > 0, pause > 0, "{pause}: {stood}");
     }
@@ -235,7 +255,10 @@ fn a_full_memory_wants_more_when_256_bytes_are_free() {
             resumed += 1;
             assert!(now.bytes <= 2048 - 256, "{now:?}");
         }
-        assert!(before.wants_more || now.wants_more || now.bytes > 2048 - 256, "{now:?}");
+        assert!(
+            before.wants_more || now.wants_more || now.bytes > 2048 - 256,
+            "{now:?}"
+        );
         if now.wants_more && resumed > 0 {
             while state(&rig).wants_more {
                 let block = next();
@@ -260,33 +283,64 @@ fn program_memory_overflow() {
 
     let mut rig = self::rig(Build::mill().mp("MP7228.1=1"));
     rig.command("dnc begin 1.H");
-    assert!(give(&mut rig, "BEGIN PGM 1 MM\nL X+100 R0 F3000\nFN 9: IF +0 EQU +0 GOTO LBL 9\n"));
+    assert!(give(
+        &mut rig,
+        "BEGIN PGM 1 MM\nL X+100 R0 F3000\nFN 9: IF +0 EQU +0 GOTO LBL 9\n"
+    ));
     rig.start();
     while state(&rig).wants_more {
         assert!(give(&mut rig, "L X+110\n"));
         rig.cycle();
     }
     rig.until(60.0, "the label does not come", |rig| rig.control.is_broken());
-    assert!(rig.messages()[0].starts_with("PROGRAM MEMORY OVERFLOW"), "{:?}", rig.messages());
+    assert!(
+        rig.messages()[0].starts_with("PROGRAM MEMORY OVERFLOW"),
+        "{:?}",
+        rig.messages()
+    );
 }
 
 /// What a TNC 360 does not execute in a program that is transferred, and what others do.
 #[test]
 fn limits_of_programs_that_are_transferred() {
-    let tools = |count: u32| (1..=count).map(|tool| format!("TOOL DEF {tool} L+0 R+1\n")).collect::<String>();
+    let tools = |count: u32| {
+        (1..=count)
+            .map(|tool| format!("TOOL DEF {tool} L+0 R+1\n"))
+            .collect::<String>()
+    };
     let refused = "NOT IN BLOCKWISE TRANSFER";
     let cases = [
-        ("LBL 1\nL X+20 R0 F1000\nLBL 0\nCALL LBL 1\n".to_owned(), Some(refused), Some(refused)),
-        ("LBL 1\nL X+20 R0 F1000\nCALL LBL 1 REP 2/2\n".into(), Some(refused), Some(refused)),
-        ("LBL 1\nFN 9: IF +0 EQU +0 GOTO LBL 1\n".into(), Some("LABEL NUMBER NOT ALLOCATED"), Some("LABEL NUMBER NOT ALLOCATED")),
+        (
+            "LBL 1\nL X+20 R0 F1000\nLBL 0\nCALL LBL 1\n".to_owned(),
+            Some(refused),
+            Some(refused),
+        ),
+        (
+            "LBL 1\nL X+20 R0 F1000\nCALL LBL 1 REP 2/2\n".into(),
+            Some(refused),
+            Some(refused),
+        ),
+        (
+            "LBL 1\nFN 9: IF +0 EQU +0 GOTO LBL 1\n".into(),
+            Some("LABEL NUMBER NOT ALLOCATED"),
+            Some("LABEL NUMBER NOT ALLOCATED"),
+        ),
         ("FN 15: PRINT 1\n".into(), Some(refused), None),
         ("TCH PROBE 5.0 RANGE\n".into(), Some(refused), None),
         (tools(20), None, None),
         (tools(21), Some(refused), None),
         ("65534 L X+10 R0 F1000\n1 L X+11\n".into(), None, None),
-        ("L X+10 R0 F1000\n65535 L X+11\n".into(), Some("ENTRY VALUE INCORRECT"), None),
+        (
+            "L X+10 R0 F1000\n65535 L X+11\n".into(),
+            Some("ENTRY VALUE INCORRECT"),
+            None,
+        ),
         ("CALL PGM 7\n".into(), None, None),
-        ("CALL PGM 8\n".into(), Some("PROGRAM NOT FOUND"), Some("PROGRAM NOT FOUND")),
+        (
+            "CALL PGM 8\n".into(),
+            Some("PROGRAM NOT FOUND"),
+            Some("PROGRAM NOT FOUND"),
+        ),
     ];
     for (blocks, on_360, on_415) in cases {
         for (model, expected) in [(ControlModel::Tnc360, on_360), (ControlModel::Tnc415b, on_415)] {
@@ -296,14 +350,25 @@ fn limits_of_programs_that_are_transferred() {
             };
             let mut rig = rig(build.program("7", "LBL 4\nL X+15 R0 F1000\nLBL 0\nCALL LBL 4\n"));
             rig.command("dnc begin 1.H");
-            assert!(give(&mut rig, &format!("0 BEGIN PGM 1 MM\n{blocks}END PGM 1 MM\n")));
+            assert!(give(
+                &mut rig,
+                &format!("0 BEGIN PGM 1 MM\n{blocks}END PGM 1 MM\n")
+            ));
             rig.command("dnc end");
             rig.start();
-            rig.until(60.0, &blocks, |rig| rig.control.has_ended() || rig.control.is_broken());
+            rig.until(60.0, &blocks, |rig| {
+                rig.control.has_ended() || rig.control.is_broken()
+            });
             let found = rig.messages();
             match expected {
-                Some(message) => assert!(found.iter().any(|found| found.starts_with(message)), "{model} {blocks}: {found:?}"),
-                None => assert!(rig.control.has_ended() && found.is_empty(), "{model} {blocks}: {found:?}"),
+                Some(message) => assert!(
+                    found.iter().any(|found| found.starts_with(message)),
+                    "{model} {blocks}: {found:?}"
+                ),
+                None => assert!(
+                    rig.control.has_ended() && found.is_empty(),
+                    "{model} {blocks}: {found:?}"
+                ),
             }
         }
     }
@@ -323,7 +388,10 @@ fn a_broken_line_goes_on_where_it_was() {
         rig.until(120.0, "what is known is executed", |rig| state(rig).starved);
         rig.seconds(1.0);
         assert_eq!(rig.messages(), ["PROGRAM INCOMPLETE"]);
-        assert_eq!((state(&rig).line, state(&rig).wants_more), (DripFeedLine::Broken, false));
+        assert_eq!(
+            (state(&rig).line, state(&rig).wants_more),
+            (DripFeedLine::Broken, false)
+        );
         assert!(!give(&mut rig, "L X+1\n"));
         rig.command("ce");
         rig.command("dnc begin 1.H");
@@ -339,7 +407,10 @@ fn a_broken_line_goes_on_where_it_was() {
 fn what_is_known_is_executed_when_nothing_more_comes() {
     let mut rig = rig(Build::mill());
     rig.command("dnc begin 1.H");
-    assert!(give(&mut rig, "BEGIN PGM 1 MM\nL X+100 R0 F3000\nL X+110\nL X+120\n"));
+    assert!(give(
+        &mut rig,
+        "BEGIN PGM 1 MM\nL X+100 R0 F3000\nL X+110\nL X+120\n"
+    ));
     rig.start();
     rig.command("dnc broken");
     rig.command("dnc end");
@@ -358,7 +429,9 @@ fn stops_in_between() {
         rig.command("dnc begin 1.H");
         rig.start();
         assert!(give(&mut rig, &text));
-        rig.until(60.0, "the contour", |rig| rig.control.element().is_some_and(|e| e.block.block == 7));
+        rig.until(60.0, "the contour", |rig| {
+            rig.control.element().is_some_and(|e| e.block.block == 7)
+        });
         match how {
             "stop" => {
                 rig.event("key NC_STOP tap");
@@ -377,7 +450,10 @@ fn stops_in_between() {
         rig.start();
         rig.command("dnc end");
         rig.until(60.0, how, |rig| rig.control.has_ended());
-        assert!((rig.control.first().snapshot().axes[0].nominal - 200.0).abs() < 1e-6, "{how}");
+        assert!(
+            (rig.control.first().snapshot().axes[0].nominal - 200.0).abs() < 1e-6,
+            "{how}"
+        );
     }
     let mut rig = rig(Build::mill());
     rig.command("dnc begin 1.H");
@@ -392,7 +468,9 @@ fn stops_in_between() {
 /// The run starts at a block: the ones before it are not executed, and take no memory [003:1686-1688].
 #[test]
 fn earlier_blocks_are_ignored() {
-    let lines: String = (1..2000).map(|at| format!("{at} L X+{} F3000\n", 100 + at % 40)).collect();
+    let lines: String = (1..2000)
+        .map(|at| format!("{at} L X+{} F3000\n", 100 + at % 40))
+        .collect();
     let text = format!("BEGIN PGM 1 MM\n{lines}L X+123\nEND PGM 1 MM\n");
     for from in ["goto 1990", "restore-at 1990"] {
         let mut rig = rig(Build::mill().mp("MP7228.1=4").mp("MP7680=%0000110"));
@@ -410,7 +488,13 @@ fn earlier_blocks_are_ignored() {
         let mut path = Vec::new();
         let mut stood = 0;
         while !rig.control.has_ended() {
-            if rig.control.first().drip_feed().is_some_and(|feed| feed.wants_more) || line.rest.is_empty() && !line.ended {
+            if rig
+                .control
+                .first()
+                .drip_feed()
+                .is_some_and(|feed| feed.wants_more)
+                || line.rest.is_empty() && !line.ended
+            {
                 line.pause = 0;
                 line.turn(&mut rig);
             }
@@ -424,9 +508,18 @@ fn earlier_blocks_are_ignored() {
                     _ => {}
                 }
             }
-            assert!(rig.control.time_us() < 300_000_000, "{from} {:?} {:?}", rig.messages(), rig.control.snapshot());
+            assert!(
+                rig.control.time_us() < 300_000_000,
+                "{from} {:?} {:?}",
+                rig.messages(),
+                rig.control.snapshot()
+            );
         }
-        let executed: Vec<u32> = path.iter().map(|element| element.block.block).filter(|block| *block >= 1990).collect();
+        let executed: Vec<u32> = path
+            .iter()
+            .map(|element| element.block.block)
+            .filter(|block| *block >= 1990)
+            .collect();
         assert_eq!(executed, (1990..=2000).collect::<Vec<u32>>(), "{from}");
         assert_eq!(path.last().unwrap().end[Axis::X], 123.0);
     }

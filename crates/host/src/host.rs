@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use bahn_control::{
-    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, Remembered, ServoSampler, Setup, Snapshot,
-    SpindleWiring,
+    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, Remembered, ServoSampler, Setup,
+    Snapshot, SpindleWiring,
 };
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;

@@ -94,7 +94,10 @@ impl Program {
 
     /// Bytes of the text from a block on, with what is not known to be a block yet.
     pub fn bytes_from(&self, block: u32) -> u64 {
-        let pending = self.growth.as_ref().map_or(0, |growth| growth.pending.len() as u64);
+        let pending = self
+            .growth
+            .as_ref()
+            .map_or(0, |growth| growth.pending.len() as u64);
         let Some((piece, raw)) = self.place(block) else {
             return match block < self.rope.first() {
                 true => self.rope.bytes() + pending,

@@ -132,8 +132,20 @@ mod tests {
             list.drip_feed_memory()
         };
         let there = 6000 * 22;
-        assert_eq!(memory(0.0, 0.0), DripFeedMemory { min_bytes: 0, max_bytes: there });
-        assert_eq!(memory(2.0, 10.0), DripFeedMemory { min_bytes: 2048, max_bytes: 10_240 });
+        assert_eq!(
+            memory(0.0, 0.0),
+            DripFeedMemory {
+                min_bytes: 0,
+                max_bytes: there
+            }
+        );
+        assert_eq!(
+            memory(2.0, 10.0),
+            DripFeedMemory {
+                min_bytes: 2048,
+                max_bytes: 10_240
+            }
+        );
         assert_eq!(memory(0.0, 1024.0).max_bytes, there);
         assert!(memory(10.0, 10.0).is_enough());
         assert!(!memory(11.0, 10.0).is_enough());
