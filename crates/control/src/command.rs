@@ -8,6 +8,7 @@ use bahn_path::Axis;
 use bahn_plc::TableKind;
 
 use crate::data_line::DataLineEvent;
+use crate::drip_feed::Dnc;
 use crate::probe_command::ProbeCommand;
 
 /// The machine operating modes, as W272 codes them [000:4680-4687].
@@ -92,6 +93,8 @@ pub enum Command {
     InternalStop,
     /// `select NAME`: selects the program that runs.
     Select(String),
+    /// `dnc ..`: a program that is executed while it is transferred [000:16951-16968].
+    Dnc(Dnc),
     /// `goto N`: the run starts at this block of the main program.
     Goto(u32),
     /// `mdi BLOCKS`: the block of POSITIONING WITH MDI; `\n` separates several.
@@ -186,6 +189,7 @@ impl Command {
             Command::InternalStop
                 | Command::Select(_)
                 | Command::Goto(_)
+                | Command::Dnc(Dnc::Begin(_))
                 | Command::RestoreAt(_)
                 | Command::Q(..)
         )
@@ -258,6 +262,7 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
             }
+            "dnc" => Dnc::parse(rest).map(Command::Dnc).map_err(CommandError::Wrong),
             "probe" => ProbeCommand::parse(rest)
                 .map(Command::Probe)
                 .map_err(CommandError::Wrong),
@@ -437,6 +442,7 @@ impl fmt::Display for Command {
             Command::Output(None) => write!(f, "output ramp"),
             Command::WorkingPlane(on) => write!(f, "3d-rot {}", if *on { "on" } else { "off" }),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
+            Command::Dnc(dnc) => write!(f, "dnc {dnc}"),
             Command::ManualOperation => write!(f, "manual-operation"),
             Command::RestorePosition => write!(f, "restore-position"),
             Command::RestoreAt(block) => write!(f, "restore-at {block}"),
@@ -467,6 +473,10 @@ mod tests {
             "stop",
             "select 4711.H",
             "goto 12",
+            "dnc begin 15.H",
+            "dnc text L\\x20X+5;\\x20\\xc4\\\\\\r\\n",
+            "dnc end",
+            "dnc broken",
             "mdi L X+10 R0 F500\\nL Y+5",
             "m 3",
             "s 1500.5",
@@ -501,7 +511,7 @@ mod tests {
             "rs232 baud 9600",
             "rs232 sent",
             "rs422 not-sent",
-            "rs422 received \"FA81 \\\"Q\\\" \\x0D\"",
+            "rs422 received \"FA81 \\\"Q\\\" \\x1b\"",
             "rs422 faulty",
             "rs422 etx",
             "lsv2 connected",
@@ -529,6 +539,8 @@ mod tests {
             ("axis-limit X 4 1 2", "from 1 to 3"),
             ("axis-limit X 1 1", "from -30000 to 30000"),
             ("table T 1 SHARP 2", "`table T 12 L 80.5`"),
+            ("dnc text \\q", "escapes"),
+            ("dnc", "`begin` and a name"),
             ("handwheel X 11", "from 0 to 10"),
             ("select", "needs something"),
             ("I4=1", "`fault input I4 1`"),

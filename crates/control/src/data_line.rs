@@ -2,10 +2,11 @@
 //!
 //! What is on the wire (characters, protocol, baud rate) is the business of whoever has the wire; here texts are whole.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 
 use bahn_plc::{DataInterface, HostLink, HostMessage, InterfaceUser};
 
+use crate::escapes;
 use crate::plc_link::PlcLink;
 
 /// The two interfaces by their number for the modules of the PLC: RS-232-C/V.24 is 0, RS-422/V.11 is 1 [000:15629].
@@ -158,7 +159,7 @@ impl LineEvent {
             ("ready", switch) => on_off(switch).map(LineEvent::Ready),
             ("taken", switch) => on_off(switch).map(LineEvent::Taken),
             ("baud", rate) => rate.parse().ok().map(LineEvent::ModeBaud),
-            ("received", text) => unquoted(text).map(LineEvent::Received),
+            ("received", text) => escapes::quoted(text).map(LineEvent::Received),
             ("sent", "") => Some(LineEvent::Sent),
             ("not-sent", "") => Some(LineEvent::NotSent),
             ("faulty", "") => Some(LineEvent::Faulty),
@@ -177,7 +178,7 @@ impl HostEvent {
             ("taken", "") => Some(HostEvent::Taken),
             ("message", value) => {
                 let number = value.parse().ok().map(HostMessage::Double);
-                let message = number.or_else(|| unquoted(value).map(HostMessage::Text));
+                let message = number.or_else(|| escapes::quoted(value).map(HostMessage::Text));
                 message.map(HostEvent::Message)
             }
             _ => None,
@@ -193,42 +194,12 @@ fn on_off(text: &str) -> Option<bool> {
     }
 }
 
-/// A text in quotes; other characters than printable ones are written as `\x0D`.
-fn unquoted(text: &str) -> Option<Vec<u8>> {
-    let mut rest = text.strip_prefix('"')?.strip_suffix('"')?.bytes();
-    let mut bytes = Vec::new();
-    while let Some(byte) = rest.next() {
-        let byte = match byte {
-            b'\\' => match rest.next()? {
-                b'x' => {
-                    let digits = [rest.next()?, rest.next()?];
-                    let digit = |digit: u8| (digit as char).to_digit(16);
-                    (digit(digits[0])? * 16 + digit(digits[1])?) as u8
-                }
-                byte @ (b'\\' | b'"') => byte,
-                _ => return None,
-            },
-            b'"' => return None,
-            byte => byte,
-        };
-        bytes.push(byte);
-    }
-    Some(bytes)
-}
-
+/// A text in quotes, with the escapes of a byte string.
 struct Quoted<'a>(&'a [u8]);
 
 impl fmt::Display for Quoted<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_char('"')?;
-        for byte in self.0 {
-            match byte {
-                b'"' | b'\\' => write!(f, "\\{}", *byte as char)?,
-                b' '..=b'~' => f.write_char(*byte as char)?,
-                byte => write!(f, "\\x{byte:02X}")?,
-            }
-        }
-        f.write_char('"')
+        write!(f, "\"{}\"", self.0.escape_ascii())
     }
 }
 
@@ -347,8 +318,8 @@ mod tests {
         let event = DataLineEvent::Line(0, LineEvent::Received(all));
         let text = Command::DataLine(event.clone()).to_string();
         assert_eq!(text.parse(), Ok(Command::DataLine(event)));
-        for wrong in ["\"A", "A", "\"A\"B\"", "\"\\x1\"", "\"\\n\""] {
-            assert_eq!(unquoted(wrong), None, "{wrong}");
+        for wrong in ["\"A", "A", "\"A\"B\"", "\"\\x1\"", "\"\\q\"", "\"A\\\""] {
+            assert_eq!(escapes::quoted(wrong), None, "{wrong}");
         }
     }
 

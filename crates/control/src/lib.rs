@@ -77,7 +77,10 @@ mod data_line;
 mod datum_tables;
 mod datums;
 mod desk;
+mod drip_feed;
+mod driving;
 mod emergency;
+mod escapes;
 mod feeder;
 mod gantry;
 mod hand_over;
@@ -152,6 +155,7 @@ pub use compensation_table::{CompensationAssignment, CompensationError, Compensa
 pub use control::Control;
 pub use correction_tables::CorrectionTables;
 pub use data_line::{DataLineEvent, DataLineOrder, HostEvent, LineEvent, LineSetup, OrderedLines};
+pub use drip_feed::{Dnc, DripFeedLine, DripFeedState};
 pub use hand_over::HandOver;
 pub use handshake::{Handshake, Transfer, Waiting};
 pub use handwheel::HANDWHEEL_STEPS;

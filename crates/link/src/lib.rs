@@ -9,13 +9,15 @@
 //! ```
 //!
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`store`] is the file service that all protocols share.
+//! - [`store`] is the file service that all protocols share;
+//! - [`dnc`] is the drip feed: programs that are executed while they are transferred.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
     reason = "citations as [000:7188] look like links"
 )]
 
+pub mod dnc;
 mod file_type;
 pub mod store;
 
