@@ -62,6 +62,9 @@ pub struct Settings {
     pub skip_unknown: bool,
     /// Axes that the machine does not have for programs. A control that runs one on a machine knows that itself.
     pub absent: AbsentAxes,
+    /// Compensated blocks lead along the contour they name, as if the tool had no radius: a program is drawn, not
+    /// tested. What a cycle makes is the path of the tool all the same.
+    pub as_programmed: bool,
     /// A control runs the program on a machine: it waits for the PLC, which may write what the next block
     /// reads, and probing movements are executed outside.
     pub machine: bool,
@@ -95,6 +98,7 @@ impl Default for Settings {
             strict: false,
             skip_unknown: false,
             absent: AbsentAxes::default(),
+            as_programmed: false,
             machine: false,
             transferred: false,
             max_blocks_without_motion: 10_000_000,
