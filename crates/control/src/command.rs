@@ -7,6 +7,7 @@ use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_path::Axis;
 use bahn_plc::TableKind;
 
+use crate::data_line::DataLineEvent;
 use crate::drip_feed::Dnc;
 use crate::probe_command::ProbeCommand;
 
@@ -151,6 +152,9 @@ pub enum Command {
     /// that it may change then; what needs a reset makes the control begin anew, what needs the reference marks lets
     /// the axes traverse them again [000:10088].
     Set(Assignment),
+    /// `rs422 received "TEXT"`, `lsv2 message 42` ..: something comes over a data interface to the PLC
+    /// [000:15587-15905].
+    DataLine(DataLineEvent),
     /// `power off`, `power on`: the supply of the control.
     Power(bool),
 }
@@ -275,6 +279,7 @@ impl FromStr for Command {
             "3d-rot" => switch(name, rest, "on").map(Command::WorkingPlane),
             "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
             "power" => switch(name, rest, "on").map(Command::Power),
+            _ if DataLineEvent::WORDS.contains(&name) => data_line(name, rest),
             "select" | "test" | "mdi" => {
                 Err(CommandError::Wrong(format!("`{name}` needs something behind it")))
             }
@@ -303,6 +308,14 @@ fn assignment(text: &str) -> Result<Assignment, CommandError> {
         }
         _ => Ok(assignment),
     }
+}
+
+/// `rs422 received "FA81"`.
+fn data_line(name: &str, rest: &str) -> Result<Command, CommandError> {
+    let wrong = || CommandError::Wrong(format!("nothing like `{rest}` happens at `{name}`"));
+    DataLineEvent::parse(name, rest)
+        .map(Command::DataLine)
+        .ok_or_else(wrong)
 }
 
 fn axis<'a>(name: &str, text: &'a str) -> Result<(Axis, &'a str), CommandError> {
@@ -441,6 +454,7 @@ impl fmt::Display for Command {
                 write!(f, "offset {}", if *adjust { "adjust" } else { "off" })
             }
             Command::Set(assignment) => assignment.fmt(f),
+            Command::DataLine(event) => event.fmt(f),
             Command::Power(on) => write!(f, "power {}", if *on { "on" } else { "off" }),
         }
     }
@@ -492,6 +506,19 @@ mod tests {
             "W6=-16",
             "S0=\"A=B\"",
             "MP1010.0=5000",
+            "rs232 ready on",
+            "rs232 taken off",
+            "rs232 baud 9600",
+            "rs232 sent",
+            "rs422 not-sent",
+            "rs422 received \"FA81 \\\"Q\\\" \\x0D\"",
+            "rs422 faulty",
+            "rs422 etx",
+            "lsv2 connected",
+            "lsv2 disconnected",
+            "lsv2 taken",
+            "lsv2 message -42",
+            "lsv2 message \"PALLET 7\"",
             "power off",
         ] {
             let command = text.parse::<Command>();
@@ -520,6 +547,8 @@ mod tests {
             ("M5=2", "takes 0 or 1"),
             ("output", "`step` and a feed"),
             ("oscilloscope on", "`start` or `stop`"),
+            ("rs232 ready", "happens at `rs232`"),
+            ("lsv2 message", "happens at `lsv2`"),
             ("3d-rot B", "`on` or `off`"),
             ("power up", "`on` or `off`"),
         ] {
