@@ -8,9 +8,9 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
+//! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`store`] is the file service that all protocols share;
-//! - [`dnc`] is the drip feed: programs that are executed while they are transferred.
+//! - [`store`] is the file service that all protocols share.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
