@@ -8,8 +8,10 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
+//! - [`backup`] is a machine as one text;
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
+//! - [`HardCopy`] speaks to the printer of a TNC 155;
 //! - [`store`] is the file service that all protocols share.
 
 #![allow(
@@ -17,8 +19,11 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+pub mod backup;
 pub mod dnc;
 mod file_type;
+mod hard_copy;
 pub mod store;
 
 pub use file_type::FileType;
+pub use hard_copy::HardCopy;
