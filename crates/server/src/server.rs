@@ -142,6 +142,7 @@ fn router(shared: Shared) -> Router {
         .route("/web/{name}", get(assets::module))
         .route("/web/viewer/{name}", get(assets::viewer))
         .route("/api/station", get(api::station))
+        .route("/api/texts", get(api::texts))
         .route("/api/screen", get(api::screen))
         .route("/api/snapshot", get(api::snapshot))
         .route("/api/graphics.png", get(api::graphics))

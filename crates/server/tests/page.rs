@@ -390,7 +390,7 @@ fn a_small_screen_has_one_column() {
     };
     let panel = Panel::of("mill-tnc360", |_| {});
     panel.to_manual();
-    let look = json!({"layout": "one_column", "colours": {}});
+    let look = json!({"layout": "one_column", "language": "en", "colours": {}});
     assert_eq!(panel.screen()["look"], look);
     let mut page = open(&panel, &browser);
     choose(&mut page, "#scheme", "control");
