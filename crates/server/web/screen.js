@@ -166,16 +166,24 @@ function axes(node, shown) {
   shown.forEach((axis, place) => setText(nodes[place], `${axis.locked ? "*" : ""}${axis.letter} ${axis.value} `));
 }
 
+/** A bar ends at so many per cent of what was programmed. */
+const BAR_MAX = 150;
+
 function bar(name) {
   const node = element("label", "bar");
   const meter = element("meter");
-  meter.max = 150;
+  meter.max = BAR_MAX;
+  // Where it is as fast as programmed.
+  const scale = element("span", "scale");
+  const mark = element("span", "hundred");
+  mark.style.left = `${100 * 100 / BAR_MAX}%`;
+  scale.append(meter, mark);
   say(meter, name === "F" ? "Feed, percent" : "Spindle speed, percent", "aria-label");
-  node.append(element("span", "", name), meter, element("span", "percent"));
+  node.append(element("span", "", name), scale, element("span", "percent"));
   return node;
 }
 
-// A bar is what is done of what was programmed, up to 150 %.
+// A bar is what is done of what was programmed, up to BAR_MAX.
 function setBar(node, value, programmed, override) {
   const part = programmed > 0 ? (value / programmed) * 100 : 0;
   const meter = node.querySelector("meter");
