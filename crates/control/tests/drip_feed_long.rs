@@ -39,6 +39,30 @@ struct Measured {
     blocks: u32,
 }
 
+/// Nominal positions of the cycle before, and the speeds that led there.
+#[derive(Default)]
+struct Speeds {
+    at: Option<[f64; 2]>,
+    speed: Option<[f64; 2]>,
+}
+
+impl Speeds {
+    /// Takes a cycle; the greatest step of a speed so far as an acceleration.
+    fn look(&mut self, rig: &Rig, greatest: &mut f64) {
+        let cycle_s = f64::from(rig.control.cycle_us()) * 1e-6;
+        let at = ["X.nominal", "Y.nominal"].map(|name| rig.control.observe(&name.parse().unwrap()));
+        let speed = self
+            .at
+            .map(|was| [0, 1].map(|axis: usize| (at[axis] - was[axis]) / cycle_s));
+        if let (Some(slower), Some(speed)) = (self.speed, speed) {
+            for axis in 0..2 {
+                *greatest = greatest.max((speed[axis] - slower[axis]).abs() / cycle_s);
+            }
+        }
+        (self.at, self.speed) = (Some(at), speed.or(self.speed));
+    }
+}
+
 /// Runs a program over a line of so many baud, or one that is as fast as the control takes it.
 fn run(blocks: u32, baud: Option<f64>) -> Measured {
     // Corners up to 10 degrees are passed; 100 kByte wait at most.
@@ -60,7 +84,7 @@ fn run(blocks: u32, baud: Option<f64>) -> Measured {
     };
     let mut next = 0;
     let mut paid_s = 0.0;
-    let mut before: [Option<f64>; 4] = [None; 4];
+    let mut speeds = Speeds::default();
     let cycle_s = f64::from(rig.control.cycle_us()) * 1e-6;
     let info = allocation_counter::measure(|| {
         while !rig.control.has_ended() {
@@ -99,23 +123,8 @@ fn run(blocks: u32, baud: Option<f64>) -> Measured {
                 measured.starved_s += if feed.starved { cycle_s } else { 0.0 };
             }
             let number = view.element().map_or(0, |element| element.block.block);
-            let snapshot = [
-                rig.control.observe(&"X.nominal".parse().unwrap()),
-                rig.control.observe(&"Y.nominal".parse().unwrap()),
-            ];
             if number > 5 && number < blocks {
-                for axis in 0..2 {
-                    let at = snapshot[axis];
-                    if let Some(was) = before[axis] {
-                        let speed = (at - was) / cycle_s;
-                        if let Some(slower) = before[axis + 2] {
-                            measured.acceleration =
-                                measured.acceleration.max((speed - slower).abs() / cycle_s);
-                        }
-                        before[axis + 2] = Some(speed);
-                    }
-                    before[axis] = Some(at);
-                }
+                speeds.look(&rig, &mut measured.acceleration);
             }
             measured.blocks = measured.blocks.max(number);
             assert!(rig.messages_are_none(), "{:?}", rig.messages());
