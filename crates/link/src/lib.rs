@@ -2,7 +2,8 @@
 //! a real control.
 //!
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`store`] is the file service that all protocols share.
+//! - [`store`] is the file service that all protocols share;
+//! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -10,6 +11,7 @@
 )]
 
 mod file_type;
+pub mod lsv2;
 pub mod store;
 
 pub use file_type::FileType;
