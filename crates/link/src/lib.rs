@@ -10,7 +10,8 @@
 //!
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`store`] is the file service that all protocols share.
+//! - [`store`] is the file service that all protocols share;
+//! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -19,6 +20,7 @@
 
 pub mod dnc;
 mod file_type;
+pub mod lsv2;
 pub mod store;
 
 pub use file_type::FileType;
