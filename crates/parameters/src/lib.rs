@@ -99,7 +99,7 @@ pub mod operation {
 
 /// Of the data interfaces: [`ParameterList::interface_parameters`](crate::ParameterList::interface_parameters).
 pub mod interfaces {
-    pub use crate::settings::{InterfaceParameters, TransferFormat};
+    pub use crate::settings::{ControlCharacters, InterfaceParameters, TransferFormat};
 }
 /// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).
 pub mod tables {
