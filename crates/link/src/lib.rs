@@ -1,6 +1,8 @@
 //! Data interfaces: the control speaks with the devices of its time and with clients of today, and plays such a device for
 //! a real control.
 //!
+//! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
+//!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter.
 
 #![allow(
@@ -8,6 +10,12 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+mod channel;
+mod characters;
 mod file_type;
+mod settings;
 
+pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
+pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
 pub use file_type::FileType;
+pub use settings::{Mode, PATIENCE, Settings};
