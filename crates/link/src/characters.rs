@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use bahn_parameters::TransferFormat;
+use bahn_parameters::interfaces::TransferFormat;
 
 /// Stops the other side: XOFF [000:17045-17050].
 pub const DC3: u8 = 0x13;
@@ -53,9 +53,7 @@ impl Characters {
     pub fn of_format(format: &TransferFormat) -> Characters {
         Characters {
             data_bits: format.data_bits,
-            parity: format
-                .odd
-                .map(|odd| if odd { Parity::Odd } else { Parity::Even }),
+            parity: format.odd.map(|odd| if odd { Parity::Odd } else { Parity::Even }),
             half_stop_bits: format.half_stop_bits,
         }
     }
@@ -104,7 +102,11 @@ mod tests {
             assert_eq!(characters, expected, "{bits}");
             assert_eq!(format.stop_by_dc3, stop_by_dc3, "{bits}");
             if character_bits > 0 {
-                assert_eq!(characters.time(1000), Duration::from_millis(character_bits), "{bits}");
+                assert_eq!(
+                    characters.time(1000),
+                    Duration::from_millis(character_bits),
+                    "{bits}"
+                );
             }
         }
         // Half a stop bit more is half a bit.
@@ -112,7 +114,20 @@ mod tests {
             half_stop_bits: 3,
             ..Characters::FIXED
         };
-        assert_eq!(longer.time(1000) - Characters::FIXED.time(1000), Duration::from_micros(500));
-        assert_eq!((longer.mask(0xFF), Characters { data_bits: 8, ..longer }.mask(0xFF)), (0x7F, 0xFF));
+        assert_eq!(
+            longer.time(1000) - Characters::FIXED.time(1000),
+            Duration::from_micros(500)
+        );
+        assert_eq!(
+            (
+                longer.mask(0xFF),
+                Characters {
+                    data_bits: 8,
+                    ..longer
+                }
+                .mask(0xFF)
+            ),
+            (0x7F, 0xFF)
+        );
     }
 }

@@ -1,9 +1,17 @@
 //! Data interfaces: the control speaks with the devices of its time and with clients of today, and plays such a device for
 //! a real control.
 //!
+//! ```
+//! use bahn_link::FileType;
+//!
+//! let types: Vec<_> = FileType::all().filter(|kind| kind.code() == 'A').collect();
+//! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
+//! ```
+//!
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
-//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter.
+//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
+//! - [`store`] is the file service that all protocols share.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -14,6 +22,7 @@ mod channel;
 mod characters;
 mod file_type;
 mod settings;
+pub mod store;
 
 pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
 pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};

@@ -4,7 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
-use bahn_parameters::{ControlCharacters, ControlModel, ParameterList};
+use bahn_parameters::interfaces::ControlCharacters;
+use bahn_parameters::{ControlModel, ParameterList};
 
 use crate::Characters;
 
@@ -144,7 +145,10 @@ mod tests {
     #[test]
     fn modes_are_written_as_they_are_read() {
         for (name, mode) in Mode::ALL {
-            assert_eq!((mode.to_string().as_str(), name.to_uppercase().parse()), (name, Ok(mode)));
+            assert_eq!(
+                (mode.to_string().as_str(), name.to_uppercase().parse()),
+                (name, Ok(mode))
+            );
         }
         assert_eq!("fe".parse::<Mode>(), Err(()));
     }
@@ -159,7 +163,13 @@ mod tests {
         assert!(!me.blockwise && me.never_eot && me.control == ControlCharacters::STANDARD);
         let [fe1, fe2] = [Mode::Fe1, Mode::Fe2].map(|mode| Settings::of(&list, mode));
         assert!(fe1.blockwise && fe1.with_dc1 && !fe1.never_eot && fe1.characters == Characters::FIXED);
-        assert_eq!(Settings { asks_directory: false, ..fe1 }, fe2);
+        assert_eq!(
+            Settings {
+                asks_directory: false,
+                ..fe1
+            },
+            fe2
+        );
         let ext = Settings::of(&list, Mode::Ext1);
         assert!(ext.blockwise && ext.printable_check && !ext.with_dc1 && ext.control.stx == b'!');
         assert_eq!(ext.characters.data_bits, 8);

@@ -151,7 +151,10 @@ fn the_program_has_the_colours_of_mp7363() {
     let mut trainee = Trainee::with("mill", |folder| {
         let path = folder.join("parameters.mp");
         let mut text = std::fs::read_to_string(&path).unwrap();
-        text += "MP7363.0 : $0000015\nMP7363.1 : $03F0000\n";
+        for (index, colour) in [(0, "0000015"), (1, "03F0000")] {
+            let at = text.find(&format!("MP7363.{index} : $")).unwrap() + 12;
+            text.replace_range(at..at + 7, colour);
+        }
         std::fs::write(path, text).unwrap();
     });
     trainee.write("programs/PLATE.H", PLATE);

@@ -108,7 +108,9 @@ impl Channel {
             line: spec.line.clone(),
             characters,
             pace: paced.map(|baud| Pace::new(characters.time(baud))),
-            faults: spec.fault.map(|seed| [0, 1].map(|way| Faults::of_seed(seed, way))),
+            faults: spec
+                .fault
+                .map(|seed| [0, 1].map(|way| Faults::of_seed(seed, way))),
             start: Instant::now(),
             incoming: VecDeque::new(),
             outgoing: Vec::new(),
@@ -148,9 +150,7 @@ impl Channel {
         }
         let waiting = self.outgoing.len();
         match &mut self.pace {
-            Some(pace) if self.wire.has_lines() => {
-                pace.room(now).min(AHEAD_OF_UART.saturating_sub(waiting))
-            }
+            Some(pace) if self.wire.has_lines() => pace.room(now).min(AHEAD_OF_UART.saturating_sub(waiting)),
             Some(pace) if waiting == 0 => pace.room(now),
             Some(_) => 0,
             None => AHEAD.saturating_sub(waiting),
@@ -235,7 +235,9 @@ impl Channel {
         let now = self.start.elapsed();
         let mut passed = Vec::with_capacity(bytes.len());
         match &mut self.faults {
-            Some([_, received]) => bytes.iter().for_each(|byte| received.pass(*byte, now, &mut passed)),
+            Some([_, received]) => bytes
+                .iter()
+                .for_each(|byte| received.pass(*byte, now, &mut passed)),
             None => passed.extend_from_slice(bytes),
         }
         let masked = passed.into_iter().map(|byte| self.characters.mask(byte));

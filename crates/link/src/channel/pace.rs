@@ -69,7 +69,10 @@ mod tests {
                 now += step;
             }
             let capacity = 2_000_000 / 260;
-            assert!((capacity - 20..=capacity + 20).contains(&sent), "{step:?}: {sent} of {capacity}");
+            assert!(
+                (capacity - 20..=capacity + 20).contains(&sent),
+                "{step:?}: {sent} of {capacity}"
+            );
         }
     }
 

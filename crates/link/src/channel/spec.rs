@@ -174,7 +174,9 @@ impl Spec {
                 self.timeout = Duration::from_secs_f64(seconds);
             }
             "fault" => {
-                let seed = value.parse().map_err(|_| "a seed is a number from 0".to_owned())?;
+                let seed = value
+                    .parse()
+                    .map_err(|_| "a seed is a number from 0".to_owned())?;
                 self.fault = Some(seed);
             }
             _ => return Err("the options are mode, baud, timeout and fault".into()),
@@ -217,16 +219,27 @@ mod tests {
             ("pty,", 5, "an option is NAME=VALUE"),
             ("pty,mode=fe3", 5, "a mode is me, fe1, fe2, ext1 or ext2"),
             ("pty,mode=fe1,mode=me", 14, "mode is there already"),
-            ("pty,mode=fe1,timeout=0", 14, "a time-out is a number of seconds above 0"),
+            (
+                "pty,mode=fe1,timeout=0",
+                14,
+                "a time-out is a number of seconds above 0",
+            ),
             ("pty,timeout=nan", 5, "a time-out is a number of seconds above 0"),
             ("pty,fault=-1", 5, "a seed is a number from 0"),
-            ("pty,parity=odd", 5, "the options are mode, baud, timeout and fault"),
+            (
+                "pty,parity=odd",
+                5,
+                "the options are mode, baud, timeout and fault",
+            ),
         ] {
             let error = text.parse::<Spec>().unwrap_err();
             assert_eq!((error.column, error.what.as_str()), (column, what), "{text}");
         }
         let baud = "pty,mode=me,baud=9601".parse::<Spec>().unwrap_err();
         assert_eq!(baud.column, 13);
-        assert!(baud.to_string().ends_with("9600, 19200, 38400, 57600, 115200"), "{baud}");
+        assert!(
+            baud.to_string().ends_with("9600, 19200, 38400, 57600, 115200"),
+            "{baud}"
+        );
     }
 }

@@ -57,12 +57,11 @@ impl Wire {
             Line::Listen(address) => {
                 let listener = TcpListener::bind(address).map_err(failed)?;
                 listener.set_nonblocking(true).map_err(failed)?;
-                Ok(Wire::Listener {
-                    listener,
-                    peer: None,
-                })
+                Ok(Wire::Listener { listener, peer: None })
             }
-            Line::Connect(address) => connect(address).map(|stream| Wire::Stream(Some(stream))).map_err(failed),
+            Line::Connect(address) => connect(address)
+                .map(|stream| Wire::Stream(Some(stream)))
+                .map_err(failed),
             Line::Pty(link) => Pty::open(link.clone()).map(Wire::Pty).map_err(failed),
             Line::Serial(name) => open_serial(name, characters, baud)
                 .map(|port| Wire::Serial(Serial { port }))
@@ -126,7 +125,9 @@ impl Wire {
             Wire::Pty(pty) => pty.read(buffer, wait),
             Wire::Serial(serial) => {
                 let there = serial.port.bytes_to_read().unwrap_or_default();
-                serial.port.set_timeout(if there > 0 { Duration::ZERO } else { wait })?;
+                serial
+                    .port
+                    .set_timeout(if there > 0 { Duration::ZERO } else { wait })?;
                 match serial.port.read(buffer) {
                     Ok(0) => Ok(Got::Closed),
                     Ok(count) => Ok(Got::Bytes(count)),
