@@ -18,13 +18,23 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+pub mod blockwise;
 mod channel;
 mod characters;
+mod drive;
 mod file_type;
+mod files;
+mod frame;
+mod protocol;
 mod settings;
+pub mod standard;
 pub mod store;
+mod text;
 
 pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
 pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
+pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
+pub use files::{Files, Listed, Memory, NewFile};
+pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};

@@ -61,7 +61,7 @@ messages! {
         cause "Something is being transferred by the interface already, or the PLC has it.";
         remedy "Wait for the end of the transfer, or take the other interface.";
         source "[000:17577-17578]";
-    ProgramIncomplete: "PROGRAM INCOMPLETE";
+    ProgramIncomplete: "PROGRAM INCOMPLETE", on TNC_15X "ME: PROGRAM INCOMPLETE";
         cause "A transfer was interrupted, or a program has no END block.";
         remedy "Transfer the file again; check line and device.";
         source "[000:17579] [000:17636]";
