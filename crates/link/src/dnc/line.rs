@@ -17,6 +17,9 @@ pub enum Arrival {
 
 /// The control's side of a protocol that reads a program, block by block.
 pub trait BlockLine {
+    /// Whether a device is connected.
+    fn is_connected(&mut self) -> bool;
+
     /// Asks the other side for a program by its name without extension.
     fn ask_for(&mut self, name: &str);
 

@@ -70,9 +70,9 @@ mod tests {
     use super::*;
     use bahn_picture::Image;
 
-    /// The line above the picture, what is behind the part, and words.
+    /// MP7362.1 to .3 [000:6356-6360], and what is behind the part and over it.
     #[test]
-    fn a_sheet_has_the_colours_of_its_scheme() {
+    fn the_line_above_a_part_has_the_colours_of_mp7362() {
         let scheme = Scheme {
             background: [1, 0, 0],
             text: [2, 0, 0],
