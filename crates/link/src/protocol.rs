@@ -96,6 +96,12 @@ pub trait Protocol: Send {
     fn has_output(&self) -> bool;
     /// What it sends, `room` bytes at most. They are as good as sent.
     fn send(&mut self, room: usize, now: Duration, into: &mut Vec<u8>);
+    /// How long it may be left alone, when it has output from elsewhere.
+    fn patience(&self) -> Option<Duration> {
+        None
+    }
+    /// A device is connected.
+    fn plugged(&mut self, _now: Duration) {}
     /// The cable is pulled.
     fn unplugged(&mut self, now: Duration);
     /// What there is to be told.
