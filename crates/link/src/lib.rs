@@ -10,6 +10,7 @@
 //!
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
+//! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`store`] is the file service that all protocols share.
 
@@ -22,6 +23,7 @@ pub mod blockwise;
 mod channel;
 mod characters;
 mod drive;
+pub mod dnc;
 mod file_type;
 mod files;
 mod frame;

@@ -101,6 +101,14 @@ messages! {
         cause "The program memory is full, or a program is larger than the control can hold.";
         remedy "Erase programs that are no longer needed, or transfer the program blockwise.";
         source "[003:7877-7879]";
+    ProgramMemoryOverflow: "PROGRAM MEMORY OVERFLOW";
+        cause "The memory for a program that is executed while it is transferred is not enough.";
+        remedy "Lower MP7228.0 or raise MP7228.1; jump to labels that stand near.";
+        source "[000:16959]";
+    ProgramIncomplete: "PROGRAM INCOMPLETE";
+        cause "A transfer was broken off before its end.";
+        remedy "Check the line and the device, and start the transfer again.";
+        source "[000:17238-17240] [003:1680]";
     LabelNumberAllocated: "LABEL NUMBER ALLOCATED";
         cause "The same label number is set twice in one program.";
         remedy "Give each label of a program its own number; only label 0 may be repeated.";
@@ -347,6 +355,10 @@ messages! {
     EndlessLoop: "ENDLESS LOOP";
         cause "A jump or call repeats blocks without any movement and comes to no end.";
         remedy "Check the condition of the jump.";
+        source "(own message of Bahn)";
+    NotInBlockwiseTransfer: "NOT IN BLOCKWISE TRANSFER";
+        cause "The block cannot be executed in a program that is transferred while it runs.";
+        remedy "Load the program into the memory first, or take the block out.";
         source "(own message of Bahn)";
     EndOfProgramMissing: "END PGM MISSING";
         cause "The file ends without END PGM, so a part of the program may be lost.";
