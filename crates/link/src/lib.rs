@@ -12,7 +12,8 @@
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`store`] is the file service that all protocols share.
+//! - [`store`] is the file service that all protocols share;
+//! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -22,11 +23,12 @@
 pub mod blockwise;
 mod channel;
 mod characters;
-mod drive;
 pub mod dnc;
+mod drive;
 mod file_type;
 mod files;
 mod frame;
+pub mod lsv2;
 mod protocol;
 mod settings;
 pub mod standard;

@@ -64,7 +64,7 @@ messages! {
     ProgramIncomplete: "PROGRAM INCOMPLETE", on TNC_15X "ME: PROGRAM INCOMPLETE";
         cause "A transfer was interrupted, or a program has no END block.";
         remedy "Transfer the file again; check line and device.";
-        source "[000:17579] [000:17636]";
+        source "[000:17238-17240] [000:17579] [000:17636] [003:1680]";
     TransferredDataIncorrect: "TRANSFERRED DATA INCORRECT";
         cause "Characters or blocks arrive damaged, or the device does not answer as the protocol wants.";
         remedy "Set the same baud rate, data format and protocol on both sides; check the cable.";
@@ -105,10 +105,6 @@ messages! {
         cause "The memory for a program that is executed while it is transferred is not enough.";
         remedy "Lower MP7228.0 or raise MP7228.1; jump to labels that stand near.";
         source "[000:16959]";
-    ProgramIncomplete: "PROGRAM INCOMPLETE";
-        cause "A transfer was broken off before its end.";
-        remedy "Check the line and the device, and start the transfer again.";
-        source "[000:17238-17240] [003:1680]";
     LabelNumberAllocated: "LABEL NUMBER ALLOCATED";
         cause "The same label number is set twice in one program.";
         remedy "Give each label of a program its own number; only label 0 may be repeated.";
