@@ -134,6 +134,25 @@ impl ParameterList {
         }
     }
 
+    /// What a printer is told before a hard copy and before each of its lines: MP226 to 229 and 230 to 233, whose high bytes
+    /// go first; the first byte is the number of the others. A control without these parameters has nothing to tell
+    /// [001:2157-2206].
+    pub fn printer_characters(&self) -> [Vec<u8>; 2] {
+        [226_u16, 230].map(|first| {
+            let words = (first..first + 4).map(|number| {
+                let word = if self.has_old_numbers() {
+                    self.get(number, 0)
+                } else {
+                    None
+                };
+                word.unwrap_or_default() as u16
+            });
+            let bytes: Vec<u8> = words.flat_map(u16::to_be_bytes).collect();
+            let count = bytes.first().copied().map_or(0, usize::from);
+            bytes.into_iter().skip(1).take(count).collect()
+        })
+    }
+
     fn transfer_format(&self, ext: u8) -> TransferFormat {
         let bits = self.value((5020, ext), (222, 0));
         let is_set = |bit| bit_of(bits, bit);
@@ -232,6 +251,36 @@ mod tests {
         }
     }
 
+    /// MP7228 counts kByte; nothing is more than what the model has.
+    #[test]
+    fn memory_of_the_drip_feed() {
+        let memory = |min: f64, max: f64| {
+            let mut list = ParameterList::reference(ControlModel::Tnc407);
+            list.set(7228, 0, min).unwrap();
+            list.set(7228, 1, max).unwrap();
+            list.drip_feed_memory()
+        };
+        let there = 6000 * 22;
+        assert_eq!(
+            memory(0.0, 0.0),
+            DripFeedMemory {
+                min_bytes: 0,
+                max_bytes: there
+            }
+        );
+        assert_eq!(
+            memory(2.0, 10.0),
+            DripFeedMemory {
+                min_bytes: 2048,
+                max_bytes: 10_240
+            }
+        );
+        assert_eq!(memory(0.0, 1024.0).max_bytes, there);
+        assert!(memory(10.0, 10.0).is_enough());
+        assert!(!memory(11.0, 10.0).is_enough());
+        assert!(!memory(1024.0, 0.0).is_enough());
+    }
+
     /// The words of the TNC 151/155 [001:2075-2088] [001:1964-1968] and of the TNC 360 [003:7191-7198].
     #[test]
     fn two_characters_in_a_word() {
@@ -300,35 +349,5 @@ mod tests {
             eot: 43,
         };
         assert_eq!(formats[1].characters, expected);
-    }
-
-    /// MP7228 counts kByte; nothing is more than what the model has.
-    #[test]
-    fn memory_of_the_drip_feed() {
-        let memory = |min: f64, max: f64| {
-            let mut list = ParameterList::reference(ControlModel::Tnc407);
-            list.set(7228, 0, min).unwrap();
-            list.set(7228, 1, max).unwrap();
-            list.drip_feed_memory()
-        };
-        let there = 6000 * 22;
-        assert_eq!(
-            memory(0.0, 0.0),
-            DripFeedMemory {
-                min_bytes: 0,
-                max_bytes: there
-            }
-        );
-        assert_eq!(
-            memory(2.0, 10.0),
-            DripFeedMemory {
-                min_bytes: 2048,
-                max_bytes: 10_240
-            }
-        );
-        assert_eq!(memory(0.0, 1024.0).max_bytes, there);
-        assert!(memory(10.0, 10.0).is_enough());
-        assert!(!memory(11.0, 10.0).is_enough());
-        assert!(!memory(1024.0, 0.0).is_enough());
     }
 }
