@@ -11,6 +11,9 @@
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
+//! - a [`Protocol`] is one side of a line, without clock and channel: the control and the device of the [`standard`]
+//!   protocol and of the [`blockwise`] one with check characters, [`Passive`] what obeys; [`drive`] puts it on a channel,
+//!   [`Files`] are what it transfers;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`store`] is the file service that all protocols share;
 //! - [`lsv2`] are the telegrams of LSV/2.
@@ -29,6 +32,7 @@ mod file_type;
 mod files;
 mod frame;
 pub mod lsv2;
+mod passive;
 mod protocol;
 mod settings;
 pub mod standard;
@@ -40,5 +44,6 @@ pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile};
+pub use passive::{Passive, peripheral};
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};
