@@ -21,8 +21,8 @@ pub trait Attendant {
     fn answer(&mut self) -> Option<bool> {
         None
     }
-    /// Whether it is over.
-    fn is_over(&mut self, protocol: &dyn Protocol, now: Duration) -> bool;
+    /// Whether it is over, now that the protocol has nothing to do.
+    fn is_over(&mut self, connected: bool, now: Duration) -> bool;
 }
 
 /// Drives a protocol until who attends says that it is over, or somebody stops it.
@@ -60,6 +60,7 @@ pub fn drive(
             by_rts = !by_rts;
             channel.request_to_send(!by_rts);
         }
+        channel.set_transparent(protocol.is_transparent());
         let mut wait = LOOK;
         if channel.is_connected() && protocol.has_output() {
             let room = channel.room();
@@ -74,7 +75,8 @@ pub fn drive(
             } else {
                 Duration::ZERO
             };
-        } else if protocol.is_idle() && channel.is_written() && attendant.is_over(protocol, now) {
+        } else if protocol.is_idle() && channel.is_written() && attendant.is_over(channel.is_connected(), now)
+        {
             return Ok(());
         }
         if let Some(deadline) = protocol.deadline() {

@@ -12,6 +12,9 @@
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
+//! - a [`Protocol`] is one side of a line, without clock and channel: the control and the device of the [`standard`]
+//!   protocol and of the [`blockwise`] one with check characters, [`Passive`] what obeys; [`drive`] puts it on a channel,
+//!   [`Files`] are what it transfers;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`HardCopy`] speaks to the printer of a TNC 155;
 //! - [`store`] is the file service that all protocols share;
@@ -35,6 +38,7 @@ mod frame;
 mod hard_copy;
 pub mod lsv2;
 mod plc_line;
+mod passive;
 mod protocol;
 mod settings;
 mod shared_port;
@@ -49,6 +53,7 @@ pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile};
 pub use hard_copy::HardCopy;
 pub use plc_line::PlcLine;
+pub use passive::{Passive, peripheral};
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};
 pub use shared_port::{PlcHold, SharedPort};

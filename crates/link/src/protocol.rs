@@ -112,6 +112,10 @@ pub trait Protocol: Send {
     fn end(&mut self, now: Duration);
     /// Whether it waits for the other side to begin something, or for nothing any more.
     fn is_idle(&self) -> bool;
+    /// Whether all eight bits of a byte count, whatever the characters of the port are: LSV/2.
+    fn is_transparent(&self) -> bool {
+        false
+    }
     /// Whether it has stopped the other side: RTS is off.
     fn has_stopped_by_rts(&self) -> bool {
         false
