@@ -192,6 +192,7 @@ pub(crate) fn interpreter(
         inch_feed: run.inch_feed.map(Into::into),
         strict: run.strict,
         skip_unknown: run.skip_unknown,
+        as_programmed: false,
         max_blocks_without_motion: run.max_blocks,
     })
 }

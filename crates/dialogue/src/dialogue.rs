@@ -240,6 +240,15 @@ impl Dialogue {
         Ok(())
     }
 
+    /// Goes to the comment behind the block.
+    pub(crate) fn comment(&mut self, context: Context<'_>) -> Result<(), MessageId> {
+        self.confirm(context)?;
+        let line = self.lines.get(self.line).ok_or(KeyNonFunctional)?;
+        self.field = line.comment_field().ok_or(KeyNonFunctional)?;
+        self.typing = Typing::default();
+        Ok(())
+    }
+
     /// Checks the answer of the question.
     fn confirm(&mut self, context: Context<'_>) -> Result<(), MessageId> {
         let (field, typing) = self.parts().ok_or(KeyNonFunctional)?;

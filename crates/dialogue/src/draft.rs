@@ -115,7 +115,7 @@ impl Editor {
         if draft.highlighted {
             let known = self.line_of(draft.block)?;
             let mut highlight = Highlight::new(draft.block, known, None);
-            for index in 0..highlight.line.fields().len() {
+            for index in 0..=highlight.line.fields().len() {
                 let words = draft.words.iter().map(word).filter(|(field, _)| *field == index);
                 highlight.line.field_mut(index)?.words = words.map(|(_, word)| word).collect();
             }
@@ -136,8 +136,8 @@ impl Editor {
                 return None;
             }
         }
-        // The question may be that of a block to which nothing was said yet.
-        if !dialogue.reach(line.max(draft.reached), &self.setting) {
+        // The question may be that of a block to which nothing was said yet, but none behind the last one asked for.
+        if line > draft.reached || !dialogue.reach(draft.reached, &self.setting) {
             return None;
         }
         (dialogue.line, dialogue.field, dialogue.reached) = (line, field, draft.reached);
@@ -162,10 +162,9 @@ fn source_of(text: &str) -> Option<Source> {
 
 impl Draft {
     fn add(&mut self, number: usize, line: &crate::line::Line) {
-        for (index, field) in line.fields().iter().enumerate() {
-            let words = field.words.iter().cloned();
-            self.words.extend(words.map(|word| (number, index, word)));
-        }
+        let words = line.words();
+        self.words
+            .extend(words.map(|((field, _), word)| (number, field, word.clone())));
     }
 
     fn set_typing(&mut self, typing: Typing) {

@@ -19,6 +19,9 @@ use crate::reading::line_of_block;
 use crate::soft_keys::{self, Labelled, Soft};
 use crate::{Key, KeyGroup, Reaction, Setting, Wanted};
 
+/// The key of a comment.
+const COMMENT: &str = ";";
+
 /// What is open.
 #[derive(Clone, Debug)]
 pub(crate) enum Open {
@@ -43,6 +46,9 @@ pub(crate) enum Open {
 ///
 /// RIGHT highlights a word of the block at the cursor. Digits overwrite it; LEFT, RIGHT, END, UP and DOWN confirm, the
 /// latter two find the same word in other blocks. NO ENT deletes the word, ENT opens the dialogue from there.
+///
+/// The comment of a block stands behind its last word: RIGHT goes there on controls with an alpha keyboard, `;` while
+/// the block is open, and a soft key. `;` while nothing is open begins a comment in a block of its own.
 ///
 /// A program is never changed in its place: whoever holds an older version keeps it.
 ///
@@ -191,6 +197,13 @@ impl Editor {
             };
             last = match taken {
                 Some(done) => self.reaction(done.map(|()| Reaction::Shown)),
+                None if text == COMMENT => {
+                    let done = match self.open {
+                        Open::Nothing => self.new_comment(),
+                        _ => self.comment(),
+                    };
+                    self.reaction(done)
+                }
                 None => match Key::of_character(character) {
                     Some(key) => self.key(key),
                     None => self.reaction(Err(KeyNonFunctional)),
@@ -312,6 +325,14 @@ impl Editor {
     fn new_block(&mut self, id: &str, key: Key) -> Result<Reaction, MessageId> {
         let mut dialogue = Dialogue::of_id(id, &self.setting).ok_or(KeyNonFunctional)?;
         dialogue.key(key, self.context(None))?;
+        self.show(Open::Dialogue(Box::new(dialogue)))
+    }
+
+    /// A comment in a block of its own.
+    fn new_comment(&mut self) -> Result<Reaction, MessageId> {
+        self.may_insert()?;
+        let mut dialogue = Dialogue::of_id("TEXT", &self.setting).ok_or(KeyNonFunctional)?;
+        dialogue.take(COMMENT, &self.setting)?;
         self.show(Open::Dialogue(Box::new(dialogue)))
     }
 

@@ -132,13 +132,13 @@ mod tests {
     use crate::prompt::prompt;
 
     /// The cycles that have a drawing.
-    const DRAWN: [u16; 22] = [
-        1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 20, 21, 22, 23, 24, 25,
+    const DRAWN: [u16; 25] = [
+        1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27,
     ];
 
     #[test]
     fn every_word_of_a_drawn_cycle_stands_out_in_it() {
-        for cycle in DRAWN.into_iter().chain([26]) {
+        for cycle in DRAWN {
             let parts = figure(cycle).unwrap_or_else(|| panic!("cycle {cycle} has no drawing"));
             let asked = prompts_of(CycleFunction::Definition, cycle);
             assert!(!asked.is_empty());

@@ -38,7 +38,25 @@ impl Highlight {
 
     /// The entered value is forgotten.
     pub(crate) fn forget(&mut self) {
-        *self = Highlight::new(self.block, self.original.clone(), self.place);
+        let original = self.original.clone();
+        // A word that was added is not there any more.
+        let place = match original.word(self.place) {
+            None if self.place.is_some() => original.places().last().copied().flatten(),
+            _ => self.place,
+        };
+        *self = Highlight::new(self.block, original, place);
+    }
+
+    /// Goes to the comment behind the block, or begins one.
+    pub(crate) fn comment(&mut self) -> Result<(), MessageId> {
+        let index = self.line.comment_field().ok_or(KeyNonFunctional)?;
+        let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
+        self.typing = Typing::over(0);
+        if field.words.is_empty() {
+            self.typing.begin(field);
+        }
+        self.place = Some((index, 0));
+        Ok(())
     }
 
     /// The word so many places farther; none beyond the ends.

@@ -3,7 +3,7 @@
 use bahn_program::{Block, FormatOptions, Language};
 
 use crate::blocks::block_row;
-use crate::field::{Ask, Field, Need, Word};
+use crate::field::{Ask, Field, Need, Slot, Word};
 use crate::{Key, Setting};
 
 /// A block with its fields.
@@ -13,8 +13,20 @@ pub(crate) struct Line {
     skip: bool,
     head: String,
     fields: Vec<Field>,
-    comment: Option<Box<str>>,
+    /// The comment behind the block, the field behind all others.
+    comment: Field,
 }
+
+/// What stands behind a block of any kind. It is never asked for, but can be entered.
+const COMMENT: Slot = Slot {
+    glue: " ; ",
+    address: "",
+    ask: Ask::Text,
+    prompt: "comment",
+    need: Need::Unasked,
+    working: false,
+    of: "",
+};
 
 /// A field of a line and a word in it; the head of the block without.
 pub(crate) type WordPlace = Option<(usize, usize)>;
@@ -25,7 +37,7 @@ impl Line {
             skip: false,
             head: head.to_owned(),
             fields,
-            comment: None,
+            comment: Field::new(COMMENT),
         }
     }
 
@@ -70,7 +82,11 @@ impl Line {
     /// The same words, optional and with the comment as a block is.
     pub(crate) fn like(mut self, block: &Block) -> Line {
         self.skip = block.skip;
-        self.comment.clone_from(&block.comment);
+        let comment = block.comment.iter().map(|text| Word {
+            value: text.to_string(),
+            ..Word::default()
+        });
+        self.comment.words = comment.collect();
         self
     }
 
@@ -87,12 +103,33 @@ impl Line {
         &self.fields
     }
 
+    /// All fields and the comment.
+    fn all_fields(&self) -> impl Iterator<Item = &Field> {
+        self.fields.iter().chain(std::iter::once(&self.comment))
+    }
+
+    /// Where the comment stands among the fields; a line that is itself a comment has none.
+    pub(crate) fn comment_field(&self) -> Option<usize> {
+        let is_comment = self.is_text() && self.bare_text().trim_start().starts_with(';');
+        (!is_comment).then_some(self.fields.len())
+    }
+
+    /// All words with their places, those of the comment last.
+    pub(crate) fn words(&self) -> impl Iterator<Item = ((usize, usize), &Word)> {
+        let fields = self.all_fields().enumerate();
+        fields.flat_map(|(field, it)| {
+            let words = it.words.iter().enumerate();
+            words.map(move |(number, word)| ((field, number), word))
+        })
+    }
+
     pub(crate) fn field(&self, index: usize) -> Option<&Field> {
-        self.fields.get(index)
+        self.all_fields().nth(index)
     }
 
     pub(crate) fn field_mut(&mut self, index: usize) -> Option<&mut Field> {
-        self.fields.get_mut(index)
+        let comment = std::iter::once(&mut self.comment);
+        self.fields.iter_mut().chain(comment).nth(index)
     }
 
     /// Head and words, without `/` and comment.
@@ -120,11 +157,7 @@ impl Line {
 
     fn dressed(&self, text: String) -> String {
         let skip = if self.skip { "/ " } else { "" };
-        let comment = self
-            .comment
-            .as_ref()
-            .map_or_else(String::new, |text| format!(" ; {text}"));
-        format!("{skip}{text}{comment}")
+        format!("{skip}{text}{}", self.comment.text())
     }
 
     /// Whether it is only text.
@@ -139,7 +172,7 @@ impl Line {
 
     /// Whether nothing was answered.
     pub(crate) fn is_empty(&self) -> bool {
-        self.fields.iter().all(|field| field.words.is_empty())
+        self.all_fields().all(|field| field.words.is_empty())
     }
 
     /// Whether all answers are there that the block needs.
@@ -165,6 +198,7 @@ impl Line {
         for field in &mut self.fields {
             field.words.clear();
         }
+        self.comment.words.clear();
     }
 
     /// Words that the control does not have are not asked for.
@@ -215,12 +249,12 @@ impl Line {
                 field.words.retain(|word| !word.value.is_empty());
             }
         }
+        self.comment.words.retain(|word| !word.value.trim().is_empty());
     }
 
     /// Places of the head, where there is one, and all words, in order.
     pub(crate) fn places(&self) -> Vec<WordPlace> {
-        let words = self.fields.iter().enumerate();
-        let words = words.flat_map(|(field, it)| (0..it.words.len()).map(move |word| Some((field, word))));
+        let words = self.words().map(|(place, _)| Some(place));
         // A block that opens with a word has no head to highlight.
         let head = (!self.head.is_empty() || self.is_empty()).then_some(None);
         head.into_iter().chain(words).collect()
@@ -228,7 +262,7 @@ impl Line {
 
     pub(crate) fn word(&self, place: WordPlace) -> Option<&Word> {
         let (field, word) = place?;
-        self.fields.get(field)?.words.get(word)
+        self.field(field)?.words.get(word)
     }
 
     /// What a word is found by in other blocks: its address, its name, or the head of the block.
@@ -236,11 +270,7 @@ impl Line {
         let Some((field, word)) = place else {
             return self.head.clone();
         };
-        let Some((field, word)) = self
-            .fields
-            .get(field)
-            .and_then(|it| Some((it, it.words.get(word)?)))
-        else {
+        let Some((field, word)) = self.field(field).and_then(|it| Some((it, it.words.get(word)?))) else {
             return String::new();
         };
         match (word.address.as_str(), field.glue.trim()) {
@@ -265,7 +295,7 @@ impl Line {
         if !before.is_empty() {
             parts.push((None, before.clone()));
         }
-        for (index, field) in self.fields.iter().enumerate() {
+        for (index, field) in self.all_fields().enumerate() {
             for (number, word) in field.words.iter().enumerate() {
                 before = match number {
                     0 => field.glue.to_string(),
@@ -273,9 +303,6 @@ impl Line {
                 };
                 parts.push((Some((index, number)), before + &field.written(word)));
             }
-        }
-        if let Some(comment) = &self.comment {
-            parts.push((None, format!(" ; {comment}")));
         }
         parts
     }

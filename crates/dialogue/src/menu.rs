@@ -218,6 +218,7 @@ mod tests {
             "functions",
             "goto",
             "find",
+            "comment",
             "FN FORMULA",
             "parameter",
             "parameters",

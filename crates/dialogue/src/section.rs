@@ -59,7 +59,10 @@ impl Editor {
     /// Confirms the value of a word and goes on.
     fn leave_word(&mut self, mut highlight: Box<Highlight>, key: Key) -> Result<Reaction, MessageId> {
         let block = highlight.block;
+        let before = highlight.place;
         highlight.settle();
+        // The last word was added and got no value: the highlight is left of it already.
+        let went = highlight.place < before;
         let confirmed = self.confirm(&highlight);
         let reaction = match confirmed {
             Ok(reaction) => reaction,
@@ -74,9 +77,16 @@ impl Editor {
         match key {
             Key::Left | Key::Right => {
                 let by = if key == Key::Left { -1 } else { 1 };
-                let beside = highlight.beside(by);
+                let beside = match went && by < 0 {
+                    true => Some(highlight.place),
+                    false => highlight.beside(by),
+                };
+                // Behind the last word comes the comment, where the program may be changed.
+                let may_comment = self.setting.model.has_windows() && self.may_edit().is_ok();
+                let comment = by > 0 && beside.is_none() && may_comment;
                 let leaves = by < 0 && (beside.is_none() || highlight.line.is_text());
-                if !leaves {
+                let done = leaves || (comment && self.open_comment(block).is_ok());
+                if !done {
                     self.highlight(block, beside.unwrap_or(highlight.place))?;
                 }
             }
@@ -103,6 +113,42 @@ impl Editor {
             _ => {}
         }
         Ok(reaction)
+    }
+
+    /// The comment behind the block: of a dialogue its question, of a highlighted word or of the block at the cursor
+    /// it is highlighted.
+    pub(crate) fn comment(&mut self) -> Result<Reaction, MessageId> {
+        self.may_edit()?;
+        match std::mem::replace(&mut self.open, Open::Nothing) {
+            Open::Dialogue(mut dialogue) => {
+                let done = dialogue.comment(self.context(dialogue.replaces));
+                self.open = Open::Dialogue(dialogue);
+                done.map(|()| Reaction::Shown)
+            }
+            Open::Highlight(mut highlight) => {
+                highlight.settle();
+                let done = self.confirm(&highlight);
+                if done.is_err() {
+                    self.open = Open::Highlight(highlight);
+                    return done;
+                }
+                self.open_comment(highlight.block).and(done)
+            }
+            Open::Nothing => self.open_comment(self.cursor),
+            open => {
+                self.open = open;
+                Err(KeyNonFunctional)
+            }
+        }
+    }
+
+    /// Highlights the comment of a block; where there is none it is empty, to be entered.
+    fn open_comment(&mut self, block: u32) -> Result<Reaction, MessageId> {
+        let line = self.line_of(block).ok_or(KeyNonFunctional)?;
+        let mut highlight = Highlight::new(block, line, None);
+        highlight.comment()?;
+        self.cursor = block;
+        self.show(Open::Highlight(Box::new(highlight)))
     }
 
     /// What was entered becomes the block.
@@ -260,6 +306,7 @@ impl Editor {
                 let dialogue = Dialogue::of_id("TEXT", &self.setting).ok_or(KeyNonFunctional)?;
                 return self.show(Open::Dialogue(Box::new(dialogue)));
             }
+            Function::Comment => return self.comment(),
             Function::Skip => {
                 let mut line = self.line_of(self.cursor).ok_or(KeyNonFunctional)?;
                 line.toggle_skip();

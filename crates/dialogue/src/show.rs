@@ -11,6 +11,7 @@ use crate::line::{Line, WordPlace, written};
 use crate::prompt::text_of;
 use crate::reading::line_of_block;
 use crate::soft_keys::ROW;
+use crate::typing::Typing;
 use crate::view::{List, Question, Row, ShownWord, View};
 
 impl Editor {
@@ -116,15 +117,10 @@ impl Editor {
     /// The words of a line; the place is that of the highlighted one.
     fn words(&self, line: &Line, place: Option<WordPlace>) -> Vec<ShownWord> {
         let parts = line.parts().into_iter();
-        let mut head = true;
         parts
-            .map(|(at, text)| {
-                // The comment is no word to highlight.
-                let highlighted = place == Some(at) && (at.is_some() || std::mem::take(&mut head));
-                ShownWord {
-                    text: self.shown(&text),
-                    highlighted,
-                }
+            .map(|(at, text)| ShownWord {
+                text: self.shown(&text),
+                highlighted: place == Some(at),
             })
             .collect()
     }
@@ -141,17 +137,20 @@ impl Editor {
     pub fn question(&self) -> Option<Question> {
         let tongue = self.setting.tongue;
         let (id, entered) = match &self.open {
-            Open::Nothing | Open::Highlight(_) => return None,
+            Open::Nothing => return None,
+            Open::Highlight(highlight) => {
+                let (_, field) = self.asked()?;
+                let word = highlight.line.word(highlight.place)?;
+                let word = field.written(word);
+                (self.prompt_of(field), self.entered(&word, highlight.typing))
+            }
             Open::Dialogue(dialogue) => {
-                let field = dialogue.current()?;
-                let pending = if dialogue.typing.incremental { "I" } else { "" };
-                let words = self.shown(field.text().trim_start());
-                let gap = if pending.is_empty() || words.is_empty() {
-                    ""
-                } else {
-                    " "
-                };
-                (self.prompt_of(field), format!("{words}{gap}{pending}"))
+                let (_, field) = self.asked()?;
+                let words = field.text();
+                (
+                    self.prompt_of(field),
+                    self.entered(words.trim_start(), dialogue.typing),
+                )
             }
             Open::Menu(menu) => (menu.prompt(), menu.typed.clone()),
             Open::Goto(digits) => ("goto", digits.clone()),
@@ -168,6 +167,27 @@ impl Editor {
         })
     }
 
+    /// The line and the field whose words are asked for: of a dialogue, or where a word is highlighted, as the dialogue
+    /// would ask for it.
+    fn asked(&self) -> Option<(&Line, &Field)> {
+        let (line, field) = match &self.open {
+            Open::Dialogue(dialogue) => (dialogue.lines.get(dialogue.line)?, dialogue.field),
+            Open::Highlight(highlight) => (&highlight.line, highlight.place?.0),
+            _ => return None,
+        };
+        Some((line, line.field(field)?))
+    }
+
+    /// What was entered, and `I` where it waits for its axis.
+    fn entered(&self, words: &str, typing: Typing) -> String {
+        let words = self.shown(words);
+        match typing.incremental {
+            false => words,
+            true if words.is_empty() => "I".to_owned(),
+            true => format!("{words} I"),
+        }
+    }
+
     /// The prompt of a field. That for the feed does not always offer F MAX [003:2156].
     fn prompt_of(&self, field: &Field) -> &'static str {
         match field.slot.prompt {
@@ -178,17 +198,11 @@ impl Editor {
 
     /// The machine builder's text for the parameter of his cycle that is asked for.
     fn builder_text(&self) -> Option<&str> {
-        let Open::Dialogue(dialogue) = &self.open else {
+        let (line, field) = self.asked()?;
+        if field.slot.prompt != PARAMETER {
             return None;
-        };
-        let field = dialogue
-            .current()
-            .filter(|field| field.slot.prompt == PARAMETER)?;
-        let head = dialogue
-            .lines
-            .get(dialogue.line)?
-            .head()
-            .strip_prefix("CYCL DEF ")?;
+        }
+        let head = line.head().strip_prefix("CYCL DEF ")?;
         let cycle = self
             .setting
             .builder_cycle(head.split('.').next()?.parse().ok()?)?;
@@ -213,6 +227,7 @@ impl Editor {
                     .map_or_else(String::new, |line| line.head().to_owned()),
                 None => dialogue.source.name(),
             },
+            Open::Highlight(highlight) => highlight.line.head().to_owned(),
             _ => String::new(),
         }
     }

@@ -26,6 +26,7 @@ pub(crate) enum Function {
     Undo,
     Redo,
     Text,
+    Comment,
     Skip,
 }
 
@@ -94,7 +95,7 @@ pub(crate) fn of_dialogue(dialogue: &Dialogue, setting: &Setting) -> Vec<Labelle
 
 /// The soft keys while nothing is open.
 pub(crate) fn of_program(marked: bool, tongue: Tongue) -> Vec<Labelled> {
-    use Function::{Copy, Cut, Find, Mark, Paste, Redo, Skip, Text, Undo, Unmark};
+    use Function::{Comment, Copy, Cut, Find, Mark, Paste, Redo, Skip, Text, Undo, Unmark};
     let mark = if marked {
         ("soft unmark", Unmark)
     } else {
@@ -110,6 +111,7 @@ pub(crate) fn of_program(marked: bool, tongue: Tongue) -> Vec<Labelled> {
         ("soft redo", Redo),
         ("soft text", Text),
         ("soft skip", Skip),
+        ("soft comment", Comment),
     ];
     let all = all.into_iter();
     all.map(|(id, function)| (text_of(id, tongue).to_owned(), Soft::Function(function)))

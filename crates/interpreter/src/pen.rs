@@ -37,6 +37,8 @@ pub(crate) struct Pen {
     pub recording: Option<AxisSet>,
     /// How the coordinates of what is drawn stand in the machine, when not upright.
     pub placement: Option<Arc<Placement>>,
+    /// See [`Settings::as_programmed`].
+    pub as_programmed: bool,
     /// See [`Settings::machine`].
     pub machine: bool,
     /// Nothing is moved: cycles are looked at but make no path, and the tool has no radius.
@@ -44,7 +46,7 @@ pub(crate) struct Pen {
 }
 
 impl Pen {
-    pub fn new(machine: bool) -> Pen {
+    pub fn new(settings: &Settings) -> Pen {
         Pen {
             block: BlockRef::default(),
             sequence: 0,
@@ -55,7 +57,8 @@ impl Pen {
             join_follows: false,
             recording: None,
             placement: None,
-            machine,
+            as_programmed: settings.as_programmed,
+            machine: settings.machine,
             rehearsal: false,
         }
     }
@@ -126,7 +129,10 @@ impl Pen {
             element,
             plane: modal.contour_plane,
             side: modal.side(),
-            radius: if self.rehearsal { 0.0 } else { modal.tool_radius() },
+            radius: match self.rehearsal || self.as_programmed {
+                true => 0.0,
+                false => modal.tool_radius(),
+            },
             corner: functions.corner,
             feed_law: modal.feed_law,
             in_plane,

@@ -350,6 +350,7 @@ fn emit_movement(
     }
     match beside {
         Beside::Nothing | Beside::Paraxial(Compensation::Off) => {}
+        Beside::Paraxial(_) if c.settings.as_programmed => {}
         Beside::Paraxial(compensation) => lengthen(c.modal, compensation, axes, &start, &mut end),
         Beside::Surface(way) => {
             let plane = c.modal.plane;

@@ -43,7 +43,7 @@ impl Run {
             at: flow::Position::at(0, 0),
             modal: Modal::new(settings.start, settings.tool_length_mm),
             numbers: Numbers::new(settings, unit),
-            pen: Pen::new(settings.machine),
+            pen: Pen::new(settings),
             told: Told::default(),
             tools: Tools::default(),
             blank: None,

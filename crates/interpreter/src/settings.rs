@@ -62,9 +62,15 @@ pub struct Settings {
     pub skip_unknown: bool,
     /// Axes that the machine does not have for programs. A control that runs one on a machine knows that itself.
     pub absent: AbsentAxes,
+    /// Compensated blocks lead along the contour they name, as if the tool had no radius: a program is drawn, not
+    /// tested. What a cycle makes is the path of the tool all the same.
+    pub as_programmed: bool,
     /// A control runs the program on a machine: it waits for the PLC, which may write what the next block
     /// reads, and probing movements are executed outside.
     pub machine: bool,
+    /// The main program is transferred while it runs, and its executed blocks are erased: labels stand ahead only
+    /// [003:1661-1674].
+    pub transferred: bool,
     /// Blocks that may be executed without a movement before the run is taken for an endless loop.
     pub max_blocks_without_motion: u64,
 }
@@ -92,7 +98,9 @@ impl Default for Settings {
             strict: false,
             skip_unknown: false,
             absent: AbsentAxes::default(),
+            as_programmed: false,
             machine: false,
+            transferred: false,
             max_blocks_without_motion: 10_000_000,
         }
     }

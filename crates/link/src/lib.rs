@@ -1,6 +1,16 @@
 //! Data interfaces: the control speaks with the devices of its time and with clients of today, and plays such a device for
 //! a real control.
 //!
+//! ```
+//! use bahn_link::FileType;
+//!
+//! let types: Vec<_> = FileType::all().filter(|kind| kind.code() == 'A').collect();
+//! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
+//! ```
+//!
+//! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
+//! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
+//!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`store`] is the file service that all protocols share;
 //! - [`lsv2`] are the telegrams of LSV/2.
@@ -10,8 +20,25 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+pub mod blockwise;
+mod channel;
+mod characters;
+pub mod dnc;
+mod drive;
 mod file_type;
+mod files;
+mod frame;
 pub mod lsv2;
+mod protocol;
+mod settings;
+pub mod standard;
 pub mod store;
+mod text;
 
+pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
+pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
+pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
+pub use files::{Files, Listed, Memory, NewFile};
+pub use protocol::{Event, Protocol, Question, Shown};
+pub use settings::{Mode, PATIENCE, Settings};

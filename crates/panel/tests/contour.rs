@@ -96,13 +96,12 @@ fn soft_keys_draw_the_whole_program_and_block_by_block() {
     assert_eq!(trainee.screen().soft_keys.keys[0], "RL");
 }
 
-/// HELP draws the cycle whose words are asked for, with the word that is asked; behind the dialogue the contour is back.
+/// A cycle is drawn beside its dialogue, with the word that is asked for; HELP switches that off and on. Behind the
+/// dialogue the contour is back.
 #[test]
-fn help_draws_the_cycle() {
+fn the_cycle_is_drawn_beside_its_dialogue() {
     let mut trainee = trainee();
     trainee.press("GOTO 4 ENT CYCL_DEF 4 ENT").wait(0.1);
-    assert!(trainee.screen().graphics.is_none());
-    trainee.press("HELP").wait(0.1);
     assert_eq!(trainee.screen().graphics.unwrap().view, GraphicsView::Figure);
     let set_up = png(&mut trainee);
     trainee.press("SIGN 2 ENT");
@@ -110,15 +109,40 @@ fn help_draws_the_cycle() {
     assert_ne!(set_up, depth);
     trainee.press("LEFT");
     assert_eq!(png(&mut trainee), set_up);
-    trainee.press("DEL").wait(0.1);
-    assert!(trainee.screen().graphics.is_none());
-    // It stays chosen for the next cycle; a cycle without a drawing has none.
-    trainee.press("CYCL_DEF 1 ENT").wait(0.1);
-    assert_eq!(trainee.screen().graphics.unwrap().view, GraphicsView::Figure);
     trainee.press("HELP").wait(0.1);
     assert!(trainee.screen().graphics.is_none());
-    trainee.press("DEL CYCL_DEF 1 2 ENT HELP").wait(0.1);
+    trainee.press("DEL CYCL_DEF 1 ENT").wait(0.1);
+    assert!(trainee.screen().graphics.is_none(), "it stays off");
+    trainee.press("HELP").wait(0.1);
+    assert_eq!(trainee.screen().graphics.unwrap().view, GraphicsView::Figure);
+    // A cycle without a drawing has none, nor what is no cycle.
+    trainee.press("DEL CYCL_DEF 1 2 ENT").wait(0.1);
     assert!(trainee.screen().graphics.is_none());
+    trainee.press("DEL L X 9 0").wait(0.1);
+    assert!(trainee.screen().graphics.is_none());
+    // A word that is highlighted is shown like one that is asked for.
+    trainee.press("DEL CYCL_DEF 4 ENT SIGN 2 ENT SIGN 5 ENT SIGN 5 ENT 8 0 ENT X 8 0 ENT Y 4 0 ENT");
+    trainee.press("1 0 0 ENT ENT 5 END").wait(0.1);
+    assert!(
+        trainee.screen().graphics.is_none(),
+        "{:?}",
+        trainee.screen().dialogue
+    );
+    trainee.press("GOTO 6 ENT RIGHT RIGHT").wait(0.1);
+    assert_eq!(trainee.screen().dialogue.prompt, "SETUP CLEARANCE?");
+    assert_eq!(png(&mut trainee), set_up);
+}
+
+/// The screen of a TNC 360 has one column: a cycle is drawn when HELP asks for it.
+#[test]
+fn help_draws_the_cycle_where_there_is_one_column() {
+    let mut trainee = Trainee::at("mill-tnc360");
+    trainee.write("programs/7.H", "BEGIN PGM 7 MM\nEND PGM 7 MM\n");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR 7 ENT CYCL_DEF 4 ENT").wait(0.1);
+    assert!(trainee.screen().graphics.is_none());
+    trainee.press("HELP").wait(0.1);
+    assert_eq!(trainee.screen().graphics.unwrap().view, GraphicsView::Figure);
 }
 
 /// A key does not wait for the drawing of a long program, and time by the wall goes on.
@@ -150,9 +174,10 @@ fn no_key_waits_for_a_long_program() {
 fn the_program_has_the_colours_of_mp7363() {
     let mut trainee = Trainee::with("mill", |folder| {
         let path = folder.join("parameters.mp");
-        let mut text = std::fs::read_to_string(&path).unwrap();
-        text += "MP7363.0 : $0000015\nMP7363.1 : $03F0000\n";
-        std::fs::write(path, text).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let others = text.lines().filter(|line| !line.starts_with("MP7363"));
+        let text: String = others.map(|line| format!("{line}\n")).collect();
+        std::fs::write(path, text + "MP7363.0 : $0000015\nMP7363.1 : $03F0000\n").unwrap();
     });
     trainee.write("programs/PLATE.H", PLATE);
     trainee.ready();

@@ -218,3 +218,61 @@ fn the_part_is_that_of_the_program_however_it_is_tested() {
         assert_eq!(removed_mm3(&mut trainee), expected, "by the wall: {by_the_wall}");
     }
 }
+
+/// The parameters MP7360 to MP7362 colour the views [000:6344-6360]: in the 3D view the upper faces, the front and the side, in
+/// three planes plan and sections, and the line above them. A TNC 360 has no colours, and draws with ours.
+#[test]
+fn the_part_has_the_colours_of_mp7360_to_7362() {
+    let colour = |coded: u32| [16, 8, 0].map(|shift| ((coded >> shift & 0x3f) * 255 / 63) as u8);
+    let mut trainee = Trainee::with("mill", |folder| {
+        let path = folder.join("parameters.mp");
+        let text = std::fs::read_to_string(&path).unwrap();
+        let own = |line: &&str| {
+            !["MP7360", "MP7361", "MP7362"]
+                .iter()
+                .any(|own| line.starts_with(own))
+        };
+        let mut text: String = text.lines().filter(own).map(|line| format!("{line}\n")).collect();
+        for (number, colours) in [
+            (7360, &[0x01_0000, 0x3f_0000, 0x00_3f00, 0x3f_3f3f, 0x00_003f][..]),
+            (7361, &[0x00_0100, 0x3f_3f00, 0x00_3f3f, 0x3f_3f3f, 0][..]),
+            (7362, &[0, 0x00_0020, 0x20_2020, 0x30_3030][..]),
+        ] {
+            for (index, coded) in colours.iter().enumerate() {
+                text += &format!("MP{number}.{index} : ${coded:07X}\n");
+            }
+        }
+        std::fs::write(path, text).unwrap();
+    });
+    trainee.write("programs/GROOVE.H", GROOVE);
+    trainee.ready();
+    trainee.press("TEST PGM_NR G R O O V E ENT START").wait(2.0);
+    let mut counts = |keys: &str| {
+        trainee.press(keys);
+        let picture = trainee.station.picture().unwrap();
+        let pixels = picture.pixels(800, 600).unwrap().unwrap();
+        move |coded: u32| pixels.iter().filter(|pixel| **pixel == colour(coded)).count()
+    };
+    let plan = counts("GRAPHICS");
+    assert!(plan(0x00_0100) > 50_000 && plan(0x3f_3f00) > 10_000);
+    let planes = counts("GRAPHICS");
+    assert!(planes(0x00_0100) > 50_000, "background");
+    assert!(planes(0x3f_3f00) > 5_000, "plan");
+    assert!(planes(0x00_3f3f) > 1_000, "sections");
+    let solid = counts("GRAPHICS");
+    for (coded, what) in [
+        (0x01_0000, "background"),
+        (0x3f_0000, "top"),
+        (0x00_3f00, "front"),
+        (0x00_003f, "side"),
+    ] {
+        assert!(solid(coded) > 2_000, "{what}: {}", solid(coded));
+    }
+    // A quarter turn shows another front: the eye stands as far beside it.
+    let turned = counts("RIGHT");
+    let (front, side) = (turned(0x00_3f00), turned(0x00_003f));
+    assert!(front > 1_000 && side > 1_000, "{front} {side}");
+    // The line above is drawn in a picture of its own, with its title.
+    let picture = trainee.station.picture().unwrap();
+    assert!(picture.png(800, 600).unwrap().is_some());
+}

@@ -60,5 +60,5 @@ pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
 pub use solid::SolidError;
 pub use stl::{MAX_TRIANGLES, MeshError};
-pub use view::{Colouring, CutBy, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
+pub use view::{Colouring, CutBy, Page, PageError, PlanView, Projection, Scheme, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

@@ -1,5 +1,6 @@
-//! Graphics while programming: what a program has so far, as lines in its working plane. The path of the tool's centre is
-//! drawn, in the standard colours of the interactive graphics [000:6361-6366]; subprograms have one of their own.
+//! Graphics while programming: what a program has so far, as lines in its working plane. Drawn is the
+//! contour as it is programmed: where a block has RL or RR the contour that it names, else the path of the tool's
+//! centre. The colours are those of the interactive graphics, subprograms have one of their own [000:6361-6366].
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -117,6 +118,10 @@ impl Sketch {
         let lines: Arc<Mutex<Lines>> = Arc::default();
         let progress: Arc<Progress> = Arc::default();
         let stop = Arc::new(AtomicBool::new(false));
+        let settings = Settings {
+            as_programmed: true,
+            ..settings
+        };
         let run = Run {
             start: Some((wish.program, settings, programs)),
             upto: wish.upto,
@@ -406,6 +411,38 @@ LBL 0";
                 "{stroke:?}"
             );
         }
+    }
+
+    /// A tool of 5 mm beside a contour, and once more without compensation: both times the contour is drawn, sharp at
+    /// its corners and with arcs of their programmed radius, however large the tool. R+ ends where it says.
+    #[test]
+    fn the_contour_is_drawn_as_it_is_programmed() {
+        let ends = |compensation: &str, radius: &str| {
+            let blocks = format!(
+                "TOOL DEF 1 L+0 R+{radius}\nTOOL CALL 1 Z S1000\nL X-10 Y+0 R0 FMAX\nL X+0 Y+0 {compensation} F100
+L X+0 Y+40\nRND R10\nL X+60 Y+40\nCC X+60 Y+20\nC X+60 Y+0 DR-\nL X+0 Y+0\nL X-10 Y+0 R0 FMAX"
+            );
+            drawn(&blocks, None)
+        };
+        let plain = ends("R0", "5");
+        // The way to the contour and its first line, a quarter, a line, a half, a line.
+        let feeds = plain.iter().filter(|stroke| stroke.kind == Kind::Feed).count();
+        assert_eq!(feeds, 2 + 72 / 4 + 1 + 72 / 2 + 1);
+        for compensation in ["RL", "RR"] {
+            for radius in ["5", "25"] {
+                let compensated = ends(compensation, radius);
+                assert_eq!(compensated.len(), plain.len(), "{compensation} {radius}");
+                for (is, wanted) in compensated.iter().zip(&plain) {
+                    assert_eq!((is.kind, is.block), (wanted.kind, wanted.block));
+                    let off = [0, 1].map(|axis| (is.to[axis] - wanted.to[axis]).abs());
+                    assert!(off.iter().all(|off| *off < 1e-4), "{is:?} is not {wanted:?}");
+                }
+            }
+        }
+        let paraxial = "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1\nL X+0 Y+0 R0 FMAX\nX+40 R+ F100\nX+10 R-";
+        let strokes = drawn(paraxial, None);
+        let to: Vec<_> = strokes.iter().map(|stroke| stroke.to).collect();
+        assert_eq!(to, [[40.0, 0.0], [10.0, 0.0]]);
     }
 
     #[test]

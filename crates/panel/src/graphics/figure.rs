@@ -11,6 +11,9 @@ const ASKED: Colour = [255, 200, 0];
 /// Room around the sheet, pixels.
 const MARGIN: f64 = 20.0;
 const TITLE: f64 = 20.0;
+/// Height of words in units of the sheet, and how few and how many pixels that is; those of what is asked for.
+const TEXT: (f64, [f64; 2]) = (2.6, [9.0, 24.0]);
+const ASKED_TEXT: (f64, [f64; 2]) = (3.2, [11.0, 30.0]);
 /// Length of an arrow head and lines of a circle.
 const HEAD: f64 = 2.2;
 const LINES: u32 = 48;
@@ -58,11 +61,10 @@ pub(super) fn draw(parts: &[&FigurePart], asked: &str, size: [u32; 2], title: &s
 fn part(image: &mut Image, sheet: &Sheet, part: &FigurePart, asked: bool) {
     let colour = |own: Colour| if asked { ASKED } else { own };
     let width = if asked { 3.0 } else { 1.4 };
-    let label_at = match &part.shape {
+    match &part.shape {
         Shape::Outline(points) => {
             let points: Vec<_> = points.iter().map(|point| sheet.at(*point)).collect();
             image.outline(&points, 2.0, colour(PART));
-            return;
         }
         Shape::Path(points) => {
             for pair in points.windows(2) {
@@ -70,52 +72,76 @@ fn part(image: &mut Image, sheet: &Sheet, part: &FigurePart, asked: bool) {
                     image.dashed(sheet.at(*from), sheet.at(*to), &[7.0, 5.0], 1.2, colour(PATH));
                 }
             }
-            return;
         }
-        Shape::Circle(centre, radius) => {
-            arc(image, sheet, *centre, *radius, 1.0, 2.0, colour(PART));
-            return;
-        }
+        Shape::Circle(centre, radius) => arc(image, sheet, *centre, *radius, 1.0, 2.0, colour(PART)),
         Shape::Dimension(from, to) => {
             arrow(image, sheet, *from, *to, width, colour(DIMENSION));
             arrow(image, sheet, *to, *from, width, colour(DIMENSION));
-            beside(*from, *to)
         }
-        Shape::Arrow(from, to) => {
-            arrow(image, sheet, *from, *to, width, colour(DIMENSION));
-            beside(*from, *to)
-        }
+        Shape::Arrow(from, to) => arrow(image, sheet, *from, *to, width, colour(DIMENSION)),
         Shape::Turn(centre, radius) => {
             arc(image, sheet, *centre, *radius, 0.25, width, colour(DIMENSION));
             let end = [centre[0], centre[1] + radius];
-            arrow(
-                image,
-                sheet,
-                [end[0] + HEAD, end[1]],
-                end,
-                width,
-                colour(DIMENSION),
-            );
-            let middle = radius * std::f64::consts::FRAC_1_SQRT_2 + 2.0;
-            [centre[0] + middle, centre[1] + middle]
+            let before = [end[0] + HEAD, end[1]];
+            arrow(image, sheet, before, end, width, colour(DIMENSION));
         }
-        Shape::Text(at) => [at[0] - 4.0, at[1]],
-    };
-    let size = if asked { 16.0 } else { 12.0 };
-    let [x, y] = sheet.at(label_at);
-    // Nothing runs through words.
-    let end = x + text_width(part.label, size);
-    image.rectangle([x - 1.0, y - 0.5 * size], [end + 1.0, y + 0.5 * size], BACKGROUND);
-    image.text([x, y], Anchor::Left, size, colour(DIMENSION), part.label);
+        Shape::Text(_) => {}
+    }
+    if let Some(words) = Words::of(sheet, part, asked) {
+        // Nothing runs through words.
+        let [min, max] = words.room();
+        image.rectangle(min, max, BACKGROUND);
+        image.text(words.at, Anchor::Left, words.size, colour(DIMENSION), part.label);
+    }
 }
 
-/// Where the label of a line stands: to the right of its middle, above a level one.
+/// Where the words of a part stand in the picture.
+struct Words {
+    /// The middle of their left side, pixels.
+    at: [f64; 2],
+    size: f64,
+    width: f64,
+}
+
+impl Words {
+    /// None of what is a part of the workpiece or of the path.
+    fn of(sheet: &Sheet, part: &FigurePart, asked: bool) -> Option<Words> {
+        let at = match &part.shape {
+            Shape::Outline(_) | Shape::Path(_) | Shape::Circle(..) => return None,
+            Shape::Dimension(from, to) | Shape::Arrow(from, to) => beside(*from, *to),
+            Shape::Turn(centre, radius) => {
+                let middle = radius * std::f64::consts::FRAC_1_SQRT_2 + 2.0;
+                [centre[0] + middle, centre[1] + middle]
+            }
+            Shape::Text(at) => [at[0] - 4.0, at[1]],
+        };
+        let (units, [least, most]) = if asked { ASKED_TEXT } else { TEXT };
+        let size = (units * sheet.scale).clamp(least, most);
+        Some(Words {
+            at: sheet.at(at),
+            size,
+            width: text_width(part.label, size),
+        })
+    }
+
+    /// Least and greatest corner of what they take.
+    fn room(&self) -> [[f64; 2]; 2] {
+        let [x, y] = self.at;
+        [
+            [x - 1.0, y - 0.5 * self.size],
+            [x + self.width + 1.0, y + 0.5 * self.size],
+        ]
+    }
+}
+
+/// Where the label of a line stands: to the right of its middle, above a level one, and below one that rises.
 fn beside(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
     let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
-    let level = (to[0] - from[0]).abs() > (to[1] - from[1]).abs();
-    match level {
-        true => [middle[0] - 2.0, middle[1] + 2.5],
-        false => [middle[0] + 1.2, middle[1]],
+    let [across, up] = [to[0] - from[0], to[1] - from[1]];
+    match (across == 0.0, up == 0.0) {
+        (true, _) => [middle[0] + 1.2, middle[1]],
+        (_, true) => [middle[0] - 2.0, middle[1] + 2.5],
+        _ => [middle[0] + 2.0, middle[1] - 2.0 * (across * up).signum()],
     }
 }
 
@@ -154,7 +180,7 @@ mod tests {
 
     #[test]
     fn the_word_that_is_asked_for_stands_out() {
-        // 500 x 405 pixels: 4.6 pixels for each unit of the sheet. The depth of pecking is at x = 80, y = 10 to 40.
+        // 500 x 405 pixels: 4.6 pixels for each unit of the sheet. The depth is at x = 70, y = 13 to 40.
         let parts = bahn_dialogue::figure(1).unwrap();
         let size = [500, 405];
         let sheet = Sheet::of(size.map(f64::from));
@@ -162,10 +188,44 @@ mod tests {
         near(sheet.scale, 4.6);
         near(sheet.corner[0], 20.0);
         near(sheet.corner[1], 385.0);
-        let [x, y] = [20 + (80.0 * 4.6) as usize, 385 - (30.0 * 4.6) as usize];
+        let [x, y] = [20 + (70.0 * 4.6) as usize, 385 - (30.0 * 4.6) as usize];
         let pixel = |asked: &str| draw(&parts, asked, size, "").pixels()[y * 500 + x];
         assert_eq!(pixel("cycle 1 DEPTH"), ASKED);
         assert_ne!(pixel("cycle SET UP"), ASKED);
         assert_ne!(pixel("cycle SET UP"), BACKGROUND);
+    }
+
+    /// Whatever is asked for, no words lie over others or leave the picture, down to the size of a phone.
+    #[test]
+    fn words_have_room() {
+        for size in [[280, 210], [500, 405], [1200, 800]] {
+            let sheet = Sheet::of(size.map(f64::from));
+            for cycle in 1..=31 {
+                let parts = bahn_dialogue::figure(cycle).unwrap_or_default();
+                for asked in parts.iter().flat_map(|part| &part.ids) {
+                    let rooms: Vec<_> = parts
+                        .iter()
+                        .filter_map(|part| {
+                            let words = Words::of(&sheet, part, part.ids.contains(asked))?;
+                            Some((part.label, words.room()))
+                        })
+                        .collect();
+                    for (at, (label, [min, max])) in rooms.iter().enumerate() {
+                        let inside = min[0] >= 0.0
+                            && min[1] >= TITLE
+                            && max[0] <= f64::from(size[0])
+                            && max[1] <= f64::from(size[1]);
+                        assert!(
+                            inside,
+                            "cycle {cycle} at {asked}, {size:?}: {label} leaves the picture"
+                        );
+                        for (other, [low, high]) in &rooms[at + 1..] {
+                            let apart = (0..2).any(|axis| max[axis] <= low[axis] || high[axis] <= min[axis]);
+                            assert!(apart, "cycle {cycle} at {asked}, {size:?}: {label} and {other}");
+                        }
+                    }
+                }
+            }
+        }
     }
 }

@@ -27,6 +27,7 @@ use bahn_control::Control;
 use bahn_dialogue::Key;
 use bahn_host::{Host, LoadedMachine};
 use bahn_parameters::ParameterList;
+use bahn_workpiece::Scheme;
 
 use crate::colours::colour;
 use crate::programs::ProgramMemory;
@@ -313,14 +314,8 @@ impl Graphics {
         let settings = list.graphics();
         let of_part = |stock, program, time_s| {
             let view = self.view?;
-            Some(Picture::of_part(
-                stock,
-                program,
-                time_s,
-                view,
-                self.sight,
-                settings.third_angle,
-            ))
+            let picture = Picture::of_part(stock, program, time_s, view, self.sight, settings.third_angle);
+            Some(picture.in_colours(part_colours(list, view)))
         };
         match subject {
             Subject::Oscilloscope => {
@@ -341,5 +336,41 @@ impl Graphics {
                 of_part(trial.stock(), trial.program(), Some(time_s))
             }
         }
+    }
+}
+
+/// The colours of a part: MP7360 those of the 3D view, MP7361 those of the views along the axes, MP7362 those of the
+/// line that says what is drawn and how long it takes [000:6344-6360]. The plan view alone has the colours that it has
+/// among the three planes (inferred). None on a control without them.
+fn part_colours(list: &ParameterList, view: PartView) -> Option<Scheme> {
+    if !list.model().has_windows() {
+        return None;
+    }
+    let own = |number| move |index| colour(list, number, index);
+    let (drawn, title) = (own(if view == PartView::Solid { 7360 } else { 7361 }), own(7362));
+    let faces = match view {
+        PartView::Solid => [drawn(1)?, drawn(2)?, drawn(4)?],
+        PartView::Plan | PartView::ThreePlanes => [drawn(1)?, drawn(2)?, drawn(2)?],
+    };
+    Some(Scheme {
+        background: drawn(0)?,
+        text: drawn(3)?,
+        faces,
+        title: [title(1)?, title(2)?, title(3)?],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bahn_parameters::ControlModel;
+
+    #[test]
+    fn a_control_without_colours_draws_with_ours() {
+        let of = |model| part_colours(&ParameterList::smallest(model), PartView::Solid);
+        assert!(of(ControlModel::Tnc360).is_none());
+        // The standard values of MP7360.0 and .1.
+        let scheme = of(ControlModel::Tnc415b).unwrap();
+        assert_eq!((scheme.background, scheme.faces[0]), ([0, 0, 0], [129, 194, 226]));
     }
 }

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use bahn_dialogue::FigurePart;
 use bahn_picture::{Image, ImageError};
-use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, ThreePlanes, View3d};
+use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, Scheme, ThreePlanes, View3d};
 
 use super::contour::{Lines, lock};
 use super::drawing::{LineColours, Sheet, draw};
@@ -78,6 +78,7 @@ struct PartPicture {
     view: PartView,
     sight: Sight,
     projection: Projection,
+    colours: Option<Scheme>,
 }
 
 /// Why a picture cannot be drawn.
@@ -116,7 +117,16 @@ impl Picture {
                 true => Projection::ThirdAngle,
                 false => Projection::FirstAngle,
             },
+            colours: None,
         }))
+    }
+
+    /// A part in the colours of the control, where it has some.
+    pub(super) fn in_colours(mut self, colours: Option<Scheme>) -> Picture {
+        if let Kind::Part(picture) = &mut self.0 {
+            picture.colours = colours;
+        }
+        self
     }
 
     pub(super) fn of_curves(curves: Curves, colours: ScopeColours) -> Picture {
@@ -204,6 +214,9 @@ impl PartPicture {
     fn draw(&self, [width, height]: [u32; 2], titled: bool) -> Result<Option<Image>, PageError> {
         let title = format!("PGM {}", self.program);
         let mut page = Page::new(width, height, &title, &self.note())?;
+        if let Some(colours) = self.colours {
+            page = page.in_colours(colours);
+        }
         if !titled {
             page = page.without_title();
         }

@@ -32,7 +32,7 @@ struct Drawn {
     last: Option<(Arc<Program>, Option<u32>)>,
     /// The soft keys of the graphics are shown.
     keys: bool,
-    /// HELP: cycles are drawn while their words are asked for.
+    /// Cycles are drawn while their words are asked for: beside the dialogue where the screen has room. HELP switches.
     cycles: bool,
 }
 
@@ -54,9 +54,17 @@ impl Programming {
         }
         let drawn = Drawn {
             auto: site.graphics.shows_programmed(),
+            cycles: site.control().model().has_windows(),
             ..Drawn::default()
         };
         Programming { open, drawn }
+    }
+
+    /// The program that is to be edited now; what HELP has chosen stays.
+    fn renew(&mut self, site: &mut Site) {
+        let cycles = self.drawn.cycles;
+        *self = Programming::new(site);
+        self.drawn.cycles = cycles;
     }
 
     /// What has changed is on the medium before the next key.
@@ -289,12 +297,12 @@ impl Page for Programming {
 
     fn tick(&mut self, site: &mut Site) -> Turn {
         if self.open.as_mut().is_some_and(|open| open.is_stale(site)) {
-            *self = Programming::new(site);
+            self.renew(site);
         }
         let open = self.open.as_ref().map(|open| open.name.as_str());
         if open != site.settings.edited.as_deref() {
             site.settings.draft = None;
-            *self = Programming::new(site);
+            self.renew(site);
             // A name without its program is not asked for again.
             if self.open.is_none() {
                 site.settings.edited = None;

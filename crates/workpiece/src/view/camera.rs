@@ -6,7 +6,7 @@ use super::colouring::Colouring;
 use super::light::{cross, dot, unit};
 use super::raycast::Vector;
 use super::scale::{number, round_step};
-use super::{Area, INK, fit};
+use super::{Area, fit};
 use crate::part::Part;
 
 /// Options of the 3D view.
@@ -146,17 +146,17 @@ impl Camera {
         }
     }
 
-    pub fn scale_bar(&self, image: &mut Image, at: [f64; 2], size: f64) {
+    pub fn scale_bar(&self, image: &mut Image, at: [f64; 2], size: f64, ink: Colour) {
         let length = round_step(4.0 * size * self.mm);
         let pixels = length / self.mm;
         let left = [at[0] - pixels, at[1]];
-        image.line(left, at, (size / 8.0).max(1.5), INK);
+        image.line(left, at, (size / 8.0).max(1.5), ink);
         for end in [left, at] {
             image.line(
                 [end[0], end[1] - 0.3 * size],
                 [end[0], end[1] + 0.3 * size],
                 (size / 10.0).max(1.0),
-                INK,
+                ink,
             );
         }
         let text = format!("{} mm", number(length, length));
@@ -164,7 +164,7 @@ impl Camera {
             [left[0] + 0.5 * pixels, at[1] - 0.9 * size],
             Anchor::Centre,
             0.9 * size,
-            INK,
+            ink,
             &text,
         );
     }

@@ -1,9 +1,10 @@
 //! What the colours of the views mean.
 
-use super::INK;
+use super::Page;
 use super::legend::{DepthShade, Legend, Swatch, hatched};
 use super::light::{is_outline, screen, to_linear};
 use super::raycast::{Face, Hit, Vector};
+use super::scheme::Pens;
 use crate::cutters::Cutter;
 use crate::part::Part;
 use bahn_picture::{Colour, mix};
@@ -51,16 +52,27 @@ pub(super) struct Palette<'a> {
     part: &'a Part,
     colouring: Colouring,
     depths: DepthShade,
+    pens: Pens,
+    /// What is looked at from above, from the front and from the side, where a scheme says so.
+    faces: Option<[Colour; 3]>,
 }
 
 impl<'a> Palette<'a> {
     /// `levels` of brightness for depths, 0 for a continuous scale.
-    pub fn new(part: &'a Part, colouring: Colouring, levels: u8) -> Palette<'a> {
+    pub fn new(part: &'a Part, colouring: Colouring, levels: u8, page: &Page) -> Palette<'a> {
+        let faces = page.scheme.map(|scheme| scheme.faces);
         Palette {
             part,
             colouring,
-            depths: DepthShade::new(part, levels),
+            depths: DepthShade::new(part, levels, faces.map(|[top, ..]| top)),
+            pens: page.pens(),
+            faces,
         }
+    }
+
+    /// What is seen where there is no column.
+    pub fn background(&self) -> Colour {
+        self.pens.background
     }
 
     /// Colour of a column seen from above; `stripe` counts pixels along a diagonal, for the hatching of holes.
@@ -68,7 +80,7 @@ impl<'a> Palette<'a> {
         let part = self.part;
         let height = part.height(i, j);
         if height <= 0.0 {
-            return hatched(stripe);
+            return hatched(stripe, self.pens.background);
         }
         let colour = match self.colouring {
             Colouring::Depth => self.depths.colour(height),
@@ -83,7 +95,22 @@ impl<'a> Palette<'a> {
             || higher(i, j + 1)
             || (i > 0 && higher(i - 1, j))
             || (j > 0 && higher(i, j - 1));
-        if edge { mix(colour, INK, 0.4) } else { colour }
+        if edge { mix(colour, EDGE, 0.4) } else { colour }
+    }
+
+    /// The linear light of a surface in the colours of a scheme, which know no lamp: a slope has part of the colour of
+    /// each face. `None` in colours of our own, and where tools are told apart.
+    pub fn flat(&self, normal: Vector, front: usize) -> Option<[f64; 3]> {
+        let faces = self.faces.filter(|_| self.colouring != Colouring::Tool)?;
+        let side = 1 - front;
+        let shares = [normal[2], normal[front], normal[side]].map(|part| part * part);
+        let mut light = [0.0; 3];
+        for (share, face) in shares.into_iter().zip(faces.map(to_linear)) {
+            for (light, face) in light.iter_mut().zip(face) {
+                *light += share * face;
+            }
+        }
+        Some(light)
     }
 
     /// Colour of the material that a ray meets: linear red, green, blue.
@@ -170,6 +197,8 @@ fn tool_colour(cutter: Cutter) -> Colour {
 /// The blank as it came, and where a tool was: linear red, green, blue of steel blue and brass.
 const SKIN: [f64; 3] = [0.243, 0.320, 0.443];
 const CUT: [f64; 3] = [0.812, 0.612, 0.293];
+/// What a wall throws its shadow with.
+const EDGE: Colour = [45, 55, 68];
 const RAPID_CUT: Colour = [222, 36, 36];
 const NO_TOOL: Colour = [176, 176, 172];
 /// Easily told from each other, from the skin and from red.

@@ -2,7 +2,7 @@
 
 use super::legend::{Legend, Swatch};
 use super::plan::{frame, rulers};
-use super::{Area, BACKGROUND, Page, fit};
+use super::{Area, Page, fit};
 use crate::deviation::Deviation;
 use crate::part::Part;
 use bahn_picture::{Colour, Image, mix};
@@ -20,7 +20,8 @@ impl Part {
     /// The part seen against the tool axis: red where material is left, blue where too much was removed, full colour at
     /// this deviation, mm, and beyond.
     pub fn deviation_view(&self, page: &Page, deviation: &Deviation, full_mm: f64) -> Image {
-        let (mut image, area) = page.start(BACKGROUND);
+        let pens = page.pens();
+        let (mut image, area) = page.start(pens.background);
         let size = page.text_size();
         let fields = (-FIELDS..=FIELDS).rev().map(|field| {
             let off = f64::from(field) / f64::from(FIELDS) * full_mm;
@@ -34,18 +35,25 @@ impl Part {
         let right = beside + legend.width(size) + size;
         let inner = area.shrunk(5.0 * size, 2.5 * size, right, 3.5 * size);
         let drawing = fit([self.setup.size[0], self.setup.size[1]], &inner);
-        self.draw_deviation(&mut image, deviation, &drawing, full_mm);
+        self.draw_deviation(&mut image, deviation, &drawing, full_mm, pens.background);
         frame(&mut image, &drawing, page);
-        rulers(&mut image, self, &drawing, size);
+        rulers(&mut image, self, &drawing, size, pens);
         let room = Area {
             min: [drawing.max[0] + beside, area.min[1] + 0.9 * size],
             max: [area.max[0], area.max[1] - size],
         };
-        legend.draw(&mut image, &room, drawing.min[1] - 1.6 * size, size);
+        legend.draw(&mut image, &room, drawing.min[1] - 1.6 * size, size, pens);
         image
     }
 
-    fn draw_deviation(&self, image: &mut Image, deviation: &Deviation, drawing: &Area, full_mm: f64) {
+    fn draw_deviation(
+        &self,
+        image: &mut Image,
+        deviation: &Deviation,
+        drawing: &Area,
+        full_mm: f64,
+        background: Colour,
+    ) {
         let [width, height] = drawing.size();
         let [left, top] = drawing.min.map(|value| value as usize);
         let [sx, sy] = [self.setup.size[0] / width, self.setup.size[1] / height];
@@ -58,7 +66,7 @@ impl Part {
                 );
                 let column = self.grid.cell_at(x, y).map(|(i, j)| j * self.grid.nx + i);
                 let off = column.and_then(|place| deviation.columns.get(place));
-                *pixel = off.map_or(BACKGROUND, |off| colour(f64::from(*off), full_mm));
+                *pixel = off.map_or(background, |off| colour(f64::from(*off), full_mm));
             }
         }
     }

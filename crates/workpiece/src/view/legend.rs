@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use super::Area;
 use super::scale::{number, round_step};
-use super::{Area, BACKGROUND, FAINT, INK};
+use super::scheme::Pens;
 use crate::part::Part;
 use bahn_picture::{Anchor, text_width};
 use bahn_picture::{Colour, Image, mix};
@@ -16,6 +17,8 @@ const SAME_DEPTH_MM: f32 = 0.002;
 
 /// Colours by depth between the highest and the deepest point that is not cut through (inferred).
 pub(super) struct DepthShade {
+    /// The colour of the upper face; the standard scale without.
+    top: Option<Colour>,
     scale: Scale,
     /// The height of the lower face of the blank, mm.
     zero: f64,
@@ -64,7 +67,7 @@ impl Range {
 
 impl DepthShade {
     /// `levels` of brightness where the depths are many; 0 for a continuous scale.
-    pub fn new(part: &Part, levels: u8) -> DepthShade {
+    pub fn new(part: &Part, levels: u8, top: Option<Colour>) -> DepthShade {
         let left = || part.heights.iter().copied().filter(|height| *height > 0.0);
         let range = Range {
             top: part.top(),
@@ -87,6 +90,7 @@ impl DepthShade {
         };
         DepthShade {
             scale,
+            top,
             zero: part.min()[2],
             axis: part.axes()[2].to_string(),
             holes: part.heights.iter().any(|height| *height <= 0.0),
@@ -95,15 +99,17 @@ impl DepthShade {
 
     /// Colour of a height.
     pub fn colour(&self, height: f32) -> Colour {
-        let share = |k: usize, count: usize| k as f64 / count.saturating_sub(1).max(1) as f64;
-        gradient(match &self.scale {
+        let part = |k: usize, count: usize| k as f64 / count.saturating_sub(1).max(1) as f64;
+        let share = match &self.scale {
             Scale::Continuous(range) => range.depth(height),
-            Scale::Levels(range, found) => share(range.level(height, found.len()), found.len()),
+            Scale::Levels(range, found) => part(range.level(height, found.len()), found.len()),
             Scale::Depths(depths) => {
                 let above = depths.partition_point(|[_, low]| *low > height + 0.5 * SAME_DEPTH_MM);
-                share(above.min(depths.len().saturating_sub(1)), depths.len())
+                part(above.min(depths.len().saturating_sub(1)), depths.len())
             }
-        })
+        };
+        self.top
+            .map_or_else(|| gradient(share), |top| mix(top, [0; 3], DARKEST * share))
     }
 
     /// The legend: a field for each depth or level that the part has, with its true heights.
@@ -227,33 +233,39 @@ impl Legend {
     }
 
     /// Draws it in an area, no higher than it must be; `top` is where it begins when there is room.
-    pub fn draw(&self, image: &mut Image, area: &Area, top: f64, size: f64) {
+    pub fn draw(&self, image: &mut Image, area: &Area, top: f64, size: f64, pens: Pens) {
         let [title, each] = self.tall(size, area.size()[1]);
         let height = title + each * self.fields.len() as f64;
         let top = top.min(area.max[1] - height).max(area.min[1]);
         let left = area.min[0].round();
         let right = (left + Legend::FIELD * size).round();
         let text_size = size.min(each / 1.15);
-        image.text([left, top + 0.5 * size], Anchor::Left, size, INK, &self.title);
+        image.text(
+            [left, top + 0.5 * size],
+            Anchor::Left,
+            size,
+            pens.ink,
+            &self.title,
+        );
         for (k, (swatch, text)) in self.fields.iter().enumerate() {
             let y = [k, k + 1].map(|k| (top + title + k as f64 * each).round());
-            swatch.fill(image, [left, y[0]], [right, y[1]]);
-            image.outline(&rectangle([left, y[0]], [right, y[1]]), 1.0, FAINT);
+            swatch.fill(image, [left, y[0]], [right, y[1]], pens.background);
+            image.outline(&rectangle([left, y[0]], [right, y[1]]), 1.0, pens.faint);
             let at = [right + Legend::GAP * size, 0.5 * (y[0] + y[1])];
-            image.text(at, Anchor::Left, text_size, INK, text);
+            image.text(at, Anchor::Left, text_size, pens.ink, text);
         }
     }
 }
 
 impl Swatch {
-    fn fill(self, image: &mut Image, min: [f64; 2], max: [f64; 2]) {
+    fn fill(self, image: &mut Image, min: [f64; 2], max: [f64; 2], background: Colour) {
         let rows = (max[1] - min[1]).max(1.0);
         for y in min[1] as i64..max[1] as i64 {
             for x in min[0] as i64..max[0] as i64 {
                 let colour = match self {
                     Swatch::Plain(colour) => colour,
                     Swatch::Blend(above, below) => mix(above, below, (y as f64 + 0.5 - min[1]) / rows),
-                    Swatch::Hatched => hatched((x + y) as usize),
+                    Swatch::Hatched => hatched((x + y) as usize, background),
                 };
                 image.blend(x, y, colour, 1.0);
             }
@@ -272,11 +284,11 @@ fn rectangle([left, top]: [f64; 2], [right, bottom]: [f64; 2]) -> [[f64; 2]; 5] 
 }
 
 /// Hatching where nothing is left, by the count of pixels along a diagonal.
-pub(super) fn hatched(stripe: usize) -> Colour {
+pub(super) fn hatched(stripe: usize, background: Colour) -> Colour {
     if stripe % 8 < 2 {
         THROUGH_STRIPE
     } else {
-        BACKGROUND
+        background
     }
 }
 
@@ -294,6 +306,8 @@ fn gradient(share: f64) -> Colour {
     mix(STOPS[k], STOPS[k + 1], place - k as f64)
 }
 
+/// How dark the deepest point is, where the upper face has a colour of its own.
+const DARKEST: f64 = 0.75;
 const THROUGH_STRIPE: Colour = [224, 168, 120];
 
 #[cfg(test)]
@@ -321,7 +335,7 @@ mod tests {
     }
 
     fn labels(heights: &[f32], levels: u8) -> Vec<String> {
-        let legend = DepthShade::new(&part(heights), levels).legend();
+        let legend = DepthShade::new(&part(heights), levels, None).legend();
         legend.fields.into_iter().map(|(_, text)| text).collect()
     }
 
@@ -333,7 +347,7 @@ mod tests {
     #[test]
     fn deeper_is_darker() {
         for (levels, heights) in [(0, staircase()), (7, vec![7.0, 6.9, 4.0, 1.0]), (13, staircase())] {
-            let shade = DepthShade::new(&part(&heights), levels);
+            let shade = DepthShade::new(&part(&heights), levels, None);
             let colours: Vec<u32> = heights.iter().map(|h| brightness(shade.colour(*h))).collect();
             assert!(colours.windows(2).all(|pair| pair[0] > pair[1]), "{colours:?}");
         }

@@ -9,6 +9,7 @@ mod light;
 mod plan;
 mod raycast;
 mod scale;
+mod scheme;
 mod shade;
 mod solid;
 mod three_planes;
@@ -17,6 +18,7 @@ mod way;
 pub use camera::View3d;
 pub use colouring::{Colouring, CutBy};
 pub use plan::PlanView;
+pub use scheme::Scheme;
 
 pub use three_planes::{Projection, ThreePlanes};
 
@@ -36,6 +38,7 @@ pub struct Page {
     title: String,
     note: String,
     is_bare: bool,
+    scheme: Option<Scheme>,
     stop: Arc<AtomicBool>,
 }
 
@@ -66,6 +69,7 @@ impl Page {
             title: title.to_owned(),
             note: note.to_owned(),
             is_bare: false,
+            scheme: None,
             stop: Arc::default(),
         })
     }
@@ -78,6 +82,7 @@ impl Page {
             title: title.to_owned(),
             note: note.to_owned(),
             is_bare: false,
+            scheme: None,
             stop: Arc::default(),
         }
     }
@@ -85,6 +90,12 @@ impl Page {
     /// The same page without a title line.
     pub fn without_title(mut self) -> Page {
         self.is_bare = true;
+        self
+    }
+
+    /// The same page in other colours than our own.
+    pub fn in_colours(mut self, scheme: Scheme) -> Page {
+        self.scheme = Some(scheme);
         self
     }
 
@@ -111,6 +122,7 @@ impl Page {
 
     /// Draws the title line; returns the picture and the free rectangle below the line.
     fn start(&self, background: Colour) -> (Image, Area) {
+        let background = self.scheme.map_or(background, |own| own.background);
         let mut image = Image::new(self.width, self.height, background);
         let whole = Area {
             min: [0.0, 0.0],
@@ -122,13 +134,15 @@ impl Page {
         let size = self.text_size();
         let width = f64::from(self.width);
         let bar = (2.4 * size).round();
-        image.rectangle([0.0, 0.0], [width, bar], TITLE_BACKGROUND);
+        let own = self.scheme.map(|own| own.title);
+        let [behind, words, values] = own.unwrap_or([TITLE_BACKGROUND, TITLE_TEXT, TITLE_NOTE]);
+        image.rectangle([0.0, 0.0], [width, bar], behind);
         let inner = width - 2.0 * size;
         let note = Image::fitting(&self.note, size, 0.6 * inner);
         let note_width = bahn_picture::text_width(&note, size);
         let title = Image::fitting(&self.title, 1.15 * size, inner - note_width - size);
-        image.text([size, 0.5 * bar], Anchor::Left, 1.15 * size, TITLE_TEXT, &title);
-        image.text([width - size, 0.5 * bar], Anchor::Right, size, TITLE_NOTE, &note);
+        image.text([size, 0.5 * bar], Anchor::Left, 1.15 * size, words, &title);
+        image.text([width - size, 0.5 * bar], Anchor::Right, size, values, &note);
         let below = Area {
             min: [0.0, bar],
             ..whole
@@ -166,12 +180,9 @@ impl Area {
     }
 }
 
-const BACKGROUND: Colour = [252, 252, 250];
 const TITLE_BACKGROUND: Colour = [38, 50, 66];
 const TITLE_TEXT: Colour = [255, 255, 255];
 const TITLE_NOTE: Colour = [190, 205, 222];
-const INK: Colour = [45, 55, 68];
-const FAINT: Colour = [150, 160, 172];
 
 /// The largest rectangle with the proportions of `size` in an area, in its middle.
 fn fit(size: [f64; 2], area: &Area) -> Area {

@@ -2,7 +2,8 @@
 
 use super::colouring::{Colouring, Palette};
 use super::scale::Ruler;
-use super::{Area, BACKGROUND, INK, Page, fit, way};
+use super::scheme::Pens;
+use super::{Area, Page, fit, way};
 use crate::part::Part;
 use bahn_picture::{Colour, Image};
 use rayon::prelude::*;
@@ -34,9 +35,10 @@ impl Part {
     /// The part seen against the tool axis. Unless colours are wanted otherwise brightness tells the height: the
     /// deeper the contour, the darker the image [003:878-882].
     pub fn plan_view(&self, page: &Page, options: &PlanView) -> Image {
-        let (mut image, area) = page.start(BACKGROUND);
+        let pens = page.pens();
+        let (mut image, area) = page.start(pens.background);
         let size = page.text_size();
-        let palette = Palette::new(self, options.colouring, options.levels);
+        let palette = Palette::new(self, options.colouring, options.levels, page);
         let legend = palette.legend();
         let beside = 3.0 * size;
         let right = beside + legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
@@ -47,13 +49,13 @@ impl Part {
             draw_way(&mut image, self, &drawing, page);
         }
         frame(&mut image, &drawing, page);
-        rulers(&mut image, self, &drawing, size);
+        rulers(&mut image, self, &drawing, size, pens);
         let room = Area {
             min: [drawing.max[0] + beside, area.min[1] + 0.9 * size],
             max: [area.max[0], area.max[1] - size],
         };
         if let Some(legend) = legend {
-            legend.draw(&mut image, &room, drawing.min[1] - 1.6 * size, size);
+            legend.draw(&mut image, &room, drawing.min[1] - 1.6 * size, size, pens);
         }
         image
     }
@@ -88,7 +90,7 @@ fn plan_pixel(part: &Part, drawing: &Area, palette: &Palette, [px, py]: [usize; 
         let y = part.setup.size[1] - (py as f64 + offset(k / SAMPLES)) * sy;
         let colour = match part.grid.cell_at(x, y) {
             Some((i, j)) => palette.column_colour(i, j, px + py),
-            None => BACKGROUND,
+            None => palette.background(),
         };
         for (sum, part) in sum.iter_mut().zip(colour) {
             *sum += f64::from(part);
@@ -123,10 +125,10 @@ pub(super) fn frame(image: &mut Image, drawing: &Area, page: &Page) {
         [left, bottom],
         [left, top],
     ];
-    image.outline(&corners, page.line_width(), INK);
+    image.outline(&corners, page.line_width(), page.pens().ink);
 }
 
-pub(super) fn rulers(image: &mut Image, part: &Part, drawing: &Area, size: f64) {
+pub(super) fn rulers(image: &mut Image, part: &Part, drawing: &Area, size: f64, pens: Pens) {
     let [first, second, _] = part.axes();
     let (min, max) = (part.min(), part.max());
     Ruler {
@@ -137,6 +139,7 @@ pub(super) fn rulers(image: &mut Image, part: &Part, drawing: &Area, size: f64) 
         to: drawing.max[0],
         line: drawing.max[1],
         text_size: size,
+        pens,
     }
     .below(image);
     Ruler {
@@ -147,6 +150,7 @@ pub(super) fn rulers(image: &mut Image, part: &Part, drawing: &Area, size: f64) 
         to: drawing.min[1],
         line: drawing.min[0],
         text_size: size,
+        pens,
     }
     .left(image);
 }

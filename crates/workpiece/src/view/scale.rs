@@ -1,6 +1,6 @@
 //! Rulers along a drawing, and lengths in words.
 
-use super::{FAINT, INK};
+use super::scheme::Pens;
 use bahn_picture::Image;
 use bahn_picture::{Anchor, text_width};
 
@@ -43,6 +43,7 @@ pub(super) struct Ruler<'a> {
     /// Pixel of the line in the other direction.
     pub line: f64,
     pub text_size: f64,
+    pub pens: Pens,
 }
 
 impl Ruler<'_> {
@@ -80,14 +81,20 @@ impl Ruler<'_> {
         for (value, x) in self.marks(step) {
             let text = number(value, step);
             name = name.max(x + 0.5 * text_width(&text, size) + 0.5 * size);
-            image.line([x, self.line], [x, self.line + 0.4 * size], 1.0, FAINT);
-            image.text([x, self.line + 1.15 * size], Anchor::Centre, size, INK, &text);
+            image.line([x, self.line], [x, self.line + 0.4 * size], 1.0, self.pens.faint);
+            image.text(
+                [x, self.line + 1.15 * size],
+                Anchor::Centre,
+                size,
+                self.pens.ink,
+                &text,
+            );
         }
         image.text(
             [name, self.line + 1.15 * size],
             Anchor::Left,
             1.15 * size,
-            INK,
+            self.pens.ink,
             self.name,
         );
     }
@@ -104,12 +111,12 @@ impl Ruler<'_> {
         let room = self.line - 0.9 * size;
         let text_size = size * (room / widest).min(1.0);
         for (value, y) in self.marks(step) {
-            image.line([self.line - 0.4 * size, y], [self.line, y], 1.0, FAINT);
+            image.line([self.line - 0.4 * size, y], [self.line, y], 1.0, self.pens.faint);
             image.text(
                 [self.line - 0.7 * size, y],
                 Anchor::Right,
                 text_size,
-                INK,
+                self.pens.ink,
                 &number(value, step),
             );
         }
@@ -118,7 +125,7 @@ impl Ruler<'_> {
             [self.line - 0.7 * size, end],
             Anchor::Right,
             1.15 * size,
-            INK,
+            self.pens.ink,
             self.name,
         );
     }

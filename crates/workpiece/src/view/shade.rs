@@ -37,6 +37,8 @@ pub(super) struct Shader<'a> {
     pub height_factor: f64,
     /// Millimetres of a pixel.
     pub pixel_mm: f64,
+    /// Perpendicular to this axis stand the faces that are seen from the front.
+    pub front: usize,
 }
 
 impl Shader<'_> {
@@ -44,7 +46,12 @@ impl Shader<'_> {
     /// looks at another place of the lamp and of the sky, together they see all of it.
     pub fn light(&self, point: Vector, hit: &Hit, sample: usize) -> Seen {
         let part = self.caster.part;
-        let normal = self.stretched(self.normal(point, hit));
+        let own = self.normal(point, hit);
+        let normal = self.stretched(own);
+        if let Some(light) = self.palette.flat(own, self.front) {
+            let t = hit.t;
+            return Seen { light, normal, t };
+        }
         let cell = part.grid.cell();
         let outside = [0, 1, 2].map(|k| point[k] + normal[k] * 0.6 * cell);
         let occlusion = self.openness(outside, normal, sample);

@@ -9,7 +9,7 @@ use super::light::{screen, to_linear};
 use super::raycast::Caster;
 use super::scale::number;
 use super::shade::{SAMPLES, Shader};
-use super::{Area, INK, Page, way};
+use super::{Area, Page, way};
 use crate::part::Part;
 use bahn_picture::Anchor;
 use bahn_picture::{Colour, Image, mix};
@@ -19,7 +19,8 @@ impl Part {
     pub fn view_3d(&self, page: &Page, options: &View3d) -> Image {
         let (mut image, area) = page.start(BACKGROUND_TOP);
         let size = page.text_size();
-        let palette = Palette::new(self, options.colouring, 0);
+        let palette = Palette::new(self, options.colouring, 0, page);
+        let pens = page.pens();
         let legend = palette.legend();
         let beside = legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
         let free = area.shrunk(2.5 * size, 2.5 * size, 2.5 * size + beside, 4.5 * size);
@@ -40,7 +41,7 @@ impl Part {
                 min: [area.max[0] - beside, area.min[1] + size],
                 max: [area.max[0], area.max[1] - 4.5 * size],
             };
-            legend.draw(&mut image, &room, room.min[1], size);
+            legend.draw(&mut image, &room, room.min[1], size, pens);
         }
         camera.triad(
             &mut image,
@@ -52,6 +53,7 @@ impl Part {
             &mut image,
             [area.max[0] - 1.5 * size, area.max[1] - 1.4 * size],
             size,
+            pens.ink,
         );
         let [a, b, c] = self.setup.size.map(|side| {
             number(side, 0.01)
@@ -60,7 +62,13 @@ impl Part {
                 .to_owned()
         });
         let middle = [area.centre()[0], area.max[1] - 1.4 * size];
-        image.text(middle, Anchor::Centre, size, INK, &format!("{a} × {b} × {c} mm"));
+        image.text(
+            middle,
+            Anchor::Centre,
+            size,
+            pens.ink,
+            &format!("{a} × {b} × {c} mm"),
+        );
         image
     }
 
@@ -80,6 +88,7 @@ impl Part {
             to_eye: camera.forward.map(|v| -v),
             height_factor: camera.height_factor,
             pixel_mm: camera.mm,
+            front: usize::from(camera.forward[1].abs() >= camera.forward[0].abs()),
         };
         let first = area.min[1] as usize;
         let count = area.size()[1];
@@ -94,7 +103,8 @@ impl Part {
             if page.is_stopped() {
                 return;
             }
-            let background = mix(BACKGROUND_TOP, BACKGROUND_BOTTOM, row as f64 / count);
+            let own = || mix(BACKGROUND_TOP, BACKGROUND_BOTTOM, row as f64 / count);
+            let background = page.scheme.map_or_else(own, |scheme| scheme.background);
             for (x, (pixel, spot)) in pixels.iter_mut().zip(spots).enumerate() {
                 (*pixel, *spot) = pixel_at(camera, &shader, [x, row + first], background);
             }
@@ -174,7 +184,7 @@ mod tests {
         };
         let (mut image, area) = page.start(BACKGROUND_TOP);
         let camera = Camera::new(part, &options, &area);
-        let palette = Palette::new(part, Colouring::Part, 0);
+        let palette = Palette::new(part, Colouring::Part, 0, &page);
         let spots = part.render(&mut image, &area, &camera, &palette, &page);
         let weights = edges::weights(&spots, 300, &page);
         (105..165)

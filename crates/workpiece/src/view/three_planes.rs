@@ -3,10 +3,11 @@
 use super::colouring::{Colouring, Palette};
 use super::plan::{draw_plan, draw_way, frame};
 use super::scale::{Ruler, label_width, number};
-use super::{Area, BACKGROUND, FAINT, INK, Page, way};
+use super::scheme::Pens;
+use super::{Area, Page, way};
 use crate::part::Part;
 use bahn_picture::Anchor;
-use bahn_picture::{Colour, Image, mix};
+use bahn_picture::{Image, mix};
 
 /// How the views are arranged (ISO 6433) [003:891-892].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,9 +53,9 @@ impl Default for ThreePlanes {
 impl Part {
     /// Plan view and two sections as in a technical drawing [003:891-895].
     pub fn three_planes(&self, page: &Page, options: &ThreePlanes) -> Image {
-        let (mut image, area) = page.start(BACKGROUND);
+        let (mut image, area) = page.start(page.pens().background);
         let size = page.text_size();
-        let palette = Palette::new(self, options.colouring, options.levels);
+        let palette = Palette::new(self, options.colouring, options.levels, page);
         // The sections tell the depths.
         let legend = palette.legend().filter(|_| options.colouring == Colouring::Tool);
         let beside = legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
@@ -71,7 +72,7 @@ impl Part {
                 min: [area.max[0] - beside, area.min[1] + size],
                 max: [area.max[0], area.max[1] - size],
             };
-            legend.draw(&mut image, &room, room.min[1], size);
+            legend.draw(&mut image, &room, room.min[1], size, page.pens());
         }
         for drawing in [&sheet.plan, &sheet.front, &sheet.side] {
             frame(&mut image, drawing, page);
@@ -96,6 +97,7 @@ struct Sheet<'a> {
     sections: [f64; 2],
     text_size: f64,
     line_width: f64,
+    pens: Pens,
 }
 
 impl<'a> Sheet<'a> {
@@ -146,6 +148,7 @@ impl<'a> Sheet<'a> {
             sections: [section(0), section(1)],
             text_size: size,
             line_width: page.line_width(),
+            pens: page.pens(),
         }
     }
 
@@ -200,7 +203,8 @@ impl<'a> Sheet<'a> {
             for back in 1.. {
                 let Some(behind) = height(share, back) else { break };
                 if behind > seen {
-                    let colour = mix(BEHIND_NEAR, BEHIND_FAR, (back as f64 / depth).sqrt());
+                    let [near, far] = self.pens.behind;
+                    let colour = mix(near, far, (back as f64 / depth).sqrt());
                     image.rectangle([x, pixel(behind)], [x + 1.0, pixel(seen)], colour);
                     seen = behind;
                 }
@@ -235,13 +239,13 @@ impl<'a> Sheet<'a> {
         if bottom - top < 0.01 {
             return;
         }
-        image.rectangle([x, top], [x + 1.0, bottom], CUT_FACE);
+        image.rectangle([x, top], [x + 1.0, bottom], self.pens.cut[0]);
         let pitch = (0.75 * self.text_size).max(6.0);
         for y in top.ceil() as i64..bottom as i64 {
             let phase = (x + y as f64).rem_euclid(pitch);
             let distance = (phase - 0.5 * pitch).abs();
             let share = (0.5 * self.line_width + 0.7 - distance).clamp(0.0, 1.0);
-            image.blend(x as i64, y, CUT_LINE, 0.8 * share);
+            image.blend(x as i64, y, self.pens.cut[1], 0.8 * share);
         }
     }
 
@@ -257,7 +261,7 @@ impl<'a> Sheet<'a> {
                 [[x, y], [x + 1.0, y]]
             })
             .collect();
-        image.outline(&points, self.line_width, INK);
+        image.outline(&points, self.line_width, self.pens.ink);
     }
 
     fn draw_section_lines(&self, image: &mut Image) {
@@ -285,7 +289,7 @@ impl<'a> Sheet<'a> {
             upright(x, &self.front),
             upright(side_x, &self.side),
         ] {
-            image.dashed(from, to, &pattern, self.line_width, SECTION);
+            image.dashed(from, to, &pattern, self.line_width, self.pens.section);
         }
     }
 
@@ -300,6 +304,7 @@ impl<'a> Sheet<'a> {
             to,
             line,
             text_size: 0.9 * self.text_size,
+            pens: self.pens,
         };
         let (plan, front, side) = (&self.plan, &self.front, &self.side);
         ruler(0, plan.min[0], plan.max[0], plan.max[1].max(front.max[1])).below(image);
@@ -324,7 +329,13 @@ impl<'a> Sheet<'a> {
         ];
         for (k, line) in lines.iter().enumerate() {
             let y = centre[1] + (1.5 + 1.6 * k as f64) * size;
-            image.text([centre[0], y], Anchor::Centre, 1.1 * size, SECTION, line);
+            image.text(
+                [centre[0], y],
+                Anchor::Centre,
+                1.1 * size,
+                self.pens.section,
+                line,
+            );
         }
         self.draw_symbol(image, [centre[0], centre[1] - 1.5 * size], 1.2 * size);
     }
@@ -347,19 +358,14 @@ impl<'a> Sheet<'a> {
             [cone - size, at[1] + small],
             [cone - size, at[1] - small],
         ];
-        image.outline(&corners, self.line_width, INK);
-        image.circle(circles, small, self.line_width, INK);
-        image.circle(circles, great, self.line_width, INK);
+        image.outline(&corners, self.line_width, self.pens.ink);
+        image.circle(circles, small, self.line_width, self.pens.ink);
+        image.circle(circles, great, self.line_width, self.pens.ink);
         let axis = [size * 0.6, size * 0.15, size * 0.1, size * 0.15];
         let (a, b) = ([at[0] - 3.0 * size, at[1]], [at[0] + 3.0 * size, at[1]]);
-        image.dashed(a, b, &axis, 0.7 * self.line_width, FAINT);
+        image.dashed(a, b, &axis, 0.7 * self.line_width, self.pens.faint);
     }
 }
 
 /// Least width and height of the quarter with symbol and positions, in heights of the text.
 const CORNER: [f64; 2] = [8.5, 8.0];
-const CUT_FACE: Colour = [240, 222, 180];
-const CUT_LINE: Colour = [176, 132, 62];
-const BEHIND_NEAR: Colour = [186, 200, 214];
-const BEHIND_FAR: Colour = [232, 237, 242];
-const SECTION: Colour = [190, 48, 44];
