@@ -8,6 +8,8 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
+//! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
+//!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`store`] is the file service that all protocols share.
@@ -17,8 +19,24 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+pub mod blockwise;
+mod channel;
+mod characters;
+mod drive;
 pub mod dnc;
 mod file_type;
+mod files;
+mod frame;
+mod protocol;
+mod settings;
+pub mod standard;
 pub mod store;
+mod text;
 
+pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
+pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
+pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
+pub use files::{Files, Listed, Memory, NewFile};
+pub use protocol::{Event, Protocol, Question, Shown};
+pub use settings::{Mode, PATIENCE, Settings};

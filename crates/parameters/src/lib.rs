@@ -99,7 +99,7 @@ pub mod operation {
 
 /// Of the data interfaces: [`ParameterList::interface_parameters`](crate::ParameterList::interface_parameters).
 pub mod interfaces {
-    pub use crate::settings::{DripFeedMemory, InterfaceParameters, TransferFormat};
+    pub use crate::settings::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};
 }
 /// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).
 pub mod tables {
