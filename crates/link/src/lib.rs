@@ -22,8 +22,8 @@
 pub mod blockwise;
 mod channel;
 mod characters;
-mod drive;
 pub mod dnc;
+mod drive;
 mod file_type;
 mod files;
 mod frame;
