@@ -278,7 +278,7 @@ fn program_memory_overflow() {
     assert!(give(&mut rig, "BEGIN PGM 1 MM\nL X+100 R0 F1000\nL X+110\n"));
     rig.start();
     rig.seconds(0.5);
-    assert_eq!(rig.messages(), ["PROGRAM MEMORY OVERFLOW"]);
+    assert_eq!(rig.messages(), ["Program Memory Overflow"]);
     assert!(!rig.control.first().run_state().eq(&RunState::Running));
 
     let mut rig = self::rig(Build::mill().mp("MP7228.1=1"));
@@ -294,7 +294,7 @@ fn program_memory_overflow() {
     }
     rig.until(60.0, "the label does not come", |rig| rig.control.is_broken());
     assert!(
-        rig.messages()[0].starts_with("PROGRAM MEMORY OVERFLOW"),
+        rig.messages()[0].starts_with("Program Memory Overflow"),
         "{:?}",
         rig.messages()
     );

@@ -8,11 +8,12 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
+//! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
-//! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`store`] is the file service that all protocols share.
+//! - [`store`] is the file service that all protocols share;
+//! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -27,6 +28,7 @@ mod drive;
 mod file_type;
 mod files;
 mod frame;
+pub mod lsv2;
 mod protocol;
 mod settings;
 pub mod standard;

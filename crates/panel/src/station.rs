@@ -247,6 +247,11 @@ impl Station {
         Key::ALL.iter().copied().filter(move |key| key.is_on(model))
     }
 
+    /// Part programs and tables were written by somebody else: the control reads them anew.
+    pub fn programs_changed(&self) {
+        self.programs.was_written();
+    }
+
     /// Names of the keys of the machine operating panel.
     pub fn machine_keys(&self) -> Vec<String> {
         self.host.plant().keys().map(str::to_owned).collect()

@@ -9,7 +9,6 @@ mod axes;
 mod axis_parameters;
 mod axis_reader;
 mod characteristics;
-mod drip_feed;
 mod interfaces;
 mod machining;
 mod operation;
@@ -26,8 +25,7 @@ pub use axis_parameters::{
     ReferenceType, Synchronization, TravelParameters,
 };
 pub use characteristics::Characteristics;
-pub use drip_feed::DripFeedMemory;
-pub use interfaces::{ControlCharacters, InterfaceParameters, TransferFormat};
+pub use interfaces::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};
 pub use machining::{
     ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, MeasuringProbe, ProbeSettings,
     ProbeTurn, ProgramEndClearing, ScaledAxes,

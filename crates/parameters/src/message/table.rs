@@ -64,7 +64,7 @@ messages! {
     ProgramIncomplete: "PROGRAM INCOMPLETE", on TNC_15X "ME: PROGRAM INCOMPLETE";
         cause "A transfer was interrupted, or a program has no END block.";
         remedy "Transfer the file again; check line and device.";
-        source "[000:17579] [000:17636]";
+        source "[000:17579] [000:17636] [003:1680]";
     TransferredDataIncorrect: "TRANSFERRED DATA INCORRECT";
         cause "Characters or blocks arrive damaged, or the device does not answer as the protocol wants.";
         remedy "Set the same baud rate, data format and protocol on both sides; check the cable.";
@@ -101,7 +101,7 @@ messages! {
         cause "The program memory is full, or a program is larger than the control can hold.";
         remedy "Erase programs that are no longer needed, or transfer the program blockwise.";
         source "[003:7877-7879]";
-    ProgramMemoryOverflow: "PROGRAM MEMORY OVERFLOW";
+    ProgramMemoryOverflow: "Program Memory Overflow";
         cause "The memory for a program that is executed while it is transferred is not enough.";
         remedy "Lower MP7228.0 or raise MP7228.1; jump to labels that stand near.";
         source "[000:16959]";

@@ -14,6 +14,25 @@ pub struct InterfaceParameters {
     pub decimal_comma: bool,
 }
 
+/// Memory for a program that is executed while it is transferred: MP7228 [000:16957-16968].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DripFeedMemory {
+    /// What must be free for it, bytes: MP7228.0.
+    pub min_bytes: u64,
+    /// What it takes at most, bytes: MP7228.1, and no more than there is; 0 is all there is (inferred).
+    pub max_bytes: u64,
+}
+
+impl DripFeedMemory {
+    /// Transfer goes on when so much of a full memory is free again, bytes [000:16961].
+    pub const RESUMES_BYTES: u64 = 256;
+
+    /// The least that it needs is there.
+    pub fn is_enough(&self) -> bool {
+        self.min_bytes <= self.max_bytes
+    }
+}
+
 /// A data format and its protocol [000:17073-17105] [001:1934-1968].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TransferFormat {
@@ -102,6 +121,36 @@ impl ParameterList {
             output_type: of_type,
             ..ControlCharacters::STANDARD
         }
+    }
+
+    /// Memory for programs that are executed while they are transferred. MP7228 counts kByte: chapter 8 of the manual says so,
+    /// the list says bytes.
+    pub fn drip_feed_memory(&self) -> DripFeedMemory {
+        let kbyte = |index| self.get_new(7228, index).unwrap_or_default() as u64 * 1024;
+        let there = u64::from(self.model().limits().program_memory_bytes);
+        DripFeedMemory {
+            min_bytes: kbyte(0),
+            max_bytes: Some(kbyte(1)).filter(|max| *max > 0).unwrap_or(there).min(there),
+        }
+    }
+
+    /// What a printer is told before a hard copy and before each of its lines: MP226 to 229 and 230 to 233, whose high bytes
+    /// go first; the first byte is the number of the others. A control without these parameters has nothing to tell
+    /// [001:2157-2206].
+    pub fn printer_characters(&self) -> [Vec<u8>; 2] {
+        [226_u16, 230].map(|first| {
+            let words = (first..first + 4).map(|number| {
+                let word = if self.has_old_numbers() {
+                    self.get(number, 0)
+                } else {
+                    None
+                };
+                word.unwrap_or_default() as u16
+            });
+            let bytes: Vec<u8> = words.flat_map(u16::to_be_bytes).collect();
+            let count = bytes.first().copied().map_or(0, usize::from);
+            bytes.into_iter().skip(1).take(count).collect()
+        })
     }
 
     fn transfer_format(&self, ext: u8) -> TransferFormat {
@@ -200,6 +249,36 @@ mod tests {
             list.set(5000, 0, value).unwrap();
             assert_eq!(list.interface_parameters().inhibited, inhibited);
         }
+    }
+
+    /// MP7228 counts kByte; nothing is more than what the model has.
+    #[test]
+    fn memory_of_the_drip_feed() {
+        let memory = |min: f64, max: f64| {
+            let mut list = ParameterList::reference(ControlModel::Tnc407);
+            list.set(7228, 0, min).unwrap();
+            list.set(7228, 1, max).unwrap();
+            list.drip_feed_memory()
+        };
+        let there = 6000 * 22;
+        assert_eq!(
+            memory(0.0, 0.0),
+            DripFeedMemory {
+                min_bytes: 0,
+                max_bytes: there
+            }
+        );
+        assert_eq!(
+            memory(2.0, 10.0),
+            DripFeedMemory {
+                min_bytes: 2048,
+                max_bytes: 10_240
+            }
+        );
+        assert_eq!(memory(0.0, 1024.0).max_bytes, there);
+        assert!(memory(10.0, 10.0).is_enough());
+        assert!(!memory(11.0, 10.0).is_enough());
+        assert!(!memory(1024.0, 0.0).is_enough());
     }
 
     /// The words of the TNC 151/155 [001:2075-2088] [001:1964-1968] and of the TNC 360 [003:7191-7198].

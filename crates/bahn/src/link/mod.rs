@@ -1,0 +1,26 @@
+//! `bahn link`: the data interfaces.
+//!
+//! - `options`: options and help texts;
+//! - `serve`: a machine that answers on its interfaces;
+//! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
+//!   its log book, `lsv2_screen` its screen as a picture.
+
+mod lsv2;
+mod lsv2_device;
+mod lsv2_log;
+mod lsv2_screen;
+mod options;
+mod serve;
+
+pub(crate) use options::LinkOptions;
+
+use crate::{Outcome, UsageError};
+use options::LinkCommand;
+
+/// Executes a subcommand of `bahn link`.
+pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
+    match &options.command {
+        LinkCommand::Serve(options) => serve::command(options),
+        LinkCommand::Lsv2(options) => lsv2::command(options),
+    }
+}

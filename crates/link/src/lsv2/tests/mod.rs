@@ -1,0 +1,1 @@
+//! Tests: conversations as they stand on the line.
