@@ -116,6 +116,9 @@ pub trait Protocol: Send {
     fn is_transparent(&self) -> bool {
         false
     }
+    /// Who takes what comes has no room for more, or has room again: the other side is held back by an acknowledgement that is not
+    /// given, by DC3 or by RTS.
+    fn hold(&mut self, _on: bool) {}
     /// Whether it has stopped the other side: RTS is off.
     fn has_stopped_by_rts(&self) -> bool {
         false
