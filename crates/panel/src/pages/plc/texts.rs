@@ -46,7 +46,7 @@ struct TextFiles {
 }
 
 /// The file that is in use has the folder of the PLC before its name.
-fn is_active(name: &str, site: &Site) -> bool {
+pub(super) fn is_active(name: &str, site: &Site) -> bool {
     let path = source::named(name, site);
     let text = files::read_table(&site.machine.root.join(MACHINE)).unwrap_or_default();
     let text = String::from_utf8_lossy(&text).into_owned();
