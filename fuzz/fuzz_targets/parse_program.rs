@@ -15,7 +15,7 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|bytes: &[u8]| {
     let program = Program::from_bytes("FUZZ.H", bytes.to_vec());
     let _ = program.diagnostics(Some(ControlModel::Tnc360.limits().into()));
-    let options = FormatOptions { decimal_comma: bytes.len() % 2 == 1 };
+    let options = FormatOptions { decimal_comma: bytes.len() % 2 == 1, ..FormatOptions::default() };
     let listing = format_program(&program, options).to_string();
     let again = Program::from_bytes("FUZZ.H", listing.clone().into_bytes());
     assert_eq!(blocks(&again), blocks(&program), "the listing gives other blocks");

@@ -19,6 +19,7 @@ fn main() {
         ("short", short_lines()),
         ("numbered", numbered_lines()),
         ("fn", calculations()),
+        ("iso", iso_lines()),
     ] {
         println!(
             "{name}: {:.1} MB, {} bytes a block",
@@ -60,6 +61,20 @@ fn numbered_lines() -> String {
     text
 }
 
+/// The same as the numbered lines in DIN/ISO.
+fn iso_lines() -> String {
+    let mut text = String::from("%BENCH G71 *\n");
+    for (number, line) in (1..).zip(short_lines().lines().skip(1)) {
+        let Some(words) = line.strip_prefix("L ") else {
+            break;
+        };
+        let path = if number == 1 { "G01 G40 G90 " } else { "" };
+        writeln!(text, "N{number} {path}{words} *").unwrap();
+    }
+    text.push_str("N99999999 %BENCH G71 *\n");
+    text
+}
+
 /// A program of calculations.
 fn calculations() -> String {
     let mut text = String::from("BEGIN PGM BENCH MM\n");
@@ -70,12 +85,21 @@ fn calculations() -> String {
     text
 }
 
-const PROGRAMS: &[&str] = &["short", "numbered", "fn"];
+const PROGRAMS: &[&str] = &["short", "numbered", "fn", "iso"];
+
+/// The name of the file of a program, which says its language.
+fn file(name: &str) -> &'static str {
+    match name {
+        "iso" => "BENCH.I",
+        _ => "BENCH.H",
+    }
+}
 
 fn text(name: &str) -> String {
     match name {
         "short" => short_lines(),
         "numbered" => numbered_lines(),
+        "iso" => iso_lines(),
         _ => calculations(),
     }
 }
@@ -87,12 +111,12 @@ fn index(bencher: Bencher, name: &str) {
         .counter(BytesCount::of_str(&text))
         .counter(ItemsCount::new(BLOCKS))
         .with_inputs(|| text.clone().into_bytes())
-        .bench_values(|bytes| Program::from_bytes("BENCH.H", bytes));
+        .bench_values(|bytes| Program::from_bytes(file(name), bytes));
 }
 
 #[divan::bench(args = PROGRAMS, sample_count = 20)]
 fn decode(bencher: Bencher, name: &str) {
-    let program = Program::from_bytes("BENCH.H", text(name).into_bytes());
+    let program = Program::from_bytes(file(name), text(name).into_bytes());
     let mut chunk = Chunk::default();
     bencher.counter(ItemsCount::new(BLOCKS)).bench_local(|| {
         for index in 0..program.chunk_count() {
@@ -104,7 +128,7 @@ fn decode(bencher: Bencher, name: &str) {
 
 #[divan::bench(args = PROGRAMS, sample_count = 10)]
 fn format(bencher: Bencher, name: &str) {
-    let program = Program::from_bytes("BENCH.H", text(name).into_bytes());
+    let program = Program::from_bytes(file(name), text(name).into_bytes());
     let mut listing = String::new();
     bencher.counter(ItemsCount::new(BLOCKS)).bench_local(|| {
         listing.clear();

@@ -10,6 +10,7 @@ mod read;
 mod special;
 mod words;
 mod write;
+mod write_cycle;
 
 use std::io::Write;
 

@@ -2,16 +2,13 @@
 
 use bahn_path::AxisSet;
 
-use super::cycle::{Form, IsoCycle, of_blocks};
 use super::function::{CALCULATIONS, CONDITIONS};
-use super::special::feed_value;
 use crate::format::number::{push_integer, push_signed, push_unsigned};
 use crate::format::{FormatOptions, formula_text};
 use crate::parse::rest_of_word;
 use crate::{
-    Block, Calculation, Compensation, Coordinates, CycleBlock, CycleFunction, CycleWord, Direction, Distance,
-    Feed, Header, MFunctions, ModalBlock, Modality, Motion, MotionKind, Operation, PathFunction, Quantity,
-    Sign, Unit, Value, Word,
+    Block, Calculation, Compensation, Coordinates, CycleBlock, CycleFunction, Direction, Distance, Feed,
+    Header, MFunctions, ModalBlock, Modality, Motion, MotionKind, Operation, PathFunction, Unit, Value, Word,
 };
 
 /// Number of the last block, as long as those before it are smaller; else the greatest that a control takes.
@@ -66,14 +63,14 @@ pub(super) fn write_block(block: &Block, options: FormatOptions, text: &mut Stri
 }
 
 /// Text being written. Every word begins with a blank.
-struct Output {
-    text: String,
+pub(super) struct Output {
+    pub(super) text: String,
     comma: bool,
 }
 
 /// The words whose G90 or G91 differs: open ones come first, what stays in force last.
-struct Distances {
-    last: Option<Distance>,
+pub(super) struct Distances {
+    pub(super) last: Option<Distance>,
 }
 
 impl Output {
@@ -188,7 +185,7 @@ impl Output {
         }
     }
 
-    fn plane(&mut self, axis: bahn_path::Axis) {
+    pub(super) fn plane(&mut self, axis: bahn_path::Axis) {
         self.word(match axis {
             bahn_path::Axis::Y => "G18",
             bahn_path::Axis::X => "G19",
@@ -343,7 +340,7 @@ impl Output {
     }
 
     /// Axis words of one group.
-    fn group(&mut self, coordinates: &Coordinates, open: AxisSet, group: Option<Distance>) {
+    pub(super) fn group(&mut self, coordinates: &Coordinates, open: AxisSet, group: Option<Distance>) {
         for (axis, word) in coordinates.iter() {
             if group_of(word, open.contains(axis)) == group {
                 self.signed_word(axis.letter().encode_utf8(&mut [0; 4]), Some(word.value));
@@ -412,23 +409,23 @@ impl Output {
         }
     }
 
-    fn d(&mut self, code: u16) {
+    pub(super) fn d(&mut self, code: u16) {
         self.word("D");
         push_integer(&mut self.text, u64::from(code), 2);
     }
 
-    fn p_index(&mut self, number: u16) {
+    pub(super) fn p_index(&mut self, number: u16) {
         self.word("P");
         push_integer(&mut self.text, u64::from(number), 2);
         self.text.push(' ');
     }
 
-    fn p(&mut self, number: u16, value: Value) {
+    pub(super) fn p(&mut self, number: u16, value: Value) {
         self.p_index(number);
         self.signed(value);
     }
 
-    fn unsigned_p(&mut self, number: u16, value: Value) {
+    pub(super) fn unsigned_p(&mut self, number: u16, value: Value) {
         self.p_index(number);
         self.unsigned(value);
     }
@@ -452,166 +449,26 @@ impl Output {
         }
     }
 
-    /// The one block of a cycle from its blocks.
-    fn cycle(
-        &mut self,
-        code: Option<u16>,
-        function: CycleFunction,
-        blocks: &[&CycleBlock],
-        modality: Modality,
-    ) {
-        let Some(first) = blocks.first() else { return };
-        let words = || blocks.iter().flat_map(|block| &block.words);
-        let Some(cycle) = code
-            .and_then(super::cycle::of_code)
-            .or_else(|| of_blocks(function, blocks))
-        else {
-            self.d(first.number);
-            for word in words() {
-                if let CycleWord::Assignment(number, value) = word {
-                    self.p(*number, *value);
-                }
-            }
-            return;
-        };
-        self.word("G");
-        push_integer(&mut self.text, u64::from(cycle.code), 2);
-        if let Some(axis) = modality.plane {
-            self.plane(axis);
-        }
-        let mut groups = Distances {
-            last: modality.distance,
-        };
-        match cycle.form {
-            Form::Parameters => {
-                groups.write(self, |_, _| {});
-                self.parameters(&cycle, blocks);
-            }
-            Form::Letter(letter) => {
-                groups.write(self, |_, _| {});
-                let address = char::from(letter).to_string();
-                let value = words().find_map(feed_value);
-                match letter {
-                    b'H' => self.signed_word(&address, value),
-                    _ => self.unsigned_word(&address, value),
-                }
-            }
-            Form::Shift | Form::Positions => {
-                let mut all = Coordinates::default();
-                words().for_each(|word| {
-                    if let CycleWord::Coordinate(axis, word) = word {
-                        all.set(*axis, *word);
-                    }
-                });
-                groups.write(self, |out, group| out.group(&all, modality.open, group));
-            }
-            _ => {
-                groups.write(self, |_, _| {});
-                self.listed(&cycle, blocks);
-            }
-        }
-    }
-
-    /// P words by the table of cycles.
-    fn parameters(&mut self, cycle: &IsoCycle, blocks: &[&CycleBlock]) {
-        let mut taken = Vec::new();
-        for ((sub, parameter), number) in cycle.parameters().zip(1..) {
-            let own = blocks
-                .iter()
-                .filter(|block| block.sub == sub)
-                .flat_map(|block| &block.words);
-            let values: Vec<&CycleWord> = own
-                .filter(|word| !matches!(word, CycleWord::Direction(_) | CycleWord::Text(_)))
-                .collect();
-            let before = taken.iter().filter(|of| **of == sub).count();
-            taken.push(sub);
-            match values.get(before) {
-                Some(CycleWord::Coordinate(axis, word)) => {
-                    self.p_index(number);
-                    self.text.push(axis.letter());
-                    self.signed(word.value);
-                }
-                Some(word) if parameter.sign == Sign::Unsigned || parameter.quantity == Quantity::Feed => {
-                    feed_value(word)
-                        .into_iter()
-                        .for_each(|value| self.unsigned_p(number, value));
-                }
-                Some(word) => feed_value(word)
-                    .into_iter()
-                    .for_each(|value| self.p(number, value)),
-                None => {}
-            }
-        }
-    }
-
-    /// What is written one after the other.
-    fn listed(&mut self, cycle: &IsoCycle, blocks: &[&CycleBlock]) {
-        let mut number = 1;
-        for word in blocks.iter().flat_map(|block| &block.words) {
-            match word {
-                CycleWord::Axis(axis) => {
-                    self.word("");
-                    self.text.push(axis.letter());
-                }
-                CycleWord::Labels(labels) => {
-                    for label in labels {
-                        self.unsigned_p(number, Value::Number(f64::from(*label)));
-                        number += 1;
-                    }
-                }
-                CycleWord::Text(name) if cycle.form == Form::Program => {
-                    self.p_index(1);
-                    self.text.push_str(name);
-                }
-                CycleWord::Number(value) => self.unsigned_p(1, *value),
-                CycleWord::Assignment(q, value) => {
-                    self.word("Q");
-                    self.integer(*q);
-                    self.text.push('=');
-                    self.signed(*value);
-                }
-                CycleWord::Target(q) => self.unsigned_p(1, Value::Number(f64::from(*q))),
-                CycleWord::AxisDirection(axis, direction) => {
-                    self.p_index(2);
-                    self.text.push(axis.letter());
-                    self.text.push(if *direction == Direction::Clockwise {
-                        '-'
-                    } else {
-                        '+'
-                    });
-                    number = 3;
-                }
-                CycleWord::Coordinate(axis, word) => {
-                    self.p_index(number);
-                    self.text.push(axis.letter());
-                    self.signed(word.value);
-                    number += 1;
-                }
-                _ => {}
-            }
-        }
-    }
-
-    fn word(&mut self, word: &str) {
+    pub(super) fn word(&mut self, word: &str) {
         self.text.push(' ');
         self.text.push_str(word);
     }
 
-    fn signed_word(&mut self, address: &str, value: Option<Value>) {
+    pub(super) fn signed_word(&mut self, address: &str, value: Option<Value>) {
         if let Some(value) = value {
             self.word(address);
             self.signed(value);
         }
     }
 
-    fn unsigned_word(&mut self, address: &str, value: Option<Value>) {
+    pub(super) fn unsigned_word(&mut self, address: &str, value: Option<Value>) {
         if let Some(value) = value {
             self.word(address);
             self.unsigned(value);
         }
     }
 
-    fn signed(&mut self, value: Value) {
+    pub(super) fn signed(&mut self, value: Value) {
         push_signed(&mut self.text, value, self.comma);
     }
 
@@ -619,14 +476,14 @@ impl Output {
         push_unsigned(&mut self.text, value, self.comma);
     }
 
-    fn integer(&mut self, number: u16) {
+    pub(super) fn integer(&mut self, number: u16) {
         push_integer(&mut self.text, u64::from(number), 1);
     }
 }
 
 impl Distances {
     /// Writes the open words, then those behind the other function, then those behind the one that stays.
-    fn write(&mut self, out: &mut Output, mut words: impl FnMut(&mut Output, Option<Distance>)) {
+    pub(super) fn write(&mut self, out: &mut Output, mut words: impl FnMut(&mut Output, Option<Distance>)) {
         words(out, None);
         let Some(last) = self.last else { return };
         let other = match last {
