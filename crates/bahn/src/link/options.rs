@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueHint};
 
+use super::disk::DiskOptions;
 use super::lsv2::Lsv2Options;
+use super::transfer::{ListOptions, TransferOptions};
 
 /// Options of `bahn link`.
 #[derive(Args, Debug)]
@@ -20,6 +22,18 @@ pub(crate) enum LinkCommand {
     /// Switch a machine on and let it answer on its data interfaces until Ctrl-C.
     #[command(after_help = SERVE_EXAMPLES)]
     Serve(ServeOptions),
+    /// Read files in as a control does, or store what a control sends.
+    #[command(after_help = super::transfer::RECEIVE_EXAMPLES)]
+    Receive(TransferOptions),
+    /// Send files as a control does, or give a control what it reads in.
+    #[command(after_help = super::transfer::SEND_EXAMPLES)]
+    Send(TransferOptions),
+    /// Ask a device for its directory, as a control does.
+    #[command(after_help = super::transfer::LIST_EXAMPLES)]
+    List(ListOptions),
+    /// Be a floppy disk unit: a folder as its disk.
+    #[command(after_help = super::disk::EXAMPLES)]
+    Disk(DiskOptions),
     /// Ask a control by LSV/2: files, state, screen.
     #[command(after_help = super::lsv2::EXAMPLES)]
     Lsv2(Lsv2Options),

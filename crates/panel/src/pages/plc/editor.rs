@@ -124,15 +124,21 @@ impl Editor {
             // What is not on the medium is not left.
             Err(NotWritten::Words(why)) => Turn::Say(why),
             Err(NotWritten::Changed) => {
-                let renewed = self.source.renew();
-                self.changed = false;
-                self.go_to(self.line);
-                Turn::Say(match renewed {
-                    Ok(()) => site.words("FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"),
-                    Err(why) => why,
-                })
+                self.renewed(site.words("FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"))
             }
+            Err(NotWritten::Protected) => self.renewed(site.message(MessageId::ProtectedPgm)),
         }
+    }
+
+    /// The text is what lies on the medium, which is said.
+    fn renewed(&mut self, said: String) -> Turn {
+        let renewed = self.source.renew();
+        self.changed = false;
+        self.go_to(self.line);
+        Turn::Say(match renewed {
+            Ok(()) => said,
+            Err(why) => why,
+        })
     }
 
     fn go_to(&mut self, line: usize) {
