@@ -8,6 +8,7 @@ use crate::Outcome;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
 use crate::faults::FaultsOptions;
+use crate::link::LinkOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
@@ -74,6 +75,8 @@ pub(crate) enum Command {
     Oem(OemOptions),
     /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.
     Table(Box<TableOptions>),
+    /// Talk with controls and devices by their data interfaces.
+    Link(Box<LinkOptions>),
     /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.
     #[command(after_help = crate::conformance::EXAMPLES)]
     Conformance(ConformanceOptions),

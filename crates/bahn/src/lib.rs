@@ -15,7 +15,7 @@
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
-//!   groups `bahn plc`, `bahn mp`, `bahn table`;
+//!   groups `bahn plc`, `bahn mp`, `bahn table`; `link`: the data interfaces;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
 //! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
@@ -37,6 +37,7 @@ mod files;
 mod format;
 mod interrupt;
 mod junit;
+mod link;
 mod machine_folder;
 mod manual;
 mod mp;
@@ -93,6 +94,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Oem(options) => oem::command(&options),
         cli::Command::Table(options) => table::command(&options),
+        cli::Command::Link(options) => link::command(&options),
         cli::Command::Conformance(options) => conformance::command(&options),
         cli::Command::Faults(options) => faults::command(&options),
         cli::Command::Torture(options) => torture::command(&options),

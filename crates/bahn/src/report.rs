@@ -116,7 +116,7 @@ impl Record {
                 }
                 Function::SpindleSpeed(speed_rpm) => self.tool_call(element.block, *speed_rpm),
                 Function::Print(line) if self.printed.len() < MAX_LISTED => {
-                    self.printed.push((element.block, line.clone()));
+                    self.printed.push((element.block, line.to_string()));
                 }
                 Function::Print(_) => self.not_listed += 1,
                 _ => {}

@@ -583,7 +583,7 @@ impl Channel {
         let version = machine.magazine.version();
         let tools_changed = std::mem::replace(&mut self.tools_seen, version) != version;
         let (run, mut site, basis) = self.parts(machine);
-        run.prepare_restore(&rules, &mut site);
+        run.read_on(&rules, &mut site);
         run.close(&mut site, &basis);
         if let Some(interpreter) = run.source.interpreter_mut() {
             source::renew(interpreter, [tools_changed, datums_changed], &site, &basis);

@@ -7,6 +7,8 @@ use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_path::Axis;
 use bahn_plc::TableKind;
 
+use crate::data_line::DataLineEvent;
+use crate::drip_feed::Dnc;
 use crate::probe_command::ProbeCommand;
 
 /// The machine operating modes, as W272 codes them [000:4680-4687].
@@ -91,6 +93,8 @@ pub enum Command {
     InternalStop,
     /// `select NAME`: selects the program that runs.
     Select(String),
+    /// `dnc ..`: a program that is executed while it is transferred [000:16951-16968].
+    Dnc(Dnc),
     /// `goto N`: the run starts at this block of the main program.
     Goto(u32),
     /// `mdi BLOCKS`: the block of POSITIONING WITH MDI; `\n` separates several.
@@ -148,6 +152,9 @@ pub enum Command {
     /// that it may change then; what needs a reset makes the control begin anew, what needs the reference marks lets
     /// the axes traverse them again [000:10088].
     Set(Assignment),
+    /// `rs422 received "TEXT"`, `lsv2 message 42` ..: something comes over a data interface to the PLC
+    /// [000:15587-15905].
+    DataLine(DataLineEvent),
     /// `power off`, `power on`: the supply of the control.
     Power(bool),
 }
@@ -182,6 +189,7 @@ impl Command {
             Command::InternalStop
                 | Command::Select(_)
                 | Command::Goto(_)
+                | Command::Dnc(Dnc::Begin(_))
                 | Command::RestoreAt(_)
                 | Command::Q(..)
         )
@@ -254,6 +262,7 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
             }
+            "dnc" => Dnc::parse(rest).map(Command::Dnc).map_err(CommandError::Wrong),
             "probe" => ProbeCommand::parse(rest)
                 .map(Command::Probe)
                 .map_err(CommandError::Wrong),
@@ -270,6 +279,7 @@ impl FromStr for Command {
             "3d-rot" => switch(name, rest, "on").map(Command::WorkingPlane),
             "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
             "power" => switch(name, rest, "on").map(Command::Power),
+            _ if DataLineEvent::WORDS.contains(&name) => data_line(name, rest),
             "select" | "test" | "mdi" => {
                 Err(CommandError::Wrong(format!("`{name}` needs something behind it")))
             }
@@ -298,6 +308,14 @@ fn assignment(text: &str) -> Result<Assignment, CommandError> {
         }
         _ => Ok(assignment),
     }
+}
+
+/// `rs422 received "FA81"`.
+fn data_line(name: &str, rest: &str) -> Result<Command, CommandError> {
+    let wrong = || CommandError::Wrong(format!("nothing like `{rest}` happens at `{name}`"));
+    DataLineEvent::parse(name, rest)
+        .map(Command::DataLine)
+        .ok_or_else(wrong)
 }
 
 fn axis<'a>(name: &str, text: &'a str) -> Result<(Axis, &'a str), CommandError> {
@@ -424,6 +442,7 @@ impl fmt::Display for Command {
             Command::Output(None) => write!(f, "output ramp"),
             Command::WorkingPlane(on) => write!(f, "3d-rot {}", if *on { "on" } else { "off" }),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
+            Command::Dnc(dnc) => write!(f, "dnc {dnc}"),
             Command::ManualOperation => write!(f, "manual-operation"),
             Command::RestorePosition => write!(f, "restore-position"),
             Command::RestoreAt(block) => write!(f, "restore-at {block}"),
@@ -435,6 +454,7 @@ impl fmt::Display for Command {
                 write!(f, "offset {}", if *adjust { "adjust" } else { "off" })
             }
             Command::Set(assignment) => assignment.fmt(f),
+            Command::DataLine(event) => event.fmt(f),
             Command::Power(on) => write!(f, "power {}", if *on { "on" } else { "off" }),
         }
     }
@@ -453,6 +473,10 @@ mod tests {
             "stop",
             "select 4711.H",
             "goto 12",
+            "dnc begin 15.H",
+            "dnc text L\\x20X+5;\\x20\\xc4\\\\\\r\\n",
+            "dnc end",
+            "dnc broken",
             "mdi L X+10 R0 F500\\nL Y+5",
             "m 3",
             "s 1500.5",
@@ -482,6 +506,19 @@ mod tests {
             "W6=-16",
             "S0=\"A=B\"",
             "MP1010.0=5000",
+            "rs232 ready on",
+            "rs232 taken off",
+            "rs232 baud 9600",
+            "rs232 sent",
+            "rs422 not-sent",
+            "rs422 received \"FA81 \\\"Q\\\" \\x1b\"",
+            "rs422 faulty",
+            "rs422 etx",
+            "lsv2 connected",
+            "lsv2 disconnected",
+            "lsv2 taken",
+            "lsv2 message -42",
+            "lsv2 message \"PALLET 7\"",
             "power off",
         ] {
             let command = text.parse::<Command>();
@@ -502,12 +539,16 @@ mod tests {
             ("axis-limit X 4 1 2", "from 1 to 3"),
             ("axis-limit X 1 1", "from -30000 to 30000"),
             ("table T 1 SHARP 2", "`table T 12 L 80.5`"),
+            ("dnc text \\q", "escapes"),
+            ("dnc", "`begin` and a name"),
             ("handwheel X 11", "from 0 to 10"),
             ("select", "needs something"),
             ("I4=1", "`fault input I4 1`"),
             ("M5=2", "takes 0 or 1"),
             ("output", "`step` and a feed"),
             ("oscilloscope on", "`start` or `stop`"),
+            ("rs232 ready", "happens at `rs232`"),
+            ("lsv2 message", "happens at `lsv2`"),
             ("3d-rot B", "`on` or `off`"),
             ("power up", "`on` or `off`"),
         ] {

@@ -7,7 +7,7 @@ use bahn_interpreter::{Done, Interpreter, Warning, Work};
 use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::PathElement;
-use bahn_plc::Tracer;
+use bahn_plc::{HostMessage, Tracer};
 use bahn_servo::Plant;
 
 use crate::alteration::{self, Altered};
@@ -15,6 +15,7 @@ use crate::axis::AxisUnit;
 use crate::beside::ReadAhead;
 use crate::channel::Channel;
 use crate::command::{Command, Mode};
+use crate::data_line::{DataLineOrder, OrderedLines};
 use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
 use crate::kernel::Kernel;
@@ -189,6 +190,7 @@ impl Control {
                 }
                 altered => altered == Altered::Done,
             },
+            (Command::DataLine(event), _) => return self.kernel.machine.link.happen(event),
             (command, _) => self.kernel.execute(channel, command),
         };
         done || self.refuse(channel)
@@ -454,9 +456,25 @@ impl Control {
         self.kernel.machine.messages.has_news()
     }
 
+    /// What the PLC wants of the data interfaces since `ordered` was asked last.
+    pub fn line_orders(&self, ordered: &mut OrderedLines, tell: impl FnMut(DataLineOrder)) {
+        ordered.news(&self.kernel.machine.link.interfaces, tell);
+    }
+
+    /// The message of the PLC to a host that waits longest [000:15835-15857].
+    pub fn message_to_host(&self) -> Option<&HostMessage> {
+        self.kernel.machine.link.host.as_ref()?.outgoing.front()
+    }
+
     /// The messages that came up since the last call, in their order.
     pub fn take_messages(&mut self) -> Vec<Shown> {
         self.kernel.machine.messages.take_news()
+    }
+
+    /// What FN15 has printed since the last call, with the channel whose program did so; how many lines more there were
+    /// that nobody took in time.
+    pub fn take_printed(&mut self, take: impl FnMut((usize, Arc<str>))) -> u32 {
+        self.kernel.machine.messages.take_printed(take)
     }
 
     /// The text of a message that is or was shown, with the number of its channel where there are several.

@@ -348,6 +348,7 @@ impl Kernel {
     pub fn follow_on(&mut self, before: &Kernel) {
         self.now_us = before.now_us;
         self.machine.messages.restart(before.machine.messages.time_us());
+        self.machine.link.keep_lines(&before.machine.link);
         self.keeps = before.keeps;
         self.ordered.clone_from(&before.ordered);
         for (new, old) in self.channels.iter_mut().zip(before.channels.iter()) {

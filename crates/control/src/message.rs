@@ -3,6 +3,8 @@
 //! Non-flashing messages are cleared with CE, one after another; flashing ones need switching off
 //! [000:6619-6649]. M2190 is 1 while a non-flashing one is shown, M2191 while `EXTERNAL EMERGENCY STOP` is.
 
+use std::sync::Arc;
+
 use bahn_exchange::{Exchange, signal};
 use bahn_interpreter::ProgramError;
 use bahn_parameters::fault::{Clearing, FaultId, Reaction};
@@ -254,6 +256,40 @@ pub(crate) struct Messages {
     now_us: u64,
     /// Who shows messages now; `None` for the machine as a whole.
     channel: Option<usize>,
+    printed: PrintOut,
+}
+
+/// What FN15 has printed since somebody asked: a bounded list that is there before anything is printed.
+#[derive(Debug)]
+struct PrintOut {
+    lines: Vec<Printed>,
+    /// Lines that found no place.
+    lost: u32,
+}
+
+/// A line that FN15 has printed, and the channel whose program did so.
+pub type Printed = (usize, Arc<str>);
+
+/// Lines that wait to be taken.
+const PRINTED_MAX: usize = 64;
+
+/// A copy has as much place as the original.
+impl Clone for PrintOut {
+    fn clone(&self) -> PrintOut {
+        let mut copy = PrintOut::default();
+        copy.lines.extend_from_slice(&self.lines);
+        copy.lost = self.lost;
+        copy
+    }
+}
+
+impl Default for PrintOut {
+    fn default() -> PrintOut {
+        PrintOut {
+            lines: Vec::with_capacity(PRINTED_MAX),
+            lost: 0,
+        }
+    }
 }
 
 /// News that nobody took are dropped beyond this, the oldest first.
@@ -346,6 +382,21 @@ impl Messages {
 
     pub fn take_news(&mut self) -> Vec<Shown> {
         std::mem::take(&mut self.news)
+    }
+
+    /// FN15: the path has come to a line that is printed.
+    pub fn print(&mut self, line: &Arc<str>) {
+        let channel = self.channel.unwrap_or(0);
+        match self.printed.lines.len() < PRINTED_MAX {
+            true => self.printed.lines.push((channel, Arc::clone(line))),
+            false => self.printed.lost += 1,
+        }
+    }
+
+    /// What was printed since the last call, and how many lines found no place.
+    pub fn take_printed(&mut self, mut take: impl FnMut(Printed)) -> u32 {
+        self.printed.lines.drain(..).for_each(&mut take);
+        std::mem::take(&mut self.printed.lost)
     }
 
     /// CE: clears the first message that it clears, with the control voltage `back` or not.

@@ -24,6 +24,11 @@ pub trait Programs: Send + Sync {
         Ok(None)
     }
 
+    /// What a program is opened by that is not here, but counts as if it lay here: those that it calls do.
+    fn name_here(&self, name: &str) -> String {
+        name.to_owned()
+    }
+
     /// Keeps a program that was digitized, whole or not at all; the control itself calls this never, whoever drives it
     /// does.
     ///

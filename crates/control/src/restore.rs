@@ -144,7 +144,11 @@ impl Restoration {
                 continue;
             }
             match feeder.next() {
-                Step::Element(element) => self.pass(element, block, feeder, rules, track, site),
+                Step::Element(element) => {
+                    // Nobody goes back behind what the scan has passed.
+                    feeder.forget_before(element.sequence);
+                    self.pass(element, block, feeder, rules, track, site);
+                }
                 Step::Barrier(Barrier::Stop { .. }) if !rules.passes_stops => {
                     self.0 = Some(Restore::Stopped { block });
                 }

@@ -11,6 +11,7 @@ use bahn_servo::Measured;
 use crate::axis::{AxisUnit, Mover};
 use crate::block_time::BlockTime;
 use crate::command::Mode;
+use crate::driving::Driving;
 use crate::feeder::{self, Feeder, RunFault};
 use crate::kinematics::Chain;
 use crate::message::Message;
@@ -253,12 +254,20 @@ impl ProgramRun {
         if closed && basis.list.program_end_clearing().at_program_end && !self.source.was_mdi() {
             self.source.cancel_status(basis.list, site);
         }
+        if closed && !self.source.was_mdi() {
+            self.source.drip_feed = None;
+        }
         self.source.take_back();
     }
 
     /// Interprets ahead; begins a run.
     pub fn prepare(&mut self, site: &mut Site, basis: &Basis) {
-        if self.progress.take_begin(|| site.axes.rest()) {
+        let source = &mut self.source;
+        let mdi = site.now.mode == Mode::Mdi;
+        if self
+            .progress
+            .take_begin(|| site.axes.rest() && source.may_begin(mdi))
+        {
             self.begin(site, basis);
         }
         self.track.reserve();
@@ -343,6 +352,9 @@ impl ProgramRun {
     }
 
     fn open(&self, mdi: bool) -> Result<std::sync::Arc<bahn_program::Program>, Message> {
+        if let Some(feed) = self.source.drip_feed.as_ref().filter(|_| !mdi) {
+            return feed.open(self.selection.start_block).map_err(Message::Plain);
+        }
         self.selection.open(mdi, &*self.source.reading.programs)
     }
 
@@ -358,7 +370,8 @@ impl ProgramRun {
             return false;
         }
         let mdi = site.now.mode == Mode::Mdi;
-        let Ok(program) = self.open(mdi) else {
+        let ready = self.source.may_begin(mdi);
+        let Some(program) = self.open(mdi).ok().filter(|_| ready) else {
             return false;
         };
         // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.
@@ -374,8 +387,13 @@ impl ProgramRun {
         true
     }
 
-    /// Goes on with a scan; may allocate.
-    pub fn prepare_restore(&mut self, rules: &RestartParameters, site: &mut Site) {
+    /// Takes what has come of the program, and goes on with a scan; may allocate.
+    pub fn read_on(&mut self, rules: &RestartParameters, site: &mut Site) {
+        self.source.grow();
+        if self.source.is_stuck() && self.progress.is_on_its_way() && self.track.path.element().is_none() {
+            self.show(Message::Plain(MessageId::ProgramMemoryOverflow), site);
+            self.abort(Resume::Fault, site);
+        }
         let Some(feeder) = self.source.feeder_mut().filter(|_| self.restoration.scans()) else {
             return;
         };
@@ -440,7 +458,17 @@ impl ProgramRun {
         self.tapping.couple(&mut self.track, site);
         let settled = self.is_in_position(site);
         let wear = Wear::of(site.tools, site.magazine).message();
-        let drive = self.drive(settled, wear.is_some(), site);
+        let drive = Driving {
+            track: &self.track,
+            progress: &self.progress,
+            tapping: &self.tapping,
+            element: self.element(),
+            by_hand: self.is_operated_manually(site.exchange.nc()),
+            stop_before: self.replacement.place(),
+            settled,
+            worn: wear.is_some(),
+        }
+        .drive(site);
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);
         self.tapping.lead(cycle.lead, site.spindle);
@@ -451,36 +479,6 @@ impl ProgramRun {
         let inch = self.source.inch();
         self.track.output(site, &mut self.q_transfer, inch, settled);
         self.take_state(cycle.state, &drive, wear, site);
-    }
-
-    /// What the interpolator may do in this cycle.
-    fn drive(&self, settled: bool, worn: bool, site: &Site) -> Drive {
-        let now = site.now;
-        let coupled = self.track.path.is_coupled();
-        let [back, on] = if self.is_operated_manually(site.exchange.nc()) {
-            thread::way_out(&self.track, site)
-        } else {
-            [false; 2]
-        };
-        let runs_out = self.tapping.runs_out(self.element(), site);
-        let stopped = !self.progress.goes_on() && !on && !runs_out;
-        Drive {
-            feed_override_percent: now.program_percent,
-            rapid_override_percent: now.program_percent,
-            spindle_override_percent: site.spindle.effective_percent(),
-            master: self.tapping.master(&self.track, site),
-            back,
-            rapid_limit_mm_min: now.rapid_limit_mm_min,
-            // Without spindle enable nothing is led. Functions at which the axes do not stop (MP7440 bit 2) may
-            // come faster than the PLC takes them.
-            hold: stopped || site.handshakes.is_crowded() || coupled && !site.spindle.is_enabled(),
-            single_block: now.mode == Mode::SingleBlock || on || worn || site.handshakes.inhibit_read_in(),
-            stop_before: self.replacement.place(),
-            acknowledged: self.track.has_output_all() && site.handshakes.is_idle(),
-            in_position: settled,
-            clamped: track::clamped_axes(&site.axes),
-            clamping: track::clamping_axes(&site.axes, site.exchange.nc()),
-        }
     }
 
     /// What the path came to in this cycle.
@@ -555,6 +553,7 @@ impl ProgramRun {
                 self.take_probed(probed, site);
             }
             Some(Stop::Barrier(Barrier::Scan { block, job })) => self.probe.scan(block, job, site),
+            Some(Stop::End) if self.source.is_incomplete() => self.abort(Resume::Fault, site),
             Some(Stop::End) => self.end(site),
             Some(Stop::Error(fault)) => {
                 self.show_fault(fault, site);
@@ -641,6 +640,7 @@ impl ProgramRun {
         if possible {
             self.source.keep_q_values(self.progress.has_ended());
             self.source.cancel_status(basis.list, site);
+            self.source.drip_feed = None;
             self.selection.program = Some(name);
             self.begin_at(0);
         }

@@ -3,7 +3,9 @@
 use bahn_parameters::operation::RestartParameters;
 
 use crate::command::Command;
+use crate::drip_feed::{Dnc, DripFeed};
 use crate::feeder::Feeder;
+use crate::message::Message;
 use crate::progress::RunState;
 use crate::run::ProgramRun;
 use crate::site::Site;
@@ -20,6 +22,7 @@ pub(crate) fn execute(
     match command {
         Command::InternalStop => run.internal_stop(site),
         Command::Select(name) => run.select(name, site, basis),
+        Command::Dnc(dnc) => transfer(dnc, run, site, basis),
         Command::Goto(block) => run.goto(block),
         Command::Mdi(blocks) => run.set_mdi(blocks),
         Command::ManualOperation => run.manual_operation(rules, site),
@@ -29,6 +32,34 @@ pub(crate) fn execute(
         // `Set` and `Power` are of the whole control.
         _ => false,
     }
+}
+
+/// A program is transferred while it runs, or comes to be.
+fn transfer(dnc: Dnc, run: &mut ProgramRun, site: &mut Site, basis: &Basis) -> bool {
+    let name = match dnc {
+        Dnc::Begin(name) => name,
+        dnc => {
+            let answer = run.source.drip_feed.as_mut().map(|feed| feed.follow(&dnc));
+            let (done, said) = answer.unwrap_or_default();
+            if let Some(message) = said {
+                site.messages.show(Message::Plain(message), run.running_block());
+            }
+            return done;
+        }
+    };
+    let feed = run.source.drip_feed.as_mut();
+    if feed.is_some_and(|feed| feed.reopen(&name)) {
+        return true;
+    }
+    let done = run.select(name.clone(), site, basis);
+    if done {
+        let reading = &run.source.reading;
+        let path = reading.programs.name_here(&name);
+        let rules = reading.model.limits().blockwise;
+        let feed = DripFeed::new(name, path, basis.list.drip_feed_memory(), rules);
+        run.source.drip_feed = Some(feed);
+    }
+    done
 }
 
 /// A Q parameter is changed, between runs or while one is interrupted: what was read ahead with its old value is read

@@ -60,13 +60,13 @@ impl Site<'_> {
                 values: values.map(|value| value.map(|value| value.round() as i32)),
                 inch,
             }),
+            Function::Print(line) => self.messages.print(line),
             Function::Superimpose(range) => self.chain.superimposed.set_range(*range),
             // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
-            // printing and the blank concern nothing that moves;
+            // the blank concerns nothing that moves;
             // a voltage belongs to the path.
             Function::Stop
             | Function::SpindleOrientation(_)
-            | Function::Print(_)
             | Function::Synchronise
             | Function::Voltage(_)
             | Function::Blank(_) => {}

@@ -13,6 +13,7 @@ use bahn_servo::Rotation;
 
 use crate::axes::OwnAxes;
 use crate::beside::Loan;
+use crate::drip_feed::DripFeed;
 use crate::feeder::Feeder;
 use crate::kinematics::Chain;
 use crate::manual_probing::ManualProbing;
@@ -80,6 +81,8 @@ pub(crate) struct Source {
     pub tap: bool,
     /// Long computations are done beside.
     pub defers: bool,
+    /// What has come of a program that is executed while it is transferred.
+    pub drip_feed: Option<DripFeed>,
 }
 
 impl Source {
@@ -98,6 +101,7 @@ impl Source {
             q_due: false,
             tap: false,
             defers: false,
+            drip_feed: None,
         }
     }
 
@@ -170,6 +174,43 @@ impl Source {
 
     pub fn interpreter_mut(&mut self) -> Option<&mut Interpreter> {
         self.feeder.as_mut().map(Feeder::interpreter_mut)
+    }
+
+    /// The program that runs is one that is transferred.
+    fn is_transferred(&self) -> bool {
+        self.interpreter().is_some_and(Interpreter::is_transferred)
+    }
+
+    /// Gives the interpreter what has come of the program.
+    pub fn grow(&mut self) {
+        let (Some(drip_feed), Some(feeder)) = (&mut self.drip_feed, &mut self.feeder) else {
+            return;
+        };
+        let interpreter = feeder.interpreter_mut();
+        if interpreter.is_transferred() {
+            let at = interpreter.at();
+            // In a called program nothing of this one is read.
+            let read = if at.program == 0 { at.block } else { 0 };
+            let needed = interpreter.needs_from();
+            if let Some(program) = drip_feed.grow(needed, read, interpreter.is_starved()) {
+                interpreter.grow(program);
+            }
+        }
+    }
+
+    /// The program that runs needs text for which its memory has no room.
+    pub fn is_stuck(&self) -> bool {
+        self.is_transferred() && self.drip_feed.as_ref().is_some_and(DripFeed::is_stuck)
+    }
+
+    /// The program that runs ends where its transfer was broken off.
+    pub fn is_incomplete(&self) -> bool {
+        self.is_transferred() && self.drip_feed.as_ref().is_some_and(DripFeed::is_incomplete)
+    }
+
+    /// The program that the next run is to execute is there.
+    pub fn may_begin(&mut self, mdi: bool) -> bool {
+        mdi || self.feeder.is_some() || self.drip_feed.as_mut().is_none_or(DripFeed::is_ready)
     }
 
     /// Where the next start goes on; `None` for at the start block.
@@ -378,6 +419,7 @@ impl Source {
             status,
             basic_rotation: basis.touch.basic_rotation(site.chain.offsets.tool_axis),
             machine: true,
+            transferred: self.drip_feed.as_ref().is_some_and(|feed| feed.brings(&program)),
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             inch_feed: self.reading.inch_feed,
             functions: self.reading.functions.clone(),

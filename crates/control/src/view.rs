@@ -7,6 +7,7 @@ use bahn_path::{Axis, Frame, PathElement, Position};
 use crate::axes::path_positions;
 use crate::channel::Channel;
 use crate::command::Mode;
+use crate::drip_feed::{DripFeed, DripFeedState};
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::progress::RunState;
@@ -80,6 +81,11 @@ impl<'a> ChannelView<'a> {
     /// The run came to its end since it was started.
     pub fn has_ended(&self) -> bool {
         self.channel.run.progress().has_ended()
+    }
+
+    /// The program that is transferred while it runs; `None` when none is, or its run has come to its end.
+    pub fn drip_feed(&self) -> Option<DripFeedState> {
+        self.channel.run.source.drip_feed.as_ref().map(DripFeed::state)
     }
 
     /// The element of the path that is executed, or was last.

@@ -136,8 +136,8 @@ impl Editor {
                 return None;
             }
         }
-        // The question may be that of a block to which nothing was said yet.
-        if !dialogue.reach(line.max(draft.reached), &self.setting) {
+        // The question may be that of a block to which nothing was said yet, but none behind the last one asked for.
+        if line > draft.reached || !dialogue.reach(draft.reached, &self.setting) {
             return None;
         }
         (dialogue.line, dialogue.field, dialogue.reached) = (line, field, draft.reached);

@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use bahn_parameters::ControlModel;
+
 /// Which part of the keyboard a key belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KeyGroup {
@@ -232,6 +234,25 @@ impl Key {
         }
     }
 
+    /// Whether the keyboard of a control model has it. That of a TNC 360 has four axes, no key for the layout of its one
+    /// column, none for a chamfer, which is L and a number, and no letters but those of other keys [003:9-206]
+    /// [003:2682-2685].
+    ///
+    /// ```
+    /// use bahn_dialogue::Key;
+    /// use bahn_parameters::ControlModel;
+    ///
+    /// assert!(Key::Screen.is_on(ControlModel::Tnc415b));
+    /// assert!(!Key::Screen.is_on(ControlModel::Tnc360));
+    /// ```
+    pub const fn is_on(self, model: ControlModel) -> bool {
+        model.has_windows()
+            || !matches!(
+                (self, self.group()),
+                (_, KeyGroup::Letter) | (Key::Screen | Key::Chf | Key::V, _)
+            )
+    }
+
     /// Which part of the keyboard it belongs to.
     pub const fn group(self) -> KeyGroup {
         self.row().group
@@ -308,6 +329,21 @@ mod tests {
             keys.insert(Key::from_name(name).unwrap_or_else(|| panic!("no key {name}")));
         }
         assert_eq!(keys.len(), Key::ALL.len());
+    }
+
+    #[test]
+    fn a_small_keyboard_has_what_its_manual_shows() {
+        // The keys on the cover [003:9-206]; HELP and soft keys are ours there.
+        let names = "MANUAL HANDWHEEL MDI SINGLE FULL PROGRAM TEST PGM_NR CL_PGM PGM_CALL EXT MOD HELP UP DOWN LEFT RIGHT \
+                     GOTO L CC C CR CT RND TOOL_DEF TOOL_CALL RL RR R_PLUS R_MINUS CYCL_DEF CYCL_CALL LBL_SET LBL_CALL \
+                     STOP TOUCH_PROBE GRAPHICS BLK_FORM MAGN START X Y Z IV 0 1 2 3 4 5 6 7 8 9 POINT SIGN P I Q CAPTURE \
+                     NO_ENT ENT END CE DEL SK1 SK2 SK3 SK4 SK5 SK6 SK7 SK8 SK_LEFT SK_RIGHT";
+        let expected: Vec<_> = names.split_whitespace().collect();
+        let small = Key::ALL.iter().filter(|key| key.is_on(ControlModel::Tnc360));
+        assert_eq!(small.map(|key| key.name()).collect::<Vec<_>>(), expected);
+        for model in [ControlModel::Tnc407, ControlModel::Tnc415b, ControlModel::Tnc425] {
+            assert!(Key::ALL.iter().all(|key| key.is_on(model)), "{model}");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_interpreter::Library;
@@ -213,6 +214,9 @@ impl FileLibrary {
 /// The files that are being written and have not their names yet.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
+/// Counts the files that are begun.
+static COUNT: AtomicU64 = AtomicU64::new(0);
+
 fn temporaries() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -223,6 +227,31 @@ pub fn remove_temporaries() {
         // It is of no use to anybody.
         let _ = fs::remove_file(temporary);
     }
+}
+
+/// Removes what writers left half written in a folder that were killed; what somebody still writes stays.
+pub fn sweep(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let is_ours = entry.file_name().to_str().is_some_and(is_temporary);
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_ours && is_file && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok()) {
+            // If it cannot be removed it stays hidden.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// A name that [`NewFile`] gives: `.NAME.PROCESS-NUMBER.tmp`, or without a number as it once was.
+fn is_temporary(name: &str) -> bool {
+    let Some(name) = name.strip_prefix('.').and_then(|name| name.strip_suffix(".tmp")) else {
+        return false;
+    };
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    name.rsplit_once('.')
+        .is_some_and(|(name, process)| !name.is_empty() && process.split('-').all(digits))
 }
 
 /// A file being written: it appears under its name when it is complete, in one step. Until then, and for
@@ -310,11 +339,15 @@ impl NewFile {
             .ok_or(io::ErrorKind::InvalidInput)?
             .to_string_lossy()
             .into_owned();
-        let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+        // Each has a name of its own: two of one process may write the same file.
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let temporary = path.with_file_name(format!(".{name}.{}-{number}.tmp", std::process::id()));
         temporaries().push(temporary.clone());
         let create = || OpenOptions::new().write(true).create_new(true).open(&temporary);
         // What is there is what a killed process of the same number left, or a link that leads elsewhere.
         let file = create().or_else(|_| fs::remove_file(&temporary).and_then(|()| create()))?;
+        // Who sweeps sees that somebody still writes; where files cannot be locked nothing is swept.
+        let _ = file.try_lock();
         if let Some(old) = old {
             file.set_permissions(old.permissions())?;
         }
@@ -400,6 +433,31 @@ pub(crate) mod tests {
     thread_local! {
         /// So many bytes find room in each file that is begun on this thread.
         pub(crate) static ROOM: Cell<Option<usize>> = const { Cell::new(None) };
+    }
+
+    /// Two that write one file do not meet, and the last one that ends is what stays; what a killed process left is swept,
+    /// what is being written is not.
+    #[test]
+    fn writers_do_not_meet_and_leftovers_are_swept() {
+        let folder = std::env::temp_dir().join(format!("bahn-sweep-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("1.H");
+        for left in [".1.H.4711.tmp", ".1.H.4711-3.tmp"] {
+            fs::write(folder.join(left), "half").unwrap();
+        }
+        fs::write(folder.join(".hidden.tmp"), "kept").unwrap();
+        let mut one = NewFile::create(&path).unwrap();
+        let mut other = NewFile::create(&path).unwrap();
+        one.write_all(b"one").unwrap();
+        other.write_all(b"other").unwrap();
+        sweep(&folder);
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 3);
+        other.finish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"other");
+        one.finish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"one");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+        fs::remove_dir_all(&folder).unwrap();
     }
 
     /// The medium is full behind any byte: what was there stays, nothing half written is left, and the next try with

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use bahn_control::{
-    Cartesian, ChannelSetup, Command, Control, KeyCode, Programs, Remembered, ServoSampler, Setup, Snapshot,
-    SpindleWiring,
+    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, Remembered, ServoSampler, Setup,
+    Snapshot, SpindleWiring,
 };
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
@@ -282,7 +282,9 @@ impl<P: Operable> Host<P> {
         if let Some(sink) = &mut self.sink {
             sink.note(self.control.time_us(), &source, &deed.to_string())?;
         }
-        if matches!(deed, Deed::Command(..)) {
+        // What comes of a program that is transferred waits in the control.
+        let waits = matches!(deed, Deed::Command(_, Command::Dnc(Dnc::Text(_))));
+        if matches!(deed, Deed::Command(..)) && !waits {
             self.background.settle(&mut self.control);
         }
         let answer = match &deed {

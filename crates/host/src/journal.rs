@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use bahn_control::{Command, Dnc};
 use bahn_plc::PlcProgram;
 
 use crate::deed::{Deed, Source};
@@ -10,6 +11,9 @@ use crate::orders::Order;
 
 /// Entries that are known at most; the oldest are forgotten.
 const GIVEN_MAX: usize = 100_000;
+
+/// Text of programs that are executed while they are transferred that is known at most, bytes.
+const TEXT_MAX: usize = 16 << 20;
 
 /// How something was given.
 #[derive(Clone, Debug)]
@@ -31,6 +35,14 @@ impl Given {
             Given::Plc(_) => None,
         }
     }
+
+    /// Bytes of program text in it.
+    fn text(&self) -> usize {
+        match self.deed() {
+            Some((_, Deed::Command(_, Command::Dnc(Dnc::Text(text))))) => text.len(),
+            _ => 0,
+        }
+    }
 }
 
 #[derive(Clone, Debug, Default)]
@@ -38,12 +50,17 @@ pub(crate) struct Journal {
     given: VecDeque<(u64, Given)>,
     /// Number of the first one.
     first: u64,
+    /// Bytes of program text in it.
+    text: usize,
 }
 
 impl Journal {
     pub fn add(&mut self, time_us: u64, given: Given) {
-        if self.given.len() == GIVEN_MAX {
-            self.given.pop_front();
+        self.text += given.text();
+        while (self.given.len() == GIVEN_MAX || self.text > TEXT_MAX)
+            && let Some((_, oldest)) = self.given.pop_front()
+        {
+            self.text -= oldest.text();
             self.first += 1;
         }
         self.given.push_back((time_us, given));
@@ -62,7 +79,9 @@ impl Journal {
     /// Takes all entries from a number on; `None` when some of them are not known any more.
     pub fn split_off(&mut self, entry: u64) -> Option<VecDeque<(u64, Given)>> {
         let place = usize::try_from(entry.checked_sub(self.first)?).ok()?;
-        (place <= self.given.len()).then(|| self.given.split_off(place))
+        let split = (place <= self.given.len()).then(|| self.given.split_off(place))?;
+        self.text -= split.iter().map(|(_, given)| given.text()).sum::<usize>();
+        Some(split)
     }
 }
 
@@ -83,5 +102,20 @@ mod tests {
         assert_eq!(times, [GIVEN_MAX as u64, GIVEN_MAX as u64 + 1]);
         assert_eq!(journal.end(), GIVEN_MAX as u64);
         assert!(journal.split_off(journal.end() + 1).is_none());
+    }
+
+    /// Of a program that is transferred while it runs no more is known than there is room for.
+    #[test]
+    fn program_text_does_not_pile_up() {
+        let mut journal = Journal::default();
+        let text = || Deed::Command(0, Command::Dnc(Dnc::Text(vec![b' '; 1 << 16].into())));
+        for time in 0..1000 {
+            journal.add(time, Given::AtOnce(Source::Script, text()));
+            assert!(journal.text <= TEXT_MAX);
+        }
+        assert_eq!(journal.given.len(), TEXT_MAX >> 16);
+        assert_eq!(journal.end(), 1000);
+        assert_eq!(journal.split_off(990).unwrap().len(), 10);
+        assert_eq!(journal.text, TEXT_MAX - (10 << 16));
     }
 }

@@ -1,6 +1,8 @@
 //! What happens while a machine is on, told once when it happens.
 
-use bahn_control::{ChannelView, Control, Message, Mode, RunState, Shown};
+use std::sync::Arc;
+
+use bahn_control::{ChannelView, Control, DataLineOrder, Message, Mode, OrderedLines, RunState, Shown};
 use bahn_path::BlockRef;
 
 use crate::deed::{Answer, Deed, Source};
@@ -35,6 +37,10 @@ pub enum Notice {
     Stored,
     /// A program was digitized and stored: its name and its points.
     Digitized(String, u64),
+    /// FN15 has printed a line; the channel is that of its program [003:4371-4397].
+    Printed(Arc<str>),
+    /// The PLC wants something of a data interface.
+    Line(DataLineOrder),
     /// Something keeps the machine from going on; in words.
     Fault(String),
     /// An earlier moment was gone back to: what comes now follows from it.
@@ -68,6 +74,7 @@ pub struct Stamped {
 pub(crate) struct Before {
     channels: Vec<ChannelBefore>,
     shown: Vec<Message>,
+    lines: OrderedLines,
 }
 
 /// The same of a channel.
@@ -92,6 +99,11 @@ impl Before {
             cleared.for_each(|message| tell(0, Notice::Cleared(message.clone())));
             self.shown = shown.iter().map(|shown| shown.message.clone()).collect();
         }
+        let lost = control.take_printed(|(channel, line)| tell(channel, Notice::Printed(line)));
+        if lost > 0 {
+            tell(0, Notice::Fault(format!("{lost} printed lines are lost")));
+        }
+        control.line_orders(&mut self.lines, |order| tell(0, Notice::Line(order)));
         self.channels
             .resize_with(control.channels(), ChannelBefore::default);
         for (number, before) in self.channels.iter_mut().enumerate() {

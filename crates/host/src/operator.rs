@@ -1,7 +1,7 @@
 //! The operator who stands by: switches on, passes the reference marks, starts the program, and lets the
 //! run go on where it waits for him.
 
-use bahn_control::{ChannelView, Command, Control, Message, Mode, RunState, Waiting};
+use bahn_control::{ChannelView, Command, Control, Dnc, Message, Mode, RunState, Waiting};
 use bahn_exchange::signal;
 use bahn_machine::OperatorKeys;
 use bahn_parameters::MessageId;
@@ -23,6 +23,8 @@ const CHANGE_US: u64 = 1_500_000;
 pub enum Attendance {
     /// Everything: also NC start after programmed stops, and what a tool change waits for.
     Full,
+    /// As [`Attendance::Full`], but a programmed stop waits for somebody else.
+    StopsWait,
     /// Switches on, passes the reference marks and starts the program; then the script is alone.
     Start,
     /// Nothing: the script does it.
@@ -51,6 +53,8 @@ pub struct Job {
     pub mode: Mode,
     /// The block to start at, when it is not the first.
     pub start_block: Option<u32>,
+    /// It is executed while it is transferred.
+    pub transferred: bool,
 }
 
 impl Job {
@@ -60,6 +64,7 @@ impl Job {
             program: program.to_owned(),
             mode: Mode::FullSequence,
             start_block: None,
+            transferred: false,
         }
     }
 }
@@ -184,6 +189,9 @@ impl Station {
             Phase::Reference if waited >= 2 * PAUSE_US && control.stands() => start(),
             Phase::Program if !self.started && waited >= PAUSE_US => self.choose(),
             Phase::Program if attendance == Attendance::Full => self.stand_by(channel, now, waited),
+            Phase::Program if attendance == Attendance::StopsWait && self.state.0 != RunState::Stopped => {
+                self.stand_by(channel, now, waited)
+            }
             _ => None,
         };
         if deed.is_some() {
@@ -251,6 +259,7 @@ impl Station {
             self.chosen += 1;
             let command = match self.chosen {
                 1 => Command::Mode(job.mode),
+                2 if job.transferred => Command::Dnc(Dnc::Begin(job.program.clone())),
                 2 => Command::Select(job.program.clone()),
                 3 => match job.start_block {
                     Some(block) => Command::Goto(block),

@@ -260,7 +260,7 @@ fn print(c: &mut Context<'_>, items: &[Value]) -> Result<(), Fault> {
             Value::Q { .. } => format!("{:+}", c.numbers.q.value(*item)?),
         });
     }
-    c.output_function(Function::Print(line.join(" ")), technology::Block::Print)
+    c.output_function(Function::Print(line.join(" ").into()), technology::Block::Print)
 }
 
 /// FN19: two values to the PLC in the unit of the control model [003:4387-4395] [000:11597-11655].

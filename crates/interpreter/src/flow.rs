@@ -78,6 +78,16 @@ impl Position {
         }
     }
 
+    /// The block of the main program that is executed next, or behind which the run comes back to it.
+    pub fn in_main(&self) -> u32 {
+        let mut frames = self.frames.iter().filter(|frame| frame.program == 0);
+        match self.program {
+            0 => self.block,
+            // The call itself is looked at when something in the called program fails.
+            _ => frames.next().map_or(0, |frame| frame.block.saturating_sub(1)),
+        }
+    }
+
     /// Whether a called program is running.
     pub fn in_called_program(&self) -> bool {
         self.frames.iter().any(|frame| frame.label.is_none())

@@ -1,13 +1,16 @@
-//! Main programs that are still being transferred while they run [003:1640-1690].
+//! Main programs that are still being transferred while they run [003:1640-1690], and what must not stand in them.
 
 use std::sync::Arc;
 
+use bahn_parameters::MessageId;
 use bahn_path::BlockRef;
-use bahn_program::{Block, MFunctions, Operation, Program};
+use bahn_program::{Block, CycleBlock, MFunctions, Operation, Program};
 
-use crate::Interpreter;
+use crate::checkpoints::Kept;
 use crate::code::Fetched;
+use crate::error::Fault;
 use crate::run::Run;
+use crate::{Interpreter, Settings};
 
 impl Interpreter {
     /// The main program has grown: a later version of it, see [`Program::more`]. After [`Step::Starved`] the run
@@ -18,10 +21,46 @@ impl Interpreter {
         let had_begun = self.code.program(0).is_some_and(|main| main.begin().is_some());
         if !had_begun && self.run.pen.sequence == 0 {
             // Only now it is known what it is measured in.
+            let at = std::mem::take(&mut self.run.at);
             self.run = Run::new(&self.settings, program.unit());
+            self.run.at = at;
         }
         self.code.grow(program);
         self.starved = false;
+    }
+
+    /// The main program is transferred while it runs.
+    pub fn is_transferred(&self) -> bool {
+        self.settings.transferred
+    }
+
+    /// The run waits for blocks that have not come yet.
+    pub fn is_starved(&self) -> bool {
+        self.starved
+    }
+
+    /// The first block of the main program that may still be executed, also when the run goes back: those before it are not
+    /// needed any more.
+    pub fn needs_from(&self) -> u32 {
+        let kept = self.kept.iter().flat_map(Kept::states);
+        let kept = kept.map(|state| state.run.at.in_main()).min();
+        let next = self.run.at.in_main();
+        kept.map_or(next, |kept| kept.min(next))
+    }
+
+    /// A label of a main program that is transferred; those behind the block that goes there are erased
+    /// *(inferred)*, whether they are still known or not.
+    pub(crate) fn label_ahead(&self, label: u16) -> Option<Result<u32, Fault>> {
+        let at = self.run.at.block_ref();
+        if !self.settings.transferred || at.program != 0 || label == 0 {
+            return None;
+        }
+        let main = self.code.program(0)?;
+        let missing = || {
+            let detail = format!("there is no LBL {label} behind the block");
+            Fault::new(MessageId::LabelNumberNotAllocated, detail)
+        };
+        Some(main.label_behind(label, at.block).ok_or_else(missing))
     }
 
     /// Whether what a block needs has not come yet: the block itself and the next one, which may round its corner,
@@ -50,9 +89,47 @@ impl Interpreter {
         let calls_cycle = self.run.modal.cycle_after_each_block || calls_cycle(block);
         // Its subprograms are executed ahead, which may be anywhere.
         let contours = calls_cycle && self.run.modal.cycle.is_contour_cycle();
-        let known = |main: &Arc<Program>| label == 0 || main.label(label).is_some();
+        let behind = self.settings.transferred;
+        let known = |main: &Arc<Program>| {
+            let found = match behind {
+                true => main.label_behind(label, at.block),
+                false => main.label(label),
+            };
+            label == 0 || found.is_some()
+        };
         contours || !self.code.program(0).is_some_and(known)
     }
+}
+
+/// Refuses what must not stand in a main program that is transferred while it runs.
+pub(crate) fn permit(run: &Run, operation: &Operation, settings: &Settings) -> Result<(), Fault> {
+    if !settings.transferred || run.at.program != 0 {
+        return Ok(());
+    }
+    let limits = settings.model.limits().blockwise;
+    let digitizes = |block: &CycleBlock| (5..=7).contains(&block.number);
+    let what = match operation {
+        Operation::CallLabel { repeats: Some(_), .. } => "CALL LBL REP".to_owned(),
+        Operation::CallLabel { .. } => "CALL LBL".to_owned(),
+        // Their contours are subprograms.
+        Operation::Cycle(block) if block.number == 14 => "CYCL DEF 14".to_owned(),
+        Operation::Probe(block) if digitizes(block) && !limits.digitizes_and_prints => {
+            format!("TCH PROBE {}", block.number)
+        }
+        Operation::Print(_) if !limits.digitizes_and_prints => "FN15".to_owned(),
+        Operation::ToolDefinition { .. } => {
+            return match limits.tool_definitions_max {
+                Some(max) if run.tools.definitions() > usize::from(max) => {
+                    let detail = format!("the control holds {max} TOOL DEF blocks");
+                    Err(Fault::new(MessageId::NotInBlockwiseTransfer, detail))
+                }
+                _ => Ok(()),
+            };
+        }
+        _ => return Ok(()),
+    };
+    let detail = format!("{what} must not stand in a program that is transferred while it runs");
+    Err(Fault::new(MessageId::NotInBlockwiseTransfer, detail))
 }
 
 fn calls_cycle(block: &Block) -> bool {

@@ -432,6 +432,7 @@ impl Interpreter {
         };
         oem::permit(self.run.oem.last(), &block.operation, &self.settings)?;
         let flow = execute(&mut self.run, &block.operation, &self.settings)?;
+        growing::permit(&self.run, &block.operation, &self.settings)?;
         if label != 0 {
             self.check_label(label, at)?;
         }
@@ -475,6 +476,10 @@ impl Interpreter {
 
     /// A label may be set once in a program [003:7881-7883].
     fn check_label(&self, label: u16, at: BlockRef) -> Result<(), Fault> {
+        if self.settings.transferred && at.program == 0 {
+            // Nobody knows what was erased.
+            return Ok(());
+        }
         let repeated = self
             .code
             .program(at.program)
@@ -492,6 +497,9 @@ impl Interpreter {
     pub(crate) fn label(&self, label: u16) -> Result<u32, Fault> {
         if label == 0 {
             return Err(MessageId::JumpToLabelZeroNotPermitted.into());
+        }
+        if let Some(ahead) = self.label_ahead(label) {
+            return ahead;
         }
         let program = self.run.at.program;
         let Some(loaded) = self.code.program(program) else {

@@ -68,6 +68,9 @@ pub struct Settings {
     /// A control runs the program on a machine: it waits for the PLC, which may write what the next block
     /// reads, and probing movements are executed outside.
     pub machine: bool,
+    /// The main program is transferred while it runs, and its executed blocks are erased: labels stand ahead only
+    /// [003:1661-1674].
+    pub transferred: bool,
     /// Blocks that may be executed without a movement before the run is taken for an endless loop.
     pub max_blocks_without_motion: u64,
 }
@@ -97,6 +100,7 @@ impl Default for Settings {
             absent: AbsentAxes::default(),
             as_programmed: false,
             machine: false,
+            transferred: false,
             max_blocks_without_motion: 10_000_000,
         }
     }

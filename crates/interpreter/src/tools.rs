@@ -29,6 +29,11 @@ pub(crate) struct Tools {
 }
 
 impl Tools {
+    /// Tools that TOOL DEF has defined.
+    pub fn definitions(&self) -> usize {
+        self.defined.len()
+    }
+
     /// TOOL DEF: tool data, or with a tool table and without data the pre-selection of the next tool
     /// [003:1803-1840] [003:1931-1933].
     pub fn define(

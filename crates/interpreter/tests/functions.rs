@@ -125,7 +125,7 @@ fn output_to_printer_and_plc() {
             .map(|(_, f)| f.clone())
             .collect::<Vec<_>>()
     };
-    let print = Function::Print("ERROR 1 +20.25".to_owned());
+    let print = Function::Print("ERROR 1 +20.25".into());
     assert_eq!(
         on(ControlModel::Tnc360),
         [print.clone(), Function::Plc([Some(10.0), Some(20.25)])]

@@ -22,7 +22,7 @@ fn path() -> Path {
         }
         if i % 7 == 0 {
             let function = |at, synchronisation| {
-                TechnologyFunction::new(Function::Print(format!("line {i}")), at, synchronisation)
+                TechnologyFunction::new(Function::Print(format!("line {i}").into()), at, synchronisation)
             };
             path.last().functions = Some(Box::new([
                 function(At::Start, Synchronisation::Mos),

@@ -123,7 +123,8 @@ pub(crate) fn of(machine: &LoadedMachine, language: Language) -> Vec<Breakable> 
     let voltage = in_words("control voltage");
     found.push(finder.breakable("relay", supply, voltage, RELAY, "repair relay"));
     found.push(finder.breakable("voltage", supply, voltage, SUPPLY, "voltage on"));
-    found.push(finder.breakable("emergency", supply, "EMERGENCY STOP", BUTTON, "emergency release"));
+    let stop = texts::around(language, "EMERGENCY STOP");
+    found.push(finder.breakable("emergency", supply, stop, BUTTON, "emergency release"));
     found.push(finder.breakable("battery", supply, in_words("battery"), BATTERY, "repair battery"));
     let handwheel = in_words("handwheel");
     found.push(finder.breakable("handwheel", supply, handwheel, HANDWHEEL, "handwheel plug"));

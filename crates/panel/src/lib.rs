@@ -80,4 +80,5 @@ pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::{EMERGENCY_STOP, Station, load};
+pub use texts::{Language, around, filled, language_code, language_of_code, texts_around};
 pub use why::{Reason, Urgency};

@@ -28,6 +28,8 @@ enum Order {
     Input(Input, SyncSender<Result<(), Refusal>>),
     /// Something that is done with the station between two cycles.
     With(Box<dyn FnOnce(&mut Station) + Send>),
+    /// Somebody looks at the station: nothing changes, and no screen is made for it.
+    Look(Box<dyn FnOnce(&Station) + Send>),
     End,
 }
 
@@ -139,6 +141,22 @@ impl Link {
         answered.recv().map_err(|_| ended())
     }
 
+    /// Looks at the station between two cycles.
+    ///
+    /// # Errors
+    /// When the station has ended, or too many wait.
+    pub fn look<T: Send + 'static>(
+        &self,
+        what: impl FnOnce(&Station) -> T + Send + 'static,
+    ) -> Result<T, Refusal> {
+        let (answer, answered) = sync_channel(1);
+        let order = Order::Look(Box::new(move |station| drop(answer.send(what(station)))));
+        self.orders
+            .try_send(order)
+            .map_err(|_| Refusal("too many inputs wait".to_owned()))?;
+        answered.recv().map_err(|_| ended())
+    }
+
     /// The screen as it was published last.
     pub fn screen(&self) -> Arc<Screen> {
         Arc::clone(&self.shared.lock().screen)
@@ -188,6 +206,7 @@ fn run(station: &mut Station, replay: &mut Option<Replay>, orders: &Receiver<Ord
                     what(station);
                     asked = true;
                 }
+                Order::Look(what) => what(station),
                 Order::End => return,
             }
         }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::texts::{Language, language_code};
+
 /// Everything that is to be seen at one moment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Screen {
@@ -50,8 +52,15 @@ pub struct Screen {
 pub struct Look {
     /// What stands beside what.
     pub layout: Layout,
+    /// The language of all that is written.
+    #[serde(serialize_with = "code")]
+    pub language: Language,
     /// MP7350 to MP7363 as `7352.1` and `#d28220`; none on a screen without colours.
     pub colours: BTreeMap<String, String>,
+}
+
+fn code<S: serde::Serializer>(language: &Language, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(language_code(*language))
 }
 
 /// What stands beside what.

@@ -214,7 +214,7 @@ impl Settings {
 
     /// The language of the dialogue.
     pub fn language(&self, english: bool) -> Language {
-        let chosen = self.language.as_deref().and_then(texts::from_code);
+        let chosen = self.language.as_deref().and_then(texts::language_of_code);
         chosen.unwrap_or(if english {
             Language::English
         } else {

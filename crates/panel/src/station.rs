@@ -153,7 +153,7 @@ impl Station {
 
     fn take(&mut self, input: &Input) -> Result<(), Refusal> {
         match input {
-            Input::Key(key) => self.key(*key),
+            Input::Key(key) => self.key(*key)?,
             Input::Machine(name, action) => return self.machine_key(name, *action),
             Input::Text(text) => {
                 let (console, mut site) = self.parts();
@@ -251,6 +251,17 @@ impl Station {
     /// The machine's folder as it was loaded.
     pub fn machine(&self) -> &LoadedMachine {
         &self.machine
+    }
+
+    /// Keys of the keyboard of the control model.
+    pub fn keyboard(&self) -> impl Iterator<Item = Key> {
+        let model = self.control().model();
+        Key::ALL.iter().copied().filter(move |key| key.is_on(model))
+    }
+
+    /// Part programs and tables were written by somebody else: the control reads them anew.
+    pub fn programs_changed(&self) {
+        self.programs.was_written();
     }
 
     /// Names of the keys of the machine operating panel.
@@ -369,6 +380,7 @@ impl Station {
     fn look(&self) -> Look {
         Look {
             layout: self.layout(),
+            language: self.language(),
             colours: colours::all(self.parameters()),
         }
     }
@@ -461,9 +473,14 @@ impl Station {
     }
 
     /// A key of the keyboard: the PLC may inhibit it, and is told then [000:7319].
-    fn key(&mut self, key: Key) {
+    fn key(&mut self, key: Key) -> Result<(), Refusal> {
+        let model = self.control().model();
+        if !key.is_on(model) {
+            let words = texts::around(self.language(), "the {1} has no key {2}");
+            return Err(Refusal(texts::filled(words, &[model.name(), key.name()])));
+        }
         if !self.is_on {
-            return;
+            return Ok(());
         }
         let (console, mut site) = self.parts();
         // What the key before has brought is there: keys may come faster than cycles.
@@ -471,6 +488,7 @@ impl Station {
         if !inhibit::is_inhibited(key, &mut site) {
             console.key(key, &mut site);
         }
+        Ok(())
     }
 
     fn machine_key(&mut self, name: &str, action: KeyAction) -> Result<(), Refusal> {

@@ -3,9 +3,10 @@
 //! The key of a text is what it is in English; `texts/*.tsv` have its translation. A language is complete when every
 //! text that the panel uses has one, which a test holds.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::OnceLock;
 
+use bahn_dialogue::Key;
 pub use bahn_dialogue::Tongue as Language;
 
 const GERMAN: &[&str] = &[
@@ -15,8 +16,11 @@ const GERMAN: &[&str] = &[
     include_str!("../texts/de-teaching.tsv"),
 ];
 
+/// What stands around the screen, in the page and in the terminal.
+const AROUND: &str = include_str!("../texts/de-around.tsv");
+
 /// The code of a language: `en`, `de`.
-pub(crate) fn code(language: Language) -> &'static str {
+pub fn language_code(language: Language) -> &'static str {
     match language {
         Language::English => "en",
         Language::German => "de",
@@ -24,10 +28,10 @@ pub(crate) fn code(language: Language) -> &'static str {
 }
 
 /// The language of a code.
-pub(crate) fn from_code(code: &str) -> Option<Language> {
+pub fn language_of_code(code: &str) -> Option<Language> {
     [Language::English, Language::German]
         .into_iter()
-        .find(|language| self::code(*language) == code)
+        .find(|language| language_code(*language) == code)
 }
 
 /// A text in a language; in English when the language has none for it.
@@ -70,12 +74,54 @@ fn find(language: Language, english: &str) -> Option<&'static str> {
     }
 }
 
+/// A text that stands around the screen of the control, in a language.
+///
+/// ```
+/// use bahn_panel::{Language, around};
+///
+/// assert_eq!(around(Language::English, "Machine"), "Machine");
+/// assert_eq!(around(Language::German, "Machine"), "Maschine");
+/// ```
+pub fn around(language: Language, english: &'static str) -> &'static str {
+    texts_around(language).get(english).copied().unwrap_or(english)
+}
+
+/// A text with values in place of `{1}`, `{2}`.
+///
+/// ```
+/// assert_eq!(bahn_panel::filled("{1} of {2} done", &["2", "3"]), "2 of 3 done");
+/// ```
+pub fn filled(text: &str, values: &[&str]) -> String {
+    (1..).zip(values).fold(text.to_owned(), |text, (place, value)| {
+        text.replace(&format!("{{{place}}}"), value)
+    })
+}
+
+/// All texts around the screen of the control by what they are in English, with the names of the keys.
+pub fn texts_around(language: Language) -> &'static BTreeMap<&'static str, &'static str> {
+    static TABLES: [OnceLock<BTreeMap<&str, &str>>; 2] = [OnceLock::new(), OnceLock::new()];
+    let table = match language {
+        Language::English => &TABLES[0],
+        Language::German => &TABLES[1],
+    };
+    table.get_or_init(|| {
+        let keys = Key::ALL.iter().map(|key| (key.label(), key.label_in(language)));
+        let rows = rows(AROUND).map(|(english, german)| match language {
+            Language::English => (english, english),
+            Language::German => (english, german),
+        });
+        keys.chain(rows).collect()
+    })
+}
+
+/// English and German of each line of a table.
+fn rows(table: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let lines = table.lines().filter(|line| !line.starts_with('#'));
+    lines.filter_map(|line| line.split_once('\t'))
+}
+
 fn german() -> HashMap<&'static str, &'static str> {
-    let lines = GERMAN.iter().flat_map(|table| table.lines());
-    lines
-        .filter(|line| !line.starts_with('#'))
-        .filter_map(|line| line.split_once('\t'))
-        .collect()
+    GERMAN.iter().flat_map(|table| rows(table)).collect()
 }
 
 #[cfg(test)]

@@ -130,11 +130,11 @@ fn no_device_answers() {
     trainee.press("CE");
     for mode in ["PROGRAM", "TEST", "FULL", "SINGLE"] {
         trainee.press(mode).press("EXT");
-        assert_eq!(trainee.messages(), ["EXT. IN-/OUTPUT NOT READY"], "{mode}");
+        assert_eq!(trainee.messages(), ["EXT. OUTPUT/INPUT NOT READY"], "{mode}");
         trainee.press("CE");
     }
     trainee.press("EXT HELP");
-    assert_eq!(trainee.screen().program.title, "EXT. IN-/OUTPUT NOT READY");
+    assert_eq!(trainee.screen().program.title, "EXT. OUTPUT/INPUT NOT READY");
     trainee.press("END CE");
     // In German, too.
     trainee.press("MANUAL MOD");

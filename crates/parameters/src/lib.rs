@@ -64,7 +64,7 @@ pub use consistency::Inconsistency;
 pub use definition::{Change, Definition, Format, ParameterId, Reaction};
 pub use error::{ListError, ParameterError};
 pub use fn14::error_text;
-pub use limits::{EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
+pub use limits::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
 pub use list::ParameterList;
 pub use message::{MessageCode, MessageId};
 pub use model::{ControlModel, UnknownModel};
@@ -99,7 +99,7 @@ pub mod operation {
 
 /// Of the data interfaces: [`ParameterList::interface_parameters`](crate::ParameterList::interface_parameters).
 pub mod interfaces {
-    pub use crate::settings::{InterfaceParameters, TransferFormat};
+    pub use crate::settings::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};
 }
 /// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).
 pub mod tables {

@@ -45,6 +45,12 @@ limits! {
     /// Levels of nested program calls [003:3915-3921] [001:2829-2833] [000:17711].
     program_nesting_max: u8 = 4, 4, 4, 4, 4, 4;
 
+    /// Memory for part programs, bytes: 6000 blocks on the TNC 407, 12 000 on the TNC 415/425 [000:135], 4000 on the TNC 360
+    /// [003:7780-7781]; a block taken as 22 bytes, and TNC 151/155 as TNC 360 (inferred).
+    program_memory_bytes: u32 = 4000 * 22, 4000 * 22, 4000 * 22, 6000 * 22, 12_000 * 22, 12_000 * 22;
+    /// What a program that is transferred blockwise must not have beside subprograms and repeats.
+    blockwise: Blockwise = FREE, FREE, BLOCKWISE_360, FREE, FREE, FREE;
+
     // Q parameters.
 
     /// Highest Q parameter. TNC 151/155: Q113 is the last one named [001:2931-2960]; TNC 360: Q123
@@ -164,6 +170,29 @@ limits! {
     /// Outputs in the same way: TNC 151/155 A0-A30, A32-A62 [001:311].
     outputs: &'static [(u16, u16)] = OUTPUTS_151, OUTPUTS_151, OUTPUTS, OUTPUTS, OUTPUTS, OUTPUTS;
 }
+
+/// Limits of programs that are executed while they are transferred [003:1661-1674]; subprograms and repeats, whose blocks are
+/// erased when they are called, are in none of them (others than TNC 360 inferred).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blockwise {
+    /// Highest block number that may stand in the text; numbers may repeat.
+    pub block_number_max: Option<u32>,
+    /// TOOL DEF blocks that the control can hold.
+    pub tool_definitions_max: Option<u8>,
+    /// Digitizing cycles and FN15 may be there.
+    pub digitizes_and_prints: bool,
+}
+
+const FREE: Blockwise = Blockwise {
+    block_number_max: None,
+    tool_definitions_max: None,
+    digitizes_and_prints: true,
+};
+const BLOCKWISE_360: Blockwise = Blockwise {
+    block_number_max: Some(65_534),
+    tool_definitions_max: Some(20),
+    digitizes_and_prints: false,
+};
 
 /// Times and repetitions of the test of the EMERGENCY STOP circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

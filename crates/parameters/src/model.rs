@@ -69,6 +69,12 @@ impl ControlModel {
         self.has_plc_mode()
     }
 
+    /// Shows a letter behind TRANSFERRED DATA INCORRECT; the TNC 151/155 has none, and calls what it could not send
+    /// PROGRAM INCOMPLETE [000:17581-17601] [001:2036-2052].
+    pub const fn has_transfer_codes(self) -> bool {
+        !matches!(self, ControlModel::Tnc151 | ControlModel::Tnc155)
+    }
+
     /// Has the screen of 14 inches: windows side by side, in colours [000:6289-6306] [000:2784-2833].
     pub const fn has_windows(self) -> bool {
         matches!(

@@ -25,7 +25,7 @@ pub use axis_parameters::{
     ReferenceType, Synchronization, TravelParameters,
 };
 pub use characteristics::Characteristics;
-pub use interfaces::{InterfaceParameters, TransferFormat};
+pub use interfaces::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};
 pub use machining::{
     ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, MeasuringProbe, ProbeSettings,
     ProbeTurn, ProgramEndClearing, ScaledAxes,

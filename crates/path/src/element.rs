@@ -246,7 +246,7 @@ pub enum Function {
     /// Programmed stop: STOP, M0, M1, M6 where it stops.
     Stop,
     /// FN15: PRINT, the finished output line [003:4371-4385].
-    Print(String),
+    Print(Arc<str>),
     /// M200 to M204: what output S gives from here on [000:9841-9909].
     Voltage(Voltage),
     /// M118: how far the handwheel may lead each axis to either side of the path, mm or degrees; 0 not at all

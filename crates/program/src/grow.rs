@@ -79,6 +79,37 @@ impl Program {
         self.with_rope(rope, self.frame.clone(), self.growth.clone())
     }
 
+    /// The first block behind a block that sets a label, as far as it has come.
+    pub fn label_behind(&self, label: u16, block: u32) -> Option<u32> {
+        let from = self.rope.of_block(block)?;
+        let pieces = self.rope.pieces().iter().enumerate().skip(from);
+        let set = pieces.flat_map(|(index, piece)| {
+            let first = self.rope.start(index).0;
+            piece.labels.iter().map(move |(label, at)| (*label, first + at))
+        });
+        set.filter(|(own, at)| *own == label && *at > block)
+            .map(|(_, at)| at)
+            .next()
+    }
+
+    /// Bytes of the text from a block on, with what is not known to be a block yet.
+    pub fn bytes_from(&self, block: u32) -> u64 {
+        let pending = self
+            .growth
+            .as_ref()
+            .map_or(0, |growth| growth.pending.len() as u64);
+        let Some((piece, raw)) = self.place(block) else {
+            return match block < self.rope.first() {
+                true => self.rope.bytes() + pending,
+                false => pending,
+            };
+        };
+        let at = self.rope.of_block(block).unwrap_or_default();
+        let behind = self.rope.pieces().get(at + 1..).unwrap_or_default();
+        let behind: usize = behind.iter().map(|piece| piece.text().len()).sum();
+        (piece.text().len().saturating_sub(raw.start) + behind) as u64 + pending
+    }
+
     fn grown(&self, bytes: &[u8], complete: bool) -> Program {
         let Some(growth) = &self.growth else {
             return self.clone();

@@ -10,7 +10,7 @@ pub(crate) struct About {
     machine: String,
     /// Its control model.
     model: String,
-    /// The keyboard.
+    /// The keyboard of the model.
     keys: Vec<KeyText>,
     /// Keys of the machine operating panel.
     machine_keys: Vec<String>,
@@ -72,13 +72,18 @@ impl About {
             group: format!("{:?}", key.group()).to_lowercase(),
             label: key.label(),
         };
+        let keyboard: Vec<_> = station.keyboard().collect();
+        let is_there = |shortcut: &&Shortcut| match shortcut.press {
+            Press::Key(key) => keyboard.contains(&key),
+            _ => true,
+        };
         About {
             machine: station.machine().folder.name.clone(),
             model: station.control().model().name().to_owned(),
-            keys: Key::ALL.iter().map(key).collect(),
+            keys: keyboard.iter().map(key).collect(),
             machine_keys: station.machine_keys(),
             axes: station.control().axis_letters().collect(),
-            shortcuts: SHORTCUTS.iter().map(ShortcutText::of).collect(),
+            shortcuts: SHORTCUTS.iter().filter(is_there).map(ShortcutText::of).collect(),
             version: env!("CARGO_PKG_VERSION"),
         }
     }

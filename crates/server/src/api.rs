@@ -5,7 +5,7 @@ use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
-use bahn_panel::{Input, InputText, Refusal, Station};
+use bahn_panel::{Input, InputText, Refusal, Station, language_code, language_of_code, texts_around};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -14,6 +14,25 @@ use crate::shared::Shared;
 /// `GET /api/station`.
 pub(crate) async fn station(State(shared): State<Shared>) -> Response {
     Json(shared.about.as_ref()).into_response()
+}
+
+/// In which language.
+#[derive(Deserialize)]
+pub(crate) struct Spoken {
+    language: Option<String>,
+}
+
+/// `GET /api/texts`: what stands around the screen, in the language of the control or in another one.
+pub(crate) async fn texts(State(shared): State<Shared>, Query(spoken): Query<Spoken>) -> Response {
+    let language = match &spoken.language {
+        None => Some(shared.link.screen().look.language),
+        Some(code) => language_of_code(code),
+    };
+    match language {
+        Some(language) => Json(json!({"language": language_code(language), "texts": texts_around(language)}))
+            .into_response(),
+        None => (StatusCode::NOT_FOUND, "languages are en and de").into_response(),
+    }
 }
 
 /// `GET /api/screen`.

@@ -33,6 +33,7 @@ const MODULES: &[(&str, &str)] = &modules![
     "scheme.js",
     "timeline.js",
     "teacher.js",
+    "texts.js",
 ];
 
 /// Only what this server serves, nothing inline.

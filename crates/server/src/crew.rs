@@ -13,6 +13,8 @@ pub(crate) struct Crew {
     operator: Option<Name>,
     /// Who wants to operate.
     asks: Option<Name>,
+    /// Counts the connections that went.
+    gone: u64,
 }
 
 #[derive(Debug, Default)]
@@ -21,18 +23,20 @@ struct Viewer {
     connections: u32,
     /// The last of his inputs that was taken.
     taken: u64,
+    /// When his last connection went: the count of those that had gone then.
+    went: u64,
     /// Held while one of his inputs is done: what his old connection brought comes before what his new one brings.
     order: Arc<tokio::sync::Mutex<()>>,
 }
 
-/// Names that are remembered without a connection, so that their inputs are taken once.
+/// Names that are remembered, so that inputs are taken once: with a connection all, without one those that went last.
 const REMEMBERED: usize = 64;
 
 impl Crew {
     /// Somebody has come; he operates when nobody else is there who does. The number of his last input that was taken.
     pub fn come(&mut self, name: &str) -> u64 {
-        if self.viewers.len() >= REMEMBERED {
-            self.viewers.retain(|_, viewer| viewer.connections > 0);
+        if self.viewers.len() >= REMEMBERED && !self.viewers.contains_key(name) {
+            self.forget_one();
         }
         let viewer = self.viewers.entry(name.to_owned()).or_default();
         viewer.connections += 1;
@@ -44,10 +48,21 @@ impl Crew {
         taken
     }
 
+    /// Forgets who has been away longest.
+    fn forget_one(&mut self) {
+        let away = self.viewers.iter().filter(|(_, viewer)| viewer.connections == 0);
+        let longest = away.min_by_key(|(_, viewer)| viewer.went);
+        if let Some(name) = longest.map(|(name, _)| name.clone()) {
+            self.viewers.remove(&name);
+        }
+    }
+
     /// A connection has gone. Whoever operates keeps the keys until somebody else comes or wants them.
     pub fn go(&mut self, name: &str) {
         if let Some(viewer) = self.viewers.get_mut(name) {
             viewer.connections = viewer.connections.saturating_sub(1);
+            self.gone += 1;
+            viewer.went = self.gone;
         }
         if self.asks.as_deref() == Some(name) && !self.is_there(name) {
             self.asks = None;
@@ -136,6 +151,34 @@ mod tests {
         crew.answer("anna", true);
         assert_eq!(crew.roles(), (Some("ben"), None));
         assert_eq!(crew.takes("ben", 2), Taking::New);
+    }
+
+    #[test]
+    fn whoever_went_last_is_remembered_however_many_names_there_are() {
+        let mut crew = Crew::default();
+        let visit = |crew: &mut Crew, name: &str, number: u64| {
+            let taken = crew.come(name);
+            crew.takes(name, number);
+            crew.go(name);
+            taken
+        };
+        for number in 0..500 {
+            visit(&mut crew, &format!("viewer-{number}"), 3);
+        }
+        visit(&mut crew, "anna", 7);
+        // Her connection is lost; before it comes back others look on, by half of all names.
+        for number in 0..REMEMBERED / 2 {
+            visit(&mut crew, &format!("other-{number}"), 3);
+            assert!(crew.viewers.len() <= REMEMBERED, "{}", crew.viewers.len());
+        }
+        assert_eq!(crew.come("anna"), 7);
+        assert_eq!(crew.takes("anna", 7), Taking::Twice);
+        // Who is there is never forgotten.
+        for number in 0..500 {
+            visit(&mut crew, &format!("more-{number}"), 3);
+        }
+        assert_eq!(crew.takes("anna", 7), Taking::Twice);
+        assert_eq!(visit(&mut crew, "viewer-0", 3), 0, "long ago");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use axum::middleware;
 use axum::routing::{any, get, post};
 use axum::serve::ListenerExt as _;
 use bahn_panel::{Link, Live, Refusal};
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpSocket};
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
 
@@ -25,6 +25,11 @@ use crate::{api, assets, gate, socket};
 const BODY: usize = 64 << 10;
 /// Viewers at most.
 const VIEWERS: usize = 32;
+/// What is under way to a viewer who reads slowly, bytes: what is newer than that he gets at once when he has it, instead of
+/// megabytes of what was.
+const UNDERWAY: u32 = 256 << 10;
+/// Connections that wait until they are taken.
+const BACKLOG: u32 = 1024;
 /// A viewer without news is sent nothing for so long at most.
 const QUIET: Duration = Duration::from_secs(1);
 
@@ -87,7 +92,7 @@ impl Server {
             .build()
             .map_err(ServerError::Runtime)?;
         let listener = runtime
-            .block_on(TcpListener::bind(listen))
+            .block_on(async { listener(listen) })
             .map_err(|error| ServerError::Address(listen, error))?;
         let address = listener
             .local_addr()
@@ -136,12 +141,27 @@ impl Server {
     }
 }
 
+fn listener(listen: SocketAddr) -> std::io::Result<TcpListener> {
+    let socket = match listen {
+        SocketAddr::V4(_) => TcpSocket::new_v4()?,
+        SocketAddr::V6(_) => TcpSocket::new_v6()?,
+    };
+    // An address that was listened on a moment ago is free; elsewhere that would mean another thing.
+    #[cfg(unix)]
+    socket.set_reuseaddr(true)?;
+    // Connections inherit it.
+    socket.set_send_buffer_size(UNDERWAY)?;
+    socket.bind(listen)?;
+    socket.listen(BACKLOG)
+}
+
 fn router(shared: Shared) -> Router {
     Router::new()
         .route("/", get(assets::page))
         .route("/web/{name}", get(assets::module))
         .route("/web/viewer/{name}", get(assets::viewer))
         .route("/api/station", get(api::station))
+        .route("/api/texts", get(api::texts))
         .route("/api/screen", get(api::screen))
         .route("/api/snapshot", get(api::snapshot))
         .route("/api/graphics.png", get(api::graphics))

@@ -236,6 +236,11 @@ fn all_is_in_sight_on_windows_of_all_sizes() {
         );
         assert_eq!(page.evaluate(&last).unwrap(), true, "{width}: the last line");
     }
+    // The bars of F and S have a mark at two thirds, 100 of 150 %.
+    let marks = "(() => [...document.querySelectorAll('.bar')].map((bar) => { \
+                 const [meter, mark] = ['meter', '.hundred'].map((name) => bar.querySelector(name).getBoundingClientRect()); \
+                 return Math.abs((mark.left + mark.right) / 2 - meter.left - meter.width / 1.5) < 1.5 && mark.height > 4; }).join())()";
+    assert_eq!(page.evaluate(marks).unwrap(), "true,true");
     for width in [360, 390] {
         page.viewport(width, 800, true).unwrap();
         pictures::take(&mut page, &format!("window-{width}"));
@@ -390,7 +395,7 @@ fn a_small_screen_has_one_column() {
     };
     let panel = Panel::of("mill-tnc360", |_| {});
     panel.to_manual();
-    let look = json!({"layout": "one_column", "colours": {}});
+    let look = json!({"layout": "one_column", "language": "en", "colours": {}});
     assert_eq!(panel.screen()["look"], look);
     let mut page = open(&panel, &browser);
     choose(&mut page, "#scheme", "control");

@@ -1,6 +1,7 @@
 // The keyboard of the control, and the real one.
 
 import { element } from "/web/screen.js";
+import { say, words } from "/web/texts.js";
 
 /** Captions that differ from the names. */
 const CAPTIONS = {
@@ -19,16 +20,19 @@ export function build(station, press) {
   const node = document.querySelector('[data-region="keyboard"]');
   for (const [group, title] of GROUPS) {
     const keys = station.keys.filter((key) => key.group === group);
+    if (!keys.length) continue;
     const block = element("div", `group ${group}`);
     block.setAttribute("role", "group");
-    block.setAttribute("aria-label", title);
+    say(block, title, "aria-label");
     for (const key of keys) {
-      const button = element("button", "key", CAPTIONS[key.name] ?? key.name.replaceAll("_", " "));
+      const button = element("button", "key");
+      const caption = CAPTIONS[key.name] ?? key.name.replaceAll("_", " ");
       button.type = "button";
+      say(button, caption);
       button.dataset.key = key.name;
       // What stands on a key belongs to its name: somebody may say it to press it.
-      button.setAttribute("aria-label", `${button.textContent}: ${key.label}`);
-      button.title = key.label;
+      say(button, () => `${words(caption)}: ${words(key.label)}`, "aria-label");
+      say(button, key.label, "title");
       button.addEventListener("click", () => press(key.name));
       block.append(button);
     }
@@ -40,12 +44,13 @@ export function build(station, press) {
 const OWN = [{ real: "9", alt: true, key: "3D_VIEW" }];
 
 /** What a key of a real keyboard does: a line of the table of the station, or a letter or digit that is itself. */
-function meant(shortcuts, event) {
+function meant(station, event) {
   if (event.ctrlKey || event.metaKey) return null;
   const real = event.key.toLowerCase();
-  const line = shortcuts.find((line) => line.alt === event.altKey && line.real.toLowerCase() === real);
+  const line = [...station.shortcuts, ...OWN].find((line) => line.alt === event.altKey && line.real.toLowerCase() === real);
   if (line) return line;
-  return !event.altKey && /^[0-9a-z]$/.test(real) ? { key: event.key.toUpperCase() } : null;
+  const itself = event.key.toUpperCase();
+  return !event.altKey && /^[0-9a-z]$/.test(real) && hasKey(station, itself) ? { key: itself } : null;
 }
 
 /** Keys are pressed by `press`; those of the machine are held as long as the real ones, knobs are turned by `turn`. */
@@ -62,7 +67,7 @@ export function listen(station, press, hold, turn) {
     // A button that has the focus is pressed by Enter, as everywhere.
     const onButton = event.target.closest("button") && (event.key === "Enter" || event.key === " ") && !event.altKey;
     if (inField || onButton) return;
-    const line = meant([...station.shortcuts, ...OWN], event);
+    const line = meant(station, event);
     if (!line || (line.machine && !has(station, line.machine))) return;
     event.preventDefault();
     if (line.key) press(line.key);
@@ -88,20 +93,29 @@ function has(station, name) {
   return name === "EMERGENCY_STOP" || station.machine_keys.includes(name);
 }
 
+function hasKey(station, name) {
+  return station.keys.some((key) => key.name === name);
+}
+
 export function help(station) {
   const dialog = document.querySelector("#help");
   const called = ({ key, machine, feed, spindle }) =>
-    key ?? machine ?? (feed ? `feed override ${signed(feed)} %` : `spindle override ${signed(spindle)} %`);
-  const rows = [...station.shortcuts, ...OWN]
+    key ?? machine ?? (feed ? words("feed override {1} %", signed(feed)) : words("spindle override {1} %", signed(spindle)));
+  const table = () => [...station.shortcuts, ...OWN]
     .filter((line) => !line.machine || has(station, line.machine))
     .map((line) => [`${line.alt ? "Alt+" : ""}${line.real.length === 1 ? line.real.toUpperCase() : line.real}`, called(line)]);
-  rows.push(["A to Z, 0 to 9", "letters and digits"]);
-  dialog.querySelector("tbody").replaceChildren(...rows.map(([real, key]) => {
-    const row = element("tr");
-    row.append(element("td", "", real), element("td", "", key));
-    return row;
-  }));
-  document.querySelector("#help-button").addEventListener("click", () => dialog.showModal());
+  const fill = () => {
+    const own = hasKey(station, "A") ? ["A to Z, 0 to 9", "letters and digits"] : ["0 to 9", "digits"];
+    dialog.querySelector("tbody").replaceChildren(...[...table(), own.map((text) => words(text))].map(([real, key]) => {
+      const row = element("tr");
+      row.append(element("td", "", real), element("td", "", key));
+      return row;
+    }));
+  };
+  document.querySelector("#help-button").addEventListener("click", () => {
+    fill();
+    dialog.showModal();
+  });
 }
 
 function signed(number) {

@@ -2,6 +2,7 @@
 // passes.
 
 import { element, setText } from "/web/screen.js";
+import { say, words } from "/web/texts.js";
 
 const node = () => document.querySelector('[data-region="machine"]');
 
@@ -9,9 +10,10 @@ export function build(station, send) {
   const panel = node();
   const keys = element("div", "group machine-keys");
   keys.setAttribute("role", "group");
-  keys.setAttribute("aria-label", "Keys of the machine");
+  say(keys, "Keys of the machine", "aria-label");
   for (const name of station.machine_keys) keys.append(heldKey(name, send));
-  const stop = element("button", "key emergency", "EMERGENCY STOP");
+  const stop = element("button", "key emergency");
+  say(stop, "EMERGENCY STOP");
   stop.type = "button";
   stop.dataset.key = "EMERGENCY_STOP";
   stop.addEventListener("click", () => send({ key: "EMERGENCY_STOP" }));
@@ -22,15 +24,18 @@ export function build(station, send) {
     handwheel(station, send),
   );
   const time = element("div", "group time");
-  const power = element("button", "key power", "Power");
+  const power = element("button", "key power");
+  say(power, "Power");
   power.type = "button";
   power.addEventListener("click", () => send({ power: power.getAttribute("aria-pressed") !== "true" }));
-  const pause = element("button", "key pause", "Pause");
+  const pause = element("button", "key pause");
+  say(pause, "Pause");
   pause.type = "button";
   pause.addEventListener("click", () => send({ pause: pause.getAttribute("aria-pressed") !== "true" }));
-  const cycle = element("button", "key cycle", "Cycle");
+  const cycle = element("button", "key cycle");
+  say(cycle, "Cycle");
   cycle.type = "button";
-  cycle.title = "One contour cycle, while time stands";
+  say(cycle, "One contour cycle, while time stands", "title");
   cycle.addEventListener("click", () => send({ cycles: 1 }));
   time.append(power, pause, cycle, speed(send));
   panel.append(stop, keys, knobs, time);
@@ -41,7 +46,7 @@ function heldKey(name, send) {
   const button = element("button", "key", name.replaceAll("_", " "));
   button.type = "button";
   button.dataset.key = name;
-  button.setAttribute("aria-label", `Machine key ${name.replaceAll("_", " ")}`);
+  say(button, () => words("Machine key {1}", name.replaceAll("_", " ")), "aria-label");
   let held = false;
   const set = (down) => {
     if (held === down) return;
@@ -71,23 +76,29 @@ function heldKey(name, send) {
   return button;
 }
 
+function said(tag, english) {
+  const made = element(tag);
+  say(made, english);
+  return made;
+}
+
 function knob(title, field, send) {
   const label = element("label", "knob");
   const input = element("input");
   Object.assign(input, { type: "range", min: 0, max: 150, value: 100 });
   input.dataset.knob = field;
   input.addEventListener("input", () => send({ [field]: Number(input.value) }));
-  label.append(element("span", "", title), input, element("output", "", "100 %"));
+  label.append(said("span", title), input, element("output", "", "100 %"));
   return label;
 }
 
 function handwheel(station, send) {
   const group = element("div", "handwheel");
   const axis = element("select");
-  axis.setAttribute("aria-label", "Axis of the handwheel");
+  say(axis, "Axis of the handwheel", "aria-label");
   axis.append(...[...station.axes].map((letter) => new Option(letter, letter)));
   const factor = element("select");
-  factor.setAttribute("aria-label", "Interpolation factor of the handwheel");
+  say(factor, "Interpolation factor of the handwheel", "aria-label");
   factor.append(...Array.from({ length: 11 }, (_, value) => new Option(String(value), String(value), value === 3, value === 3)));
   const choose = () => send({ handwheel_axis: axis.value, factor: Number(factor.value) });
   axis.addEventListener("change", choose);
@@ -96,7 +107,7 @@ function handwheel(station, send) {
   for (const [text, steps, label] of [["⟲", -1000, "Turn the handwheel back"], ["⟳", 1000, "Turn the handwheel"]]) {
     const button = element("button", "key", text);
     button.type = "button";
-    button.setAttribute("aria-label", label);
+    say(button, label, "aria-label");
     button.addEventListener("click", () => send({ handwheel: steps }));
     wheel.append(button);
   }
@@ -104,7 +115,7 @@ function handwheel(station, send) {
     event.preventDefault();
     send({ handwheel: event.deltaY < 0 ? 250 : -250 });
   }, { passive: false });
-  group.append(element("span", "", "Handwheel"), axis, factor, wheel);
+  group.append(said("span", "Handwheel"), axis, factor, wheel);
   return group;
 }
 
@@ -113,7 +124,7 @@ function speed(send) {
   const select = element("select");
   select.append(...[0.1, 0.5, 1, 2, 5, 10, 50, 100].map((factor) => new Option(`${factor} ×`, String(factor), factor === 1, factor === 1)));
   select.addEventListener("change", () => send({ speed: Number(select.value) }));
-  label.append(element("span", "", "Time"), select);
+  label.append(said("span", "Time"), select);
   return label;
 }
 

@@ -7,7 +7,16 @@ import { PartWindow } from "/web/part.js";
 import * as scheme from "/web/scheme.js";
 import * as screen from "/web/screen.js";
 import * as teacher from "/web/teacher.js";
+import * as texts from "/web/texts.js";
 import * as timeline from "/web/timeline.js";
+
+const { words } = texts;
+
+/** The newest of each region. */
+const last = new Map();
+
+/** What comes piece by piece, or once, is not drawn again. */
+const PASSING = ["part", "refused"];
 
 let status = null;
 let windows = null;
@@ -41,10 +50,13 @@ const draw = {
   timeline: timeline.draw,
   why: teacher.why,
   lesson: teacher.lesson,
-  look: scheme.look,
+  look: (value) => {
+    scheme.look(value);
+    if (value.language !== texts.language) speak(value.language);
+  },
   part: (news) => part.take(news),
   crew: crew,
-  refused: (why) => line(why),
+  refused: (why) => line(words(why)),
 };
 
 const connection = await begin();
@@ -54,7 +66,7 @@ const part = new PartWindow(document.querySelector(".stage"), (looks) => {
 });
 
 async function begin() {
-  const station = await (await fetch("/api/station")).json();
+  const [station] = await Promise.all([fetch("/api/station").then((answer) => answer.json()), texts.load()]);
   keyboard.build(station, press);
   keyboard.help(station);
   const send = (input) => connection.input(input);
@@ -63,12 +75,23 @@ async function begin() {
   timeline.build(send);
   teacher.build(send);
   return new Connection(
-    (name, value) => draw[name]?.(value),
+    (name, value) => {
+      last.set(name, value);
+      draw[name]?.(value);
+    },
     (connected) => {
-      line(connected ? "" : "The station does not answer; it is asked again.");
+      line(connected ? "" : words("The station does not answer; it is asked again."));
       if (connected) part.connected();
     },
   );
+}
+
+/** The control speaks another language, and so does what stands around its screen. */
+async function speak(language) {
+  await texts.load(language);
+  for (const [name, value] of last) if (!PASSING.includes(name)) draw[name]?.(value);
+  teacher.retell();
+  part.retell();
 }
 
 function press(key) {
@@ -107,9 +130,9 @@ function crew({ operates, asks }) {
     ? [["Hand over", { hand_over: true }], ["No", { hand_over: false }]]
     : [["Operate", { operate: true }]];
   node.replaceChildren(
-    operates ? "Somebody wants the keys." : "Somebody else operates.",
+    words(operates ? "Somebody wants the keys." : "Somebody else operates."),
     ...buttons.map(([text, message]) => {
-      const button = screen.element("button", "", text);
+      const button = screen.element("button", "", words(text));
       button.type = "button";
       button.addEventListener("click", () => connection.ask(message));
       return button;

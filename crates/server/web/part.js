@@ -5,6 +5,7 @@ import { buttons } from "/web/viewer/controls.js";
 import { Overlay } from "/web/viewer/overlay.js";
 import { PartView } from "/web/viewer/view.js";
 import { setText } from "/web/screen.js";
+import { adopt, words } from "/web/texts.js";
 
 const KEPT = "bahn-3d-view";
 const NOTHING = "Nothing is cut yet. TEST RUN and program run show their part here.";
@@ -38,6 +39,12 @@ export class PartWindow {
     this.button.setAttribute("aria-pressed", String(this.on));
   }
 
+  /** Another language. */
+  retell() {
+    setText(this.node.querySelector(".nothing"), words(this.said));
+    this.controls?.retell();
+  }
+
   /** A new connection: what was sent over the old one is not known there. */
   connected() {
     if (this.on) this.looks(true);
@@ -47,17 +54,20 @@ export class PartWindow {
   clear() {
     this.view?.gl.getExtension("WEBGL_lose_context")?.loseContext();
     this.view = null;
+    this.controls = null;
     this.head = null;
     this.id = null;
     this.stage(NOTHING);
   }
 
-  stage(words) {
+  stage(said) {
     this.node.replaceChildren(document.querySelector("#stage").content.cloneNode(true));
+    adopt(this.node);
+    this.said = said;
     const nothing = this.node.querySelector(".nothing");
-    setText(nothing, words);
-    nothing.hidden = !words;
-    this.node.classList.toggle("empty", Boolean(words));
+    setText(nothing, words(said));
+    nothing.hidden = !said;
+    this.node.classList.toggle("empty", Boolean(said));
   }
 
   /** What is new; null: there is no part. */
@@ -103,7 +113,7 @@ export class PartWindow {
     }
     this.node.view = this.view;
     this.overlay = new Overlay(this.node.querySelector("svg"), this.view, head.axes);
-    buttons(this.node, this.view, this.overlay, head);
+    this.controls = buttons(this.node, this.view, this.overlay, head, words);
     // Whoever turns the part with the mouse goes on typing for the control.
     canvas.addEventListener("mousedown", (event) => event.preventDefault());
     this.tint();

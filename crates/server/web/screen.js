@@ -1,6 +1,8 @@
 // Draws the regions of the screen. Only what has changed is touched, so that nothing flickers and a screen reader
 // speaks what is new.
 
+import { say, words } from "/web/texts.js";
+
 const region = (name) => document.querySelector(`[data-region="${name}"]`);
 
 /** A new element with classes and text. */
@@ -164,16 +166,24 @@ function axes(node, shown) {
   shown.forEach((axis, place) => setText(nodes[place], `${axis.locked ? "*" : ""}${axis.letter} ${axis.value} `));
 }
 
+/** A bar ends at so many per cent of what was programmed. */
+const BAR_MAX = 150;
+
 function bar(name) {
   const node = element("label", "bar");
   const meter = element("meter");
-  meter.max = 150;
-  meter.setAttribute("aria-label", name === "F" ? "Feed, percent" : "Spindle speed, percent");
-  node.append(element("span", "", name), meter, element("span", "percent"));
+  meter.max = BAR_MAX;
+  // Where it is as fast as programmed.
+  const scale = element("span", "scale");
+  const mark = element("span", "hundred");
+  mark.style.left = `${100 * 100 / BAR_MAX}%`;
+  scale.append(meter, mark);
+  say(meter, name === "F" ? "Feed, percent" : "Spindle speed, percent", "aria-label");
+  node.append(element("span", "", name), scale, element("span", "percent"));
   return node;
 }
 
-// A bar is what is done of what was programmed, up to 150 %.
+// A bar is what is done of what was programmed, up to BAR_MAX.
 function setBar(node, value, programmed, override) {
   const part = programmed > 0 ? (value / programmed) * 100 : 0;
   const meter = node.querySelector("meter");
@@ -224,13 +234,13 @@ export function graphics(shown) {
     return;
   }
   const image = node.querySelector("img");
-  image.alt = `${VIEWS[shown.view]}${shown.magn > 1 ? `, magnified ${shown.magn} times` : ""}`;
+  image.alt = words(VIEWS[shown.view]) + (shown.magn > 1 ? words(", magnified {1} times", shown.magn) : "");
   const bar = node.querySelector("progress");
   bar.hidden = !shown.running;
   bar.value = shown.progress;
-  bar.setAttribute("aria-label", shown.view === "oscilloscope" ? "Recording" : "Test run");
+  say(bar, shown.view === "oscilloscope" ? "Recording" : "Test run", "aria-label");
   const seconds = shown.machining_time_s;
-  setText(node.querySelector(".time"), seconds === null ? "" : `Machining time ${clock(seconds)}`);
+  setText(node.querySelector(".time"), seconds === null ? "" : words("Machining time {1}", clock(seconds)));
   picture.wanted = shown.serial;
   loadPicture(node, image);
 }
@@ -278,16 +288,16 @@ export function softKeys({ keys, row, rows }, press) {
   }
   const nodes = [...node.children];
   const turns = rows > 1;
-  for (const [button, text, label] of [[nodes[0], "◁", "Soft-key row to the left"], [nodes[9], "▷", "Soft-key row to the right"]]) {
+  for (const [button, text, label] of [[nodes[0], "◁", words("Soft-key row to the left")], [nodes[9], "▷", words("Soft-key row to the right")]]) {
     setText(button, text);
-    button.setAttribute("aria-label", turns ? `${label}, row ${row + 1} of ${rows}` : label);
+    button.setAttribute("aria-label", turns ? `${label}, ${words("row {1} of {2}", row + 1, rows)}` : label);
     button.disabled = !turns;
   }
   for (let place = 0; place < 8; place += 1) {
     const text = keys[place] ?? "";
     const button = nodes[place + 1];
     setText(button, text);
-    button.setAttribute("aria-label", text ? `Soft key ${place + 1}: ${text}` : `Soft key ${place + 1}, empty`);
+    button.setAttribute("aria-label", text ? words("Soft key {1}: {2}", place + 1, text) : words("Soft key {1}, empty", place + 1));
     button.disabled = !text;
   }
 }

@@ -1,7 +1,12 @@
 // Lessons, and the teacher's drawer: what of the machine can be broken.
 
 import { element, setText } from "/web/screen.js";
+import { say, words } from "/web/texts.js";
 
+const NO_LESSONS = "This machine has no lessons.";
+
+/** What fetches again what it shows. */
+const fetched = [];
 let line = null;
 let hints = 0;
 let draw = () => {};
@@ -12,7 +17,8 @@ export function build(send) {
 }
 
 function button(text, act, classes = "") {
-  const made = element("button", classes, text);
+  const made = element("button", classes);
+  say(made, text);
   made.type = "button";
   made.addEventListener("click", act);
   return made;
@@ -20,21 +26,28 @@ function button(text, act, classes = "") {
 
 function fold(title, name, opened) {
   const made = element("details", name);
-  made.append(element("summary", "", title));
+  const summary = element("summary");
+  say(summary, title);
+  made.append(summary);
   made.addEventListener("toggle", () => made.open && opened());
+  // What it shows is in another language then.
+  fetched.push(() => made.open && opened());
   return made;
 }
 
 function labelled(text, field) {
   const made = element("label");
-  made.append(element("span", "", text), field);
+  const name = element("span");
+  say(name, text);
+  made.append(name, field);
   return made;
 }
 
 function lessons(send) {
   const select = element("select");
   const begin = button("Begin", () => send({ lesson: select.value }));
-  const nothing = element("p", "", "This machine has no lessons.");
+  const nothing = element("p");
+  say(nothing, NO_LESSONS);
   const choose = element("div", "choose");
   choose.append(labelled("Lesson", select), begin);
   const task = element("div", "lesson");
@@ -43,7 +56,7 @@ function lessons(send) {
     const known = Array.isArray(found) ? found : [];
     select.replaceChildren(...known.map(({ name, title }) => new Option(title, name)));
     choose.hidden = !known.length;
-    setText(nothing, found.error ?? "This machine has no lessons.");
+    say(nothing, found.error ?? NO_LESSONS);
     nothing.hidden = known.length > 0;
   });
   choose.hidden = true;
@@ -59,13 +72,15 @@ function lessons(send) {
 // A lesson changes seldom: it is drawn anew.
 function shown(send) {
   const done = line.checks.filter((check) => check.done).length;
-  const states = { running: `${done} of ${line.checks.length} done`, passed: "Passed", failed: `Not passed. ${line.reason}` };
+  const states = {
+    running: words("{1} of {2} done", done, line.checks.length), passed: words("Passed"), failed: words("Not passed. {1}", line.reason),
+  };
   const state = element("p", `state ${line.state}`, states[line.state]);
   state.setAttribute("role", "status");
   const checks = element("ol", "checks");
   for (const check of line.checks) {
     const item = element("li", check.done ? "done" : "", check.text);
-    item.append(element("span", "sign", check.done ? " ✓ done" : " open"));
+    item.append(element("span", "sign", check.done ? ` ✓ ${words("done")}` : ` ${words("open")}`));
     checks.append(item);
   }
   const given = element("ul", "hints");
@@ -73,7 +88,7 @@ function shown(send) {
   const buttons = element("div", "choose");
   if (line.state === "running") {
     if (hints < line.hints.length) {
-      buttons.append(button(`Hint ${hints + 1} of ${line.hints.length}`, () => {
+      buttons.append(button(() => words("Hint {1} of {2}", hints + 1, line.hints.length), () => {
         hints += 1;
         draw();
       }, "hint"));
@@ -104,7 +119,7 @@ function drawer(send) {
     button("Repair", () => thing() && send({ deed: thing().repair }), "repair"),
   );
   const node = fold("Teacher's drawer", "drawer", async () => {
-    if (known.length) return;
+    const chosen = things.value;
     known = await (await fetch("/api/drawer")).json();
     const groups = new Map();
     known.forEach((entry, place) => {
@@ -112,10 +127,16 @@ function drawer(send) {
       groups.get(entry.group).append(new Option(`${entry.name}: ${entry.words}`, String(place)));
     });
     things.replaceChildren(...groups.values());
+    if (chosen) things.value = chosen;
     choose();
   });
   node.append(labelled("What", things), labelled("How", ways), buttons);
   return node;
+}
+
+/** Another language: what the station says is fetched again. */
+export function retell() {
+  for (const again of fetched) again();
 }
 
 /** Why the machine stands. */

@@ -2,6 +2,7 @@
 // another way, and the old one is kept as a branch.
 
 import { element, setText } from "/web/screen.js";
+import { say, words } from "/web/texts.js";
 
 /** Between two moments that are gone to while dragging: each is simulated anew. */
 const DRAG_MS = 200;
@@ -16,7 +17,7 @@ let wanted = null;
 export function build(send) {
   const node = document.querySelector('[data-region="timeline"]');
   const slider = Object.assign(element("input"), { type: "range", min: 0, max: 0, step: 0.01, value: 0 });
-  slider.setAttribute("aria-label", "Time line, seconds since power-on");
+  say(slider, "Time line, seconds since power-on", "aria-label");
   const ticks = element("div", "ticks");
   ticks.setAttribute("aria-hidden", "true");
   const track = element("div", "track");
@@ -52,7 +53,8 @@ export function build(send) {
 }
 
 function button(text, act) {
-  const made = element("button", "", text);
+  const made = element("button");
+  say(made, text);
   made.type = "button";
   made.addEventListener("click", act);
   return made;
@@ -60,8 +62,9 @@ function button(text, act) {
 
 function list(title) {
   const made = element("select");
-  made.setAttribute("aria-label", title);
-  made.append(new Option(title, ""));
+  say(made, title, "aria-label");
+  made.append(new Option("", ""));
+  say(made.options[0], title);
   return made;
 }
 
@@ -75,8 +78,9 @@ export function time([, moment, last]) {
     slider.max = end;
     slider.value = now;
   }
-  slider.setAttribute("aria-valuetext", `${now.toFixed(1)} s of ${end.toFixed(1)} s`);
-  setText(shown, back ? `${now.toFixed(1)} s of ${end.toFixed(1)} s` : `${now.toFixed(1)} s`);
+  const within = words("{1} s of {2} s", now.toFixed(1), end.toFixed(1));
+  slider.setAttribute("aria-valuetext", within);
+  setText(shown, back ? within : `${now.toFixed(1)} s`);
   newest.disabled = !back;
   place();
 }
@@ -93,7 +97,7 @@ export function draw([happened, left]) {
   place();
   options(parts.events, marks.map((mark) => [`${mark.t.toFixed(1)} s  ${mark.text}`, String(mark.t)]));
   options(parts.branches, left.map((way) => [
-    `Way ${way.number}: ${way.from_s.toFixed(1)} s to ${way.to_s.toFixed(1)} s`, `${way.number} ${way.to_s}`,
+    words("Way {1}: {2} s to {3} s", way.number, way.from_s.toFixed(1), way.to_s.toFixed(1)), `${way.number} ${way.to_s}`,
   ]));
   parts.branches.hidden = !left.length;
 }

@@ -1,6 +1,6 @@
 //! The command line: what is typed behind `:`.
 
-use bahn_panel::{EMERGENCY_STOP, Input, InputText, Key};
+use bahn_panel::{EMERGENCY_STOP, Input, InputText, Key, Language, around, filled};
 
 use crate::machine::Machine;
 
@@ -190,7 +190,7 @@ pub(crate) const COMMANDS: &[Command] = &[
 ///
 /// # Errors
 /// What is wrong with it, in words.
-pub(crate) fn read(line: &str, machine: &Machine) -> Result<Vec<Order>, String> {
+pub(crate) fn read(line: &str, machine: &Machine, language: Language) -> Result<Vec<Order>, String> {
     let line = line.trim();
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let rest = rest.trim();
@@ -203,18 +203,18 @@ pub(crate) fn read(line: &str, machine: &Machine) -> Result<Vec<Order>, String> 
         .or_else(|| (word == "q").then(|| COMMANDS.last()).flatten());
     // Keys may stand alone.
     let Some(command) = known else {
-        return keys(line, machine);
+        return keys(line, machine, language);
     };
     let give = |text: InputText| {
         let input = Input::try_from(text).map_err(|refusal| refusal.to_string())?;
         Ok(vec![Order::Give(input)])
     };
     match command.takes {
-        Takes::Keys => keys(rest, machine),
+        Takes::Keys => keys(rest, machine, language),
         Takes::Hold(holds) => {
             let name = machine
                 .key(rest)
-                .ok_or_else(|| format!("the machine has no key {rest}"))?;
+                .ok_or_else(|| filled(around(language, "the machine has no key {1}"), &[rest]))?;
             Ok(vec![match holds {
                 true => Order::Hold(name),
                 false => Order::Release(name),
@@ -223,21 +223,21 @@ pub(crate) fn read(line: &str, machine: &Machine) -> Result<Vec<Order>, String> 
         Takes::Nothing(order) => Ok(vec![order()]),
         Takes::Number(field) => {
             let number = rest.parse().ok().filter(|number: &f64| number.is_finite());
-            give(field(number.ok_or_else(|| usage(command))?))
+            give(field(number.ok_or_else(|| usage(command, language))?))
         }
-        Takes::Count(field) => give(field(rest.parse().map_err(|_| usage(command))?)),
+        Takes::Count(field) => give(field(rest.parse().map_err(|_| usage(command, language))?)),
         Takes::Switch(field) => match rest {
             "" | "on" => give(field(true)),
             "off" => give(field(false)),
-            _ => Err(usage(command)),
+            _ => Err(usage(command, language)),
         },
         Takes::Text(field) => give(field(rest.to_owned())),
-        Takes::Handwheel => give(handwheel(rest).ok_or_else(|| usage(command))?),
+        Takes::Handwheel => give(handwheel(rest).ok_or_else(|| usage(command, language))?),
     }
 }
 
-fn usage(command: &Command) -> String {
-    format!("{} {}", command.word, command.argument)
+fn usage(command: &Command, language: Language) -> String {
+    format!("{} {}", command.word, around(language, command.argument))
 }
 
 fn handwheel(rest: &str) -> Option<InputText> {
@@ -259,7 +259,7 @@ fn handwheel(rest: &str) -> Option<InputText> {
 }
 
 /// Keys of control and machine by their names, and numbers by their digits.
-fn keys(words: &str, machine: &Machine) -> Result<Vec<Order>, String> {
+fn keys(words: &str, machine: &Machine, language: Language) -> Result<Vec<Order>, String> {
     let mut orders = Vec::new();
     for word in words.split_whitespace() {
         let name = word.to_ascii_uppercase();
@@ -275,11 +275,11 @@ fn keys(words: &str, machine: &Machine) -> Result<Vec<Order>, String> {
         {
             orders.extend(keys.into_iter().map(|key| Order::Give(Input::Key(key))));
         } else {
-            return Err(format!("there is no key {word}"));
+            return Err(filled(around(language, "there is no key {1}"), &[word]));
         }
     }
     match orders.is_empty() {
-        true => Err("key NAME ...".to_owned()),
+        true => Err(format!("key {}", around(language, "NAME ..."))),
         false => Ok(orders),
     }
 }
@@ -295,7 +295,8 @@ pub(crate) fn completions(line: &str, machine: &Machine) -> Vec<String> {
     let words = words
         .filter(|word| is_first && word.starts_with(begin))
         .map(str::to_owned);
-    let keys = Key::ALL.iter().map(|key| key.name().to_owned());
+    let keys = Key::ALL.iter().filter(|key| machine.has(**key));
+    let keys = keys.map(|key| key.name().to_owned());
     let begin = begin.to_ascii_uppercase();
     let keys = keys
         .chain(machine.keys.iter().cloned())
@@ -315,7 +316,7 @@ mod tests {
 
     #[test]
     fn keys_and_numbers_are_typed_by_name() {
-        let read = read("KEY L X -12.5 nc_start", &machine()).unwrap();
+        let read = read("KEY L X -12.5 nc_start", &machine(), Language::English).unwrap();
         let control = [
             Key::L,
             Key::X,
@@ -330,12 +331,15 @@ mod tests {
         expected.push(Order::Give(start));
         assert_eq!(read, expected);
         assert_eq!(
-            super::read("CE", &machine()).unwrap(),
+            super::read("CE", &machine(), Language::English).unwrap(),
             [Order::Give(Input::Key(Key::Ce))]
         );
-        assert_eq!(super::read("X+", &machine()).unwrap().len(), 1);
+        assert_eq!(super::read("X+", &machine(), Language::English).unwrap().len(), 1);
         for wrong in ["key", "nonsense", "key L 1z", "hold Q"] {
-            assert!(super::read(wrong, &machine()).is_err(), "{wrong}");
+            assert!(
+                super::read(wrong, &machine(), Language::English).is_err(),
+                "{wrong}"
+            );
         }
     }
 
@@ -357,14 +361,18 @@ mod tests {
                 Input::Deed("fault drive X off".to_owned()),
             ),
         ] {
-            assert_eq!(read(line, &machine()), Ok(vec![Order::Give(input)]), "{line}");
+            assert_eq!(
+                read(line, &machine(), Language::English),
+                Ok(vec![Order::Give(input)]),
+                "{line}"
+            );
         }
         assert_eq!(
-            read("hold rapid", &machine()),
+            read("hold rapid", &machine(), Language::English),
             Ok(vec![Order::Hold("RAPID".to_owned())])
         );
-        assert_eq!(read("q", &machine()), Ok(vec![Order::Quit]));
-        assert_eq!(read("", &machine()), Ok(vec![]));
+        assert_eq!(read("q", &machine(), Language::English), Ok(vec![Order::Quit]));
+        assert_eq!(read("", &machine(), Language::English), Ok(vec![]));
         for wrong in [
             "feed",
             "feed fast",
@@ -378,7 +386,7 @@ mod tests {
             "cycles 0.5",
             "cycles -3",
         ] {
-            assert!(read(wrong, &machine()).is_err(), "{wrong}");
+            assert!(read(wrong, &machine(), Language::English).is_err(), "{wrong}");
         }
     }
 

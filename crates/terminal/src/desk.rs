@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use bahn_panel::{EMERGENCY_STOP, Input, Key, KeyAction, Press, Screen, shortcut};
+use bahn_panel::{EMERGENCY_STOP, Input, Key, KeyAction, Language, Press, Screen, around, filled, shortcut};
 use ratatui::crossterm::event::{
     Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers, MouseButton, MouseEvent, MouseEventKind,
 };
@@ -45,6 +45,8 @@ impl Targets {
 pub(crate) struct Desk {
     /// The machine.
     pub machine: Machine,
+    /// The language of what is said.
+    language: Language,
     /// The keys are those of the machine operating panel.
     pub at_the_machine: bool,
     /// The list of short cuts lies open, scrolled by so many lines.
@@ -72,6 +74,7 @@ impl Desk {
 
     /// Takes an event; what is to be given to the station.
     pub fn event(&mut self, event: &Event, screen: &Screen, targets: &Targets, now: Instant) -> Vec<Input> {
+        self.language = screen.look.language;
         match event {
             Event::Key(key) => self.key(*key, screen, now),
             Event::Mouse(mouse) => self.mouse(*mouse, targets, now),
@@ -161,13 +164,17 @@ impl Desk {
             Press::Machine(name) => match self.machine.key(name) {
                 Some(name) => changed(self.holds.press(&name, Hand::Keyboard, now)),
                 None => {
-                    self.notice = format!("the machine has no key {name}");
+                    self.say("the machine has no key {1}", name);
                     Vec::new()
                 }
             },
             Press::Feed(step) => vec![Input::FeedOverride(turn(screen.machine.knobs[0], step))],
             Press::Spindle(step) => vec![Input::SpindleOverride(turn(screen.machine.knobs[1], step))],
         }
+    }
+
+    fn say(&mut self, english: &'static str, value: &str) {
+        self.notice = filled(around(self.language, english), &[value]);
     }
 
     fn emergency_stop(&mut self, now: Instant) -> Vec<Input> {
@@ -190,7 +197,7 @@ impl Desk {
             return self.press(press, screen, now);
         }
         let Some(name) = self.machine.lettered(character) else {
-            self.notice = format!("no key of the machine has the letter {character}");
+            self.say("no key of the machine has the letter {1}", &character.to_string());
             return Vec::new();
         };
         changed(match character.is_ascii_uppercase() {
@@ -251,7 +258,7 @@ impl Desk {
 
     fn give_line(&mut self, line: String, now: Instant) -> Vec<Input> {
         let mut inputs = Vec::new();
-        match commands::read(&line, &self.machine) {
+        match commands::read(&line, &self.machine, self.language) {
             Err(wrong) => self.notice = wrong,
             Ok(orders) => {
                 for order in orders {
@@ -268,7 +275,7 @@ impl Desk {
                         }
                         Order::Release(name) => match self.holds.release(&name) {
                             Some(change) => inputs.extend(changed([change])),
-                            None => self.notice = format!("{name} is not held"),
+                            None => self.say("{1} is not held", &name),
                         },
                         Order::Help => self.help = Some(0),
                         Order::Quit => self.leaves = true,

@@ -1,6 +1,6 @@
 //! The machine operating panel: its keys, and the letters that press them.
 
-use bahn_panel::{EMERGENCY_STOP, Station};
+use bahn_panel::{EMERGENCY_STOP, Key, Station};
 
 /// Letters of the machine's keys in their order.
 const LETTERS: &str = "abcdefghijklmnopqrstuvwxyz0123456789";
@@ -12,6 +12,8 @@ pub(crate) const STOP_LETTER: char = '!';
 pub(crate) struct Machine {
     /// Its name.
     pub name: String,
+    /// Keys of the keyboard of its control.
+    pub keyboard: Vec<Key>,
     /// Keys of its operating panel.
     pub keys: Vec<String>,
 }
@@ -21,6 +23,7 @@ impl Machine {
     pub fn of_station(station: &mut Station) -> Machine {
         Machine {
             name: station.machine().folder.name.clone(),
+            keyboard: station.keyboard().collect(),
             keys: station.machine_keys(),
         }
     }
@@ -29,8 +32,14 @@ impl Machine {
     pub fn of_keys(names: &[&str]) -> Machine {
         Machine {
             name: "test".to_owned(),
+            keyboard: Key::ALL.to_vec(),
             keys: names.iter().map(|name| (*name).to_owned()).collect(),
         }
+    }
+
+    /// Whether the keyboard of its control has a key.
+    pub fn has(&self, key: Key) -> bool {
+        self.keyboard.contains(&key)
     }
 
     /// A key of the machine by its name, in whatever letters.

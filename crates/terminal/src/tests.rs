@@ -3,17 +3,20 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Instant;
 
 use bahn_panel::{
-    CheckLine, Input, Key, KeyAction, LessonLine, LessonState, MessageLine, PlcLine, Screen, Station, load,
+    CheckLine, Input, Key, KeyAction, Language, LessonLine, LessonState, MessageLine, PlcLine, Screen,
+    Station, load,
 };
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
+use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::Position;
 use ratatui::style::{Color, Modifier};
 
-use crate::desk::{Desk, Target};
+use crate::desk::{Desk, Target, Targets};
 use crate::draw::{Drawn, Scene, draw};
 use crate::graphics::{Mosaic, Wanted, mosaic};
 use crate::machine::Machine;
@@ -30,12 +33,18 @@ struct Hall {
 
 impl Hall {
     fn new() -> Hall {
+        Hall::of("mill")
+    }
+
+    fn of(machine: &str) -> Hall {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("bahn-terminal-{}-{number}", std::process::id());
         let folder = std::env::temp_dir().join(name);
         copy(
-            &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/mill"),
+            &Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("../../machines")
+                .join(machine),
             &folder,
         );
         let mut station = Station::power_on(load(&folder).unwrap()).unwrap();
@@ -166,6 +175,68 @@ fn place(buffer: &Buffer, wanted: &str) -> Position {
         ))
     });
     found.unwrap_or_else(|| panic!("no {wanted} in\n{lines}"))
+}
+
+/// What stands around the screen is in the language of the control.
+#[test]
+fn a_german_control_has_a_german_terminal() {
+    let mut hall = Hall::referenced();
+    hall.desk.help = Some(0);
+    let mut screen = hall.screen();
+    let english = text(&hall.draw_screen(&screen, 80, 60).0);
+    screen.look.language = Language::German;
+    screen.machine.paused = true;
+    let german = text(&hall.draw_screen(&screen, 80, 60).0);
+    for [one, other] in [
+        ["SHORT CUTS", "TASTENKÜRZEL"],
+        ["Circle with radius", "Kreis mit Radius"],
+        ["feed override +5 %", "Vorschub-Override +5 %"],
+        ["EMERGENCY STOP", "NOT-AUS"],
+        ["the supply of the control", "die Versorgung der Steuerung"],
+    ] {
+        assert!(
+            english.contains(one) && !english.contains(other),
+            "{one}: {english}"
+        );
+        assert!(
+            german.contains(other) && !german.contains(one),
+            "{other}: {german}"
+        );
+    }
+    assert!(german.contains("Zeit steht bei"), "{german}");
+    // What is said of a wrong entry, too.
+    hall.desk.help = None;
+    for code in ":hold q\r".chars() {
+        let code = match code {
+            '\r' => KeyCode::Enter,
+            code => KeyCode::Char(code),
+        };
+        let event = Event::Key(KeyEvent::new(code, KeyModifiers::NONE));
+        hall.desk
+            .event(&event, &screen, &Targets::default(), Instant::now());
+    }
+    assert_eq!(hall.desk.notice, "die Maschine hat keine Taste q");
+}
+
+/// A TNC 360 has no key of the layout, no letters: they are neither listed nor pressed.
+#[test]
+fn the_keyboard_is_that_of_the_model() {
+    let mut hall = Hall::of("mill-tnc360");
+    hall.desk.help = Some(0);
+    let (small, _) = hall.draw(80, 70);
+    let mut large = Hall::new();
+    large.desk.help = Some(0);
+    let (large, _) = large.draw(80, 70);
+    for label in [Key::Screen.label(), Key::Chf.label()] {
+        assert!(
+            text(&large).contains(label) && !text(&small).contains(label),
+            "{label}"
+        );
+    }
+    assert!(text(&small).contains(Key::Rnd.label()));
+    let refused = hall.station.input(&Input::Key(Key::Screen)).unwrap_err();
+    assert_eq!(refused.0, "the TNC 360 has no key SCREEN");
+    hall.station.input(&Input::Key(Key::Rnd)).unwrap();
 }
 
 #[test]

@@ -74,8 +74,11 @@ function keys(view, onPick) {
 
 const format = mm => mm.toLocaleString('en', { minimumFractionDigits: 3, maximumFractionDigits: 3, useGrouping: false });
 
-// The buttons in `root`, found by their data-* names; `frame`: axes and least coordinates.
-export function buttons(root, view, overlay, frame) {
+const english = (text, ...values) => text.replace(/\{(\d)\}/g, (_, place) => values[place - 1]);
+
+// The buttons in `root`, found by their data-* names; `frame`: axes and least coordinates; `words` says a text in the
+// language of the page.
+export function buttons(root, view, overlay, frame, words = english) {
   const find = name => root.querySelector(`[data-control="${name}"]`);
   const readout = root.querySelector('[data-readout]');
   const toggle = (button, on) => button.setAttribute('aria-pressed', String(on));
@@ -98,8 +101,8 @@ export function buttons(root, view, overlay, frame) {
     root.dataset.colours = colours.value;
     view.changed();
   });
-  const section = sections(root, view, frame);
-  const measure = measuring(find('measure'), readout, view, overlay, frame);
+  const section = sections(root, view, frame, words);
+  const measure = measuring(find('measure'), readout, view, overlay, frame, words);
   find('reset').addEventListener('click', () => {
     view.camera.reset();
     section.reset();
@@ -112,16 +115,24 @@ export function buttons(root, view, overlay, frame) {
     colours.dispatchEvent(new Event('change'));
   });
   handle(view, measure.pick);
-  return { measure, section };
+  // In another language.
+  const retell = () => {
+    section.retell();
+    measure.retell();
+  };
+  return { measure, section, retell };
 }
 
-function sections(root, view, frame) {
+function sections(root, view, frame, words) {
   const axis = root.querySelector('[data-control="section"]');
   const place = root.querySelector('[data-control="place"]');
   const flip = root.querySelector('[data-control="flip"]');
   const shown = root.querySelector('[data-place]');
   const name = k => frame.axes[k];
-  for (const option of axis.options) if (option.value !== '') option.textContent = `Section ${name(option.value)}`;
+  const retell = () => {
+    for (const option of axis.options) if (option.value !== '') option.textContent = words('Section {1}', name(option.value));
+  };
+  retell();
   let keep = 1;
   const apply = () => {
     const k = axis.value === '' ? null : Number(axis.value);
@@ -150,10 +161,11 @@ function sections(root, view, frame) {
       axis.value = '';
       apply();
     },
+    retell,
   };
 }
 
-function measuring(button, readout, view, overlay, frame) {
+function measuring(button, readout, view, overlay, frame, words) {
   let on = false;
   const say = text => {
     readout.textContent = text;
@@ -162,8 +174,8 @@ function measuring(button, readout, view, overlay, frame) {
   const coordinates = point => point.map((value, k) => `${frame.axes[k]} ${format(value + frame.min[k])}`).join('  ');
   const told = () => {
     const { points } = overlay;
-    if (points.length === 0) return 'Pick a point of the part.';
-    if (points.length === 1) return `${coordinates(points[0])}. Pick another point.`;
+    if (points.length === 0) return words('Pick a point of the part.');
+    if (points.length === 1) return words('{1}. Pick another point.', coordinates(points[0]));
     const off = points[1].map((value, k) => value - points[0][k]);
     const parts = off.map((value, k) => `Δ${frame.axes[k]} ${format(value)}`).join('  ');
     return `${format(Math.hypot(...off))} mm   ${parts}`;
@@ -182,12 +194,13 @@ function measuring(button, readout, view, overlay, frame) {
     pick(x, y) {
       if (!on) return;
       const point = view.pick(x, y);
-      if (!point) return say('There is no material. Pick a point of the part.');
+      if (!point) return say(words('There is no material. Pick a point of the part.'));
       if (overlay.points.length === 2) overlay.points = [];
       overlay.points.push(point);
       say(told());
       view.changed();
     },
     reset: () => set(false),
+    retell: () => say(on ? told() : ''),
   };
 }

@@ -48,6 +48,12 @@ key CODE                            a key of the keyboard by its code, 58 to 127
 test PROGRAM                        TEST RUN beside what the machine does
 end-test                            breaks it off
 offset adjust|off                   answers to code number 75368
+rs232 ready on|off                  the other side of a data interface is there; so `rs422`
+rs232 received \"TEXT\"               a text for the PLC has come; `faulty`: it cannot be read, `etx`: no more is wanted
+rs232 sent|not-sent                 what became of a text of the PLC
+rs232 baud N, rs232 taken on|off    rate of the mode that the operator chose; his transfer has the line
+lsv2 connected|disconnected|taken   a host is there; it has taken a message of the PLC
+lsv2 message N|\"TEXT\"               a message of the host to the PLC
 2: COMMAND                          a command to the second channel
 M100=1, W6=$10, S0=\"TEXT\"           operands, as in the table of the PLC menu; inputs are the machine's
 MP4110.2=4                          a machine parameter of the running control, with what its change needs

@@ -250,6 +250,7 @@ fn operator(
             program: name.to_owned(),
             mode,
             start_block: options.run.start_block.filter(|_| channel == 0),
+            transferred: false,
         })
     };
     let first = Operator::new(attendance, machine.folder.operator.clone(), job(0));

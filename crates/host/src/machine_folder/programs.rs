@@ -109,6 +109,10 @@ impl Programs for FolderPrograms {
         }
     }
 
+    fn name_here(&self, name: &str) -> String {
+        self.folder.join(name).to_string_lossy().into_owned()
+    }
+
     fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
         if !caller.is_empty()

@@ -10,7 +10,7 @@ use bahn_servo::Rotation;
 
 use super::trace::{Cause, Trace, Writers};
 use super::{Reason, Urgency};
-use crate::texts::{self, Language};
+use crate::texts::{self, Language, filled as fill};
 use crate::wiring::Wired;
 
 /// The acknowledgement of the control voltage, X42/4 [000:6149-6228].
@@ -507,14 +507,6 @@ fn with_parameter(reason: Reason, parameter: &str) -> Reason {
         parameter: Some(parameter.to_owned()),
         ..reason
     }
-}
-
-/// A text with `{1}`, `{2}` ... filled in.
-fn fill(text: &str, values: &[&str]) -> String {
-    let places = (1..).zip(values);
-    places.fold(text.to_owned(), |text, (place, value)| {
-        text.replace(&format!("{{{place}}}"), value)
-    })
 }
 
 /// The marker of an axis by the beginning and the end of its name.

@@ -60,6 +60,7 @@ impl MessageId {
             MessageId::GrossPositioningError => &GROSS_POSITIONING,
             MessageId::MeasuringSystemDefective => &MEASURING_SYSTEM,
             MessageId::ErrorInPlcProgram => &PLC_PROGRAM,
+            MessageId::TransferredDataIncorrect => &TRANSFER,
             _ => &[],
         }
     }
@@ -122,6 +123,53 @@ const MEASURING_SYSTEM: [MessageCode; 3] = [
         "Distance-coded reference marks contradict each other (MP30).",
         "Check MP1350 and the spacing of the marks, then the scale.",
         "[000:3290-3297]",
+    ),
+];
+
+/// The receiving component has found an error. Which letter stands for which the manuals do not say *(inferred)*.
+const fn receiver(name: &'static str, cause: &'static str) -> MessageCode {
+    code(
+        name,
+        cause,
+        "Set the same baud rate, data bits, parity and stop bits on both sides; check the cable.",
+        "[000:17590-17596]",
+    )
+}
+
+const TRANSFER: [MessageCode; 9] = [
+    receiver("A", "The parity of a character is wrong."),
+    receiver("B", "A character has no stop bit."),
+    receiver("C", "Characters came faster than they were taken."),
+    receiver("D", "The line was interrupted."),
+    code(
+        "E",
+        "A block was answered NAK three times in sequence.",
+        "Check the cable, and the data format of the receiving device.",
+        "[000:17588-17589]",
+    ),
+    code(
+        "K",
+        "The device wanted to signal an error, but no 1 came behind ESC.",
+        "Check the software of the device.",
+        "[000:17597]",
+    ),
+    code(
+        "L",
+        "The device signalled an error by a number that is not 0 to 7.",
+        "Check the software of the device.",
+        "[000:17598]",
+    ),
+    code(
+        "M",
+        "A block came with errors three times in sequence.",
+        "Check the cable, and the data format of the sending device.",
+        "[000:17600]",
+    ),
+    code(
+        "N",
+        "The device answers neither ACK nor NAK.",
+        "Check that the device is set to the same protocol and is still on.",
+        "[000:17599]",
     ),
 ];
 

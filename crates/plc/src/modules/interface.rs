@@ -29,7 +29,7 @@ pub(super) fn assign(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     if interface.user == Some(InterfaceUser::Nc) {
         return Ok(Outcome::Failed);
     }
-    interface.assign_to_plc(baud);
+    interface.assign_to_plc(baud, parameters == 1);
     Ok(Outcome::Done)
 }
 

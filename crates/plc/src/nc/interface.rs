@@ -36,17 +36,29 @@ pub struct DataInterface {
     pub end_of_text: bool,
     /// Characters are received.
     pub receiving: bool,
+    /// Data format and protocol are those of the operating mode that the operator chose, not of MP5xxx.2.
+    pub format_of_mode: bool,
+    /// How often the PLC has got it, so that whoever has the line sees that it begins anew.
+    pub assigned: u32,
+    /// How many texts were begun to be sent.
+    pub begun: u32,
+    /// How many received texts the PLC has taken.
+    pub taken: u32,
 }
 
 impl DataInterface {
     /// Gives it to the PLC, initialised and receiving [000:15611].
-    pub(crate) fn assign_to_plc(&mut self, baud: u32) {
+    pub(crate) fn assign_to_plc(&mut self, baud: u32, format_of_mode: bool) {
         *self = DataInterface {
             user: Some(InterfaceUser::Plc),
             ready: self.ready,
             baud,
             mode_baud: self.mode_baud,
             receiving: true,
+            format_of_mode,
+            assigned: self.assigned.wrapping_add(1),
+            begun: self.begun,
+            taken: self.taken,
             ..DataInterface::default()
         };
     }
@@ -68,6 +80,7 @@ impl DataInterface {
             return false;
         }
         self.transmit.extend_from_slice(text);
+        self.begun = self.begun.wrapping_add(1);
         true
     }
 
@@ -75,6 +88,7 @@ impl DataInterface {
     pub(crate) fn clear_received(&mut self) {
         self.receive.clear();
         self.received = false;
+        self.taken = self.taken.wrapping_add(1);
     }
 }
 

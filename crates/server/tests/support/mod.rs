@@ -84,6 +84,13 @@ impl Panel {
             .collect()
     }
 
+    /// Memory of this process, which is that of the station and its server, KiB.
+    pub fn memory_kib(&self) -> u64 {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        line.unwrap().trim().trim_end_matches(" kB").parse().unwrap()
+    }
+
     /// A file of the machine's folder.
     pub fn file(&self, name: &str) -> String {
         std::fs::read_to_string(self.folder.join(name)).unwrap()

@@ -1,6 +1,6 @@
 //! The last line: the command that is typed, what is to be said, or which keys there are; and how time passes.
 
-use bahn_panel::{MachineState, TimeLine};
+use bahn_panel::filled;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::{Line, Span};
@@ -12,8 +12,7 @@ const HINT: &str = " ? keys  Tab machine  : command  Ctrl+C ends";
 const HINT_AT_THE_MACHINE: &str = " + - F  * / S  < > wheel  A-Z stay down  Tab back";
 
 pub(super) fn draw(frame: &mut Frame, scene: &Scene, area: Rect) {
-    let machine = &scene.screen.machine;
-    let time = time(machine, &scene.screen.timeline);
+    let time = time(scene);
     let width = rows(time.chars().count());
     let [left, right] = Layout::horizontal([Constraint::Min(10), Constraint::Length(width)]).areas(area);
     frame.render_widget(Span::styled(time, scene.palette.style(Role::Value)), right);
@@ -39,22 +38,24 @@ pub(super) fn draw(frame: &mut Frame, scene: &Scene, area: Rect) {
             } else {
                 HINT
             };
-            Line::styled(hint, scene.palette.style(Role::Quiet))
+            Line::styled(scene.words(hint), scene.palette.style(Role::Quiet))
         }
     };
     frame.render_widget(line, left);
 }
 
 /// What is not as usual: the supply, how fast time passes, where it stands; and the knobs.
-fn time(machine: &MachineState, line: &TimeLine) -> String {
+fn time(scene: &Scene) -> String {
+    let (machine, line) = (&scene.screen.machine, &scene.screen.timeline);
     let mut parts = Vec::new();
     if !machine.power {
-        parts.push("OFF".to_owned());
+        parts.push(scene.words("OFF").to_owned());
     }
     if machine.paused {
-        parts.push(format!("time stands at {:.1} s", line.now_s));
+        let words = scene.words("time stands at {1} s");
+        parts.push(filled(words, &[&format!("{:.1}", line.now_s)]));
     } else if machine.speed != 1.0 {
-        parts.push(format!("time x{}", machine.speed));
+        parts.push(filled(scene.words("time x{1}"), &[&machine.speed.to_string()]));
     }
     let (axis, factor) = machine.handwheel;
     let [feed, spindle] = machine.knobs;

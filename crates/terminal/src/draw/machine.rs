@@ -127,7 +127,10 @@ fn stop(scene: &Scene) -> Button {
             .remove_modifier(Modifier::UNDERLINED),
     };
     let mut spans = letter(scene, Some(STOP_LETTER));
-    spans.push(Span::styled("[EMERGENCY STOP]", style));
+    spans.push(Span::styled(
+        format!("[{}]", scene.words("EMERGENCY STOP")),
+        style,
+    ));
     Button {
         spans,
         target: Some(Target::Machine(EMERGENCY_STOP.to_owned())),

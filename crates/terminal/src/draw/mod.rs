@@ -7,7 +7,7 @@ mod soft_keys;
 mod status;
 mod windows;
 
-use bahn_panel::{Key, Screen};
+use bahn_panel::{Key, Screen, around, filled};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::Style;
@@ -39,6 +39,13 @@ pub(crate) struct Scene<'a> {
     pub palette: Palette,
 }
 
+impl Scene<'_> {
+    /// A text around the screen in the language of the control.
+    pub fn words(&self, english: &'static str) -> &'static str {
+        around(self.screen.look.language, english)
+    }
+}
+
 /// Where something was drawn that others need.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Drawn {
@@ -55,7 +62,9 @@ pub(crate) fn draw(frame: &mut Frame, scene: &Scene) -> Drawn {
     let area = frame.area();
     let mut drawn = Drawn::default();
     if area.width < LEAST.0 || area.height < LEAST.1 {
-        let words = format!("The window is too small: {} x {} at least", LEAST.0, LEAST.1);
+        let least = [LEAST.0, LEAST.1].map(|side| side.to_string());
+        let words = scene.words("The window is too small: {1} x {2} at least");
+        let words = filled(words, &[&least[0], &least[1]]);
         frame.render_widget(Paragraph::new(words), area);
         return drawn;
     }

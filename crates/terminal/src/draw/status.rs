@@ -12,8 +12,10 @@ use crate::palette::Role;
 
 /// A bar ends at so many per cent of what was programmed.
 const BAR_MAX: f64 = 150.0;
-/// Columns of a bar.
+/// Columns of a bar, without its mark.
 const BAR: usize = 15;
+/// Those below 100 %, where the mark stands.
+const BELOW: usize = 10;
 
 pub(super) fn draw(frame: &mut Frame, scene: &Scene, area: Rect) {
     let status = &scene.screen.status;
@@ -118,10 +120,43 @@ fn part(value: f64, programmed: f64) -> f64 {
 
 fn bar(scene: &Scene, name: &str, percent: f64, over: f64) -> Line<'static> {
     let done = (percent.clamp(0.0, BAR_MAX) / BAR_MAX * BAR as f64).round() as usize;
-    Line::from(vec![
-        Span::raw(format!(" {name} ")),
-        Span::styled("█".repeat(done), scene.palette.style(Role::Bar)),
-        Span::styled("░".repeat(BAR - done), scene.palette.style(Role::Quiet)),
-        Span::raw(format!(" {over:>3.0} %")),
-    ])
+    let piece = |done: usize, width: usize| {
+        [
+            Span::styled("█".repeat(done), scene.palette.style(Role::Bar)),
+            Span::styled("░".repeat(width - done), scene.palette.style(Role::Quiet)),
+        ]
+    };
+    let mut spans = vec![Span::raw(format!(" {name} "))];
+    spans.extend(piece(done.min(BELOW), BELOW));
+    spans.push(Span::raw("│"));
+    spans.extend(piece(done.saturating_sub(BELOW), BAR - BELOW));
+    spans.push(Span::raw(format!(" {over:>3.0} %")));
+    Line::from(spans)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::desk::Desk;
+    use crate::palette::Palette;
+
+    #[test]
+    fn a_bar_has_its_mark_at_100_per_cent() {
+        let (screen, desk) = (bahn_panel::Screen::default(), Desk::default());
+        let scene = Scene {
+            screen: &screen,
+            desk: &desk,
+            part: None,
+            palette: Palette::Plain,
+        };
+        for (percent, expected) in [
+            (0.0, " F ░░░░░░░░░░│░░░░░  80 %"),
+            (50.0, " F █████░░░░░│░░░░░  80 %"),
+            (100.0, " F ██████████│░░░░░  80 %"),
+            (120.0, " F ██████████│██░░░  80 %"),
+            (200.0, " F ██████████│█████  80 %"),
+        ] {
+            assert_eq!(bar(&scene, "F", percent, 80.0).to_string(), expected);
+        }
+    }
 }

@@ -1,6 +1,8 @@
 //! The large window, what stands beside it, and what is written below.
 
-use bahn_panel::{LessonLine, LessonState, Line as ScreenLine, Mark, PlcLine, Status, Window, WindowKind};
+use bahn_panel::{
+    LessonLine, LessonState, Line as ScreenLine, Mark, PlcLine, Status, Window, WindowKind, filled,
+};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Modifier, Style};
@@ -57,7 +59,7 @@ pub(super) fn draw(frame: &mut Frame, scene: &Scene, area: Rect) -> Option<Rect>
 fn graphics(frame: &mut Frame, scene: &Scene, area: Rect) -> Rect {
     let mut title = Vec::new();
     if let Some(graphics) = &scene.screen.graphics {
-        title.push("GRAPHICS".to_owned());
+        title.push(scene.words("GRAPHICS").to_owned());
         if graphics.magn > 1 {
             title.push(format!("MAGN {}", graphics.magn));
         }
@@ -92,7 +94,7 @@ fn window(frame: &mut Frame, scene: &Scene, shown: &Window, area: Rect) {
         _ => listed(scene, &shown.lines, inner),
     };
     frame.render_widget(Paragraph::new(lines), inner);
-    if let Some(words) = beyond(shown) {
+    if let Some(words) = beyond(scene, shown) {
         let width = rows(words.chars().count());
         let corner = Rect {
             x: area.right().saturating_sub(width + 2).max(area.x),
@@ -105,10 +107,12 @@ fn window(frame: &mut Frame, scene: &Scene, shown: &Window, area: Rect) {
 }
 
 /// Which lines are in sight, when there are more.
-fn beyond(shown: &Window) -> Option<String> {
+fn beyond(scene: &Scene, shown: &Window) -> Option<String> {
     (shown.total > shown.lines.len()).then(|| {
         let last = (shown.first + shown.lines.len()).min(shown.total);
-        format!(" {}-{last} of {} ", shown.first + 1, shown.total)
+        let lines = [shown.first + 1, last, shown.total].map(|line| line.to_string());
+        let lines = lines.each_ref().map(String::as_str);
+        filled(scene.words(" {1}-{2} of {3} "), &lines)
     })
 }
 
@@ -291,10 +295,10 @@ pub(super) fn lesson(frame: &mut Frame, scene: &Scene, area: Rect) {
     };
     let state = match lesson.state {
         LessonState::Running => "",
-        LessonState::Passed => "  PASSED",
-        LessonState::Failed => "  FAILED",
+        LessonState::Passed => scene.words("PASSED"),
+        LessonState::Failed => scene.words("FAILED"),
     };
-    let title = format!("{}{state}", lesson.title);
+    let title = format!("{}  {state}", lesson.title).trim_end().to_owned();
     let frame_around = block(scene, &title);
     let text = Paragraph::new(lesson_lines(scene, lesson)).wrap(Wrap { trim: false });
     frame.render_widget(text.block(frame_around), area);

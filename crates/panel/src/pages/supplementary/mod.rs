@@ -180,7 +180,7 @@ impl Function {
                     Language::English => Language::German,
                     Language::German => Language::English,
                 };
-                site.settings.language = Some(texts::code(other).to_owned());
+                site.settings.language = Some(texts::language_code(other).to_owned());
             }
             Function::AxisLimit(range) => return Turn::Open(axis_limit::page(range)),
             Function::CapturedAxes => return ask_axes(site),

@@ -1,0 +1,37 @@
+//! `bahn link`: the data interfaces.
+//!
+//! - `options`: options and help texts;
+//! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer; `trace`: what passes;
+//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit;
+//! - `serve`: a machine that answers on its interfaces;
+//! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
+//!   its log book, `lsv2_screen` its screen as a picture.
+
+mod desk;
+mod disk;
+mod lsv2;
+mod lsv2_device;
+mod lsv2_log;
+mod lsv2_screen;
+mod options;
+mod port;
+mod serve;
+mod trace;
+mod transfer;
+
+pub(crate) use options::LinkOptions;
+
+use crate::{Outcome, UsageError};
+use options::LinkCommand;
+
+/// Executes a subcommand of `bahn link`.
+pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
+    match &options.command {
+        LinkCommand::Serve(options) => serve::command(options),
+        LinkCommand::Receive(options) => transfer::receive(options),
+        LinkCommand::Send(options) => transfer::send(options),
+        LinkCommand::List(options) => transfer::list(options),
+        LinkCommand::Disk(options) => disk::command(options),
+        LinkCommand::Lsv2(options) => lsv2::command(options),
+    }
+}

@@ -1,0 +1,76 @@
+//! `bahn link serve`: a machine that is on and answers on its data interfaces.
+
+use std::io::Write as _;
+use std::sync::Arc;
+use std::time::Duration;
+
+use bahn_host::HostError;
+use bahn_link::lsv2::{Passwords, Server, ServerOptions, Site};
+use bahn_panel::{Live, Station};
+
+use super::lsv2_device::MachineDevice;
+use super::options::ServeOptions;
+use crate::interrupt::Interrupt;
+use crate::{Outcome, UsageError, diagnostics, machine_folder};
+
+/// How often Ctrl-C is looked for.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Switches the machine on and answers until Ctrl-C.
+pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
+    let lsv2 = lsv2_options(options)?;
+    let machine = match machine_folder::load(&options.machine)? {
+        Ok(machine) => machine,
+        Err(faults) => {
+            diagnostics::print_faults(&faults);
+            return Ok(Outcome::ProgramError);
+        }
+    };
+    let mut station = Station::power_on(machine).map_err(|error| match error {
+        HostError::SwitchedOn(_) => UsageError(format!("{error}; end what runs it")),
+        other => other.into(),
+    })?;
+    let interrupt = Interrupt::on_ctrl_c();
+    let device = Arc::new(
+        MachineDevice::new(&mut station, options.identity.as_deref())
+            .map_err(|error| UsageError::new(error.to_string()))?,
+    );
+    let live = Live::start(station);
+    device.connect(live.link());
+    let server = match lsv2.map(|options| open(&device, &options)).transpose() {
+        Ok(server) => server,
+        Err(error) => {
+            diagnostics::print_line(&format!("error: {error}"));
+            live.end().map_err(UsageError::new)?;
+            return Ok(Outcome::ProgramError);
+        }
+    };
+    // Whoever has closed the output knows.
+    let _ = writeln!(std::io::stdout(), "ready").and_then(|()| std::io::stdout().flush());
+    while !interrupt.is_requested() && !live.has_ended() {
+        std::thread::sleep(LOOK);
+    }
+    drop(server);
+    live.end().map_err(UsageError::new)?;
+    Ok(Outcome::Fine)
+}
+
+/// Where LSV/2 answers, and to whom.
+fn lsv2_options(options: &ServeOptions) -> Result<Option<ServerOptions>, UsageError> {
+    let mut passwords = Passwords::default();
+    for assignment in &options.passwords {
+        passwords.set(assignment).map_err(UsageError::new)?;
+    }
+    let Some(listen) = options.lsv2 else {
+        return Ok(None);
+    };
+    let options = ServerOptions { listen, passwords };
+    options.check().map_err(UsageError::new)?;
+    Ok(Some(options))
+}
+
+fn open(device: &Arc<MachineDevice>, options: &ServerOptions) -> Result<Server, String> {
+    let device = Arc::clone(device);
+    let site = Site::new(device, options.passwords.clone());
+    Server::start(site, options).map_err(|error| format!("LSV/2 at {}: {error}", options.listen))
+}

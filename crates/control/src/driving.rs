@@ -1,0 +1,60 @@
+//! What the interpolator may do in a cycle of a program run.
+
+use bahn_motion::Drive;
+use bahn_path::PathElement;
+
+use crate::command::Mode;
+use crate::progress::Progress;
+use crate::site::Site;
+use crate::thread::{self, Tapping};
+use crate::track::{self, Track};
+
+/// What it depends on beside the site.
+pub(crate) struct Driving<'a> {
+    pub track: &'a Track,
+    pub progress: &'a Progress,
+    pub tapping: &'a Tapping,
+    /// The element that is executed.
+    pub element: Option<&'a PathElement>,
+    /// The operator moves axes while the run is interrupted.
+    pub by_hand: bool,
+    /// The block before which the path stops for another tool.
+    pub stop_before: Option<u64>,
+    /// The axes are in position.
+    pub settled: bool,
+    /// The tool is worn.
+    pub worn: bool,
+}
+
+impl Driving<'_> {
+    /// What the interpolator may do in this cycle.
+    pub fn drive(&self, site: &Site) -> Drive {
+        let now = site.now;
+        let coupled = self.track.path.is_coupled();
+        let [back, on] = if self.by_hand {
+            thread::way_out(self.track, site)
+        } else {
+            [false; 2]
+        };
+        let runs_out = self.tapping.runs_out(self.element, site);
+        let stopped = !self.progress.goes_on() && !on && !runs_out;
+        let single = now.mode == Mode::SingleBlock || on || self.worn;
+        Drive {
+            feed_override_percent: now.program_percent,
+            rapid_override_percent: now.program_percent,
+            spindle_override_percent: site.spindle.effective_percent(),
+            master: self.tapping.master(self.track, site),
+            back,
+            rapid_limit_mm_min: now.rapid_limit_mm_min,
+            // Without spindle enable nothing is led. Functions at which the axes do not stop (MP7440 bit 2) may
+            // come faster than the PLC takes them.
+            hold: stopped || site.handshakes.is_crowded() || coupled && !site.spindle.is_enabled(),
+            single_block: single || site.handshakes.inhibit_read_in(),
+            stop_before: self.stop_before,
+            acknowledged: self.track.has_output_all() && site.handshakes.is_idle(),
+            in_position: self.settled,
+            clamped: track::clamped_axes(&site.axes),
+            clamping: track::clamping_axes(&site.axes, site.exchange.nc()),
+        }
+    }
+}

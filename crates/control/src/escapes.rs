@@ -1,0 +1,38 @@
+//! Bytes as text in commands.
+
+/// The bytes of a text with the escapes `\n`, `\r`, `\t`, `\\`, `\'`, `\"` and `\x41`.
+pub(crate) fn bytes(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((first, behind)) = rest.split_first() {
+        rest = behind;
+        if *first != b'\\' {
+            bytes.push(*first);
+            continue;
+        }
+        let (escape, behind) = rest.split_first()?;
+        rest = behind;
+        bytes.push(match escape {
+            b'n' => b'\n',
+            b'r' => b'\r',
+            b't' => b'\t',
+            b'\\' | b'\'' | b'"' => *escape,
+            b'x' => {
+                let (digits, behind) = rest.split_at_checked(2)?;
+                rest = behind;
+                u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()?
+            }
+            _ => return None,
+        });
+    }
+    Some(bytes)
+}
+
+/// Bytes between quotes.
+pub(crate) fn quoted(text: &str) -> Option<Vec<u8>> {
+    let inner = text.strip_prefix('"')?.strip_suffix('"')?;
+    let read = bytes(inner)?;
+    // A quote that is no escape would end the text.
+    let ends = inner.replace("\\\\", "").replace("\\\"", "").contains('"');
+    (!ends).then_some(read)
+}

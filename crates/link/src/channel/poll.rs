@@ -1,0 +1,33 @@
+//! Waiting for a file of the operating system.
+
+use std::io;
+use std::os::fd::AsFd;
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+/// Waits until something can be read, at most so long.
+pub(super) fn readable(file: &impl AsFd, wait: Duration) -> io::Result<()> {
+    wait_for(file, PollFlags::IN, wait).map(drop)
+}
+
+/// Waits until something can be written, at most so long.
+pub(super) fn writable(file: &impl AsFd, wait: Duration) -> io::Result<()> {
+    wait_for(file, PollFlags::OUT, wait).map(drop)
+}
+
+/// Waits for one of these; what came may be a hang-up, too.
+pub(super) fn wait_for(file: &impl AsFd, what: PollFlags, wait: Duration) -> io::Result<PollFlags> {
+    let mut files = [PollFd::new(file, what)];
+    let time = Timespec {
+        tv_sec: i64::try_from(wait.as_secs()).unwrap_or(i64::MAX),
+        tv_nsec: wait.subsec_nanos().into(),
+    };
+    match poll(&mut files, Some(&time)) {
+        Ok(_) | Err(rustix::io::Errno::INTR) => {
+            let [file] = &files;
+            Ok(file.revents())
+        }
+        Err(error) => Err(error.into()),
+    }
+}

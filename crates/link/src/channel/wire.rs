@@ -1,0 +1,272 @@
+//! What carries the bytes: a socket, a pseudo terminal, a serial port.
+
+use std::io::{self, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use serialport::{DataBits, FlowControl, SerialPort, StopBits};
+
+use super::pty::Pty;
+use super::{ChannelError, Line};
+use crate::{Characters, Parity};
+
+/// How long a connection may take.
+const CONNECT: Duration = Duration::from_secs(5);
+
+/// What has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Got {
+    /// So many bytes.
+    Bytes(usize),
+    /// Nothing yet.
+    Nothing,
+    /// A peer has connected.
+    Opened,
+    /// The peer is gone.
+    Closed,
+}
+
+/// One of them.
+#[derive(Debug)]
+pub(super) enum Wire {
+    Listener {
+        listener: TcpListener,
+        peer: Option<TcpStream>,
+    },
+    Stream(Option<TcpStream>),
+    Pty(Pty),
+    Serial(Serial),
+}
+
+/// A serial port. Its data lines and its control lines are those of the UART.
+pub(super) struct Serial {
+    port: Box<dyn SerialPort>,
+}
+
+impl std::fmt::Debug for Serial {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Serial").field(&self.port.name()).finish()
+    }
+}
+
+impl Wire {
+    pub fn open(line: &Line, characters: Characters, baud: Option<u32>) -> Result<Wire, ChannelError> {
+        let failed = |error: io::Error| ChannelError::of_system(line, &error);
+        match line {
+            Line::Listen(address) => {
+                let listener = TcpListener::bind(address).map_err(failed)?;
+                listener.set_nonblocking(true).map_err(failed)?;
+                Ok(Wire::Listener { listener, peer: None })
+            }
+            Line::Connect(address) => connect(address)
+                .map(|stream| Wire::Stream(Some(stream)))
+                .map_err(failed),
+            Line::Pty(link) => Pty::open(link.clone()).map(Wire::Pty).map_err(failed),
+            Line::Serial(name) => open_serial(name, characters, baud)
+                .map(|port| Wire::Serial(Serial { port }))
+                .map_err(|error| failed(error.into())),
+        }
+    }
+
+    /// Where others find it, when that is not what was written.
+    pub fn place(&self) -> Option<String> {
+        match self {
+            Wire::Listener { listener, .. } => listener.local_addr().ok().map(|address| address.to_string()),
+            Wire::Pty(pty) => Some(pty.name().display().to_string()),
+            Wire::Stream(_) | Wire::Serial(_) => None,
+        }
+    }
+
+    /// The symbolic link that is to go with it.
+    pub fn link(&self) -> Option<&PathBuf> {
+        match self {
+            Wire::Pty(pty) => pty.link(),
+            _ => None,
+        }
+    }
+
+    /// Reads what is there, or waits for it.
+    pub fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Got> {
+        match self {
+            Wire::Listener { listener, peer } => match peer {
+                None => {
+                    super::poll::readable(&*listener, wait)?;
+                    match listener.accept() {
+                        Ok((stream, _)) => {
+                            prepare(&stream)?;
+                            *peer = Some(stream);
+                            Ok(Got::Opened)
+                        }
+                        Err(error) => nothing(&error).ok_or(error),
+                    }
+                }
+                Some(stream) => {
+                    let got = read_stream(stream, buffer, wait)?;
+                    if got == Got::Closed {
+                        *peer = None;
+                    }
+                    Ok(got)
+                }
+            },
+            Wire::Stream(stream) => match stream {
+                None => {
+                    std::thread::sleep(wait);
+                    Ok(Got::Nothing)
+                }
+                Some(open) => {
+                    let got = read_stream(open, buffer, wait)?;
+                    if got == Got::Closed {
+                        *stream = None;
+                    }
+                    Ok(got)
+                }
+            },
+            Wire::Pty(pty) => pty.read(buffer, wait),
+            Wire::Serial(serial) => {
+                let there = serial.port.bytes_to_read().unwrap_or_default();
+                serial
+                    .port
+                    .set_timeout(if there > 0 { Duration::ZERO } else { wait })?;
+                match serial.port.read(buffer) {
+                    Ok(0) => Ok(Got::Closed),
+                    Ok(count) => Ok(Got::Bytes(count)),
+                    Err(error) => nothing(&error).ok_or(error),
+                }
+            }
+        }
+    }
+
+    /// Writes what goes at once; without a peer bytes go nowhere, as on an open cable.
+    pub fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = match self {
+            Wire::Listener { peer: None, .. } | Wire::Stream(None) => return Ok(bytes.len()),
+            Wire::Listener {
+                peer: Some(stream), ..
+            }
+            | Wire::Stream(Some(stream)) => stream.write(bytes),
+            Wire::Pty(pty) => pty.write(bytes),
+            Wire::Serial(serial) => {
+                serial.port.set_timeout(Duration::from_millis(1))?;
+                serial.port.write(bytes)
+            }
+        };
+        match written {
+            // That the peer is gone the next reading tells.
+            Err(error) if is_gone(&error) => Ok(bytes.len()),
+            Err(error) if nothing(&error).is_some() => Ok(0),
+            written => written,
+        }
+    }
+
+    /// Waits until something can be written.
+    pub fn wait_to_write(&self, wait: Duration) -> io::Result<()> {
+        match self {
+            Wire::Listener {
+                peer: Some(stream), ..
+            }
+            | Wire::Stream(Some(stream)) => super::poll::writable(stream, wait),
+            Wire::Pty(pty) => pty.wait_to_write(wait),
+            _ => {
+                std::thread::sleep(wait.min(Duration::from_millis(1)));
+                Ok(())
+            }
+        }
+    }
+
+    /// CTS and DSR; a channel without such lines has both on.
+    pub fn lines(&mut self) -> (bool, bool) {
+        match self {
+            Wire::Serial(serial) => (
+                serial.port.read_clear_to_send().unwrap_or(true),
+                serial.port.read_data_set_ready().unwrap_or(true),
+            ),
+            _ => (true, true),
+        }
+    }
+
+    /// Sets RTS, where there is one.
+    pub fn request_to_send(&mut self, on: bool) {
+        if let Wire::Serial(serial) = self {
+            // An adapter without the line has nothing to set.
+            let _ = serial.port.write_request_to_send(on);
+        }
+    }
+
+    /// Whether it has control lines.
+    pub fn has_lines(&self) -> bool {
+        matches!(self, Wire::Serial(_))
+    }
+}
+
+fn connect(address: &str) -> io::Result<TcpStream> {
+    use std::net::ToSocketAddrs;
+    let mut last = io::Error::from(io::ErrorKind::AddrNotAvailable);
+    for address in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, CONNECT) {
+            Ok(stream) => {
+                prepare(&stream)?;
+                return Ok(stream);
+            }
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
+}
+
+fn prepare(stream: &TcpStream) -> io::Result<()> {
+    stream.set_nonblocking(true)?;
+    // A block is answered before the next one goes.
+    stream.set_nodelay(true)
+}
+
+fn read_stream(stream: &mut TcpStream, buffer: &mut [u8], wait: Duration) -> io::Result<Got> {
+    super::poll::readable(&*stream, wait)?;
+    match stream.read(buffer) {
+        Ok(0) => Ok(Got::Closed),
+        Ok(count) => Ok(Got::Bytes(count)),
+        Err(error) if is_gone(&error) => Ok(Got::Closed),
+        Err(error) => nothing(&error).ok_or(error),
+    }
+}
+
+fn open_serial(
+    name: &str,
+    characters: Characters,
+    baud: Option<u32>,
+) -> serialport::Result<Box<dyn SerialPort>> {
+    serialport::new(name, baud.unwrap_or(super::BAUD))
+        .data_bits(match characters.data_bits {
+            7 => DataBits::Seven,
+            _ => DataBits::Eight,
+        })
+        .parity(match characters.parity {
+            None => serialport::Parity::None,
+            Some(Parity::Even) => serialport::Parity::Even,
+            Some(Parity::Odd) => serialport::Parity::Odd,
+        })
+        // One and a half stop bits are waited for as two: no UART of a personal computer sends them with 7 or 8 data bits.
+        .stop_bits(match characters.half_stop_bits {
+            2 => StopBits::One,
+            _ => StopBits::Two,
+        })
+        // The protocols stop and start the transfer themselves.
+        .flow_control(FlowControl::None)
+        .dtr_on_open(true)
+        .open()
+}
+
+/// Nothing is there yet.
+pub(super) fn nothing(error: &io::Error) -> Option<Got> {
+    use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+    matches!(error.kind(), WouldBlock | TimedOut | Interrupted).then_some(Got::Nothing)
+}
+
+/// The peer is gone.
+fn is_gone(error: &io::Error) -> bool {
+    use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset, NotConnected};
+    matches!(
+        error.kind(),
+        BrokenPipe | ConnectionAborted | ConnectionReset | NotConnected
+    )
+}

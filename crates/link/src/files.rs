@@ -1,0 +1,186 @@
+//! The files that a protocol reads and writes, whatever they lie on.
+
+use std::collections::BTreeMap;
+use std::io::{self, Cursor, Read, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::store::{Existing, Store, StoreError};
+
+/// A file in a list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Listed {
+    /// Name and extension.
+    pub name: String,
+    /// Bytes.
+    pub size: u64,
+    /// It must not be replaced.
+    pub protected: bool,
+}
+
+/// What a protocol needs of the files it transfers. [`Store`] is one; [`Memory`] another.
+pub trait Files: Send {
+    /// All files, by name.
+    fn list(&mut self) -> Vec<Listed>;
+    /// A file, without regard to case.
+    fn find(&mut self, name: &str) -> Option<Listed> {
+        let mut all = self.list().into_iter();
+        all.find(|file| file.name.eq_ignore_ascii_case(name))
+    }
+    /// Opens a file to read it.
+    ///
+    /// # Errors
+    /// When it is not there.
+    fn open(&mut self, name: &str) -> Result<Box<dyn Read + Send>, StoreError>;
+    /// Begins a file, which is there when it is committed; one of this name is replaced then.
+    ///
+    /// # Errors
+    /// When it is protected, or there is no room.
+    fn create(&mut self, name: &str) -> Result<Box<dyn NewFile>, StoreError>;
+}
+
+/// A file that is being written: dropped, nothing of it is left.
+pub trait NewFile: Write + Send {
+    /// Puts it under its name.
+    ///
+    /// # Errors
+    /// When the medium does not take it.
+    fn commit(self: Box<Self>) -> Result<(), StoreError>;
+}
+
+impl Files for Store {
+    fn list(&mut self) -> Vec<Listed> {
+        let entries = Store::list(self, &self.root()).unwrap_or_default();
+        let files = entries.into_iter().filter(|entry| !entry.attributes.is_folder);
+        files
+            .map(|entry| Listed {
+                name: entry.name,
+                size: entry.attributes.size,
+                protected: entry.attributes.protected,
+            })
+            .collect()
+    }
+
+    fn find(&mut self, name: &str) -> Option<Listed> {
+        let place = self.root().join(name).ok().filter(|place| self.has(place))?;
+        let attributes = self.attributes(&place).ok()?;
+        Some(Listed {
+            name: name.to_owned(),
+            size: attributes.size,
+            protected: attributes.protected,
+        })
+    }
+
+    fn open(&mut self, name: &str) -> Result<Box<dyn Read + Send>, StoreError> {
+        let file = Store::open(self, &self.root().join(name)?)?;
+        Ok(Box::new(file))
+    }
+
+    fn create(&mut self, name: &str) -> Result<Box<dyn NewFile>, StoreError> {
+        let file = Store::create(self, &self.root().join(name)?, Existing::Replace)?;
+        Ok(Box::new(file))
+    }
+}
+
+impl NewFile for crate::store::Writing {
+    fn commit(self: Box<Self>) -> Result<(), StoreError> {
+        crate::store::Writing::commit(*self)
+    }
+}
+
+/// Files in memory: for tests, and for what is read to be looked at only. Clones are the same ones.
+///
+/// ```
+/// use bahn_link::{Files, Memory};
+///
+/// let mut files = Memory::default();
+/// files.put("15.H", "0 BEGIN PGM 15 MM\n1 END PGM 15 MM\n");
+/// assert_eq!(files.find("15.h").map(|file| file.size), Some(34));
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Memory {
+    files: Arc<Mutex<Held>>,
+}
+
+/// Text and protection by name.
+type Held = BTreeMap<String, (Vec<u8>, bool)>;
+
+impl Memory {
+    /// Puts a file there.
+    pub fn put(&self, name: &str, content: impl AsRef<[u8]>) {
+        let content = (content.as_ref().to_vec(), false);
+        self.lock().insert(name.to_owned(), content);
+    }
+
+    /// Protects a file.
+    pub fn protect(&self, name: &str) {
+        if let Some((_, protected)) = self.lock().get_mut(name) {
+            *protected = true;
+        }
+    }
+
+    /// What is in a file.
+    pub fn get(&self, name: &str) -> Option<String> {
+        let files = self.lock();
+        let (content, _) = files.get(name)?;
+        Some(String::from_utf8_lossy(content).into_owned())
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, BTreeMap<String, (Vec<u8>, bool)>> {
+        self.files.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Files for Memory {
+    fn list(&mut self) -> Vec<Listed> {
+        let files = self.lock();
+        let listed = files.iter().map(|(name, (content, protected))| Listed {
+            name: name.clone(),
+            size: content.len() as u64,
+            protected: *protected,
+        });
+        listed.collect()
+    }
+
+    fn open(&mut self, name: &str) -> Result<Box<dyn Read + Send>, StoreError> {
+        let found = self
+            .find(name)
+            .ok_or_else(|| StoreError::NoFile(name.to_owned()))?;
+        let content = self.lock().get(&found.name).map(|(content, _)| content.clone());
+        Ok(Box::new(Cursor::new(content.unwrap_or_default())))
+    }
+
+    fn create(&mut self, name: &str) -> Result<Box<dyn NewFile>, StoreError> {
+        let found = self.find(name);
+        if found.as_ref().is_some_and(|found| found.protected) {
+            return Err(StoreError::Protected(name.to_owned()));
+        }
+        Ok(Box::new(InMemory {
+            files: self.clone(),
+            name: found.map_or_else(|| name.to_owned(), |found| found.name),
+            content: Vec::new(),
+        }))
+    }
+}
+
+struct InMemory {
+    files: Memory,
+    name: String,
+    content: Vec<u8>,
+}
+
+impl Write for InMemory {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.content.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl NewFile for InMemory {
+    fn commit(self: Box<Self>) -> Result<(), StoreError> {
+        self.files.put(&self.name, &self.content);
+        Ok(())
+    }
+}

@@ -1,0 +1,187 @@
+//! How a port transfers: mode, and what the machine parameters say for it.
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::Duration;
+
+use bahn_parameters::interfaces::{ControlCharacters, TransferFormat};
+use bahn_parameters::{ControlModel, ParameterList};
+
+use crate::Characters;
+
+/// Time of error N, and after which a device that is silent in a transfer is dead. The manual gives none [000:17599]; this
+/// is that of later controls *(inferred)*.
+pub const PATIENCE: Duration = Duration::from_secs(3);
+
+/// What is connected to a port [000:17220-17230].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// Magnetic tape unit: standard protocol, never EOT.
+    Me,
+    /// Floppy disk unit or its like, which is asked for its directory by an escape sequence. So a port is set up at first
+    /// [000:10011].
+    #[default]
+    Fe1,
+    /// The same without that sequence.
+    Fe2,
+    /// Freely configurable, index 0 of its machine parameters.
+    Ext1,
+    /// Freely configurable, index 1.
+    Ext2,
+}
+
+impl Mode {
+    /// All modes with how they are written.
+    pub const ALL: [(&str, Mode); 5] = [
+        ("me", Mode::Me),
+        ("fe1", Mode::Fe1),
+        ("fe2", Mode::Fe2),
+        ("ext1", Mode::Ext1),
+        ("ext2", Mode::Ext2),
+    ];
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = Mode::ALL.iter().find(|(_, mode)| mode == self);
+        f.pad(name.map_or("", |(name, _)| name))
+    }
+}
+
+impl FromStr for Mode {
+    type Err = ();
+
+    fn from_str(text: &str) -> Result<Mode, ()> {
+        let found = Mode::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
+        found.map(|(_, mode)| *mode).ok_or(())
+    }
+}
+
+/// Everything that a protocol is told of its port.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The control whose messages are shown.
+    pub model: ControlModel,
+    /// Blocks with check characters; otherwise the standard protocol.
+    pub blockwise: bool,
+    /// Frame of a character.
+    pub characters: Characters,
+    /// Characters of the protocol.
+    pub control: ControlCharacters,
+    /// A check character is never a control character [000:17015-17017].
+    pub printable_check: bool,
+    /// DC1 stands behind each check character [000:17399-17403].
+    pub with_dc1: bool,
+    /// The other side is stopped by RTS, otherwise by DC3 [000:17059-17063].
+    pub stop_by_rts: bool,
+    /// EOT is never sent [000:17262-17264].
+    pub never_eot: bool,
+    /// The directory is asked for by an escape sequence [000:17460-17464].
+    pub asks_directory: bool,
+    /// Programs are sent with a decimal comma [001:1923].
+    pub decimal_comma: bool,
+    /// Time of error N and of a dead device.
+    pub patience: Duration,
+    /// Time of one character; zero where nothing paces them.
+    pub character_time: Duration,
+}
+
+impl Settings {
+    /// What a list of machine parameters says for a mode.
+    pub fn of(parameters: &ParameterList, mode: Mode) -> Settings {
+        let interfaces = parameters.interface_parameters();
+        let fixed = Settings {
+            model: parameters.model(),
+            blockwise: mode != Mode::Me,
+            characters: Characters::FIXED,
+            control: parameters.fixed_characters(),
+            printable_check: false,
+            with_dc1: true,
+            stop_by_rts: false,
+            never_eot: mode == Mode::Me,
+            asks_directory: mode == Mode::Fe1,
+            decimal_comma: interfaces.decimal_comma,
+            patience: PATIENCE,
+            character_time: Duration::ZERO,
+        };
+        let index = match mode {
+            Mode::Ext1 => 0,
+            Mode::Ext2 => 1,
+            Mode::Me | Mode::Fe1 | Mode::Fe2 => return fixed,
+        };
+        let [ext1, ext2, _] = interfaces.formats;
+        fixed.with_format(&[ext1, ext2][index])
+    }
+
+    /// What a list says for a line of the PLC: EXT3 [000:15609-15636].
+    pub fn of_plc(parameters: &ParameterList) -> Settings {
+        let [.., ext3] = parameters.interface_parameters().formats;
+        Settings::of(parameters, Mode::Fe2).with_format(&ext3)
+    }
+
+    fn with_format(self, format: &TransferFormat) -> Settings {
+        Settings {
+            blockwise: format.blockwise,
+            characters: Characters::of_format(format),
+            control: format.characters,
+            printable_check: format.printable_check,
+            with_dc1: format.stop_by_dc3,
+            stop_by_rts: format.stop_by_rts,
+            ..self
+        }
+    }
+
+    /// The same on a port of a certain speed and with another patience.
+    pub fn on(self, baud: Option<u32>, patience: Duration) -> Settings {
+        Settings {
+            patience,
+            character_time: baud.map_or(Duration::ZERO, |baud| self.characters.time(baud)),
+            ..self
+        }
+    }
+
+    /// A moment in which what belongs together has come: three characters, and what systems need to hand them over.
+    pub(crate) fn moment(&self) -> Duration {
+        Duration::from_millis(50) + self.character_time * 3
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    #[test]
+    fn modes_are_written_as_they_are_read() {
+        for (name, mode) in Mode::ALL {
+            assert_eq!(
+                (mode.to_string().as_str(), name.to_uppercase().parse()),
+                (name, Ok(mode))
+            );
+        }
+        assert_eq!("fe".parse::<Mode>(), Err(()));
+    }
+
+    #[test]
+    fn fixed_modes_do_not_ask_the_list() {
+        let mut list = ParameterList::reference(ControlModel::Tnc425);
+        list.set(5200, 0, 33.0).unwrap();
+        list.set(5020, 0, 3.0).unwrap();
+        list.set(5030, 0, 1.0).unwrap();
+        let me = Settings::of(&list, Mode::Me);
+        assert!(!me.blockwise && me.never_eot && me.control == ControlCharacters::STANDARD);
+        let [fe1, fe2] = [Mode::Fe1, Mode::Fe2].map(|mode| Settings::of(&list, mode));
+        assert!(fe1.blockwise && fe1.with_dc1 && !fe1.never_eot && fe1.characters == Characters::FIXED);
+        assert_eq!(
+            Settings {
+                asks_directory: false,
+                ..fe1
+            },
+            fe2
+        );
+        let ext = Settings::of(&list, Mode::Ext1);
+        assert!(ext.blockwise && ext.printable_check && !ext.with_dc1 && ext.control.stx == b'!');
+        assert_eq!(ext.characters.data_bits, 8);
+        assert!(!Settings::of(&list, Mode::Ext2).blockwise);
+    }
+}

@@ -1,0 +1,274 @@
+//! The file service that all protocols share: files of a machine, or of a folder that plays a disk.
+//!
+//! Names are compared without regard to case; symbolic links, devices and names that no control knows are not there. What is
+//! being written has no name until it is committed.
+
+mod error;
+mod files;
+mod lookup;
+mod place;
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
+
+pub use error::StoreError;
+pub use files::{Reading, Writing};
+pub use place::{NAME_MAX, Place};
+
+/// Drive of the part programs.
+pub const TNC: &str = "TNC";
+/// Drive of the PLC's files.
+pub const PLC: &str = "PLC";
+/// Files on a disk of the FE 401 at most.
+pub const DISK_FILES: usize = 256;
+
+/// A file or folder in a list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name; `NAME.<code>NC` is `NAME.EXT`.
+    pub name: String,
+    /// What there is to be said of it.
+    pub attributes: Attributes,
+}
+
+/// What there is to be said of a file or folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attributes {
+    /// Bytes; a folder has none.
+    pub size: u64,
+    /// When it was written.
+    pub modified: SystemTime,
+    /// It has no write permission, or its first block protects it.
+    pub protected: bool,
+    /// It is a folder.
+    pub is_folder: bool,
+}
+
+/// What becomes of a file of the same name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It stays: the new one is refused.
+    Keep,
+    /// It is replaced when the new one is complete.
+    Replace,
+}
+
+/// The file service. Clones are the same one: what one writes the other knows of.
+///
+/// ```
+/// use std::io::{Read, Write};
+/// use bahn_link::store::{Existing, Store, StoreError};
+///
+/// # let folder = std::env::temp_dir().join(format!("bahn-store-{}", std::process::id()));
+/// # std::fs::create_dir_all(folder.join("plc"))?;
+/// # std::fs::create_dir_all(folder.join("programs"))?;
+/// let store = Store::of_machine(&folder.join("programs"), &folder.join("plc"))?;
+/// let part = store.root().join("15.H")?;
+/// let mut file = store.create(&part, Existing::Keep)?;
+/// file.write_all(b"BEGIN PGM 15 MM\nEND PGM 15 MM\n")?;
+/// assert!(store.list(&store.root())?.is_empty());
+/// file.commit()?;
+/// assert_eq!(store.list(&store.root())?[0].name, "15.H");
+///
+/// let mut text = String::new();
+/// store.open(&store.root().join("15.h")?)?.read_to_string(&mut text)?;
+/// assert!(text.starts_with("BEGIN PGM 15"));
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Store {
+    inner: Arc<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    /// Name of the drive, and its folder without symbolic links.
+    drives: Vec<(&'static str, PathBuf)>,
+    /// Files at most, and no folders: a disk.
+    limit: Option<usize>,
+    /// What is being written.
+    busy: Mutex<HashSet<PathBuf>>,
+    changes: AtomicU64,
+}
+
+impl Store {
+    /// Files of a machine: part programs and tables on drive `TNC:`, the PLC's on `PLC:`. What a killed process left half
+    /// written is swept.
+    ///
+    /// # Errors
+    /// When a folder is not there.
+    pub fn of_machine(programs: &Path, plc: &Path) -> Result<Store, StoreError> {
+        Store::over(&[(TNC, programs), (PLC, plc)], None)
+    }
+
+    /// A disk: one folder without folders in it, with at most [`DISK_FILES`] files.
+    ///
+    /// # Errors
+    /// When the folder is not there.
+    pub fn of_disk(folder: &Path) -> Result<Store, StoreError> {
+        Store::over(&[("", folder)], Some(DISK_FILES))
+    }
+
+    fn over(folders: &[(&'static str, &Path)], limit: Option<usize>) -> Result<Store, StoreError> {
+        let mut drives = Vec::new();
+        for &(name, folder) in folders {
+            let no_folder = || StoreError::NoFolder(folder.display().to_string());
+            let folder = fs::canonicalize(folder).map_err(|_| no_folder())?;
+            if !folder.is_dir() {
+                return Err(no_folder());
+            }
+            lookup::sweep(&folder);
+            drives.push((name, folder));
+        }
+        Ok(Store {
+            inner: Arc::new(Inner {
+                drives,
+                limit,
+                busy: Mutex::default(),
+                changes: AtomicU64::new(0),
+            }),
+        })
+    }
+
+    /// Where paths begin: the root of the first drive.
+    pub fn root(&self) -> Place {
+        Place::root(self.drives().next().unwrap_or_default())
+    }
+
+    /// Names of the drives, without colon.
+    pub fn drives(&self) -> impl Iterator<Item = &'static str> {
+        self.inner.drives.iter().map(|(name, _)| *name)
+    }
+
+    /// Counts what was changed through this service, so that whoever keeps what it has read knows when to read again.
+    pub fn changes(&self) -> u64 {
+        self.inner.changes.load(Ordering::Acquire)
+    }
+
+    fn changed(&self) {
+        self.inner.changes.fetch_add(1, Ordering::Release);
+    }
+
+    fn busy(&self) -> MutexGuard<'_, HashSet<PathBuf>> {
+        self.inner.busy.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What is in a folder, by name.
+    ///
+    /// # Errors
+    /// When it is no folder.
+    pub fn list(&self, folder: &Place) -> Result<Vec<Entry>, StoreError> {
+        Ok(lookup::list(
+            &self.find_folder(folder)?,
+            self.inner.limit.is_none(),
+        ))
+    }
+
+    /// What there is to be said of a file or folder.
+    ///
+    /// # Errors
+    /// When it is not there.
+    pub fn attributes(&self, place: &Place) -> Result<Attributes, StoreError> {
+        let path = self.find_any(place)?;
+        lookup::attributes(&path).ok_or_else(|| StoreError::NoFile(place.to_string()))
+    }
+
+    /// Whether there is a file of this name.
+    pub fn has(&self, place: &Place) -> bool {
+        self.find_file(place).is_ok()
+    }
+
+    /// Protects a file, or takes its protection away, as write permission. A program that its first block protects stays
+    /// protected.
+    ///
+    /// # Errors
+    /// When it is not there, or the medium does not do it.
+    pub fn protect(&self, place: &Place, on: bool) -> Result<(), StoreError> {
+        let path = self.find_file(place)?;
+        lookup::set_read_only(&path, on)
+            .map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
+        self.changed();
+        Ok(())
+    }
+
+    /// Deletes a file.
+    ///
+    /// # Errors
+    /// When it is not there, protected or being written.
+    pub fn delete(&self, place: &Place) -> Result<(), StoreError> {
+        let path = self.own(place)?;
+        self.done(fs::remove_file(&path), &path, place)
+    }
+
+    /// Renames a file, or moves it to another folder, byte for byte.
+    ///
+    /// # Errors
+    /// When it is not there, protected or being written, or there is a file of the new name.
+    pub fn rename(&self, from: &Place, to: &Place) -> Result<(), StoreError> {
+        let old = self.own(from)?;
+        let new = self.free(to, Some(&old))?;
+        if old.parent() != new.parent() {
+            self.has_room(&new)?;
+        }
+        self.done(fs::rename(&old, &new), &new, from)
+    }
+
+    /// Copies a file, byte for byte; the copy is not protected by permission.
+    ///
+    /// # Errors
+    /// When it is not there, or there is a file of the new name, or no room.
+    pub fn copy(&self, from: &Place, to: &Place) -> Result<(), StoreError> {
+        let mut source = self.open(from)?;
+        let mut copy = self.create(to, Existing::Keep)?;
+        std::io::copy(&mut source, &mut copy)
+            .map_err(|error| StoreError::of_system(&error, &to.to_string()))?;
+        copy.commit()
+    }
+
+    /// Makes a folder.
+    ///
+    /// # Errors
+    /// When there is something of this name, or the store is a disk.
+    pub fn make_folder(&self, place: &Place) -> Result<(), StoreError> {
+        if self.inner.limit.is_some() {
+            return Err(StoreError::BadName(place.to_string()));
+        }
+        let path = self.free(place, None)?;
+        self.done(fs::create_dir(&path), &path, place)
+    }
+
+    /// Removes an empty folder.
+    ///
+    /// # Errors
+    /// When it is not there, is a drive, or is not empty.
+    pub fn remove_folder(&self, place: &Place) -> Result<(), StoreError> {
+        if place.name().is_none() {
+            return Err(StoreError::Protected(place.to_string()));
+        }
+        let path = self.find_folder(place)?;
+        self.done(fs::remove_dir(&path), &path, place)
+    }
+
+    /// Whether there is a folder of this name, to go there.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn enter(&self, place: &Place) -> Result<(), StoreError> {
+        self.find_folder(place).map(drop)
+    }
+
+    /// A deed of the medium is on it, and counted.
+    fn done(&self, deed: std::io::Result<()>, path: &Path, place: &Place) -> Result<(), StoreError> {
+        deed.map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
+        bahn_host::files::sync_folder(path);
+        self.changed();
+        Ok(())
+    }
+}

@@ -1,0 +1,152 @@
+//! A viewer that does not read: nothing waits for him, little is kept for him, and he has the newest when he reads again.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
+
+#[path = "../../viewer/tests/support/mod.rs"]
+mod codec;
+mod support;
+
+use std::net::TcpStream;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use codec::Screen;
+use rmpv::Value;
+use serde_json::json;
+use support::Panel;
+use tungstenite::{Message, WebSocket};
+
+/// What somebody who looks at the part was sent.
+#[derive(Default)]
+struct Looker {
+    screen: Option<Screen>,
+    cells: [usize; 2],
+    parts: usize,
+    bytes: usize,
+}
+
+impl Looker {
+    fn take(&mut self, message: &[u8]) {
+        self.bytes += message.len();
+        let regions = rmpv::decode::read_value(&mut &message[..]).unwrap();
+        for region in regions.as_array().unwrap() {
+            if region[0].as_str() != Some("part") || region[1].is_nil() {
+                continue;
+            }
+            self.parts += 1;
+            let field = |value: &Value, name: &str| {
+                let entries = value.as_map().unwrap();
+                let found = entries.iter().find(|(key, _)| key.as_str() == Some(name));
+                found.map(|(_, value)| value.clone())
+            };
+            if let Some(head) = field(&region[1], "head") {
+                let cells = field(&head, "cells").unwrap();
+                self.cells = [0, 1].map(|k| cells[k].as_u64().unwrap() as usize);
+                self.screen = Some(Screen::new(self.cells));
+            }
+            if let Some(tiles) = field(&region[1], "tiles") {
+                self.screen.as_mut().unwrap().take(tiles.as_slice().unwrap());
+            }
+        }
+    }
+}
+
+/// A viewer with a small buffer, who looks at the part.
+fn looks(panel: &Panel, name: &str) -> WebSocket<TcpStream> {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .unwrap();
+    let stream = runtime.block_on(async {
+        let socket = tokio::net::TcpSocket::new_v4().unwrap();
+        socket.set_recv_buffer_size(8 << 10).unwrap();
+        socket.connect(panel.address).await.unwrap().into_std().unwrap()
+    });
+    stream.set_nonblocking(false).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    let (mut socket, _) =
+        tungstenite::client(format!("ws://{}/ws?name={name}", panel.address), stream).unwrap();
+    socket
+        .send(Message::text(json!({"part": true}).to_string()))
+        .unwrap();
+    socket
+}
+
+/// Passes over the plate at depths that change, so that every pass is sent.
+fn program() -> String {
+    let mut text = String::from(
+        "BEGIN PGM LIVE MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+80 Z+0\n\
+         TOOL CALL 3 Z S2000\nL Z+50 R0 FMAX M3\nL X-20 Y+5 R0 FMAX\n",
+    );
+    for pass in 0..12_000 {
+        let (y, z) = (pass * 7 % 80, 1.0 + 5.0 * f64::from(pass) / 12_000.0);
+        let x = if pass % 2 == 0 { 120 } else { -20 };
+        text += &format!("L Y+{y} Z-{z:.3} F900\nL X{x:+}\n");
+    }
+    text + "L Z+50 R0 FMAX M2\nEND PGM LIVE MM\n"
+}
+
+#[test]
+fn a_viewer_that_does_not_read_gets_the_newest() {
+    let panel = Panel::with(|folder| std::fs::write(folder.join("programs/LIVE.H"), program()).unwrap());
+    panel.to_manual();
+    panel.press("TEST");
+    panel.press("GRAPHICS");
+    panel.choose("LIVE");
+    let mut slow = looks(&panel, "slow");
+    let mut quick = looks(&panel, "quick");
+    let ends = Arc::new(AtomicBool::new(false));
+    let own = Arc::clone(&ends);
+    let reads = std::thread::spawn(move || {
+        let mut looker = Looker::default();
+        while !own.load(Ordering::Relaxed) {
+            if let Message::Binary(bytes) = quick.read().unwrap() {
+                looker.take(&bytes);
+            }
+        }
+        looker
+    });
+    let memory = panel.memory_kib();
+    panel.press("START");
+    panel.until(|screen| screen["graphics"]["progress"] == 1.0);
+    // The newest is sent within a moment to whoever reads.
+    std::thread::sleep(Duration::from_secs(2));
+    ends.store(true, Ordering::Relaxed);
+    let quick = reads.join().unwrap();
+    let grown = panel.memory_kib().saturating_sub(memory);
+
+    let mut late = Looker::default();
+    let expected = panel.heights(quick.cells[0]);
+    assert!(
+        quick.screen.unwrap().heights == expected,
+        "who reads has the part"
+    );
+    let end = Instant::now() + Duration::from_secs(30);
+    while late
+        .screen
+        .as_ref()
+        .is_none_or(|screen| screen.heights != expected)
+    {
+        assert!(Instant::now() < end, "{} parts, {} bytes", late.parts, late.bytes);
+        if let Message::Binary(bytes) = slow.read().unwrap() {
+            late.take(&bytes);
+        }
+    }
+    println!(
+        "quick: {} parts, {} bytes; slow: {} parts, {} bytes; {grown} KiB more",
+        quick.parts, quick.bytes, late.parts, late.bytes
+    );
+    assert!(
+        quick.parts >= 4 && late.parts < quick.parts,
+        "{} of {}",
+        late.parts,
+        quick.parts
+    );
+    assert!(
+        late.bytes * 3 < quick.bytes * 2,
+        "{} of {}",
+        late.bytes,
+        quick.bytes
+    );
+}
