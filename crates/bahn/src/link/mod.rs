@@ -3,7 +3,7 @@
 //! - `options`: options and help texts;
 //! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer; `trace`: what passes;
 //! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit;
-//! - `serve`: a machine that answers on its interfaces;
+//! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones;
 //! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
 //!   its log book, `lsv2_screen` its screen as a picture.
 
@@ -15,6 +15,7 @@ mod lsv2_log;
 mod lsv2_screen;
 mod options;
 mod port;
+mod serial_ports;
 mod serve;
 mod trace;
 mod transfer;
