@@ -150,8 +150,8 @@ def run_information():
 def memory_and_parameters():
     with connected(safe=False) as host:
         for kind in MemoryType:
-            is_equal(len(host.read_plc_memory(0, kind, 3)), 3)
-        is_equal(len(host.read_plc_memory(3000, MemoryType.MARKER, 264)), 264)
+            is_equal(len(host.read_plc_memory(0, kind, 2)), 2)
+        is_equal(len(host.read_plc_memory(0, MemoryType.MARKER, 500)), 500)
         for address in ("M4095", "W1024"):
             try:
                 host.read_plc_address(address)
@@ -169,7 +169,8 @@ def memory_and_parameters():
         other = "0" if value == "1" else "1"
         assert host.set_machine_parameter("7230.0", other)
         is_equal(host.get_machine_parameter("7230"), other)
-        assert host.set_machine_parameter("7230.0", value, safe_to_disk=True)
+        assert host.set_machine_parameter("7230.0", value)
+        assert host.set_machine_parameter("7230.0", other, safe_to_disk=True)
         assert not host.set_machine_parameter("7230.0", "900")
 
 

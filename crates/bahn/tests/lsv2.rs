@@ -114,6 +114,8 @@ fn pylsv2_finds_the_control_it_knows() {
         return;
     };
     let served = Served::start(&["--identity", "iTNC530"]);
+    let list = || served.folder.read("mill/parameters.mp");
+    let before = list();
     let here = served.folder.path("host");
     std::fs::create_dir(&here).unwrap();
     let port = served.address.rsplit(':').next().unwrap();
@@ -130,8 +132,16 @@ fn pylsv2_finds_the_control_it_knows() {
         String::from_utf8_lossy(&output.stderr)
     );
     assert_eq!(said.lines().count(), 7, "{said}");
-    let list = std::fs::read_to_string(served.folder.path("mill/parameters.mp")).unwrap();
-    assert!(list.contains("7230"), "what was set for good stands in the list");
+    let changed = before
+        .lines()
+        .zip(list().lines())
+        .filter(|(old, new)| old != new)
+        .count();
+    assert_eq!(
+        (changed, before.lines().count()),
+        (1, list().lines().count()),
+        "what was set for good"
+    );
     assert_eq!(served.end(), 0);
 }
 
@@ -266,7 +276,10 @@ fn host_and_plc_talk_with_each_other() {
     stream
         .set_read_timeout(Some(std::time::Duration::from_secs(10)))
         .unwrap();
-    assert_eq!(telegram(&mut stream, b"A_LGDNC\0"), b"T_OK");
+    // The PLC runs when POWER INTERRUPTED is acknowledged.
+    for command in [b"A_LGMONITOR\0".as_slice(), b"C_EK\x01\xae", b"A_LGDNC\0"] {
+        assert_eq!(telegram(&mut stream, command), b"T_OK");
+    }
     for value in [-2_i32, 0x0102_0304] {
         let message = [b"M_PC".as_slice(), &value.to_be_bytes()].concat();
         assert_eq!(telegram(&mut stream, &message), b"T_OK");

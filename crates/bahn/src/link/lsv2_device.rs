@@ -58,7 +58,7 @@ impl MachineDevice {
             std::fs::create_dir_all(folder)
                 .map_err(|error| StoreError::Medium(format!("cannot make {}: {error}", folder.display())))?;
         }
-        let model = station.control().model().to_string();
+        let model = station.control().model().name();
         let plc_name = main
             .file_name()
             .unwrap_or_default()
