@@ -193,6 +193,7 @@ pub(crate) fn interpreter(
         strict: run.strict,
         skip_unknown: run.skip_unknown,
         as_programmed: false,
+        transferred: false,
         max_blocks_without_motion: run.max_blocks,
     })
 }

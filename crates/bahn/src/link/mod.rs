@@ -1,10 +1,12 @@
 //! `bahn link`: the data interfaces.
 //!
 //! - `options`: options and help texts;
+//! - `dnc`: programs that are executed while they are transferred, from both sides;
 //! - `serve`: a machine that answers on its interfaces;
 //! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
 //!   its log book, `lsv2_screen` its screen as a picture.
 
+mod dnc;
 mod lsv2;
 mod lsv2_device;
 mod lsv2_log;
@@ -21,6 +23,7 @@ use options::LinkCommand;
 pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
     match &options.command {
         LinkCommand::Serve(options) => serve::command(options),
+        LinkCommand::Dnc(options) => dnc::command(options),
         LinkCommand::Lsv2(options) => lsv2::command(options),
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueHint};
 
+use super::dnc::DncOptions;
 use super::lsv2::Lsv2Options;
 
 /// Options of `bahn link`.
@@ -20,6 +21,8 @@ pub(crate) enum LinkCommand {
     /// Switch a machine on and let it answer on its data interfaces until Ctrl-C.
     #[command(after_help = SERVE_EXAMPLES)]
     Serve(ServeOptions),
+    /// Execute programs while they are transferred: as the control, or as the computer at the other end.
+    Dnc(DncOptions),
     /// Ask a control by LSV/2: files, state, screen.
     #[command(after_help = super::lsv2::EXAMPLES)]
     Lsv2(Lsv2Options),
