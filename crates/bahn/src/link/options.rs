@@ -7,6 +7,7 @@ use clap::{Args, Subcommand, ValueHint};
 
 use super::desk::Answer;
 use super::disk::DiskOptions;
+use super::dnc::DncOptions;
 use super::lsv2::Lsv2Options;
 use super::transfer::{ListOptions, TransferOptions};
 
@@ -35,6 +36,8 @@ pub(crate) enum LinkCommand {
     /// Be a floppy disk unit: a folder as its disk.
     #[command(after_help = super::disk::EXAMPLES)]
     Disk(DiskOptions),
+    /// Execute programs while they are transferred: as the control, or as the computer at the other end.
+    Dnc(DncOptions),
     /// Ask a control by LSV/2: files, state, screen.
     #[command(after_help = super::lsv2::EXAMPLES)]
     Lsv2(Lsv2Options),
