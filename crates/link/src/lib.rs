@@ -16,7 +16,7 @@
 //!   protocol and of the [`blockwise`] one with check characters, [`Passive`] what obeys; [`drive`] puts it on a channel,
 //!   [`Files`] are what it transfers;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`HardCopy`] speaks to the printer of a TNC 155;
+//! - [`HardCopy`] speaks to the printer of a TNC 155, [`PrintOut`] brings it what is printed;
 //! - [`store`] is the file service that all protocols share;
 //! - [`PlcLine`] is the PLC at a line;
 //! - [`lsv2`] are the telegrams of LSV/2.
@@ -39,6 +39,7 @@ mod hard_copy;
 pub mod lsv2;
 mod passive;
 mod plc_line;
+mod print_out;
 mod protocol;
 mod settings;
 mod shared_port;
@@ -54,6 +55,7 @@ pub use files::{Files, Listed, Memory, NewFile};
 pub use hard_copy::HardCopy;
 pub use passive::{Passive, peripheral};
 pub use plc_line::PlcLine;
+pub use print_out::PrintOut;
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};
 pub use shared_port::{PlcHold, SharedPort};

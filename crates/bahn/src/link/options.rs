@@ -5,10 +5,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueHint};
 
+use super::backup::{BackupOptions, RestoreOptions};
 use super::desk::Answer;
 use super::disk::DiskOptions;
 use super::dnc::DncOptions;
 use super::lsv2::Lsv2Options;
+use super::print::PrintOptions;
 use super::transfer::{ListOptions, TransferOptions};
 
 /// Options of `bahn link`.
@@ -38,6 +40,15 @@ pub(crate) enum LinkCommand {
     Disk(DiskOptions),
     /// Execute programs while they are transferred: as the control, or as the computer at the other end.
     Dnc(DncOptions),
+    /// Back up all files of a machine as one.
+    #[command(after_help = super::backup::BACKUP_EXAMPLES)]
+    Backup(BackupOptions),
+    /// Restore a machine from such a file.
+    #[command(after_help = super::backup::RESTORE_EXAMPLES)]
+    Restore(RestoreOptions),
+    /// Print a picture as the TNC 155 prints its graphics.
+    #[command(after_help = super::print::EXAMPLES)]
+    Print(PrintOptions),
     /// Ask a control by LSV/2: files, state, screen.
     #[command(after_help = super::lsv2::EXAMPLES)]
     Lsv2(Lsv2Options),
