@@ -14,6 +14,7 @@
 //! - a [`Protocol`] is one side of a line, without clock and channel: the control and the device of the [`standard`]
 //!   protocol and of the [`blockwise`] one with check characters, [`Passive`] what obeys; [`drive`] puts it on a channel,
 //!   [`Files`] are what it transfers;
+//! - a [`Monitor`] says in words what passes;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`store`] is the file service that all protocols share;
 //! - [`lsv2`] are the telegrams of LSV/2.
@@ -32,6 +33,7 @@ mod file_type;
 mod files;
 mod frame;
 pub mod lsv2;
+mod monitor;
 mod passive;
 mod protocol;
 mod settings;
@@ -44,6 +46,7 @@ pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile};
+pub use monitor::Monitor;
 pub use passive::{Passive, peripheral};
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};

@@ -2,7 +2,7 @@
 //!
 //! - `options`: options and help texts;
 //! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer; `trace`: what passes;
-//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit;
+//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit; `monitor`: what passes over a line;
 //! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones;
 //! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
 //!   its log book, `lsv2_screen` its screen as a picture.
@@ -13,6 +13,7 @@ mod lsv2;
 mod lsv2_device;
 mod lsv2_log;
 mod lsv2_screen;
+mod monitor;
 mod options;
 mod port;
 mod serial_ports;
@@ -33,6 +34,7 @@ pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
         LinkCommand::Send(options) => transfer::send(options),
         LinkCommand::List(options) => transfer::list(options),
         LinkCommand::Disk(options) => disk::command(options),
+        LinkCommand::Monitor(options) => monitor::command(options),
         LinkCommand::Lsv2(options) => lsv2::command(options),
     }
 }
