@@ -33,15 +33,22 @@ impl Running {
             .spawn()
             .unwrap();
         let mut line = String::new();
-        BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
-        let place = line.trim().rsplit_once(" is ").map_or(String::new(), |(_, place)| place.to_owned());
+        BufReader::new(child.stderr.take().unwrap())
+            .read_line(&mut line)
+            .unwrap();
+        let place = line
+            .trim()
+            .rsplit_once(" is ")
+            .map_or(String::new(), |(_, place)| place.to_owned());
         Running { child, place }
     }
 
     /// Waits for `ready`.
     fn ready(mut self) -> Running {
         let mut line = String::new();
-        BufReader::new(self.child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        BufReader::new(self.child.stdout.take().unwrap())
+            .read_line(&mut line)
+            .unwrap();
         assert_eq!(line, "ready\n");
         self
     }
@@ -53,7 +60,9 @@ impl Running {
     }
 
     fn signal(&mut self, signal: &str) {
-        let done = Command::new("kill").args([signal, &self.child.id().to_string()]).status();
+        let done = Command::new("kill")
+            .args([signal, &self.child.id().to_string()])
+            .status();
         assert!(done.unwrap().success());
         self.child.wait().unwrap();
     }
@@ -124,14 +133,19 @@ fn files_go_to_a_disk_and_come_back() {
     let sent = folder.bahn(&format!("link send --machine mill {port} --all"));
     assert_eq!((sent.code(), sent.err().as_str()), (0, ""), "{}", sent.out());
     same(&folder.path("mill/programs"), &folder.path("disk"));
-    let received = folder.bahn(&format!("link receive --machine empty {port} --all --format json"));
+    let received = folder.bahn(&format!(
+        "link receive --machine empty {port} --all --format json"
+    ));
     assert_eq!(received.code(), 0, "{}", received.err());
     assert_eq!(received.json()["received"].as_array().unwrap().len(), 4);
     same(&folder.path("mill/programs"), &folder.path("empty/programs"));
     // The directory, by both ways.
     let listed = folder.bahn(&format!("link list --machine mill {port}"));
     assert_eq!(listed.out(), "BRACKET.H\nCIRCLE.H\nINDEX.H\nSADDLE.H\n");
-    let listed = folder.bahn(&format!("link list --machine mill --port connect:{},mode=fe1 --format json", disk.place));
+    let listed = folder.bahn(&format!(
+        "link list --machine mill --port connect:{},mode=fe1 --format json",
+        disk.place
+    ));
     assert_eq!(listed.json()["listed"][1]["name"], "CIRCLE");
     assert!(listed.json()["free_sectors"].as_u64().unwrap() > 1000);
     // What the control shows stands word for word in the output.
@@ -142,12 +156,25 @@ fn files_go_to_a_disk_and_come_back() {
     ] {
         let command = format!("link receive --machine mill {port} {arguments}");
         let run = folder.bahn(&command);
-        assert_eq!((run.code(), run.out()), (1, format!("{message}\n")), "{arguments}");
+        assert_eq!(
+            (run.code(), run.out()),
+            (1, format!("{message}\n")),
+            "{arguments}"
+        );
         let run = folder.bahn(&format!("{command} --format json"));
-        assert_eq!((run.code(), run.json()["message"].as_str()), (1, Some(message)), "{arguments}");
+        assert_eq!(
+            (run.code(), run.json()["message"].as_str()),
+            (1, Some(message)),
+            "{arguments}"
+        );
     }
-    let replaced = folder.bahn(&format!("link receive --machine mill {port} CIRCLE.H --answer yes"));
-    assert_eq!((replaced.code(), replaced.out().as_str()), (0, "CIRCLE.H received\n"));
+    let replaced = folder.bahn(&format!(
+        "link receive --machine mill {port} CIRCLE.H --answer yes"
+    ));
+    assert_eq!(
+        (replaced.code(), replaced.out().as_str()),
+        (0, "CIRCLE.H received\n")
+    );
 }
 
 #[test]
@@ -166,8 +193,15 @@ fn a_disk_answers_a_control_byte_by_byte() {
     line.write_all(b"\x04").unwrap();
     // Tricks and links lead nowhere.
     for (header, code) in [
-        ("H..E", "002"), ("H../1E", "002"), ("H/etc/passwdE", "002"), ("HC:1E", "002"), ("H9E", "010"), ("HSECRETE", "010"),
-        ("HCONA", "002"), ("H1.HA", "002"), ("H1X", "001"),
+        ("H..E", "002"),
+        ("H../1E", "002"),
+        ("H/etc/passwdE", "002"),
+        ("HC:1E", "002"),
+        ("H9E", "010"),
+        ("HSECRETE", "010"),
+        ("HCONA", "002"),
+        ("H1.HA", "002"),
+        ("H1X", "001"),
     ] {
         say(&mut line, &block(1, header), &error(code));
         line.write_all(b"\x06\x04").unwrap();
@@ -188,7 +222,12 @@ fn a_disk_answers_a_control_byte_by_byte() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .filter(|name| !name.starts_with('.'))
         .collect();
-    assert!(names.iter().all(|name| ["1.HNC", "secret.txt", "9.H"].contains(&name.as_str())), "{names:?}");
+    assert!(
+        names
+            .iter()
+            .all(|name| ["1.HNC", "secret.txt", "9.H"].contains(&name.as_str())),
+        "{names:?}"
+    );
 }
 
 /// Over a pseudo terminal, as over a cable: paced, with the link that goes with it.
@@ -213,17 +252,42 @@ fn host_and_control() {
     folder.write("disk/1.H", PROGRAM);
     // The standard protocol of a tape, and that with check characters.
     for mode in ["me", "fe2"] {
-        let mut host = Running::start(&folder, &format!("link receive --as host --dir other --port tcp:127.0.0.1:0,mode={mode}"));
-        let sent = folder.bahn(&format!("link send --machine mill --port connect:{},mode={mode} CIRCLE.H", host.place));
-        assert_eq!((sent.code(), sent.out().as_str()), (0, "CIRCLE.H sent\n"), "{mode}: {}", sent.err());
+        let mut host = Running::start(
+            &folder,
+            &format!("link receive --as host --dir other --port tcp:127.0.0.1:0,mode={mode}"),
+        );
+        let sent = folder.bahn(&format!(
+            "link send --machine mill --port connect:{},mode={mode} CIRCLE.H",
+            host.place
+        ));
+        assert_eq!(
+            (sent.code(), sent.out().as_str()),
+            (0, "CIRCLE.H sent\n"),
+            "{mode}: {}",
+            sent.err()
+        );
         assert_eq!(host.child.wait().unwrap().code(), Some(0), "{mode}");
-        assert_eq!(fs::read(folder.path("other/CIRCLE.H")).unwrap(), fs::read(folder.path("mill/programs/CIRCLE.H")).unwrap());
+        assert_eq!(
+            fs::read(folder.path("other/CIRCLE.H")).unwrap(),
+            fs::read(folder.path("mill/programs/CIRCLE.H")).unwrap()
+        );
         fs::remove_file(folder.path("other/CIRCLE.H")).unwrap();
 
-        let mut host = Running::start(&folder, &format!("link send --as host --dir disk --port tcp:127.0.0.1:0,mode={mode} 1.H"));
-        let command = format!("link receive --machine mill --port connect:{},mode={mode} 1.H --answer yes", host.place);
+        let mut host = Running::start(
+            &folder,
+            &format!("link send --as host --dir disk --port tcp:127.0.0.1:0,mode={mode} 1.H"),
+        );
+        let command = format!(
+            "link receive --machine mill --port connect:{},mode={mode} 1.H --answer yes",
+            host.place
+        );
         let received = folder.bahn(&command);
-        assert_eq!((received.code(), received.out().as_str()), (0, "1.H received\n"), "{mode}: {}", received.err());
+        assert_eq!(
+            (received.code(), received.out().as_str()),
+            (0, "1.H received\n"),
+            "{mode}: {}",
+            received.err()
+        );
         assert_eq!(host.child.wait().unwrap().code(), Some(0), "{mode}");
         assert_eq!(folder.read("mill/programs/1.H"), PROGRAM);
     }
@@ -253,11 +317,18 @@ fn a_machine_that_answers() {
         }
         std::thread::sleep(Duration::from_millis(20));
     }
-    assert_eq!(folder.read("mill/programs/7.H"), "0 BEGIN PGM 7 MM\n1 END PGM 7 MM\n");
+    assert_eq!(
+        folder.read("mill/programs/7.H"),
+        "0 BEGIN PGM 7 MM\n1 END PGM 7 MM\n"
+    );
     machine.signal("-INT");
     let monitor = folder.bahn("link monitor --trace line.txt");
     assert_eq!(monitor.code(), 0, "{}", monitor.err());
-    for said in ["< SOH \"HCIRCLEE\" ETB BCC=09", "> ACK STX \"0 BEGIN PGM CIRCLE MM\" ETB BCC=2A", "\"R_PR\" DLE ETX BCC=0C"] {
+    for said in [
+        "< SOH \"HCIRCLEE\" ETB BCC=09",
+        "> ACK STX \"0 BEGIN PGM CIRCLE MM\" ETB BCC=2A",
+        "\"R_PR\" DLE ETX BCC=0C",
+    ] {
         assert!(monitor.out().contains(said), "{said}\n{}", monitor.out());
     }
 }
@@ -269,11 +340,16 @@ fn ports_that_cannot_be_opened() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap();
     let serve = "link serve --machine mill";
-    let run = folder.bahn(&format!("{serve} --rs232 tcp:127.0.0.1:0,baud=19200 --rs422 tcp:127.0.0.1:0,baud=38400"));
+    let run = folder.bahn(&format!(
+        "{serve} --rs232 tcp:127.0.0.1:0,baud=19200 --rs422 tcp:127.0.0.1:0,baud=38400"
+    ));
     assert_eq!((run.code(), run.out().as_str()), (1, "BAUD RATE NOT POSSIBLE\n"));
     for (ports, said) in [
         (format!("--rs232 tcp:{address}"), "in use"),
-        ("--rs232 tcp:127.0.0.1:0,mode=fe3".to_owned(), "column 17, `mode=fe3`: a mode is"),
+        (
+            "--rs232 tcp:127.0.0.1:0,mode=fe3".to_owned(),
+            "column 17, `mode=fe3`: a mode is",
+        ),
         ("--rs422 usb:1".to_owned(), "a port is tcp:ADDR:PORT"),
     ] {
         let run = folder.bahn(&format!("{serve} {ports}"));
@@ -281,10 +357,20 @@ fn ports_that_cannot_be_opened() {
         assert!(run.err().contains(said), "{ports}: {}", run.err());
     }
     drop(taken);
-    let run = folder.bahn(&format!("link receive --machine mill --port connect:{address} 1.H"));
-    assert_eq!((run.code(), run.out().as_str()), (1, "EXT. OUTPUT/INPUT NOT READY\n"));
+    let run = folder.bahn(&format!(
+        "link receive --machine mill --port connect:{address} 1.H"
+    ));
+    assert_eq!(
+        (run.code(), run.out().as_str()),
+        (1, "EXT. OUTPUT/INPUT NOT READY\n")
+    );
     assert_eq!(folder.bahn("link receive --machine mill --port pty").code(), 2);
-    assert_eq!(folder.bahn("link send --machine mill --port pty NOWHERE.H").code(), 2);
+    assert_eq!(
+        folder
+            .bahn("link send --machine mill --port pty NOWHERE.H")
+            .code(),
+        2
+    );
     assert_eq!(folder.bahn("link receive --port pty --all").code(), 2);
 }
 
@@ -308,7 +394,8 @@ fn a_device_that_falls_silent() {
             line.read_to_end(&mut rest).unwrap();
             rest
         });
-        let command = format!("link receive --machine mill --port connect:{address},mode=fe1,timeout=0.3 15.H");
+        let command =
+            format!("link receive --machine mill --port connect:{address},mode=fe1,timeout=0.3 15.H");
         let run = folder.bahn(&command);
         assert_eq!((run.code(), run.out()), (1, format!("{message}\n")));
         let rest = thread.join().unwrap();

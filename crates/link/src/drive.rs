@@ -38,6 +38,9 @@ pub fn drive(
 ) -> io::Result<()> {
     let mut buffer = Vec::new();
     let mut by_rts = false;
+    if channel.is_connected() {
+        protocol.plugged(channel.now());
+    }
     while !stop.load(Ordering::Relaxed) {
         let now = channel.now();
         while let Some(byte) = channel.receive() {
@@ -79,8 +82,10 @@ pub fn drive(
         if let Some(deadline) = protocol.deadline() {
             wait = wait.min(deadline.saturating_sub(channel.now()));
         }
+        wait = protocol.patience().map_or(wait, |patience| wait.min(patience));
         match channel.wait(wait)? {
-            Happened::Nothing | Happened::Opened => {}
+            Happened::Nothing => {}
+            Happened::Opened => protocol.plugged(channel.now()),
             Happened::Closed => {
                 let now = channel.now();
                 while let Some(byte) = channel.receive() {

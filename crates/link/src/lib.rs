@@ -8,6 +8,7 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
+//! - [`backup`] is a machine as one text;
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
@@ -16,7 +17,9 @@
 //!   [`Files`] are what it transfers;
 //! - a [`Monitor`] says in words what passes;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
+//! - [`HardCopy`] speaks to the printer of a TNC 155;
 //! - [`store`] is the file service that all protocols share;
+//! - [`PlcLine`] is the PLC at a line;
 //! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
@@ -24,6 +27,7 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+pub mod backup;
 pub mod blockwise;
 mod channel;
 mod characters;
@@ -32,11 +36,14 @@ mod drive;
 mod file_type;
 mod files;
 mod frame;
+mod hard_copy;
 pub mod lsv2;
 mod monitor;
 mod passive;
+mod plc_line;
 mod protocol;
 mod settings;
+mod shared_port;
 pub mod standard;
 pub mod store;
 mod text;
@@ -46,7 +53,10 @@ pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile};
+pub use hard_copy::HardCopy;
 pub use monitor::Monitor;
 pub use passive::{Passive, peripheral};
+pub use plc_line::PlcLine;
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};
+pub use shared_port::{PlcHold, SharedPort};

@@ -43,7 +43,7 @@ impl Direction {
                 .for_each(|byte| self.faults.pass(*byte, now, &mut passed));
             self.free = now + CHARACTER;
             self.under_way
-                .extend(passed.iter().map(|byte| (now + CHARACTER + WAY, *byte)));
+                .extend(passed.iter().map(|byte| (now + CHARACTER + WAY, *byte & 0x7F)));
         }
         while let Some((time, byte)) = self.under_way.front().copied()
             && time <= now
@@ -172,10 +172,11 @@ fn campaign(blocks: u64, one_in: u64) -> Tally {
         let outcome = transfer(control.as_mut(), &mut device, number, one_in);
         let has = stored.get("1.H");
         // What is stored is whole, block for block.
-        assert!(
-            has.as_ref().is_none_or(|has| *has == text),
-            "transfer {number} is not what was sent"
-        );
+        if let Some(has) = &has {
+            let wrong = has.lines().zip(text.lines()).find(|(has, sent)| has != sent);
+            assert_eq!(wrong, None, "transfer {number} is not what was sent");
+            assert_eq!(has.lines().count(), text.lines().count(), "transfer {number}");
+        }
         let (receiver, sender) = match reads {
             true => (outcome.control, outcome.device),
             false => (outcome.device, outcome.control),
@@ -207,11 +208,11 @@ fn campaign(blocks: u64, one_in: u64) -> Tally {
 
 #[test]
 fn blocks_over_a_line_with_faults() {
-    let tally = campaign(20_000, 1000);
+    let tally = campaign(100_000, 1000);
     println!("{tally:?}");
     // The line is so bad that some transfers end, and so good that most do not.
     assert!(
-        tally.broken_off > 10 && tally.broken_off * 2 < tally.transfers,
+        tally.broken_off > 10 && tally.broken_off * 10 < tally.transfers,
         "{tally:?}"
     );
     assert!(tally.doubted * 20 < tally.transfers, "{tally:?}");
@@ -223,7 +224,7 @@ fn a_million_blocks_over_a_line_with_faults() {
     println!("{:?}", campaign(1_000_000, 1000));
 }
 
-/// FE fills its line: what goes over it one way is 95 % of what could, the answers of the other side counted.
+/// FE fills its line: what goes over it one way is 95 % of what could, with all that frames it.
 #[test]
 fn a_good_line_is_full() {
     let settings = settings(Mode::Fe2).on(Some(38_400), Duration::from_secs(3));
@@ -236,8 +237,8 @@ fn a_good_line_is_full() {
     let outcome = transfer(&mut control, &mut device, 0, u64::MAX / 8);
     assert_eq!((outcome.control, outcome.device), (Some(true), Some(true)));
     assert_eq!(stored.get("1.H").unwrap(), text);
-    // STX, ETB, BCC, DC1 and ACK of each block.
-    let characters: usize = text.lines().map(|line| line.len() + 5).sum();
+    // STX, ETB, BCC and DC1 of each block; the answer comes while DC1 goes.
+    let characters: usize = text.lines().map(|line| line.len() + 4).sum();
     let part = (CHARACTER * characters as u32).as_secs_f64() / outcome.time.as_secs_f64();
     println!("{:.1} %", part * 100.0);
     assert!(part > 0.95, "{part}");

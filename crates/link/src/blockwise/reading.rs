@@ -54,6 +54,9 @@ pub struct Reading {
     events: VecDeque<Event>,
     /// A message was shown.
     failed: bool,
+    /// There is no room for more, and the block that came is not acknowledged.
+    holds: bool,
+    owes: bool,
 }
 
 impl Reading {
@@ -68,6 +71,8 @@ impl Reading {
             taking: None,
             events: VecDeque::new(),
             failed: false,
+            holds: false,
+            owes: false,
         };
         reading.ask();
         reading
@@ -99,16 +104,19 @@ impl Reading {
     }
 
     fn piece(&mut self, piece: Piece, now: Duration) {
+        // The other side waits; what comes nevertheless is no block of the text.
+        if self.owes && !matches!(piece, Piece::Eot | Piece::Block(Kind::Header, _)) {
+            return;
+        }
         match (&self.step, piece) {
             (Step::Over | Step::Question(..), Piece::Block(Kind::Header, text)) => self.device(&text),
             (Step::Over | Step::Question(..), Piece::Eot) => self.eot(),
             (Step::Over | Step::Question(..), _) => {}
             (_, Piece::Block(Kind::Header, text)) => self.device(&text),
             (Step::Asked, Piece::Ack) => self.step = Step::Block,
+            (Step::Asked, Piece::Nak) if self.link.repeat() => {}
             (Step::Asked, Piece::Nak) => {
-                if !self.link.repeat() {
-                    self.abort(Shown::Control(MessageId::TransferredDataIncorrect, Some('E')));
-                }
+                self.abort(Shown::Control(MessageId::TransferredDataIncorrect, Some('E')));
             }
             // The device has no more.
             (Step::Asked, Piece::Etx | Piece::Eot) if !self.is_selected() => self.finish(),
@@ -217,6 +225,7 @@ impl Reading {
     fn store(&mut self, text: &[u8]) {
         match self.taking.as_mut().map(|taking| taking.line(text)) {
             Some(Err(error)) => self.unstored(&error),
+            _ if self.holds => self.owes = true,
             _ => self.link.acknowledge(),
         }
     }
@@ -279,6 +288,7 @@ impl Reading {
 
     fn over(&mut self) {
         self.taking = None;
+        self.owes = false;
         self.step = Step::Over;
         self.events.push_back(Event::Ended(!self.failed));
     }
@@ -289,6 +299,7 @@ impl Reading {
         let ended = self.taking.as_ref().is_some_and(Taking::is_ended);
         match &self.step {
             Step::Over | Step::Question(..) => None,
+            _ if self.owes => None,
             _ if self.link.is_inside() => Some(self.link.gap()),
             Step::Etx => Some(settings.moment()),
             Step::Block if ended && !self.is_selected() => {
@@ -379,6 +390,13 @@ impl Protocol for Reading {
             }
             // The next file is asked for at once [000:17504-17512].
             _ => self.ask(),
+        }
+    }
+
+    fn hold(&mut self, on: bool) {
+        self.holds = on;
+        if !on && std::mem::take(&mut self.owes) {
+            self.link.acknowledge();
         }
     }
 

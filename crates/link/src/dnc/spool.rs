@@ -1,107 +1,196 @@
-//! What a peripheral sends: the programs of a folder, one block at a time, whatever their size.
+//! What a peripheral sends to a control that executes it: programs, line by line, and which block is in the machine.
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader};
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::io::{self, BufRead, BufReader, Read};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Longest block that is read; a longer line is no program *(inferred)*.
-const BLOCK_MAX: usize = 4096;
+use crate::files::{Files, Listed, NewFile};
+use crate::store::StoreError;
 
-/// A program that is sent.
-#[derive(Debug)]
-pub struct Sending {
-    reader: BufReader<File>,
-    /// The block that the other side has not acknowledged yet.
-    current: Option<Vec<u8>>,
-    acknowledged: u64,
-    bytes: u64,
-    size: u64,
+/// Longest line that is read at once.
+const LINE_MAX: u64 = 1 << 16;
+
+/// How far the program is that is sent.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Its name; empty before the first one.
+    pub name: String,
+    /// Blocks that the machine has acknowledged.
+    pub blocks: u64,
+    /// Bytes of them.
+    pub bytes: u64,
+    /// Bytes of the file.
+    pub size: u64,
 }
 
-impl Sending {
-    /// Opens a program.
-    ///
-    /// # Errors
-    /// When it cannot be read.
-    pub fn open(path: &Path) -> io::Result<Sending> {
-        let file = File::open(path)?;
-        let size = file.metadata()?.len();
-        let mut sending = Sending {
-            reader: BufReader::with_capacity(1 << 16, file),
-            current: None,
-            acknowledged: 0,
-            bytes: 0,
-            size,
-        };
-        sending.current = sending.read()?;
-        Ok(sending)
-    }
-
-    /// The block that is to be sent, without its line end; `None` behind the last one.
-    pub fn block(&self) -> Option<&[u8]> {
-        self.current.as_deref()
-    }
-
-    /// The other side has the block.
-    ///
-    /// # Errors
-    /// When the file cannot be read on.
-    pub fn acknowledge(&mut self) -> io::Result<()> {
-        if self.current.is_some() {
-            self.acknowledged += 1;
-            self.current = self.read()?;
-        }
-        Ok(())
-    }
-
-    /// Blocks that the other side has.
-    pub fn acknowledged(&self) -> u64 {
-        self.acknowledged
-    }
-
-    /// How much of the file has been sent, 0 to 100 %.
+impl Progress {
+    /// How much of the file is in the machine, %.
     pub fn percent(&self) -> f64 {
-        let ahead = self.current.as_ref().map_or(0, |block| block.len() as u64);
         match self.size {
             0 => 100.0,
-            size => 100.0 * self.bytes.saturating_sub(ahead) as f64 / size as f64,
+            size => 100.0 * self.bytes as f64 / size as f64,
+        }
+    }
+}
+
+/// Where a [`Spool`] tells how far it is.
+#[derive(Clone, Debug, Default)]
+pub struct Spooled(Arc<Mutex<State>>);
+
+#[derive(Debug, Default)]
+struct State {
+    progress: Progress,
+    /// The line that was handed out last: its acknowledgement lets the next one be read.
+    line: u64,
+    /// Blocks of programs that were acknowledged when their transfer was broken off.
+    broken: BTreeMap<String, u64>,
+}
+
+impl Spooled {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// How far the program is that is sent, or was last.
+    pub fn progress(&self) -> Progress {
+        self.state().progress.clone()
+    }
+
+    /// The program has arrived.
+    pub fn arrived(&self, name: &str) {
+        let mut state = self.state();
+        state.broken.remove(&name.to_ascii_uppercase());
+        let size = state.progress.size;
+        if state.line > 0 {
+            state.progress.blocks += 1;
+        }
+        (state.progress.bytes, state.line) = (size, 0);
+    }
+
+    /// Its transfer was broken off.
+    pub fn broken_off(&self) {
+        let mut state = self.state();
+        let (name, blocks) = (state.progress.name.to_ascii_uppercase(), state.progress.blocks);
+        if !name.is_empty() {
+            state.broken.insert(name, blocks);
+        }
+        state.line = 0;
+    }
+}
+
+/// Programs of other files that are read only, with a look at how far they are.
+pub struct Spool {
+    files: Box<dyn Files>,
+    spooled: Spooled,
+    /// Behind a broken transfer a program begins with its first block and those that were not acknowledged.
+    resumes: bool,
+}
+
+impl Spool {
+    /// Spools files.
+    pub fn new(files: Box<dyn Files>, resumes: bool) -> Spool {
+        Spool {
+            files,
+            spooled: Spooled::default(),
+            resumes,
         }
     }
 
-    /// Passes over blocks that the other side has already, but for BEGIN PGM.
-    ///
-    /// # Errors
-    /// When the file cannot be read on.
-    pub fn skip_to(&mut self, acknowledged: u64) -> io::Result<()> {
-        while self.acknowledged < acknowledged && self.current.is_some() {
-            self.acknowledge()?;
+    /// Where it tells how far it is.
+    pub fn spooled(&self) -> Spooled {
+        self.spooled.clone()
+    }
+}
+
+impl Files for Spool {
+    fn list(&mut self) -> Vec<Listed> {
+        self.files.list()
+    }
+
+    fn find(&mut self, name: &str) -> Option<Listed> {
+        self.files.find(name)
+    }
+
+    fn open(&mut self, name: &str) -> Result<Box<dyn Read + Send>, StoreError> {
+        let size = self.files.find(name).map_or(0, |file| file.size);
+        let file = self.files.open(name)?;
+        let mut state = self.spooled.state();
+        let known = state.broken.get(&name.to_ascii_uppercase()).copied();
+        state.line = 0;
+        state.progress = Progress {
+            name: name.to_owned(),
+            size,
+            ..Progress::default()
+        };
+        Ok(Box::new(Lines {
+            file: BufReader::with_capacity(1 << 16, file),
+            spooled: self.spooled.clone(),
+            line: Vec::new(),
+            at: 0,
+            skips: known.filter(|_| self.resumes).unwrap_or_default(),
+        }))
+    }
+
+    fn create(&mut self, name: &str) -> Result<Box<dyn NewFile>, StoreError> {
+        Err(StoreError::Protected(name.to_owned()))
+    }
+}
+
+/// A program whose lines are read one by one: who reads the next one has an acknowledgement of the last.
+struct Lines {
+    file: BufReader<Box<dyn Read + Send>>,
+    spooled: Spooled,
+    line: Vec<u8>,
+    at: usize,
+    /// Blocks that the machine has, with BEGIN PGM, which it gets again.
+    skips: u64,
+}
+
+impl Lines {
+    fn next_line(&mut self) -> io::Result<()> {
+        let Lines {
+            file,
+            spooled,
+            line,
+            at,
+            skips,
+        } = self;
+        *at = 0;
+        let mut state = spooled.state();
+        if state.line > 0 {
+            state.progress.blocks += 1;
+            state.progress.bytes += line.len() as u64;
         }
+        if state.line == 1 {
+            while state.progress.blocks < *skips && read(file, line)? {
+                state.progress.blocks += 1;
+                state.progress.bytes += line.len() as u64;
+            }
+        }
+        let more = read(file, line)?;
+        state.line = if more { state.line + 1 } else { 0 };
         Ok(())
     }
+}
 
-    /// The next line with text.
-    fn read(&mut self) -> io::Result<Option<Vec<u8>>> {
-        loop {
-            let mut line = Vec::new();
-            let mut limited = io::Read::take(&mut self.reader, BLOCK_MAX as u64 + 1);
-            let count = limited.read_until(b'\n', &mut line)?;
-            if count == 0 {
-                return Ok(None);
-            }
-            if count > BLOCK_MAX {
-                return Err(io::Error::new(
-                    io::ErrorKind::InvalidData,
-                    "a line is longer than any block",
-                ));
-            }
-            self.bytes += count as u64;
-            let end = line
-                .iter()
-                .rposition(|byte| !byte.is_ascii_whitespace() && *byte != 0);
-            if let Some(end) = end {
-                line.truncate(end + 1);
-                return Ok(Some(line));
-            }
+/// Reads a line; `false` behind the last one.
+fn read(file: &mut BufReader<Box<dyn Read + Send>>, line: &mut Vec<u8>) -> io::Result<bool> {
+    line.clear();
+    let count = file.take(LINE_MAX).read_until(b'\n', line)?;
+    Ok(count > 0)
+}
+
+impl Read for Lines {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.at == self.line.len() {
+            self.next_line()?;
         }
+        let left = self.line.get(self.at..).unwrap_or_default();
+        let count = left.len().min(into.len());
+        if let (Some(to), Some(from)) = (into.get_mut(..count), left.get(..count)) {
+            to.copy_from_slice(from);
+        }
+        self.at += count;
+        Ok(count)
     }
 }

@@ -36,6 +36,8 @@ pub struct Reading {
     /// The operator is asked: what comes meanwhile waits.
     question: Option<(Question, Vec<u8>)>,
     held: VecDeque<u8>,
+    /// There is no room for more.
+    holds: bool,
     /// Something has come since the last DC1.
     answered: bool,
     /// A text has come to its end: the device may have no more.
@@ -59,6 +61,7 @@ impl Reading {
             outgoing: [DC1].into(),
             question: None,
             held: VecDeque::new(),
+            holds: false,
             answered: false,
             had_text: false,
             quiet: Duration::ZERO,
@@ -117,7 +120,7 @@ impl Reading {
             }
             Text::Search if nameless => {
                 if let Want::Selected(name) = self.want.clone()
-                    && !(line.is_empty() && !self.had_text)
+                    && (!line.is_empty() || self.had_text)
                 {
                     self.begin(name, line);
                 }
@@ -347,6 +350,16 @@ impl Protocol for Reading {
         }
     }
 
+    fn hold(&mut self, on: bool) {
+        if self.over || self.holds == on {
+            return;
+        }
+        self.holds = on;
+        if !self.settings.stop_by_rts {
+            self.outgoing.push_back(if on { DC3 } else { DC1 });
+        }
+    }
+
     fn end(&mut self, _now: Duration) {
         // END before anything has come [000:17275].
         if !self.answered && !self.had_text && !self.over {
@@ -365,6 +378,6 @@ impl Protocol for Reading {
     }
 
     fn has_stopped_by_rts(&self) -> bool {
-        self.settings.stop_by_rts && self.question.is_some()
+        self.settings.stop_by_rts && (self.question.is_some() || self.holds)
     }
 }
