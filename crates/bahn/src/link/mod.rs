@@ -2,7 +2,7 @@
 //!
 //! - `options`: options and help texts;
 //! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer; `trace`: what passes;
-//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit;
+//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit; `monitor`: what passes over a line;
 //! - `dnc`: programs that are executed while they are transferred, from both sides;
 //! - `backup`: all of a machine as one file; `print`: a picture on a printer;
 //! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones, `plc_lines` its PLC at them;
@@ -17,6 +17,7 @@ mod lsv2;
 mod lsv2_device;
 mod lsv2_log;
 mod lsv2_screen;
+mod monitor;
 mod options;
 mod plc_lines;
 mod port;
@@ -39,6 +40,7 @@ pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
         LinkCommand::Send(options) => transfer::send(options),
         LinkCommand::List(options) => transfer::list(options),
         LinkCommand::Disk(options) => disk::command(options),
+        LinkCommand::Monitor(options) => monitor::command(options),
         LinkCommand::Dnc(options) => dnc::command(options),
         LinkCommand::Backup(options) => backup::backup(options),
         LinkCommand::Restore(options) => backup::restore(options),
