@@ -188,6 +188,7 @@ pub(crate) fn interpreter(
                 AbsentAxes::of(std::iter::once(list).chain(others))
             }),
         machine: false,
+        transferred: false,
         skip_blocks: run.skip_blocks,
         inch_feed: run.inch_feed.map(Into::into),
         strict: run.strict,

@@ -21,8 +21,8 @@ pub trait Attendant {
     fn answer(&mut self) -> Option<bool> {
         None
     }
-    /// Whether it is over.
-    fn is_over(&mut self, protocol: &dyn Protocol, now: Duration) -> bool;
+    /// Whether it is over, now that the protocol has nothing to do.
+    fn is_over(&mut self, connected: bool, now: Duration) -> bool;
 }
 
 /// Drives a protocol until who attends says that it is over, or somebody stops it.
@@ -38,6 +38,9 @@ pub fn drive(
 ) -> io::Result<()> {
     let mut buffer = Vec::new();
     let mut by_rts = false;
+    if channel.is_connected() {
+        protocol.plugged(channel.now());
+    }
     while !stop.load(Ordering::Relaxed) {
         let now = channel.now();
         while let Some(byte) = channel.receive() {
@@ -57,6 +60,7 @@ pub fn drive(
             by_rts = !by_rts;
             channel.request_to_send(!by_rts);
         }
+        channel.set_transparent(protocol.is_transparent());
         let mut wait = LOOK;
         if channel.is_connected() && protocol.has_output() {
             let room = channel.room();
@@ -71,14 +75,17 @@ pub fn drive(
             } else {
                 Duration::ZERO
             };
-        } else if protocol.is_idle() && channel.is_written() && attendant.is_over(protocol, now) {
+        } else if protocol.is_idle() && channel.is_written() && attendant.is_over(channel.is_connected(), now)
+        {
             return Ok(());
         }
         if let Some(deadline) = protocol.deadline() {
             wait = wait.min(deadline.saturating_sub(channel.now()));
         }
+        wait = protocol.patience().map_or(wait, |patience| wait.min(patience));
         match channel.wait(wait)? {
-            Happened::Nothing | Happened::Opened => {}
+            Happened::Nothing => {}
+            Happened::Opened => protocol.plugged(channel.now()),
             Happened::Closed => {
                 let now = channel.now();
                 while let Some(byte) = channel.receive() {

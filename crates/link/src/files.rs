@@ -98,8 +98,11 @@ impl NewFile for crate::store::Writing {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
-    files: Arc<Mutex<BTreeMap<String, (Vec<u8>, bool)>>>,
+    files: Arc<Mutex<Held>>,
 }
+
+/// Text and protection by name.
+type Held = BTreeMap<String, (Vec<u8>, bool)>;
 
 impl Memory {
     /// Puts a file there.

@@ -8,11 +8,17 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
+//! - [`backup`] is a machine as one text;
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
+//! - a [`Protocol`] is one side of a line, without clock and channel: the control and the device of the [`standard`]
+//!   protocol and of the [`blockwise`] one with check characters, [`Passive`] what obeys; [`drive`] puts it on a channel,
+//!   [`Files`] are what it transfers;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
+//! - [`HardCopy`] speaks to the printer of a TNC 155;
 //! - [`store`] is the file service that all protocols share;
+//! - [`PlcLine`] is the PLC at a line;
 //! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
@@ -20,6 +26,7 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+pub mod backup;
 pub mod blockwise;
 mod channel;
 mod characters;
@@ -28,9 +35,13 @@ mod drive;
 mod file_type;
 mod files;
 mod frame;
+mod hard_copy;
 pub mod lsv2;
+mod passive;
+mod plc_line;
 mod protocol;
 mod settings;
+mod shared_port;
 pub mod standard;
 pub mod store;
 mod text;
@@ -40,5 +51,9 @@ pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile};
+pub use hard_copy::HardCopy;
+pub use passive::{Passive, peripheral};
+pub use plc_line::PlcLine;
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};
+pub use shared_port::{PlcHold, SharedPort};

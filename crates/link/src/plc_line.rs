@@ -98,19 +98,19 @@ impl PlcLine {
     }
 
     /// A byte has come.
-    pub fn receive(&mut self, byte: u8, now: Duration) {
+    pub fn receive(&mut self, byte: u8) {
         match self.settings {
             None => {}
             Some(settings) if settings.blockwise => {
                 if let Some(piece) = self.decoder.take(&settings, byte) {
-                    self.piece(&settings, piece, now);
+                    self.piece(&settings, piece);
                 }
             }
             Some(settings) => self.character(&settings, byte),
         }
     }
 
-    fn piece(&mut self, settings: &Settings, piece: Piece, now: Duration) {
+    fn piece(&mut self, settings: &Settings, piece: Piece) {
         let control = &settings.control;
         match piece {
             Piece::Block(Kind::Text, text) => {
@@ -141,7 +141,7 @@ impl PlcLine {
                 }
             }
             Piece::Ack if self.awaits_answer() => self.sent(LineEvent::Sent),
-            Piece::Nak if self.awaits_answer() => self.again(now),
+            Piece::Nak if self.awaits_answer() => self.again(),
             Piece::Etx => self.events.push_back(LineEvent::EndOfText),
             Piece::Other(DC3) => self.stopped = true,
             Piece::Other(DC1) => self.stopped = false,
@@ -181,7 +181,9 @@ impl PlcLine {
     fn deliver(&mut self, text: Vec<u8>) {
         self.events.push_back(LineEvent::Received(text));
         self.awaits = true;
-        let settings = self.settings.filter(|settings| !settings.blockwise && !self.stops);
+        let settings = self
+            .settings
+            .filter(|settings| !settings.blockwise && !self.stops);
         if let Some(settings) = settings {
             self.stops = true;
             if !settings.stop_by_rts {
@@ -200,8 +202,12 @@ impl PlcLine {
         self.events.push_back(event);
     }
 
-    fn again(&mut self, _now: Duration) {
-        match self.sending.as_mut().filter(|sending| sending.transmissions < TRIES) {
+    fn again(&mut self) {
+        match self
+            .sending
+            .as_mut()
+            .filter(|sending| sending.transmissions < TRIES)
+        {
             Some(sending) => {
                 (sending.at, sending.until) = (0, None);
                 sending.transmissions += 1;
@@ -271,5 +277,150 @@ impl PlcLine {
     /// Whether it has stopped the other side by RTS.
     pub fn has_stopped_by_rts(&self) -> bool {
         self.stops && self.settings.is_some_and(|settings| settings.stop_by_rts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+    use bahn_parameters::{ControlModel, ParameterList};
+    use proptest::prelude::*;
+
+    const NOW: Duration = Duration::ZERO;
+
+    /// The PLC has the line, as `MP5030.2` says.
+    fn line(blockwise: bool) -> (PlcLine, Settings) {
+        let mut list = ParameterList::reference(ControlModel::Tnc425);
+        list.set(5030, 2, f64::from(u8::from(blockwise))).unwrap();
+        let settings = Settings::of_plc(&list);
+        let mut line = PlcLine::default();
+        line.assign(Some(settings));
+        (line, settings)
+    }
+
+    fn come(line: &mut PlcLine, bytes: &[u8]) -> Vec<LineEvent> {
+        bytes.iter().for_each(|byte| line.receive(*byte));
+        std::iter::from_fn(|| line.event()).collect()
+    }
+
+    fn sent(line: &mut PlcLine) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        while line.has_output() {
+            line.send(3, NOW, &mut bytes);
+        }
+        bytes
+    }
+
+    fn received(text: &str) -> LineEvent {
+        LineEvent::Received(text.into())
+    }
+
+    #[test]
+    fn a_text_is_a_line() {
+        let (mut plc, _) = line(false);
+        plc.transmit(b"PALLET 7");
+        assert_eq!(sent(&mut plc), b"PALLET 7\r\n");
+        assert_eq!(come(&mut plc, b""), [LineEvent::Sent]);
+        // The other side is stopped until the PLC has taken what has come.
+        assert_eq!(come(&mut plc, b"\0READY\r\n"), [received("READY")]);
+        assert_eq!(sent(&mut plc), [DC3]);
+        assert_eq!(come(&mut plc, b"NEXT\n"), []);
+        plc.taken();
+        assert_eq!(come(&mut plc, b""), [received("NEXT")]);
+        plc.taken();
+        assert_eq!(sent(&mut plc), [DC1]);
+        assert_eq!(come(&mut plc, b"\r\n\x03"), [LineEvent::EndOfText]);
+        assert_eq!(come(&mut plc, &[b'A'; 200]), []);
+        assert_eq!(come(&mut plc, b"\n"), [LineEvent::Faulty]);
+        // The other side may stop this one.
+        plc.transmit(b"A");
+        come(&mut plc, &[DC3]);
+        assert_eq!(sent(&mut plc), b"");
+        come(&mut plc, &[DC1]);
+        assert_eq!(sent(&mut plc), b"A\r\n");
+    }
+
+    #[test]
+    fn a_text_is_a_block_that_is_acknowledged() {
+        let (mut plc, settings) = line(true);
+        let block = encode(&settings, Kind::Text, b"FA81");
+        plc.transmit(b"FA81");
+        assert_eq!(sent(&mut plc), block);
+        for _ in 0..2 {
+            assert_eq!(come(&mut plc, &[settings.control.nak]), []);
+            assert_eq!(sent(&mut plc), block);
+        }
+        assert_eq!(come(&mut plc, &[settings.control.ack]), [LineEvent::Sent]);
+        plc.transmit(b"FA81");
+        for _ in 0..3 {
+            assert_eq!(sent(&mut plc), block);
+            come(&mut plc, &[settings.control.nak]);
+        }
+        assert_eq!(sent(&mut plc), b"");
+        plc.transmit(b"FA81");
+        sent(&mut plc);
+        plc.clock(settings.patience);
+        assert_eq!(come(&mut plc, b""), [LineEvent::NotSent; 1]);
+
+        assert_eq!(come(&mut plc, &block), [received("FA81")]);
+        assert_eq!(sent(&mut plc), [settings.control.ack]);
+        // The second one is acknowledged when the PLC has taken the first.
+        assert_eq!(come(&mut plc, &block), []);
+        assert_eq!(sent(&mut plc), b"");
+        plc.taken();
+        assert_eq!(sent(&mut plc), [settings.control.ack]);
+    }
+
+    #[test]
+    fn damaged_blocks_come_again_twice() {
+        let (mut plc, settings) = line(true);
+        let mut damaged = encode(&settings, Kind::Text, b"FA81");
+        damaged[2] ^= 1;
+        for expected in [settings.control.nak, settings.control.nak, settings.control.eot] {
+            let events = come(&mut plc, &damaged);
+            assert_eq!(
+                events.contains(&LineEvent::Faulty),
+                expected == settings.control.eot
+            );
+            assert_eq!(sent(&mut plc), [expected]);
+        }
+    }
+
+    #[test]
+    fn nothing_goes_over_a_line_that_the_plc_has_not_got() {
+        let mut plc = PlcLine::default();
+        assert_eq!(come(&mut plc, b"READY\n"), []);
+        plc.transmit(b"A");
+        assert_eq!(
+            (come(&mut plc, b""), plc.has_output()),
+            (vec![LineEvent::NotSent], false)
+        );
+        let (mut plc, _) = line(true);
+        plc.transmit(b"A");
+        plc.unplugged();
+        assert_eq!(
+            (come(&mut plc, b""), plc.has_output()),
+            (vec![LineEvent::NotSent], false)
+        );
+    }
+
+    proptest! {
+        /// Noise leaves nothing behind that grows, and a text gets through when it is over.
+        #[test]
+        fn noise_ends(noise in prop::collection::vec(any::<u8>(), 0..400), blockwise: bool) {
+            let (mut plc, settings) = line(blockwise);
+            for event in come(&mut plc, &noise) {
+                if let LineEvent::Received(text) = event {
+                    prop_assert!(text.len() <= TEXT_MAX);
+                }
+            }
+            plc.assign(Some(settings));
+            let text = match blockwise {
+                true => encode(&settings, Kind::Text, b"OK"),
+                false => b"OK\n".to_vec(),
+            };
+            prop_assert_eq!(come(&mut plc, &text), [received("OK")]);
+        }
     }
 }

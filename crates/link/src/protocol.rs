@@ -96,6 +96,12 @@ pub trait Protocol: Send {
     fn has_output(&self) -> bool;
     /// What it sends, `room` bytes at most. They are as good as sent.
     fn send(&mut self, room: usize, now: Duration, into: &mut Vec<u8>);
+    /// How long it may be left alone, when it has output from elsewhere.
+    fn patience(&self) -> Option<Duration> {
+        None
+    }
+    /// A device is connected.
+    fn plugged(&mut self, _now: Duration) {}
     /// The cable is pulled.
     fn unplugged(&mut self, now: Duration);
     /// What there is to be told.
@@ -106,6 +112,10 @@ pub trait Protocol: Send {
     fn end(&mut self, now: Duration);
     /// Whether it waits for the other side to begin something, or for nothing any more.
     fn is_idle(&self) -> bool;
+    /// Whether all eight bits of a byte count, whatever the characters of the port are: LSV/2.
+    fn is_transparent(&self) -> bool {
+        false
+    }
     /// Who takes what comes has no room for more, or has room again: the other side is held back by an acknowledgement that is not
     /// given, by DC3 or by RTS.
     fn hold(&mut self, _on: bool) {}

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
-use bahn_parameters::interfaces::ControlCharacters;
+use bahn_parameters::interfaces::{ControlCharacters, TransferFormat};
 use bahn_parameters::{ControlModel, ParameterList};
 
 use crate::Characters;
@@ -110,15 +110,24 @@ impl Settings {
             Mode::Me | Mode::Fe1 | Mode::Fe2 => return fixed,
         };
         let [ext1, ext2, _] = interfaces.formats;
-        let format = [ext1, ext2][index];
+        fixed.with_format(&[ext1, ext2][index])
+    }
+
+    /// What a list says for a line of the PLC: EXT3 [000:15609-15636].
+    pub fn of_plc(parameters: &ParameterList) -> Settings {
+        let [.., ext3] = parameters.interface_parameters().formats;
+        Settings::of(parameters, Mode::Fe2).with_format(&ext3)
+    }
+
+    fn with_format(self, format: &TransferFormat) -> Settings {
         Settings {
             blockwise: format.blockwise,
-            characters: Characters::of_format(&format),
+            characters: Characters::of_format(format),
             control: format.characters,
             printable_check: format.printable_check,
             with_dc1: format.stop_by_dc3,
             stop_by_rts: format.stop_by_rts,
-            ..fixed
+            ..self
         }
     }
 

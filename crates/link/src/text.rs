@@ -246,7 +246,7 @@ mod tests {
 
     #[test]
     fn lines_as_they_go() {
-        let mut source = |text: &[u8], data_bits, comma| {
+        let source = |text: &[u8], data_bits, comma| {
             let characters = Characters {
                 data_bits,
                 ..Characters::FIXED

@@ -154,12 +154,27 @@ impl Settings {
     /// Name of the file in the folder of the state.
     const FILE: &str = "panel.json";
 
-    /// What was kept in a folder; what cannot be read is what it was at first.
-    pub fn read(folder: &Path) -> Settings {
-        let bytes = files::read_table(&folder.join(Settings::FILE)).ok();
-        bytes
-            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
-            .unwrap_or_default()
+    /// Name of a file that could not be read, which is kept beside the new one.
+    const UNREAD: &str = "panel.unread.json";
+
+    /// What was kept in a folder, and what is wrong with it, in words of the system. What cannot be read is what it
+    /// was at first; its file is kept for whoever can mend it.
+    pub fn read(folder: &Path) -> (Settings, Option<String>) {
+        let path = folder.join(Settings::FILE);
+        if !path.exists() {
+            return (Settings::default(), None);
+        }
+        let read = files::read_table(&path).map_err(|error| error.to_string());
+        let wrong =
+            match read.and_then(|bytes| serde_json::from_slice(&bytes).map_err(|error| error.to_string())) {
+                Ok(settings) => return (settings, None),
+                Err(wrong) => wrong,
+            };
+        let said = match std::fs::rename(&path, folder.join(Settings::UNREAD)) {
+            Ok(()) => format!("{} -> {}: {wrong}", Settings::FILE, Settings::UNREAD),
+            Err(error) => format!("{}: {wrong}; {error}", Settings::FILE),
+        };
+        (Settings::default(), Some(said))
     }
 
     /// Keeps it, whole or not at all.

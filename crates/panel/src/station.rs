@@ -81,8 +81,8 @@ impl Station {
         // Sessions and the time line repeat what was.
         host.be_exact();
         let state_folder = machine.root.join(&machine.folder.state);
-        let settings = Settings::read(&state_folder);
-        Station {
+        let (settings, unread) = Settings::read(&state_folder);
+        let mut station = Station {
             console: Console::new(host.control().mode()),
             stored: settings.clone(),
             speed: 1.0,
@@ -102,7 +102,19 @@ impl Station {
             programs,
             settings,
             state_folder,
+        };
+        if let Some(wrong) = unread {
+            let english = station
+                .control()
+                .first()
+                .edited_list()
+                .operation_parameters()
+                .english;
+            let language = station.settings.language(english);
+            let words = texts::words(language, "WHAT THE OPERATOR HAS CHOSEN CANNOT BE READ");
+            station.console.say(format!("{words}: {wrong}"));
         }
+        station
     }
 
     /// Runs by the clock on the wall from now on, as fast as the operator chose.

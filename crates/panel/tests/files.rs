@@ -253,3 +253,44 @@ fn a_program_that_is_protected_is_not_edited() {
     assert_eq!(trainee.messages(), ["PROTECTED PGM"]);
     assert_eq!(trainee.file("programs/9.H"), before);
 }
+
+/// What the operator chose is a file; one that cannot be read is said once and kept, and the panel has what it had at
+/// first.
+#[test]
+fn settings_that_cannot_be_read_are_said_and_kept() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        std::fs::create_dir_all(folder.join("state")).unwrap();
+        std::fs::write(folder.join("state/panel.json"), "{\"inch\": tru").unwrap();
+    });
+    trainee.until(5.0, |screen| screen.messages.len() > 1);
+    let said = "WHAT THE OPERATOR HAS CHOSEN CANNOT BE READ: panel.json -> panel.unread.json: ";
+    let messages = trainee.messages();
+    assert!(messages.iter().any(|text| text.starts_with(said)), "{messages:?}");
+    assert_eq!(trainee.file("state/panel.unread.json"), "{\"inch\": tru");
+    assert!(!trainee.has("state/panel.json"));
+    trainee.press("CE CE").wait(1.0);
+    let mut again = trainee.killed();
+    again.until(5.0, |screen| !screen.messages.is_empty());
+    let messages = again.messages();
+    assert!(
+        !messages.iter().any(|text| text.starts_with(said)),
+        "{messages:?}"
+    );
+}
+
+/// The cycles of the machine builder are programs; where one of them cannot be read there are none, and that is said.
+#[cfg(target_os = "linux")]
+#[test]
+fn cycles_of_the_machine_builder_that_cannot_be_read_are_said() {
+    let mut trainee = Trainee::at("mill");
+    // A file that is there, and whose medium fails at the first byte.
+    let failing = trainee.folder().join("programs/99999968.H");
+    std::os::unix::fs::symlink("/proc/self/mem", failing).unwrap();
+    trainee.ready();
+    trainee.press("PROGRAM").wait(0.2);
+    let messages = trainee.messages();
+    let said = "CYCLES OF THE MACHINE BUILDER CANNOT BE READ: ";
+    assert!(messages.iter().any(|text| text.starts_with(said)), "{messages:?}");
+    trainee.press("CE PGM_NR 7 ENT ENT").wait(0.2);
+    assert_eq!(trainee.screen().program.title, "7.H");
+}

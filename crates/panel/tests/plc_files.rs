@@ -23,7 +23,10 @@ fn last_message(trainee: &mut Trainee) -> String {
 fn converted(trainee: &mut Trainee, key: &str, name: &str) -> String {
     trainee.soft("EDIT");
     trainee.down_to("MAIN.PLC");
+    trainee.soft("CONVERT");
+    trainee.wait(0.1);
     trainee.soft(key);
+    trainee.wait(0.1);
     assert_eq!(trainee.screen().dialogue.prompt, "DESTINATION FILE = .A");
     trainee.typed(name);
     trainee.press("ENT");
@@ -73,7 +76,9 @@ fn a_listing_has_line_numbers_and_references() {
     // A name that is taken is refused.
     trainee.soft("EDIT");
     trainee.down_to("MAIN.PLC");
+    trainee.soft("CONVERT");
     trainee.soft("LISTING");
+    trainee.wait(0.1);
     trainee.typed("L");
     trainee.press("ENT");
     assert_eq!(last_message(&mut trainee), "ENTRY VALUE INCORRECT");
@@ -159,4 +164,157 @@ fn the_machine_parameters_are_a_key_away() {
     assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
     trainee.press("END");
     assert_eq!(trainee.screen().program.title, "PLC PROGRAMMING");
+}
+
+fn lines(trainee: &mut Trainee) -> Vec<String> {
+    let lines = trainee.screen().program.lines;
+    lines.into_iter().map(|line| line.text).collect()
+}
+
+/// UNFORM.: the program without the columns of its editor; strings and comments are what they were.
+#[test]
+fn an_unformatted_program_compiles_to_the_same() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let text = "        L      M0       ;   a  comment\n        =      O5\n        L  S\"A  ; B\"\n        =      S1\n";
+        std::fs::write(folder.join("plc/X.PLC"), text).unwrap();
+    });
+    plc_mode(&mut trainee);
+    let plain = converted(&mut trainee, "UNFORM.", "U");
+    let source = trainee.file("plc/MAIN.PLC");
+    let words = |text: &str| -> Vec<String> { text.split_whitespace().map(str::to_owned).collect() };
+    assert_eq!(words(&plain), words(&source));
+    assert_eq!(plain.lines().count(), source.lines().count());
+    assert!(plain.len() < source.len());
+    trainee.soft("EDIT");
+    trainee.down_to("X.PLC");
+    trainee.soft("CONVERT");
+    trainee.soft("UNFORM.");
+    trainee.wait(0.1).typed("V").press("ENT");
+    assert_eq!(
+        trainee.file("plc/V.A"),
+        "L M0 ;   a  comment\n= O5\nL S\"A  ; B\"\n= S1\n"
+    );
+}
+
+/// Files are copied, renamed and protected; what the machine needs keeps its name.
+#[test]
+fn files_are_managed_by_soft_keys() {
+    let mut trainee = Trainee::at("mill");
+    plc_mode(&mut trainee);
+    // PGM NAME opens the file management, too.
+    trainee.press("PGM_NR");
+    assert_eq!(trainee.screen().program.title, "PLC FILES");
+    trainee.down_to("MAIN.PLC");
+    trainee.soft("COPY");
+    assert_eq!(trainee.screen().dialogue.prompt, "DESTINATION FILE = .PLC");
+    trainee.typed("B").press("ENT").wait(0.1);
+    assert_eq!(trainee.file("plc/B.PLC"), trainee.file("plc/MAIN.PLC"));
+    trainee.down_to("B.PLC");
+    trainee.soft("PROTECT");
+    trainee.wait(0.1);
+    assert!(lines(&mut trainee).contains(&"B.PLC             P".to_owned()));
+    // A protected file is neither renamed nor changed.
+    trainee.soft("RENAME");
+    trainee.typed("C").press("ENT");
+    assert_eq!(last_message(&mut trainee), "PROTECTED PGM");
+    let before = trainee.file("plc/B.PLC");
+    trainee.press("CE ENT X");
+    assert_eq!(last_message(&mut trainee), "PROTECTED PGM");
+    assert_eq!(trainee.file("plc/B.PLC"), before);
+    trainee.press("CE END PGM_NR");
+    trainee.down_to("B.PLC");
+    trainee.soft("UNPROTECT");
+    trainee.soft("RENAME");
+    trainee.typed("C").press("ENT").wait(0.1);
+    assert!(trainee.has("plc/C.PLC") && !trainee.has("plc/B.PLC"));
+    assert!(lines(&mut trainee).iter().any(|line| line == "C.PLC"));
+    trainee.down_to("MAIN.PLC");
+    trainee.soft("RENAME");
+    assert_eq!(last_message(&mut trainee), "PROTECTED PGM");
+    // SELECT TYPE shows some of them.
+    trainee.press("CE");
+    trainee.soft("SELECT TYPE");
+    trainee.soft(".ER1");
+    trainee.wait(0.1);
+    assert_eq!(lines(&mut trainee), ["MAIN.ER1"]);
+    trainee.soft("SELECT TYPE");
+    trainee.soft("SHOW ALL");
+    trainee.wait(0.1);
+    assert!(lines(&mut trainee).len() > 2);
+}
+
+/// Two windows: the files of an EPROM in one are transferred into the memory, which the other shows.
+#[test]
+fn a_file_of_an_eprom_is_transferred_from_window_to_window() {
+    let mut trainee = Trainee::at("mill");
+    plc_mode(&mut trainee);
+    trainee.soft("OUTPUT BINARY CODE");
+    trainee.press("EXT").press("CE END");
+    assert!(trainee.has("plc/00000000.BIN"));
+    let texts = trainee.file("plc/MAIN.ER1");
+    trainee.soft("EDIT");
+    trainee.down_to("MAIN.ER1");
+    trainee.soft("WINDOW");
+    assert_eq!(
+        trainee.screen().soft_keys.keys,
+        [
+            "PAGE UP",
+            "PAGE DOWN",
+            "TRANSFER",
+            "TRANSFER ALL",
+            "",
+            "SELECT TYPE",
+            "WINDOW",
+            "END"
+        ]
+    );
+    let shown = lines(&mut trainee);
+    assert!(shown.iter().all(|line| line.contains(" | ")), "{shown:#?}");
+    // The right window shows the EPROM, too; the left one does not.
+    trainee.press("RIGHT");
+    trainee.soft("MODIFY WINDOW");
+    trainee.soft("SELECT TNC/EPROM");
+    trainee.wait(0.1);
+    let shown = lines(&mut trainee);
+    let of_eprom = |line: &&String| line.contains("EPROM 00000000.BIN");
+    assert_eq!(shown.iter().filter(of_eprom).count(), 2, "{shown:#?}");
+    assert!(
+        !shown
+            .iter()
+            .any(|line| line.split(" | ").next().unwrap().contains("EPROM 0"))
+    );
+    // What is there stays; what is not is transferred.
+    std::fs::remove_file(trainee.folder().join("plc/MAIN.ER1")).unwrap();
+    trainee.soft("TRANSFER ALL");
+    assert_eq!(last_message(&mut trainee), "MAIN.PLC: ENTRY VALUE INCORRECT");
+    assert_eq!(trainee.file("plc/MAIN.ER1"), texts);
+    // A file of the memory lies in both windows.
+    trainee.press("CE LEFT");
+    trainee.soft("TRANSFER");
+    assert_eq!(last_message(&mut trainee), "KEY NON-FUNCTIONAL");
+    trainee.press("CE");
+    trainee.soft("MODIFY WINDOW");
+    trainee.soft("SELECT EXT");
+    trainee.wait(0.1);
+    assert_eq!(last_message(&mut trainee), "EXT. IN-/OUTPUT NOT READY");
+}
+
+/// The lines of a program are checked, those of a list are not; COMPILE offers programs only.
+#[test]
+fn only_programs_are_checked_and_compiled() {
+    let mut trainee = Trainee::at("mill");
+    plc_mode(&mut trainee);
+    trainee.soft("OUTPUT BINARY CODE");
+    trainee.press("1 DOWN UP");
+    assert!(trainee.messages().is_empty(), "{:?}", trainee.messages());
+    trainee.press("CE END");
+    trainee.soft("COMPILE");
+    let shown = lines(&mut trainee);
+    assert!(shown.iter().any(|line| line.starts_with("MAIN.PLC")));
+    assert!(
+        !shown
+            .iter()
+            .any(|line| line.contains(".ER1") || line.contains(".A")),
+        "{shown:?}"
+    );
 }

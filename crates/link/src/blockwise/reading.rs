@@ -111,10 +111,9 @@ impl Reading {
             (Step::Over | Step::Question(..), _) => {}
             (_, Piece::Block(Kind::Header, text)) => self.device(&text),
             (Step::Asked, Piece::Ack) => self.step = Step::Block,
+            (Step::Asked, Piece::Nak) if self.link.repeat() => {}
             (Step::Asked, Piece::Nak) => {
-                if !self.link.repeat() {
-                    self.abort(Shown::Control(MessageId::TransferredDataIncorrect, Some('E')));
-                }
+                self.abort(Shown::Control(MessageId::TransferredDataIncorrect, Some('E')));
             }
             // The device has no more.
             (Step::Asked, Piece::Etx | Piece::Eot) if !self.is_selected() => self.finish(),

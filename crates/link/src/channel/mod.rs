@@ -92,6 +92,7 @@ pub struct Channel {
     incoming: VecDeque<u8>,
     outgoing: Vec<u8>,
     connected: bool,
+    transparent: bool,
 }
 
 impl Channel {
@@ -114,7 +115,13 @@ impl Channel {
             start: Instant::now(),
             incoming: VecDeque::new(),
             outgoing: Vec::new(),
+            transparent: false,
         })
+    }
+
+    /// All eight bits of a byte count from now on, or those of the characters again.
+    pub fn set_transparent(&mut self, on: bool) {
+        self.transparent = on;
     }
 
     /// Where the other side finds it: address or name of the pseudo terminal.
@@ -167,7 +174,12 @@ impl Channel {
     /// Sends bytes, as many as there is room for.
     pub fn send(&mut self, bytes: &[u8]) {
         let now = self.start.elapsed();
-        for byte in bytes.iter().map(|byte| self.characters.mask(*byte)) {
+        for byte in bytes {
+            let byte = if self.transparent {
+                *byte
+            } else {
+                self.characters.mask(*byte)
+            };
             match &mut self.faults {
                 Some([sent, _]) => sent.pass(byte, now, &mut self.outgoing),
                 None => self.outgoing.push(byte),
@@ -240,8 +252,15 @@ impl Channel {
                 .for_each(|byte| received.pass(*byte, now, &mut passed)),
             None => passed.extend_from_slice(bytes),
         }
-        let masked = passed.into_iter().map(|byte| self.characters.mask(byte));
-        self.incoming.extend(masked);
+        let transparent = self.transparent;
+        let mask = |byte| {
+            if transparent {
+                byte
+            } else {
+                self.characters.mask(byte)
+            }
+        };
+        self.incoming.extend(passed.into_iter().map(mask));
     }
 
     /// Bytes that have come and are not yet taken.

@@ -17,6 +17,7 @@ mod serial;
 mod serial_server;
 mod server;
 mod session;
+mod still;
 mod tcp;
 mod telegram;
 #[cfg(test)]
@@ -34,5 +35,7 @@ pub use serial::{ANSWER, LineEvent, LineFault, NEXT, SerialLine, Side, check_byt
 pub use serial_server::SerialServer;
 pub use server::{Server, ServerOptions};
 pub use session::{Session, Site};
+#[doc(hidden)]
+pub use still::StillDevice;
 pub use tcp::{DATA_MAX, TcpReader, TooLong, encode};
 pub use telegram::{Command, Fields, Telegram};

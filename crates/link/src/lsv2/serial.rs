@@ -111,7 +111,6 @@ pub struct SerialLine {
     /// What is being sent, framed.
     frame: Option<Vec<u8>>,
     tries: u8,
-    refused: bool,
     /// What is being received.
     text: Vec<u8>,
     broken: bool,
@@ -149,7 +148,6 @@ impl SerialLine {
             events: VecDeque::new(),
             frame: None,
             tries: 0,
-            refused: false,
             text: Vec::new(),
             broken: false,
             escaped: false,
@@ -231,7 +229,6 @@ impl SerialLine {
     fn again(&mut self, now: Duration, fault: LineFault) {
         self.tries += 1;
         if self.tries >= TRIES {
-            let fault = if self.refused { LineFault::Refused } else { fault };
             self.give_up(fault, now);
         } else if self.state == State::Framed {
             self.put_frame(now);
@@ -251,7 +248,6 @@ impl SerialLine {
         if let Some(frame) = &self.frame {
             self.output.extend_from_slice(frame);
         }
-        self.refused = false;
         self.wait(State::Framed, now, ANSWER);
     }
 
@@ -296,7 +292,6 @@ impl SerialLine {
                 self.rest(now);
             }
             (false, NAK) => {
-                self.refused = true;
                 self.again(now, LineFault::Refused);
             }
             // It answers already, so it has taken the telegram.

@@ -120,7 +120,7 @@ impl Reading {
             }
             Text::Search if nameless => {
                 if let Want::Selected(name) = self.want.clone()
-                    && !(line.is_empty() && !self.had_text)
+                    && (!line.is_empty() || self.had_text)
                 {
                     self.begin(name, line);
                 }

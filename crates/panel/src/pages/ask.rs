@@ -89,9 +89,14 @@ impl Later {
     pub fn ask(&self, prompt: String, longest: usize) -> Turn {
         let place = Later(Arc::clone(&self.0));
         Turn::Open(Name::ask(prompt, longest, move |text, _site| {
-            *place.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
+            place.set(&text);
             Turn::Close
         }))
+    }
+
+    /// Gives the answer.
+    pub fn set(&self, text: &str) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(text.to_owned());
     }
 
     /// The answer, once.

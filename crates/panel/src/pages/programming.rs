@@ -13,7 +13,7 @@ use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
 use crate::pages::files::{Directory, Purpose};
-use crate::screen::{SoftKeys, Window, WindowKind};
+use crate::screen::SoftKeys;
 use crate::site::Site;
 use crate::texts;
 
@@ -21,6 +21,8 @@ use crate::texts;
 pub(crate) struct Programming {
     open: Option<Open>,
     drawn: Drawn,
+    /// What is still to be said.
+    said: Option<String>,
 }
 
 /// What is drawn beside the program.
@@ -47,7 +49,8 @@ impl Programming {
     /// With the program that was edited last, and what was open of it.
     pub fn new(site: &mut Site) -> Programming {
         let name = site.settings.edited.clone();
-        let mut open = name.and_then(|name| Open::of(name, site));
+        let (builder_cycles, said) = builder_cycles(site);
+        let mut open = name.and_then(|name| Open::of(name, builder_cycles, site));
         let kept = site.settings.draft.as_ref().and_then(Value::as_str);
         if let (Some(open), Some(draft)) = (&mut open, kept.and_then(|text| text.parse::<Draft>().ok())) {
             open.editor.restore(&draft);
@@ -57,7 +60,7 @@ impl Programming {
             cycles: site.control().model().has_windows(),
             ..Drawn::default()
         };
-        Programming { open, drawn }
+        Programming { open, drawn, said }
     }
 
     /// The program that is to be edited now; what HELP has chosen stays.
@@ -195,11 +198,11 @@ impl Programming {
 }
 
 impl Open {
-    fn of(name: String, site: &Site) -> Option<Open> {
+    fn of(name: String, builder_cycles: Vec<BuilderCycle>, site: &Site) -> Option<Open> {
         let program = site.programs.read(&name)?;
         let mut setting = Setting::of(site.parameters());
         setting.tongue = site.language();
-        setting.builder_cycles = builder_cycles(site);
+        setting.builder_cycles = builder_cycles;
         Some(Open {
             name,
             editor: Editor::new(program, setting),
@@ -228,14 +231,18 @@ impl Open {
     }
 }
 
-/// The cycles of the machine builder with their dialogue texts; a folder that cannot be read has none.
-fn builder_cycles(site: &Site) -> Vec<BuilderCycle> {
+/// The cycles of the machine builder with their dialogue texts, and what is to be said of a folder that cannot be read.
+fn builder_cycles(site: &Site) -> (Vec<BuilderCycle>, Option<String>) {
     let folder = site.machine.programs(0);
     let found = oem_cycles::find(&folder, &site.machine.plc_dialogues, site.parameters());
-    let shown = found
-        .unwrap_or_default()
-        .into_iter()
-        .filter(|cycle| !cycle.is_hidden);
+    let found = match found {
+        Ok(found) => found,
+        Err(error) => {
+            let words = site.words("CYCLES OF THE MACHINE BUILDER CANNOT BE READ");
+            return (Vec::new(), Some(format!("{words}: {error}")));
+        }
+    };
+    let shown = found.into_iter().filter(|cycle| !cycle.is_hidden);
     let cycles = shown.filter_map(|cycle| {
         let dialog = cycle.dialog?;
         let parameters = dialog.parameters.into_iter();
@@ -247,7 +254,7 @@ fn builder_cycles(site: &Site) -> Vec<BuilderCycle> {
                 .collect(),
         })
     });
-    cycles.collect()
+    (cycles.collect(), None)
 }
 
 impl Page for Programming {
@@ -285,13 +292,10 @@ impl Page for Programming {
         Some(keys)
     }
 
-    fn show(&self, _site: &Site, lines: usize) -> View {
+    fn show(&self, site: &Site, lines: usize) -> View {
         match &self.open {
             Some(open) => editing::view(&open.editor, &open.name, lines),
-            None => View::of(Window {
-                kind: WindowKind::Program,
-                ..Window::default()
-            }),
+            None => super::no_program(site),
         }
     }
 
@@ -314,7 +318,7 @@ impl Page for Programming {
             false => None,
         };
         site.graphics.show_cycle(asked);
-        Turn::Done
+        self.said.take().map_or(Turn::Done, Turn::Say)
     }
 
     fn subject(&self) -> Option<Subject> {

@@ -16,7 +16,7 @@ const ENDING: &str = ".BIN";
 pub(super) fn open(site: &mut Site) -> Turn {
     let names = source::list(site);
     if !names.iter().any(|name| name == LIST)
-        && let Err(why) = source::create(LIST, &preset(&names, site), site)
+        && let Err(why) = source::create(LIST, preset(&names, site).as_bytes(), site)
     {
         return Turn::Say(why);
     }

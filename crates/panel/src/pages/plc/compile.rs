@@ -46,6 +46,41 @@ pub(super) fn source_of(name: &str, site: &Site) -> PlcSource {
     PlcSource::compile(&source::path(name, site), None, options)
 }
 
+/// The directory, with the cursor on the main file of the machine.
+pub(super) fn open(site: &Site) -> Turn {
+    let mut names = source::list(site);
+    names.retain(|name| source::is_source(name));
+    let main = source::main_file(site);
+    let at = names.iter().position(|name| name == main).unwrap_or(0);
+    Turn::Open(Box::new(Menu::at(Programs { names }, at)))
+}
+
+struct Programs {
+    names: Vec<String>,
+}
+
+impl Items for Programs {
+    fn title(&self, site: &Site) -> String {
+        site.words("PLC FILES: COMPILE")
+    }
+
+    fn items(&self, site: &Site) -> Vec<Item> {
+        let main = source::main_file(site);
+        let runtime = |name: &String| match name == main {
+            true => Item::new(name.clone(), site.words("RUNTIME PGM")),
+            false => Item::new(name.clone(), ""),
+        };
+        self.names.iter().map(runtime).collect()
+    }
+
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
+        match self.names.get(place) {
+            Some(name) => run(name, site),
+            None => Turn::Refused,
+        }
+    }
+}
+
 struct Fault {
     file: String,
     line: u32,

@@ -17,8 +17,32 @@ const WIDTH: usize = 72;
 /// Width of a column: an operand.
 const COLUMN: usize = 10;
 
+/// What becomes of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// With line numbers.
+    Listing,
+    /// What uses each operand.
+    References,
+    /// Both.
+    Both,
+    /// Without the columns that its editor makes.
+    Unformatted,
+}
+
+/// The soft keys of CONVERT [000:11352].
+pub(super) const FORMS: [(&str, Form); 4] = [
+    ("LISTING", Form::Listing),
+    ("CROSSREF", Form::References),
+    ("LISTING+CROSSREF", Form::Both),
+    ("UNFORM.", Form::Unformatted),
+];
+
+/// Their names.
+pub(super) const KEYS: [&str; 4] = ["LISTING", "CROSSREF", "LISTING+CROSSREF", "UNFORM."];
+
 /// Asks for the name of the text, and writes it.
-pub(super) fn ask(name: &str, listing: bool, references: bool, site: &Site) -> Turn {
+pub(super) fn ask(name: &str, form: Form, site: &Site) -> Turn {
     let (name, prompt) = (
         name.to_owned(),
         format!("{} {ENDING}", site.words("DESTINATION FILE =")),
@@ -28,16 +52,24 @@ pub(super) fn ask(name: &str, listing: bool, references: bool, site: &Site) -> T
             true => new,
             false => new + ENDING,
         };
-        let text = text_of(&name, listing, references, site);
-        match text.and_then(|text| source::create(&new, &text, site)) {
+        let text = text_of(&name, form, site);
+        match text.and_then(|text| source::create(&new, text.as_bytes(), site)) {
             Ok(()) => Turn::CloseSaying(format!("{name} -> {new}")),
             Err(why) => Turn::CloseSaying(why),
         }
     }))
 }
 
-fn text_of(name: &str, listing: bool, references: bool, site: &Site) -> Result<String, String> {
+fn text_of(name: &str, form: Form, site: &Site) -> Result<String, String> {
     let mut text = String::new();
+    let listing = matches!(form, Form::Listing | Form::Both);
+    let references = matches!(form, Form::References | Form::Both);
+    if form == Form::Unformatted {
+        for line in &source::Source::read(name, site)?.lines {
+            text.push_str(&unformatted(line));
+            text.push('\n');
+        }
+    }
     if listing {
         let file = source::Source::read(name, site)?;
         for (number, line) in (1..).zip(&file.lines) {
@@ -56,6 +88,35 @@ fn text_of(name: &str, listing: bool, references: bool, site: &Site) -> Result<S
         text.push_str(&cross_references(&program));
     }
     Ok(text)
+}
+
+/// A line without what sets its words in columns: single blanks, but for those of a string and of a comment (inferred).
+fn unformatted(line: &str) -> String {
+    let (code, comment) = match line.find(';') {
+        Some(at)
+            if line
+                .get(..at)
+                .is_some_and(|code| code.matches('"').count() % 2 == 0) =>
+        {
+            line.split_at(at)
+        }
+        _ => (line, ""),
+    };
+    let parts = code.split('"').enumerate().map(|(place, part)| match place % 2 {
+        1 => part.to_owned(),
+        _ => {
+            let mut plain = part.split_whitespace().collect::<Vec<_>>().join(" ");
+            if part.starts_with(char::is_whitespace) && place > 0 {
+                plain.insert(0, ' ');
+            }
+            if part.ends_with(char::is_whitespace) && !plain.ends_with(' ') {
+                plain.push(' ');
+            }
+            plain
+        }
+    });
+    let code = parts.collect::<Vec<_>>().join("\"");
+    format!("{}{comment}", code.trim_start()).trim_end().to_owned()
 }
 
 /// Each operand with the lines that use it, those that write it with a star; a line of another file has its name.

@@ -5,7 +5,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::check_line;
 
-use super::source::{NotWritten, Source};
+use super::source::{self, NotWritten, Source};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
@@ -111,6 +111,9 @@ impl Editor {
         if !std::mem::take(&mut self.changed) {
             return Turn::Done;
         }
+        if !source::is_source(&self.name) {
+            return Turn::Done;
+        }
         match check_line(self.current(), site.control().model()) {
             Ok(()) => Turn::Done,
             Err(error) => Turn::Say(format!("{} {error}", site.words("INPUT ERROR"))),
@@ -124,15 +127,21 @@ impl Editor {
             // What is not on the medium is not left.
             Err(NotWritten::Words(why)) => Turn::Say(why),
             Err(NotWritten::Changed) => {
-                let renewed = self.source.renew();
-                self.changed = false;
-                self.go_to(self.line);
-                Turn::Say(match renewed {
-                    Ok(()) => site.words("FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"),
-                    Err(why) => why,
-                })
+                self.renewed(site.words("FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"))
             }
+            Err(NotWritten::Protected) => self.renewed(site.message(MessageId::ProtectedPgm)),
         }
+    }
+
+    /// The text is what lies on the medium, which is said.
+    fn renewed(&mut self, said: String) -> Turn {
+        let renewed = self.source.renew();
+        self.changed = false;
+        self.go_to(self.line);
+        Turn::Say(match renewed {
+            Ok(()) => said,
+            Err(why) => why,
+        })
     }
 
     fn go_to(&mut self, line: usize) {

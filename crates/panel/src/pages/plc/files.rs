@@ -1,97 +1,433 @@
-//! The directory of the PLC's source files: one is edited, or compiled as main program.
+//! The files of the PLC: in one window or two, of the memory or of an EPROM, with what is done with them
+//! [000:11273-11368].
 
+use bahn_dialogue::Key;
+use bahn_host::eprom::LoadList;
+use bahn_host::s_records::Image;
+use bahn_parameters::MessageId;
+
+use super::convert;
 use super::editor::Editor;
+use super::keys::Keys;
 use super::source;
-use super::{compile, convert};
-use crate::page::Turn;
-use crate::pages::menu::{Item, Items, Menu};
+use crate::page::{Page, Turn, View};
+use crate::pages::ask::{Later, Name};
+use crate::pages::list;
+use crate::programs::NAME_MAX;
+use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
 
-/// Soft keys that make another form of the file [000:11330-11366].
-const SOFT_KEYS: [&str; 6] = ["LISTING", "CROSSREF", "LISTING+CROSSREF", "", "", ""];
+/// Soft keys with one window, in two rows; what has no name is not there.
+const ONE: [[&str; 8]; 2] = [
+    [
+        "PAGE UP",
+        "PAGE DOWN",
+        "SELECT",
+        "COPY",
+        "MODIFY WINDOW",
+        "SELECT TYPE",
+        "WINDOW",
+        "END",
+    ],
+    [
+        "PAGE UP",
+        "PAGE DOWN",
+        "PROTECT",
+        "UNPROTECT",
+        "RENAME",
+        "CONVERT",
+        "",
+        "END",
+    ],
+];
+/// With two windows.
+const TWO: [[&str; 8]; 2] = [
+    [
+        "PAGE UP",
+        "PAGE DOWN",
+        "TRANSFER",
+        "TRANSFER ALL",
+        "",
+        "SELECT TYPE",
+        "WINDOW",
+        "END",
+    ],
+    [
+        "PAGE UP",
+        "PAGE DOWN",
+        "CONVERT",
+        "MODIFY WINDOW",
+        "",
+        "",
+        "",
+        "END",
+    ],
+];
+/// SELECT TYPE [000:11335-11350].
+const TYPES: &[&str] = &[
+    "SHOW ALL", ".PLC", ".ER1", ".ERE", ".DI1", ".DIE", ".A", "END", ".HLP", ".BIN", ".COM", ".CMA",
+];
+/// MODIFY WINDOW [000:11300-11304].
+const DEVICES: &[&str] = &["SELECT TYPE", TNC, EPROM, EXT];
+const TNC: &str = "SELECT TNC";
+const EPROM: &str = "SELECT TNC/EPROM";
+const EXT: &str = "SELECT EXT";
+/// Binary files, the contents of EPROMs.
+const BINARY: &str = ".BIN";
+/// Characters of each of two windows.
+const WIDTH: usize = 30;
 
-/// What a file is wanted for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Purpose {
-    /// EDIT.
-    Edit,
-    /// COMPILE.
-    Compile,
+/// A file of a window.
+struct Entry {
+    name: String,
+    protected: bool,
+    /// The EPROM it lies in, by its binary file, and what it has.
+    eprom: Option<(String, Vec<u8>)>,
+}
+
+/// A window.
+#[derive(Default)]
+struct Pane {
+    entries: Vec<Entry>,
+    current: usize,
+    /// Files of EPROMs are shown, too.
+    eprom: bool,
+    /// Files of this ending only.
+    ending: Option<String>,
+}
+
+impl Pane {
+    fn list(&mut self, site: &Site) {
+        let names = source::list(site);
+        let of_eproms: Vec<Entry> = match self.eprom {
+            true => names.iter().flat_map(|name| of_eprom(name, site)).collect(),
+            false => Vec::new(),
+        };
+        let of_memory = names.into_iter().map(|name| Entry {
+            protected: source::is_protected(&source::path(&name, site)),
+            name,
+            eprom: None,
+        });
+        let shown = |entry: &Entry| {
+            let ending = self.ending.as_deref();
+            ending.is_none_or(|ending| entry.name.to_uppercase().ends_with(ending))
+        };
+        self.entries = of_memory.chain(of_eproms).filter(shown).collect();
+        self.current = list::moved(self.current, 0, self.entries.len());
+    }
+
+    fn entry(&self) -> Option<&Entry> {
+        self.entries.get(self.current)
+    }
+}
+
+/// What an EPROM has of which a binary file is the contents; nothing of one that is none.
+fn of_eprom(name: &str, site: &Site) -> Vec<Entry> {
+    if !name.to_uppercase().ends_with(BINARY) {
+        return Vec::new();
+    }
+    let text = std::fs::read_to_string(source::path(name, site)).unwrap_or_default();
+    let image = Image::from_records(&text).ok();
+    let Some((list, contents)) = image.and_then(|image| LoadList::of_image(&image).ok()) else {
+        return Vec::new();
+    };
+    let entries = list.files.into_iter().zip(contents).map(|(file, bytes)| Entry {
+        name: file.name,
+        protected: true,
+        eprom: Some((name.to_owned(), bytes)),
+    });
+    entries.collect()
+}
+
+/// The file management of the PLC mode.
+pub(super) struct Files {
+    panes: [Pane; 2],
+    active: usize,
+    two: bool,
+    chosen: Later,
+    /// Something was done: there may be other files.
+    stale: bool,
 }
 
 /// The directory, with the cursor on the file that is most likely meant.
-pub(super) fn open(purpose: Purpose, site: &Site) -> Turn {
-    let names = source::list(site);
+pub(super) fn open(site: &Site) -> Turn {
     let stopped = site.control().plc().stopped().map(|error| error.file.as_str());
-    let edited = stopped.or(site.plc.edited.as_deref());
-    let wanted = match purpose {
-        Purpose::Edit => edited.unwrap_or(source::main_file(site)),
-        Purpose::Compile => source::main_file(site),
-    };
-    let at = names.iter().position(|name| name == wanted).unwrap_or(0);
-    Turn::Open(Box::new(Menu::at(SourceFiles { purpose, names }, at)))
+    let wanted = stopped.or(site.plc.edited.as_deref());
+    let wanted = wanted.unwrap_or(source::main_file(site)).to_owned();
+    let mut panes = [Pane::default(), Pane::default()];
+    for pane in &mut panes {
+        pane.list(site);
+        pane.current = pane
+            .entries
+            .iter()
+            .position(|entry| entry.name == wanted)
+            .unwrap_or(0);
+    }
+    Turn::Open(Box::new(Files {
+        panes,
+        active: 0,
+        two: false,
+        chosen: Later::default(),
+        stale: false,
+    }))
 }
 
-struct SourceFiles {
-    purpose: Purpose,
-    names: Vec<String>,
-}
-
-impl Items for SourceFiles {
-    fn title(&self, site: &Site) -> String {
-        match self.purpose {
-            Purpose::Edit => site.words("PLC FILES: EDIT"),
-            Purpose::Compile => site.words("PLC FILES: COMPILE"),
-        }
+impl Files {
+    fn pane(&self) -> &Pane {
+        let [first, second] = &self.panes;
+        if self.active == 0 { first } else { second }
     }
 
-    fn items(&self, site: &Site) -> Vec<Item> {
-        let main = source::main_file(site);
-        let runtime = |name: &String| {
-            let is_main = name == main;
-            Item::new(
-                name.clone(),
-                if is_main {
-                    site.words("RUNTIME PGM")
-                } else {
-                    String::new()
-                },
-            )
-        };
-        self.names.iter().map(runtime).collect()
+    fn pane_mut(&mut self) -> &mut Pane {
+        let [first, second] = &mut self.panes;
+        if self.active == 0 { first } else { second }
     }
 
-    fn own_keys(&self) -> [&'static str; 6] {
-        match self.purpose {
-            Purpose::Edit => SOFT_KEYS,
-            Purpose::Compile => [""; 6],
-        }
+    fn rows(&self) -> &'static [[&'static str; 8]; 2] {
+        if self.two { &TWO } else { &ONE }
     }
 
-    fn own_key(&mut self, key: &str, place: usize, site: &mut Site) -> Turn {
-        match self.names.get(place) {
-            Some(name) => convert::ask(name, key.starts_with("LISTING"), key.ends_with("CROSSREF"), site),
-            None => Turn::Refused,
-        }
+    fn go(&mut self, lines: isize) -> Turn {
+        let pane = self.pane_mut();
+        pane.current = list::moved(pane.current, lines, pane.entries.len());
+        Turn::Done
     }
 
-    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
-        let Some(name) = self.names.get(place) else {
+    /// The file under the cursor, which lies in the memory.
+    fn own(&self) -> Option<&str> {
+        let entry = self.pane().entry().filter(|entry| entry.eprom.is_none())?;
+        Some(&entry.name)
+    }
+
+    fn select(&self, site: &mut Site) -> Turn {
+        let Some(name) = self.own() else {
             return Turn::Refused;
         };
-        match self.purpose {
-            Purpose::Edit => {
-                // Where the PLC was stopped: of a time out at the last jump [000:11919].
-                let stopped = site.control().plc().stopped();
-                let line = stopped
-                    .filter(|error| error.file == *name)
-                    .map_or(1, |error| error.line);
-                match Editor::open(name, line as usize, site) {
-                    Ok(editor) => Turn::Replace(Box::new(editor)),
-                    Err(why) => Turn::Say(why),
+        // Where the PLC was stopped: of a time out at the last jump [000:11919].
+        let stopped = site.control().plc().stopped();
+        let line = stopped
+            .filter(|error| error.file == *name)
+            .map_or(1, |error| error.line);
+        match Editor::open(name, line as usize, site) {
+            Ok(editor) => Turn::Replace(Box::new(editor)),
+            Err(why) => Turn::Say(why),
+        }
+    }
+
+    /// Asks for another name, and does something with both.
+    fn named(
+        &self,
+        prompt: &'static str,
+        done: fn(&str, &str, &Site) -> Result<(), String>,
+        site: &Site,
+    ) -> Turn {
+        let Some(old) = self.own().map(str::to_owned) else {
+            return Turn::Refused;
+        };
+        let ending = old
+            .rfind('.')
+            .and_then(|at| old.get(at..))
+            .unwrap_or_default()
+            .to_owned();
+        let prompt = format!("{} {ending}", site.words(prompt));
+        Turn::Open(Name::ask(prompt, NAME_MAX, move |new, site| {
+            let new = if new.contains('.') { new } else { new + &ending };
+            match done(&old, &new, site) {
+                Ok(()) => Turn::Close,
+                Err(why) => Turn::CloseSaying(why),
+            }
+        }))
+    }
+
+    fn rename(&self, site: &Site) -> Turn {
+        // machine.toml names what the machine needs.
+        match self.own() {
+            Some(name) if is_needed(name, site) => Turn::Say(site.message(MessageId::ProtectedPgm)),
+            _ => self.named("NEW FILE NAME =", source::rename, site),
+        }
+    }
+
+    fn protect(&mut self, on: bool, site: &Site) -> Turn {
+        let Some(name) = self.own() else {
+            return Turn::Refused;
+        };
+        match source::protect(name, on, site) {
+            Ok(()) => Turn::Done,
+            Err(why) => Turn::Say(why),
+        }
+    }
+
+    /// Copies the file under the cursor into the other window, or all of the window; what is there already stays.
+    fn transfer(&mut self, all: bool, site: &Site) -> Turn {
+        let from = self.pane();
+        let wanted = match all {
+            true => from.entries.iter().collect(),
+            false => from.entry().into_iter().collect::<Vec<_>>(),
+        };
+        // Both windows are of one memory: only what lies in an EPROM is somewhere else.
+        let foreign = wanted
+            .iter()
+            .filter_map(|entry| Some((&entry.name, &entry.eprom.as_ref()?.1)));
+        let (mut copied, mut refused) = (0, None);
+        for (name, bytes) in foreign {
+            match source::create(name, bytes, site) {
+                Ok(()) => copied += 1,
+                Err(why) => refused = Some(format!("{name}: {why}")),
+            }
+        }
+        match refused {
+            Some(why) => Turn::Say(why),
+            None if copied == 0 => Turn::Refused,
+            None => Turn::Say(format!("{copied} {}", site.words("FILES TRANSFERRED"))),
+        }
+    }
+
+    fn keys(&self, names: &'static [&'static str]) -> Turn {
+        Turn::Open(Keys::ask(names, &self.chosen))
+    }
+
+    /// What was chosen of other soft keys.
+    fn chose(&mut self, name: &str, site: &mut Site) -> Turn {
+        if let Some((_, form)) = convert::FORMS.iter().find(|(own, _)| *own == name) {
+            return self
+                .own()
+                .map_or(Turn::Refused, |file| convert::ask(file, *form, site));
+        }
+        match name {
+            "SELECT TYPE" => return self.keys(TYPES),
+            "SHOW ALL" => self.pane_mut().ending = None,
+            TNC => self.pane_mut().eprom = false,
+            EPROM => self.pane_mut().eprom = true,
+            // No interface of the panel has a device.
+            EXT => return Turn::Say(site.message(MessageId::ExtInOutputNotReady)),
+            ending => self.pane_mut().ending = Some(ending.to_owned()),
+        }
+        Turn::Done
+    }
+
+    fn two_windows(&self, lines: usize) -> Vec<Line> {
+        let first = |pane: &Pane| crate::page::first_in_sight(pane.current, pane.entries.len(), lines);
+        let longest = self
+            .panes
+            .iter()
+            .map(|pane| pane.entries.len())
+            .max()
+            .unwrap_or(0);
+        let line = |row: usize| {
+            let mut shown = Line::default();
+            for (place, pane) in self.panes.iter().enumerate() {
+                let at = first(pane) + row;
+                let text = pane.entries.get(at).map(text_of).unwrap_or_default();
+                let from = shown.text.chars().count();
+                shown.text += &match place {
+                    0 => format!("{:<WIDTH$.WIDTH$} | ", text),
+                    _ => text,
+                };
+                if at == pane.current && at < pane.entries.len() && place == self.active {
+                    shown.current = true;
+                    shown.marks = vec![(from, from + WIDTH, Mark::Cursor)];
                 }
             }
-            Purpose::Compile => compile::run(name, site),
+            shown.text.truncate(shown.text.trim_end().len());
+            shown
+        };
+        (0..longest.min(lines)).map(line).collect()
+    }
+}
+
+/// The files that the machine needs by their names.
+fn is_needed(name: &str, site: &Site) -> bool {
+    name == source::main_file(site) || super::texts::is_active(name, site)
+}
+
+fn text_of(entry: &Entry) -> String {
+    let kept = match &entry.eprom {
+        Some((image, _)) => format!("EPROM {image}"),
+        None if entry.protected => "P".to_owned(),
+        None => String::new(),
+    };
+    format!("{:<18}{kept}", entry.name).trim_end().to_owned()
+}
+
+impl Page for Files {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            return self.go(lines);
         }
+        match key {
+            Key::Left | Key::Right if self.two => {
+                self.active = usize::from(key == Key::Right);
+                Turn::Done
+            }
+            Key::Ent => self.select(site),
+            Key::End | Key::NoEnt | Key::Del => Turn::Close,
+            _ => Turn::Refused,
+        }
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        self.rows().iter().map(|row| list::soft_keys(row, site)).collect()
+    }
+
+    fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
+        let name = self.rows().get(row).map_or("", |row| list::name_at(row, place));
+        self.stale = true;
+        match name {
+            "SELECT" => self.select(site),
+            "COPY" => self.named("DESTINATION FILE =", source::copy, site),
+            "RENAME" => self.rename(site),
+            "PROTECT" | "UNPROTECT" => self.protect(name == "PROTECT", site),
+            "MODIFY WINDOW" => self.keys(DEVICES),
+            "SELECT TYPE" => self.keys(TYPES),
+            "CONVERT" => self.keys(&convert::KEYS),
+            "TRANSFER" | "TRANSFER ALL" => self.transfer(name == "TRANSFER ALL", site),
+            "WINDOW" => {
+                (self.two, self.active) = (!self.two, 0);
+                Turn::Done
+            }
+            "END" => Turn::Close,
+            name => list::way_of(name).map_or(Turn::Refused, |lines| self.go(lines)),
+        }
+    }
+
+    fn show(&self, site: &Site, lines: usize) -> View {
+        let title = site.words("PLC FILES");
+        if self.two {
+            let lines = self.two_windows(lines);
+            return View::of(Window {
+                title,
+                kind: WindowKind::List,
+                total: lines.len(),
+                lines,
+                first: 0,
+            });
+        }
+        let pane = self.pane();
+        let main = source::main_file(site);
+        let line = |place: usize| {
+            let entry = pane.entries.get(place);
+            let mut text = entry.map(text_of).unwrap_or_default();
+            if entry.is_some_and(|entry| entry.eprom.is_none() && entry.name == main) {
+                text = format!("{text:<34} {}", site.words("RUNTIME PGM"));
+            }
+            Line {
+                text,
+                current: place == pane.current,
+                ..Line::default()
+            }
+        };
+        let cursor = (pane.current, pane.entries.len());
+        View::of(list::window(title, WindowKind::List, cursor, lines, line))
+    }
+
+    fn tick(&mut self, site: &mut Site) -> Turn {
+        let turn = match self.chosen.take() {
+            Some(name) => self.chose(&name, site),
+            None if !self.stale => return Turn::Done,
+            None => Turn::Done,
+        };
+        self.stale = matches!(turn, Turn::Open(_));
+        self.panes.iter_mut().for_each(|pane| pane.list(site));
+        turn
     }
 }

@@ -7,6 +7,7 @@ mod convert;
 mod diagram;
 mod editor;
 mod files;
+mod keys;
 mod operands;
 mod source;
 mod texts;
@@ -19,7 +20,6 @@ use crate::pages::list;
 use crate::pages::parameters;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
-use files::Purpose;
 
 /// The code number opens the mode until power-off; controls without it have no PLC that could be programmed.
 pub(crate) fn open(site: &mut Site) -> Turn {
@@ -77,8 +77,9 @@ impl MainMenu {
 }
 
 impl Page for MainMenu {
-    fn key(&mut self, key: Key, _site: &mut Site) -> Turn {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
+            Key::PgmNr => files::open(site),
             Key::End | Key::Del | Key::NoEnt => Turn::Close,
             _ => Turn::Refused,
         }
@@ -90,10 +91,10 @@ impl Page for MainMenu {
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
         match list::name_at(&SOFT_KEYS, place) {
-            "EDIT" => files::open(Purpose::Edit, site),
+            "EDIT" => files::open(site),
             "TABLE" => Turn::Open(Box::new(operands::Table::default())),
             "TRACE" => Turn::Open(Box::new(code::Code::new(site))),
-            "COMPILE" => files::open(Purpose::Compile, site),
+            "COMPILE" => compile::open(site),
             "OUTPUT BINARY CODE" => binary::open(site),
             "SELECT .DI1/.ER1" => texts::open(site),
             "MP EDIT" => parameters::all(site),

@@ -36,6 +36,8 @@ pub(super) struct Source {
 pub(super) enum NotWritten {
     /// Somebody else has written it since it was read.
     Changed,
+    /// It is protected.
+    Protected,
     /// In words: the medium does not do it.
     Words(String),
 }
@@ -98,6 +100,9 @@ impl Source {
         if bytes == self.stored {
             return Ok(());
         }
+        if is_protected(&self.path) {
+            return Err(NotWritten::Protected);
+        }
         if files::read_table(&self.path).map_err(words)? != self.stored {
             return Err(NotWritten::Changed);
         }
@@ -134,6 +139,15 @@ pub(super) fn named(name: &str, site: &Site) -> String {
     folder.map_or_else(|| name.to_owned(), |(folder, _)| format!("{folder}/{name}"))
 }
 
+/// Endings of what is no program: texts, lists, tables, binary code [000:11335-11350].
+const NO_SOURCE: [&str; 9] = ["ER1", "ERE", "DI1", "DIE", "A", "HLP", "BIN", "COM", "CMA"];
+
+/// Whether a file is a PLC program, or a part of one, by its name.
+pub(super) fn is_source(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    !NO_SOURCE.iter().any(|other| other.eq_ignore_ascii_case(ending))
+}
+
 /// Where a main file lies; its name comes from [`list`].
 pub(super) fn path(name: &str, site: &Site) -> PathBuf {
     folder(site).join(name)
@@ -151,12 +165,55 @@ pub(super) fn replace(name: &str, text: &str, site: &Site) -> Result<(), String>
 ///
 /// # Errors
 /// In words, when there is one of this name, or the medium does not take it.
-pub(super) fn create(name: &str, text: &str, site: &Site) -> Result<(), String> {
+pub(super) fn create(name: &str, bytes: &[u8], site: &Site) -> Result<(), String> {
     let path = folder(site).join(name);
     if !is_name(name) || path.exists() {
         return Err(site.message(MessageId::EntryValueIncorrect));
     }
-    files::write_whole(&path, text.as_bytes()).map_err(|error| error.to_string())
+    files::write_whole(&path, bytes).map_err(|error| error.to_string())
+}
+
+/// Copies a file of the folder to a new one.
+///
+/// # Errors
+/// In words.
+pub(super) fn copy(old: &str, new: &str, site: &Site) -> Result<(), String> {
+    let bytes = files::read_table(&path(old, site)).map_err(|error| error.to_string())?;
+    create(new, &bytes, site)
+}
+
+/// Gives a file another name.
+///
+/// # Errors
+/// In words: it is protected, or there is one of this name.
+pub(super) fn rename(old: &str, new: &str, site: &Site) -> Result<(), String> {
+    let (from, to) = (path(old, site), path(new, site));
+    if is_protected(&from) {
+        return Err(site.message(MessageId::ProtectedPgm));
+    }
+    if !is_name(new) || to.exists() {
+        return Err(site.message(MessageId::EntryValueIncorrect));
+    }
+    fs::rename(from, to).map_err(|error| error.to_string())
+}
+
+/// Protects a file of the folder, or no more: nobody may write it.
+///
+/// # Errors
+/// In words.
+pub(super) fn protect(name: &str, on: bool, site: &Site) -> Result<(), String> {
+    let path = path(name, site);
+    let set = || {
+        let mut allowed = fs::metadata(&path)?.permissions();
+        allowed.set_readonly(on);
+        fs::set_permissions(&path, allowed)
+    };
+    set().map_err(|error: std::io::Error| error.to_string())
+}
+
+/// Whether a file is protected.
+pub(super) fn is_protected(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|about| about.permissions().readonly())
 }
 
 /// The files of the program's folder by name: plain files that are not hidden and not too long. Links lead out of it and are none.

@@ -46,12 +46,20 @@ struct TextFiles {
 }
 
 /// The file that is in use has the folder of the PLC before its name.
-fn is_active(name: &str, site: &Site) -> bool {
+pub(super) fn is_active(name: &str, site: &Site) -> bool {
     let path = source::named(name, site);
     let text = files::read_table(&site.machine.root.join(MACHINE)).unwrap_or_default();
     let text = String::from_utf8_lossy(&text).into_owned();
-    let line = key_of(name).and_then(|key| text.lines().find(|line| is_entry(line, key)));
-    line.is_some_and(|line| line.contains(&format!("\"{path}\"")))
+    let entry = key_of(name).and_then(|key| entry_of(&text, key));
+    entry.is_some_and(|entry| entry == path)
+}
+
+/// The value of an entry: a string of either kind, in one line.
+fn entry_of<'t>(text: &'t str, key: &str) -> Option<&'t str> {
+    let line = text.lines().find(|line| is_entry(line, key))?;
+    let value = line.split_once('=')?.1.trim_start();
+    let quote = value.chars().next().filter(|first| matches!(first, '"' | '\''))?;
+    value.get(1..)?.split(quote).next()
 }
 
 fn is_entry(line: &str, key: &str) -> bool {
@@ -124,6 +132,14 @@ fn with_entry(text: &str, key: &str, value: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_entry_is_a_string_of_either_kind() {
+        let text = "plc_messages='plc/A.ER1'\nplc_dialogues  =  \"plc/O'NEIL.DI1\"  # \"plc/B.DI1\"\nplc_other = 7\n";
+        assert_eq!(entry_of(text, "plc_messages"), Some("plc/A.ER1"));
+        assert_eq!(entry_of(text, "plc_dialogues"), Some("plc/O'NEIL.DI1"));
+        assert_eq!((entry_of(text, "plc_other"), entry_of(text, "plc")), (None, None));
+    }
 
     #[test]
     fn an_entry_takes_another_value_and_the_rest_stays() {

@@ -1,0 +1,526 @@
+//! BACKUP and RESTORE: everything in the folder of a machine as one text, which any line carries.
+//!
+//! The original sends all parameters and all files as one file `$BACKUP.ANC`; what stands in it no manual says. Here it is
+//! lines of printable characters, so that seven data bits are enough *(inferred)*:
+//!
+//! ```text
+//! BEGIN BACKUP 1 mill
+//! FILE 27 9AE0DAAF programs/15.H
+//! BEGIN PGM 15 MM\n
+//! END PGM 15 MM\n
+//! END BACKUP 1
+//! ```
+//!
+//! Behind `FILE` stand bytes, check sum (CRC-32) and path. An end of line is only where `\n` says so; lines may be cut
+//! anywhere else.
+
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Component, Path, PathBuf};
+
+use bahn_host::HostError;
+use bahn_host::files::{self, NewFile, cannot};
+use thiserror::Error;
+
+/// Name under which it is sent [000:435-441].
+pub const BACKUP_NAME: &str = "$BACKUP";
+/// Characters of a line at most.
+const LINE: usize = 100;
+/// Bytes of a file at most: nothing that a machine keeps is longer.
+const FILE_MAX: u64 = 1 << 30;
+/// Folders in folders.
+const DEPTH_MAX: usize = 8;
+
+/// Why there is no backup, or why it is not restored.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum BackupError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    Host(#[from] HostError),
+    /// A line of the backup is not what it should be.
+    #[error("line {line} of the backup: {what}")]
+    Damaged {
+        /// The line, from 1.
+        line: u64,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// It ends before its END.
+    #[error("the backup ends in the middle")]
+    Incomplete,
+}
+
+/// The lines of a backup of a folder, one after the other.
+///
+/// Hidden files, symbolic links and folders in more than eight folders are left out.
+///
+/// # Errors
+/// When a file cannot be read, or the lines cannot be taken.
+pub fn back_up(
+    folder: &Path,
+    name: &str,
+    mut take: impl FnMut(&str) -> Result<(), HostError>,
+) -> Result<u64, BackupError> {
+    let mut paths = Vec::new();
+    collect(folder, Path::new(""), &mut paths)?;
+    take(&format!("BEGIN BACKUP 1 {}", escaped(name.as_bytes())))?;
+    for path in &paths {
+        let whole = folder.join(path);
+        let bytes = fs::read(&whole).map_err(|error| cannot("read", &whole, &error))?;
+        let shown: Vec<_> = path
+            .components()
+            .map(|part| part.as_os_str().to_string_lossy())
+            .collect();
+        let head = format!(
+            "FILE {} {:08X} {}",
+            bytes.len(),
+            crc32fast::hash(&bytes),
+            shown.join("/")
+        );
+        take(&head)?;
+        for line in bytes.split_inclusive(|byte| *byte == b'\n') {
+            for piece in pieces(line) {
+                take(&escaped(piece))?;
+            }
+        }
+    }
+    take(&format!("END BACKUP {}", paths.len()))?;
+    Ok(paths.len() as u64)
+}
+
+/// The files of a folder in the order of their paths.
+fn collect(folder: &Path, below: &Path, paths: &mut Vec<PathBuf>) -> Result<(), BackupError> {
+    let here = folder.join(below);
+    let failed = |error: io::Error| cannot("read", &here, &error);
+    let mut names: Vec<_> = Vec::new();
+    for entry in fs::read_dir(&here).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let kind = entry.file_type().map_err(failed)?;
+        if let (Ok(name), false) = (entry.file_name().into_string(), kind.is_symlink()) {
+            names.push((name, kind));
+        }
+    }
+    names.sort_by(|one, other| one.0.cmp(&other.0));
+    for (name, kind) in names {
+        let path = below.join(&name);
+        if relative(&path.to_string_lossy()).is_none() {
+            continue;
+        }
+        if kind.is_dir() {
+            collect(folder, &path, paths)?;
+        } else if kind.is_file() {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// A path that leads nowhere else, and to nothing hidden.
+fn relative(path: &str) -> Option<PathBuf> {
+    let path = Path::new(path);
+    let mut count = 0;
+    for component in path.components() {
+        let Component::Normal(name) = component else {
+            return None;
+        };
+        let name = name.to_str()?;
+        let fits = |c: char| c.is_ascii_alphanumeric() || "._$#-+ ()".contains(c);
+        if name.starts_with('.') || name == "lock" || !name.chars().all(fits) {
+            return None;
+        }
+        count += 1;
+    }
+    (1..=DEPTH_MAX).contains(&count).then(|| path.to_owned())
+}
+
+/// Printable characters; a blank at the end of a line would be lost on its way.
+fn escaped(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len());
+    for byte in bytes {
+        match byte {
+            b'\n' => text.push_str("\\n"),
+            b'\\' => text.push_str("\\\\"),
+            b' '..=b'~' => text.push(char::from(*byte)),
+            _ => text.push_str(&format!("\\x{byte:02X}")),
+        }
+    }
+    if text.ends_with(' ') {
+        text.truncate(text.len() - 1);
+        text.push_str("\\x20");
+    }
+    text
+}
+
+/// A line of a file in pieces that are short enough when they are escaped.
+fn pieces(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = line;
+    std::iter::from_fn(move || {
+        let mut length = 0;
+        let fits = |byte: &&u8| {
+            length += if matches!(byte, b' '..=b'~') { 1 } else { 4 };
+            length <= LINE
+        };
+        let count = rest.iter().take_while(fits).count();
+        let (piece, behind) = rest.split_at_checked(count)?;
+        rest = behind;
+        (count > 0).then_some(piece)
+    })
+}
+
+fn unescape(line: &str, into: &mut Vec<u8>) -> Option<()> {
+    let mut rest = line.as_bytes();
+    while let Some((first, behind)) = rest.split_first() {
+        rest = behind;
+        if *first != b'\\' {
+            into.push(*first);
+            continue;
+        }
+        let (escape, behind) = rest.split_first()?;
+        rest = behind;
+        into.push(match escape {
+            b'n' => b'\n',
+            b'\\' => b'\\',
+            b'x' => {
+                let (digits, behind) = rest.split_at_checked(2)?;
+                rest = behind;
+                u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()?
+            }
+            _ => return None,
+        });
+    }
+    Some(())
+}
+
+/// Takes a backup line by line. Nothing in the folder changes before [`Restore::commit`].
+#[derive(Debug)]
+pub struct Restore {
+    folder: PathBuf,
+    line: u64,
+    state: State,
+    /// Files that are complete and have not their names yet.
+    files: Vec<NewFile>,
+    made: Vec<PathBuf>,
+}
+
+#[derive(Debug)]
+enum State {
+    Begin,
+    Files,
+    /// A file that is coming: its bytes and what they must come to.
+    Inside {
+        path: PathBuf,
+        bytes: Vec<u8>,
+        length: usize,
+        sum: u32,
+    },
+    End,
+}
+
+impl Restore {
+    /// A backup comes for a folder.
+    pub fn new(folder: &Path) -> Restore {
+        Restore {
+            folder: folder.to_owned(),
+            line: 0,
+            state: State::Begin,
+            files: Vec::new(),
+            made: Vec::new(),
+        }
+    }
+
+    /// Takes a line, without its end.
+    ///
+    /// # Errors
+    /// When it is not what it should be; nothing is restored then.
+    pub fn line(&mut self, line: &str) -> Result<(), BackupError> {
+        self.line += 1;
+        let at = self.line;
+        let damaged = |what| BackupError::Damaged { line: at, what };
+        match &mut self.state {
+            State::Begin if line.starts_with("BEGIN BACKUP 1") => self.state = State::Files,
+            State::Begin => return Err(damaged("it does not begin with BEGIN BACKUP 1")),
+            State::Files => match line.strip_prefix("END BACKUP ") {
+                Some(count) if count.trim().parse() == Ok(self.files.len()) => self.state = State::End,
+                Some(_) => return Err(damaged("files are missing")),
+                None => self.head(line)?,
+            },
+            State::Inside { bytes, length, .. } => {
+                unescape(line, bytes).ok_or_else(|| damaged("an escape that there is not"))?;
+                if bytes.len() > *length {
+                    return Err(damaged("the file is longer than its head says"));
+                }
+                self.take_whole()?;
+            }
+            State::End if line.trim().is_empty() => {}
+            State::End => return Err(damaged("something stands behind END BACKUP")),
+        }
+        Ok(())
+    }
+
+    fn head(&mut self, line: &str) -> Result<(), BackupError> {
+        let damaged = |what| BackupError::Damaged {
+            line: self.line,
+            what,
+        };
+        let no_head = || damaged("FILE with bytes, check sum and path is expected");
+        let mut words = line.strip_prefix("FILE ").ok_or_else(no_head)?.splitn(3, ' ');
+        let length: u64 = words
+            .next()
+            .and_then(|word| word.parse().ok())
+            .ok_or_else(no_head)?;
+        let sum = words.next().and_then(|word| u32::from_str_radix(word, 16).ok());
+        let path = words.next().ok_or_else(no_head)?;
+        let path = relative(path).ok_or_else(|| damaged("no path of a machine"))?;
+        let length = usize::try_from(length.min(FILE_MAX + 1)).unwrap_or(usize::MAX);
+        if length as u64 > FILE_MAX {
+            return Err(damaged("the file is too long"));
+        }
+        self.state = State::Inside {
+            path,
+            bytes: Vec::new(),
+            length,
+            sum: sum.ok_or_else(no_head)?,
+        };
+        self.take_whole()
+    }
+
+    /// Writes a file beside its place when all of it has come.
+    fn take_whole(&mut self) -> Result<(), BackupError> {
+        let (path, bytes, sum) = match std::mem::replace(&mut self.state, State::Files) {
+            State::Inside {
+                path,
+                bytes,
+                length,
+                sum,
+            } if bytes.len() == length => (path, bytes, sum),
+            other => {
+                self.state = other;
+                return Ok(());
+            }
+        };
+        if crc32fast::hash(&bytes) != sum {
+            return Err(BackupError::Damaged {
+                line: self.line,
+                what: "the check sum of the file is another one",
+            });
+        }
+        let whole = self.folder.join(&path);
+        self.make_folders(&path)?;
+        let mut file = NewFile::create(&whole)?;
+        file.write_all(&bytes)
+            .map_err(|error| cannot("write", &whole, &error))?;
+        self.files.push(file);
+        Ok(())
+    }
+
+    /// The folders of a path, none of them a symbolic link that leads out.
+    fn make_folders(&mut self, path: &Path) -> Result<(), BackupError> {
+        let mut folder = self.folder.clone();
+        for component in path.parent().into_iter().flat_map(Path::components) {
+            folder.push(component);
+            match fs::symlink_metadata(&folder) {
+                Ok(found) if found.is_dir() => {}
+                Ok(_) => {
+                    return Err(BackupError::Damaged {
+                        line: self.line,
+                        what: "its path leads through something that is no folder",
+                    });
+                }
+                Err(_) => {
+                    fs::create_dir(&folder).map_err(|error| cannot("make", &folder, &error))?;
+                    self.made.push(folder.clone());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether END BACKUP has come.
+    pub fn is_complete(&self) -> bool {
+        matches!(self.state, State::End)
+    }
+
+    /// Puts all files in their places; how many there are. Files that the backup has not stay as they are.
+    ///
+    /// # Errors
+    /// [`BackupError::Incomplete`], or when the medium does not take them.
+    pub fn commit(mut self) -> Result<u64, BackupError> {
+        if !self.is_complete() {
+            return Err(BackupError::Incomplete);
+        }
+        let files = std::mem::take(&mut self.files);
+        self.made.clear();
+        let count = files.len() as u64;
+        for file in files {
+            file.finish()?;
+        }
+        files::sync_folder(&self.folder);
+        Ok(count)
+    }
+}
+
+impl Drop for Restore {
+    fn drop(&mut self) {
+        self.files.clear();
+        // Folders that nobody needs; those that hold something stay.
+        for folder in self.made.iter().rev() {
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new() -> Folder {
+            static COUNT: AtomicU32 = AtomicU32::new(0);
+            let number = COUNT.fetch_add(1, Ordering::Relaxed);
+            let folder = std::env::temp_dir().join(format!("bahn-backup-{}-{number}", std::process::id()));
+            fs::create_dir_all(&folder).unwrap();
+            Folder(folder)
+        }
+
+        fn write(&self, path: &str, bytes: &[u8]) {
+            let path = self.0.join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, bytes).unwrap();
+        }
+
+        fn lines(&self) -> Vec<String> {
+            let mut lines = Vec::new();
+            back_up(&self.0, "mill", |line| {
+                lines.push(line.to_owned());
+                Ok(())
+            })
+            .unwrap();
+            lines
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn restore(lines: &[String], folder: &Folder) -> Result<u64, BackupError> {
+        let mut restore = Restore::new(&folder.0);
+        for line in lines {
+            restore.line(line)?;
+        }
+        restore.commit()
+    }
+
+    fn machine() -> Folder {
+        let folder = Folder::new();
+        folder.write("programs/15.H", b"BEGIN PGM 15 MM\nEND PGM 15 MM\n");
+        folder.write("parameters.mp", b"");
+        folder.write("state/plc.mem", &(0..=255).collect::<Vec<u8>>());
+        folder.write(".hidden", b"x");
+        folder
+    }
+
+    #[test]
+    fn a_backup_reads_as_it_is_told() {
+        let lines = machine().lines();
+        let sum = crc32fast::hash(b"BEGIN PGM 15 MM\nEND PGM 15 MM\n");
+        let expected = [
+            "BEGIN BACKUP 1 mill".to_owned(),
+            "FILE 0 00000000 parameters.mp".to_owned(),
+            format!("FILE 30 {sum:08X} programs/15.H"),
+            "BEGIN PGM 15 MM\\n".to_owned(),
+            "END PGM 15 MM\\n".to_owned(),
+        ];
+        assert_eq!(lines[..5], expected);
+        assert_eq!(lines.last().unwrap(), "END BACKUP 3");
+        let fits =
+            |line: &String| line.len() <= LINE + 3 && line.bytes().all(|byte| (b' '..=b'~').contains(&byte));
+        assert!(lines.iter().all(fits));
+    }
+
+    #[test]
+    fn what_is_restored_is_what_was() {
+        let (from, to) = (machine(), Folder::new());
+        to.write("programs/15.H", b"old");
+        to.write("programs/16.H", b"stays");
+        assert_eq!(restore(&from.lines(), &to), Ok(3));
+        for path in ["programs/15.H", "parameters.mp", "state/plc.mem"] {
+            assert_eq!(
+                fs::read(from.0.join(path)).unwrap(),
+                fs::read(to.0.join(path)).unwrap()
+            );
+        }
+        assert_eq!(fs::read(to.0.join("programs/16.H")).unwrap(), b"stays");
+    }
+
+    /// Whatever happens to a line, either all is as before, or all is restored.
+    #[test]
+    fn a_damaged_backup_changes_nothing() {
+        let lines = machine().lines();
+        for at in 0..lines.len() {
+            let mut lost = lines.clone();
+            lost.remove(at);
+            let mut changed = lines.clone();
+            changed[at].push('!');
+            let cut = lines[..at].to_vec();
+            for damaged in [lost, changed, cut] {
+                let to = Folder::new();
+                to.write("programs/15.H", b"old");
+                if restore(&damaged, &to).is_err() {
+                    assert_eq!(to.lines().len(), 4, "line {at}");
+                    assert_eq!(fs::read(to.0.join("programs/15.H")).unwrap(), b"old");
+                    assert!(!to.0.join("state").exists());
+                } else {
+                    // The name of the machine is only a name.
+                    assert_eq!((at, damaged[0].as_str()), (0, "BEGIN BACKUP 1 mill!"));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_way_leads_out() {
+        for path in [
+            "../x",
+            "/etc/x",
+            "a/../../x",
+            ".ssh",
+            "a/.b",
+            "a\\..\\b",
+            "",
+            "a/b/c/d/e/f/g/h/i",
+            "state/lock",
+        ] {
+            let to = Folder::new();
+            let lines = ["BEGIN BACKUP 1 x".to_owned(), format!("FILE 0 00000000 {path}")];
+            assert!(restore(&lines, &to).is_err(), "{path}");
+        }
+        let (outside, to) = (Folder::new(), Folder::new());
+        std::os::unix::fs::symlink(&outside.0, to.0.join("programs")).unwrap();
+        assert!(restore(&machine().lines(), &to).is_err());
+        assert_eq!(fs::read_dir(&outside.0).unwrap().count(), 0);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn any_bytes_come_back(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
+            let (from, to) = (Folder::new(), Folder::new());
+            from.write("A.A", &bytes);
+            // Ends of lines and blanks before them are the line's.
+            let lines: Vec<_> = from.lines().iter().map(|line| line.trim_end().to_owned()).collect();
+            prop_assert_eq!(restore(&lines, &to), Ok(1));
+            prop_assert_eq!(fs::read(to.0.join("A.A")).unwrap(), bytes);
+        }
+    }
+}
