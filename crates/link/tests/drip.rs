@@ -62,6 +62,10 @@ impl BlockLine for BadLine {
         Arrival::Block(block.clone())
     }
 
+    fn watch(&mut self, _: Duration) -> Option<String> {
+        self.given_up.then(|| "PROGRAM INCOMPLETE".into())
+    }
+
     fn acknowledge(&mut self) {
         assert!(self.open);
         self.open = false;

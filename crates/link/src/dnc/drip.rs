@@ -133,6 +133,9 @@ impl Drip {
     fn hand_on(&mut self, line: &mut dyn BlockLine, machine: &mut dyn Machine) -> bool {
         let known = self.come < self.taken;
         if !known && !machine.wants_more() {
+            if let Some(message) = line.watch(Duration::ZERO) {
+                self.break_off(&message, machine);
+            }
             return false;
         }
         let Some(mut block) = self.waiting.take() else {

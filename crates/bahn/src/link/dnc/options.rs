@@ -28,8 +28,8 @@ const RUN_EXAMPLES: &str = "\
 Examples:
   bahn link dnc run --machine machines/mill --port connect:127.0.0.1:4711 15.H
       Ask the device there for program 15 and execute it as it comes; docs/dnc.md tells what may stand in it.
-  bahn link dnc run --machine mill --port serial:/dev/ttyUSB0,mode=ext1,baud=38400 15.H --restarts 3 --format json
-      As MP5020.0 and MP52xx.0 of the machine set the interface up; three times START asks again behind a broken line.
+      With --port serial:/dev/ttyUSB0,mode=ext1,baud=38400 the port is that of this computer, set up by MP5020.0 and
+      MP5200.0 to MP5210.0 of the machine; --restarts 3 asks again three times behind a broken line.
 
 The operator who stands by is that of `bahn run`, but a programmed stop waits; --confirm-stops confirms it, too. While the
 memory of MP7228.1 kByte is full no block is acknowledged. The machine waits for the line without spending time of its own, but for
@@ -44,9 +44,8 @@ has an error, or the device refuses it; 2 wrong use, 130 ended by Ctrl-C.";
 const SEND_EXAMPLES: &str = "\
 Examples:
   bahn link dnc send --dir parts --port tcp:127.0.0.1:4711 15.H
-      Answer the header for program 15, and end when it has arrived.
-  bahn link dnc send --dir parts --port serial:/dev/ttyUSB0,mode=fe1,baud=19200
-      A floppy unit for blockwise transfer: any program of the folder, until Ctrl-C.
+      Answer the header for program 15, and end when it has arrived. Without a name any program of the folder can be asked for,
+      until Ctrl-C; --port serial:/dev/ttyUSB0,mode=fe1,baud=19200 is what stands in for a floppy unit at a real machine.
 
 With names only these programs can be asked for; a header without a name gets the next one by name. A transfer that was broken off
 begins anew with the next header, since controls pass over what they have; --resume begins with BEGIN PGM and the first block that was

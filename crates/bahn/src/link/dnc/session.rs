@@ -18,6 +18,9 @@ const ENOUGH: u64 = 4096;
 /// Blocks that one cycle takes at most.
 const BLOCKS_PER_CYCLE: u32 = 512;
 
+/// So long NC start may take from the key to the run, time of the machine, µs.
+const START_US: u64 = 5_000_000;
+
 /// How a session ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
@@ -49,6 +52,8 @@ pub(super) struct Session<'a> {
     /// The control refused what the operator wanted.
     refused: Option<String>,
     pub start_us: Option<u64>,
+    /// The run has begun.
+    ran: bool,
 }
 
 impl<'a> Session<'a> {
@@ -63,6 +68,7 @@ impl<'a> Session<'a> {
             given_up: false,
             refused: None,
             start_us: None,
+            ran: false,
         }
     }
 
@@ -80,6 +86,7 @@ impl<'a> Session<'a> {
             }
             self.host.step()?;
             self.follow_notices();
+            self.ran |= self.start_us.is_some() && self.host.control().first().is_active();
             self.feed()?;
             if let Some(ended) = self.ended() {
                 self.line.give_up();
@@ -143,7 +150,8 @@ impl<'a> Session<'a> {
         let mut taken = 0;
         while taken < BLOCKS_PER_CYCLE && *drip.state() == DripState::Running {
             let state = self.host.control().first().drip_feed();
-            let hungry = state.is_some_and(|state| state.wants_more && state.bytes < ENOUGH);
+            // Behind the end of the run only the end of the text is awaited.
+            let hungry = state.is_none_or(|state| state.wants_more && state.bytes < ENOUGH);
             let waits = hungry && !self.wishes.realtime && waited < STILL;
             let at_most = if waits { LOOK } else { Duration::ZERO };
             if drip.turn(self.line, &mut Executing(&mut self.host), at_most) {
@@ -198,15 +206,26 @@ impl<'a> Session<'a> {
         if control.has_ended() && over {
             return Some(Ended::Completed);
         }
-        let idle = control.run_state() == RunState::Idle || control.is_broken();
-        let stands = idle || control.run_state() == RunState::Stopped && control.stands();
-        if let Some(broken) = self.broken.as_ref().filter(|_| stands) {
-            return Some(Ended::Message(broken.clone()));
+        let idle = !control.first().is_active();
+        let waited_us = control
+            .time_us()
+            .saturating_sub(self.start_us.unwrap_or(u64::MAX));
+        let is_broken = |drip: &Drip| matches!(drip.state(), DripState::Broken(_));
+        if self.broken.is_none() && self.drip.as_ref().is_some_and(is_broken) {
+            // START may be pressed again.
+            return None;
         }
-        let started = self.start_us.is_some() && idle;
+        if let Some(broken) = &self.broken {
+            let executed = idle && (self.ran || waited_us > START_US);
+            let stopped = control.run_state() == RunState::Stopped && control.stands();
+            return (executed || stopped).then(|| Ended::Message(broken.clone()));
+        }
+        // A message that stood before START keeps nothing from running.
+        let since = self.start_us.filter(|_| idle).unwrap_or(u64::MAX);
         let of_the_run = |message: &Message| !matches!(message, Message::Plc(_));
         let mut shown = control.shown().iter().rev();
-        let message = shown.find(|shown| shown.flashing || started && of_the_run(&shown.message));
+        let message =
+            shown.find(|shown| shown.flashing || shown.time_us >= since && of_the_run(&shown.message));
         message.map(|shown| Ended::Message(control.shown_text(shown)))
     }
 }
