@@ -70,6 +70,7 @@ fn desk() -> Folder {
         folder.write(name, "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
     }
     folder.write("jog.txt", "30: end\n");
+    fs::create_dir(folder.path("mill/programs/PARTS")).unwrap();
     folder
 }
 
@@ -113,6 +114,15 @@ fn digitizing(folder: &Folder) {
 /// Held while a panel runs.
 static PANEL: Mutex<()> = Mutex::new(());
 
+/// A command that asks a control: one is served meanwhile.
+fn beside_a_server(command: &str) -> String {
+    format!(
+        "bahn link serve --machine mill --lsv2 127.0.0.1:19000 >served.txt & server=$!; \
+         until grep -q ready served.txt; do kill -0 $server || exit 1; sleep 0.05; done; \
+         {command}; code=$?; kill -INT $server; wait $server; exit $code"
+    )
+}
+
 /// Runs each command in a shell, in this order.
 fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     assert!(!commands.is_empty());
@@ -129,9 +139,18 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     for command in commands {
         // A panel runs until somebody ends it, and only one listens at an address.
         let ended = format!("timeout --preserve-status --signal INT 4 {command}");
-        let panel = command.starts_with("bahn panel").then(|| PANEL.lock().unwrap());
+        let ends_itself = !["bahn panel", "bahn link serve"]
+            .iter()
+            .any(|name| command.starts_with(name));
+        let asks = command.starts_with("bahn link lsv2");
+        let held = (!ends_itself || asks).then(|| PANEL.lock().unwrap());
+        let command = match (ends_itself, asks) {
+            (false, _) => &ended,
+            (true, true) => &beside_a_server(command),
+            (true, false) => command,
+        };
         let output = Command::new("sh")
-            .args(["-c", if panel.is_some() { &ended } else { command }])
+            .args(["-c", command])
             .current_dir(place)
             .env("PATH", &path)
             .env("HOME", folder.path(""))
@@ -139,6 +158,7 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
             .stdin(std::process::Stdio::null())
             .output()
             .unwrap();
+        drop(held);
         let exception = EXCEPTIONS.iter().find(|(part, _)| command.contains(part));
         let code = output.status.code();
         if code != Some(0) && code != exception.map(|(_, code)| *code) {
@@ -170,7 +190,7 @@ fn of_the_readmes() {
 
 #[test]
 fn of_the_documents() {
-    for file in ["docs/digitizing.md", "docs/torture.md"] {
+    for file in ["docs/digitizing.md", "docs/torture.md", "docs/lsv2.md"] {
         let folder = desk();
         digitizing(&folder);
         let text = fs::read_to_string(root().join(file)).unwrap();

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueHint};
 
+use super::desk::Answer;
 use super::disk::DiskOptions;
+use super::dnc::DncOptions;
 use super::lsv2::Lsv2Options;
 use super::transfer::{ListOptions, TransferOptions};
 
@@ -34,6 +36,8 @@ pub(crate) enum LinkCommand {
     /// Be a floppy disk unit: a folder as its disk.
     #[command(after_help = super::disk::EXAMPLES)]
     Disk(DiskOptions),
+    /// Execute programs while they are transferred: as the control, or as the computer at the other end.
+    Dnc(DncOptions),
     /// Ask a control by LSV/2: files, state, screen.
     #[command(after_help = super::lsv2::EXAMPLES)]
     Lsv2(Lsv2Options),
@@ -56,6 +60,18 @@ pub(crate) struct ServeOptions {
     /// Folder of the machine.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub machine: PathBuf,
+    /// Let RS-232-C/V.24 answer there.
+    #[arg(long, value_name = "SPEC")]
+    pub rs232: Option<String>,
+    /// Let RS-422/V.11 answer there.
+    #[arg(long, value_name = "SPEC")]
+    pub rs422: Option<String>,
+    /// What is answered to ERASE/OVERREAD when a file comes by a serial port.
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
+    pub answer: Answer,
+    /// Write down what passes over the serial ports.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub trace: Option<PathBuf>,
     /// Answer by LSV/2 there.
     #[arg(long, value_name = "ADDR:PORT")]
     pub lsv2: Option<SocketAddr>,

@@ -87,14 +87,14 @@ impl Server {
     ///
     /// # Errors
     /// When a password is missing, or the port is taken.
-    pub fn start(site: Site, options: &ServerOptions) -> io::Result<Server> {
+    pub fn start(site: impl Into<Arc<Site>>, options: &ServerOptions) -> io::Result<Server> {
         options
             .check()
             .map_err(|text| io::Error::new(ErrorKind::PermissionDenied, text))?;
         let listener = TcpListener::bind(options.listen)?;
         let address = listener.local_addr()?;
         let shared = Arc::new(Shared {
-            site: Arc::new(site),
+            site: site.into(),
             ends: AtomicBool::new(false),
             count: AtomicUsize::new(0),
             streams: Mutex::default(),

@@ -291,7 +291,8 @@ fn lines_end_alike_however_blocks_are_cut() {
             (b"R_FLT.A\0", &[b"S_FL", first].concat()),
             (b"T_OK", &[b"S_FL", rest].concat()),
             (b"T_OK", b"T_FD"),
-            (b"R_FLE.A\0", b"T_FD"),
+            (b"R_FLE.A\0", b"S_FL"),
+            (b"T_OK", b"T_FD"),
         ],
     );
 }
