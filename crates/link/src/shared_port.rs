@@ -177,6 +177,14 @@ impl Protocol for SharedPort {
         self.other.is_idle()
     }
 
+    fn is_transparent(&self) -> bool {
+        !self.was_assigned && self.other.is_transparent()
+    }
+
+    fn hold(&mut self, on: bool) {
+        self.other.hold(on);
+    }
+
     fn has_stopped_by_rts(&self) -> bool {
         match self.was_assigned {
             true => self.hold.held().line.has_stopped_by_rts(),

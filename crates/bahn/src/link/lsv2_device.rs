@@ -185,7 +185,7 @@ impl Device for MachineDevice {
 
     fn run(&self) -> Result<Run, ErrorNumber> {
         self.follow();
-        self.look(|station| run_of(station))
+        self.look(run_of)
     }
 
     fn elements(&self, area: Area) -> u32 {

@@ -31,7 +31,7 @@ pub(super) struct PlcLines {
 
 impl PlcLines {
     /// The lines of a machine that is about to run.
-    pub fn new(station: &Station, ports: [Option<PlcPort>; 2]) -> PlcLines {
+    pub fn new(station: &mut Station, ports: [Option<PlcPort>; 2]) -> PlcLines {
         PlcLines {
             notices: station.host().notices(),
             ports,

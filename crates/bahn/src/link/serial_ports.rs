@@ -9,11 +9,12 @@ use std::time::Duration;
 
 use bahn_link::blockwise::Rights;
 use bahn_link::lsv2::{Device, SerialServer, ServerOptions, Site};
-use bahn_link::{Channel, Line, Passive, Protocol, Settings, Spec, drive, peripheral};
+use bahn_link::{Channel, Line, Passive, PlcHold, Protocol, Settings, SharedPort, Spec, drive, peripheral};
 use bahn_parameters::{MessageId, ParameterList};
 
 use super::desk::{Answer, Desk, Until};
 use super::options::ServeOptions;
+use super::plc_lines::PlcPort;
 use super::port::{self, Refused};
 use super::trace::Trace;
 use crate::options::Format;
@@ -46,6 +47,16 @@ pub(super) struct Port {
     channel: Channel,
     /// Where it can be reached from elsewhere.
     reached: Option<SocketAddr>,
+    /// As the PLC may have it.
+    plc: PlcPort,
+}
+
+/// The ports as the PLC may have them: RS-232-C and RS-422.
+pub(super) fn of_plc(ports: &[Port]) -> [Option<PlcPort>; 2] {
+    [0, 1].map(|number| {
+        let port = ports.iter().find(|port| port.number == number);
+        port.map(|port| port.plc.clone())
+    })
 }
 
 /// Opens them all, or none.
@@ -77,6 +88,12 @@ pub(super) fn open(specs: &[(usize, Spec)], list: &ParameterList) -> Result<Vec<
             number: *number,
             settings,
             channel: port::open(spec, &settings)?,
+            plc: PlcPort {
+                hold: PlcHold::default(),
+                mode: spec.mode,
+                baud: spec.baud,
+                patience: spec.timeout,
+            },
             reached: match &spec.line {
                 Line::Listen(address) => address.to_socket_addrs().ok().and_then(|mut all| all.next()),
                 Line::Connect(_) | Line::Pty(_) | Line::Serial(_) => None,
@@ -139,6 +156,7 @@ fn answer_on(port: Port, site: &Arc<Site>, answer: Answer, stop: &AtomicBool, tr
         settings,
         mut channel,
         reached,
+        plc,
     } = port;
     let (_, name, prefix) = PORTS.get(number).copied().unwrap_or_default();
     let rights = Rights {
@@ -156,6 +174,7 @@ fn answer_on(port: Port, site: &Arc<Site>, answer: Answer, stop: &AtomicBool, tr
         true => Box::new(Passive::new(device, SerialServer::new(site))),
         false => device,
     };
+    protocol = Box::new(SharedPort::new(plc.hold, protocol));
     let written = Arc::clone(&site.device);
     let mut desk = Desk::new(settings.model, answer, Format::Text, Until::Stopped)
         .of_port(prefix)

@@ -10,12 +10,13 @@ use bahn_panel::{Live, Station};
 
 use super::lsv2_device::MachineDevice;
 use super::options::ServeOptions;
+use super::plc_lines::PlcLines;
 use super::serial_ports::{self, Serving};
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, diagnostics, machine_folder};
 
-/// How often Ctrl-C is looked for.
-const LOOK: Duration = Duration::from_millis(50);
+/// How often Ctrl-C is looked for, and what the PLC wants of its lines.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// Switches the machine on and answers until Ctrl-C.
 pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
@@ -42,6 +43,7 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
         MachineDevice::new(&mut station, options.identity.as_deref())
             .map_err(|error| UsageError::new(error.to_string()))?,
     );
+    let mut lines = PlcLines::new(&mut station, serial_ports::of_plc(&ports));
     let live = Live::start(station);
     device.connect(live.link());
     let site = Arc::new(Site::new(device, passwords));
@@ -60,7 +62,10 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
     let serving = Serving::start(ports, &site, options.answer, options.trace.as_ref())?;
     // Whoever has closed the output knows.
     let _ = writeln!(std::io::stdout(), "ready").and_then(|()| std::io::stdout().flush());
+    let link = live.link();
+    lines.begin(&link);
     while !interrupt.is_requested() && !live.has_ended() {
+        lines.carry(&link);
         std::thread::sleep(LOOK);
     }
     drop(server);

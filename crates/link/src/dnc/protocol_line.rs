@@ -202,13 +202,18 @@ impl ProtocolLine {
     }
 
     /// What has become of the transfer, when it is over.
-    fn end(&mut self) -> Arrival {
-        if lock(&self.came).complete {
-            return Arrival::End;
+    fn end(&self) -> Arrival {
+        match lock(&self.came).complete {
+            true => Arrival::End,
+            false => Arrival::Broken(self.shown()),
         }
+    }
+
+    /// The message of a transfer that was broken off.
+    fn shown(&self) -> String {
         let shown = self.message.clone();
         let shown = shown.unwrap_or(Shown::Control(MessageId::ProgramIncomplete, None));
-        Arrival::Broken(shown.text(self.settings.model))
+        shown.text(self.settings.model)
     }
 }
 
@@ -255,6 +260,12 @@ impl BlockLine for ProtocolLine {
                 return Arrival::Nothing;
             }
         }
+    }
+
+    fn watch(&mut self, at_most: Duration) -> Option<String> {
+        self.pump(at_most);
+        let whole = lock(&self.came).complete;
+        (self.over && !whole).then(|| self.shown())
     }
 
     fn acknowledge(&mut self) {
