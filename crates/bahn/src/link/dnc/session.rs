@@ -100,7 +100,7 @@ impl<'a> Session<'a> {
     }
 
     fn follow_notices(&mut self) {
-        while let Some(next) = self.notices.next() {
+        for next in self.notices.by_ref() {
             let Next::Item(stamped) = next else { continue };
             if let Notice::Given(Source::Operator, deed, Answer::Refused) = stamped.notice
                 && deed != Deed::Command(0, Command::Ce)
