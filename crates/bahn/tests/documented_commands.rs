@@ -52,6 +52,10 @@ fn desk() -> Folder {
     }
     fs::create_dir(folder.path("parts")).unwrap();
     folder.write("parts/part.h", part);
+    folder.write(
+        "parts/15.H",
+        "BEGIN PGM 15 MM\nL X+50 Y+50 R0 F2000\nL X+60\nEND PGM 15 MM\n",
+    );
     let list = fs::read_to_string(root().join("machines/mill/parameters.mp")).unwrap();
     for name in ["mill.mp", "old.mp", "new.mp", "machine.MP"] {
         folder.write(name, &list);
@@ -123,6 +127,23 @@ fn beside_a_server(command: &str) -> String {
     )
 }
 
+/// One side of a blockwise transfer: the other one is there meanwhile.
+fn with_its_other_side(command: &str) -> String {
+    let sends = command.starts_with("bahn link dnc send");
+    let send = if sends {
+        command
+    } else {
+        "bahn link dnc send --dir parts --port tcp:127.0.0.1:4711 15.H"
+    };
+    let run = if sends {
+        "bahn link dnc run --machine mill --port connect:127.0.0.1:4711 15.H"
+    } else {
+        command
+    };
+    // Until the sender listens nobody answers.
+    format!("{send} & sender=$!; until {run}; do kill -0 $sender || exit 1; sleep 0.05; done; wait $sender")
+}
+
 /// Runs each command in a shell, in this order.
 fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     assert!(!commands.is_empty());
@@ -143,10 +164,12 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
             .iter()
             .any(|name| command.starts_with(name));
         let asks = command.starts_with("bahn link lsv2");
-        let held = (!ends_itself || asks).then(|| PANEL.lock().unwrap());
+        let drips = command.starts_with("bahn link dnc");
+        let held = (!ends_itself || asks || drips).then(|| PANEL.lock().unwrap());
         let command = match (ends_itself, asks) {
             (false, _) => &ended,
             (true, true) => &beside_a_server(command),
+            (true, false) if drips => &with_its_other_side(command),
             (true, false) => command,
         };
         let output = Command::new("sh")
@@ -190,7 +213,12 @@ fn of_the_readmes() {
 
 #[test]
 fn of_the_documents() {
-    for file in ["docs/digitizing.md", "docs/torture.md", "docs/lsv2.md"] {
+    for file in [
+        "docs/digitizing.md",
+        "docs/dnc.md",
+        "docs/torture.md",
+        "docs/lsv2.md",
+    ] {
         let folder = desk();
         digitizing(&folder);
         let text = fs::read_to_string(root().join(file)).unwrap();
