@@ -194,7 +194,6 @@ pub(crate) fn interpreter(
         strict: run.strict,
         skip_unknown: run.skip_unknown,
         as_programmed: false,
-        transferred: false,
         max_blocks_without_motion: run.max_blocks,
     })
 }

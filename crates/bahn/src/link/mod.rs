@@ -2,14 +2,9 @@
 //!
 //! - `options`: options and help texts;
 //! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer; `trace`: what passes;
-<<<<<<< HEAD
 //! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit; `monitor`: what passes over a line;
-//! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones;
-=======
-//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit;
 //! - `dnc`: programs that are executed while they are transferred, from both sides;
 //! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones, `plc_lines` its PLC at them;
->>>>>>> int
 //! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
 //!   its log book, `lsv2_screen` its screen as a picture.
 
@@ -42,11 +37,8 @@ pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
         LinkCommand::Send(options) => transfer::send(options),
         LinkCommand::List(options) => transfer::list(options),
         LinkCommand::Disk(options) => disk::command(options),
-<<<<<<< HEAD
         LinkCommand::Monitor(options) => monitor::command(options),
-=======
         LinkCommand::Dnc(options) => dnc::command(options),
->>>>>>> int
         LinkCommand::Lsv2(options) => lsv2::command(options),
     }
 }

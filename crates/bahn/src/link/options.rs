@@ -37,14 +37,11 @@ pub(crate) enum LinkCommand {
     /// Be a floppy disk unit: a folder as its disk.
     #[command(after_help = super::disk::EXAMPLES)]
     Disk(DiskOptions),
-<<<<<<< HEAD
     /// Show what passes over a line.
     #[command(after_help = super::monitor::EXAMPLES)]
     Monitor(MonitorOptions),
-=======
     /// Execute programs while they are transferred: as the control, or as the computer at the other end.
     Dnc(DncOptions),
->>>>>>> int
     /// Ask a control by LSV/2: files, state, screen.
     #[command(after_help = super::lsv2::EXAMPLES)]
     Lsv2(Lsv2Options),

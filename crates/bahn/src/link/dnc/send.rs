@@ -178,7 +178,7 @@ impl Attendant for Sender {
         None
     }
 
-    fn is_over(&mut self, _: &dyn Protocol, _: Duration) -> bool {
+    fn is_over(&mut self, _: bool, _: Duration) -> bool {
         self.has_sent_all()
     }
 }
