@@ -43,7 +43,11 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
         MachineDevice::new(&mut station, options.identity.as_deref())
             .map_err(|error| UsageError::new(error.to_string()))?,
     );
-    let mut lines = PlcLines::new(&mut station, serial_ports::of_plc(&ports));
+    let mut lines = PlcLines::new(
+        &mut station,
+        serial_ports::of_plc(&ports),
+        options.print.as_deref(),
+    )?;
     let live = Live::start(station);
     device.connect(live.link());
     let site = Arc::new(Site::new(device, passwords));
