@@ -10,8 +10,8 @@ use super::desk::Answer;
 use super::disk::DiskOptions;
 use super::dnc::DncOptions;
 use super::lsv2::Lsv2Options;
-use super::print::PrintOptions;
 use super::monitor::MonitorOptions;
+use super::print::PrintOptions;
 use super::transfer::{ListOptions, TransferOptions};
 
 /// Options of `bahn link`.
