@@ -19,7 +19,7 @@ impl Attendant for Nobody {
         None
     }
 
-    fn is_over(&mut self, _: &dyn Protocol, _: Duration) -> bool {
+    fn is_over(&mut self, _: bool, _: Duration) -> bool {
         false
     }
 }

@@ -298,7 +298,7 @@ fn survive(noise: &[u8], seed: u64) {
         let mut out = Vec::new();
         for (number, byte) in noise.iter().enumerate() {
             protocol.receive(*byte, now);
-            if (number as u64 ^ seed) % 7 == 0 {
+            if (number as u64 ^ seed).is_multiple_of(7) {
                 out.clear();
                 protocol.send(64, now, &mut out);
                 now += Duration::from_micros(900);

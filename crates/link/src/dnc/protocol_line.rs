@@ -160,7 +160,13 @@ impl ProtocolLine {
             wait = Duration::ZERO;
         }
         match self.channel.wait(wait) {
-            Ok(Happened::Nothing | Happened::Opened) => {}
+            Ok(Happened::Nothing) => {}
+            Ok(Happened::Opened) => {
+                let now = self.channel.now();
+                if let Some(protocol) = self.protocol.as_mut().filter(|_| !self.over) {
+                    protocol.plugged(now);
+                }
+            }
             Ok(Happened::Closed) => self.unplugged(),
             Err(error) => {
                 self.message.get_or_insert(Shown::Device(error.to_string()));
@@ -240,6 +246,9 @@ impl BlockLine for ProtocolLine {
             false => Box::new(standard::Reading::new(settings, files, want, kind)),
         };
         protocol.hold(settings.blockwise);
+        if self.channel.is_connected() {
+            protocol.plugged(self.channel.now());
+        }
         self.protocol = Some(protocol);
         (self.open, self.over, self.message) = (false, false, None);
     }

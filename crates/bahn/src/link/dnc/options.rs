@@ -106,6 +106,9 @@ pub(crate) struct DncSendOptions {
     /// The port of the control.
     #[arg(long, value_name = "SPEC")]
     pub port: String,
+    /// List of the machine parameters that set EXT1 and EXT2 up, those of the control.
+    #[arg(long, value_name = "LIST.mp", value_hint = ValueHint::FilePath)]
+    pub parameters: Option<PathBuf>,
     /// How progress is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,

@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use bahn_link::blockwise::{self, Rights};
 use bahn_link::dnc::{Spool, Spooled};
-use bahn_link::store::Store;
 use bahn_link::{Attendant, Event, Files, Protocol, drive, standard};
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::ControlModel;
 use serde::Serialize;
 
 use super::options::DncSendOptions;
 use super::port;
 use crate::interrupt::Interrupt;
+use crate::link::port as link_port;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 
@@ -20,7 +20,7 @@ const PERIOD: Duration = Duration::from_secs(1);
 
 /// Runs the command.
 pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
-    let store = Store::of_disk(&options.dir).map_err(|error| UsageError::new(error.to_string()))?;
+    let store = link_port::disk(&options.dir)?;
     let mut spool = Spool::new(Box::new(store), options.resume);
     if let Some(missing) = options.names.iter().find(|name| spool.find(name).is_none()) {
         let folder = options.dir.display();
@@ -28,7 +28,9 @@ pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
             "there is no program {missing} in {folder}"
         )));
     }
-    let list = ParameterList::reference(ControlModel::default());
+    let Ok(list) = link_port::list(options.parameters.as_deref()) else {
+        return Ok(Outcome::ProgramError);
+    };
     let Some((mut channel, settings)) = port::open(&options.port, &list) else {
         return Ok(Outcome::ProgramError);
     };
@@ -51,6 +53,7 @@ pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
         teller: teller.clone(),
         missing: options.names.clone(),
         endless: options.names.is_empty(),
+        ends_with_line: options.port.starts_with("connect:"),
         blocks: 0,
     };
     let interrupt = Interrupt::on_ctrl_c();
@@ -135,6 +138,8 @@ struct Sender {
     /// What was named and has not arrived.
     missing: Vec<String>,
     endless: bool,
+    /// Nobody comes again over a line that is closed.
+    ends_with_line: bool,
     /// Of all programs that have arrived.
     blocks: u64,
 }
@@ -178,7 +183,7 @@ impl Attendant for Sender {
         None
     }
 
-    fn is_over(&mut self, _: bool, _: Duration) -> bool {
-        self.has_sent_all()
+    fn is_over(&mut self, connected: bool, _: Duration) -> bool {
+        self.has_sent_all() || self.ends_with_line && !connected
     }
 }
