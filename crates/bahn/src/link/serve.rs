@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bahn_host::HostError;
-use bahn_link::lsv2::{Passwords, Server, ServerOptions, Site};
+use bahn_link::lsv2::{OpenPort, Passwords, ServerOptions, Site};
 use bahn_panel::{Live, Station};
 
 use super::lsv2_device::MachineDevice;
@@ -34,6 +34,13 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
     let Ok(ports) = serial_ports::open(&specs, &machine.parameters) else {
         return Ok(Outcome::ProgramError);
     };
+    let lsv2 = match lsv2.map(|options| open(&options)).transpose() {
+        Ok(lsv2) => lsv2,
+        Err(error) => {
+            diagnostics::print_line(&format!("error: {error}"));
+            return Ok(Outcome::ProgramError);
+        }
+    };
     let mut station = Station::power_on(machine).map_err(|error| match error {
         HostError::SwitchedOn(_) => UsageError(format!("{error}; end what runs it")),
         other => other.into(),
@@ -51,18 +58,8 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
     let live = Live::start(station);
     device.connect(live.link());
     let site = Arc::new(Site::new(device, passwords));
-    let server = lsv2.map(|options| {
-        Server::start(Arc::clone(&site), &options)
-            .map_err(|error| format!("LSV/2 at {}: {error}", options.listen))
-    });
-    let server = match server.transpose() {
-        Ok(server) => server,
-        Err(error) => {
-            diagnostics::print_line(&format!("error: {error}"));
-            live.end().map_err(UsageError::new)?;
-            return Ok(Outcome::ProgramError);
-        }
-    };
+    let server = lsv2.map(|port| port.serve(Arc::clone(&site))).transpose();
+    let server = server.map_err(|error| UsageError::new(error.to_string()))?;
     let serving = Serving::start(ports, &site, options.answer, options.trace.as_ref())?;
     // Whoever has closed the output knows.
     let _ = writeln!(std::io::stdout(), "ready").and_then(|()| std::io::stdout().flush());
@@ -93,4 +90,8 @@ fn lsv2_options(options: &ServeOptions) -> Result<(Option<ServerOptions>, Passwo
     };
     options.check().map_err(UsageError::new)?;
     Ok((Some(options), passwords))
+}
+
+fn open(options: &ServerOptions) -> Result<OpenPort, String> {
+    OpenPort::open(options).map_err(|error| format!("LSV/2 at {}: {error}", options.listen))
 }
