@@ -15,6 +15,8 @@ const EXCEPTIONS: &[(&str, i32)] = &[
     // Wrong use: there is no terminal here.
     ("plc watch", 2),
     ("panel --terminal", 2),
+    // No such port is there.
+    ("serial:/dev/ttyUSB0", 1),
     // There are differences.
     ("mp diff mill.mp", 1),
 ];
@@ -74,6 +76,11 @@ fn desk() -> Folder {
         folder.write(name, "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
     }
     folder.write("jog.txt", "30: end\n");
+    folder.write("line.txt", "0.5 > 01 48 31 35 45 17 1F 11\n0.6 < 06\n");
+    folder.write(
+        "parts/15.H",
+        "0 BEGIN PGM 15 MM\n1 L Z+100 R0 FMAX M2\n2 END PGM 15 MM\n",
+    );
     fs::create_dir(folder.path("mill/programs/PARTS")).unwrap();
     folder
 }
@@ -144,6 +151,23 @@ fn with_its_other_side(command: &str) -> String {
     format!("{send} & sender=$!; until {run}; do kill -0 $sender || exit 1; sleep 0.05; done; wait $sender")
 }
 
+/// A control that asks a device: a disk is there meanwhile.
+fn beside_a_disk(command: &str) -> String {
+    format!(
+        "bahn link disk parts --port tcp:127.0.0.1:4711,mode=fe2 >disk.txt & disk=$!; \
+         until grep -q ready disk.txt; do kill -0 $disk || exit 1; sleep 0.05; done; \
+         {command}; code=$?; kill -INT $disk; wait $disk; exit $code"
+    )
+}
+
+/// Commands that go on until somebody ends them.
+const ENDLESS: &[&str] = &[
+    "bahn panel",
+    "bahn link serve",
+    "bahn link disk",
+    "bahn link monitor tcp",
+];
+
 /// Runs each command in a shell, in this order.
 fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     assert!(!commands.is_empty());
@@ -160,17 +184,17 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     for command in commands {
         // A panel runs until somebody ends it, and only one listens at an address.
         let ended = format!("timeout --preserve-status --signal INT 4 {command}");
-        let ends_itself = !["bahn panel", "bahn link serve"]
-            .iter()
-            .any(|name| command.starts_with(name));
+        let ends_itself = !ENDLESS.iter().any(|name| command.starts_with(name));
         let asks = command.starts_with("bahn link lsv2");
         let drips = command.starts_with("bahn link dnc");
-        let held = (!ends_itself || asks || drips).then(|| PANEL.lock().unwrap());
-        let command = match (ends_itself, asks) {
-            (false, _) => &ended,
-            (true, true) => &beside_a_server(command),
-            (true, false) if drips => &with_its_other_side(command),
-            (true, false) => command,
+        let held = command.starts_with("bahn link").then(|| PANEL.lock().unwrap());
+        let held = held.or_else(|| (!ends_itself).then(|| PANEL.lock().unwrap()));
+        let own = if ends_itself { command } else { &ended };
+        let command = match (command.contains("connect:127.0.0.1:4711"), asks) {
+            _ if drips => &with_its_other_side(command),
+            (true, _) => &beside_a_disk(own),
+            (false, true) => &beside_a_server(own),
+            (false, false) => own,
         };
         let output = Command::new("sh")
             .args(["-c", command])

@@ -162,6 +162,8 @@ def memory_and_parameters():
                      "/PLC/memory/I/1", "/PLC/memory/S/1", "\\PLC\\memory\\K\\1"):
             assert host.read_data_path(path) is not None, path
         is_equal(host.read_data_path("/PLC/memory/K/1"), 1)
+        assert host.read_data_path("/TABLE/TOOL/T/1/R") > 0
+        assert host.read_data_path("/TABLE/TOOL/T/9999/R") is None
 
         value = host.get_machine_parameter("7230.0")
         assert value.isdigit() and host.get_machine_parameter("7230") == value

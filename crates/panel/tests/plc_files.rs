@@ -296,7 +296,7 @@ fn a_file_of_an_eprom_is_transferred_from_window_to_window() {
     trainee.soft("MODIFY WINDOW");
     trainee.soft("SELECT EXT");
     trainee.wait(0.1);
-    assert_eq!(last_message(&mut trainee), "EXT. IN-/OUTPUT NOT READY");
+    assert_eq!(last_message(&mut trainee), "EXT. OUTPUT/INPUT NOT READY");
 }
 
 /// The lines of a program are checked, those of a list are not; COMPILE offers programs only.

@@ -35,6 +35,8 @@ pub(super) struct MachineDevice {
     root: PathBuf,
     /// The list of machine parameters of the folder.
     list: String,
+    /// The tool table, when there is one.
+    tools: Option<PathBuf>,
     log: LogBook,
     /// A message of the PLC goes to one host.
     messages: Mutex<()>,
@@ -74,6 +76,7 @@ impl MachineDevice {
                 id: format!("Bahn {}", env!("CARGO_PKG_VERSION")),
             },
             list: machine.folder.parameters.clone(),
+            tools: machine.folder.tools.as_ref().map(|name| root.join(name)),
             root,
             log: LogBook::new(station.host().notices()),
             messages: Mutex::default(),
@@ -182,7 +185,7 @@ impl Device for MachineDevice {
 
     fn run(&self) -> Result<Run, ErrorNumber> {
         self.follow();
-        self.look(|station| run_of(station))
+        self.look(run_of)
     }
 
     fn elements(&self, area: Area) -> u32 {
@@ -201,6 +204,24 @@ impl Device for MachineDevice {
             return Err(ErrorNumber::BAD_ADDRESS);
         }
         self.look(move |station| read(station.control().memory(), area, first..end))
+    }
+
+    fn tool_value(&self, tool: u32, column: &str) -> Option<String> {
+        let text = decode(&files::read_table(self.tools.as_ref()?).ok()?);
+        let table = PlainTable::new(TableForm::Tool, &TextTable::read(&text).ok()?);
+        let place = |name: &str| {
+            table
+                .names
+                .iter()
+                .position(|known| known.eq_ignore_ascii_case(name))
+        };
+        let (number, wanted) = (place("T")?, place(column)?);
+        let mut rows = table.rows.iter();
+        let row = rows.find(|row| {
+            row.get(number)
+                .is_some_and(|text| text.trim().parse() == Ok(tool))
+        })?;
+        row.get(wanted).map(|text| text.trim().to_owned())
     }
 
     fn parameter(&self, number: u16, index: u8) -> Option<String> {

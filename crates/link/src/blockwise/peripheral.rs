@@ -83,6 +83,8 @@ pub struct Peripheral {
     wrong_headers: u8,
     /// What has come of an escape sequence.
     escape: Vec<u8>,
+    /// Something was begun whose end is not yet told.
+    open: bool,
     events: VecDeque<Event>,
 }
 
@@ -111,6 +113,7 @@ impl Peripheral {
             last: None,
             wrong_headers: 0,
             escape: Vec::new(),
+            open: false,
             events: VecDeque::new(),
         }
     }
@@ -121,6 +124,7 @@ impl Peripheral {
             (step, Piece::Block(Kind::Header, text)) => {
                 self.leave(step);
                 self.wrong_headers = 0;
+                self.open = true;
                 self.header(&text);
             }
             (Step::Sending(source), Piece::Ack) => self.next_line(source),
@@ -196,6 +200,13 @@ impl Peripheral {
         }
     }
 
+    /// Tells the end of what was begun, once.
+    fn ended(&mut self, complete: bool) {
+        if std::mem::take(&mut self.open) || !complete {
+            self.events.push_back(Event::Ended(complete));
+        }
+    }
+
     /// EOT: the next nameless header gets the first file.
     fn eot(&mut self, step: Step) {
         self.last = None;
@@ -208,7 +219,7 @@ impl Peripheral {
             }
             _ => {}
         }
-        self.events.push_back(Event::Ended(true));
+        self.ended(true);
     }
 
     fn repeat(&mut self) {
@@ -407,7 +418,7 @@ impl Peripheral {
                 match taking.commit() {
                     Ok(()) => {
                         self.events.push_back(Event::Received(name));
-                        self.events.push_back(Event::Ended(true));
+                        self.ended(true);
                     }
                     Err(error) => self.unstored(&error),
                 }
@@ -432,7 +443,7 @@ impl Peripheral {
     fn incomplete(&mut self) {
         self.events
             .push_back(Event::Message(Shown::Control(MessageId::ProgramIncomplete, None)));
-        self.events.push_back(Event::Ended(false));
+        self.ended(false);
     }
 
     /// Signals an error; nothing partial is left.
@@ -444,7 +455,7 @@ impl Peripheral {
         self.link.settings.with_dc1 = with_dc1;
         self.step = Step::Refused;
         self.events.push_back(Event::Message(Shown::Device(text)));
-        self.events.push_back(Event::Ended(false));
+        self.ended(false);
     }
 
     /// A character of the escape sequence that asks for the directory.
@@ -501,7 +512,7 @@ impl Peripheral {
             Step::Sent => {
                 self.step = Step::Idle;
                 self.events.push_back(Event::Sent(std::mem::take(&mut self.name)));
-                self.events.push_back(Event::Ended(true));
+                self.ended(true);
             }
             Step::Refused => self.step = Step::Idle,
             Step::Idle | Step::Question(_) | Step::Sending(_) => {}
@@ -553,7 +564,7 @@ impl Protocol for Peripheral {
             }
             Step::Sent => {
                 self.events.push_back(Event::Sent(std::mem::take(&mut self.name)));
-                self.events.push_back(Event::Ended(true));
+                self.ended(true);
             }
             Step::Sending(_) | Step::Question(_) => self.incomplete(),
             Step::Idle | Step::Refused => {}

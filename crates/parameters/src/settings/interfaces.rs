@@ -330,7 +330,8 @@ mod tests {
     #[test]
     fn every_character_is_replaced() {
         let mut list = ParameterList::reference(ControlModel::Tnc425);
-        for (number, code) in (5200..=5210).zip(33_u8..) {
+        let numbers = [5200, 5201, 5202, 5203, 5204, 5205, 5206, 5207, 5208, 5209, 5210];
+        for (number, code) in numbers.into_iter().zip(33_u8..) {
             list.set(number, 1, f64::from(code)).unwrap();
         }
         let formats = list.interface_parameters().formats;

@@ -4,6 +4,7 @@
 mod blank;
 mod cursor;
 mod cycle;
+mod decoration;
 mod dialog;
 mod faults;
 mod foreign;
