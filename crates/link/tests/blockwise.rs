@@ -417,9 +417,10 @@ fn a_program_without_end() {
            T: STX "0 BEGIN PGM 1 MM" ETB BCC DC1
            P: ACK
            T: ETX EOT
-           P: SOH "ERR: 004" ETB BCC"#,
+           P: SOH "ERR: 004" ETB BCC
+           T: ACK EOT"#,
     );
-    assert_eq!(control, ["sent 1.H", "complete"]);
+    assert_eq!(control, ["sent 1.H", "ERR: 004", "broken off"]);
     assert_eq!(device, ["ERR: 004", "broken off"]);
     assert_eq!(stored.get("1.H"), None);
 

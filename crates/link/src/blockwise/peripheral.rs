@@ -7,44 +7,17 @@ use bahn_parameters::MessageId;
 
 use super::directory::{REQUEST, answer};
 use super::link::Link;
+use super::terms::{Rights, candidates, code};
 use crate::FileType;
 use crate::files::{Files, Listed};
 use crate::frame::{Kind, Piece};
 use crate::protocol::{Event, Protocol, Question, Shown};
 use crate::settings::Settings;
-use crate::store::StoreError;
 use crate::text::{Source, Taking, Unstored, beginning, is_name};
 
 /// Begins LSV/2 between transfers.
 const ENQ: u8 = 0x05;
 const ESC: u8 = 0x1B;
-
-/// What the other side may do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Rights {
-    /// Files may be asked for.
-    pub gives: bool,
-    /// Files are stored.
-    pub takes: bool,
-    /// Only these, when there are any.
-    pub only: Vec<String>,
-    /// A file that is there is replaced after a question only.
-    pub asks: bool,
-}
-
-impl Rights {
-    /// A disk: everything.
-    pub const ALL: Rights = Rights {
-        gives: true,
-        takes: true,
-        only: Vec::new(),
-        asks: false,
-    };
-
-    fn allow(&self, name: &str) -> bool {
-        self.only.is_empty() || self.only.iter().any(|only| only.eq_ignore_ascii_case(name))
-    }
-}
 
 /// What is being received.
 enum Into {
@@ -86,19 +59,6 @@ pub struct Peripheral {
     /// Something was begun whose end is not yet told.
     open: bool,
     events: VecDeque<Event>,
-}
-
-/// What a FE says [000:17603-17625].
-fn code(error: &StoreError) -> u16 {
-    match error {
-        StoreError::BadName(_) | StoreError::NoFolder(_) | StoreError::NotEmpty(_) => 2,
-        StoreError::NoFile(_) => 10,
-        StoreError::Protected(_) | StoreError::Exists(_) => 11,
-        StoreError::Busy(_) => 12,
-        StoreError::DirectoryFull => 13,
-        StoreError::DiskFull => 14,
-        StoreError::Medium(_) => 104,
-    }
 }
 
 impl Peripheral {
@@ -256,20 +216,8 @@ impl Peripheral {
         }
     }
 
-    /// Names that a file of this code may have; who sends no code that is known means a program.
-    fn candidates(stem: &str, code: Option<u8>) -> Vec<String> {
-        let known = code
-            .map(char::from)
-            .filter(|code| FileType::of_code(*code).is_some());
-        let kinds = FileType::all().filter(|kind| match known {
-            Some(code) => kind.code() == code.to_ascii_uppercase(),
-            None => ["H", "I"].contains(&kind.extension()),
-        });
-        kinds.map(|kind| format!("{stem}.{}", kind.extension())).collect()
-    }
-
     fn give_named(&mut self, stem: &str, code: Option<u8>) {
-        let candidates = Peripheral::candidates(stem, code);
+        let candidates = candidates(stem, code);
         let found = candidates
             .into_iter()
             .find(|name| self.rights.allow(name) && self.files.find(name).is_some());
@@ -345,7 +293,7 @@ impl Peripheral {
     }
 
     fn take(&mut self, stem: &str, code: Option<u8>) {
-        let candidates = Peripheral::candidates(stem, code);
+        let candidates = candidates(stem, code);
         let known = code.map(char::from).and_then(FileType::of_code);
         let name = known.map_or_else(
             || candidates.first().cloned().unwrap_or_default(),

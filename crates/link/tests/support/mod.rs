@@ -177,6 +177,11 @@ pub fn converse(role: Role, protocol: &mut dyn Protocol, script: &str) -> Vec<St
     while protocol.has_output() {
         protocol.send(100, now, &mut pending);
     }
+    // Nobody says anything any more.
+    for _ in 0..20 {
+        now += Duration::from_millis(50);
+        protocol.clock(now);
+    }
     assert!(
         pending.is_empty(),
         "{role:?}: at the end said {}",
