@@ -257,7 +257,7 @@ fn entry(found: &Found, programs: &[Arc<Program>], model: ControlModel) -> Entry
         },
         message: found.title(model).to_owned(),
         program: program.map_or(String::new(), |program| files::short_name(program).to_owned()),
-        block: fault.block,
+        block: program.map_or(fault.block, |program| program.number_of(fault.block)),
         line: fault.line,
         column: fault.column,
         length: fault.length,
@@ -276,6 +276,7 @@ fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlMo
     let Some(program) = programs.get(found.program) else {
         return;
     };
+    let number = program.number_of(fault.block);
     let path: PathBuf = match found.program {
         0 => path.to_owned(),
         // Called programs lie beside their caller.
@@ -294,8 +295,8 @@ fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlMo
             columns: Some((fault.column, fault.length)),
         },
         label: match &*fault.detail {
-            "" => format!("block {}", fault.block),
-            detail => format!("block {}: {detail}", fault.block),
+            "" => format!("block {number}"),
+            detail => format!("block {number}: {detail}"),
         },
         help: help(fault).map(str::to_owned),
         opened: None,

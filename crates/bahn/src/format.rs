@@ -22,6 +22,7 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
             &program,
             FormatOptions {
                 decimal_comma: options.comma,
+                iso_step: options.iso_step,
             },
         );
         if !options.write && !options.check {
@@ -37,7 +38,8 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
         if differs && options.write {
             if !program.begins_with_header() {
                 // The other files are written all the same.
-                let reason = "it does not begin with BEGIN PGM, so it may be no program";
+                let [begin, _] = program.language().frames();
+                let reason = format!("it does not begin with {begin}, so it may be no program");
                 diagnostics::print_usage_error(&format!("{} stays as it is: {reason}", path.display()));
                 outcome = Outcome::WrongUse;
                 continue;

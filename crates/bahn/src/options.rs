@@ -237,6 +237,9 @@ pub(crate) struct FmtOptions {
     /// Write decimal commas instead of points.
     #[arg(long)]
     pub comma: bool,
+    /// Step of the block numbers of DIN/ISO programs, as MP7220; 0 writes none.
+    #[arg(long, value_name = "STEP", default_value_t = 10)]
+    pub iso_step: u8,
 }
 
 /// Options of `bahn explain`.

@@ -449,7 +449,7 @@ impl Place {
             program: program
                 .map(|program| short_name(program).to_owned())
                 .unwrap_or_default(),
-            block: block.block,
+            block: program.map_or(block.block, |program| program.number_of(block.block)),
             line: program.map_or(0, |program| program.line_of(block.block)),
         }
     }

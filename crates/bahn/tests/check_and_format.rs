@@ -195,7 +195,7 @@ fn check_does_not_drown_in_errors() {
     folder.write("iso.H", "%1000 G71 *\nN10 G00 G40 X+5 *\nN20 X+7 *\n");
     let err = folder.bahn("check iso.H").err();
     assert!(
-        err.contains("DIN/ISO programming is not yet supported here"),
+        err.contains("DIN/ISO programming is read from files whose names end with .I"),
         "{err}"
     );
     assert!(err.contains("1 error, 0 warnings"), "{err}");

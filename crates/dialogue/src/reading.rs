@@ -65,7 +65,8 @@ fn template(operation: &Operation) -> Option<Option<Line>> {
         Operation::Plc { .. } => "FN 19",
         Operation::Calculate { .. } | Operation::Jump { .. } => return Some(function_line(operation)),
         Operation::Dialog(_) => "DLG",
-        Operation::Comment(_) | Operation::Invalid(_) => "TEXT",
+        // Blocks of languages with G functions are text here.
+        Operation::Comment(_) | Operation::Invalid(_) | Operation::Modal(_) => "TEXT",
     };
     Some(Line::of_row(id).into_iter().next())
 }

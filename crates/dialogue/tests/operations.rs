@@ -156,6 +156,7 @@ fn motion() -> impl Strategy<Value = (String, Motion)> {
                     feed: feed.1,
                     normal: None,
                     m: m.1,
+                    modal: None,
                 };
                 let mut keys = vec![key.to_owned()];
                 if polar && kind != CirclePolar {

@@ -12,6 +12,7 @@ use crate::cycles::{call_cycle, define_cycle};
 use crate::error::{Cause, Fault, Message, WarningKind};
 use crate::flow::Flow;
 use crate::functions::take_m_functions;
+use crate::in_force::{execute_block, execute_motion};
 use crate::path_functions::circle_centre;
 use crate::positioning::positioning;
 use crate::probe::probe;
@@ -25,6 +26,9 @@ use crate::unrolled::unrolled_words;
 #[inline]
 pub(crate) fn execute(run: &mut Run, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
     match operation {
+        Operation::Motion(motion) if let Some(modality) = &motion.modal => {
+            execute_motion(run, motion, modality, settings)
+        }
         Operation::Motion(motion) => match positioning(run.context(settings), motion)? {
             (Flow::Next, true) => call_cycle(&mut run.context(settings)),
             (flow, _) => Ok(flow),
@@ -126,6 +130,7 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
         }
         Operation::Dialog(dialog) if is_dialog(c, dialog)? => return Ok(Flow::Dialog),
         Operation::Dialog(_) => {}
+        Operation::Modal(block) => return execute_block(run, block, settings),
         Operation::Invalid(invalid) => return unreadable(run, invalid, settings),
         Operation::Motion(_)
         | Operation::Calculate { .. }

@@ -134,10 +134,6 @@ pub(crate) fn permit(run: &Run, operation: &Operation, settings: &Settings) -> R
 
 fn calls_cycle(block: &Block) -> bool {
     let calls = |m: &MFunctions| m.contains(99) || m.contains(89);
-    match &block.operation {
-        Operation::CycleCall(_) => true,
-        Operation::Motion(motion) => calls(&motion.m),
-        Operation::Stop(m) | Operation::Miscellaneous(m) => calls(m),
-        _ => false,
-    }
+    let called = matches!(block.operation, Operation::CycleCall(_));
+    called || block.operation.m().is_some_and(calls)
 }

@@ -49,6 +49,7 @@ mod execute;
 mod flow;
 mod functions;
 mod growing;
+mod in_force;
 mod modal;
 mod normals;
 mod numbers;
@@ -81,7 +82,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, ScanJob, Step};
-use bahn_program::{Block, MotionKind, Operation, Program};
+use bahn_program::{Block, Operation, Program};
 
 pub use absent::AbsentAxes;
 pub use checkpoints::Checkpoint;
@@ -103,6 +104,7 @@ use crate::cycles::Halt;
 use crate::error::Fault;
 use crate::execute::execute;
 use crate::flow::Flow;
+use crate::in_force::InForce;
 use crate::output::{Item, Output};
 use crate::run::Run;
 use crate::work::Pending;
@@ -389,16 +391,15 @@ impl Interpreter {
         let Some(Fetched { block, next, rounded }) = self.code.block(at.program, at.block) else {
             return self.end_of_program();
         };
-        self.run.pen.line_follows = next.is_some_and(is_line);
+        let in_force = self.run.modal.in_force;
+        self.run.pen.line_follows = next.is_some_and(|next| is_line(next, &block.operation, &in_force));
         if block.skip && self.settings.skip_blocks {
             self.run.at.block += 1;
             return Ok(());
         }
         self.run.pen.join_follows = next.is_some_and(|next| {
-            matches!(
-                next.operation,
-                Operation::Rounding { .. } | Operation::Chamfer { .. }
-            )
+            let mut parts = next.operation.parts().iter();
+            parts.any(|part| matches!(part, Operation::Rounding { .. } | Operation::Chamfer { .. }))
         });
         if let Some(kept) = &mut self.kept
             && self.run.pen.recording.is_none()
@@ -430,9 +431,13 @@ impl Interpreter {
         } else {
             0
         };
-        oem::permit(self.run.oem.last(), &block.operation, &self.settings)?;
+        for part in block.operation.parts() {
+            oem::permit(self.run.oem.last(), part, &self.settings)?;
+        }
         let flow = execute(&mut self.run, &block.operation, &self.settings)?;
-        growing::permit(&self.run, &block.operation, &self.settings)?;
+        for part in block.operation.parts() {
+            growing::permit(&self.run, part, &self.settings)?;
+        }
         if label != 0 {
             self.check_label(label, at)?;
         }
@@ -618,11 +623,11 @@ impl Interpreter {
 
 /// Whether a block certainly moves on a straight line.
 #[inline]
-fn is_line(block: &Block) -> bool {
+fn is_line(block: &Block, before: &Operation, in_force: &InForce) -> bool {
     let Operation::Motion(motion) = &block.operation else {
         return false;
     };
-    motion.kind == MotionKind::Line && !motion.coordinates.is_empty() && !block.skip
+    in_force.line_follows(before, motion) && !motion.coordinates.is_empty() && !block.skip
 }
 
 impl ElementSource for Interpreter {

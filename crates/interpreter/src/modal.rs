@@ -7,6 +7,7 @@ use bahn_program::Compensation;
 use crate::contour::{CornerArcs, FeedLaw, Side};
 use crate::definition::{CycleData, Digitizing};
 use crate::error::{Cause, Fault};
+use crate::in_force::InForce;
 use crate::q_parameters::{QTable, preassigned};
 use crate::status::{Spindle, Status, Tilting, Tool};
 
@@ -75,6 +76,8 @@ pub(crate) struct Modal {
     pub measuring: Option<MeasuringBlocks>,
     /// TCH PROBE 5 to 7.
     pub digitizing: Digitizing,
+    /// The G functions in force.
+    pub in_force: InForce,
 }
 
 /// The surface of cycle 27 in which a contour is recorded.
@@ -156,6 +159,7 @@ impl Modal {
             probe: None,
             measuring: None,
             digitizing: Digitizing::default(),
+            in_force: InForce::default(),
         }
     }
 

@@ -134,8 +134,8 @@ impl Interpreter {
 fn keeps_tool(code: &mut Code, at: BlockRef) -> bool {
     let fetched = code.block(at.program, at.block);
     fetched.is_some_and(|fetched| {
-        let operation = &fetched.block.operation;
-        refers_back(operation) || matches!(operation, Operation::ToolCall { tool: Some(_), .. })
+        let mut parts = fetched.block.operation.parts().iter();
+        parts.any(|part| refers_back(part) || matches!(part, Operation::ToolCall { tool: Some(_), .. }))
     })
 }
 

@@ -399,7 +399,7 @@ fn plunge_feed(modal: &Modal, feed: FeedRate, curve: &Curve, start: &Position, e
     feed
 }
 
-fn take_compensation(modal: &mut Modal, q: &mut QTable, motion: &Motion) -> Result<(), Fault> {
+pub(crate) fn take_compensation(modal: &mut Modal, q: &mut QTable, motion: &Motion) -> Result<(), Fault> {
     let Some(word) = motion.compensation else {
         return Ok(());
     };
@@ -440,7 +440,7 @@ fn take_compensation(modal: &mut Modal, q: &mut QTable, motion: &Motion) -> Resu
 }
 
 /// The feed of the block: FMAX for this block only, else the last numeric feed [003:2160-2166].
-fn take_feed(
+pub(crate) fn take_feed(
     modal: &mut Modal,
     numbers: &Numbers,
     settings: &Settings,

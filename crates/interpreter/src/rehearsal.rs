@@ -353,6 +353,10 @@ fn sets(operation: &Operation) -> Doubts {
             Doubts::ALL.without(Doubts::FLOW)
         }
         Operation::Invalid(invalid) => meant(&invalid.text),
+        Operation::Modal(block) => {
+            let each = block.operations.iter().map(sets);
+            each.fold(Doubts::NONE, Doubts::and)
+        }
         _ => Doubts::NONE,
     }
 }
@@ -404,11 +408,17 @@ fn settles(operation: &Operation) -> Doubts {
             if motion.compensation == Some(Compensation::Off) {
                 settled = settled.and(Doubts::COMPENSATION);
             }
-            let plane = motion.coordinates.axes().len() >= 2 && motion.coordinates.incremental().is_empty();
+            let open = motion.modal.is_some_and(|modal| !modal.open.is_empty());
+            let plane =
+                motion.coordinates.axes().len() >= 2 && motion.coordinates.incremental().is_empty() && !open;
             if plane && motion.kind == MotionKind::Line {
                 settled = settled.and(Doubts::POSITION);
             }
             settled
+        }
+        Operation::Modal(block) => {
+            let each = block.operations.iter().map(settles);
+            each.fold(Doubts::NONE, Doubts::and)
         }
         _ => Doubts::NONE,
     }

@@ -295,7 +295,7 @@ fn checked_speed(numbers: &Numbers, speed: Value, settings: &Settings) -> Result
 
 /// The tool axis decides the working plane [003:2733-2738]. It must not change while a rotation is
 /// active [003:7973-7975].
-fn set_tool_axis(modal: &mut Modal, numbers: &mut Numbers, axis: Axis) -> Result<(), Fault> {
+pub(crate) fn set_tool_axis(modal: &mut Modal, numbers: &mut Numbers, axis: Axis) -> Result<(), Fault> {
     let Some(plane) = Plane::of_tool_axis(axis) else {
         return Err(Fault::new(
             MessageId::WrongAxisProgrammed,

@@ -69,6 +69,11 @@ limits! {
     /// Items of one FN15 PRINT block [003:4371-4385]; others than TNC 360 (inferred).
     print_items_max: u8 = 6, 6, 6, 6, 6, 6;
 
+    // Programs.
+
+    /// Most characters of a block in DIN/ISO: 150 [000:615]; TNC 151/155 64, TNC 360 as the TNC 407 (public).
+    iso_characters_max: u32 = 64, 64, 150, 150, 150, 150;
+
     // Tools, spindle, feed.
 
     /// Highest tool number; tool 0 has length and radius 0 [001:736] [003:1814] [000:180].

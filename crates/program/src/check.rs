@@ -69,7 +69,10 @@ pub fn check_limits<'a>(
         limits,
         inch_feed,
     };
-    check.parameters(operation).or_else(|| check.operation(operation))
+    operation
+        .parts()
+        .iter()
+        .find_map(|part| check.parameters(part).or_else(|| check.operation(part)))
 }
 
 struct Check<'a> {
@@ -380,6 +383,10 @@ pub fn each_parameter(operation: &Operation, found: &mut impl FnMut(u16)) {
             found(*target);
         }
         Operation::Cycle(block) | Operation::Probe(block) => in_cycle(block, found),
+        Operation::Modal(block) => block
+            .operations
+            .iter()
+            .for_each(|part| each_parameter(part, found)),
         _ => {}
     }
 }

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use bahn_parameters::MessageId::{
-    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted,
-    LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
+    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, EntryValueIncorrect,
+    JumpToLabelZeroNotPermitted, LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
 
 use crate::lines::lines;
@@ -135,67 +135,63 @@ struct Pass<'a> {
 impl Pass<'_> {
     fn around_the_front(&mut self) {
         if let Some(line) = self.program.frame.leading {
-            self.at_line(0, line, "text before BEGIN PGM is no part of the program");
+            let [begin, _] = self.program.language().frames();
+            self.at_line(0, line, &format!("text before {begin} is no part of the program"));
         }
         if let Some(unit) = self.program.begin().and_then(Header::unknown_unit) {
             let detail = format!("{unit} is no unit: the program is taken to be in mm");
             self.at_word(UnexpectedText, Severity::Warning, 0, "", &detail);
         }
         if self.program.begin().is_none() {
-            self.at_line(0, 1, "the program does not begin with BEGIN PGM");
+            let [begin, _] = self.program.language().frames();
+            self.at_line(0, 1, &format!("the program does not begin with {begin}"));
         }
     }
 
     fn around_the_end(&mut self) {
         let last = self.program.block_count().saturating_sub(1);
+        let [_, end] = self.program.language().frames();
         match (self.program.begin(), self.program.end()) {
             (_, None) if self.program.is_growing() => {}
             (_, None) => {
-                let detail = "the program does not end with END PGM";
-                self.at_word(EndOfProgramMissing, Severity::Warning, last, "", detail);
+                let detail = format!("the program does not end with {end}");
+                self.at_word(EndOfProgramMissing, Severity::Warning, last, "", &detail);
             }
             (Some(begin), Some(end)) if !begin.name.eq_ignore_ascii_case(&end.name) => {
                 let detail = format!("the program began as \"{}\"", begin.name);
                 self.at_word(UnexpectedText, Severity::Warning, last, "", &detail);
             }
             (Some(begin), Some(end)) if begin.unit != end.unit => {
-                let detail = "END PGM names another unit than BEGIN PGM";
-                self.at_word(UnexpectedText, Severity::Warning, last, "", detail);
+                let [begin, end] = self.program.language().frames();
+                let detail = format!("{end} names another unit than {begin}");
+                self.at_word(UnexpectedText, Severity::Warning, last, "", &detail);
             }
             _ => {}
         }
         if let Some(line) = self.program.trailing_line() {
-            self.at_line(last, line, "text behind END PGM is no part of the program");
+            let [_, end] = self.program.language().frames();
+            self.at_line(
+                last,
+                line,
+                &format!("text behind {end} is no part of the program"),
+            );
         }
     }
 
     fn block(&mut self, numbered: &NumberedBlock) {
         let NumberedBlock { number, line, block } = numbered;
-        if let Some(fault) = self.sequence.next(*number, &block.operation) {
-            self.sequence_fault(fault);
+        for part in block.operation.parts() {
+            if let Some(fault) = self.sequence.next(*number, part) {
+                self.sequence_fault(fault);
+            }
         }
-        match &block.operation {
-            Operation::Invalid(invalid) => {
-                self.unreadable(*number, *line, &invalid.error);
-                return;
-            }
-            Operation::Label(label) if *label > 0 => {
-                if let Some(first) = self.program.label(*label).filter(|first| first != number) {
-                    let detail = format!("label {label} is set in block {first} already");
-                    self.error(LabelNumberAllocated, *number, "LBL", &detail);
-                }
-            }
-            Operation::CallLabel { label, .. } | Operation::Jump { label, .. } => {
-                self.called(*number, *label, "LBL")
-            }
-            Operation::Cycle(block) => {
-                for word in &block.words {
-                    if let CycleWord::Labels(labels) = word {
-                        self.subcontours(*number, labels);
-                    }
-                }
-            }
-            _ => {}
+        self.length(*number, *line);
+        if let Operation::Invalid(invalid) = &block.operation {
+            self.unreadable(*number, *line, &invalid.error);
+            return;
+        }
+        for part in block.operation.parts() {
+            self.labels(*number, part);
         }
         let unit = self.program.unit();
         let fault = self
@@ -203,6 +199,54 @@ impl Pass<'_> {
             .and_then(|reading| check_limits(&block.operation, unit, reading));
         if let Some(fault) = fault {
             self.error(fault.message, *number, &fault.address, &fault.detail);
+        }
+    }
+
+    /// A block may be longer than the control takes.
+    fn length(&mut self, number: u32, line: u32) {
+        let language = self.program.language();
+        let max = self
+            .reading
+            .and_then(|reading| language.characters_max(reading.limits));
+        let text = max.map(|_| self.program.text_of(number)).unwrap_or_default();
+        let length = text.chars().count() as u32;
+        if let Some(max) = max.filter(|max| length > *max)
+            && !self.is_full(Severity::Error)
+        {
+            self.found.push(Diagnostic {
+                message: EntryValueIncorrect,
+                severity: Severity::Error,
+                block: number,
+                line,
+                column: max + 1,
+                length: length - max,
+                detail: format!("a block has at most {max} characters").into(),
+                help: EntryValueIncorrect.remedy(),
+            });
+        }
+    }
+
+    /// The labels that a block sets, calls or lists.
+    fn labels(&mut self, number: u32, operation: &Operation) {
+        match operation {
+            Operation::Label(label) if *label > 0 => {
+                if let Some(first) = self.program.label(*label).filter(|first| *first != number) {
+                    let first = self.program.number_of(first);
+                    let detail = format!("label {label} is set in block {first} already");
+                    self.error(LabelNumberAllocated, number, "LBL", &detail);
+                }
+            }
+            Operation::CallLabel { label, .. } | Operation::Jump { label, .. } => {
+                self.called(number, *label, "LBL");
+            }
+            Operation::Cycle(block) => {
+                for word in &block.words {
+                    if let CycleWord::Labels(labels) = word {
+                        self.subcontours(number, labels);
+                    }
+                }
+            }
+            _ => {}
         }
     }
 

@@ -130,7 +130,10 @@ impl Program {
         let blocks = self.language.cut(own.as_bytes(), 1);
         let frames = |raw: &RawBlock| {
             let landmark = self.language.landmark(raw.text(own.as_bytes()));
-            matches!(landmark, Some(Landmark::Begin(_) | Landmark::End(_)))
+            matches!(
+                landmark,
+                Some(Landmark::Begin(_) | Landmark::Frame(_) | Landmark::End(_))
+            )
         };
         match blocks.is_empty() {
             true => Err(EditError::Empty),

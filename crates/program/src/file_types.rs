@@ -1,5 +1,7 @@
 //! Which language a file is written in, by its name.
 
+use crate::bulk::Bulk;
+use crate::iso::IsoLanguage;
 use crate::language::Language;
 use crate::plain::PlainLanguage;
 
@@ -21,7 +23,7 @@ pub const FILE_TYPES: &[FileType] = &[
     },
     FileType {
         extension: "I",
-        language: None,
+        language: Some(&IsoLanguage),
     },
 ];
 
@@ -35,4 +37,12 @@ pub fn language_of(file_name: &str) -> Option<&'static dyn Language> {
     let (_, extension) = file_name.rsplit_once('.')?;
     let of_name = |file_type: &&FileType| file_type.extension.eq_ignore_ascii_case(extension);
     FILE_TYPES.iter().find(of_name)?.language
+}
+
+/// The language of a file by its name; plain language where the name does not say.
+pub(crate) fn bulk_language_of(file_name: &str) -> &'static dyn Bulk {
+    match file_name.rsplit_once('.') {
+        Some((_, extension)) if extension.eq_ignore_ascii_case("I") => &IsoLanguage,
+        _ => &PlainLanguage,
+    }
 }

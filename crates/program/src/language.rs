@@ -3,6 +3,8 @@
 use std::fmt;
 use std::ops::Range;
 
+use bahn_parameters::Limits;
+
 use crate::format::FormatOptions;
 use crate::lines::{BlockText, Lines, RawBlock};
 use crate::{Block, BlockError, Header, Operation};
@@ -60,6 +62,22 @@ pub trait Language: fmt::Debug + Send + Sync {
     /// Appends a block's text with another number before it.
     fn write_number(&self, text: BlockText<'_>, number: u32, new: &mut Vec<u8>);
 
+    /// What stands before a block of the normalised listing, whose number there is `number`.
+    fn write_line_number(&self, number: u32, block: &Block, options: FormatOptions, text: &mut String);
+
+    /// The number that a block is programmed with, where that is what its reports call it.
+    fn number(&self, _text: BlockText<'_>) -> Option<u32> {
+        None
+    }
+
+    /// Most characters of a block, where the control counts them.
+    fn characters_max(&self, _limits: &Limits) -> Option<u32> {
+        None
+    }
+
+    /// How the blocks that frame a program are called.
+    fn frames(&self) -> [&'static str; 2];
+
     /// Reads one block by itself, as an editor or a dialogue wants it. Lines behind the first block are not
     /// looked at.
     fn parse_block(&self, text: &str) -> ParsedBlock {
@@ -96,6 +114,8 @@ pub enum Landmark {
     Label(u16),
     /// It begins the program.
     Begin(Box<Header>),
+    /// It begins the program, or ends it once that has begun.
+    Frame(Box<Header>),
     /// It ends the program.
     End(Box<Header>),
 }

@@ -2,7 +2,7 @@
 //!
 //! The face of this room:
 //! - [`Program`]: a version of a file; decodes its blocks a [`Chunk`] at a time;
-//! - [`Language`]: what a language has to say, and how one block is read by itself; [`PlainLanguage`] is the first;
+//! - [`Language`]: what a language has to say, and how one block is read by itself; [`PlainLanguage`] and [`IsoLanguage`];
 //! - [`Edit`]: makes a new version of a program, which shares what stays the same;
 //! - [`Program::growing`]: a program that is executed while it is still being transferred;
 //! - [`Block`] and [`Operation`]: what a block does, the same whatever language or spelling it came from;
@@ -43,9 +43,11 @@ mod file_types;
 mod format;
 mod grow;
 mod inch_feed;
+mod iso;
 mod labels;
 mod language;
 mod lines;
+mod modal;
 mod operation;
 mod parse;
 mod plain;
@@ -66,8 +68,10 @@ pub use error::BlockError;
 pub use file_types::{FILE_TYPES, FileType, language_of};
 pub use format::{FormatOptions, format_block, format_program};
 pub use inch_feed::FeedDoubt;
+pub use iso::IsoLanguage;
 pub use language::{Landmark, Language, ParsedBlock, WordKind, WordSpan};
 pub use lines::{BlockText, Lines, RawBlock};
+pub use modal::{Distance, ModalBlock, Modality, PathFunction};
 pub use operation::*;
 pub use parse::m_words;
 pub use plain::PlainLanguage;

@@ -3,7 +3,7 @@
 use bahn_parameters::InchFeed;
 use bahn_path::{Axis, AxisSet, PerAxis};
 
-use crate::BlockError;
+use crate::{BlockError, ModalBlock, Modality};
 
 /// One block of a part program.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,6 +141,8 @@ pub enum Operation {
     Probe(Box<CycleBlock>),
     /// `DLG-DEF n/...` or `DLG-CALL n/...`: first block of an OEM cycle [000:17732-17744].
     Dialog(Box<Dialog>),
+    /// A block of a language with G functions that does several things, or leaves something to those in force.
+    Modal(Box<ModalBlock>),
     /// A block of comment (`; text`) or structuring (`* - text`) only. The text of a structuring block
     /// begins with its `*`.
     Comment(Box<str>),
@@ -335,6 +337,12 @@ impl Coordinates {
         }
     }
 
+    /// Makes the words of axes incremental.
+    #[inline]
+    pub fn make_incremental(&mut self, axes: AxisSet) {
+        self.incremental = self.incremental.union(axes.intersection(self.present));
+    }
+
     /// All words in the order X Y Z A B C U V W.
     pub fn iter(&self) -> impl Iterator<Item = (Axis, Word)> {
         Axis::ALL
@@ -372,6 +380,8 @@ pub struct Motion {
     pub normal: Option<Box<[Value; 3]>>,
     /// M functions.
     pub m: MFunctions,
+    /// What it leaves to the G functions in force; `None` where the block says all itself.
+    pub modal: Option<Modality>,
 }
 
 /// The path function of a positioning block [003:2548-2560].

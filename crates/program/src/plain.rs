@@ -1,5 +1,6 @@
 //! HEIDENHAIN plain language.
 
+use crate::format::number::push_integer;
 use crate::format::{FormatOptions, write_block};
 use crate::language::{Landmark, Language, WordSpan};
 use crate::lines::{BlockText, Lines, RawBlock, stands_alone};
@@ -97,6 +98,15 @@ impl Language for PlainLanguage {
 
     fn write_number(&self, text: BlockText<'_>, number: u32, new: &mut Vec<u8>) {
         renumber(text.bytes, number, new);
+    }
+
+    fn write_line_number(&self, number: u32, _: &Block, _: FormatOptions, text: &mut String) {
+        push_integer(text, u64::from(number), 1);
+        text.push(' ');
+    }
+
+    fn frames(&self) -> [&'static str; 2] {
+        ["BEGIN PGM", "END PGM"]
     }
 }
 

@@ -3,11 +3,11 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::bulk::Bulk;
+use crate::file_types::bulk_language_of;
 use crate::grow::Growth;
 use crate::labels::Labels;
 use crate::language::Language;
 use crate::lines::{RawBlock, line_at};
-use crate::plain::PlainLanguage;
 use crate::rope::{PIECE_BLOCKS, Piece, Rope};
 use crate::survey::Frame;
 use crate::text::{settle_line_ends, text_start, to_text, without_utf16};
@@ -68,10 +68,12 @@ impl Program {
     /// Largest file that can be indexed. Callers refuse larger ones.
     pub const MAX_BYTES: u64 = u32::MAX as u64 - 1;
 
-    /// Takes a file of any bytes in plain language. What cannot be read becomes [`Operation::Invalid`] when it is
+    /// Takes a file of any bytes in the language of its name: ISO where that ends with `.I`, plain language else. What cannot be read becomes [`Operation::Invalid`] when it is
     /// decoded; bytes beyond [`Program::MAX_BYTES`] are cut off.
     pub fn from_bytes(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
-        Program::in_language(name, bytes, &PlainLanguage)
+        let name = name.into();
+        let language = bulk_language_of(&name);
+        Program::of_bytes(name, bytes, language)
     }
 
     /// [`Program::from_bytes`] in any language.
@@ -146,7 +148,7 @@ impl Program {
         self.frame.end.as_ref()
     }
 
-    /// Why the program is none of its language, such as one in DIN/ISO, which is not read here yet: every block
+    /// Why the program is none of its language, such as one in DIN/ISO in a file of plain language: every block
     /// is invalid.
     pub fn refused(&self) -> Option<&str> {
         self.frame.refused.as_deref()
@@ -249,6 +251,14 @@ impl Program {
         let begin = self.begin().is_none().then_some(begin);
         let end = std::iter::repeat_with(end).take(usize::from(self.implies_end()));
         begin.into_iter().chain(in_file).chain(end)
+    }
+
+    /// What reports call a block: the number that it is programmed with, where its language has such numbers and it
+    /// has one, else its number in the normalised listing.
+    pub fn number_of(&self, block: u32) -> u32 {
+        let place = self.place(block);
+        let number = place.and_then(|(piece, raw)| self.language.number(raw.text(piece.text())));
+        number.unwrap_or(block)
     }
 
     /// Line in the file where a block begins, from 1.

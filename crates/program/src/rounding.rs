@@ -103,6 +103,14 @@ impl InputSteps {
             }
             Operation::Cycle(block) => self.cycle(CycleFunction::Definition, block),
             Operation::Probe(block) => self.cycle(CycleFunction::Probe, block),
+            Operation::Modal(block) => {
+                let mut finer = false;
+                block
+                    .operations
+                    .iter_mut()
+                    .for_each(|part| finer |= self.round(part));
+                finer
+            }
             _ => false,
         }
     }

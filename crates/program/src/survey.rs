@@ -74,7 +74,11 @@ pub(crate) fn survey<L: Language>(language: &L, file: &Arc<Vec<u8>>, start: usiz
             // Blank lines before it, and a byte-order mark.
             pieces.cut(place);
         }
-        let landmark = language.landmark(raw.text(text));
+        let landmark = match language.landmark(raw.text(text)) {
+            Some(Landmark::Frame(header)) if frame.begin.is_none() => Some(Landmark::Begin(header)),
+            Some(Landmark::Frame(header)) => Some(Landmark::End(header)),
+            landmark => landmark,
+        };
         if number.is_multiple_of(PIECE_BLOCKS) {
             pieces.cut(place);
         }

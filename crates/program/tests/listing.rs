@@ -90,7 +90,14 @@ fn lines_are_written_as_printed() {
 #[test]
 fn the_decimal_comma_is_an_option() {
     let program = Program::from_bytes("1.H", b"CYCL DEF 11.1 SCL 0.8\nL X+2.5 F.5".to_vec());
-    let listing = format_program(&program, FormatOptions { decimal_comma: true }).to_string();
+    let listing = format_program(
+        &program,
+        FormatOptions {
+            decimal_comma: true,
+            ..FormatOptions::default()
+        },
+    )
+    .to_string();
     assert_eq!(
         listing,
         "0 BEGIN PGM\n1 CYCL DEF 11.1 SCL 0,8\n2 L X+2,5 F0,5\n3 END PGM\n"

@@ -7,8 +7,14 @@ use bahn_parameters::ControlModel;
 use bahn_program::{Block, FormatOptions, Operation, Program, format_block, format_program};
 use proptest::prelude::*;
 
-const POINT: FormatOptions = FormatOptions { decimal_comma: false };
-const COMMA: FormatOptions = FormatOptions { decimal_comma: true };
+const POINT: FormatOptions = FormatOptions {
+    decimal_comma: false,
+    iso_step: 0,
+};
+const COMMA: FormatOptions = FormatOptions {
+    decimal_comma: true,
+    iso_step: 10,
+};
 
 fn read(bytes: impl Into<Vec<u8>>) -> Program {
     Program::from_bytes("TEST.H", bytes.into())

@@ -390,11 +390,9 @@ pub(crate) fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'stat
         .program(block.program)?
         .decode(block.block / Program::CHUNK_SIZE);
     let offset = (block.block % Program::CHUNK_SIZE) as usize;
-    let m = match &chunk.blocks.get(offset)?.operation {
-        Operation::Stop(_) => return Some("STOP"),
-        Operation::Motion(motion) => &motion.m,
-        Operation::Miscellaneous(m) | Operation::CycleCall(m) => m,
-        _ => return None,
-    };
-    m.contains(0).then_some("M0")
+    let operation = &chunk.blocks.get(offset)?.operation;
+    if matches!(operation, Operation::Stop(_)) {
+        return Some("STOP");
+    }
+    operation.m()?.contains(0).then_some("M0")
 }

@@ -61,6 +61,7 @@ pub fn program(blocks: &str) -> String {
 
 /// A program and what it runs with.
 pub struct Job {
+    name: &'static str,
     text: Vec<u8>,
     pub settings: Settings,
     library: BTreeMap<String, String>,
@@ -106,12 +107,21 @@ impl Job {
 
     pub fn new(text: impl Into<Vec<u8>>) -> Job {
         Job {
+            name: "TEST",
             text: text.into(),
             settings: Settings::default(),
             library: BTreeMap::new(),
             eprom: BTreeMap::new(),
             surfaces: Vec::new(),
             q: Vec::new(),
+        }
+    }
+
+    /// A program in DIN/ISO.
+    pub fn iso(text: impl Into<Vec<u8>>) -> Job {
+        Job {
+            name: "TEST.I",
+            ..Job::new(text)
         }
     }
 
@@ -140,7 +150,7 @@ impl Job {
     }
 
     pub fn run(self) -> Run {
-        let main = Arc::new(Program::from_bytes("TEST", self.text));
+        let main = Arc::new(Program::from_bytes(self.name, self.text));
         let shelf = |programs: BTreeMap<String, String>, folder: &str| {
             let programs = programs.into_iter().map(|(name, text)| {
                 let program = Program::from_bytes(format!("{folder}{name}"), text.into_bytes());

@@ -2,7 +2,7 @@
 
 mod cycle;
 mod formula;
-mod number;
+pub(crate) mod number;
 mod path;
 
 use std::fmt::{self, Display};
@@ -11,8 +11,8 @@ use crate::lines::lines;
 use crate::parse::rest_of_word;
 use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
 use crate::{
-    Block, Calculation, Condition, Coordinates, Feed, Header, MFunctions, NumberedBlock, Operation, Program,
-    Unit, Value,
+    Block, Calculation, Condition, Coordinates, Expression, Feed, Header, MFunctions, NumberedBlock,
+    Operation, Program, Unit, Value,
 };
 use number::{push_integer, push_signed, push_unsigned};
 
@@ -21,6 +21,8 @@ use number::{push_integer, push_signed, push_unsigned};
 pub struct FormatOptions {
     /// Decimal comma instead of the point, as MP7280 chooses it [003:7317-7323].
     pub decimal_comma: bool,
+    /// Step of the block numbers of ISO programs, MP7220; 0 writes none [000:6885].
+    pub iso_step: u8,
 }
 
 /// The normalised listing of a program, to be written anywhere that takes a [`Display`].
@@ -57,6 +59,19 @@ pub(crate) fn write_block(block: &Block, options: FormatOptions, text: &mut Stri
     *text = out.text;
 }
 
+/// A formula as listings show it.
+pub(crate) fn formula_text(expression: &Expression, decimal_comma: bool) -> String {
+    let mut out = Output {
+        text: String::new(),
+        options: FormatOptions {
+            decimal_comma,
+            ..FormatOptions::default()
+        },
+    };
+    out.expression(expression);
+    out.text
+}
+
 struct Listing<'a> {
     program: &'a Program,
     options: FormatOptions,
@@ -70,8 +85,7 @@ impl Display for Listing<'_> {
         let mut text = String::new();
         for NumberedBlock { number, block, .. } in self.program.blocks() {
             text.clear();
-            push_integer(&mut text, u64::from(number), 1);
-            text.push(' ');
+            language.write_line_number(number, &block, self.options, &mut text);
             language.write(&block, self.options, &mut text);
             text.push('\n');
             f.write_str(&text)?;
@@ -253,6 +267,13 @@ impl Output {
                 for (i, text) in dialog.texts.iter().enumerate() {
                     self.text.push(if i == 0 { ' ' } else { '/' });
                     self.integer(u32::from(*text));
+                }
+            }
+            // Only languages with G functions have such blocks.
+            Operation::Modal(block) => {
+                for (i, part) in block.operations.iter().enumerate() {
+                    self.text.push_str(if i == 0 { "" } else { " " });
+                    self.operation(part);
                 }
             }
             Operation::Comment(text) if text.starts_with('*') => self.text.push_str(text),

@@ -8,7 +8,7 @@ const MAX_DECIMALS: u32 = 6;
 const MAX_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// Writes a value with its sign, also `+`.
-pub(super) fn push_signed(text: &mut String, value: Value, comma: bool) {
+pub(crate) fn push_signed(text: &mut String, value: Value, comma: bool) {
     match value {
         Value::Number(number) => {
             if number >= 0.0 {
@@ -24,7 +24,7 @@ pub(super) fn push_signed(text: &mut String, value: Value, comma: bool) {
 }
 
 /// Writes a value with `-` only.
-pub(super) fn push_unsigned(text: &mut String, value: Value, comma: bool) {
+pub(crate) fn push_unsigned(text: &mut String, value: Value, comma: bool) {
     match value {
         Value::Number(number) => push_number(text, number, comma),
         Value::Q { number, negative } => {
@@ -42,7 +42,7 @@ fn push_parameter(text: &mut String, number: u16) {
 }
 
 /// Writes an integer with at least so many digits.
-pub(super) fn push_integer(text: &mut String, mut integer: u64, min_digits: u32) {
+pub(crate) fn push_integer(text: &mut String, mut integer: u64, min_digits: u32) {
     let mut digits = [b'0'; 20];
     let mut count = 0;
     for digit in digits.iter_mut().rev() {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Fault};
 use super::words::block_words;
 use super::{complete_operation, decoration_only, located, prefix, read_block};
 use crate::language::{WordKind, WordSpan};
@@ -25,31 +25,42 @@ pub(crate) fn faults(text: BlockText<'_>, may_begin: bool) -> Vec<BlockError> {
             _ => Vec::new(),
         };
     }
-    let words = block_words(text);
-    let mut line = text.bytes.to_vec();
+    language_faults(text.bytes, &block_words(text), |line| {
+        let mut c = Cursor::new(line);
+        prefix(&mut c);
+        let start = c.position();
+        if decoration_only(&mut c).is_some() {
+            return None;
+        }
+        let fault = complete_operation(&mut c, may_begin).err()?;
+        Some((start, fault))
+    })
+}
+
+/// The faults of a line of any language, which says what is wrong first, and where the code begins.
+pub(crate) fn language_faults(
+    text: &[u8],
+    words: &[WordSpan],
+    first: impl Fn(&[u8]) -> Option<(usize, Box<Fault>)>,
+) -> Vec<BlockError> {
+    let mut line = text.to_vec();
     let mut found = Vec::new();
     let mut taken: Vec<Range<usize>> = Vec::new();
     while found.len() < FAULTS_MAX {
-        let mut c = Cursor::new(&line);
-        prefix(&mut c);
-        let code_start = c.position();
-        if decoration_only(&mut c).is_some() {
-            break;
-        }
-        let Err(fault) = complete_operation(&mut c, may_begin) else {
+        let Some((code_start, fault)) = first(&line) else {
             break;
         };
         let end = fault.end.min(line.len());
         let start = fault.start.min(end);
         // What lies over the opening words or where a word was taken out is a follow-up.
         let opens = |word: &&WordSpan| matches!(word.kind, WordKind::Function | WordKind::Number);
-        let front = words.iter().filter(opens).map(|word| word.span.end).max();
+        let front = words.iter().take_while(opens).map(|word| word.span.end).max();
         let covered = line.get(start..end).unwrap_or_default();
         let is_new = start >= front.unwrap_or_default() && covered.iter().any(|&byte| !is_blank(byte));
         if !found.is_empty() && (!is_new || taken.iter().any(|out| start < out.end && out.start < end)) {
             break;
         }
-        found.push(located(&fault, 0, text.bytes, start, end));
+        found.push(located(&fault, 0, text, start, end));
         let word = words
             .iter()
             .find(|word| word.span.start <= start && start < word.span.end);

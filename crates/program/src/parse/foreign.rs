@@ -81,12 +81,15 @@ pub(crate) fn is_din_iso(first_block: &[u8]) -> bool {
 
 /// What is said of it.
 pub(crate) fn not_supported(what: &str) -> String {
-    format!("{what} is not yet supported here")
+    match what {
+        DIN_ISO => whole_program(),
+        what => format!("{what} is not yet supported here"),
+    }
 }
 
 /// What is said of a whole DIN/ISO program.
 pub(crate) fn whole_program() -> String {
-    not_supported(DIN_ISO)
+    "DIN/ISO programming is read from files whose names end with .I".to_owned()
 }
 
 #[cfg(test)]

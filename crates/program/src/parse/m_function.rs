@@ -71,7 +71,7 @@ pub(super) fn m_functions(c: &mut Cursor) -> Parsed<MFunctions> {
 
 /// One M function with its words, or an empty `M` of the screen, which is passed over [003:303].
 #[inline]
-pub(super) fn m_function(c: &mut Cursor, m: &mut MFunctions) -> Parsed<()> {
+pub(crate) fn m_function(c: &mut Cursor, m: &mut MFunctions) -> Parsed<()> {
     let start = c.position();
     c.advance(1);
     let touches = c.peek();

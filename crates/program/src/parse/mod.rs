@@ -2,7 +2,7 @@
 //! becomes [`Operation::Invalid`].
 
 mod blank;
-mod cursor;
+pub(crate) mod cursor;
 mod cycle;
 mod decoration;
 mod dialog;
@@ -28,11 +28,13 @@ use crate::lines::{BlockText, lines, stands_alone};
 use crate::text::{character_count, to_text, trim, trim_continuation};
 use crate::{Block, BlockError, InvalidBlock, Operation};
 use cursor::{Cursor, Fault, Parsed, code_length, with_help};
-pub(crate) use faults::faults;
+pub(crate) use faults::{faults, language_faults};
 pub(crate) use foreign::{is_din_iso, whole_program};
 pub(crate) use formula::FUNCTIONS;
 pub use m_function::m_words;
-pub(crate) use m_function::rest_of_word;
+pub(crate) use m_function::{m_function, rest_of_word};
+pub(crate) use path::empty_motion;
+pub(crate) use q_parameter::formula;
 pub(crate) use words::block_words;
 
 /// Reads a block into a place where one, best [`Block::EMPTY`], stands already, so that the large positioning blocks
@@ -89,6 +91,13 @@ fn invalid(line: &[u8], start: usize, fault: &Fault) -> Operation {
     Operation::Invalid(Box::new(InvalidBlock { text, error }))
 }
 
+/// Whether a block is BEGIN PGM.
+pub(crate) fn frames_begin(first_block: &[u8]) -> bool {
+    let mut block = Block::EMPTY;
+    parse_line(first_block, true, &mut block);
+    matches!(block.operation, Operation::Begin(_))
+}
+
 /// Whether a line may be LBL, BEGIN or END by its first letters.
 #[inline]
 pub(crate) fn frames_or_labels(line: &[u8]) -> bool {
@@ -113,7 +122,7 @@ pub(crate) fn frames_or_labels(line: &[u8]) -> bool {
 /// Reads optional block number, perhaps behind N, and `/`, in either order, and the blanks behind; whether the block is
 /// optional.
 #[inline]
-fn prefix(c: &mut Cursor) -> bool {
+pub(crate) fn prefix(c: &mut Cursor) -> bool {
     c.skip_blanks();
     let mut skip = false;
     if c.peek() == b'/' {
@@ -219,7 +228,7 @@ fn operation(c: &mut Cursor) -> Parsed<Operation> {
 
 /// What follows `;`, if anything.
 #[cold]
-fn comment_text(rest: &[u8]) -> Option<Box<str>> {
+pub(crate) fn comment_text(rest: &[u8]) -> Option<Box<str>> {
     let text = trim_continuation(trim(rest.get(1..).unwrap_or_default()));
     let text = trim(text);
     (!text.is_empty()).then(|| to_text(text).into_boxed_str())
@@ -227,7 +236,13 @@ fn comment_text(rest: &[u8]) -> Option<Box<str>> {
 
 /// The error of a fault that lies from `start` to `end` in a line.
 #[cold]
-fn located(fault: &Fault, line_in_block: u32, line: &[u8], start: usize, end: usize) -> BlockError {
+pub(crate) fn located(
+    fault: &Fault,
+    line_in_block: u32,
+    line: &[u8],
+    start: usize,
+    end: usize,
+) -> BlockError {
     let start = start.min(line.len());
     let covered = line.get(start..end.clamp(start, line.len())).unwrap_or_default();
     BlockError {

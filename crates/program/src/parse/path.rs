@@ -166,7 +166,7 @@ fn coordinate(
 
 /// A positioning block without words.
 #[inline]
-pub(super) fn empty_motion(kind: MotionKind) -> Motion {
+pub(crate) fn empty_motion(kind: MotionKind) -> Motion {
     Motion {
         kind,
         coordinates: Coordinates::default(),
@@ -178,6 +178,7 @@ pub(super) fn empty_motion(kind: MotionKind) -> Motion {
         feed: None,
         normal: None,
         m: MFunctions::default(),
+        modal: None,
     }
 }
 

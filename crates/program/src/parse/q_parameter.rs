@@ -8,7 +8,7 @@ use super::label::label_number;
 use crate::{Calculation, Condition, Operation, Value};
 
 /// Most items of FN15 PRINT [003:4371-4385].
-const MAX_PRINT_ITEMS: usize = 6;
+pub(crate) const MAX_PRINT_ITEMS: usize = 6;
 /// Value of an operand that a function does not have.
 const NO_OPERAND: Value = Value::Number(0.0);
 
@@ -133,7 +133,7 @@ fn plc(c: &mut Cursor) -> Parsed<Operation> {
 }
 
 /// `Q1 = formula` of the TNC 415 [000:744].
-pub(super) fn formula(c: &mut Cursor) -> Parsed<Option<Operation>> {
+pub(crate) fn formula(c: &mut Cursor) -> Parsed<Option<Operation>> {
     let start = c.position();
     if c.peek_at(1).is_ascii_alphabetic() {
         return Ok(None);

@@ -143,6 +143,7 @@ fn motion() -> impl Strategy<Value = Motion> {
                     feed,
                     normal: (kind == LineNormal).then(|| Box::new(normal)),
                     m,
+                    modal: None,
                 }
             },
         )

@@ -1,0 +1,437 @@
+//! Laws of DIN/ISO: the listing of a program is the program again, and what is wrong is said where it stands.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a helper that panics fails its test"
+)]
+
+use bahn_parameters::ControlModel;
+use bahn_parameters::MessageId::{self, *};
+use bahn_path::Axis;
+use bahn_program::*;
+use proptest::prelude::*;
+use proptest::sample::select;
+
+const POINT: FormatOptions = FormatOptions {
+    decimal_comma: false,
+    iso_step: 10,
+};
+const WITHOUT_NUMBERS: FormatOptions = FormatOptions {
+    decimal_comma: true,
+    iso_step: 0,
+};
+
+fn read(text: impl Into<Vec<u8>>) -> Program {
+    Program::from_bytes("TEST.I", text.into())
+}
+
+/// The blocks without the places of faults, which move with the text before them.
+fn blocks(program: &Program) -> Vec<Block> {
+    let without_place = |mut block: Block| {
+        if let Operation::Invalid(invalid) = &mut block.operation {
+            (invalid.error.line, invalid.error.column, invalid.error.length) = (0, 0, 0);
+        }
+        block
+    };
+    program
+        .blocks()
+        .map(|numbered| without_place(numbered.block))
+        .collect()
+}
+
+fn check_laws(bytes: &[u8]) {
+    let program = read(bytes);
+    let all = blocks(&program);
+    assert_eq!(all.len(), program.block_count() as usize);
+    for options in [POINT, WITHOUT_NUMBERS] {
+        let listing = format_program(&program, options).to_string();
+        let again = read(listing.clone());
+        assert_eq!(
+            blocks(&again),
+            all,
+            "{:?}\n{listing}",
+            String::from_utf8_lossy(bytes)
+        );
+        assert_eq!(
+            format_program(&again, options).to_string(),
+            listing,
+            "{listing:?}"
+        );
+    }
+    for diagnostic in program.diagnostics(Some(ControlModel::Tnc151.limits().into())) {
+        let line = program.text_of_line(diagnostic.line);
+        let end = diagnostic.column + diagnostic.length - 1;
+        let inside = diagnostic.column >= 1 && end as usize <= line.chars().count() + 1;
+        assert!(inside, "{diagnostic:?} lies outside of {line:?}");
+    }
+    for block in 0..program.block_count() {
+        let text = program.text_of(block);
+        for word in program.language().parse_block(&text).words {
+            assert!(
+                text.get(word.span.clone()).is_some() && text.get(word.value).is_some(),
+                "{text:?}"
+            );
+        }
+    }
+}
+
+/// Words that are functions, and what is written beside them.
+const FUNCTIONS: &[&str] = &[
+    "G00",
+    "G01",
+    "G02",
+    "G03",
+    "G05",
+    "G06",
+    "G07",
+    "G10",
+    "G11",
+    "G12",
+    "G13",
+    "G15",
+    "G16",
+    "G17",
+    "G18",
+    "G19",
+    "G40",
+    "G41",
+    "G42",
+    "G43",
+    "G44",
+    "G90",
+    "G91",
+    "M3",
+    "M13",
+    "M103 F25",
+    "G24",
+    "G25",
+    "G26",
+    "G27",
+    "G28",
+    "G29",
+    "G30",
+    "G31",
+    "G36",
+    "G37",
+    "G38",
+    "G39",
+    "G53",
+    "G54",
+    "G55",
+    "G58",
+    "G72",
+    "G73",
+    "G75",
+    "G79",
+    "G83",
+    "G98 L5",
+    "G99",
+    "G51",
+    "L1,0",
+    "L2,5",
+    "D00 Q5 P01 +1",
+    "D9 P1+1 P2+2 P3 1",
+    "D15 P01 3",
+    "%NAME",
+    "%7 G71",
+    "Q1 = 2 + 3",
+    "; note",
+    "*",
+    "/",
+    "X",
+    "FMAX",
+];
+
+/// Words in any order.
+fn good() -> impl Strategy<Value = String> {
+    let number = (-100_000_i32..100_000, 0..4).prop_map(|(n, d)| f64::from(n) / 10_f64.powi(d));
+    let value = prop_oneof![
+        4 => number.prop_map(|n| format!("{n:+}")),
+        1 => (0..114).prop_map(|q| format!("+Q{q}")),
+        1 => (0..114).prop_map(|q| format!("-Q{q}")),
+    ];
+    let word = (
+        select(vec![
+            "X", "Y", "Z", "A", "B", "C", "U", "V", "W", "I", "J", "K", "R", "H", "F", "S", "T", "G", "M",
+            "P01 ", "P02 ", "P05 X", "Q1=", "L",
+        ]),
+        value,
+    )
+        .prop_map(|(address, value)| format!("{address}{value}"));
+    let function = select(FUNCTIONS).prop_map(str::to_owned);
+    prop::collection::vec(prop_oneof![word, function], 0..8).prop_map(|words| words.join(" "))
+}
+
+/// Blocks that are complete, each with what it is written like.
+const COMPLETE: &[&str] = &[
+    "G10 G40 R+5 H+30 F250 M3 M8",
+    "X+60 G91 Y-10",
+    "G01 G41 X+1 G90 Y+2 G91 Z+3 F200",
+    "I+5 J+6",
+    "G02 I+1 G91 J+2 X+3 G90 Y+4",
+    "T1 G17 S1000 DL+0.1 DR-0.1",
+    "T2 G17 G00 G40 G90 Z+50 M3",
+    "S500",
+    "G30 G17 X+0 Y+0 Z-20",
+    "G31 G90 X+100 Y+100 Z+0",
+    "G31 X+100 Y+100 Z+0",
+    "G99 T1 L+0 R+5",
+    "G51 T2",
+    "G24 R+5",
+    "G25 R+5 F100",
+    "G26 R+5",
+    "G27 R+5",
+    "G28",
+    "G28 X Y",
+    "G29",
+    "G04 F2.5",
+    "G36 S90",
+    "G37 P01 1 P02 12",
+    "G38 M9",
+    "G39 P01 PART.H",
+    "G53 P01 5",
+    "G54 X+5 G91 Y+6",
+    "G55 P01 10 P02 X- P03 X+5 P04 Y+0 P05 Z-5",
+    "G56 P01 -2 P02 -20 P03 -5 P04 100 P05 +1",
+    "G57 P01 -2 P02 -20 P03 -5 P04 100 P05 +1 P06 +30 P07 500",
+    "G58 P01 -2 P02 -20 P03 -5 P04 100 P05 500",
+    "G59 P01 -2 P02 -20 P03 -5 P04 100 P05 500",
+    "G72 F0.98",
+    "G73 H+45",
+    "G73 G91 H-45",
+    "G74 P01 -2 P02 -20 P03 -5 P04 100 P05 X+50 P06 Y+10 P07 200",
+    "G75 P01 -2 P02 -20 P03 -5 P04 100 P05 X+50 P06 Y+30 P07 200",
+    "G76 P01 -2 P02 -20 P03 -5 P04 100 P05 X+50 P06 Y+30 P07 200 P08 5",
+    "G77 P01 -2 P02 -20 P03 -5 P04 100 P05 35 P06 200",
+    "G78 P01 -2 P02 -20 P03 -5 P04 100 P05 35 P06 200",
+    "G79",
+    "G79 M3",
+    "G80 A+0 B+45",
+    "G83 P01 -2 P02 -20 P03 -5 P04 0.5 P05 80",
+    "G84 P01 -2 P02 -20 P03 0.5 P04 80",
+    "G85 P01 -2 P02 -20 P03 +1",
+    "G86 P01 -20 P02 +1",
+    "G98 L1",
+    "G98 L0",
+    "L1,0",
+    "L1,5",
+    "%NAME",
+    "D00 Q5 P01 +60",
+    "D01 Q1 P01 +Q2 P02 -5",
+    "D09 P01 +Q1 P02 +3 P03 5",
+    "D13 Q1 P01 +1 P02 -Q3",
+    "D14 P01 5",
+    "D15 P01 1 P02 Q5",
+    "D19 P01 +10 P02 +Q3",
+    "D68 P01 +8 P02 +40 P07 +100",
+    "Q1 = SIN 30 + 2 * Q8",
+    "G121 Q10=+5 Q11=+150 Q13=+0",
+    "G200 Q200=+2 Q201=-20",
+    "M8",
+    "; only a comment",
+    "X+5 ; with a comment",
+    "/ X+5",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn programs_keep_the_laws(lines in prop::collection::vec((0..3_u8, good()), 0..20)) {
+        let mut text = String::from("%7 G71 *\n");
+        for (number, (kind, line)) in (1..).zip(lines) {
+            match kind {
+                0 => text += &format!("{line}\n"),
+                1 => text += &format!("N{number}0 {line}*\n"),
+                _ => text += &format!("N{number} {line} * ; c *\n"),
+            }
+        }
+        check_laws(text.as_bytes());
+    }
+
+    #[test]
+    fn complete_blocks_read_back(picks in prop::collection::vec(select(COMPLETE), 1..30)) {
+        let text = format!("%7 G71 *\n{} *\nN99999 %7 G71 *\n", picks.join(" *\n"));
+        let program = read(text.clone());
+        prop_assert!(program.blocks().all(|b| !matches!(b.block.operation, Operation::Invalid(_))), "{}", text);
+        check_laws(text.as_bytes());
+    }
+
+    #[test]
+    fn any_bytes_keep_the_laws(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        check_laws(&bytes);
+    }
+
+    #[test]
+    fn any_letters_keep_the_laws(text in "[GNXYRHFPDQTSLM0-9+.,;*%/ =\n-]{0,120}") {
+        check_laws(text.as_bytes());
+    }
+}
+
+/// What a complete block is written like is what it was.
+#[test]
+fn listings_are_normal() {
+    let text: String = COMPLETE.iter().map(|block| format!("{block} *\n")).collect();
+    let program = read(format!("%7 G71 *\n{text}N99999 %7 G71 *\n"));
+    let listing = format_program(&program, POINT).to_string();
+    for (number, (block, line)) in (1..).zip(COMPLETE.iter().zip(listing.lines().skip(1))) {
+        assert_eq!(line, format!("N{} {block} *", number * 10));
+    }
+    let bare = FormatOptions { iso_step: 0, ..POINT };
+    let bare = format_program(&program, bare).to_string();
+    assert_eq!(bare.lines().nth(1), Some("G10 G40 R+5 H+30 F250 M3 M8 *"));
+    assert_eq!(bare.lines().last(), Some("%7 G71 *"));
+}
+
+#[test]
+fn the_ends_of_programs() {
+    for (begin, end) in [
+        ("%1000 G71 *", "N99999 %1000 G71 *"),
+        ("% 1000 G71 *", "N9999 % 1000 G71"),
+        ("%1000 G71", "N99999999 %1000 G71*"),
+        ("%1000 G71*", "%1000 G71*"),
+    ] {
+        let program = read(format!("{begin}\nN10 G00 X+5 *\n{end}\n"));
+        let name = |header: Option<&Header>| header.map(|header| (header.name.to_string(), header.unit));
+        let expected = Some(("1000".to_owned(), Some(Unit::Mm)));
+        assert_eq!(
+            (name(program.begin()), name(program.end())),
+            (expected.clone(), expected)
+        );
+        assert_eq!(program.block_count(), 3, "{begin}");
+        assert_eq!(program.diagnostics(None), [], "{begin}");
+    }
+    let inches = read("%A G70 G50 *\nN99999 %A G70 *\n");
+    assert_eq!(
+        (inches.unit(), inches.begin().unwrap().protected),
+        (Unit::Inch, true)
+    );
+    assert!(read("N10 G00 X+5 *\n").begin().is_none());
+}
+
+/// N number is the block of reports, and the line that of the file.
+#[test]
+fn blocks_have_the_numbers_that_are_programmed() {
+    let program = read("%7 G71 *\n\nN10 G00 X+5 *\nX+6\n/N30 X+7\nN99999 %7 G71 *\n");
+    let numbers: Vec<u32> = (0..program.block_count())
+        .map(|block| program.number_of(block))
+        .collect();
+    assert_eq!(numbers, [0, 10, 2, 30, 99_999]);
+    assert_eq!(program.line_of(1), 3);
+}
+
+fn fault(text: &str) -> (MessageId, u32, u32) {
+    let read = IsoLanguage.parse_block(text);
+    match (read.block.operation, read.faults.first()) {
+        (Operation::Invalid(invalid), Some(fault)) => {
+            assert_eq!(*fault, invalid.error, "{text}");
+            (fault.message, fault.column, fault.length)
+        }
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+#[test]
+fn faults_have_their_places() {
+    for (text, found) in [
+        ("N10 G00 X+5 X+6 *", (AxisDoubleProgrammed, 13, 3)),
+        ("N10 G01 X+1..5 *", (EntryValueIncorrect, 10, 5)),
+        ("N10 G01 X *", (EntryValueIncorrect, 9, 1)),
+        ("N10 G49 X+5", (BlockNotKnown, 5, 3)),
+        ("N10 G00 G01 X+5", (UnexpectedText, 9, 3)),
+        ("N10 G01 X+5 H+30", (UnexpectedText, 13, 4)),
+        ("N10 G01 R+5", (UnexpectedText, 9, 3)),
+        ("N10 G00 X+5 FOO", (EntryValueIncorrect, 13, 3)),
+        ("N10 G00 X+5 E4", (BlockNotKnown, 13, 2)),
+        ("N10 G20 T1", (WrongAxisProgrammed, 5, 3)),
+        ("N10 G98 LX", (EntryValueIncorrect, 9, 2)),
+    ] {
+        assert_eq!(fault(text), found, "{text}");
+    }
+    for (text, message) in [
+        ("G83 P01 -2 P02 -20", CyclIncomplete),
+        ("G83 P01 -2 P02 -20 P03 -5 P04 0 P05 80 P06 1", UnexpectedText),
+        ("G37", CyclIncomplete),
+        ("D00 P01 +5", EntryValueIncorrect),
+        ("D20 Q1", BlockNotKnown),
+        ("G25", EntryValueIncorrect),
+        ("G71", UnexpectedText),
+        ("G07 X+5 Y+6", UnexpectedText),
+        ("G01 X+5 G43", UnexpectedText),
+        ("%", EntryValueIncorrect),
+    ] {
+        match text {
+            "%" => assert!(matches!(
+                IsoLanguage.parse_block(text).block.operation,
+                Operation::Begin(_)
+            )),
+            text => assert_eq!(fault(text).0, message, "{text}"),
+        }
+    }
+    let all = IsoLanguage.parse_block("N10 G01 X+1..5 E2 Y+2 Y+3").faults;
+    let messages: Vec<_> = all.iter().map(|fault| fault.message).collect();
+    assert_eq!(
+        messages,
+        [EntryValueIncorrect, BlockNotKnown, AxisDoubleProgrammed]
+    );
+}
+
+/// 150 characters, 64 on the TNC 151.
+#[test]
+fn blocks_have_a_length() {
+    for (model, max) in [(ControlModel::Tnc151, 64), (ControlModel::Tnc415b, 150)] {
+        for (length, faults) in [(max, 0), (max + 1, 1)] {
+            let block = format!("N10 G00 X+5 ;{}", "x".repeat(length - 13));
+            let program = read(format!("%7 G71 *\n{block}\nN99999 %7 G71 *\n"));
+            let all = program.diagnostics(Some(model.limits().into()));
+            assert_eq!(all.len(), faults, "{all:?}");
+            if let Some(fault) = all.first() {
+                assert_eq!((fault.line, fault.column, fault.length), (2, max as u32 + 1, 1));
+            }
+        }
+    }
+}
+
+#[test]
+fn words_know_their_places() {
+    let text = "/ N10 G01 X+5 YQ3 P01 -2 M3 * ; up";
+    let words = IsoLanguage.parse_block(text).words;
+    let shown: Vec<_> = words
+        .iter()
+        .map(|word| (&text[word.span.clone()], &text[word.value.clone()]))
+        .collect();
+    assert_eq!(
+        shown,
+        [
+            ("/", ""),
+            ("N10", "10"),
+            ("G01", "01"),
+            ("X+5", "+5"),
+            ("YQ3", "Q3"),
+            ("P01 -2", " -2"),
+            ("M3", "3"),
+            ("; up", "; up"),
+        ]
+    );
+}
+
+/// G91 of an earlier block makes incremental what stands before any G90 and G91.
+#[test]
+fn open_words_take_what_is_in_force() {
+    let read = |text: &str| match IsoLanguage.parse_block(text).block.operation {
+        Operation::Modal(block) => *block,
+        other => panic!("{other:?}"),
+    };
+    let block = read("G54 X+5 G90 Y+6");
+    let incremental = |distance| -> Vec<bool> {
+        let all = block.resolved(distance).flat_map(|part| match part {
+            Operation::Cycle(block) => block.words,
+            other => panic!("{other:?}"),
+        });
+        all.map(|word| matches!(word, CycleWord::Coordinate(Axis::X | Axis::Y, word) if word.incremental))
+            .collect()
+    };
+    assert_eq!(incremental(Distance::Absolute), [false, false]);
+    assert_eq!(incremental(Distance::Incremental), [true, false]);
+}
