@@ -345,8 +345,12 @@ fn ports_that_cannot_be_opened() {
         "{serve} --rs232 tcp:127.0.0.1:0,baud=19200 --rs422 tcp:127.0.0.1:0,baud=38400"
     ));
     assert_eq!((run.code(), run.out().as_str()), (1, "BAUD RATE NOT POSSIBLE\n"));
+    let run = folder.bahn(&format!("{serve} --rs232 tcp:{address}"));
+    assert_eq!(
+        (run.code(), run.out().as_str()),
+        (1, "INTERFACE ALREADY ASSIGNED\n")
+    );
     for (ports, said) in [
-        (format!("--rs232 tcp:{address}"), "in use"),
         (
             "--rs232 tcp:127.0.0.1:0,mode=fe3".to_owned(),
             "column 17, `mode=fe3`: a mode is",

@@ -143,7 +143,7 @@ fn campaign(blocks: u64, one_in: u64) -> Tally {
         let count = text.lines().count() as u64;
         let (there, stored) = (Memory::default(), Memory::default());
         there.put("1.H", &text);
-        let reads = number % 2 == 0;
+        let reads = number.is_multiple_of(2);
         let (mut control, at_device): (Box<dyn Protocol>, &Memory) = if reads {
             let want = Want::Selected("1.H".into());
             let kind = FileType::of_code('H').unwrap();

@@ -18,7 +18,8 @@ pub use spec::{BAUD_RATES, Line, Spec, SpecError};
 
 use crate::Characters;
 use pace::Pace;
-use wire::{Got, Wire};
+use poll::Got;
+use wire::Wire;
 
 /// Baud rate of a serial port when none is said, that of LSV/2 [000:17514-17540].
 const BAUD: u32 = 9600;
@@ -37,6 +38,8 @@ pub struct ChannelError {
     pub line: String,
     /// What the operating system says.
     pub what: String,
+    /// Somebody else has it.
+    pub is_taken: bool,
 }
 
 impl ChannelError {
@@ -44,6 +47,10 @@ impl ChannelError {
         ChannelError {
             line: line.to_string(),
             what: error.to_string(),
+            is_taken: matches!(
+                error.kind(),
+                io::ErrorKind::AddrInUse | io::ErrorKind::ResourceBusy
+            ),
         }
     }
 }

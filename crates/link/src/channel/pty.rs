@@ -13,8 +13,7 @@ use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-use super::poll;
-use super::wire::{Got, nothing};
+use super::poll::{self, Got, nothing};
 
 /// How often one looks whether somebody has opened it.
 const LOOK: Duration = Duration::from_millis(20);

@@ -326,7 +326,8 @@ mod tests {
         assert_eq!(read, expected);
     }
 
-    /// Each of MP5200 to MP5210 replaces its character in its mode alone [000:17115-17177].
+    /// Each replaces its character in its mode alone [000:17115-17177]: MP5200 STX, MP5201 ETX, MP5202 and MP5203 what asks,
+    /// MP5204 and MP5205 what offers, MP5206 SOH, MP5207 ETB, MP5208 ACK, MP5209 NAK, MP5210 EOT.
     #[test]
     fn every_character_is_replaced() {
         let mut list = ParameterList::reference(ControlModel::Tnc425);
