@@ -6,7 +6,7 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures conformance faults torture trails tools browser terminal axe clean
+.PHONY: run test bench doc pictures conformance faults torture trails tools browser terminal axe pylsv2 clean
 
 # Built for the first look: without the screens in the terminal, and with the profile for it.
 BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
@@ -32,7 +32,7 @@ run:
 
 # Everything that must hold: format, lints, documentation, tests. Of the fuzz targets nothing is linked here: they
 # compile without libFuzzer.
-test: tools browser terminal axe
+test: tools browser terminal axe pylsv2
 	$(CARGO) fmt --all --check
 	$(CARGO) metadata --manifest-path fuzz/Cargo.toml --locked --format-version 1 >/dev/null
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
@@ -116,6 +116,18 @@ axe:
 		tar xzf $(AXE).tgz --strip-components=1 package/axe.min.js && rm $(AXE).tgz && \
 		echo "$(AXE_SUM)  axe.min.js" | sha256sum --check --status; } >/dev/null 2>&1 || \
 		{ rm -f $(OUT)/axe.min.js; echo "axe-core cannot be fetched: its rules are skipped"; }
+
+# A client of LSV/2 that shops use, in a virtual environment of its own; the tests of the port use it as a host does.
+PYLSV2 := pyLSV2==1.8.0
+pylsv2:
+	@mkdir -p $(OUT)
+	@$(OUT)/pylsv2/bin/python -c "import pyLSV2" 2>/dev/null && exit 0; \
+	as_root=; [ "$$(id -u)" = 0 ] || as_root="sudo -n"; \
+	python3 -c "import ensurepip, venv" 2>/dev/null || { echo "installing Python for the tests of LSV/2"; \
+		$$as_root apt-get update -q && \
+		DEBIAN_FRONTEND=noninteractive $$as_root apt-get install -q -y --no-install-recommends python3-venv; } >/dev/null 2>&1; \
+	{ python3 -m venv $(OUT)/pylsv2 && $(OUT)/pylsv2/bin/pip install -q $(PYLSV2); } >/dev/null 2>&1 || \
+		{ rm -rf $(OUT)/pylsv2; echo "pyLSV2 cannot be fetched: what it does is skipped"; }
 
 clean:
 	$(CARGO) clean

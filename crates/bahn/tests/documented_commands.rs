@@ -15,6 +15,8 @@ const EXCEPTIONS: &[(&str, i32)] = &[
     // Wrong use: there is no terminal here.
     ("plc watch", 2),
     ("panel --terminal", 2),
+    // No such port is there.
+    ("serial:/dev/ttyUSB0", 1),
     // There are differences.
     ("mp diff mill.mp", 1),
 ];
@@ -52,6 +54,10 @@ fn desk() -> Folder {
     }
     fs::create_dir(folder.path("parts")).unwrap();
     folder.write("parts/part.h", part);
+    folder.write(
+        "parts/15.H",
+        "BEGIN PGM 15 MM\nL X+50 Y+50 R0 F2000\nL X+60\nEND PGM 15 MM\n",
+    );
     let list = fs::read_to_string(root().join("machines/mill/parameters.mp")).unwrap();
     for name in ["mill.mp", "old.mp", "new.mp", "machine.MP"] {
         folder.write(name, &list);
@@ -70,6 +76,12 @@ fn desk() -> Folder {
         folder.write(name, "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
     }
     folder.write("jog.txt", "30: end\n");
+    folder.write("line.txt", "0.5 > 01 48 31 35 45 17 1F 11\n0.6 < 06\n");
+    folder.write(
+        "parts/15.H",
+        "0 BEGIN PGM 15 MM\n1 L Z+100 R0 FMAX M2\n2 END PGM 15 MM\n",
+    );
+    fs::create_dir(folder.path("mill/programs/PARTS")).unwrap();
     folder
 }
 
@@ -113,6 +125,49 @@ fn digitizing(folder: &Folder) {
 /// Held while a panel runs.
 static PANEL: Mutex<()> = Mutex::new(());
 
+/// A command that asks a control: one is served meanwhile.
+fn beside_a_server(command: &str) -> String {
+    format!(
+        "bahn link serve --machine mill --lsv2 127.0.0.1:19000 >served.txt & server=$!; \
+         until grep -q ready served.txt; do kill -0 $server || exit 1; sleep 0.05; done; \
+         {command}; code=$?; kill -INT $server; wait $server; exit $code"
+    )
+}
+
+/// One side of a blockwise transfer: the other one is there meanwhile.
+fn with_its_other_side(command: &str) -> String {
+    let sends = command.starts_with("bahn link dnc send");
+    let send = if sends {
+        command
+    } else {
+        "bahn link dnc send --dir parts --port tcp:127.0.0.1:4711 15.H"
+    };
+    let run = if sends {
+        "bahn link dnc run --machine mill --port connect:127.0.0.1:4711 15.H"
+    } else {
+        command
+    };
+    // Until the sender listens nobody answers.
+    format!("{send} & sender=$!; until {run}; do kill -0 $sender || exit 1; sleep 0.05; done; wait $sender")
+}
+
+/// A control that asks a device: a disk is there meanwhile.
+fn beside_a_disk(command: &str) -> String {
+    format!(
+        "bahn link disk parts --port tcp:127.0.0.1:4711,mode=fe2 >disk.txt & disk=$!; \
+         until grep -q ready disk.txt; do kill -0 $disk || exit 1; sleep 0.05; done; \
+         {command}; code=$?; kill -INT $disk; wait $disk; exit $code"
+    )
+}
+
+/// Commands that go on until somebody ends them.
+const ENDLESS: &[&str] = &[
+    "bahn panel",
+    "bahn link serve",
+    "bahn link disk",
+    "bahn link monitor tcp",
+];
+
 /// Runs each command in a shell, in this order.
 fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     assert!(!commands.is_empty());
@@ -129,9 +184,20 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     for command in commands {
         // A panel runs until somebody ends it, and only one listens at an address.
         let ended = format!("timeout --preserve-status --signal INT 4 {command}");
-        let panel = command.starts_with("bahn panel").then(|| PANEL.lock().unwrap());
+        let ends_itself = !ENDLESS.iter().any(|name| command.starts_with(name));
+        let asks = command.starts_with("bahn link lsv2");
+        let drips = command.starts_with("bahn link dnc");
+        let held = command.starts_with("bahn link").then(|| PANEL.lock().unwrap());
+        let held = held.or_else(|| (!ends_itself).then(|| PANEL.lock().unwrap()));
+        let own = if ends_itself { command } else { &ended };
+        let command = match (command.contains("connect:127.0.0.1:4711"), asks) {
+            _ if drips => &with_its_other_side(command),
+            (true, _) => &beside_a_disk(own),
+            (false, true) => &beside_a_server(own),
+            (false, false) => own,
+        };
         let output = Command::new("sh")
-            .args(["-c", if panel.is_some() { &ended } else { command }])
+            .args(["-c", command])
             .current_dir(place)
             .env("PATH", &path)
             .env("HOME", folder.path(""))
@@ -139,6 +205,7 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
             .stdin(std::process::Stdio::null())
             .output()
             .unwrap();
+        drop(held);
         let exception = EXCEPTIONS.iter().find(|(part, _)| command.contains(part));
         let code = output.status.code();
         if code != Some(0) && code != exception.map(|(_, code)| *code) {
@@ -170,7 +237,12 @@ fn of_the_readmes() {
 
 #[test]
 fn of_the_documents() {
-    for file in ["docs/digitizing.md", "docs/torture.md"] {
+    for file in [
+        "docs/digitizing.md",
+        "docs/dnc.md",
+        "docs/torture.md",
+        "docs/lsv2.md",
+    ] {
         let folder = desk();
         digitizing(&folder);
         let text = fs::read_to_string(root().join(file)).unwrap();

@@ -1,9 +1,12 @@
 //! `bahn panel` as a user starts it: it says where it is, answers, and keeps everything when it ends.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
+mod support;
+
+use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
+
+use support::request;
 
 /// A panel that was started, and its address.
 fn start(folder: &std::path::Path, options: &[&str]) -> (Child, String) {
@@ -23,18 +26,6 @@ fn start(folder: &std::path::Path, options: &[&str]) -> (Child, String) {
     }
     let address = said.split("http://").nth(1).unwrap().split('/').next().unwrap();
     (child, address.to_owned())
-}
-
-fn request(address: &str, method: &str, path: &str, body: &str) -> String {
-    let mut stream = TcpStream::connect(address).unwrap();
-    let length = body.len();
-    let head = format!(
-        "{method} {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n"
-    );
-    stream.write_all((head + body).as_bytes()).unwrap();
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer).unwrap();
-    answer
 }
 
 fn end(mut child: Child) -> i32 {

@@ -4,15 +4,13 @@
 
 mod support;
 
-use std::io::{Read, Write};
-use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use bahn_panel::{Key, Press, SHORTCUTS};
-use support::Folder;
+use support::{Folder, request};
 
 /// How long a person waits; the host may be slow.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -470,24 +468,13 @@ fn terminal_and_page_show_the_same_machine() {
         .nth(1)
         .and_then(|rest| rest.split('/').next())
         .unwrap();
-    let request = |request: &str, body: &str| {
-        let mut stream = TcpStream::connect(address).unwrap();
-        let length = body.len();
-        let head = format!(
-            "{request} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n"
-        );
-        stream.write_all((head + body).as_bytes()).unwrap();
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).unwrap();
-        answer
-    };
-    assert!(request("POST /api/key", "{\"key\":\"CE\"}").contains("\"ok\":true"));
+    assert!(request(address, "POST", "/api/key", "{\"key\":\"CE\"}").contains("\"ok\":true"));
     desk.mode("PASS OVER REFERENCE MARKS");
     desk.keys("PROGRAM");
     desk.mode("PROGRAMMING AND EDITING");
     let page_shows = |what: &str| {
         let end = Instant::now() + PATIENCE;
-        while !request("GET /api/screen", "").contains(what) {
+        while !request(address, "GET", "/api/screen", "").contains(what) {
             assert!(Instant::now() < end, "{what}");
             std::thread::sleep(LOOK);
         }

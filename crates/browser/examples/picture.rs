@@ -1,4 +1,4 @@
-//! A picture of a page: `picture PAGE.html OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]`; of the pages of `bahn test --html` a fine one.
+//! A picture of a page, a file or an address: `picture PAGE OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]`; of the pages of `bahn test --html` a fine one.
 //!
 //! Scripts are executed one after the other before the picture is taken.
 
@@ -10,7 +10,7 @@ use bahn_browser::Browser;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [page, out, size, further @ ..] = arguments.as_slice() else {
-        return Err("picture PAGE.html OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]".into());
+        return Err("picture PAGE OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]".into());
     };
     let (width, height) = size.split_once('x').ok_or("the size is WIDTHxHEIGHT")?;
     let is = |word: &str| further.iter().any(|other| other == word);
@@ -18,7 +18,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut tab = browser.page()?;
     tab.viewport(width.parse()?, height.parse()?, is("phone"))?;
     tab.dark(is("dark"))?;
-    tab.open_file(Path::new(page))?;
+    match page.starts_with("http") {
+        true => tab.open(page)?,
+        false => tab.open_file(Path::new(page))?,
+    }
     let settled = "!document.querySelector('#data') || globalThis.bahn.view.settled";
     tab.wait_until(settled, Duration::from_secs(60))?;
     // However long that takes without a graphics card.
@@ -26,6 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     tab.wait_until(settled, Duration::from_secs(300))?;
     for script in further.iter().filter_map(|word| word.strip_prefix("js:")) {
         println!("{}", tab.evaluate(script)?);
+        std::thread::sleep(Duration::from_millis(300));
         tab.wait_until(settled, Duration::from_secs(300))?;
     }
     std::fs::write(out, tab.screenshot()?)?;

@@ -73,6 +73,11 @@ impl<'a> ChannelView<'a> {
         self.channel.run.progress().state()
     }
 
+    /// A run is on its way, or begins as soon as it can.
+    pub fn is_active(&self) -> bool {
+        self.channel.run.is_active()
+    }
+
     /// A fault has interrupted the run: nothing of it is on its way, and NC start tries its block again.
     pub fn is_broken(&self) -> bool {
         self.channel.run.progress().is_broken()

@@ -524,3 +524,29 @@ fn earlier_blocks_are_ignored() {
         assert_eq!(path.last().unwrap().end[Axis::X], 123.0);
     }
 }
+
+/// Text comes between cycles, and no cycle allocates: not while the path starves, and not when it goes on.
+#[test]
+fn cycles_allocate_nothing_while_text_comes() {
+    let mut rig = rig(Build::mill());
+    rig.control.keep_path(false);
+    rig.command("dnc begin 1.H");
+    let start = "BEGIN PGM 1 MM\nTOOL CALL 0 Z\nL X+100 Y+100 Z+200 R0 F6000\n";
+    assert!(give(&mut rig, start));
+    rig.start();
+    rig.seconds(1.0);
+    let mut next = 0_u32;
+    for cycle in 0..20_000 {
+        // Much for a while, then nothing.
+        if cycle % 2000 < 600 {
+            next += 1;
+            let block = format!("L X+{} Y+{}\n", 100 + next % 50, 100 + next % 7);
+            assert!(give(&mut rig, &block));
+        }
+        rig.control.prepare();
+        let allocated = allocation_counter::measure(|| rig.control.cycle(&mut rig.machine));
+        assert_eq!(allocated.count_total, 0, "{cycle} {:?}", rig.messages());
+    }
+    assert!(rig.control.element().is_some() || state(&rig).starved);
+    assert!(next > 5000, "{next}");
+}

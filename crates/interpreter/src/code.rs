@@ -49,11 +49,11 @@ pub(crate) struct Code {
 #[derive(Clone)]
 struct Loaded {
     program: Arc<Program>,
-    chunks: Vec<Option<Box<Decoded>>>,
+    /// Copies of a run share them: every saved moment of a machine is one.
+    chunks: Vec<Option<Arc<Decoded>>>,
 }
 
 /// Blocks as the control takes them in.
-#[derive(Clone)]
 struct Decoded {
     chunk: Chunk,
     /// Blocks with numbers that were rounded, bit by bit.
@@ -227,11 +227,37 @@ impl Code {
         }
         if let Some(loaded) = self.programs.get_mut(usize::from(program)) {
             let steps = InputSteps::of(self.model, loaded.program.unit());
-            let decoded = Box::new(Decoded::new(loaded.program.decode(chunk as u32), steps));
+            let decoded = Arc::new(Decoded::new(loaded.program.decode(chunk as u32), steps));
             if let Some(slot) = loaded.chunks.get_mut(chunk) {
                 *slot = Some(decoded);
                 self.kept.push_back((program, chunk));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn copies_share_what_is_decoded() {
+        let blocks: String = (0..2000).map(|k| format!("L X+{k} Y+{k} F100\n")).collect();
+        let text = format!("BEGIN PGM LONG MM\n{blocks}END PGM LONG MM\n");
+        let program = Program::from_bytes("LONG.H", text.into_bytes());
+        let program = Arc::new(program);
+        let mut code = Code::new(Arc::clone(&program), ControlModel::Tnc415b);
+        for number in 0..program.block_count() {
+            assert!(code.block(0, number).is_some());
+        }
+        let copy = code.clone();
+        let shared = code.programs.iter().zip(&copy.programs);
+        let chunks = shared.flat_map(|(one, other)| one.chunks.iter().zip(&other.chunks));
+        let mut count = 0;
+        for (one, other) in chunks {
+            assert!(Arc::ptr_eq(one.as_ref().unwrap(), other.as_ref().unwrap()));
+            count += 1;
+        }
+        assert_eq!(count, program.block_count().div_ceil(Program::CHUNK_SIZE));
     }
 }

@@ -43,21 +43,21 @@ pub(crate) fn encode(settings: &Settings, kind: Kind, text: &[u8]) -> Vec<u8> {
         Kind::Text => control.stx,
     });
     block.extend_from_slice(text);
-    let check = check(&block) ^ control.etb;
+    let check = settings.characters.mask(self::check(&block)) ^ control.etb;
     if settings.printable_check && check < b' ' {
         block.push(b' ');
     }
     block.push(control.etb);
-    block.push(self::check(&block));
+    block.push(settings.characters.mask(self::check(&block)));
     if settings.with_dc1 {
         block.push(DC1);
     }
     block
 }
 
-/// The check character of some characters: 7 bits.
+/// The check character of some characters. With 7 data bits it has 7; with 8 it checks the eighth, too *(inferred)*.
 pub(crate) fn check(characters: &[u8]) -> u8 {
-    characters.iter().fold(0, |check, byte| check ^ byte) & 0x7F
+    characters.iter().fold(0, |check, byte| check ^ byte)
 }
 
 /// Makes pieces of bytes.
@@ -101,11 +101,12 @@ impl Decoder {
                 None
             }
             State::Check(kind) => {
-                let is_right = self.check == byte & 0x7F && !self.spoilt;
+                let mask = |byte| settings.characters.mask(byte);
+                let is_right = mask(self.check) == mask(byte) && !self.spoilt;
                 let text = std::mem::take(&mut self.text);
                 self.reset();
                 // Only a check character that would be a control character has its blank.
-                let is_filled = settings.printable_check && matches!(byte & 0x7F, 0x20..=0x3F);
+                let is_filled = settings.printable_check && matches!(mask(byte), 0x20..=0x3F);
                 match is_right.then(|| strip(text, is_filled)).flatten() {
                     Some(text) => Some(Piece::Block(kind, text)),
                     None => Some(Piece::Wrong),
@@ -155,7 +156,7 @@ impl Decoder {
             b'\t' | b'\n' | b'\r' | 0x0C | b' '.. => {}
             _ => self.spoilt = true,
         }
-        self.check ^= byte & 0x7F;
+        self.check ^= byte;
         if self.text.len() < 2 * LINE_MAX {
             self.text.push(byte);
         } else {

@@ -86,6 +86,7 @@ mod tests {
         }
     }
 
+    /// MP226, MP227, MP228, MP229 set up, MP230, MP231, MP232, MP233 stand before a line.
     #[test]
     fn no_printer_is_none() {
         let mut list = ParameterList::reference(ControlModel::Tnc155);
@@ -93,6 +94,16 @@ mod tests {
             list.set(number, 0, 0.0).unwrap();
         }
         assert!(!HardCopy::of(&list).is_set_up());
+        for (number, value) in
+            (226..=233).zip([0x0741, 0x4243, 0x4445, 0x4647, 0x0361, 0x6263, 0x6465, 0x6667])
+        {
+            list.set(number, 0, f64::from(value)).unwrap();
+        }
+        let printer = HardCopy::of(&list);
+        assert_eq!(
+            (printer.setup.as_slice(), printer.line.as_slice()),
+            (&b"ABCDEFG"[..], &b"abc"[..])
+        );
         // More characters than there are places for.
         list.set(230, 0, f64::from(0xFF0A_u16)).unwrap();
         assert_eq!(HardCopy::of(&list).line.len(), 7);

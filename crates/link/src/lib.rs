@@ -15,8 +15,9 @@
 //! - a [`Protocol`] is one side of a line, without clock and channel: the control and the device of the [`standard`]
 //!   protocol and of the [`blockwise`] one with check characters, [`Passive`] what obeys; [`drive`] puts it on a channel,
 //!   [`Files`] are what it transfers;
+//! - a [`Monitor`] says in words what passes;
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
-//! - [`HardCopy`] speaks to the printer of a TNC 155;
+//! - [`HardCopy`] speaks to the printer of a TNC 155, [`PrintOut`] brings it what is printed;
 //! - [`store`] is the file service that all protocols share;
 //! - [`PlcLine`] is the PLC at a line;
 //! - [`lsv2`] are the telegrams of LSV/2.
@@ -37,8 +38,10 @@ mod files;
 mod frame;
 mod hard_copy;
 pub mod lsv2;
+mod monitor;
 mod passive;
 mod plc_line;
+mod print_out;
 mod protocol;
 mod settings;
 mod shared_port;
@@ -52,8 +55,10 @@ pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile};
 pub use hard_copy::HardCopy;
+pub use monitor::Monitor;
 pub use passive::{Passive, peripheral};
 pub use plc_line::PlcLine;
+pub use print_out::PrintOut;
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use settings::{Mode, PATIENCE, Settings};
 pub use shared_port::{PlcHold, SharedPort};

@@ -1,5 +1,6 @@
 //! A port that the PLC may have: while it has it, its texts go over the line, otherwise what the port is for.
 
+use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -8,6 +9,7 @@ use bahn_control::LineEvent;
 use crate::plc_line::PlcLine;
 use crate::protocol::{Event, Protocol};
 use crate::settings::Settings;
+use crate::{DC1, DC3};
 
 /// How often one looks for texts of the PLC.
 const LOOK: Duration = Duration::from_millis(5);
@@ -23,6 +25,8 @@ struct Held {
     line: PlcLine,
     assigned: bool,
     events: Vec<LineEvent>,
+    /// What is to be printed while nobody else needs the line.
+    print: VecDeque<u8>,
 }
 
 impl PlcHold {
@@ -41,6 +45,16 @@ impl PlcHold {
     /// The PLC has taken a text.
     pub fn taken(&self) {
         self.held().line.taken();
+    }
+
+    /// A line is printed as soon as neither the PLC nor a transfer has the port; `false` when too much waits already.
+    pub fn print(&self, line: &str) -> bool {
+        let mut held = self.held();
+        let fits = held.print.len() + line.len() + 2 <= PRINT_MAX;
+        if fits {
+            held.print.extend(line.bytes().chain(*b"\r\n"));
+        }
+        fits
     }
 
     /// What the control is to be told.
@@ -63,6 +77,9 @@ impl PlcHold {
     }
 }
 
+/// Bytes that wait to be printed at most *(inferred)*.
+const PRINT_MAX: usize = 1 << 16;
+
 /// A port and what it is for while the PLC has not got it.
 pub struct SharedPort {
     hold: PlcHold,
@@ -71,6 +88,8 @@ pub struct SharedPort {
     was_assigned: bool,
     /// The other one is in the middle of something, as the control knows.
     taken: bool,
+    /// The printer has stopped what is printed.
+    stopped: bool,
 }
 
 impl SharedPort {
@@ -81,6 +100,7 @@ impl SharedPort {
             other,
             was_assigned: false,
             taken: false,
+            stopped: false,
         }
     }
 
@@ -92,6 +112,12 @@ impl SharedPort {
         }
         self.was_assigned = assigned;
         assigned
+    }
+
+    /// Something is to be printed, and nobody else needs the line.
+    fn prints(&self) -> bool {
+        let waits = || !self.hold.held().print.is_empty();
+        !self.was_assigned && !self.stopped && self.other.is_idle() && !self.other.has_output() && waits()
     }
 
     /// The control knows whether a transfer has the line.
@@ -107,9 +133,14 @@ impl SharedPort {
 impl Protocol for SharedPort {
     fn receive(&mut self, byte: u8, now: Duration) {
         if self.is_plc(now) {
-            self.hold.held().line.receive(byte);
-        } else {
-            self.other.receive(byte, now);
+            return self.hold.held().line.receive(byte);
+        }
+        // A printer that is full says so.
+        let prints = self.other.is_idle() && !self.hold.held().print.is_empty();
+        match byte {
+            DC3 if prints => self.stopped = true,
+            DC1 if prints || self.stopped => self.stopped = false,
+            _ => self.other.receive(byte, now),
         }
     }
 
@@ -136,13 +167,18 @@ impl Protocol for SharedPort {
     fn has_output(&self) -> bool {
         match self.was_assigned {
             true => self.hold.held().line.has_output(),
-            false => self.other.has_output(),
+            false => self.other.has_output() || self.prints(),
         }
     }
 
     fn send(&mut self, room: usize, now: Duration, into: &mut Vec<u8>) {
         match self.was_assigned {
             true => self.hold.held().line.send(room, now, into),
+            false if self.prints() => {
+                let mut held = self.hold.held();
+                let count = room.min(held.print.len());
+                into.extend(held.print.drain(..count));
+            }
             false => self.other.send(room, now, into),
         }
     }
@@ -154,6 +190,7 @@ impl Protocol for SharedPort {
 
     fn unplugged(&mut self, now: Duration) {
         self.hold.tell(LineEvent::Ready(false));
+        self.stopped = false;
         if self.was_assigned {
             self.hold.held().line.unplugged();
         }
@@ -177,10 +214,71 @@ impl Protocol for SharedPort {
         self.other.is_idle()
     }
 
+    fn is_transparent(&self) -> bool {
+        !self.was_assigned && self.other.is_transparent()
+    }
+
+    fn hold(&mut self, on: bool) {
+        self.other.hold(on);
+    }
+
     fn has_stopped_by_rts(&self) -> bool {
         match self.was_assigned {
             true => self.hold.held().line.has_stopped_by_rts(),
             false => self.other.has_stopped_by_rts(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+    use crate::PrintOut;
+    use bahn_parameters::{ControlModel, ParameterList};
+
+    const NOW: Duration = Duration::ZERO;
+
+    fn sent(port: &mut SharedPort) -> Vec<u8> {
+        port.clock(NOW);
+        let mut bytes = Vec::new();
+        while port.has_output() {
+            port.send(4, NOW, &mut bytes);
+        }
+        bytes
+    }
+
+    /// The other one is a transfer of three bytes; the PLC has the port behind it, then what was printed meanwhile goes out.
+    #[test]
+    fn one_after_the_other_has_the_port() {
+        let hold = PlcHold::default();
+        let mut port = SharedPort::new(hold.clone(), Box::new(PrintOut::new(b"ABC".to_vec())));
+        port.plugged(NOW);
+        assert!(hold.print("Q5 +20.25"));
+        port.clock(NOW);
+        assert_eq!(
+            hold.take_events(),
+            [LineEvent::Ready(true), LineEvent::Taken(true)]
+        );
+        let mut first = Vec::new();
+        port.send(3, NOW, &mut first);
+        assert_eq!(first, b"ABC");
+        port.clock(NOW);
+        assert_eq!(hold.take_events(), [LineEvent::Taken(false)]);
+
+        let list = ParameterList::reference(ControlModel::Tnc425);
+        hold.assign(Some(Settings::of_plc(&list)));
+        hold.transmit(b"PALLET");
+        assert_eq!(sent(&mut port), b"PALLET\r\n");
+        assert_eq!(hold.take_events(), [LineEvent::Sent]);
+        hold.assign(None);
+        port.receive(DC3, NOW);
+        assert_eq!(sent(&mut port), b"", "the printer is full");
+        port.receive(DC1, NOW);
+        assert_eq!(sent(&mut port), b"Q5 +20.25\r\n");
+        let long = "X".repeat(PRINT_MAX);
+        assert!(!hold.print(&long));
+        port.unplugged(NOW);
+        assert_eq!(hold.take_events(), [LineEvent::Ready(false)]);
     }
 }

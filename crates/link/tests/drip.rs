@@ -62,6 +62,10 @@ impl BlockLine for BadLine {
         Arrival::Block(block.clone())
     }
 
+    fn watch(&mut self, _: Duration) -> Option<String> {
+        self.given_up.then(|| "PROGRAM INCOMPLETE".into())
+    }
+
     fn acknowledge(&mut self) {
         assert!(self.open);
         self.open = false;
@@ -208,8 +212,13 @@ fn a_full_machine_holds_the_line() {
     assert!(drip.turn(&mut line, &mut machine, Duration::ZERO));
     assert_eq!(drip.blocks(), 11);
     machine.ends_behind = 1;
-    drip.turn(&mut line, &mut machine, Duration::ZERO);
+    // What stands behind M30 is acknowledged, if it is no more than some blocks.
+    for _ in 0..17 {
+        assert_eq!((line.given_up, drip.state()), (false, &DripState::Running));
+        drip.turn(&mut line, &mut machine, Duration::ZERO);
+    }
     assert!(line.given_up && *drip.state() == DripState::Over && !machine.complete);
+    assert_eq!(machine.waiting.len(), 10);
 }
 
 /// Behind a broken line the other side sends another program, or a shorter one: that is not executed.

@@ -77,3 +77,18 @@ fn a_program_is_selected_and_runs() {
     trainee.until(5.0, |screen| screen.status.star == Star::Steady);
     trainee.until(300.0, |screen| screen.status.star != Star::Steady);
 }
+
+/// Where no program is selected the screen says how to get one.
+#[test]
+fn without_a_program_the_screen_says_how_to_select_one() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    for mode in ["SINGLE", "FULL", "PROGRAM", "TEST"] {
+        trainee.press(mode);
+        let window = trainee.screen().program;
+        let shown: Vec<_> = window.lines.iter().map(|line| line.text.as_str()).collect();
+        assert_eq!(shown, ["SELECT A PROGRAM WITH PGM NR"], "{mode}");
+    }
+    trainee.press("PROGRAM PGM_NR 7 ENT ENT").wait(0.1);
+    assert_eq!(trainee.screen().program.title, "7.H");
+}

@@ -296,5 +296,25 @@ fn a_file_of_an_eprom_is_transferred_from_window_to_window() {
     trainee.soft("MODIFY WINDOW");
     trainee.soft("SELECT EXT");
     trainee.wait(0.1);
-    assert_eq!(last_message(&mut trainee), "EXT. IN-/OUTPUT NOT READY");
+    assert_eq!(last_message(&mut trainee), "EXT. OUTPUT/INPUT NOT READY");
+}
+
+/// The lines of a program are checked, those of a list are not; COMPILE offers programs only.
+#[test]
+fn only_programs_are_checked_and_compiled() {
+    let mut trainee = Trainee::at("mill");
+    plc_mode(&mut trainee);
+    trainee.soft("OUTPUT BINARY CODE");
+    trainee.press("1 DOWN UP");
+    assert!(trainee.messages().is_empty(), "{:?}", trainee.messages());
+    trainee.press("CE END");
+    trainee.soft("COMPILE");
+    let shown = lines(&mut trainee);
+    assert!(shown.iter().any(|line| line.starts_with("MAIN.PLC")));
+    assert!(
+        !shown
+            .iter()
+            .any(|line| line.contains(".ER1") || line.contains(".A")),
+        "{shown:?}"
+    );
 }

@@ -405,3 +405,32 @@ fn the_diagram_catches_an_edge() {
     trainee.press("ENT");
     assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
 }
+
+/// The soft keys beside the instruction list: operands are selected, and a recording starts and stops without leaving it.
+#[test]
+fn a_recording_starts_beside_the_instruction_list() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    trainee.soft("TRACE");
+    trainee.soft("START TRACE");
+    assert_eq!(
+        trainee.messages(),
+        ["KEY NON-FUNCTIONAL"],
+        "no operand is selected"
+    );
+    trainee.press("CE");
+    trainee.soft("SELECT M/I/O/T/C");
+    assert_eq!(trainee.screen().program.title, "LOGIC DIAGRAM");
+    trainee.press("ENT M 1 0 ENT").wait(0.1);
+    trainee.soft("TRACE IN CODE");
+    assert_eq!(trainee.screen().program.title, "TRACE MAIN.PLC");
+    trainee.soft("START TRACE");
+    trainee.wait(1.0);
+    trainee.soft("STOP TRACE");
+    trainee.soft("LOGIC DIAGRAM");
+    let title = trainee.screen().program.title;
+    assert!(title.starts_with("LOGIC DIAGRAM  SCANS "), "{title}");
+    trainee.wait(1.0);
+    assert_eq!(trainee.screen().program.title, title, "nothing more is recorded");
+}

@@ -89,6 +89,11 @@ fn bit_meaning<'a>(text: &'a str, set: bool, of_value: &impl Fn(f64) -> Option<&
     match own {
         Some(("", state)) => state.to_owned(),
         Some((name, state)) => format!("{name}: {state}"),
+        // Of some bits only what they switch on has a name.
+        None if text.starts_with("1=") => {
+            let (name, state) = (text.trim_start_matches("1="), if set { "yes" } else { "no" });
+            format!("{name}: {state}")
+        }
         None => {
             let plain = if set { "1" } else { "0" };
             format!("{text}: {}", of_value(f64::from(u8::from(set))).unwrap_or(plain))
@@ -155,6 +160,10 @@ mod tests {
         assert_eq!(meaning(Tnc155, 92, 3.0), ["point", "English dialogue"]);
         assert_eq!(meaning(Tnc415b, 7420, 2.0)[1], "clear first then channel");
         assert_eq!(meaning(Tnc415b, 1010, 5000.0), [""; 0], "a quantity");
+        assert_eq!(
+            meaning(Tnc415b, 5020, 0b100.into())[2..4],
+            ["stop by RTS: yes", "stop by DC3: no"]
+        );
     }
 
     #[test]

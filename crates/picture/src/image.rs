@@ -1,6 +1,6 @@
 //! A picture and what is drawn on it.
 
-use std::io::Write;
+use std::io::{BufRead, Seek, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use thiserror::Error;
@@ -28,7 +28,7 @@ pub struct Label {
     pub max: [f64; 2],
 }
 
-/// Why a picture could not be written.
+/// Why a picture could not be written or read.
 #[derive(Debug, Error)]
 pub enum ImageError {
     /// The writer failed.
@@ -37,7 +37,16 @@ pub enum ImageError {
     /// The work was stopped.
     #[error("stopped")]
     Stopped,
+    /// What is read is no picture.
+    #[error("no picture that can be read: {0}")]
+    Reader(#[from] png::DecodingError),
+    /// It has more pixels than any picture here.
+    #[error("the picture is too large")]
+    TooLarge,
 }
+
+/// Pixels of a picture that is read at most.
+const PIXELS_MAX: u64 = 100_000_000;
 
 /// Pictures are equal when their pixels are.
 impl PartialEq for Image {
@@ -93,6 +102,40 @@ impl Image {
         rows.finish()?;
         png.finish()?;
         Ok(())
+    }
+
+    /// Reads a PNG; what shines through lies on black.
+    ///
+    /// # Errors
+    /// When it is none, or has more than a hundred million pixels.
+    pub fn read_png(reader: impl BufRead + Seek) -> Result<Image, ImageError> {
+        let mut decoder = png::Decoder::new(reader);
+        decoder.set_transformations(png::Transformations::normalize_to_color8());
+        let mut reader = decoder.read_info()?;
+        let (width, height) = reader.info().size();
+        if u64::from(width) * u64::from(height) > PIXELS_MAX {
+            return Err(ImageError::TooLarge);
+        }
+        let mut bytes = vec![0; reader.output_buffer_size().ok_or(ImageError::TooLarge)?];
+        let frame = reader.next_frame(&mut bytes)?;
+        let samples = frame.color_type.samples();
+        let pixels = bytes.chunks_exact(samples).map(|sample| {
+            let share = |value: u8, alpha: u8| (u16::from(value) * u16::from(alpha) / 255) as u8;
+            match *sample {
+                [grey] => [grey; 3],
+                [grey, alpha] => [share(grey, alpha); 3],
+                [red, green, blue] => [red, green, blue],
+                [red, green, blue, alpha] => [red, green, blue].map(|value| share(value, alpha)),
+                _ => [0; 3],
+            }
+        });
+        let pixels: Vec<Colour> = pixels.take(width as usize * height as usize).collect();
+        Ok(Image {
+            width,
+            height,
+            pixels,
+            labels: Vec::new(),
+        })
     }
 
     /// A picture of one colour; sizes in pixels.

@@ -12,6 +12,7 @@
 //! let mut png = Vec::new();
 //! image.write_png(&mut png)?;
 //! assert_eq!(&png[1..4], b"PNG");
+//! assert_eq!(Image::read_png(std::io::Cursor::new(png))?, image);
 //! # Ok::<(), bahn_picture::ImageError>(())
 //! ```
 

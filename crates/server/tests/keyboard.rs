@@ -59,8 +59,24 @@ fn short_cuts_press_hold_and_turn() {
     // The help lists the same table.
     page.click("#help-button").unwrap();
     let rows = page.text("#help tbody").unwrap();
-    for row in ["Alt+D", "CYCL_DEF", "NC_START", "feed override"] {
+    for row in [
+        "Alt+D",
+        "CYCL DEF: Cycle definition",
+        "NC START",
+        "feed override",
+        "3D VIEW",
+    ] {
         assert!(rows.contains(row), "{row}: {rows}");
     }
+    // It begins with its first line, and what closes it is in sight.
+    assert_eq!(
+        page.number("document.querySelector('#help').scrollTop").unwrap(),
+        0.0
+    );
+    page.click("#help form button").unwrap();
+    assert_eq!(
+        page.evaluate("document.querySelector('#help').open").unwrap(),
+        false
+    );
     assert_eq!(page.complaints(), [] as [String; 0]);
 }

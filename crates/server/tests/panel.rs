@@ -23,14 +23,7 @@ fn the_screen_has_its_fields_and_keys_change_it() {
     ] {
         assert!(screen.get(field).is_some(), "{field}");
     }
-    panel.press("CE");
-    panel.until(|screen| screen["mode"] == "PASS OVER REFERENCE MARKS");
-    panel.until(|screen| screen["messages"].as_array().is_some_and(Vec::is_empty));
-    // The drives are ready a moment after the control voltage.
-    panel.wait(1.0);
-    assert_eq!(panel.give(&json!({"speed": 50})), 200);
-    panel.press("NC_START");
-    panel.until(|screen| screen["mode"] == "MANUAL OPERATION");
+    panel.to_manual();
     assert_eq!(panel.give(&json!({"feed_override": 80})), 200);
     panel.until(|screen| screen["status"]["overrides"][0] == 80.0);
     let snapshot = panel.get("/api/snapshot");
@@ -38,8 +31,7 @@ fn the_screen_has_its_fields_and_keys_change_it() {
         (&snapshot["mode"], &snapshot["axes"][0]["referenced"]),
         (&json!("manual"), &json!(true))
     );
-    // A key that is held, until it is let go; faster, the axis would be at its limit before anybody looks.
-    assert_eq!(panel.give(&json!({"speed": 1})), 200);
+    // A key that is held, until it is let go.
     let stood = position(&panel.screen(), "X");
     assert_eq!(panel.give(&json!({"key": "X+", "down": true})), 200);
     panel.until(|screen| position(screen, "X") > stood + 0.5 && screen["status"]["f"] != "0");

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-#[path = "../../viewer/tests/support/mod.rs"]
+#[path = "../../viewer/tests/support/screen.rs"]
 mod codec;
 mod support;
 

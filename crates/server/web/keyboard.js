@@ -26,12 +26,13 @@ export function build(station, press) {
     say(block, title, "aria-label");
     for (const key of keys) {
       const button = element("button", "key");
-      const caption = CAPTIONS[key.name] ?? key.name.replaceAll("_", " ");
+      // What is engraved is the same in every language.
+      const caption = () => (CAPTIONS[key.name] ? words(CAPTIONS[key.name]) : spaced(key.name));
       button.type = "button";
       say(button, caption);
       button.dataset.key = key.name;
       // What stands on a key belongs to its name: somebody may say it to press it.
-      say(button, () => `${words(caption)}: ${words(key.label)}`, "aria-label");
+      say(button, () => `${caption()}: ${words(key.label)}`, "aria-label");
       say(button, key.label, "title");
       button.addEventListener("click", () => press(key.name));
       block.append(button);
@@ -97,10 +98,20 @@ function hasKey(station, name) {
   return station.keys.some((key) => key.name === name);
 }
 
+function spaced(name) {
+  return name.replaceAll("_", " ");
+}
+
+/** `CYCL DEF: Cycle definition`. */
+function named(station, name) {
+  const key = station.keys.find((key) => key.name === name);
+  return key && key.label !== spaced(name) ? `${spaced(name)}: ${words(key.label)}` : words(spaced(name));
+}
+
 export function help(station) {
   const dialog = document.querySelector("#help");
   const called = ({ key, machine, feed, spindle }) =>
-    key ?? machine ?? (feed ? words("feed override {1} %", signed(feed)) : words("spindle override {1} %", signed(spindle)));
+    (key && named(station, key)) ?? (machine && words(spaced(machine))) ?? (feed ? words("feed override {1} %", signed(feed)) : words("spindle override {1} %", signed(spindle)));
   const table = () => [...station.shortcuts, ...OWN]
     .filter((line) => !line.machine || has(station, line.machine))
     .map((line) => [`${line.alt ? "Alt+" : ""}${line.real.length === 1 ? line.real.toUpperCase() : line.real}`, called(line)]);
@@ -115,6 +126,7 @@ export function help(station) {
   document.querySelector("#help-button").addEventListener("click", () => {
     fill();
     dialog.showModal();
+    dialog.scrollTop = 0;
   });
 }
 

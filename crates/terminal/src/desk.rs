@@ -202,7 +202,7 @@ impl Desk {
         };
         changed(match character.is_ascii_uppercase() {
             true => self.holds.latch(&name, now),
-            false => self.holds.press(&name, Hand::Keyboard, now),
+            false => self.holds.press(&name, Hand::Letter, now),
         })
     }
 

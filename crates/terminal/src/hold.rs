@@ -2,7 +2,7 @@
 //!
 //! Most terminals tell that a key was pressed, and tell it again and again while it stays down, but not that it was let
 //! go. A key counts as held as long as it is told again; one that is tapped is down for [`RENEWED`]. Terminals with the
-//! keyboard protocol of kitty tell when a key was let go.
+//! keyboard protocol of kitty tell when a key was let go, but not of one that writes a letter.
 
 use std::time::{Duration, Instant};
 
@@ -18,6 +18,8 @@ const STROKE: Duration = Duration::from_millis(700);
 pub(crate) enum Hand {
     /// A key of the keyboard, while it is told again.
     Keyboard,
+    /// The same of a letter: no terminal tells when it is let go.
+    Letter,
     /// The mouse, until its button is let go.
     Mouse,
     /// It stays down until it is let go by an order.
@@ -54,12 +56,11 @@ pub(crate) struct Holds {
 impl Holds {
     /// A key is held, or held on.
     pub fn press(&mut self, name: &str, hand: Hand, now: Instant) -> Option<Change> {
-        if hand == Hand::Keyboard {
-            // A keyboard repeats only the key that was pressed last.
-            let keys = self.held.iter_mut().filter(|held| held.hand == Hand::Keyboard);
-            let renewed = keys.filter(|held| self.releases_are_told || held.name == name);
-            renewed.for_each(|held| held.told = now);
-        }
+        // A keyboard repeats only the key that was pressed last.
+        let all = hand == Hand::Keyboard && self.releases_are_told;
+        let keys = self.held.iter_mut().filter(|held| held.hand == hand);
+        let renewed = keys.filter(|held| all || held.name == name);
+        renewed.for_each(|held| held.told = now);
         if self.held.iter().any(|held| held.name == name) {
             return None;
         }
@@ -99,8 +100,12 @@ impl Holds {
 
     /// Keys of the keyboard that were let go, as far as time tells.
     pub fn tick(&mut self, now: Instant) -> Vec<Change> {
-        let patience = if self.releases_are_told { TOLD } else { RENEWED };
-        self.release_where(|held| held.hand == Hand::Keyboard && now - held.told >= patience)
+        let told = self.releases_are_told;
+        self.release_where(|held| match held.hand {
+            Hand::Keyboard if told => now - held.told >= TOLD,
+            Hand::Keyboard | Hand::Letter => now - held.told >= RENEWED,
+            Hand::Mouse | Hand::Latch => false,
+        })
     }
 
     /// Everything is let go but what is latched.
@@ -122,6 +127,22 @@ impl Holds {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_letter_is_let_go_by_time_even_where_releases_are_told() {
+        let mut holds = Holds {
+            releases_are_told: true,
+            ..Holds::default()
+        };
+        let begun = Instant::now();
+        let at = |ms| begun + Duration::from_millis(ms);
+        holds.press("X+", Hand::Letter, at(0));
+        holds.press("Y+", Hand::Keyboard, at(0));
+        assert_eq!(holds.tick(at(150)), []);
+        assert_eq!(holds.tick(at(250)), [Change::Release("X+".to_owned())]);
+        assert_eq!(holds.tick(at(900)), []);
+        assert_eq!(holds.tick(at(1000)), [Change::Release("Y+".to_owned())]);
+    }
 
     fn ms(ms: u64) -> Duration {
         Duration::from_millis(ms)

@@ -3,13 +3,11 @@
 
 mod support;
 
-use bahn_path::{
-    Axis, Blank, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Plane, Position, ToolShape,
-};
+use bahn_path::{Axis, Blank, Plane, ToolShape};
 use bahn_viewer::{PartCoder, TILE, WHOLE};
 use bahn_workpiece::{Part, Resolution, Workpiece};
 use proptest::prelude::*;
-use support::Screen;
+use support::{Screen, element};
 
 /// 20 mm thick, from Z-20 to Z0.
 fn workpiece(x: f64, y: f64, resolution: Resolution) -> Workpiece {
@@ -24,31 +22,12 @@ fn workpiece(x: f64, y: f64, resolution: Resolution) -> Workpiece {
 }
 
 fn cut(workpiece: &mut Workpiece, from: [f64; 3], to: [f64; 3], radius: f64, corner_radius: f64) {
-    let at = |[x, y, z]: [f64; 3]| {
-        let mut position = Position::UNKNOWN;
-        (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);
-        position
-    };
-    let element = PathElement {
-        block: BlockRef::default(),
-        sequence: 0,
-        curve: Curve::Line,
-        start: at(from),
-        end: at(to),
-        feed: FeedRate::Programmed(100.0),
-        override_law: OverrideLaw::Free,
-        constant_speed: false,
-        tangential_end: false,
-        dwell_s: 0.0,
-        placement: None,
-        functions: None,
-    };
     let tool = ToolShape {
         radius,
         corner_radius,
         ..ToolShape::default()
     };
-    workpiece.cut(&element, &tool, Axis::Z);
+    workpiece.cut(&element(from, to), &tool, Axis::Z);
 }
 
 /// The heights of all columns as a screen has them, by the rule of `WHOLE`.

@@ -3,13 +3,11 @@
 
 mod support;
 
-use bahn_path::{
-    Axis, Blank, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Plane, Position, ToolShape,
-};
+use bahn_path::{Axis, Blank, Plane, ToolShape};
 use bahn_viewer::{PartNews, PartStream, Sent, Trail, WHOLE};
 use bahn_workpiece::{Part, Resolution, Workpiece};
 use proptest::prelude::*;
-use support::{Reader, Screen};
+use support::{Reader, Screen, element};
 
 const MIN: [f64; 3] = [-5.0, -5.0, -20.0];
 
@@ -22,28 +20,6 @@ fn workpiece() -> Workpiece {
     let mut workpiece = Workpiece::new(&blank, Resolution::Millimetres(0.5)).unwrap();
     workpiece.remember_tools();
     workpiece
-}
-
-fn element(from: [f64; 3], to: [f64; 3]) -> PathElement {
-    let at = |[x, y, z]: [f64; 3]| {
-        let mut position = Position::UNKNOWN;
-        (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);
-        position
-    };
-    PathElement {
-        block: BlockRef::default(),
-        sequence: 0,
-        curve: Curve::Line,
-        start: at(from),
-        end: at(to),
-        feed: FeedRate::Programmed(100.0),
-        override_law: OverrideLaw::Free,
-        constant_speed: false,
-        tangential_end: false,
-        dwell_s: 0.0,
-        placement: None,
-        functions: None,
-    }
 }
 
 /// Somebody who looks.

@@ -14,7 +14,7 @@ use crate::{Outcome, UsageError, console, diagnostics};
 
 /// How questions of the control are answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum Answer {
+pub(crate) enum Answer {
     /// ENT.
     Yes,
     /// NO ENT.

@@ -153,7 +153,7 @@ fn say(options: &Lsv2Options, text: &str) -> Result<(), UsageError> {
     Ok(())
 }
 
-fn password<'a>(options: &'a Lsv2Options, level: Level) -> Result<Option<&'a str>, UsageError> {
+fn password(options: &Lsv2Options, level: Level) -> Result<Option<&str>, UsageError> {
     let mut found = None;
     for assignment in &options.passwords {
         let (name, text) = assignment
@@ -200,7 +200,7 @@ fn list(options: &Lsv2Options, address: &str, path: Option<&str>) -> Result<(), 
         Format::Json => format!("{}\n", json!(entries.iter().map(entry).collect::<Vec<_>>())),
         Format::Text => entries.iter().map(line).collect(),
     };
-    Ok(console::print(&text).map_err(UsageError::from)?)
+    Ok(console::print(&text)?)
 }
 
 fn entry(entry: &RemoteEntry) -> serde_json::Value {
@@ -314,7 +314,7 @@ fn info(options: &Lsv2Options, address: &str) -> Result<(), Failed> {
         Format::Json => format!("{value}\n"),
         Format::Text => lines(&value),
     };
-    Ok(console::print(&text).map_err(UsageError::from)?)
+    Ok(console::print(&text)?)
 }
 
 /// Values as text, then letters, as many of each as the second byte says.

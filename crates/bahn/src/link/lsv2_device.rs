@@ -1,20 +1,21 @@
 //! A machine that runs, as a host by LSV/2 sees it.
 
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{OnceLock, PoisonError, RwLock};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
-use bahn_control::{Control, Mode, RunState, Shown};
+use bahn_control::{Command, Control, DataLineEvent, HostEvent, Mode, RunState, Shown};
 use bahn_exchange::{Bit, BitArea, Image};
-use bahn_host::{LoadedMachine, files};
+use bahn_host::{LoadedMachine, PlainTable, TableForm, TextTable, decode, files};
 use bahn_link::lsv2::{
     Area, Device, ErrorNumber, Event, EventKind, Execution, Identity, Message, PlcMessage, ProgramState, Run,
     Tool,
 };
-use bahn_link::store::{Store, StoreError};
+use bahn_link::store::{Place, Store, StoreError, TNC, View};
+use bahn_machine::MachineFolder;
 use bahn_panel::{Input, Key, Link, Station};
 use bahn_parameters::{Definition, ListText, ParameterId};
 use bahn_path::Axis;
+use bahn_plc::HostMessage;
 
 use super::lsv2_log::LogBook;
 use super::lsv2_screen;
@@ -34,10 +35,13 @@ pub(super) struct MachineDevice {
     root: PathBuf,
     /// The list of machine parameters of the folder.
     list: String,
+    /// The tool table, when there is one.
+    tools: Option<PathBuf>,
     log: LogBook,
-    has_host: AtomicBool,
+    /// A message of the PLC goes to one host.
+    messages: Mutex<()>,
     /// One change of the list at a time.
-    writes: RwLock<()>,
+    writes: Mutex<()>,
 }
 
 impl MachineDevice {
@@ -56,7 +60,7 @@ impl MachineDevice {
             std::fs::create_dir_all(folder)
                 .map_err(|error| StoreError::Medium(format!("cannot make {}: {error}", folder.display())))?;
         }
-        let model = station.control().model().to_string();
+        let model = station.control().model().name();
         let plc_name = main
             .file_name()
             .unwrap_or_default()
@@ -64,7 +68,7 @@ impl MachineDevice {
             .into_owned();
         Ok(MachineDevice {
             link: OnceLock::new(),
-            store: Store::of_machine(&programs, &plc)?,
+            store: Store::of_machine_with(&programs, &plc, tables(&root, &machine.folder)?)?,
             identity: Identity {
                 control: identity.map_or_else(|| format!("{OWN} {model}"), str::to_owned),
                 nc_software: nc_software(),
@@ -72,10 +76,11 @@ impl MachineDevice {
                 id: format!("Bahn {}", env!("CARGO_PKG_VERSION")),
             },
             list: machine.folder.parameters.clone(),
+            tools: machine.folder.tools.as_ref().map(|name| root.join(name)),
             root,
             log: LogBook::new(station.host().notices()),
-            has_host: AtomicBool::new(false),
-            writes: RwLock::default(),
+            messages: Mutex::default(),
+            writes: Mutex::default(),
         })
     }
 
@@ -96,6 +101,13 @@ impl MachineDevice {
         self.link()?.look(what).map_err(|_| ErrorNumber::WRONG_MODE)
     }
 
+    /// Something happens at the PLC's connection to a host.
+    fn happen(&self, event: HostEvent) -> Result<(), ErrorNumber> {
+        let command = Command::DataLine(DataLineEvent::Host(event));
+        let given = self.link()?.input(Input::Deed(command.to_string()));
+        given.map_err(|_| ErrorNumber::WRONG_MODE)
+    }
+
     /// Messages come into the log book.
     fn follow(&self) {
         self.log.follow(|shown| {
@@ -109,7 +121,7 @@ impl MachineDevice {
 
     /// Writes a machine parameter into its list, which stays one that the machine can be switched on with.
     fn write_parameter(&self, id: ParameterId, value: f64) -> Result<(), ErrorNumber> {
-        let _one_at_a_time = self.writes.write().unwrap_or_else(PoisonError::into_inner);
+        let _one_at_a_time = self.writes.lock().unwrap_or_else(PoisonError::into_inner);
         let selected = self.look(|station| station.control().remember().parameter_list)?;
         let name = selected.unwrap_or_else(|| self.list.clone());
         let path = self.root.join(&name);
@@ -124,6 +136,32 @@ impl MachineDevice {
         loaded.map_err(|_| ErrorNumber::BAD_VALUE)?;
         files::write_whole(&path, &bytes).map_err(refused)
     }
+}
+
+/// Tool and pocket table of the machine where hosts look for them (public), in the form of the control.
+fn tables(root: &Path, folder: &MachineFolder) -> Result<Vec<View>, StoreError> {
+    let named = [
+        ("TOOL.T", TableForm::Tool, &folder.tools),
+        ("TOOL_P.TCH", TableForm::Pocket, &folder.pockets),
+    ];
+    let there = named
+        .into_iter()
+        .filter_map(|(name, form, file)| Some((name, form, root.join(file.as_ref()?))));
+    let view = |(name, form, source): (&str, TableForm, PathBuf)| {
+        let path = source.clone();
+        let title = name.split('.').next().unwrap_or(name).to_owned();
+        let bytes = move || {
+            let text = decode(&files::read_table(&path).ok()?);
+            let table = TextTable::read(&text).ok()?;
+            Some(PlainTable::new(form, &table).of_control(&title).into_bytes())
+        };
+        Ok(View {
+            place: Place::root(TNC).join(name)?,
+            source,
+            bytes: Box::new(bytes),
+        })
+    };
+    there.map(view).collect()
 }
 
 /// The version of Bahn in the form of the manufacturer's numbers: six digits and two.
@@ -147,7 +185,7 @@ impl Device for MachineDevice {
 
     fn run(&self) -> Result<Run, ErrorNumber> {
         self.follow();
-        self.look(|station| run_of(station))
+        self.look(run_of)
     }
 
     fn elements(&self, area: Area) -> u32 {
@@ -166,6 +204,24 @@ impl Device for MachineDevice {
             return Err(ErrorNumber::BAD_ADDRESS);
         }
         self.look(move |station| read(station.control().memory(), area, first..end))
+    }
+
+    fn tool_value(&self, tool: u32, column: &str) -> Option<String> {
+        let text = decode(&files::read_table(self.tools.as_ref()?).ok()?);
+        let table = PlainTable::new(TableForm::Tool, &TextTable::read(&text).ok()?);
+        let place = |name: &str| {
+            table
+                .names
+                .iter()
+                .position(|known| known.eq_ignore_ascii_case(name))
+        };
+        let (number, wanted) = (place("T")?, place(column)?);
+        let mut rows = table.rows.iter();
+        let row = rows.find(|row| {
+            row.get(number)
+                .is_some_and(|text| text.trim().parse() == Ok(tool))
+        })?;
+        row.get(wanted).map(|text| text.trim().to_owned())
     }
 
     fn parameter(&self, number: u16, index: u8) -> Option<String> {
@@ -229,15 +285,28 @@ impl Device for MachineDevice {
     }
 
     fn host_is_there(&self, is_there: bool) {
-        self.has_host.store(is_there, Ordering::Release);
+        // A machine that has ended has no host.
+        let _ = self.happen(HostEvent::Connected(is_there));
     }
 
-    fn to_plc(&self, _message: PlcMessage) -> Result<(), ErrorNumber> {
-        Err(ErrorNumber::BUFFER_FULL)
+    fn to_plc(&self, message: PlcMessage) -> Result<(), ErrorNumber> {
+        let message = match message {
+            PlcMessage::Double(value) => HostMessage::Double(value),
+            PlcMessage::Text(text) => HostMessage::Text(text),
+        };
+        self.happen(HostEvent::Message(message))
+            .map_err(|_| ErrorNumber::BUFFER_FULL)
     }
 
     fn plc_message(&self) -> Option<PlcMessage> {
-        None
+        let _one_takes_it = self.messages.lock().unwrap_or_else(PoisonError::into_inner);
+        let message = self.look(|station| station.control().message_to_host().cloned());
+        let message = match message.ok()?? {
+            HostMessage::Double(value) => PlcMessage::Double(value),
+            HostMessage::Text(text) => PlcMessage::Text(text),
+        };
+        self.happen(HostEvent::Taken).ok()?;
+        Some(message)
     }
 
     fn files_changed(&self) {

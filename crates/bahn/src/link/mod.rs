@@ -2,19 +2,27 @@
 //!
 //! - `options`: options and help texts;
 //! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer; `trace`: what passes;
-//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit;
-//! - `serve`: a machine that answers on its interfaces;
+//! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit; `monitor`: what passes over a line;
+//! - `dnc`: programs that are executed while they are transferred, from both sides;
+//! - `backup`: all of a machine as one file; `print`: a picture on a printer;
+//! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones, `plc_lines` its PLC at them;
 //! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
 //!   its log book, `lsv2_screen` its screen as a picture.
 
+mod backup;
 mod desk;
 mod disk;
+mod dnc;
 mod lsv2;
 mod lsv2_device;
 mod lsv2_log;
 mod lsv2_screen;
+mod monitor;
 mod options;
+mod plc_lines;
 mod port;
+mod print;
+mod serial_ports;
 mod serve;
 mod trace;
 mod transfer;
@@ -32,6 +40,11 @@ pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
         LinkCommand::Send(options) => transfer::send(options),
         LinkCommand::List(options) => transfer::list(options),
         LinkCommand::Disk(options) => disk::command(options),
+        LinkCommand::Monitor(options) => monitor::command(options),
+        LinkCommand::Dnc(options) => dnc::command(options),
+        LinkCommand::Backup(options) => backup::backup(options),
+        LinkCommand::Restore(options) => backup::restore(options),
+        LinkCommand::Print(options) => print::command(options),
         LinkCommand::Lsv2(options) => lsv2::command(options),
     }
 }

@@ -1,5 +1,9 @@
-//! The PLC of a running machine at the ports: its orders go to them, what comes over them goes to it.
+//! The PLC of a running machine at the ports: its orders go to them, what comes over them goes to it; what its programs
+//! print goes where it is wanted.
 
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use bahn_control::{DataLineEvent, DataLineOrder, LineEvent};
@@ -8,7 +12,7 @@ use bahn_link::{Mode, PlcHold, Settings};
 use bahn_panel::{Input, Link, Station};
 use bahn_parameters::ParameterList;
 
-use crate::diagnostics;
+use crate::{UsageError, diagnostics};
 
 /// A port as the PLC may have it.
 #[derive(Clone)]
@@ -27,15 +31,61 @@ pub(super) struct PlcPort {
 pub(super) struct PlcLines {
     notices: Reader<Stamped>,
     ports: [Option<PlcPort>; 2],
+    printer: Option<Printer>,
+}
+
+/// Where FN15 prints.
+enum Printer {
+    /// At a port.
+    Port(PlcHold),
+    /// Lines are added to a file.
+    File(PathBuf),
+}
+
+impl Printer {
+    fn print(&self, line: &str) {
+        let printed = match self {
+            Printer::Port(hold) => match hold.print(line) {
+                true => Ok(()),
+                false => Err(io::Error::other("the printer is too slow")),
+            },
+            Printer::File(path) => File::options()
+                .create(true)
+                .append(true)
+                .open(path)
+                .and_then(|mut file| writeln!(file, "{line}")),
+        };
+        if let Err(error) = printed {
+            diagnostics::print_line(&format!("`{line}` is not printed: {error}"));
+        }
+    }
 }
 
 impl PlcLines {
     /// The lines of a machine that is about to run.
-    pub fn new(station: &Station, ports: [Option<PlcPort>; 2]) -> PlcLines {
-        PlcLines {
+    ///
+    /// # Errors
+    /// When FN15 is to print at a port that is not open.
+    pub fn new(
+        station: &mut Station,
+        ports: [Option<PlcPort>; 2],
+        print: Option<&str>,
+    ) -> Result<PlcLines, UsageError> {
+        let at = |number: usize, name: &str| match ports.get(number).and_then(Option::as_ref) {
+            Some(port) => Ok(Printer::Port(port.hold.clone())),
+            None => Err(UsageError::new(format!("--print {name}: give --{name}, too"))),
+        };
+        let printer = match print {
+            None => None,
+            Some("rs232") => Some(at(0, "rs232")?),
+            Some("rs422") => Some(at(1, "rs422")?),
+            Some(path) => Some(Printer::File(path.into())),
+        };
+        Ok(PlcLines {
             notices: station.host().notices(),
             ports,
-        }
+            printer,
+        })
     }
 
     /// The control learns the baud rates of the modes that are set up.
@@ -52,11 +102,15 @@ impl PlcLines {
         let mut orders = Vec::new();
         for next in self.notices.by_ref() {
             match next {
-                Next::Item(stamped) => {
-                    if let Notice::Line(order) = stamped.notice {
-                        orders.push(order);
+                Next::Item(stamped) => match stamped.notice {
+                    Notice::Line(order) => orders.push(order),
+                    Notice::Printed(line) => {
+                        if let Some(printer) = &self.printer {
+                            printer.print(&line);
+                        }
                     }
-                }
+                    _ => {}
+                },
                 Next::Missed(count) => {
                     diagnostics::print_line(&format!("{count} notices of the machine went by unseen"));
                 }

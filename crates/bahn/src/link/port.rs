@@ -34,11 +34,15 @@ pub(super) fn settings(list: &ParameterList, spec: &Spec) -> Settings {
 /// Opens a port and tells where the other side finds it, when that is not what was written.
 pub(super) fn open(spec: &Spec, settings: &Settings) -> Result<Channel, Refused> {
     let channel = Channel::open(spec, settings.characters).map_err(|error| {
-        // A device that nobody has switched on.
-        if matches!(spec.line, Line::Connect(_) | Line::Serial(_)) {
-            let message = MessageId::ExtInOutputNotReady.text(settings.model);
+        let message = match &spec.line {
+            _ if error.is_taken => Some(MessageId::InterfaceAlreadyAssigned),
+            // A device that nobody has switched on.
+            Line::Connect(_) | Line::Serial(_) => Some(MessageId::ExtInOutputNotReady),
+            Line::Listen(_) | Line::Pty(_) => None,
+        };
+        if let Some(message) = message {
             // Whoever has closed the output knows.
-            let _ = crate::console::print(&format!("{message}\n"));
+            let _ = crate::console::print(&format!("{}\n", message.text(settings.model)));
         }
         Refused::because(&error.to_string())
     })?;

@@ -5,24 +5,39 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bahn_host::HostError;
-use bahn_link::lsv2::{Passwords, Server, ServerOptions, Site};
+use bahn_link::lsv2::{OpenPort, Passwords, ServerOptions, Site};
 use bahn_panel::{Live, Station};
 
 use super::lsv2_device::MachineDevice;
 use super::options::ServeOptions;
+use super::plc_lines::PlcLines;
+use super::serial_ports::{self, Serving};
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, diagnostics, machine_folder};
 
-/// How often Ctrl-C is looked for.
-const LOOK: Duration = Duration::from_millis(50);
+/// How often Ctrl-C is looked for, and what the PLC wants of its lines.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// Switches the machine on and answers until Ctrl-C.
 pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
-    let lsv2 = lsv2_options(options)?;
+    let (lsv2, passwords) = lsv2_options(options)?;
+    let Ok(specs) = serial_ports::specs(options) else {
+        return Ok(Outcome::ProgramError);
+    };
     let machine = match machine_folder::load(&options.machine)? {
         Ok(machine) => machine,
         Err(faults) => {
             diagnostics::print_faults(&faults);
+            return Ok(Outcome::ProgramError);
+        }
+    };
+    let Ok(ports) = serial_ports::open(&specs, &machine.parameters) else {
+        return Ok(Outcome::ProgramError);
+    };
+    let lsv2 = match lsv2.map(|options| open(&options)).transpose() {
+        Ok(lsv2) => lsv2,
+        Err(error) => {
+            diagnostics::print_line(&format!("error: {error}"));
             return Ok(Outcome::ProgramError);
         }
     };
@@ -35,42 +50,48 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
         MachineDevice::new(&mut station, options.identity.as_deref())
             .map_err(|error| UsageError::new(error.to_string()))?,
     );
+    let mut lines = PlcLines::new(
+        &mut station,
+        serial_ports::of_plc(&ports),
+        options.print.as_deref(),
+    )?;
     let live = Live::start(station);
     device.connect(live.link());
-    let server = match lsv2.map(|options| open(&device, &options)).transpose() {
-        Ok(server) => server,
-        Err(error) => {
-            diagnostics::print_line(&format!("error: {error}"));
-            live.end().map_err(UsageError::new)?;
-            return Ok(Outcome::ProgramError);
-        }
-    };
+    let site = Arc::new(Site::new(device, passwords));
+    let server = lsv2.map(|port| port.serve(Arc::clone(&site))).transpose();
+    let server = server.map_err(|error| UsageError::new(error.to_string()))?;
+    let serving = Serving::start(ports, &site, options.answer, options.trace.as_ref())?;
     // Whoever has closed the output knows.
     let _ = writeln!(std::io::stdout(), "ready").and_then(|()| std::io::stdout().flush());
+    let link = live.link();
+    lines.begin(&link);
     while !interrupt.is_requested() && !live.has_ended() {
+        lines.carry(&link);
         std::thread::sleep(LOOK);
     }
     drop(server);
+    serving.end()?;
     live.end().map_err(UsageError::new)?;
     Ok(Outcome::Fine)
 }
 
 /// Where LSV/2 answers, and to whom.
-fn lsv2_options(options: &ServeOptions) -> Result<Option<ServerOptions>, UsageError> {
+fn lsv2_options(options: &ServeOptions) -> Result<(Option<ServerOptions>, Passwords), UsageError> {
     let mut passwords = Passwords::default();
     for assignment in &options.passwords {
         passwords.set(assignment).map_err(UsageError::new)?;
     }
     let Some(listen) = options.lsv2 else {
-        return Ok(None);
+        return Ok((None, passwords));
     };
-    let options = ServerOptions { listen, passwords };
+    let options = ServerOptions {
+        listen,
+        passwords: passwords.clone(),
+    };
     options.check().map_err(UsageError::new)?;
-    Ok(Some(options))
+    Ok((Some(options), passwords))
 }
 
-fn open(device: &Arc<MachineDevice>, options: &ServerOptions) -> Result<Server, String> {
-    let device = Arc::clone(device);
-    let site = Site::new(device, options.passwords.clone());
-    Server::start(site, options).map_err(|error| format!("LSV/2 at {}: {error}", options.listen))
+fn open(options: &ServerOptions) -> Result<OpenPort, String> {
+    OpenPort::open(options).map_err(|error| format!("LSV/2 at {}: {error}", options.listen))
 }

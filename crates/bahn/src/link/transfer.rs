@@ -1,6 +1,6 @@
 //! `bahn link receive`, `send` and `list`: transfers that begin here, and the device of one that begins elsewhere.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use bahn_link::blockwise::{self, DirectoryRequest, Rights, Want};
@@ -129,7 +129,14 @@ pub(super) fn send(options: &TransferOptions) -> Result<Outcome, UsageError> {
 }
 
 fn transfer(options: &TransferOptions, receives: bool) -> Result<Outcome, UsageError> {
-    let kind = kind(options.kind)?;
+    let plan = Plan {
+        port: &options.port,
+        kind: kind(options.kind)?,
+        offered: options.offered,
+        answer: options.answer,
+        format: options.format,
+        trace: options.trace.as_deref(),
+    };
     match (&options.machine, &options.dir) {
         (Some(machine), _) => {
             if options.names.is_empty() && !options.all && !options.offered {
@@ -142,7 +149,7 @@ fn transfer(options: &TransferOptions, receives: bool) -> Result<Outcome, UsageE
                 true => Deed::Read(wants(options)),
                 false => Deed::Write(names(&machine.store, options)?),
             };
-            run(&machine.list, machine.store, deed, kind, options)
+            run(&machine.list, machine.store, deed, &plan)
         }
         (None, Some(dir)) => {
             let store = port::disk(dir)?;
@@ -159,7 +166,7 @@ fn transfer(options: &TransferOptions, receives: bool) -> Result<Outcome, UsageE
             if !receives {
                 names(&store, options)?;
             }
-            run(&list, store, Deed::Serve(rights), kind, options)
+            run(&list, store, Deed::Serve(rights), &plan)
         }
         (None, None) => Err(UsageError::new("--machine DIR or --as host --dir DIR is needed")),
     }
@@ -203,8 +210,21 @@ fn names(store: &Store, options: &TransferOptions) -> Result<Vec<String>, UsageE
     Ok(all.filter(of_type).collect())
 }
 
+/// How a command does it.
+pub(super) struct Plan<'a> {
+    /// The port as it is written.
+    pub port: &'a str,
+    /// Type of the files that have no name yet.
+    pub kind: FileType,
+    /// Each file is offered before it is sent.
+    pub offered: bool,
+    pub answer: Answer,
+    pub format: Format,
+    pub trace: Option<&'a Path>,
+}
+
 /// What a command does.
-enum Deed {
+pub(super) enum Deed {
     /// The control reads in, one after the other.
     Read(Vec<Want>),
     /// The control sends.
@@ -213,37 +233,46 @@ enum Deed {
     Serve(Rights),
 }
 
-fn run(
+/// Does it with files, as machine parameters say.
+pub(super) fn run(
     list: &ParameterList,
-    store: Store,
+    files: impl Files + Clone + 'static,
     deed: Deed,
-    kind: FileType,
-    options: &TransferOptions,
+    plan: &Plan<'_>,
 ) -> Result<Outcome, UsageError> {
-    let Ok(spec) = port::spec("--port", &options.port) else {
+    let Ok(spec) = port::spec("--port", plan.port) else {
         return Ok(Outcome::ProgramError);
     };
     let settings = port::settings(list, &spec);
-    let files = || Box::new(store.clone()) as Box<dyn Files>;
     let (protocols, until): (Vec<Box<dyn Protocol>>, Until) = match deed {
         Deed::Read(wants) => {
-            let read = |want| reading(settings, files(), want, kind);
+            let read = |want| reading(settings, Box::new(files.clone()), want, plan.kind);
             (wants.into_iter().map(read).collect(), Until::Ended)
         }
         Deed::Write(names) => {
             let protocol: Box<dyn Protocol> = match settings.blockwise {
-                true => Box::new(blockwise::Writing::new(settings, files(), names, options.offered)),
-                false => Box::new(standard::Writing::new(settings, files(), names, options.offered)),
+                true => Box::new(blockwise::Writing::new(
+                    settings,
+                    Box::new(files),
+                    names,
+                    plan.offered,
+                )),
+                false => Box::new(standard::Writing::new(
+                    settings,
+                    Box::new(files),
+                    names,
+                    plan.offered,
+                )),
             };
             (vec![protocol], Until::Ended)
         }
         Deed::Serve(rights) => {
-            let protocol = peripheral(settings, files(), rights);
+            let protocol = peripheral(settings, Box::new(files), rights);
             (vec![protocol], Until::Quiet(LINGER.min(settings.patience)))
         }
     };
-    let desk = Desk::new(settings.model, options.answer, options.format, until);
-    talk(&spec, settings, protocols, desk, options.trace.as_deref())
+    let desk = Desk::new(settings.model, plan.answer, plan.format, until);
+    talk(&spec, settings, protocols, desk, plan.trace)
 }
 
 fn reading(settings: Settings, files: Box<dyn Files>, want: Want, kind: FileType) -> Box<dyn Protocol> {
@@ -272,12 +301,12 @@ pub(super) fn list(options: &ListOptions) -> Result<Outcome, UsageError> {
 }
 
 /// Opens the port and drives protocols on it, one after the other, until they have ended or one has failed.
-fn talk(
+pub(super) fn talk(
     spec: &Spec,
     settings: Settings,
     protocols: Vec<Box<dyn Protocol>>,
     mut desk: Desk,
-    trace: Option<&std::path::Path>,
+    trace: Option<&Path>,
 ) -> Result<Outcome, UsageError> {
     let interrupt = Interrupt::on_ctrl_c();
     let mut trace = Trace::open(trace)?;

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use crate::DC1;
 use crate::frame::{Decoder, Kind, Piece, encode};
 use crate::settings::Settings;
 
@@ -37,12 +38,17 @@ impl Link {
 
     /// A byte has come; what it is a piece of, when that is whole.
     ///
-    /// Answers that come before a block is sent are answers to nothing: the line has doubled one.
+    /// Answers that come before a block is sent are answers to nothing: the line has doubled one. Its check character ends a
+    /// block; the DC1 behind it may still be on its way.
     pub fn receive(&mut self, byte: u8, now: Duration) -> Option<Piece> {
         self.quiet = now;
         let piece = self.decoder.take(&self.settings, byte)?;
         let is_answer = matches!(piece, Piece::Ack | Piece::Nak);
-        (self.outgoing.is_empty() || !is_answer).then_some(piece)
+        let is_sent = match self.outgoing.front() {
+            None => true,
+            Some(next) => *next == DC1 && self.outgoing.len() == 1,
+        };
+        (is_sent || !is_answer).then_some(piece)
     }
 
     /// Sends a block, which waits for its answer.

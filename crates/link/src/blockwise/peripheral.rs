@@ -7,44 +7,17 @@ use bahn_parameters::MessageId;
 
 use super::directory::{REQUEST, answer};
 use super::link::Link;
+use super::terms::{Rights, candidates, code};
 use crate::FileType;
 use crate::files::{Files, Listed};
 use crate::frame::{Kind, Piece};
 use crate::protocol::{Event, Protocol, Question, Shown};
 use crate::settings::Settings;
-use crate::store::StoreError;
 use crate::text::{Source, Taking, Unstored, beginning, is_name};
 
 /// Begins LSV/2 between transfers.
 const ENQ: u8 = 0x05;
 const ESC: u8 = 0x1B;
-
-/// What the other side may do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Rights {
-    /// Files may be asked for.
-    pub gives: bool,
-    /// Files are stored.
-    pub takes: bool,
-    /// Only these, when there are any.
-    pub only: Vec<String>,
-    /// A file that is there is replaced after a question only.
-    pub asks: bool,
-}
-
-impl Rights {
-    /// A disk: everything.
-    pub const ALL: Rights = Rights {
-        gives: true,
-        takes: true,
-        only: Vec::new(),
-        asks: false,
-    };
-
-    fn allow(&self, name: &str) -> bool {
-        self.only.is_empty() || self.only.iter().any(|only| only.eq_ignore_ascii_case(name))
-    }
-}
 
 /// What is being received.
 enum Into {
@@ -83,20 +56,9 @@ pub struct Peripheral {
     wrong_headers: u8,
     /// What has come of an escape sequence.
     escape: Vec<u8>,
+    /// Something was begun whose end is not yet told.
+    open: bool,
     events: VecDeque<Event>,
-}
-
-/// What a FE says [000:17603-17625].
-fn code(error: &StoreError) -> u16 {
-    match error {
-        StoreError::BadName(_) | StoreError::NoFolder(_) | StoreError::NotEmpty(_) => 2,
-        StoreError::NoFile(_) => 10,
-        StoreError::Protected(_) | StoreError::Exists(_) => 11,
-        StoreError::Busy(_) => 12,
-        StoreError::DirectoryFull => 13,
-        StoreError::DiskFull => 14,
-        StoreError::Medium(_) => 104,
-    }
 }
 
 impl Peripheral {
@@ -111,6 +73,7 @@ impl Peripheral {
             last: None,
             wrong_headers: 0,
             escape: Vec::new(),
+            open: false,
             events: VecDeque::new(),
         }
     }
@@ -121,6 +84,7 @@ impl Peripheral {
             (step, Piece::Block(Kind::Header, text)) => {
                 self.leave(step);
                 self.wrong_headers = 0;
+                self.open = true;
                 self.header(&text);
             }
             (Step::Sending(source), Piece::Ack) => self.next_line(source),
@@ -196,6 +160,13 @@ impl Peripheral {
         }
     }
 
+    /// Tells the end of what was begun, once.
+    fn ended(&mut self, complete: bool) {
+        if std::mem::take(&mut self.open) || !complete {
+            self.events.push_back(Event::Ended(complete));
+        }
+    }
+
     /// EOT: the next nameless header gets the first file.
     fn eot(&mut self, step: Step) {
         self.last = None;
@@ -208,7 +179,7 @@ impl Peripheral {
             }
             _ => {}
         }
-        self.events.push_back(Event::Ended(true));
+        self.ended(true);
     }
 
     fn repeat(&mut self) {
@@ -245,20 +216,8 @@ impl Peripheral {
         }
     }
 
-    /// Names that a file of this code may have; who sends no code that is known means a program.
-    fn candidates(stem: &str, code: Option<u8>) -> Vec<String> {
-        let known = code
-            .map(char::from)
-            .filter(|code| FileType::of_code(*code).is_some());
-        let kinds = FileType::all().filter(|kind| match known {
-            Some(code) => kind.code() == code.to_ascii_uppercase(),
-            None => ["H", "I"].contains(&kind.extension()),
-        });
-        kinds.map(|kind| format!("{stem}.{}", kind.extension())).collect()
-    }
-
     fn give_named(&mut self, stem: &str, code: Option<u8>) {
-        let candidates = Peripheral::candidates(stem, code);
+        let candidates = candidates(stem, code);
         let found = candidates
             .into_iter()
             .find(|name| self.rights.allow(name) && self.files.find(name).is_some());
@@ -334,7 +293,7 @@ impl Peripheral {
     }
 
     fn take(&mut self, stem: &str, code: Option<u8>) {
-        let candidates = Peripheral::candidates(stem, code);
+        let candidates = candidates(stem, code);
         let known = code.map(char::from).and_then(FileType::of_code);
         let name = known.map_or_else(
             || candidates.first().cloned().unwrap_or_default(),
@@ -407,7 +366,7 @@ impl Peripheral {
                 match taking.commit() {
                     Ok(()) => {
                         self.events.push_back(Event::Received(name));
-                        self.events.push_back(Event::Ended(true));
+                        self.ended(true);
                     }
                     Err(error) => self.unstored(&error),
                 }
@@ -432,7 +391,7 @@ impl Peripheral {
     fn incomplete(&mut self) {
         self.events
             .push_back(Event::Message(Shown::Control(MessageId::ProgramIncomplete, None)));
-        self.events.push_back(Event::Ended(false));
+        self.ended(false);
     }
 
     /// Signals an error; nothing partial is left.
@@ -444,7 +403,7 @@ impl Peripheral {
         self.link.settings.with_dc1 = with_dc1;
         self.step = Step::Refused;
         self.events.push_back(Event::Message(Shown::Device(text)));
-        self.events.push_back(Event::Ended(false));
+        self.ended(false);
     }
 
     /// A character of the escape sequence that asks for the directory.
@@ -501,7 +460,7 @@ impl Peripheral {
             Step::Sent => {
                 self.step = Step::Idle;
                 self.events.push_back(Event::Sent(std::mem::take(&mut self.name)));
-                self.events.push_back(Event::Ended(true));
+                self.ended(true);
             }
             Step::Refused => self.step = Step::Idle,
             Step::Idle | Step::Question(_) | Step::Sending(_) => {}
@@ -553,7 +512,7 @@ impl Protocol for Peripheral {
             }
             Step::Sent => {
                 self.events.push_back(Event::Sent(std::mem::take(&mut self.name)));
-                self.events.push_back(Event::Ended(true));
+                self.ended(true);
             }
             Step::Sending(_) | Step::Question(_) => self.incomplete(),
             Step::Idle | Step::Refused => {}

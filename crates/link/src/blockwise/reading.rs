@@ -54,9 +54,10 @@ pub struct Reading {
     events: VecDeque<Event>,
     /// A message was shown.
     failed: bool,
-    /// There is no room for more, and the block that came is not acknowledged.
+    /// There is no room for more.
     holds: bool,
-    owes: bool,
+    /// Blocks that came and are not acknowledged: more than one when the line has doubled an acknowledgement.
+    owes: u8,
 }
 
 impl Reading {
@@ -72,7 +73,7 @@ impl Reading {
             events: VecDeque::new(),
             failed: false,
             holds: false,
-            owes: false,
+            owes: 0,
         };
         reading.ask();
         reading
@@ -104,10 +105,6 @@ impl Reading {
     }
 
     fn piece(&mut self, piece: Piece, now: Duration) {
-        // The other side waits; what comes nevertheless is no block of the text.
-        if self.owes && !matches!(piece, Piece::Eot | Piece::Block(Kind::Header, _)) {
-            return;
-        }
         match (&self.step, piece) {
             (Step::Over | Step::Question(..), Piece::Block(Kind::Header, text)) => self.device(&text),
             (Step::Over | Step::Question(..), Piece::Eot) => self.eot(),
@@ -225,7 +222,7 @@ impl Reading {
     fn store(&mut self, text: &[u8]) {
         match self.taking.as_mut().map(|taking| taking.line(text)) {
             Some(Err(error)) => self.unstored(&error),
-            _ if self.holds => self.owes = true,
+            _ if self.holds => self.owes = self.owes.saturating_add(1),
             _ => self.link.acknowledge(),
         }
     }
@@ -288,7 +285,7 @@ impl Reading {
 
     fn over(&mut self) {
         self.taking = None;
-        self.owes = false;
+        self.owes = 0;
         self.step = Step::Over;
         self.events.push_back(Event::Ended(!self.failed));
     }
@@ -299,7 +296,7 @@ impl Reading {
         let ended = self.taking.as_ref().is_some_and(Taking::is_ended);
         match &self.step {
             Step::Over | Step::Question(..) => None,
-            _ if self.owes => None,
+            _ if self.owes > 0 => None,
             _ if self.link.is_inside() => Some(self.link.gap()),
             Step::Etx => Some(settings.moment()),
             Step::Block if ended && !self.is_selected() => {
@@ -395,8 +392,8 @@ impl Protocol for Reading {
 
     fn hold(&mut self, on: bool) {
         self.holds = on;
-        if !on && std::mem::take(&mut self.owes) {
-            self.link.acknowledge();
+        if !on {
+            (0..std::mem::take(&mut self.owes)).for_each(|_| self.link.acknowledge());
         }
     }
 

@@ -16,6 +16,9 @@ use crate::text::Source;
 /// So many times its patience the control waits for a DC1 *(inferred)*.
 const HELD: u32 = 10;
 
+/// In this part of its patience a device says that it cannot store what was sent *(inferred)*.
+const LEAVING_PART: u32 = 8;
+
 enum Step {
     /// The operator is asked whether the next file goes.
     Question,
@@ -23,6 +26,8 @@ enum Step {
     Offered(Source),
     /// A line waits for its answer.
     Block(Source),
+    /// Everything has gone: the device may say that it cannot store it.
+    Leaving,
     Over,
 }
 
@@ -59,10 +64,7 @@ impl Writing {
 
     fn next_file(&mut self) {
         match self.names.front().cloned() {
-            None => {
-                self.step = Step::Over;
-                self.events.push_back(Event::Ended(true));
-            }
+            None => self.step = Step::Leaving,
             Some(name) if self.confirmed => {
                 self.events.push_back(Event::Question(Question::Output(name)));
                 self.step = Step::Question;
@@ -118,7 +120,7 @@ impl Writing {
                     });
                 }
             }
-            (Step::Offered(_) | Step::Block(_), Piece::Block(Kind::Header, text)) => {
+            (Step::Offered(_) | Step::Block(_) | Step::Leaving, Piece::Block(Kind::Header, text)) => {
                 self.link.acknowledge();
                 self.link.send(&[self.link.settings.control.eot]);
                 let text = String::from_utf8_lossy(&text).trim().to_owned();
@@ -139,6 +141,12 @@ impl Writing {
             }
             (step, _) => self.step = step,
         }
+    }
+
+    /// The end, with everything sent.
+    fn complete(&mut self) {
+        self.step = Step::Over;
+        self.events.push_back(Event::Ended(true));
     }
 
     /// The end, by an error: EOT tells the device [000:17424].
@@ -167,6 +175,8 @@ impl Protocol for Writing {
         if self.deadline().is_some_and(|deadline| now >= deadline) {
             if self.link.is_inside() {
                 self.link.give_block_up(now);
+            } else if matches!(self.step, Step::Leaving) {
+                self.complete();
             } else {
                 self.abort(Shown::Control(MessageId::TransferredDataIncorrect, Some('N')));
             }
@@ -182,6 +192,7 @@ impl Protocol for Writing {
                 self.link.quiet_for(self.link.gap())
             }
             Step::Offered(_) | Step::Block(_) => self.link.quiet_for(self.link.settings.patience),
+            Step::Leaving => self.link.quiet_for(self.link.settings.patience / LEAVING_PART),
             Step::Question | Step::Over => None,
         }
     }
@@ -197,9 +208,10 @@ impl Protocol for Writing {
     }
 
     fn unplugged(&mut self, _now: Duration) {
-        let sent = matches!(self.step, Step::Over);
         self.link.clear();
-        if !sent {
+        if matches!(self.step, Step::Leaving) {
+            self.complete();
+        } else if !matches!(self.step, Step::Over) {
             self.fail(Shown::Control(MessageId::ProgramIncomplete, None));
         }
     }
@@ -225,6 +237,7 @@ impl Protocol for Writing {
     fn end(&mut self, _now: Duration) {
         match self.step {
             Step::Over => {}
+            Step::Leaving => self.complete(),
             // Between two files the menu is left.
             Step::Question => {
                 self.names.clear();

@@ -11,6 +11,10 @@ const SILENCE: Duration = Duration::from_millis(500);
 /// How long a slow device takes.
 const SLOW: Duration = Duration::from_millis(20);
 
+/// Between two faults so many bytes pass well. A check character cannot see two faults of a block that undo each other: a
+/// blank lost here and one doubled there; a bad line is one whose faults can be seen.
+const BETWEEN: u32 = 300;
+
 /// The faults of one direction of a line. The same seed does the same to the same bytes.
 #[derive(Clone, Debug)]
 pub struct Faults {
@@ -19,6 +23,8 @@ pub struct Faults {
     one_in: u64,
     silent_until: Duration,
     slow_until: Duration,
+    /// Bytes that still pass well.
+    well: u32,
 }
 
 impl Faults {
@@ -34,6 +40,7 @@ impl Faults {
             one_in: one_in.max(1),
             silent_until: Duration::ZERO,
             slow_until: Duration::ZERO,
+            well: 0,
         }
     }
 
@@ -49,6 +56,11 @@ impl Faults {
         if now < self.silent_until {
             return;
         }
+        if self.well > 0 {
+            self.well -= 1;
+            return into.push(byte);
+        }
+        self.well = BETWEEN;
         if dice / 8 % SILENCE_ONE_IN == 1 {
             self.silent_until = now + SILENCE;
             return;
@@ -61,7 +73,10 @@ impl Faults {
                 self.slow_until = now + SLOW;
                 into.push(byte);
             }
-            _ => into.push(byte),
+            _ => {
+                self.well = 0;
+                into.push(byte);
+            }
         }
     }
 
@@ -101,7 +116,8 @@ mod tests {
                 all.extend(out);
             }
             for count in [lost, doubled, flipped, slow] {
-                assert!((900..1100).contains(&count), "{lost} {doubled} {flipped} {slow}");
+                // Less than one of 1000, since some bytes pass well behind each.
+                assert!((350..550).contains(&count), "{lost} {doubled} {flipped} {slow}");
             }
             all
         };

@@ -18,7 +18,8 @@ pub use spec::{BAUD_RATES, Line, Spec, SpecError};
 
 use crate::Characters;
 use pace::Pace;
-use wire::{Got, Wire};
+use poll::Got;
+use wire::Wire;
 
 /// Baud rate of a serial port when none is said, that of LSV/2 [000:17514-17540].
 const BAUD: u32 = 9600;
@@ -37,6 +38,8 @@ pub struct ChannelError {
     pub line: String,
     /// What the operating system says.
     pub what: String,
+    /// Somebody else has it.
+    pub is_taken: bool,
 }
 
 impl ChannelError {
@@ -44,6 +47,10 @@ impl ChannelError {
         ChannelError {
             line: line.to_string(),
             what: error.to_string(),
+            is_taken: matches!(
+                error.kind(),
+                io::ErrorKind::AddrInUse | io::ErrorKind::ResourceBusy
+            ),
         }
     }
 }
@@ -104,7 +111,7 @@ impl Channel {
         let wire = Wire::open(&spec.line, characters, spec.baud)?;
         let paced = spec.baud.or(wire.has_lines().then_some(BAUD));
         Ok(Channel {
-            connected: !matches!(wire, Wire::Listener { .. }),
+            connected: !matches!(wire, Wire::Listener { .. } | Wire::Pty(_)),
             wire,
             line: spec.line.clone(),
             characters,
@@ -276,5 +283,101 @@ impl Channel {
     /// Whether everything that was sent is written.
     pub fn is_written(&self) -> bool {
         self.outgoing.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    const SECOND: Duration = Duration::from_secs(1);
+
+    fn hear(channel: &mut Channel, count: usize) -> Vec<u8> {
+        let end = channel.now() + SECOND * 5;
+        while channel.received() < count && channel.now() < end {
+            channel.wait(Duration::from_millis(50)).unwrap();
+        }
+        std::iter::from_fn(|| channel.receive()).collect()
+    }
+
+    fn until(channel: &mut Channel, happened: Happened) {
+        let end = channel.now() + SECOND * 5;
+        while channel.wait(Duration::from_millis(50)).unwrap() != happened {
+            assert!(channel.now() < end, "never {happened:?}");
+        }
+    }
+
+    /// A pseudo terminal is opened, spoken over, closed and opened again; its link goes with it.
+    #[test]
+    fn a_pseudo_terminal_is_a_cable() {
+        let link = std::env::temp_dir().join(format!("bahn-pty-{}", std::process::id()));
+        let spec = Spec::of(Line::Pty(Some(link.clone())));
+        let mut ours = Channel::open(&spec, Characters::FIXED).unwrap();
+        assert!(!ours.is_connected());
+        for _ in 0..2 {
+            let serial = Spec::of(Line::Serial(link.display().to_string()));
+            let mut theirs = Channel::open(&serial, Characters::FIXED).unwrap();
+            until(&mut ours, Happened::Opened);
+            ours.send(b"\x01\x03\x11\x13\r\n\x7F");
+            ours.wait(Duration::ZERO).unwrap();
+            assert_eq!(hear(&mut theirs, 7), b"\x01\x03\x11\x13\r\n\x7F");
+            theirs.send(b"\x1A\x04\x00x");
+            theirs.wait(Duration::ZERO).unwrap();
+            assert_eq!(hear(&mut ours, 4), b"\x1A\x04\x00x");
+            drop(theirs);
+            until(&mut ours, Happened::Closed);
+        }
+        drop(ours);
+        assert!(std::fs::symlink_metadata(&link).is_err());
+    }
+
+    /// One peer at a time; who closes has pulled the cable, the next one is taken.
+    #[test]
+    fn one_peer_after_the_other() {
+        let mut ours =
+            Channel::open(&Spec::of(Line::Listen("127.0.0.1:0".into())), Characters::FIXED).unwrap();
+        let connect = Spec::of(Line::Connect(ours.place()));
+        let mut first = Channel::open(&connect, Characters::FIXED).unwrap();
+        until(&mut ours, Happened::Opened);
+        let mut second = Channel::open(&connect, Characters::FIXED).unwrap();
+        second.send(b"2");
+        second.wait(Duration::ZERO).unwrap();
+        first.send(b"1");
+        first.wait(Duration::ZERO).unwrap();
+        assert_eq!(hear(&mut ours, 1), b"1");
+        drop(first);
+        until(&mut ours, Happened::Closed);
+        until(&mut ours, Happened::Opened);
+        assert_eq!(hear(&mut ours, 1), b"2");
+        // A taken address cannot be opened twice.
+        assert!(Channel::open(&Spec::of(Line::Listen(ours.place())), Characters::FIXED).is_err());
+    }
+
+    /// At 38,400 baud a second is 3840 characters, on any channel.
+    #[test]
+    fn a_paced_channel_takes_its_time() {
+        let mut ours =
+            Channel::open(&Spec::of(Line::Listen("127.0.0.1:0".into())), Characters::FIXED).unwrap();
+        let connect = Spec {
+            baud: Some(38_400),
+            ..Spec::of(Line::Connect(ours.place()))
+        };
+        let mut theirs = Channel::open(&connect, Characters::FIXED).unwrap();
+        until(&mut ours, Happened::Opened);
+        let (start, mut left) = (Instant::now(), 1920_usize);
+        while left > 0 {
+            let room = theirs.room().min(left);
+            theirs.send(&vec![b'U'; room]);
+            left -= room;
+            let wait = theirs.until_room();
+            theirs.wait(wait).unwrap();
+        }
+        assert!(
+            start.elapsed() >= Duration::from_millis(490),
+            "{:?}",
+            start.elapsed()
+        );
+        assert_eq!(hear(&mut ours, 1920).len(), 1920);
     }
 }

@@ -1,10 +1,23 @@
-//! Waiting for a file of the operating system.
+//! Waiting for a file of the operating system, and what comes of it.
 
 use std::io;
 use std::os::fd::AsFd;
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+/// What has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Got {
+    /// So many bytes.
+    Bytes(usize),
+    /// Nothing yet.
+    Nothing,
+    /// A peer has connected.
+    Opened,
+    /// The peer is gone.
+    Closed,
+}
 
 /// Waits until something can be read, at most so long.
 pub(super) fn readable(file: &impl AsFd, wait: Duration) -> io::Result<()> {
@@ -30,4 +43,10 @@ pub(super) fn wait_for(file: &impl AsFd, what: PollFlags, wait: Duration) -> io:
         }
         Err(error) => Err(error.into()),
     }
+}
+
+/// Nothing is there yet.
+pub(super) fn nothing(error: &io::Error) -> Option<Got> {
+    use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+    matches!(error.kind(), WouldBlock | TimedOut | Interrupted).then_some(Got::Nothing)
 }

@@ -13,8 +13,7 @@ use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-use super::poll;
-use super::wire::{Got, nothing};
+use super::poll::{self, Got, nothing};
 
 /// How often one looks whether somebody has opened it.
 const LOOK: Duration = Duration::from_millis(20);
@@ -40,6 +39,9 @@ impl Pty {
         let mut settings = tcgetattr(&ours)?;
         settings.make_raw();
         tcsetattr(&ours, OptionalActions::Now, &settings)?;
+        // Opened and closed once, the system tells from then on whether somebody has it open.
+        let theirs = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+        drop(rustix::fs::open(&name, theirs, rustix::fs::Mode::empty())?);
         fcntl_setfl(&ours, fcntl_getfl(&ours)? | OFlags::NONBLOCK)?;
         if let Some(link) = &link {
             if fs::symlink_metadata(link).is_ok_and(|found| found.is_symlink()) {
@@ -51,7 +53,7 @@ impl Pty {
             ours,
             name,
             link,
-            open: true,
+            open: false,
         })
     }
 

@@ -7,25 +7,13 @@ use std::time::Duration;
 
 use serialport::{DataBits, FlowControl, SerialPort, StopBits};
 
+use super::poll::{Got, nothing};
 use super::pty::Pty;
 use super::{ChannelError, Line};
 use crate::{Characters, Parity};
 
 /// How long a connection may take.
 const CONNECT: Duration = Duration::from_secs(5);
-
-/// What has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Got {
-    /// So many bytes.
-    Bytes(usize),
-    /// Nothing yet.
-    Nothing,
-    /// A peer has connected.
-    Opened,
-    /// The peer is gone.
-    Closed,
-}
 
 /// One of them.
 #[derive(Debug)]
@@ -254,12 +242,6 @@ fn open_serial(
         .flow_control(FlowControl::None)
         .dtr_on_open(true)
         .open()
-}
-
-/// Nothing is there yet.
-pub(super) fn nothing(error: &io::Error) -> Option<Got> {
-    use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
-    matches!(error.kind(), WouldBlock | TimedOut | Interrupted).then_some(Got::Nothing)
 }
 
 /// The peer is gone.

@@ -28,7 +28,13 @@ pub struct Drip {
     come: u64,
     come_print: Fingerprint,
     waiting: Option<Vec<u8>>,
+    /// Blocks that have come behind the end of the run.
+    behind: u32,
 }
+
+/// Blocks behind M2 or M30 that are acknowledged before the other side is told that no more is wanted: END PGM is among them
+/// *(inferred)*.
+const BEHIND_MAX: u32 = 16;
 
 impl Drip {
     /// Asks for a program.
@@ -42,6 +48,7 @@ impl Drip {
             come: 0,
             come_print: Fingerprint::default(),
             waiting: None,
+            behind: 0,
         }
     }
 
@@ -76,9 +83,7 @@ impl Drip {
             return false;
         }
         if machine.has_ended() {
-            line.give_up();
-            self.state = DripState::Over;
-            return false;
+            return self.pass_over(line, at_most);
         }
         if self.waiting.is_none() {
             match line.look(at_most) {
@@ -103,9 +108,34 @@ impl Drip {
         self.hand_on(line, machine)
     }
 
+    /// The run has ended: what little comes behind it is acknowledged.
+    fn pass_over(&mut self, line: &mut dyn BlockLine, at_most: Duration) -> bool {
+        let waits = self.waiting.take().is_some();
+        let arrival = match waits {
+            true => Arrival::Block(Vec::new()),
+            false => line.look(at_most),
+        };
+        match arrival {
+            Arrival::Nothing => return false,
+            Arrival::Block(_) if self.behind < BEHIND_MAX => {
+                line.acknowledge();
+                self.behind += 1;
+                self.taken += 1;
+                return true;
+            }
+            Arrival::Block(_) => line.give_up(),
+            Arrival::End | Arrival::Broken(_) => {}
+        }
+        self.state = DripState::Over;
+        false
+    }
+
     fn hand_on(&mut self, line: &mut dyn BlockLine, machine: &mut dyn Machine) -> bool {
         let known = self.come < self.taken;
         if !known && !machine.wants_more() {
+            if let Some(message) = line.watch(Duration::ZERO) {
+                self.break_off(&message, machine);
+            }
             return false;
         }
         let Some(mut block) = self.waiting.take() else {

@@ -26,6 +26,10 @@ pub trait BlockLine {
     /// Looks at what has come, and waits for it as long as this at most.
     fn look(&mut self, at_most: Duration) -> Arrival;
 
+    /// Looks whether the line is still there while a block waits for room, as long as this at most; what the control says when it
+    /// is not.
+    fn watch(&mut self, at_most: Duration) -> Option<String>;
+
     /// The block that came last is taken: the next one may come.
     fn acknowledge(&mut self);
 

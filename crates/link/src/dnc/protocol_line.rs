@@ -160,7 +160,13 @@ impl ProtocolLine {
             wait = Duration::ZERO;
         }
         match self.channel.wait(wait) {
-            Ok(Happened::Nothing | Happened::Opened) => {}
+            Ok(Happened::Nothing) => {}
+            Ok(Happened::Opened) => {
+                let now = self.channel.now();
+                if let Some(protocol) = self.protocol.as_mut().filter(|_| !self.over) {
+                    protocol.plugged(now);
+                }
+            }
             Ok(Happened::Closed) => self.unplugged(),
             Err(error) => {
                 self.message.get_or_insert(Shown::Device(error.to_string()));
@@ -202,13 +208,18 @@ impl ProtocolLine {
     }
 
     /// What has become of the transfer, when it is over.
-    fn end(&mut self) -> Arrival {
-        if lock(&self.came).complete {
-            return Arrival::End;
+    fn end(&self) -> Arrival {
+        match lock(&self.came).complete {
+            true => Arrival::End,
+            false => Arrival::Broken(self.shown()),
         }
+    }
+
+    /// The message of a transfer that was broken off.
+    fn shown(&self) -> String {
         let shown = self.message.clone();
         let shown = shown.unwrap_or(Shown::Control(MessageId::ProgramIncomplete, None));
-        Arrival::Broken(shown.text(self.settings.model))
+        shown.text(self.settings.model)
     }
 }
 
@@ -235,6 +246,9 @@ impl BlockLine for ProtocolLine {
             false => Box::new(standard::Reading::new(settings, files, want, kind)),
         };
         protocol.hold(settings.blockwise);
+        if self.channel.is_connected() {
+            protocol.plugged(self.channel.now());
+        }
         self.protocol = Some(protocol);
         (self.open, self.over, self.message) = (false, false, None);
     }
@@ -255,6 +269,12 @@ impl BlockLine for ProtocolLine {
                 return Arrival::Nothing;
             }
         }
+    }
+
+    fn watch(&mut self, at_most: Duration) -> Option<String> {
+        self.pump(at_most);
+        let whole = lock(&self.came).complete;
+        (self.over && !whole).then(|| self.shown())
     }
 
     fn acknowledge(&mut self) {

@@ -1,6 +1,8 @@
 //! Which telegram needs which login, and what it does.
 
-use super::session::{Answer, Session};
+use std::sync::Arc;
+
+use super::session::{Answer, Session, Task};
 use super::{Command, ErrorNumber, Level, Telegram, file_commands, machine_commands, memory};
 
 /// Who may send a telegram.
@@ -14,10 +16,10 @@ enum Who {
 }
 
 /// A telegram that is known.
-pub(super) struct Known {
+struct Known {
     command: &'static [u8; 4],
     who: Who,
-    pub act: fn(&mut Session, &Telegram) -> Answer,
+    act: fn(&mut Session, &Telegram) -> Answer,
 }
 
 /// The logins that have what INSPECT has (public).
@@ -83,7 +85,7 @@ const KNOWN: &[Known] = known! {
 const OF_A_TRANSFER: [&[u8; 4]; 5] = [b"S_FL", b"T_OK", b"T_FD", b"T_ER", b"T_BD"];
 
 /// The telegram of a command; those of a transfer are not expected outside.
-pub(super) fn find(command: Command) -> Option<&'static Known> {
+fn find(command: Command) -> Option<&'static Known> {
     const UNEXPECTED: &Known = &Known {
         command: b"T_OK",
         who: Who::All,
@@ -95,7 +97,7 @@ pub(super) fn find(command: Command) -> Option<&'static Known> {
 
 impl Known {
     /// Whether one of these logins allows it.
-    pub fn admits(&self, levels: &[Level]) -> Result<(), ErrorNumber> {
+    fn admits(&self, levels: &[Level]) -> Result<(), ErrorNumber> {
         match &self.who {
             Who::All => Ok(()),
             _ if levels.is_empty() => Err(ErrorNumber::NO_LOGIN),
@@ -104,5 +106,70 @@ impl Known {
             }
             Who::Any | Who::In(_) => Ok(()),
         }
+    }
+}
+
+impl Session {
+    /// Takes a telegram; what is to be answered, if anything is.
+    pub fn take(&mut self, telegram: &Telegram) -> Option<Telegram> {
+        let device = Arc::clone(&self.site.device);
+        let changes = device.store().changes();
+        let answer = self.answer(telegram);
+        if device.store().changes() != changes {
+            device.files_changed();
+        }
+        answer
+    }
+
+    fn answer(&mut self, telegram: &Telegram) -> Option<Telegram> {
+        // A transfer takes its own telegrams; any other ends it.
+        match (std::mem::take(&mut self.task), &telegram.command.0) {
+            (Task::Listing(mut telegrams), b"T_OK") => {
+                let next = telegrams.pop_front();
+                self.task = Task::Listing(telegrams);
+                Some(next.unwrap_or_else(|| self.end()))
+            }
+            (Task::Sending(mut sending), b"T_OK") => {
+                let next = sending.next(self.block);
+                self.task = Task::Sending(sending);
+                Some(match next {
+                    Ok(Some(block)) => block,
+                    Ok(None) => self.end(),
+                    Err(error) => {
+                        self.task = Task::None;
+                        error.of_block()
+                    }
+                })
+            }
+            (Task::Listing(_) | Task::Sending(_), b"T_ER" | b"T_BD" | b"T_FD") => None,
+            (Task::Receiving(mut receiving), b"S_FL") => match receiving.take(&telegram.data) {
+                Ok(()) => {
+                    self.task = Task::Receiving(receiving);
+                    Some(Telegram::new(Command::T_OK))
+                }
+                Err(error) => Some(error.of_block()),
+            },
+            (Task::Receiving(receiving), b"T_FD") => {
+                let answer = match receiving.end() {
+                    Ok(()) => Telegram::new(Command::T_OK),
+                    Err(error) => error.telegram(),
+                };
+                self.secure.then_some(answer)
+            }
+            // The client has broken off: nothing of the file is left.
+            (Task::Receiving(_), b"T_ER" | b"T_BD") => Some(Telegram::new(Command::T_OK)),
+            _ => Some(self.command(telegram).unwrap_or_else(ErrorNumber::telegram)),
+        }
+    }
+
+    fn end(&mut self) -> Telegram {
+        self.task = Task::None;
+        Telegram::new(Command::T_FD)
+    }
+
+    fn command(&mut self, telegram: &Telegram) -> Answer {
+        let known = find(telegram.command).ok_or(ErrorNumber::UNKNOWN)?;
+        known.admits(&self.levels)?;
+        (known.act)(self, telegram)
     }
 }

@@ -163,6 +163,9 @@ pub trait Device: Send + Sync {
     /// When there are none of these.
     fn memory(&self, area: Area, first: u32, count: u32) -> Result<Vec<u8>, Refused>;
 
+    /// A value of the tool table as it is written there, by the number of the tool and the name of the column.
+    fn tool_value(&self, tool: u32, column: &str) -> Option<String>;
+
     /// The value of a machine parameter as it is written in its list.
     fn parameter(&self, number: u16, index: u8) -> Option<String>;
 

@@ -221,10 +221,9 @@ pub(super) fn send(session: &mut Session, telegram: &Telegram) -> Answer {
     let file = file.map_err(|error| ErrorNumber::from(&error))?;
     let mut sending = Sending::new(file, flags & BINARY != 0);
     let first = sending.next(session.block)?;
-    if first.is_some() {
-        session.task = Task::Sending(sending);
-    }
-    Ok(first.unwrap_or(Telegram::new(Command::T_FD)))
+    session.task = Task::Sending(sending);
+    // An empty file is one empty block: clients wait for a block first (public).
+    Ok(first.unwrap_or(Telegram::new(telegram.command.answer())))
 }
 
 /// The byte behind the name.

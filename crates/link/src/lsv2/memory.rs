@@ -127,11 +127,13 @@ fn packed(device: &dyn Device, area: Area, first: u32, count: u32) -> Result<Vec
 /// Types of values in `S_DP` (public).
 const WORD: u32 = 2;
 const DOUBLE_WORD: u32 = 3;
+const REAL: u32 = 5;
 const TEXT: u32 = 8;
 const BIT: u32 = 11;
 const BYTE: u32 = 16;
 
-/// `R_DP`: a value by its path, `\PLC\memory\W\2` (public): M, I, O, T, C, B, W, D, S and the constant K.
+/// `R_DP`: a value by its path (public): `\PLC\memory\W\2`, with M, I, O, T, C, B, W, D, S and the constant K, and
+/// `\TABLE\TOOL\T\1\L`, column L of tool 1.
 pub(super) fn data_path(session: &mut Session, telegram: &Telegram) -> Answer {
     let mut fields = telegram.fields();
     fields.long().ok_or(ErrorNumber::BAD_FORMAT)?;
@@ -142,13 +144,29 @@ pub(super) fn data_path(session: &mut Session, telegram: &Telegram) -> Answer {
         .map(str::to_ascii_uppercase)
         .collect();
     let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
-    let ["PLC", "MEMORY", kind, number] = parts[..] else {
-        return Err(ErrorNumber::WRONG_PARAMETER);
+    let device = session.site.device.as_ref();
+    let number = |text: &str| text.parse().map_err(|_| ErrorNumber::BAD_NUMBER);
+    let (value_type, value) = match parts[..] {
+        ["PLC", "MEMORY", kind, place] => operand(device, kind, number(place)?)?,
+        ["TABLE", "TOOL", "T", tool, column] => {
+            let value = device.tool_value(number(tool)?, column);
+            let text = value.ok_or(ErrorNumber::WRONG_PARAMETER)?;
+            match text.parse::<f64>() {
+                Ok(value) => (REAL, value.to_le_bytes().to_vec()),
+                Err(_) => (TEXT, Telegram::new(telegram.command).string(&text).data),
+            }
+        }
+        _ => return Err(ErrorNumber::WRONG_PARAMETER),
     };
-    let number: u32 = number.parse().map_err(|_| ErrorNumber::BAD_NUMBER)?;
-    let device = &session.site.device;
+    Ok(Telegram::new(telegram.command.answer())
+        .long(value_type)
+        .raw(&value))
+}
+
+/// An operand of the PLC: type and bytes of its value.
+fn operand(device: &dyn Device, kind: &str, number: u32) -> Result<(u32, Vec<u8>), ErrorNumber> {
     let read = |area, count| device.memory(area, number, count);
-    let (value_type, value) = match kind {
+    Ok(match kind {
         "M" => (BIT, read(Area::Markers, 1)?),
         "I" => (BIT, read(Area::Inputs, 1)?),
         "O" => (BIT, read(Area::Outputs, 1)?),
@@ -166,8 +184,5 @@ pub(super) fn data_path(session: &mut Session, telegram: &Telegram) -> Answer {
             (TEXT, text)
         }
         _ => return Err(ErrorNumber::BAD_ADDRESS),
-    };
-    Ok(Telegram::new(telegram.command.answer())
-        .long(value_type)
-        .raw(&value))
+    })
 }

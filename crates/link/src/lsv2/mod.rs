@@ -33,7 +33,7 @@ pub use error::ErrorNumber;
 pub use keys::name as key_name;
 pub use serial::{ANSWER, LineEvent, LineFault, NEXT, SerialLine, Side, check_byte, frame};
 pub use serial_server::SerialServer;
-pub use server::{Server, ServerOptions};
+pub use server::{OpenPort, Server, ServerOptions};
 pub use session::{Session, Site};
 #[doc(hidden)]
 pub use still::StillDevice;

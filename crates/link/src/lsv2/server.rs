@@ -82,19 +82,30 @@ pub struct Server {
     listener: Option<JoinHandle<()>>,
 }
 
-impl Server {
+/// A port that is open; whoever connects waits until it is served.
+pub struct OpenPort(TcpListener);
+
+impl OpenPort {
     /// Opens the port.
     ///
     /// # Errors
     /// When a password is missing, or the port is taken.
-    pub fn start(site: Site, options: &ServerOptions) -> io::Result<Server> {
+    pub fn open(options: &ServerOptions) -> io::Result<OpenPort> {
         options
             .check()
             .map_err(|text| io::Error::new(ErrorKind::PermissionDenied, text))?;
-        let listener = TcpListener::bind(options.listen)?;
+        TcpListener::bind(options.listen).map(OpenPort)
+    }
+
+    /// Answers from now on.
+    ///
+    /// # Errors
+    /// When there is no thread for it.
+    pub fn serve(self, site: Arc<Site>) -> io::Result<Server> {
+        let OpenPort(listener) = self;
         let address = listener.local_addr()?;
         let shared = Arc::new(Shared {
-            site: Arc::new(site),
+            site,
             ends: AtomicBool::new(false),
             count: AtomicUsize::new(0),
             streams: Mutex::default(),
@@ -108,6 +119,16 @@ impl Server {
             address,
             listener: Some(listener),
         })
+    }
+}
+
+impl Server {
+    /// Opens the port and answers.
+    ///
+    /// # Errors
+    /// When a password is missing, or the port is taken.
+    pub fn start(site: impl Into<Arc<Site>>, options: &ServerOptions) -> io::Result<Server> {
+        OpenPort::open(options)?.serve(site.into())
     }
 
     /// Where it listens.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::transfer::{Receiving, Sending};
-use super::{Command, Device, ErrorNumber, Level, Passwords, Telegram, commands};
+use super::{Command, Device, ErrorNumber, Level, Passwords, Telegram};
 use crate::store::Place;
 
 /// A telegram at most, before the client asks for more: length, command and data (public).
@@ -77,7 +77,7 @@ pub(super) type Answer = Result<Telegram, ErrorNumber>;
 pub struct Session {
     pub(super) site: Arc<Site>,
     number: u64,
-    levels: Vec<Level>,
+    pub(super) levels: Vec<Level>,
     /// Where paths without a drive begin.
     pub(super) folder: Place,
     /// A telegram at most.
@@ -106,69 +106,6 @@ impl Session {
             wrong_passwords: 0,
             site: Arc::clone(site),
         }
-    }
-
-    /// Takes a telegram; what is to be answered, if anything is.
-    pub fn take(&mut self, telegram: &Telegram) -> Option<Telegram> {
-        let device = Arc::clone(&self.site.device);
-        let changes = device.store().changes();
-        let answer = self.answer(telegram);
-        if device.store().changes() != changes {
-            device.files_changed();
-        }
-        answer
-    }
-
-    fn answer(&mut self, telegram: &Telegram) -> Option<Telegram> {
-        // A transfer takes its own telegrams; any other ends it.
-        match (std::mem::take(&mut self.task), &telegram.command.0) {
-            (Task::Listing(mut telegrams), b"T_OK") => {
-                let next = telegrams.pop_front();
-                self.task = Task::Listing(telegrams);
-                Some(next.unwrap_or_else(|| self.end()))
-            }
-            (Task::Sending(mut sending), b"T_OK") => {
-                let next = sending.next(self.block);
-                self.task = Task::Sending(sending);
-                Some(match next {
-                    Ok(Some(block)) => block,
-                    Ok(None) => self.end(),
-                    Err(error) => {
-                        self.task = Task::None;
-                        error.of_block()
-                    }
-                })
-            }
-            (Task::Listing(_) | Task::Sending(_), b"T_ER" | b"T_BD" | b"T_FD") => None,
-            (Task::Receiving(mut receiving), b"S_FL") => match receiving.take(&telegram.data) {
-                Ok(()) => {
-                    self.task = Task::Receiving(receiving);
-                    Some(Telegram::new(Command::T_OK))
-                }
-                Err(error) => Some(error.of_block()),
-            },
-            (Task::Receiving(receiving), b"T_FD") => {
-                let answer = match receiving.end() {
-                    Ok(()) => Telegram::new(Command::T_OK),
-                    Err(error) => error.telegram(),
-                };
-                self.secure.then_some(answer)
-            }
-            // The client has broken off: nothing of the file is left.
-            (Task::Receiving(_), b"T_ER" | b"T_BD") => Some(Telegram::new(Command::T_OK)),
-            _ => Some(self.command(telegram).unwrap_or_else(ErrorNumber::telegram)),
-        }
-    }
-
-    fn end(&mut self) -> Telegram {
-        self.task = Task::None;
-        Telegram::new(Command::T_FD)
-    }
-
-    fn command(&mut self, telegram: &Telegram) -> Answer {
-        let known = commands::find(telegram.command).ok_or(ErrorNumber::UNKNOWN)?;
-        known.admits(&self.levels)?;
-        (known.act)(self, telegram)
     }
 
     /// Logs in: name of the level, and its password.

@@ -130,6 +130,14 @@ impl Device for StillDevice {
         })
     }
 
+    fn tool_value(&self, tool: u32, column: &str) -> Option<String> {
+        match (tool, column) {
+            (1, "L") => Some("80.5".to_owned()),
+            (1, "NAME") => Some("END MILL".to_owned()),
+            _ => None,
+        }
+    }
+
     fn parameter(&self, number: u16, index: u8) -> Option<String> {
         match (number, index) {
             (7230, 0) => Some("1".to_owned()),

@@ -14,10 +14,22 @@ impl Store {
     /// # Errors
     /// When it is not there.
     pub fn open(&self, place: &Place) -> Result<Reading, StoreError> {
-        let path = self.find_file(place)?;
+        let path = match self.find_file(place) {
+            Ok(path) => path,
+            Err(error) => {
+                let bytes = self.view(place).and_then(|view| (view.bytes)()).ok_or(error)?;
+                return Ok(Reading {
+                    length: bytes.len() as u64,
+                    source: Source::Bytes(io::Cursor::new(bytes)),
+                });
+            }
+        };
         let open = File::open(&path).and_then(|file| Ok((file.metadata()?.len(), file)));
         let (length, file) = open.map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
-        Ok(Reading { file, length })
+        Ok(Reading {
+            source: Source::File(file),
+            length,
+        })
     }
 
     /// Begins a file, which appears under its name when it is committed. Nobody else writes it meanwhile.
@@ -28,6 +40,9 @@ impl Store {
         let found = match self.find_file(place) {
             Ok(_) if existing == Existing::Keep => return Err(StoreError::Exists(place.to_string())),
             Ok(_) => Some(self.own(place)?),
+            Err(StoreError::NoFile(name)) if self.view(place).is_some() => {
+                return Err(StoreError::Protected(name));
+            }
             Err(StoreError::NoFile(_)) => None,
             Err(error) => return Err(error),
         };
@@ -65,8 +80,15 @@ impl Store {
 /// A file that is being read.
 #[derive(Debug)]
 pub struct Reading {
-    file: File,
+    source: Source,
     length: u64,
+}
+
+#[derive(Debug)]
+enum Source {
+    File(File),
+    /// Of a view.
+    Bytes(io::Cursor<Vec<u8>>),
 }
 
 impl Reading {
@@ -78,7 +100,10 @@ impl Reading {
 
 impl Read for Reading {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.file.read(buffer)
+        match &mut self.source {
+            Source::File(file) => file.read(buffer),
+            Source::Bytes(bytes) => bytes.read(buffer),
+        }
     }
 }
 

@@ -69,7 +69,12 @@ impl Store {
 
     /// The path of a file that may be changed.
     pub(super) fn own(&self, place: &Place) -> Result<PathBuf, StoreError> {
-        let path = self.find_file(place)?;
+        let path = match self.find_file(place) {
+            Err(StoreError::NoFile(name)) if self.view(place).is_some() => {
+                return Err(StoreError::Protected(name));
+            }
+            found => found?,
+        };
         if attributes(&path).is_some_and(|attributes| attributes.protected) {
             return Err(StoreError::Protected(place.to_string()));
         }
@@ -86,6 +91,8 @@ impl Store {
         let folder = self.find_folder(&place.folder().ok_or_else(exists)?)?;
         match self.find_any(place) {
             Ok(found) if old != Some(&found) => return Err(exists()),
+            // What is shown there is in the way as a file would be.
+            Err(_) if self.view(place).is_some() => return Err(exists()),
             Ok(_) | Err(_) => {}
         }
         let path = folder.join(name);

@@ -9,6 +9,7 @@ mod lookup;
 mod place;
 #[cfg(test)]
 mod tests;
+mod views;
 
 use std::collections::HashSet;
 use std::fs;
@@ -20,6 +21,7 @@ use std::time::SystemTime;
 pub use error::StoreError;
 pub use files::{Reading, Writing};
 pub use place::{NAME_MAX, Place};
+pub use views::View;
 
 /// Drive of the part programs.
 pub const TNC: &str = "TNC";
@@ -93,6 +95,8 @@ struct Inner {
     drives: Vec<(&'static str, PathBuf)>,
     /// Files at most, and no folders: a disk.
     limit: Option<usize>,
+    /// What is shown beside them.
+    views: Vec<View>,
     /// What is being written.
     busy: Mutex<HashSet<PathBuf>>,
     changes: AtomicU64,
@@ -105,7 +109,15 @@ impl Store {
     /// # Errors
     /// When a folder is not there.
     pub fn of_machine(programs: &Path, plc: &Path) -> Result<Store, StoreError> {
-        Store::over(&[(TNC, programs), (PLC, plc)], None)
+        Store::of_machine_with(programs, plc, Vec::new())
+    }
+
+    /// The same with files that lie elsewhere.
+    ///
+    /// # Errors
+    /// When a folder is not there.
+    pub fn of_machine_with(programs: &Path, plc: &Path, views: Vec<View>) -> Result<Store, StoreError> {
+        Store::over(&[(TNC, programs), (PLC, plc)], views, None)
     }
 
     /// A disk: one folder without folders in it, with at most [`DISK_FILES`] files.
@@ -113,10 +125,14 @@ impl Store {
     /// # Errors
     /// When the folder is not there.
     pub fn of_disk(folder: &Path) -> Result<Store, StoreError> {
-        Store::over(&[("", folder)], Some(DISK_FILES))
+        Store::over(&[("", folder)], Vec::new(), Some(DISK_FILES))
     }
 
-    fn over(folders: &[(&'static str, &Path)], limit: Option<usize>) -> Result<Store, StoreError> {
+    fn over(
+        folders: &[(&'static str, &Path)],
+        views: Vec<View>,
+        limit: Option<usize>,
+    ) -> Result<Store, StoreError> {
         let mut drives = Vec::new();
         for &(name, folder) in folders {
             let no_folder = || StoreError::NoFolder(folder.display().to_string());
@@ -130,6 +146,7 @@ impl Store {
         Ok(Store {
             inner: Arc::new(Inner {
                 drives,
+                views,
                 limit,
                 busy: Mutex::default(),
                 changes: AtomicU64::new(0),
@@ -165,10 +182,21 @@ impl Store {
     /// # Errors
     /// When it is no folder.
     pub fn list(&self, folder: &Place) -> Result<Vec<Entry>, StoreError> {
-        Ok(lookup::list(
-            &self.find_folder(folder)?,
-            self.inner.limit.is_none(),
-        ))
+        let is_disk = self.inner.limit.is_some();
+        let mut entries = lookup::list(&self.find_folder(folder)?, !is_disk);
+        let views = self.inner.views.iter();
+        for view in views.filter(|view| view.place.folder().as_ref() == Some(folder)) {
+            let name = view.place.name().unwrap_or_default();
+            let place = entries.partition_point(|entry| entry.name.to_ascii_uppercase().as_str() < name);
+            let is_there = entries
+                .get(place)
+                .is_some_and(|entry| entry.name.eq_ignore_ascii_case(name));
+            if let Some(attributes) = view.attributes().filter(|_| !is_there) {
+                let name = name.to_owned();
+                entries.insert(place, Entry { name, attributes });
+            }
+        }
+        Ok(entries)
     }
 
     /// What there is to be said of a file or folder.
@@ -176,13 +204,16 @@ impl Store {
     /// # Errors
     /// When it is not there.
     pub fn attributes(&self, place: &Place) -> Result<Attributes, StoreError> {
-        let path = self.find_any(place)?;
-        lookup::attributes(&path).ok_or_else(|| StoreError::NoFile(place.to_string()))
+        let no_file = || StoreError::NoFile(place.to_string());
+        match self.find_any(place) {
+            Ok(path) => lookup::attributes(&path).ok_or_else(no_file),
+            Err(error) => self.view(place).and_then(View::attributes).ok_or(error),
+        }
     }
 
     /// Whether there is a file of this name.
     pub fn has(&self, place: &Place) -> bool {
-        self.find_file(place).is_ok()
+        self.find_file(place).is_ok() || self.view(place).is_some_and(|view| (view.bytes)().is_some())
     }
 
     /// Protects a file, or takes its protection away, as write permission. A program that its first block protects stays

@@ -308,6 +308,46 @@ fn a_disk_has_256_files_and_no_folders() {
     assert_eq!(store.list(&store.root()).unwrap().len(), DISK_FILES - 1);
 }
 
+#[test]
+fn what_lies_elsewhere_is_shown_and_left_alone() {
+    let folder = Folder::new("views");
+    let view = View {
+        place: Place::root(TNC).join("TOOL.T").unwrap(),
+        source: folder.0.join("tools.tsv"),
+        bytes: Box::new(|| Some(b"BEGIN TOOL .T MM".to_vec())),
+    };
+    let store =
+        Store::of_machine_with(&folder.0.join("programs"), &folder.0.join("plc"), vec![view]).unwrap();
+    write(&store, "A.H", "").unwrap();
+    write(&store, "Z.H", "").unwrap();
+    assert_eq!(names(&store, "TNC:"), ["A.H", "TOOL.T", "Z.H"]);
+    assert_eq!(read(&store, "tool.t").unwrap(), "BEGIN TOOL .T MM");
+    let attributes = store.attributes(&at(&store, "TOOL.T")).unwrap();
+    assert_eq!(
+        (
+            attributes.size,
+            attributes.protected,
+            store.has(&at(&store, "TOOL.T"))
+        ),
+        (16, true, true)
+    );
+    let protected = Err(StoreError::Protected("TNC:\\TOOL.T".into()));
+    assert_eq!(write(&store, "TOOL.T", ""), protected);
+    assert_eq!(store.delete(&at(&store, "TOOL.T")), protected);
+    assert_eq!(store.rename(&at(&store, "TOOL.T"), &at(&store, "B.T")), protected);
+    let exists = Err(StoreError::Exists("TNC:\\TOOL.T".into()));
+    assert_eq!(store.rename(&at(&store, "A.H"), &at(&store, "TOOL.T")), exists);
+    store.copy(&at(&store, "TOOL.T"), &at(&store, "COPY.T")).unwrap();
+    assert_eq!(read(&store, "COPY.T").unwrap(), "BEGIN TOOL .T MM");
+    // A file of the drive itself comes first.
+    folder.put("TOOL.T", "own");
+    assert_eq!(
+        (read(&store, "TOOL.T").unwrap(), names(&store, "TNC:").len()),
+        ("own".into(), 4)
+    );
+    store.delete(&at(&store, "TOOL.T")).unwrap();
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

@@ -25,7 +25,8 @@ mod test_run;
 use bahn_control::Mode;
 use bahn_dialogue::Key;
 
-use crate::page::{Page, Side, Turn};
+use crate::page::{Page, Side, Turn, View};
+use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 /// The page of a machine operating mode.
@@ -40,6 +41,20 @@ pub(crate) fn of_mode(mode: Mode) -> Box<dyn Page> {
 /// PROGRAMMING AND EDITING.
 pub(crate) fn editing(site: &mut Site) -> Box<dyn Page> {
     Box::new(programming::Programming::new(site))
+}
+
+/// Where no program is selected: which key does.
+fn no_program(site: &Site) -> View {
+    let line = Line {
+        text: site.words("SELECT A PROGRAM WITH PGM NR"),
+        ..Line::default()
+    };
+    View::of(Window {
+        kind: WindowKind::Text,
+        lines: vec![line],
+        total: 1,
+        ..Window::default()
+    })
 }
 
 /// What a key opens wherever nothing else takes it; HELP explains the note of the panel before messages of the control.

@@ -13,7 +13,7 @@ use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
 use crate::pages::files::{Directory, Purpose};
-use crate::screen::{SoftKeys, Window, WindowKind};
+use crate::screen::SoftKeys;
 use crate::site::Site;
 use crate::texts;
 
@@ -292,13 +292,10 @@ impl Page for Programming {
         Some(keys)
     }
 
-    fn show(&self, _site: &Site, lines: usize) -> View {
+    fn show(&self, site: &Site, lines: usize) -> View {
         match &self.open {
             Some(open) => editing::view(&open.editor, &open.name, lines),
-            None => View::of(Window {
-                kind: WindowKind::Program,
-                ..Window::default()
-            }),
+            None => super::no_program(site),
         }
     }
 

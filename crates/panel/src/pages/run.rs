@@ -108,13 +108,10 @@ impl Page for ProgramRun {
         if done { Turn::Done } else { Turn::Refused }
     }
 
-    fn show(&self, _site: &Site, lines: usize) -> View {
+    fn show(&self, site: &Site, lines: usize) -> View {
         match &self.shown {
             Some((name, program)) => View::of(listing(name, program, self.cursor, lines)),
-            None => View::of(Window {
-                kind: WindowKind::Program,
-                ..Window::default()
-            }),
+            None => super::no_program(site),
         }
     }
 

@@ -11,7 +11,6 @@ use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::run::listing;
-use crate::screen::{Window, WindowKind};
 use crate::site::Site;
 
 /// A program is tested.
@@ -92,13 +91,10 @@ impl Page for TestRun {
         }
     }
 
-    fn show(&self, _site: &Site, lines: usize) -> View {
+    fn show(&self, site: &Site, lines: usize) -> View {
         match &self.open {
             Some((name, program)) => View::of(listing(name, program, self.block, lines)),
-            None => View::of(Window {
-                kind: WindowKind::Program,
-                ..Window::default()
-            }),
+            None => super::no_program(site),
         }
     }
 

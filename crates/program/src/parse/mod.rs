@@ -4,6 +4,7 @@
 mod blank;
 pub(crate) mod cursor;
 mod cycle;
+mod decoration;
 mod dialog;
 mod faults;
 mod foreign;

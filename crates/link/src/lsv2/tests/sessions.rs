@@ -148,6 +148,15 @@ fn memory_lies_where_the_system_parameters_say() {
             (b"R_DP\0\0\0\0\\PLC\\memory\\S\\1\0", b"S_DP\0\0\0\x08STRING 1\0"),
             (b"R_DP\0\0\0\0\\PLC\\memory\\K\\1\0", b"S_DP\0\0\0\x03\0\0\0\x01"),
             (b"R_DP\0\0\0\0\\PLC\\memory\\W\\9\0", b"T_ER\x01\x34"),
+            (
+                b"R_DP\0\0\0\0\\TABLE\\TOOL\\T\\1\\L\0",
+                &[b"S_DP\0\0\0\x05".as_slice(), &80.5_f64.to_le_bytes()].concat(),
+            ),
+            (
+                b"R_DP\0\0\0\0\\TABLE\\TOOL\\T\\1\\name\0",
+                b"S_DP\0\0\0\x08END MILL\0",
+            ),
+            (b"R_DP\0\0\0\0\\TABLE\\TOOL\\T\\9\\L\0", b"T_ER\x01\x18"),
             (b"R_DP\0\0\0\0\\NC\\kitchen\0", b"T_ER\x01\x18"),
         ],
     );
@@ -291,7 +300,8 @@ fn lines_end_alike_however_blocks_are_cut() {
             (b"R_FLT.A\0", &[b"S_FL", first].concat()),
             (b"T_OK", &[b"S_FL", rest].concat()),
             (b"T_OK", b"T_FD"),
-            (b"R_FLE.A\0", b"T_FD"),
+            (b"R_FLE.A\0", b"S_FL"),
+            (b"T_OK", b"T_FD"),
         ],
     );
 }

@@ -24,6 +24,8 @@ const SOFT_KEYS: [&str; 8] = [
     "PAGE DOWN",
     "END",
 ];
+/// Those of the recording, in a row of their own [000:11428-11430].
+const RECORDING: [&str; 4] = ["SELECT M/I/O/T/C", "START TRACE", "STOP TRACE", "END"];
 /// Characters of a word to look for at most.
 const WORD_MAX: usize = 32;
 /// Digits of a line number at most.
@@ -139,12 +141,16 @@ impl Page for Code {
             "STOP DISPLAY" if frozen => site.words("START DISPLAY"),
             name => site.words(name),
         });
-        vec![names.to_vec()]
+        vec![names.to_vec(), list::soft_keys(&RECORDING, site)]
     }
 
-    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match list::name_at(&SOFT_KEYS, place) {
-            "LOGIC DIAGRAM" => return Turn::Open(Box::new(LogicDiagram::default())),
+    fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
+        let names = if row == 0 { &SOFT_KEYS[..] } else { &RECORDING };
+        match list::name_at(names, place) {
+            "START TRACE" if site.plc.rows.is_empty() => return Turn::Refused,
+            "START TRACE" => site.plc.start(site.host.control()),
+            "STOP TRACE" => site.plc.stop(),
+            "LOGIC DIAGRAM" | "SELECT M/I/O/T/C" => return Turn::Open(Box::new(LogicDiagram::default())),
             "FIND" => return self.find.ask(site.words("FIND ="), WORD_MAX),
             "GOTO" => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER_MAX),
             "HEX/DECIMAL" => self.hexadecimal = !self.hexadecimal,

@@ -48,7 +48,8 @@ pub(super) fn source_of(name: &str, site: &Site) -> PlcSource {
 
 /// The directory, with the cursor on the main file of the machine.
 pub(super) fn open(site: &Site) -> Turn {
-    let names = source::list(site);
+    let mut names = source::list(site);
+    names.retain(|name| source::is_source(name));
     let main = source::main_file(site);
     let at = names.iter().position(|name| name == main).unwrap_or(0);
     Turn::Open(Box::new(Menu::at(Programs { names }, at)))

@@ -5,7 +5,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::check_line;
 
-use super::source::{NotWritten, Source};
+use super::source::{self, NotWritten, Source};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
@@ -109,6 +109,9 @@ impl Editor {
     /// The line is left: it is checked when it has changed.
     fn leave(&mut self, site: &Site) -> Turn {
         if !std::mem::take(&mut self.changed) {
+            return Turn::Done;
+        }
+        if !source::is_source(&self.name) {
             return Turn::Done;
         }
         match check_line(self.current(), site.control().model()) {

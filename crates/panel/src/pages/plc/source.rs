@@ -139,6 +139,15 @@ pub(super) fn named(name: &str, site: &Site) -> String {
     folder.map_or_else(|| name.to_owned(), |(folder, _)| format!("{folder}/{name}"))
 }
 
+/// Endings of what is no program: texts, lists, tables, binary code [000:11335-11350].
+const NO_SOURCE: [&str; 9] = ["ER1", "ERE", "DI1", "DIE", "A", "HLP", "BIN", "COM", "CMA"];
+
+/// Whether a file is a PLC program, or a part of one, by its name.
+pub(super) fn is_source(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    !NO_SOURCE.iter().any(|other| other.eq_ignore_ascii_case(ending))
+}
+
 /// Where a main file lies; its name comes from [`list`].
 pub(super) fn path(name: &str, site: &Site) -> PathBuf {
     folder(site).join(name)

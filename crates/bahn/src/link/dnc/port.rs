@@ -1,0 +1,14 @@
+//! The port of a command, opened and set up as the machine parameters say.
+
+use bahn_link::{Channel, Settings};
+use bahn_parameters::ParameterList;
+
+use crate::link::port;
+
+/// Opens a port; `None` when it cannot be, which is told.
+pub(super) fn open(text: &str, list: &ParameterList) -> Option<(Channel, Settings)> {
+    let spec = port::spec("--port", text).ok()?;
+    let settings = port::settings(list, &spec);
+    let channel = port::open(&spec, &settings).ok()?;
+    Some((channel, settings))
+}

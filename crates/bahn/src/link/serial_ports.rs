@@ -1,0 +1,189 @@
+//! The serial ports of a machine that answers: RS-232-C and RS-422, each on a thread of its own.
+
+use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use bahn_link::blockwise::Rights;
+use bahn_link::lsv2::{Device, SerialServer, ServerOptions, Site};
+use bahn_link::{Channel, Line, Passive, PlcHold, Protocol, Settings, SharedPort, Spec, drive, peripheral};
+use bahn_parameters::{MessageId, ParameterList};
+
+use super::desk::{Answer, Desk, Until};
+use super::options::ServeOptions;
+use super::plc_lines::PlcPort;
+use super::port::{self, Refused};
+use super::trace::Trace;
+use crate::options::Format;
+use crate::{UsageError, diagnostics};
+
+/// The interfaces: option, name, and what stands before their lines.
+const PORTS: [(&str, &str, &str); 2] = [
+    ("--rs232", "RS-232-C", "RS-232: "),
+    ("--rs422", "RS-422", "RS-422: "),
+];
+/// Baud rates that the two interfaces cannot have together [000:17552-17554].
+const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
+
+/// The ports that are named.
+pub(super) fn specs(options: &ServeOptions) -> Result<Vec<(usize, Spec)>, Refused> {
+    let named = [&options.rs232, &options.rs422];
+    let mut specs = Vec::new();
+    for (number, text) in named.into_iter().enumerate() {
+        if let (Some(text), Some((option, ..))) = (text, PORTS.get(number)) {
+            specs.push((number, port::spec(option, text)?));
+        }
+    }
+    Ok(specs)
+}
+
+/// A port that is open.
+pub(super) struct Port {
+    number: usize,
+    settings: Settings,
+    channel: Channel,
+    /// Where it can be reached from elsewhere.
+    reached: Option<SocketAddr>,
+    /// As the PLC may have it.
+    plc: PlcPort,
+}
+
+/// The ports as the PLC may have them: RS-232-C and RS-422.
+pub(super) fn of_plc(ports: &[Port]) -> [Option<PlcPort>; 2] {
+    [0, 1].map(|number| {
+        let port = ports.iter().find(|port| port.number == number);
+        port.map(|port| port.plc.clone())
+    })
+}
+
+/// Opens them all, or none.
+pub(super) fn open(specs: &[(usize, Spec)], list: &ParameterList) -> Result<Vec<Port>, Refused> {
+    let bauds: Vec<Option<u32>> = specs.iter().map(|(_, spec)| spec.baud).collect();
+    if NOT_TOGETHER.iter().all(|baud| bauds.contains(&Some(*baud))) {
+        let message = MessageId::BaudRateNotPossible.text(list.model());
+        // Whoever has closed the output knows.
+        let _ = crate::console::print(&format!("{message}\n"));
+        return Err(Refused);
+    }
+    let inhibited = list.interface_parameters().inhibited;
+    for (number, _) in specs {
+        let name = PORTS.get(*number).map_or("", |(_, name, _)| name);
+        if inhibited.get(*number) == Some(&true) {
+            return Err(Refused::because(&format!("{name} is inhibited by MP5000")));
+        }
+        if *number > 0 && !list.model().has_rs_422() {
+            return Err(Refused::because(&format!(
+                "a {} has no {name}",
+                list.model().name()
+            )));
+        }
+    }
+    let mut ports = Vec::new();
+    for (number, spec) in specs {
+        let settings = port::settings(list, spec);
+        ports.push(Port {
+            number: *number,
+            settings,
+            channel: port::open(spec, &settings)?,
+            plc: PlcPort {
+                hold: PlcHold::default(),
+                mode: spec.mode,
+                baud: spec.baud,
+                patience: spec.timeout,
+            },
+            reached: match &spec.line {
+                Line::Listen(address) => address.to_socket_addrs().ok().and_then(|mut all| all.next()),
+                Line::Connect(_) | Line::Pty(_) | Line::Serial(_) => None,
+            },
+        });
+    }
+    Ok(ports)
+}
+
+/// Ports that answer; dropped, they are closed.
+pub(super) struct Serving {
+    stop: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+    trace: Arc<Mutex<Trace>>,
+}
+
+impl Serving {
+    /// Lets all ports answer.
+    pub fn start(
+        ports: Vec<Port>,
+        site: &Arc<Site>,
+        answer: Answer,
+        trace: Option<&PathBuf>,
+    ) -> Result<Serving, UsageError> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let trace = Arc::new(Mutex::new(Trace::open(trace.map(PathBuf::as_path))?));
+        let mut threads = Vec::new();
+        for port in ports {
+            let (site, stop, trace) = (Arc::clone(site), Arc::clone(&stop), Arc::clone(&trace));
+            let name = PORTS.get(port.number).map_or("", |(_, name, _)| name);
+            let thread = std::thread::Builder::new()
+                .name(name.to_owned())
+                .spawn(move || answer_on(port, &site, answer, &stop, &trace));
+            threads.push(thread.map_err(|error| UsageError::new(format!("{name}: {error}")))?);
+        }
+        Ok(Serving { stop, threads, trace })
+    }
+
+    /// Closes them.
+    pub fn end(self) -> Result<(), UsageError> {
+        self.stop.store(true, Ordering::Relaxed);
+        for thread in self.threads {
+            // What has panicked has told so.
+            let _ = thread.join();
+        }
+        match Arc::try_unwrap(self.trace) {
+            Ok(trace) => trace
+                .into_inner()
+                .unwrap_or_else(PoisonError::into_inner)
+                .finish(),
+            Err(_) => Ok(()),
+        }
+    }
+}
+
+/// Answers on one port until it is to stop.
+fn answer_on(port: Port, site: &Arc<Site>, answer: Answer, stop: &AtomicBool, trace: &Mutex<Trace>) {
+    let Port {
+        number,
+        settings,
+        mut channel,
+        reached,
+        plc,
+    } = port;
+    let (_, name, prefix) = PORTS.get(number).copied().unwrap_or_default();
+    let rights = Rights {
+        asks: answer != Answer::Yes,
+        ..Rights::ALL
+    };
+    let files = Box::new(site.device.store().clone());
+    let device = peripheral(settings, files, rights);
+    // LSV/2 is for those who would be let in by its own port, too.
+    let is_open = reached.is_none_or(|listen| {
+        let passwords = site.passwords.clone();
+        ServerOptions { listen, passwords }.check().is_ok()
+    });
+    let mut protocol: Box<dyn Protocol> = match is_open {
+        true => Box::new(Passive::new(device, SerialServer::new(site))),
+        false => device,
+    };
+    protocol = Box::new(SharedPort::new(plc.hold, protocol));
+    let written = Arc::clone(&site.device);
+    let mut desk = Desk::new(settings.model, answer, Format::Text, Until::Stopped)
+        .of_port(prefix)
+        .when_stored(move || Device::files_changed(written.as_ref()));
+    let mut tap = |sent: bool, byte: u8, now: Duration| {
+        let mut trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
+        trace.byte(sent, byte, now);
+    };
+    if let Err(error) = drive(&mut channel, protocol.as_mut(), &mut desk, stop, &mut tap) {
+        diagnostics::print_line(&format!("error: {name}: {error}"));
+    }
+}
