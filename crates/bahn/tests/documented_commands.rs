@@ -76,6 +76,11 @@ fn desk() -> Folder {
         folder.write(name, "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
     }
     folder.write("jog.txt", "30: end\n");
+    // A machine with a printer.
+    assert_eq!(folder.bahn("machine new mill155 --model tnc155").code(), 0);
+    let list = folder.read("mill155/parameters.mp");
+    let printer = "MP226 : 795\nMP227 : 16648\nMP230 : 1290\nMP231 : 6990\nMP232 : 2\n";
+    folder.write("mill155/parameters.mp", list + printer);
     folder.write("line.txt", "0.5 > 01 48 31 35 45 17 1F 11\n0.6 < 06\n");
     folder.write(
         "parts/15.H",

@@ -269,7 +269,7 @@ proptest! {
     }
 }
 
-/// What a complete block is written like is what it was.
+/// What a complete block is written like is what it was; the step of its number is that of MP7220.
 #[test]
 fn listings_are_normal() {
     let text: String = COMPLETE.iter().map(|block| format!("{block} *\n")).collect();

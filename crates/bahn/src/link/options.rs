@@ -61,9 +61,9 @@ pub(crate) enum LinkCommand {
 const SERVE_EXAMPLES: &str = "\
 Examples:
   bahn link serve --machine machines/mill --lsv2 127.0.0.1:19000
-  bahn link serve --machine machines/mill --lsv2 127.0.0.1:19000 --password FILE=steel --identity iTNC530
+  bahn link serve --machine mill --lsv2 127.0.0.1:19000 --password FILE=steel --identity iTNC530
   bahn link serve --machine machines/mill --rs232 tcp:127.0.0.1:4713,mode=fe2 --answer yes
-  bahn link serve --machine machines/mill --rs232 pty:rs232,mode=ext1,baud=9600 --rs422 tcp:127.0.0.1:4714
+  bahn link serve --machine mill --rs232 pty:rs232,mode=ext1,baud=9600 --rs422 tcp:127.0.0.1:4714
 
 `ready` stands on standard output when all ports are open. LSV/2 answers this computer without passwords, but for
 FILEPLC, which needs 807667; at any other address each level needs one: INSPECT, DIAGNOSTICS, FILE, FILEPLC, DNC,

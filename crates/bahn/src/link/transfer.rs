@@ -22,7 +22,7 @@ const LINGER: Duration = Duration::from_secs(1);
 pub(super) const RECEIVE_EXAMPLES: &str = "\
 Examples:
   bahn link receive --machine machines/mill --port connect:127.0.0.1:4711,mode=fe2 PART.H
-  bahn link receive --machine machines/mill --port serial:/dev/ttyUSB0,mode=fe1,baud=9600 --all --answer yes
+  bahn link receive --machine mill --port serial:/dev/ttyUSB0,mode=fe1,baud=9600 --all --answer yes
   bahn link receive --as host --dir parts --port serial:/dev/ttyUSB0,mode=fe2,baud=9600 --all
 
 With --machine it is the control that reads in: selected files, all files of a type, or those offered, each after a
