@@ -453,9 +453,14 @@ fn called_programs_are_found_beside_the_caller() {
         "parts/main.H",
         program("CALL PGM A\nCALL PGM B\nCALL PGM C\nCALL PGM D"),
     );
-    for (name, x) in [("A", 1), ("B.H", 2), ("C.h", 3), ("D.I", 4)] {
+    for (name, x) in [("A", 1), ("B.H", 2), ("C.h", 3)] {
         folder.write(&format!("parts/{name}"), program(&format!("L X+{x} R0 F100")));
     }
+    // Files that end with .I are in DIN/ISO.
+    folder.write(
+        "parts/D.I",
+        "%D G71 *\nN10 G01 G40 G90 X+4 F100 *\nN99999 %D G71 *\n",
+    );
     let run = folder.bahn("test parts/main.H --format json --path out.csv");
     assert_eq!(run.code(), 0, "{}", run.err());
     // Four calls and four movements.

@@ -2,7 +2,10 @@
 
 use bahn_parameters::{MessageId, technology};
 use bahn_path::Function;
-use bahn_program::{Dialog, Expression, InvalidBlock, Operation, Value};
+use bahn_program::{
+    Compensation, Dialog, Expression, Feed, InvalidBlock, ModalBlock, Modality, Motion, MotionKind,
+    Operation, PathFunction, Value,
+};
 
 use crate::availability::{Feature, words};
 use crate::blank::{blank_max, blank_min};
@@ -12,14 +15,15 @@ use crate::cycles::{call_cycle, define_cycle};
 use crate::error::{Cause, Fault, Message, WarningKind};
 use crate::flow::Flow;
 use crate::functions::take_m_functions;
-use crate::in_force::{execute_block, execute_motion};
+use crate::in_force::resolved;
 use crate::path_functions::circle_centre;
-use crate::positioning::positioning;
+use crate::positioning::{positioning, take_compensation, take_feed};
 use crate::probe::probe;
 use crate::q_parameters::QTable;
 use crate::run::Run;
 use crate::settings::Settings;
 use crate::tool_measuring::{measure_tool, measures_tools};
+use crate::tools::set_tool_axis;
 use crate::unrolled::unrolled_words;
 
 /// Executes what a block says. The caller has already passed over skipped blocks.
@@ -296,4 +300,68 @@ fn unreadable(run: &mut Run, block: &InvalidBlock, settings: &Settings) -> Resul
         Some(operation) => execute(run, &operation, settings),
         None => Ok(Flow::Next),
     }
+}
+
+/// A positioning block of a language with G functions.
+fn execute_motion(
+    run: &mut Run,
+    motion: &Motion,
+    modality: &Modality,
+    settings: &Settings,
+) -> Result<Flow, Fault> {
+    take_plane(run, modality)?;
+    let mut motion = resolved(&mut run.modal.in_force, motion, modality)?;
+    let rapid = run.modal.in_force.function.is_rapid();
+    if rapid && matches!(motion.feed, Some(Feed::Value(_))) {
+        // The feed counts from the next block on that is not in rapid traverse.
+        take_feed(&mut run.modal, &run.numbers, settings, motion.feed)?;
+    }
+    let stands =
+        motion.coordinates.is_empty() && motion.polar_radius.is_none() && motion.polar_angle.is_none();
+    if stands && motion.m.is_empty() {
+        // What only sets functions in force is no positioning block that M89 would call a cycle behind.
+        if run.modal.in_force.function == PathFunction::Paraxial
+            || matches!(
+                motion.compensation,
+                Some(Compensation::Lengthen | Compensation::Shorten)
+            )
+        {
+            motion.kind = MotionKind::Paraxial;
+        }
+        take_compensation(&mut run.modal, &mut run.numbers.q, &motion)?;
+        take_feed(&mut run.modal, &run.numbers, settings, motion.feed)?;
+        return Ok(Flow::Next);
+    }
+    if rapid {
+        motion.feed = Some(Feed::Max);
+    }
+    execute(run, &Operation::Motion(motion), settings)
+}
+
+/// A block that does several things; the first that leads elsewhere ends it.
+fn execute_block(run: &mut Run, block: &ModalBlock, settings: &Settings) -> Result<Flow, Fault> {
+    take_plane(run, &block.modality)?;
+    let before = run.modal.in_force.distance;
+    if let Some(distance) = block.modality.distance {
+        run.modal.in_force.distance = distance;
+    }
+    for operation in block.resolved(before) {
+        let flow = execute(run, &operation, settings)?;
+        if flow != Flow::Next {
+            return Ok(flow);
+        }
+    }
+    Ok(Flow::Next)
+}
+
+/// G17 to G19 without a tool call choose the tool axis where it is another one (inferred).
+fn take_plane(run: &mut Run, modality: &Modality) -> Result<(), Fault> {
+    let Some(axis) = modality.plane else {
+        return Ok(());
+    };
+    if axis == run.modal.plane.normal {
+        return Ok(());
+    }
+    run.pen.finish_contour()?;
+    set_tool_axis(&mut run.modal, &mut run.numbers, axis)
 }

@@ -1,18 +1,9 @@
 //! The functions in force of languages with G functions: what their blocks leave open is filled in here.
 
 use bahn_parameters::MessageId;
-use bahn_program::{
-    Compensation, Direction, Distance, Feed, ModalBlock, Modality, Motion, MotionKind, Operation,
-    PathFunction,
-};
+use bahn_program::{Direction, Distance, Modality, Motion, MotionKind, Operation, PathFunction};
 
 use crate::error::Fault;
-use crate::execute::execute;
-use crate::flow::Flow;
-use crate::positioning::{take_compensation, take_feed};
-use crate::run::Run;
-use crate::settings::Settings;
-use crate::tools::set_tool_axis;
 
 /// The G functions in force. A run begins with G01 and G90 (inferred).
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +63,11 @@ impl InForce {
 }
 
 /// A positioning block with all that the functions in force say; they are those behind it then.
-fn resolved(in_force: &mut InForce, motion: &Motion, modality: &Modality) -> Result<Motion, Fault> {
+pub(crate) fn resolved(
+    in_force: &mut InForce,
+    motion: &Motion,
+    modality: &Modality,
+) -> Result<Motion, Fault> {
     in_force.take(modality);
     let function = in_force.function;
     let mut motion = motion.clone();
@@ -120,68 +115,4 @@ fn resolved(in_force: &mut InForce, motion: &Motion, modality: &Modality) -> Res
         motion.direction = in_force.direction;
     }
     Ok(motion)
-}
-
-/// A positioning block of a language with G functions.
-pub(crate) fn execute_motion(
-    run: &mut Run,
-    motion: &Motion,
-    modality: &Modality,
-    settings: &Settings,
-) -> Result<Flow, Fault> {
-    take_plane(run, modality)?;
-    let mut motion = resolved(&mut run.modal.in_force, motion, modality)?;
-    let rapid = run.modal.in_force.function.is_rapid();
-    if rapid && matches!(motion.feed, Some(Feed::Value(_))) {
-        // The feed counts from the next block on that is not in rapid traverse.
-        take_feed(&mut run.modal, &run.numbers, settings, motion.feed)?;
-    }
-    let stands =
-        motion.coordinates.is_empty() && motion.polar_radius.is_none() && motion.polar_angle.is_none();
-    if stands && motion.m.is_empty() {
-        // What only sets functions in force is no positioning block that M89 would call a cycle behind.
-        if run.modal.in_force.function == PathFunction::Paraxial
-            || matches!(
-                motion.compensation,
-                Some(Compensation::Lengthen | Compensation::Shorten)
-            )
-        {
-            motion.kind = MotionKind::Paraxial;
-        }
-        take_compensation(&mut run.modal, &mut run.numbers.q, &motion)?;
-        take_feed(&mut run.modal, &run.numbers, settings, motion.feed)?;
-        return Ok(Flow::Next);
-    }
-    if rapid {
-        motion.feed = Some(Feed::Max);
-    }
-    execute(run, &Operation::Motion(motion), settings)
-}
-
-/// A block that does several things; the first that leads elsewhere ends it.
-pub(crate) fn execute_block(run: &mut Run, block: &ModalBlock, settings: &Settings) -> Result<Flow, Fault> {
-    take_plane(run, &block.modality)?;
-    let before = run.modal.in_force.distance;
-    if let Some(distance) = block.modality.distance {
-        run.modal.in_force.distance = distance;
-    }
-    for operation in block.resolved(before) {
-        let flow = execute(run, &operation, settings)?;
-        if flow != Flow::Next {
-            return Ok(flow);
-        }
-    }
-    Ok(Flow::Next)
-}
-
-/// G17 to G19 without a tool call choose the tool axis where it is another one (inferred).
-fn take_plane(run: &mut Run, modality: &Modality) -> Result<(), Fault> {
-    let Some(axis) = modality.plane else {
-        return Ok(());
-    };
-    if axis == run.modal.plane.normal {
-        return Ok(());
-    }
-    run.pen.finish_contour()?;
-    set_tool_axis(&mut run.modal, &mut run.numbers, axis)
 }

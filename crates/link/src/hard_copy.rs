@@ -29,7 +29,7 @@ const ORDER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 
 /// let bytes = printer.print(512, 8, |x, y| if (x, y) == (0, 0) { 255 } else { 0 });
 /// assert_eq!(bytes[..9], [0x1B, b'A', 8, 0x0A, 0x1B, b'N', 0, 2, 0x80]);
 /// assert_eq!((bytes.len(), bytes[9..].iter().max()), (3 + 5 + 512, Some(&0)));
-/// # Ok::<(), bahn_parameters::SetError>(())
+/// # Ok::<(), bahn_parameters::ParameterError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HardCopy {

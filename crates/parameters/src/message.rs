@@ -67,7 +67,10 @@ mod tests {
             for id in MessageId::ALL {
                 let text = id.text(model);
                 assert!(texts.insert(text), "{text} is printed for two ids on {model}");
-                assert_eq!(text, text.to_uppercase(), "messages are shown in capitals");
+                // One is printed otherwise [000:16959].
+                if *id != MessageId::ProgramMemoryOverflow {
+                    assert_eq!(text, text.to_uppercase(), "messages are shown in capitals");
+                }
                 assert!(!id.cause().is_empty() && !id.remedy().is_empty(), "{id:?}");
                 for shown in [text, id.cause(), id.remedy()] {
                     assert!(

@@ -49,6 +49,8 @@ pub fn readings(list: &ParameterList) -> Readings {
         );
     }
     note(&mut all, "interface_parameters", &list.interface_parameters());
+    note(&mut all, "printer_characters", &list.printer_characters());
+    note(&mut all, "drip_feed_memory", &list.drip_feed_memory());
     note(&mut all, "swivel_links", &list.swivel_links());
     note(&mut all, "axes", &list.axes());
     note(

@@ -9,7 +9,7 @@ use crate::{Header, Operation, Unit};
 /// Whether a text that begins with `%` frames a program: it has a unit or no name.
 #[inline]
 pub(super) fn frame_words(text: &[u8]) -> bool {
-    let (code, _) = super::read::split(text);
+    let (code, _) = super::code::split(text);
     header(code.get(1..).unwrap_or_default()).is_some()
 }
 

@@ -3,7 +3,7 @@
 
 use bahn_parameters::MessageId::{BlockNotKnown, EntryValueIncorrect, UnexpectedText};
 
-use super::read::end;
+use super::code::end;
 use crate::check::ANY_LABEL_MAX;
 use crate::parse::cursor::{Cursor, Parsed};
 use crate::{Calculation, Condition, CycleBlock, CycleWord, ModalBlock, Modality, Operation, Value};

@@ -3,6 +3,7 @@
 //! A block becomes the same operations as one in plain language. What it leaves to the functions in force stays open
 //! in its [`Modality`](crate::Modality), which whoever executes it fills in.
 
+mod code;
 mod cycle;
 mod frame;
 mod function;
@@ -86,7 +87,7 @@ impl Language for IsoLanguage {
     }
 
     fn faults(&self, text: BlockText<'_>, may_begin: bool) -> Vec<BlockError> {
-        let (code, _) = read::split(text.bytes);
+        let (code, _) = code::split(text.bytes);
         language_faults(code, &self.words(text), |code| read::fault(code, may_begin))
     }
 
@@ -95,7 +96,7 @@ impl Language for IsoLanguage {
     }
 
     fn stands_alone(&self, text: BlockText<'_>) -> bool {
-        let (code, _) = read::split(text.bytes);
+        let (code, _) = code::split(text.bytes);
         let mut c = Cursor::new(code);
         prefix(&mut c);
         c.rest().is_empty()

@@ -1,9 +1,10 @@
 //! The reader of ISO blocks: the text of a block to a [`Block`]. It never fails; what cannot be read becomes
 //! [`Operation::Invalid`].
 
-use bahn_parameters::MessageId::{AxisDoubleProgrammed, BlockNotKnown, EntryValueIncorrect, UnexpectedText};
+use bahn_parameters::MessageId::{BlockNotKnown, UnexpectedText};
 use bahn_path::{Axis, AxisSet};
 
+use super::code::{coordinate, distance, end, g_code, once, plane, split, without_star};
 use super::frame::{frame_or_call, frame_words};
 use super::special::special;
 use crate::lines::BlockText;
@@ -14,31 +15,6 @@ use crate::{
     Block, Compensation, Coordinates, Distance, Feed, InvalidBlock, MFunctions, ModalBlock, Modality, Motion,
     MotionKind, Operation, PathFunction, Value, Word,
 };
-
-/// The code of a line without its `*`, and the comment behind it with its `;`.
-#[inline]
-pub(super) fn split(line: &[u8]) -> (&[u8], &[u8]) {
-    let length = memchr::memchr(b';', line).unwrap_or(line.len());
-    let (code, comment) = line.split_at_checked(length).unwrap_or_default();
-    (without_star(code), comment)
-}
-
-/// The text without blanks and one `*` at its end.
-#[inline]
-fn without_star(text: &[u8]) -> &[u8] {
-    let text = trim_end(text);
-    text.strip_suffix(b"*").map_or(text, trim_end)
-}
-
-#[inline]
-fn trim_end(mut text: &[u8]) -> &[u8] {
-    while let [before @ .., last] = text
-        && is_blank(*last)
-    {
-        text = before;
-    }
-    text
-}
 
 /// Reads a block into a place where one stands already.
 #[inline]
@@ -91,13 +67,6 @@ pub(super) fn operation(c: &mut Cursor, may_begin: bool, operation: &mut Operati
         _ => return positioning(c, operation),
     }
     if end(c) { Ok(()) } else { c.unexpected() }
-}
-
-/// Whether nothing of the code is left.
-#[inline]
-pub(super) fn end(c: &mut Cursor) -> bool {
-    c.skip_blanks();
-    !c.remains(0)
 }
 
 /// What a positioning block may have beside its movement.
@@ -245,13 +214,6 @@ fn tool_word(c: &mut Cursor, start: usize, beside: &mut Beside) -> Parsed<()> {
     once(c, start, slot, value)
 }
 
-/// `G` and its number.
-pub(super) fn g_code(c: &mut Cursor) -> Parsed<u16> {
-    let start = c.position();
-    c.advance(1);
-    c.required_integer(start, 999, "the number of the G function is missing")
-}
-
 /// Takes a G function that stays in force; `false` for one that makes another block of it.
 #[inline]
 fn g_function(
@@ -295,71 +257,12 @@ fn g_function(
     Ok(true)
 }
 
-/// G90 or G91.
-pub(super) fn distance(code: u16) -> Distance {
-    match code {
-        91 => Distance::Incremental,
-        _ => Distance::Absolute,
-    }
-}
-
-/// The tool axis of G17 to G19.
-pub(super) fn plane(c: &mut Cursor, start: usize, code: u16) -> Parsed<Axis> {
-    match code {
-        17 => Ok(Axis::Z),
-        18 => Ok(Axis::Y),
-        19 => Ok(Axis::X),
-        _ => c.fault_from(
-            start,
-            bahn_parameters::MessageId::WrongAxisProgrammed,
-            "G20: the fourth axis is no tool axis here",
-        ),
-    }
-}
-
 /// A feed behind its letter.
 fn feed(c: &mut Cursor, start: usize) -> Parsed<Feed> {
     if c.keyword("MAX") {
         return Ok(Feed::Max);
     }
     Ok(Feed::Value(c.required_value(start)?))
-}
-
-/// An axis word; it may be incremental by a G91 of an earlier block where none stands before it.
-#[inline]
-pub(super) fn coordinate(
-    c: &mut Cursor,
-    axis: Axis,
-    coordinates: &mut Coordinates,
-    open: &mut AxisSet,
-    distance: Option<Distance>,
-) -> Parsed<()> {
-    let start = c.position();
-    c.advance(1);
-    let value = c.required_value(start)?;
-    if coordinates.axes().contains(axis) {
-        return c.fault_from(
-            start,
-            AxisDoubleProgrammed,
-            "the axis has two values in this block",
-        );
-    }
-    let incremental = distance == Some(Distance::Incremental);
-    coordinates.set(axis, Word { value, incremental });
-    if distance.is_none() {
-        open.insert(axis);
-    }
-    Ok(())
-}
-
-/// Sets what may stand once in a block.
-#[inline]
-pub(super) fn once<T>(c: &mut Cursor, start: usize, slot: &mut Option<T>, value: T) -> Parsed<()> {
-    if slot.is_some() {
-        return c.fault_from(start, UnexpectedText, "this stands twice in the block");
-    }
-    *slot = Some(value);
-    Ok(())
 }
 
 /// Refuses words that the path function of the block has not.
@@ -502,11 +405,6 @@ pub(super) fn fault(code: &[u8], may_begin: bool) -> Option<(usize, Box<Fault>)>
     operation(&mut c, may_begin, &mut read)
         .err()
         .map(|fault| (start, fault))
-}
-
-/// Values behind a word must be there.
-pub(super) fn missing<T>(c: &mut Cursor, start: usize, what: &'static str) -> Parsed<T> {
-    c.fault_from(start, EntryValueIncorrect, what)
 }
 
 /// Whether a line frames the program or sets a label, by its first letters.

@@ -3,9 +3,9 @@
 use bahn_parameters::MessageId::{CyclIncomplete, EntryValueIncorrect, UnexpectedText};
 use bahn_path::Axis;
 
+use super::code::{coordinate, distance, end, g_code, missing, once, plane};
 use super::cycle::{Form, IsoCycle, of_code, word_of};
 use super::function::p_index;
-use super::read::{coordinate, distance, end, g_code, missing, once, plane};
 use crate::check::ANY_LABEL_MAX;
 use crate::parse::cursor::{Cursor, Parsed};
 use crate::parse::m_function;

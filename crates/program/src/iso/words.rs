@@ -1,6 +1,6 @@
 //! Where the words of an ISO block stand, whether it can be read or not.
 
-use super::read::split;
+use super::code::split;
 use crate::language::{WordKind, WordSpan};
 use crate::text::is_blank;
 
