@@ -130,10 +130,10 @@ fn digitizing(folder: &Folder) {
 /// Held while a panel runs.
 static PANEL: Mutex<()> = Mutex::new(());
 
-/// A command that asks a control: one is served meanwhile.
+/// A command that asks a control: one is served meanwhile. What the one before it has said would be taken for its word.
 fn beside_a_server(command: &str) -> String {
     format!(
-        "bahn link serve --machine mill --lsv2 127.0.0.1:19000 >served.txt & server=$!; \
+        "rm -f served.txt; bahn link serve --machine mill --lsv2 127.0.0.1:19000 >served.txt & server=$!; \
          until grep -q ready served.txt; do kill -0 $server || exit 1; sleep 0.05; done; \
          {command}; code=$?; kill -INT $server; wait $server; exit $code"
     )
@@ -159,7 +159,7 @@ fn with_its_other_side(command: &str) -> String {
 /// A control that asks a device: a disk is there meanwhile.
 fn beside_a_disk(command: &str) -> String {
     format!(
-        "bahn link disk parts --port tcp:127.0.0.1:4711,mode=fe2 >disk.txt & disk=$!; \
+        "rm -f disk.txt; bahn link disk parts --port tcp:127.0.0.1:4711,mode=fe2 >disk.txt & disk=$!; \
          until grep -q ready disk.txt; do kill -0 $disk || exit 1; sleep 0.05; done; \
          {command}; code=$?; kill -INT $disk; wait $disk; exit $code"
     )
