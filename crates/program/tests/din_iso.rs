@@ -6,10 +6,13 @@
     reason = "a helper that panics fails its test"
 )]
 
+mod laws;
+
 use bahn_parameters::ControlModel;
 use bahn_parameters::MessageId::{self, *};
 use bahn_path::Axis;
 use bahn_program::*;
+use laws::check_listings;
 use proptest::prelude::*;
 use proptest::sample::select;
 
@@ -26,45 +29,9 @@ fn read(text: impl Into<Vec<u8>>) -> Program {
     Program::from_bytes("TEST.I", text.into())
 }
 
-/// The blocks without the places of faults, which move with the text before them.
-fn blocks(program: &Program) -> Vec<Block> {
-    let without_place = |mut block: Block| {
-        if let Operation::Invalid(invalid) = &mut block.operation {
-            (invalid.error.line, invalid.error.column, invalid.error.length) = (0, 0, 0);
-        }
-        block
-    };
-    program
-        .blocks()
-        .map(|numbered| without_place(numbered.block))
-        .collect()
-}
-
 fn check_laws(bytes: &[u8]) {
-    let program = read(bytes);
-    let all = blocks(&program);
-    assert_eq!(all.len(), program.block_count() as usize);
-    for options in [POINT, WITHOUT_NUMBERS] {
-        let listing = format_program(&program, options).to_string();
-        let again = read(listing.clone());
-        assert_eq!(
-            blocks(&again),
-            all,
-            "{:?}\n{listing}",
-            String::from_utf8_lossy(bytes)
-        );
-        assert_eq!(
-            format_program(&again, options).to_string(),
-            listing,
-            "{listing:?}"
-        );
-    }
-    for diagnostic in program.diagnostics(Some(ControlModel::Tnc151.limits().into())) {
-        let line = program.text_of_line(diagnostic.line);
-        let end = diagnostic.column + diagnostic.length - 1;
-        let inside = diagnostic.column >= 1 && end as usize <= line.chars().count() + 1;
-        assert!(inside, "{diagnostic:?} lies outside of {line:?}");
-    }
+    let written = [POINT, WITHOUT_NUMBERS];
+    let program = check_listings("TEST.I", bytes, written, ControlModel::Tnc151);
     for block in 0..program.block_count() {
         let text = program.text_of(block);
         for word in program.language().parse_block(&text).words {

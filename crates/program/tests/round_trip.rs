@@ -2,9 +2,11 @@
 //! block and for any bytes.
 
 mod generate;
+mod laws;
 
 use bahn_parameters::ControlModel;
-use bahn_program::{Block, FormatOptions, Operation, Program, format_block, format_program};
+use bahn_program::{FormatOptions, Program, format_block};
+use laws::check_listings;
 use proptest::prelude::*;
 
 const POINT: FormatOptions = FormatOptions {
@@ -20,56 +22,8 @@ fn read(bytes: impl Into<Vec<u8>>) -> Program {
     Program::from_bytes("TEST.H", bytes.into())
 }
 
-/// The blocks without the places of faults, which move with the text before them.
-fn blocks(program: &Program) -> Vec<Block> {
-    let without_place = |mut block: Block| {
-        if let Operation::Invalid(invalid) = &mut block.operation {
-            invalid.error.line = 0;
-            invalid.error.column = 0;
-            invalid.error.length = 0;
-        }
-        block
-    };
-    program
-        .blocks()
-        .map(|numbered| without_place(numbered.block))
-        .collect()
-}
-
 fn check_laws(bytes: &[u8]) {
-    let program = read(bytes);
-    let all = blocks(&program);
-    assert_eq!(all.len(), program.block_count() as usize);
-    for options in [POINT, COMMA] {
-        let listing = format_program(&program, options).to_string();
-        let again = read(listing.clone());
-        assert_eq!(
-            blocks(&again),
-            all,
-            "{:?}\n{listing}",
-            String::from_utf8_lossy(bytes)
-        );
-        assert_eq!(
-            format_program(&again, options).to_string(),
-            listing,
-            "{listing:?}"
-        );
-    }
-    let mut joined = 0;
-    for chunk in 0..program.chunk_count() {
-        joined += program.decode(chunk).blocks.len();
-    }
-    assert_eq!(joined, all.len());
-    for diagnostic in program.diagnostics(Some(ControlModel::Tnc360.limits().into())) {
-        let line = program.text_of_line(diagnostic.line);
-        let end = diagnostic.column + diagnostic.length - 1;
-        let inside = diagnostic.column >= 1 && end as usize <= line.chars().count() + 1;
-        assert!(
-            inside,
-            "{diagnostic:?} lies outside of {line:?} {:?}",
-            String::from_utf8_lossy(bytes)
-        );
-    }
+    let program = check_listings("TEST.H", bytes, [POINT, COMMA], ControlModel::Tnc360);
     let last = program.block_count() - 1;
     assert!(program.line_of(last) >= 1 && program.text_of(last).len() <= bytes.len() * 2);
 }
