@@ -41,7 +41,7 @@ impl Dnc {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         match word {
             "begin" if !rest.trim().is_empty() => Ok(Dnc::Begin(rest.trim().to_owned())),
-            "text" => escapes::bytes(rest)
+            "text" => escapes::unescaped(rest)
                 .map(|bytes| Dnc::Text(bytes.into()))
                 .ok_or_else(|| {
                     "`dnc text` takes text with the escapes of a byte string, as `L X+5\\n`".to_owned()

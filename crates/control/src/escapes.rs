@@ -1,7 +1,13 @@
 //! Bytes as text in commands.
 
-/// The bytes of a text with the escapes `\n`, `\r`, `\t`, `\\`, `\'`, `\"` and `\x41`.
-pub(crate) fn bytes(text: &str) -> Option<Vec<u8>> {
+/// The bytes of a text with the escapes `\n`, `\r`, `\t`, `\\`, `\'`, `\"` and `\x41`, as commands have it; `None` when
+/// it has others.
+///
+/// ```
+/// assert_eq!(bahn_control::unescaped("L X+5\\x20;\\n"), Some(b"L X+5 ;\n".to_vec()));
+/// assert_eq!(bahn_control::unescaped("\\q"), None);
+/// ```
+pub fn unescaped(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
     while let Some((first, behind)) = rest.split_first() {
@@ -31,7 +37,7 @@ pub(crate) fn bytes(text: &str) -> Option<Vec<u8>> {
 /// Bytes between quotes.
 pub(crate) fn quoted(text: &str) -> Option<Vec<u8>> {
     let inner = text.strip_prefix('"')?.strip_suffix('"')?;
-    let read = bytes(inner)?;
+    let read = unescaped(inner)?;
     // A quote that is no escape would end the text.
     let ends = inner.replace("\\\\", "").replace("\\\"", "").contains('"');
     (!ends).then_some(read)

@@ -156,6 +156,7 @@ pub use control::Control;
 pub use correction_tables::CorrectionTables;
 pub use data_line::{DataLineEvent, DataLineOrder, HostEvent, LineEvent, LineSetup, OrderedLines};
 pub use drip_feed::{Dnc, DripFeedLine, DripFeedState};
+pub use escapes::unescaped;
 pub use hand_over::HandOver;
 pub use handshake::{Handshake, Transfer, Waiting};
 pub use handwheel::HANDWHEEL_STEPS;

@@ -18,6 +18,7 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Component, Path, PathBuf};
 
+use bahn_control::unescaped;
 use bahn_host::HostError;
 use bahn_host::files::{self, NewFile, cannot};
 use thiserror::Error;
@@ -167,30 +168,6 @@ fn pieces(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-fn unescape(line: &str, into: &mut Vec<u8>) -> Option<()> {
-    let mut rest = line.as_bytes();
-    while let Some((first, behind)) = rest.split_first() {
-        rest = behind;
-        if *first != b'\\' {
-            into.push(*first);
-            continue;
-        }
-        let (escape, behind) = rest.split_first()?;
-        rest = behind;
-        into.push(match escape {
-            b'n' => b'\n',
-            b'\\' => b'\\',
-            b'x' => {
-                let (digits, behind) = rest.split_at_checked(2)?;
-                rest = behind;
-                u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()?
-            }
-            _ => return None,
-        });
-    }
-    Some(())
-}
-
 /// Takes a backup line by line. Nothing in the folder changes before [`Restore::commit`].
 #[derive(Debug)]
 pub struct Restore {
@@ -245,7 +222,7 @@ impl Restore {
                 None => self.head(line)?,
             },
             State::Inside { bytes, length, .. } => {
-                unescape(line, bytes).ok_or_else(|| damaged("an escape that there is not"))?;
+                bytes.extend(unescaped(line).ok_or_else(|| damaged("an escape that there is not"))?);
                 if bytes.len() > *length {
                     return Err(damaged("the file is longer than its head says"));
                 }

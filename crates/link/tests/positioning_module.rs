@@ -2,6 +2,9 @@
 //! [000:17986-18115]. What the two say to each other is the machine builder's; here it is a byte, in both directions.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
+#[path = "../../host/tests/support/copy.rs"]
+mod copy;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,6 +16,7 @@ use bahn_host::{
 };
 use bahn_link::{PlcLine, Settings};
 use bahn_program::Program;
+use copy::copy;
 
 const RS_422: usize = 1;
 
@@ -48,19 +52,6 @@ impl Folder {
 impl Drop for Folder {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let target = to.join(entry.file_name());
-        match entry.path().is_dir() {
-            true if entry.file_name() == "state" => {}
-            true => copy(&entry.path(), &target),
-            false => drop(std::fs::copy(entry.path(), target).unwrap()),
-        }
     }
 }
 
