@@ -1,0 +1,1 @@
+//! Language server for part programs, PLC programs and parameter lists.
