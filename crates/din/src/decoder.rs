@@ -167,7 +167,7 @@ impl Decoder {
     /// Goes on to the next line that is a block, out of subroutines that are at their end.
     fn settle(&mut self) {
         while let Some(frame) = self.stack.last_mut() {
-            while frame.line < frame.end && matches!(frame.program.glyphs(frame.line), Ok(None)) {
+            while frame.line < frame.end && frame.program.glyphs(frame.line).is_none() {
                 frame.line += 1;
             }
             if frame.line < frame.end || self.stack.len() <= 1 {
@@ -182,7 +182,7 @@ impl Decoder {
         let Some(frame) = self.stack.last_mut() else {
             return Ok(None);
         };
-        let Some(glyphs) = frame.program.glyphs(frame.line)? else {
+        let Some(glyphs) = frame.program.glyphs(frame.line) else {
             frame.line += 1;
             return Ok(None);
         };

@@ -26,18 +26,17 @@ const MAX_LENGTH: usize = 4096;
 /// Macros that stand for each other end here.
 const MAX_NESTING: u32 = 10;
 
-/// Where a comment begins, and whether it is closed.
+/// Where a comment stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Comment {
     /// Index of its first character.
     pub start: usize,
     /// Index behind its last one.
     pub end: usize,
-    pub closed: bool,
 }
 
 /// The comments of a line: `( )`, `(* *)` and `;` [004:60] [004:123] [004:129]. None begins in a text in quotes. One in
-/// brackets ends in its line (inferred).
+/// brackets ends at the end of its line where no bracket closes it (public).
 pub(crate) fn comments(line: &[char]) -> Vec<Comment> {
     let mut found = Vec::new();
     let mut quote = None;
@@ -52,7 +51,6 @@ pub(crate) fn comments(line: &[char]) -> Vec<Comment> {
                 found.push(Comment {
                     start: at,
                     end: line.len(),
-                    closed: true,
                 });
                 break;
             }
@@ -81,26 +79,17 @@ fn bracketed(line: &[char], start: usize) -> Comment {
             .map(|place| place + 3),
         _ => rest.iter().position(|c| *c == ')').map(|place| place + 1),
     };
-    match inner {
-        Some(length) => Comment {
-            start,
-            end: start + 1 + length,
-            closed: true,
-        },
-        None => Comment {
-            start,
-            end: line.len(),
-            closed: false,
-        },
+    Comment {
+        start,
+        end: inner.map_or(line.len(), |length| start + 1 + length),
     }
 }
 
 /// The characters of a line without its comments, each of which parts words as a blank does.
-pub(crate) fn glyphs(line: &str) -> Result<Vec<Glyph>, LineFault> {
+pub(crate) fn glyphs(line: &str) -> Vec<Glyph> {
     let characters: Vec<char> = line.chars().collect();
     let mut result = Vec::with_capacity(characters.len());
     let mut at = 0;
-    let mut open = None;
     for comment in comments(&characters) {
         append(&mut result, &characters, at..comment.start);
         result.push(Glyph {
@@ -108,19 +97,9 @@ pub(crate) fn glyphs(line: &str) -> Result<Vec<Glyph>, LineFault> {
             column: column(comment.start),
         });
         at = comment.end;
-        if !comment.closed {
-            open = Some(comment);
-        }
     }
     append(&mut result, &characters, at..characters.len());
-    match open {
-        Some(comment) => Err(LineFault {
-            column: column(comment.start),
-            length: column(comment.end).saturating_sub(column(comment.start)).max(1),
-            message: "comment ( is not closed".into(),
-        }),
-        None => Ok(result),
-    }
+    result
 }
 
 fn append(to: &mut Vec<Glyph>, characters: &[char], range: std::ops::Range<usize>) {

@@ -178,7 +178,7 @@ impl Program {
         if !text.trim_start().starts_with(['N', 'n']) {
             return None;
         }
-        block::number(&line::glyphs(text).ok()?).0
+        block::number(&line::glyphs(text)).0
     }
 
     /// The name of a block in reports: its number, else its line.
@@ -187,10 +187,10 @@ impl Program {
     }
 
     /// The characters of a block; `None` of a line that orders nothing.
-    pub(crate) fn glyphs(&self, line: u32) -> Result<Option<Vec<Glyph>>, LineFault> {
+    pub(crate) fn glyphs(&self, line: u32) -> Option<Vec<Glyph>> {
         match self.kind(line) {
-            Line::Block => line::glyphs(self.line(line)).map(Some),
-            Line::Blank | Line::Head { .. } => Ok(None),
+            Line::Block => Some(line::glyphs(self.line(line))),
+            Line::Blank | Line::Head { .. } => None,
         }
     }
 
@@ -213,7 +213,7 @@ impl Program {
     }
 
     fn judge(&self, line: u32, macros: &mut Macros) -> Result<(), LineFault> {
-        let Some(glyphs) = self.glyphs(line)? else {
+        let Some(glyphs) = self.glyphs(line) else {
             return Ok(());
         };
         if block::definitions(&glyphs)?.is_none() && !macros.know_all(&glyphs)? {
@@ -296,8 +296,11 @@ fn kind(line: &str) -> Line<'_> {
         return Line::Blank;
     }
     let Some(head) = text.strip_prefix('%') else {
-        let comment = |glyphs: Vec<Glyph>| glyphs.iter().all(|glyph| glyph.character.is_whitespace());
-        return match text.starts_with([';', '(']) && line::glyphs(text).is_ok_and(comment) {
+        let is_comment = text.starts_with([';', '('])
+            && line::glyphs(text)
+                .iter()
+                .all(|glyph| glyph.character.is_whitespace());
+        return match is_comment {
             true => Line::Blank,
             false => Line::Block,
         };

@@ -1,7 +1,12 @@
 //! What tests of the decoder have in common: variables in a table, subroutines in another one, and short ways to say
 //! what a unit orders.
 
-#![allow(dead_code)]
+#![allow(dead_code, reason = "no test uses all of it")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    reason = "what fails in a helper fails the test"
+)]
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
