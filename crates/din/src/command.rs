@@ -92,7 +92,7 @@ pub(crate) fn read(cursor: &mut Cursor) -> Result<Order, LineFault> {
     }
     cursor.go_back(end);
     let Some(form) = FORMS.iter().find(|form| form.words == words) else {
-        return Err(cursor.fault(mark, format!("unknown command #{words}")));
+        return Err(cursor.fault(mark, format!("unknown command {}", cursor.text(mark))));
     };
     let mut order = Order {
         what: form.what,

@@ -125,18 +125,34 @@ impl<'a> Cursor<'a> {
     /// A fault of a word that is not known: takes what looks like it, so that it is named whole.
     pub fn unknown(&mut self, mark: usize, what: &str) -> LineFault {
         self.go_back(mark);
-        let name = self.word();
-        self.fault(mark, format!("unknown {what} {name}"))
+        self.word();
+        self.fault(mark, format!("unknown {what} {}", self.text(mark)))
     }
 
-    /// A word as somebody would name it: letters, digits, points; at least one character.
+    /// A word as somebody would name it: `T12`, `#HSC`, `V.P.NAME`, `[LABEL]`; at least one character.
     pub fn word(&mut self) -> String {
         let mut name = self.take_while(|c| matches!(c, '$' | '#' | '@' | '%'));
-        name += &self.take_while(|c| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+'));
+        if name.is_empty() && self.peek() == Some('[') {
+            name += &self.take_while(|c| c != ']');
+            name.extend(self.peek());
+            self.advance(1);
+            return name;
+        }
+        name += &self.take_while(|c| c.is_alphabetic() || c == '_');
+        name += &self.take_while(|c| c.is_ascii_digit() || c == '.');
+        if name.contains(['.', '_']) {
+            name += &self.take_while(|c| c.is_alphanumeric() || matches!(c, '_' | '.'));
+        }
         if name.is_empty() {
             name.extend(self.peek());
             self.advance(1);
         }
         name
+    }
+
+    /// What was read since a mark, as it is written.
+    pub fn text(&self, mark: usize) -> String {
+        let glyphs = self.line.get(mark..self.at).unwrap_or_default();
+        glyphs.iter().map(|glyph| glyph.character).collect()
     }
 }

@@ -17,6 +17,7 @@ mod expression;
 mod line;
 mod program;
 mod unit;
+mod words;
 
 pub use decoder::{BlockFault, Decoder, Found, Step};
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
@@ -24,3 +25,4 @@ pub use unit::{
     Command, Function, Independent, Kind, Motion, Place, Shelf, SpindleOrder, Target, Unit, Variable,
     Variables,
 };
+pub use words::{Span, SpanKind, words};

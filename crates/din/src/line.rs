@@ -102,6 +102,35 @@ pub(crate) fn glyphs(line: &str) -> Vec<Glyph> {
     result
 }
 
+/// Where a command stands in a line outside of other comments and quotes, in characters.
+pub(crate) fn command(line: &str, from: usize, command: &str) -> Option<usize> {
+    if !line.contains('#') {
+        return None;
+    }
+    let characters: Vec<char> = line.chars().collect();
+    let comments = comments(&characters);
+    let is_code = |at: usize| {
+        !comments
+            .iter()
+            .any(|comment| (comment.start..comment.end).contains(&at))
+    };
+    let is_here = |at: usize| {
+        let there = characters.get(at..).unwrap_or_default();
+        there.len() >= command.len()
+            && there
+                .iter()
+                .zip(command.chars())
+                .all(|(a, b)| a.eq_ignore_ascii_case(&b))
+    };
+    (from..characters.len()).find(|at| is_here(*at) && is_code(*at))
+}
+
+/// Blanks in place of the characters of a range.
+pub(crate) fn blank(line: &mut String, from: usize, to: usize) {
+    let blanked = |(at, character)| if (from..to).contains(&at) { ' ' } else { character };
+    *line = line.chars().enumerate().map(blanked).collect();
+}
+
 fn append(to: &mut Vec<Glyph>, characters: &[char], range: std::ops::Range<usize>) {
     let first = range.start;
     for (i, character) in characters.get(range).unwrap_or_default().iter().enumerate() {
