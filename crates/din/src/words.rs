@@ -114,7 +114,7 @@ fn word(cursor: &mut Cursor) -> Option<SpanKind> {
                 end = cursor.mark();
                 cursor.skip_blanks();
             }
-            cursor.go_back(end);
+            cursor.go_to(end);
             Some(SpanKind::Command)
         }
         quote @ ('"' | '\'') => {
