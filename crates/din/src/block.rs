@@ -468,6 +468,8 @@ fn call(cursor: &mut Cursor, letters: &str) -> Result<Option<WordKind>, LineFaul
     if name.to_ascii_uppercase().starts_with("CYCLE[")
         || name.eq_ignore_ascii_case("CYCLE") && cursor.eat('[')
     {
+        cursor.go_to(mark);
+        cursor.take_while(|c| c != '[');
         return Err(cursor.fault(mark, format!("unknown word {letters} CYCLE (a cycle)")));
     }
     if cursor.is_done() {
