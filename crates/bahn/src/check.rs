@@ -2,6 +2,8 @@
 //!
 //! Every block is read, and the program is rehearsed: executed without geometry, beyond its errors.
 
+mod din;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -98,6 +100,9 @@ struct Found {
 
 /// Checks a file and prints what is wrong.
 pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
+    if files::extension(path) == "nc" {
+        return din::check(path, how.format, interrupt);
+    }
     let (programs, found, more, complete) = match files::load_program(path)? {
         Loaded::Program(program) => examine(program, &how.settings, interrupt),
         Loaded::Empty(program) => nothing(program, MessageId::EndOfProgramMissing, files::EMPTY),
