@@ -77,18 +77,21 @@ impl fmt::Display for ScriptError {
 impl std::error::Error for ScriptError {}
 
 impl Script {
-    /// What happens to a function in a range: what is said of it in this range goes before what is said of it in all.
-    pub(crate) fn reply(&self, range: &str, function: &str) -> Reply {
-        let own = |range: &str| self.replies.get(&(range.to_owned(), function.to_owned()));
-        own(range).or_else(|| own("")).copied().unwrap_or(self.default)
+    /// What happens to a function in a range, by any of its names: what is said of it in this range goes before what is
+    /// said of it in all.
+    pub(crate) fn reply(&self, names: &[String], function: &str) -> Reply {
+        let said = |range: &str| self.replies.get(&(range.to_owned(), function.to_owned()));
+        if self.replies.is_empty() {
+            return self.default;
+        }
+        let own = names.iter().find_map(|name| said(name));
+        own.or_else(|| said("")).copied().unwrap_or(self.default)
     }
 
     /// How long a spindle takes to confirm.
-    pub(crate) fn ready(&self, spindle: &str) -> After {
-        self.spindles
-            .get(&spindle.to_uppercase())
-            .copied()
-            .unwrap_or(After::Seconds(0.0))
+    pub(crate) fn ready(&self, names: &[String]) -> After {
+        let said = names.iter().find_map(|name| self.spindles.get(name));
+        said.copied().unwrap_or(After::Seconds(0.0))
     }
 }
 
@@ -165,12 +168,7 @@ fn function(name: &str) -> Option<(String, String)> {
         }
         _ => return None,
     };
-    let range = if range.eq_ignore_ascii_case("channel") {
-        "channel".to_owned()
-    } else {
-        range.to_uppercase()
-    };
-    Some((range, label))
+    Some((range.to_uppercase(), label))
 }
 
 /// A word and the column where it begins, from 0.
