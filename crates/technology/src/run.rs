@@ -1,6 +1,6 @@
 //! The face of a run: what it is given.
 
-use bahn_din::{Unit, Variables};
+use bahn_din::{Command, Unit, Variables};
 use bahn_motion::Limits;
 use bahn_path::Position;
 
@@ -13,7 +13,7 @@ use crate::settings::ChannelSettings;
 /// Time, PLC, spindles and functions that are still open go over from one to the next, which starts where it ended.
 pub struct Run<'a> {
     /// The programs.
-    pub programs: &'a mut dyn Programs,
+    pub programs: &'a dyn Programs,
     /// What the channel parameter list says.
     pub settings: &'a ChannelSettings,
     /// Dynamics; a cycle of the PLC is one of the path.
@@ -38,7 +38,7 @@ pub trait Programs {
     ///
     /// # Errors
     /// When it cannot be begun.
-    fn open(&mut self, index: usize, start: &Position) -> Result<Box<dyn Blocks + '_>, Fault>;
+    fn open(&self, index: usize, start: &Position) -> Result<Box<dyn Blocks + '_>, Fault>;
 }
 
 /// A program that is decoded block by block.
@@ -48,11 +48,21 @@ pub trait Blocks {
     /// # Errors
     /// What is wrong with the block.
     fn next(&mut self, variables: &mut dyn Variables) -> Result<Option<Unit>, Fault>;
+
+    /// Goes on to a block without handing on those before it: where the path stands there, and the commands in force.
+    ///
+    /// # Errors
+    /// When there is no such block, or something is wrong with one before it.
+    fn skip_to(
+        &mut self,
+        block: &str,
+        variables: &mut dyn Variables,
+    ) -> Result<(Position, Vec<Command>), Fault>;
 }
 
 impl Run<'_> {
     /// Runs them.
     pub fn execute(self) -> Report {
-        crate::channel::execute(self)
+        crate::channel::execute(&self)
     }
 }

@@ -136,7 +136,6 @@ impl Variables for InForce {
     fn exists(&self, m: bool, number: u16) -> bool {
         let table = if m { &self.settings.m } else { &self.settings.h };
         let known = table.get(number.into());
-        known.is_some_and(|function| function.synch.is_some())
-            || m && INTERNAL_M.contains(&u32::from(number))
+        known.is_some_and(|function| function.synch.is_some()) || m && INTERNAL_M.contains(&u32::from(number))
     }
 }

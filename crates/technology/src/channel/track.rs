@@ -74,7 +74,11 @@ impl Leg {
 
     /// The place so far along it, mm.
     pub(crate) fn place(&self, along: f64) -> Position {
-        let part = if self.length > 0.0 { along / self.length } else { 1.0 };
+        let part = if self.length > 0.0 {
+            along / self.length
+        } else {
+            1.0
+        };
         self.curve.position(&self.start, &self.end, part.clamp(0.0, 1.0))
     }
 
@@ -101,7 +105,11 @@ impl Leg {
 
     /// What is left of it behind a place so far along it, or, backward, the way back from there to its start.
     pub(crate) fn rest(&self, along: f64, backward: bool) -> Leg {
-        let at = if self.length > 0.0 { along / self.length } else { 1.0 };
+        let at = if self.length > 0.0 {
+            along / self.length
+        } else {
+            1.0
+        };
         if !backward {
             return self.split(along).1;
         }

@@ -5,8 +5,8 @@ mod script;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-pub use script::{Script, ScriptError};
 pub(crate) use script::{After, Reply};
+pub use script::{Script, ScriptError};
 
 /// Number of a function in the channel.
 type Id = u64;
