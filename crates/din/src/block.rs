@@ -190,11 +190,12 @@ pub(crate) fn read(line: &[Glyph], macros: &Macros) -> Result<Block, LineFault> 
 /// A number of a block that is a label: `N20:`.
 fn label(line: &[Glyph]) -> Option<LineFault> {
     let (name, rest) = number(line);
+    name?;
     let mut cursor = Cursor::new(line);
     cursor.skip_blanks();
     let mark = cursor.mark();
-    cursor.advance(line.len() - rest.len() - mark);
-    let is_label = name.is_some() && cursor.eat(':');
+    cursor.go_to(line.len() - rest.len());
+    let is_label = cursor.eat(':');
     is_label.then(|| cursor.fault(mark, format!("unknown word {} (a label)", cursor.text(mark))))
 }
 
@@ -421,7 +422,7 @@ fn parameter(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
         return Ok(WordKind::SetParameter(number, expression(cursor)?));
     }
     if dwells {
-        cursor.go_back(mark);
+        cursor.go_to(mark);
         return Ok(WordKind::Bare(expression(cursor)?));
     }
     Err(cursor.fault(mark, "a parameter that is given no value"))
@@ -435,7 +436,7 @@ fn variable(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
         return Ok(WordKind::SetVariable(variable, expression(cursor)?));
     }
     if dwells {
-        cursor.go_back(mark);
+        cursor.go_to(mark);
         return Ok(WordKind::Bare(expression(cursor)?));
     }
     Err(cursor.fault(mark, "a variable that is given no value"))

@@ -81,7 +81,8 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
-    pub fn go_back(&mut self, mark: usize) {
+    /// Stands where it stood before, or where a part of the line ends.
+    pub fn go_to(&mut self, mark: usize) {
         self.at = mark;
     }
 
@@ -124,7 +125,7 @@ impl<'a> Cursor<'a> {
 
     /// A fault of a word that is not known: takes what looks like it, so that it is named whole.
     pub fn unknown(&mut self, mark: usize, what: &str) -> LineFault {
-        self.go_back(mark);
+        self.go_to(mark);
         self.word();
         self.fault(mark, format!("unknown {what} {}", self.text(mark)))
     }

@@ -64,6 +64,11 @@ pub fn words(text: &str) -> Vec<Span> {
         }
     }
     spans.sort_by_key(|span| span.column);
+    // A command goes on behind a comment; what is marked of it ends before.
+    let next: Vec<u32> = spans.iter().skip(1).map(|span| span.column).collect();
+    for (span, next) in spans.iter_mut().zip(next) {
+        span.length = span.length.min(next.saturating_sub(span.column)).max(1);
+    }
     spans
 }
 
@@ -114,7 +119,7 @@ fn word(cursor: &mut Cursor) -> Option<SpanKind> {
                 end = cursor.mark();
                 cursor.skip_blanks();
             }
-            cursor.go_back(end);
+            cursor.go_to(end);
             Some(SpanKind::Command)
         }
         quote @ ('"' | '\'') => {

@@ -361,7 +361,7 @@ fn what_is_not_known_is_named() {
         (
             "N20  #MC_MovePath SYN [CH=1]",
             6,
-            "unknown command #MC_MOVEPATH SYN",
+            "unknown command #MC_MovePath SYN",
         ),
         (
             "#CHANNEL SET [PATH_DEV=1]",
