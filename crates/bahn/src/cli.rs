@@ -10,6 +10,7 @@ use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
 use crate::faults::FaultsOptions;
 use crate::link::LinkOptions;
+use crate::lsp::LspOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
@@ -68,6 +69,9 @@ pub(crate) enum Command {
     /// Write programs as normalised listing: block numbers, signs and spacing as the control prints them.
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(FmtOptions),
+    /// Serve an editor while programs and lists are written: the Language Server Protocol.
+    #[command(after_help = crate::lsp::EXAMPLES)]
+    Lsp(LspOptions),
     /// Compile, run and debug PLC programs.
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.

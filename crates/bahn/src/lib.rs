@@ -16,6 +16,7 @@
 //!   checks folders of machines;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
 //!   groups `bahn plc`, `bahn mp`, `bahn table`, `channel` is `bahn channel`; `link`: the data interfaces;
+//!   `lsp`: the language server;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
 //! - `paragraph`: labelled text in 80 columns, `style`: its colours; `junit`: expectations for build servers;
@@ -39,6 +40,7 @@ mod format;
 mod interrupt;
 mod junit;
 mod link;
+mod lsp;
 mod machine_folder;
 mod manual;
 mod mp;
@@ -95,6 +97,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Channel(options) => channel::command(&options),
+        cli::Command::Lsp(options) => lsp::command(&options),
         cli::Command::Oem(options) => oem::command(&options),
         cli::Command::Table(options) => table::command(&options),
         cli::Command::Link(options) => link::command(&options),
