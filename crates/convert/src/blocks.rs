@@ -7,8 +7,8 @@ use bahn_program::{
 };
 
 use crate::canonical::{canonical, decorated};
-use crate::flow::{Flow, State, States};
-use crate::lower::lower;
+use crate::flow::{Flow, States};
+use crate::lower::{State, lower};
 use crate::reason::reason;
 use crate::to_iso::{cycle_block, encoded, expected, goes_on};
 use crate::{Language, Listed};

@@ -10,7 +10,7 @@ use bahn_program::{
     CycleWord, Direction, Distance, InForce, Modality, Motion, Operation, PathFunction, Program,
 };
 
-use crate::lower::bare;
+use crate::lower::{State, bare};
 
 /// A part of a set that stands for what was in force where the subprogram was called.
 const AS_CALLED: u16 = 1 << 15;
@@ -29,22 +29,6 @@ const DIRECTIONS: [Option<Direction>; 3] = [
     Some(Direction::CounterClockwise),
 ];
 const PLANES: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
-
-/// What is in force before a block, with the tool axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct State {
-    pub in_force: InForce,
-    pub plane: Axis,
-}
-
-impl Default for State {
-    fn default() -> State {
-        State {
-            in_force: InForce::default(),
-            plane: Axis::Z,
-        }
-    }
-}
 
 /// All that may be in force: a set for the path function, G90 or G91, the direction of arcs and the tool axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 //! The face of this room:
 //! - [`convert`]: a program block by block into the other language of the control; what that cannot say is listed;
 //! - [`prove`]: two runs side by side, element by element, function by function, message by message;
-//! - [`unroll`]: a run as a program in plain language or DIN/ISO, block by block what it did;
+
 //! - [`gcode`]: a run as a program for LinuxCNC, and the reader that proves it.
 //!
 //! ```
@@ -23,6 +23,7 @@
 mod blocks;
 mod canonical;
 mod flow;
+pub mod gcode;
 mod listed;
 mod lower;
 mod proof;

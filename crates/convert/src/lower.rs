@@ -1,9 +1,26 @@
 //! A block of a language with G functions as the operations of one that says all itself, in the order in which a run
 //! executes them.
 
-use bahn_program::{Compensation, Distance, Feed, Modality, Motion, MotionKind, Operation, PathFunction};
+use bahn_path::Axis;
+use bahn_program::{
+    Compensation, Distance, Feed, InForce, Modality, Motion, MotionKind, Operation, PathFunction,
+};
 
-use crate::flow::State;
+/// What is in force before a block, with the tool axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct State {
+    pub in_force: InForce,
+    pub plane: Axis,
+}
+
+impl Default for State {
+    fn default() -> State {
+        State {
+            in_force: InForce::default(),
+            plane: Axis::Z,
+        }
+    }
+}
 
 /// Why a block has no operations of its own.
 pub(crate) type Reason = &'static str;

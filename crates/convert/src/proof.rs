@@ -86,6 +86,8 @@ impl At {
 pub(crate) enum Event {
     Element(Box<PathElement>),
     Stop(BlockRef),
+    /// A probe was asked, and has answered.
+    Asked(BlockRef),
     Message(BlockRef, String),
     End,
     Interrupted,
@@ -102,8 +104,11 @@ pub(crate) fn next_event(run: &mut Interpreter, model: ControlModel) -> Event {
             Step::Error(error) => return Event::Message(error.block, error.message.text(model).to_owned()),
             Step::Barrier(barrier) => {
                 run.resume(answer(&barrier));
-                if let Barrier::Stop { block } = barrier {
-                    return Event::Stop(block);
+                match barrier {
+                    Barrier::Stop { block } => return Event::Stop(block),
+                    Barrier::Probe { block, .. } | Barrier::Scan { block, .. } => return Event::Asked(block),
+                    Barrier::MeasureTool(measuring) => return Event::Asked(measuring.block),
+                    Barrier::Acknowledge { .. } => {}
                 }
             }
         }
@@ -163,6 +168,7 @@ pub fn prove(
                 proof.stops += 1;
                 None
             }
+            (Event::Asked(_), Event::Asked(_)) => None,
             (Event::Element(one), Event::Element(other)) => proof.element(one, other),
             (one, other) => Some(format!(
                 "{} in the source, {} in the target",
@@ -184,7 +190,7 @@ pub fn prove(
 fn block_of(event: &Event) -> Option<BlockRef> {
     match event {
         Event::Element(element) => Some(element.block),
-        Event::Stop(block) | Event::Message(block, _) => Some(*block),
+        Event::Stop(block) | Event::Asked(block) | Event::Message(block, _) => Some(*block),
         Event::End | Event::Interrupted => None,
     }
 }
@@ -193,6 +199,7 @@ fn name(event: &Event) -> String {
     match event {
         Event::Element(_) => "an element of the path".to_owned(),
         Event::Stop(_) => "a stop".to_owned(),
+        Event::Asked(_) => "probing".to_owned(),
         Event::Message(_, text) => format!("the message {text}"),
         Event::End => "the end".to_owned(),
         Event::Interrupted => "nothing more".to_owned(),

@@ -50,3 +50,28 @@ fn every_program_of_the_repository_goes_there_and_back() {
     println!("{whole} of {} programs, {elements} elements", files.len());
     assert!(whole >= 60 && elements > 10_000);
 }
+
+#[test]
+fn every_program_of_the_repository_becomes_gcode_with_the_same_path() {
+    let files = programs("H");
+    let (mut elements, mut whole) = (0, 0);
+    for file in &files {
+        let bytes = std::fs::read(file).unwrap();
+        let program = Program::from_bytes(file.to_string_lossy(), bytes);
+        let folder = file.parent().unwrap();
+        let (made, proof) = gcode(&program, &settings(ControlModel::Tnc415b), folder);
+        assert!(proof.holds(), "{}: {proof:?}\n{}", file.display(), made.text);
+        println!(
+            "{}: {} elements, {} µm, {:?} {:?}",
+            file.display(),
+            proof.elements,
+            proof.max_deviation_um,
+            made.message,
+            made.refused
+        );
+        elements += proof.elements;
+        whole += u32::from(made.refused.is_empty());
+    }
+    println!("{whole} of {} programs, {elements} elements", files.len());
+    assert!(whole >= 55 && elements > 10_000);
+}

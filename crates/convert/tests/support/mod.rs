@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_convert::{Converted, Language, Options, Proof, convert, prove};
+use bahn_convert::{Converted, Language, Options, Proof, convert, gcode, prove};
 use bahn_interpreter::{Interpreter, Library, Settings};
 use bahn_parameters::ControlModel;
 use bahn_program::{FormatOptions, Program};
@@ -114,4 +114,19 @@ pub fn there_and_back(source: &Program, settings: &Settings, folder: &Path) -> P
     assert!(and_back.holds(), "{}: {and_back:?}\n{}", source.name(), back.text);
     assert_eq!(there.elements, and_back.elements);
     there
+}
+
+/// The program for LinuxCNC of a program, and the proof that it is the same path.
+pub fn gcode(source: &Program, settings: &Settings, folder: &Path) -> (gcode::GCode, Proof) {
+    let options = gcode::Options {
+        model: settings.model,
+        unit: source.unit(),
+        comments: true,
+        rapid_mm_min: 15_000.0,
+    };
+    let begin = || run(source, settings, folder);
+    let stop = Arc::new(AtomicBool::new(false));
+    let made = gcode::write(&begin, &options, &stop);
+    let proof = gcode::prove(&begin, &made.text, "A.ngc", &options, &stop);
+    (made, proof)
 }
