@@ -135,6 +135,11 @@ impl FunctionTable {
         self.0.get_mut(usize::try_from(number).ok()?)
     }
 
+    /// All, to change them.
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut FunctionSettings> {
+        self.0.iter_mut()
+    }
+
     /// All with their numbers.
     pub fn iter(&self) -> impl Iterator<Item = (u32, &FunctionSettings)> {
         (0..).zip(&self.0)
