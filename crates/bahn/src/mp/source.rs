@@ -30,7 +30,7 @@ fn model_of_folder(list: &Path) -> Option<ControlModel> {
 }
 
 /// The control that the comments at the beginning of a list name, as `TNC 415 B` or `tnc415b`.
-pub(super) fn named_model(bytes: &[u8]) -> Option<ControlModel> {
+pub(crate) fn named_model(bytes: &[u8]) -> Option<ControlModel> {
     let text = String::from_utf8_lossy(bytes);
     let comments = text
         .trim_start_matches('\u{feff}')
