@@ -22,7 +22,6 @@ use bahn_technology::{ChannelList, Coordinates, Fault, Report, Run, Script};
 
 use crate::options::Format;
 use crate::{Outcome, UsageError, channel, console, diagnostics, files, scope, settings};
-use programs::Files;
 
 /// Runs programs in turn on one channel and reports what was output and waited for.
 pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError> {
@@ -30,7 +29,7 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
         let inputs: Vec<&Path> = inputs(options).map(PathBuf::as_path).collect();
         files::keep_inputs(&inputs, &[("--image", picture.path())])?;
     }
-    let programs = Files::read(&options.programs)?;
+    let programs = programs::read(&options.programs)?;
     let script = options.plc.as_deref().map(script).transpose()?;
     let limits = dynamics::limits(options.parameters.as_deref())?;
     let start = settings::position("--start", &options.start, ControlModel::default())?;
@@ -52,7 +51,7 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
         .execute(),
     };
     if let Some(picture) = &options.image {
-        let title = programs.title();
+        let title = programs::title(&options.programs);
         scope::write(&picture::sheet(&report, &title), picture)?;
     }
     match options.format {
@@ -85,11 +84,10 @@ fn script(path: &Path) -> Result<Script, UsageError> {
 
 /// A list with errors is used for nothing: its first error ends the run before it begins.
 fn refused(list: &ChannelList, path: &Path, limits: &Limits, start: Position) -> Report {
-    let name = path.file_name().unwrap_or(path.as_os_str());
     let error = list.errors().first().map(|fault| Fault {
         code: "channel-list".to_owned(),
         message: format!("line {}, column {}: {}", fault.line, fault.column, fault.message),
-        program: name.to_string_lossy().into_owned(),
+        program: programs::file_name(path),
         block: format!("#{}", fault.line),
     });
     Report {

@@ -108,10 +108,14 @@ impl Channel<'_> {
         let closed = self.nearest_closed();
         drive.stop_before = closed;
         drive.hold |= self.is_overrun() || self.blocked_lead().is_some();
-        if closed != Some(self.reached) {
+        // The first element of a path has none before it at whose end it could stop.
+        if closed.is_some_and(|place| place <= self.reached) {
+            drive.hold = true;
+        } else {
             self.path.go_on();
         }
         let (before, way) = (self.now(), self.way());
+        self.way_before = way;
         let number = self.reached;
         let cycle = self.path.cycle(&drive);
         if let Some(last) = self.path.passed().last() {

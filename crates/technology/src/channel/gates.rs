@@ -111,8 +111,7 @@ impl Channel<'_> {
                 self.fault = Some(fault.as_ref().clone());
                 Done::Yes
             }
-            // The PLC fetches what was output last, if it ever does.
-            Deed::End if self.plc.fetches() || !self.leads.queue.is_empty() => Done::NotYet,
+            Deed::End if !self.leads.queue.is_empty() => Done::NotYet,
             Deed::End => {
                 self.ended = true;
                 Done::Yes

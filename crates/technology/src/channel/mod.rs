@@ -68,6 +68,8 @@ struct Channel<'a> {
     open_to: u64,
     /// The cycle in which a dwell ends.
     dwell: Option<u64>,
+    /// Way along the path before the last cycle, mm.
+    way_before: f64,
     /// The path stood still in the last cycle.
     still: bool,
     /// That was said.
@@ -125,6 +127,7 @@ impl<'a> Channel<'a> {
             reached: 1,
             open_to: 1,
             dwell: None,
+            way_before: 0.0,
             still: true,
             stands: true,
             held: false,

@@ -51,6 +51,8 @@ pub(crate) fn execute(run: &Run<'_>) -> Report {
             break;
         }
     }
+    let end_s = channel.t();
+    channel.fetch_the_rest();
     let completed =
         programs.len() == run.programs.count() && programs.iter().all(|program| program.completed);
     if completed {
@@ -59,7 +61,7 @@ pub(crate) fn execute(run: &Run<'_>) -> Report {
     Report {
         completed,
         error: channel.fault.take(),
-        time_s: record::time(channel.t()),
+        time_s: record::time(end_s),
         cycle_s: channel.cycle_s,
         path_end: Coordinates(channel.position()),
         events: channel.record.events,
@@ -78,6 +80,15 @@ impl Channel<'_> {
             position[axis] = self.ended_at[axis];
         }
         position
+    }
+
+    /// Behind the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
+    fn fetch_the_rest(&mut self) {
+        self.plc.keep_fetches();
+        while let Some(cycle) = self.plc.next_cycle() {
+            self.cycle = self.cycle.max(cycle);
+            self.plc();
+        }
     }
 
     /// Runs a program of a run, from a block on.
