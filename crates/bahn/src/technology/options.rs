@@ -9,11 +9,10 @@ use crate::scope::{Picture, picture};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
-  bahn technology examples/technology/glue.nc --channel examples/technology/glue.lis
+  bahn technology glue.nc --channel glue.lis
       Each function is acknowledged its process time after its output.
-  bahn technology examples/technology/glue.nc --channel examples/technology/glue.lis \\
-      --plc examples/technology/slow-valve.txt --image glue.png
-  bahn technology examples/technology/laser.nc --channel examples/technology/laser.lis --format json
+  bahn technology glue.nc --channel glue.lis --plc slow-valve.txt --image glue.png
+  bahn technology laser.nc --channel laser.lis --format json
 
 Programs are DIN 66025 as a TF5200 reads it; a file may hold several, which run in turn. Subroutines called
 with L lie beside their program. Without --parameters G00 runs at 10 m/min, axes accelerate with 1 m/s2;
