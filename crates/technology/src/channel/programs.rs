@@ -1,11 +1,10 @@
 //! Programs one behind the other.
 
-use std::sync::Arc;
-
 use bahn_din::{Place, Unit};
 use bahn_path::Position;
 
 use super::Channel;
+use super::backward::Backward;
 use super::fault::named;
 use super::in_force::InForce;
 use super::record::{self, EVENTS};
@@ -145,7 +144,8 @@ impl Channel<'_> {
         self.leads.begin(way);
         (self.fed, self.reached, self.open_to) = (first, first, first);
         self.cursor = (first, 0);
-        (self.dwell, self.ended) = (None, false);
+        (self.dwell, self.ended, self.part) = (None, false, None);
+        self.backward = Backward::default();
         self.ended_at = Position::UNKNOWN;
         self.independent.clear();
     }
@@ -166,7 +166,11 @@ impl Channel<'_> {
             self.follow_script();
             let drive = self.drive_now();
             for _ in 0..ROUNDS {
-                let done = self.decode(blocks) | self.output_ahead(&drive) | self.act();
+                let done = if self.backward.is_on() {
+                    self.act_backward()
+                } else {
+                    self.decode(blocks) | self.output_ahead(&drive) | self.act()
+                };
                 any |= done;
                 if !done {
                     break;
@@ -204,9 +208,6 @@ impl Channel<'_> {
     /// Decodes as far ahead as there is room. Whether there was any block.
     fn decode(&mut self, blocks: &mut dyn Blocks) -> bool {
         let mut count = 0;
-        if self.backward.is_on() {
-            return false;
-        }
         while count < BLOCKS && !self.decoding.ended && self.fault.is_none() {
             if self.decoding.holds {
                 if !self.is_empty() {
@@ -283,13 +284,8 @@ impl Channel<'_> {
         self.reset_count += 1;
         self.record.stands_for_nothing(self.t());
         if !self.stands {
-            let block: Arc<str> = match self.track.leg(self.reached) {
-                Some(leg) => leg.block.clone(),
-                None => self.track.block_before(self.reached),
-            };
             let at = self.now();
-            self.record.path(false, &block, at);
-            self.stands = true;
+            self.stop(at);
         }
         self.plc.reset();
         self.ranges.reset();
