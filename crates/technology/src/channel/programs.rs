@@ -216,8 +216,13 @@ impl Channel<'_> {
                 self.decoding.holds = false;
             }
             let last = self.track.last();
-            if last > self.reached + AHEAD || self.track.deeds(last).len() > DEEDS {
+            let done = if self.cursor.0 == last { self.cursor.1 } else { 0 };
+            if last > self.reached + AHEAD || self.track.deeds(last).len() > DEEDS + done {
                 break;
+            }
+            if done > DEEDS {
+                self.track.forget_done(done);
+                self.cursor.1 = 0;
             }
             count += 1;
             let taken = match blocks.next(&mut self.in_force) {

@@ -272,6 +272,11 @@ impl Track {
         self.tail.push(deed);
     }
 
+    /// So many deeds where the path ends are done: blocks without a movement may go on for ever.
+    pub(crate) fn forget_done(&mut self, count: usize) {
+        self.tail.drain(..count.min(self.tail.len()));
+    }
+
     pub(crate) fn push_leg(&mut self, mut leg: Leg) {
         leg.from = self.way;
         self.way += leg.length;
