@@ -7,6 +7,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::Outcome;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
+use crate::convert::ConvertOptions;
 use crate::faults::FaultsOptions;
 use crate::link::LinkOptions;
 use crate::machine_folder::MachineFolderOptions;
@@ -67,6 +68,9 @@ pub(crate) enum Command {
     /// Write programs as normalised listing: block numbers, signs and spacing as the control prints them.
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(FmtOptions),
+    /// Write programs in another language, and prove that they do the same.
+    #[command(after_help = crate::convert::EXAMPLES)]
+    Convert(Box<ConvertOptions>),
     /// Compile, run and debug PLC programs.
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.

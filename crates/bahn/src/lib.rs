@@ -14,6 +14,7 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
+//! - `convert`: programs in another language, with the proof that they do the same;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
 //!   groups `bahn plc`, `bahn mp`, `bahn table`; `link`: the data interfaces;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
@@ -29,6 +30,7 @@ mod cli;
 mod compensate;
 mod conformance;
 mod console;
+mod convert;
 mod cutting;
 mod diagnostics;
 mod explain;
@@ -90,6 +92,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Machine(options) => machine_folder::command(&options),
         cli::Command::Check(options) => check::command(&options),
         cli::Command::Fmt(options) => format::command(&options),
+        cli::Command::Convert(options) => convert::command(&options),
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Oem(options) => oem::command(&options),
