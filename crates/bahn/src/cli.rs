@@ -5,11 +5,13 @@ use std::ffi::OsString;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::Outcome;
+use crate::channel::ChannelOptions;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
 use crate::convert::ConvertOptions;
 use crate::faults::FaultsOptions;
 use crate::link::LinkOptions;
+use crate::lsp::LspOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
@@ -71,10 +73,15 @@ pub(crate) enum Command {
     /// Write programs in another language, and prove that they do the same.
     #[command(after_help = crate::convert::EXAMPLES)]
     Convert(Box<ConvertOptions>),
+    /// Serve an editor while programs and lists are written: the Language Server Protocol.
+    #[command(after_help = crate::lsp::EXAMPLES)]
+    Lsp(LspOptions),
     /// Compile, run and debug PLC programs.
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// Check, explain and write lists of channel parameters: when M, H and spindle functions reach the PLC.
+    Channel(ChannelOptions),
     /// List the cycles of the machine builder, and write EPROMs with them.
     Oem(OemOptions),
     /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.

@@ -5,7 +5,7 @@
 //! - [`Settings`]: control model, machine parameters, tools and options of a run;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
 //! - [`Library`]: where called programs come from;
-//! - [`rehearse`]: all faults of a program, found without moving anything;
+//! - [`rehearse`]: all faults of a program, found without moving anything; [`examine`]: with those that reading finds;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
 //! ```
@@ -45,6 +45,7 @@ mod cycles;
 mod definition;
 mod digitize;
 mod error;
+mod examination;
 mod execute;
 mod flow;
 mod functions;
@@ -87,6 +88,7 @@ pub use absent::AbsentAxes;
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
+pub use examination::{Complete, Examination, Found, examine};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
