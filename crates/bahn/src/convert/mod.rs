@@ -23,7 +23,7 @@ pub(crate) use options::{ConvertOptions, EXAMPLES};
 
 use crate::files::{self, FileLibrary, NewFile};
 use crate::interrupt::{Interrupt, Stop};
-use crate::options::Format;
+use crate::options::{FmtOptions, Format};
 use crate::settings::{self, Equipment};
 use crate::{Outcome, UsageError, console, diagnostics, shelf};
 use library::{Converted, TargetLibrary};
@@ -158,10 +158,14 @@ impl Bench<'_> {
     }
 
     fn format(&self) -> FormatOptions {
-        let step = self.options.iso_step;
+        let machine = &self.options.machine;
+        let given = machine.folder.is_some() || machine.parameters.is_some() || !machine.mp.is_empty();
         FormatOptions {
             decimal_comma: false,
-            iso_step: step.unwrap_or_else(|| self.list.operation_parameters().iso_step),
+            iso_step: self.options.iso_step.unwrap_or_else(|| match given {
+                true => self.list.operation_parameters().iso_step,
+                false => FmtOptions::ISO_STEP,
+            }),
         }
     }
 

@@ -68,7 +68,8 @@ pub(crate) struct ConvertOptions {
     /// G-code without the source blocks as comments.
     #[arg(long)]
     pub no_comments: bool,
-    /// Step of the block numbers of DIN/ISO programs; MP7220 by default, 0 writes none.
+    /// Step of the block numbers of DIN/ISO programs, 0 writes none; by default MP7220 of a machine or a list that is
+    /// given, else 10.
     #[arg(long, value_name = "STEP")]
     pub iso_step: Option<u8>,
 
