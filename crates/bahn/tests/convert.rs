@@ -114,7 +114,7 @@ fn what_iso_cannot_say_is_unrolled_or_refused() {
     let refused = &report["refused"][0];
     assert_eq!(
         (&refused["block"], &refused["line"]),
-        (&5.into(), &6.into()),
+        (&4.into(), &5.into()),
         "{report}"
     );
     assert!(folder.read("blocks.I").contains("ERROR = CYCL DEF 26.0"));
