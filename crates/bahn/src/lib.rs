@@ -15,6 +15,7 @@
 //! - `technology`: programs with functions that the path waits for;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
+//! - `convert`: programs in another language, with the proof that they do the same;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
 //!   groups `bahn plc`, `bahn mp`, `bahn table`, `channel` is `bahn channel`; `link`: the data interfaces;
 //!   `lsp`: the language server;
@@ -32,6 +33,7 @@ mod cli;
 mod compensate;
 mod conformance;
 mod console;
+mod convert;
 mod cutting;
 mod diagnostics;
 mod explain;
@@ -96,6 +98,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Machine(options) => machine_folder::command(&options),
         cli::Command::Check(options) => check::command(&options),
         cli::Command::Fmt(options) => format::command(&options),
+        cli::Command::Convert(options) => convert::command(&options),
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Channel(options) => channel::command(&options),
