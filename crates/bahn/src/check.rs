@@ -2,6 +2,8 @@
 //!
 //! Every block is read, and the program is rehearsed: executed without geometry, beyond its errors.
 
+mod din;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -88,6 +90,9 @@ struct Entry {
 
 /// Checks a file and prints what is wrong.
 pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
+    if files::extension(path) == "nc" {
+        return din::check(path, how.format, interrupt);
+    }
     let examination = match files::load_program(path)? {
         Loaded::Program(program) => examined(program, &how.settings, interrupt),
         Loaded::Empty(program) => nothing(program, MessageId::EndOfProgramMissing, files::EMPTY),
