@@ -72,6 +72,7 @@ pub(crate) fn analyse(
 ) -> Arc<dyn Analysis> {
     match kind {
         Kind::Plain | Kind::Iso => Arc::new(crate::part::PartProgram::new(path, text, world)),
+        Kind::Din => Arc::new(crate::din::DinProgram::new(path, text)),
         Kind::Plc => Arc::new(crate::plc::PlcSource::new(path, text, world)),
         Kind::Parameters => Arc::new(crate::list::ParameterText::new(path, text, world)),
     }

@@ -32,6 +32,8 @@ pub const PART: &str = "\
 const CALLED: &str = "0 BEGIN PGM 15 MM\n1 L X+0 R0 FMAX\n2 L X+1..5 FMAX\n3 END PGM 15 MM\n";
 const ISO: &str = "%9 G71 *\nN10 G99 T1 L+0 R+5 *\nN20 T1 G17 S1000 *\nN30 D00 Q05 P01 +60 *\nN40 G98 L3 *\n\
                    N50 G00 G40 G90 X+10 Y+Q5 M3 *\nN60 L3,2 *\nN70 G00 Z+50 M2 *\nN99999 %9 G71 *\n";
+const DIN: &str = "%L BORE\nN10 G91 G01 Z-5 F100 (Höhe)\nN20 Z5\nN30 M17\n%MAIN\nN10 G00 G90 X10 Y0 Z0\nN20 V.G.RW = 5\n\
+                   N30 L BORE\nN40 P1 = V.G.RW * 2\nN50 G01 X[M54=567 H4] X20 F500 ; ü\nN60 #EXPL SYN\nN70 M30\n";
 const MAIN: &str = "USES DOOR.PLC\nEXTERN OPEN\n; Tür\n  L I4 ; Knöpfe\n  S M2485\n  IFT\n  CM OPEN\n  CM 9036\n  ENDI\n\
                     LBL 20\n  L W260\n  = W8\n  JP 20\n  EM\n";
 const DOOR: &str = "GLOBAL OPEN\nLBL OPEN\n  L I5\n  = O2\n  EM\n";
@@ -43,6 +45,7 @@ pub fn lay_out(folder: &Path) {
         ("7.H", PART),
         ("15.H", CALLED),
         ("9.I", ISO),
+        ("a.nc", DIN),
         ("MAIN.PLC", MAIN),
         ("DOOR.PLC", DOOR),
         ("list.MP", LIST),
@@ -344,6 +347,72 @@ pub fn iso<W: Wire>(client: &mut Client<W>, folder: &Path) {
         tokens
             .iter()
             .any(|(text, kind)| text == "G98" && kind == "keyword"),
+        "{tokens:?}"
+    );
+    client.close(&document);
+}
+
+/// DIN 66025: every request.
+pub fn din<W: Wire>(client: &mut Client<W>, folder: &Path) {
+    let mut document = client.open(&folder.join("a.nc"), "din-66025");
+    assert_eq!(client.diagnostics(&document), [] as [Value; 0]);
+    client.edit(&mut document, "N20 Z5", "N20 Z5 FOO7");
+    let found = client.diagnostics(&document);
+    let [(range, message)] = messages(&found)[..] else {
+        panic!("{found:?}")
+    };
+    assert!(
+        document.marked(range).starts_with("FOO") && message.contains("FOO"),
+        "{found:?}"
+    );
+    client.edit(&mut document, " FOO7", "");
+    client.edit(&mut document, "(Höhe)", "(𝄞) BAR1");
+    let found = client.diagnostics(&document);
+    assert!(
+        document.marked(&found[0]["range"]).starts_with("BAR"),
+        "{found:?}"
+    );
+    client.edit(&mut document, "(𝄞) BAR1", "(Höhe)");
+
+    let hover = client.hover(&document, "G91", 1);
+    assert!(hover.contains("Incremental"), "{hover}");
+    let hover = client.hover(&document, "F500", 0);
+    assert!(hover.contains("mm/min"), "{hover}");
+    let hover = client.hover(&document, "#EXPL", 2);
+    assert!(hover.contains("synchronisation"), "{hover}");
+    let hover = client.hover(&document, "V.G.RW", 3);
+    assert!(
+        hover.contains("*Set in lines:* 7") && hover.contains("*Used in lines:* 9"),
+        "{hover}"
+    );
+    let definition = client.places(&document, "textDocument/definition", "L BORE\nN40", 3);
+    assert_eq!(lines(&definition), ["%L BORE"]);
+    let references = client.places(&document, "textDocument/references", "V.G.RW", 2);
+    assert_eq!(references.len(), 2, "{references:?}");
+    let highlights = client.at(&document, "textDocument/documentHighlight", "BORE", 1);
+    assert_eq!(highlights.as_array().unwrap().len(), 2, "{highlights}");
+    let outline = client.request("textDocument/documentSymbol", document.id());
+    assert_eq!(names(&outline), ["%L BORE", "%MAIN"]);
+    let folding = client.request("textDocument/foldingRange", document.id());
+    assert_eq!(folds(&folding), [(0, 3), (4, 11)]);
+    let calls = client.completions(&document, "L BORE\nN40", 2);
+    assert!(
+        calls.contains(&("BORE".to_owned(), "BORE".to_owned())),
+        "{calls:?}"
+    );
+    let words = client.completions(&document, "G01 X[", 1);
+    assert!(words.iter().any(|(label, _)| label == "#FLUSH WAIT"), "{words:?}");
+    let mut params = document.place("BORE", 1);
+    params["newName"] = json!("DRILL");
+    let edit = client.request("textDocument/rename", params.clone());
+    let text = client.edited(&document, &edit["changes"][&document.uri]);
+    assert_eq!(text, document.text.replace("BORE", "DRILL"));
+    params["options"] = json!({"tabSize": 2, "insertSpaces": true});
+    let reason = client.refused("textDocument/formatting", params);
+    assert!(reason.contains("listing"), "{reason}");
+    let tokens = tokens(client, &document);
+    assert!(
+        tokens.contains(&("(Höhe)".to_owned(), "comment".to_owned())),
         "{tokens:?}"
     );
     client.close(&document);
