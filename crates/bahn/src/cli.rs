@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::Outcome;
+use crate::channel::ChannelOptions;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
 use crate::faults::FaultsOptions;
@@ -75,6 +76,8 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// Check, explain and write lists of channel parameters: when M, H and spindle functions reach the PLC.
+    Channel(ChannelOptions),
     /// List the cycles of the machine builder, and write EPROMs with them.
     Oem(OemOptions),
     /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.

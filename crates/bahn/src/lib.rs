@@ -15,15 +15,17 @@
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
-//!   groups `bahn plc`, `bahn mp`, `bahn table`; `link`: the data interfaces; `lsp`: the language server;
+//!   groups `bahn plc`, `bahn mp`, `bahn table`, `channel` is `bahn channel`; `link`: the data interfaces;
+//!   `lsp`: the language server;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
-//! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
+//! - `paragraph`: labelled text in 80 columns, `style`: its colours; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 
 mod block_time;
+mod channel;
 mod check;
 mod cli;
 mod compensate;
@@ -57,6 +59,7 @@ mod scope;
 mod settings;
 mod shelf;
 mod solid;
+mod style;
 mod table;
 mod test_run;
 mod torture;
@@ -93,6 +96,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Fmt(options) => format::command(&options),
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
+        cli::Command::Channel(options) => channel::command(&options),
         cli::Command::Lsp(options) => lsp::command(&options),
         cli::Command::Oem(options) => oem::command(&options),
         cli::Command::Table(options) => table::command(&options),

@@ -50,7 +50,6 @@ mod execute;
 mod flow;
 mod functions;
 mod growing;
-mod in_force;
 mod modal;
 mod normals;
 mod numbers;
@@ -83,7 +82,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, ScanJob, Step};
-use bahn_program::{Block, Operation, Program};
+use bahn_program::{Block, InForce, Operation, Program};
 
 pub use absent::AbsentAxes;
 pub use checkpoints::Checkpoint;
@@ -106,7 +105,6 @@ use crate::cycles::Halt;
 use crate::error::Fault;
 use crate::execute::execute;
 use crate::flow::Flow;
-use crate::in_force::InForce;
 use crate::output::{Item, Output};
 use crate::run::Run;
 use crate::work::Pending;
