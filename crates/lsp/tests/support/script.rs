@@ -295,6 +295,54 @@ fn plain_changes<W: Wire>(client: &mut Client<W>, document: &Document) {
     }
 }
 
+/// The text that a code action makes of a document, and the name of its file.
+fn converted<W: Wire>(client: &mut Client<W>, document: &Document, title: &str) -> (String, String) {
+    let mut params = document.id();
+    params["range"] = document.range(0, 0);
+    params["context"] = json!({"diagnostics": []});
+    let actions = client.request("textDocument/codeAction", params);
+    let found = actions
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|action| action["title"] == title);
+    let action = client.request("codeAction/resolve", found.unwrap().clone());
+    let changes = &action["edit"]["documentChanges"];
+    assert_eq!(changes[0]["kind"], "create");
+    assert_eq!(changes[0]["uri"], changes[1]["textDocument"]["uri"]);
+    let uri = changes[0]["uri"].as_str().unwrap();
+    let name = uri.rsplit('/').next().unwrap().to_owned();
+    (
+        changes[1]["edits"][0]["newText"].as_str().unwrap().to_owned(),
+        name,
+    )
+}
+
+/// Code actions: a program becomes one in the other language, and G-code.
+pub fn conversions<W: Wire>(client: &mut Client<W>, folder: &Path) {
+    let text = "0 BEGIN PGM 5 MM\n1 TOOL DEF 1 L+0 R+5\n2 TOOL CALL 1 Z S1000\n3 L X+10 Y+5 R0 FMAX M3\n\
+                4 L X+20 F200\n5 END PGM 5 MM\n";
+    let document = client.open_text(&folder.join("5.H"), "tnc-plain", text);
+    let (iso, name) = converted(client, &document, "Convert to DIN/ISO");
+    assert_eq!(name, "5.I");
+    assert!(
+        iso.starts_with("%5 G71 *\nN10 G99 T1 L+0 R+5 *\nN20 T1 G17 S1000 *\n"),
+        "{iso}"
+    );
+    let back = client.open_text(&folder.join("5.I"), "tnc-iso", &iso);
+    assert_eq!(
+        converted(client, &back, "Convert to plain language"),
+        (text.to_owned(), "5.H".to_owned())
+    );
+    let (gcode, name) = converted(client, &document, "Convert to G-code for LinuxCNC");
+    assert!(name == "5.ngc" && gcode.contains("X20"), "{gcode}");
+    let data = json!({"title": "x", "data": {"uri": "file:///none/none.H", "target": "iso"}});
+    let reason = client.refused("codeAction/resolve", data);
+    assert!(reason.contains("not open"), "{reason}");
+    client.close(&document);
+    client.close(&back);
+}
+
 /// DIN/ISO: every request.
 pub fn iso<W: Wire>(client: &mut Client<W>, folder: &Path) {
     let mut document = client.open(&folder.join("9.I"), "tnc-iso");
