@@ -112,7 +112,7 @@ impl Editor {
             .text_of(0)
             .starts_with(|first: char| first.is_ascii_digit());
         let new = match has_numbers {
-            true => self.program.edit(&Edit::Renumber).ok(),
+            true => self.program.edit(&Edit::Renumber { step: 1 }).ok(),
             false => None,
         };
         new.map_or_else(|| Arc::clone(&self.program), Arc::new)

@@ -402,3 +402,36 @@ fn open_words_take_what_is_in_force() {
     assert_eq!(incremental(Distance::Absolute), [false, false]);
     assert_eq!(incremental(Distance::Incremental), [true, false]);
 }
+
+#[test]
+fn numbers_are_written_anew_by_the_step_of_mp7220() {
+    let program = read("%7 G71 *\nN3 T1 G17 S500 *\nX+5 *\n/ N9 M3 *\nN99 %7 G71 *\n");
+    let numbered = |step| {
+        let new = program.edit(&Edit::Renumber { step }).unwrap();
+        String::from_utf8(new.to_bytes()).unwrap()
+    };
+    assert_eq!(
+        numbered(5),
+        "%7 G71 *\nN5 T1 G17 S500 *\nN10 X+5 *\nN15 / M3 *\nN99999 %7 G71 *\n"
+    );
+    assert_eq!(numbered(0), "%7 G71 *\nT1 G17 S500 *\nX+5 *\n/ M3 *\nN99999 %7 G71 *\n");
+    // Four blocks behind the first in steps of 30,000 reach what the last is called else.
+    assert!(numbered(30_000).ends_with("N99999999 %7 G71 *\n"));
+}
+
+#[test]
+fn blocks_are_found_by_their_numbers() {
+    let program = read("%7 G71 *\nN3 M3 *\nX+5 *\nN9 M5 *\nN9 M8 *\nN99999 %7 G71 *\n");
+    let shown: Vec<_> = (0..program.block_count())
+        .map(|block| program.shown_number(block))
+        .collect();
+    assert_eq!(shown, ["", "N3", "", "N9", "N9", "N99999"]);
+    assert_eq!(program.block_of(9), Some(3));
+    // A block without a number is called by its place; 4 is the place of a block that has one.
+    assert_eq!((program.block_of(2), program.block_of(4)), (Some(2), None));
+    let long: String = (1..=1000).map(|block| format!("N{} X+{block} *\n", block * 7)).collect();
+    let long = read(format!("%7 G71 *\n{long}N99999 %7 G71 *\n"));
+    for block in [1, 255, 256, 257, 999, 1000] {
+        assert_eq!(long.block_of(block * 7), Some(block));
+    }
+}
