@@ -7,6 +7,7 @@
 //! - [`Setting`]: what an editor has to know of its control and machine, [`BuilderCycle`] its own cycles;
 //! - [`Draft`]: what is still open, to be kept and taken up again;
 //! - [`figure`]: the drawing of a cycle, in which the word that is asked for stands out;
+//! - programs in DIN/ISO are entered as text by the same [`Editor`], with numbers, checks and messages of the control;
 //! - [`prompts`]: the texts of the dialogue in English and German.
 //!
 //! ```
@@ -45,10 +46,12 @@ mod cycles;
 mod dialogue;
 mod draft;
 mod editor;
+mod entry;
 mod field;
 mod figure;
 mod highlight;
 mod history;
+mod iso;
 mod key;
 mod line;
 mod menu;

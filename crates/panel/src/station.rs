@@ -412,7 +412,12 @@ impl Station {
         let line = |shown: &bahn_control::Shown| MessageLine {
             text: texts::translate(language, &control.shown_text(shown)),
             flashing: shown.flashing,
-            place: shown.block.map(|block| format!("{}", block.block)),
+            place: shown.block.map(|block| {
+                let channel = control.channel(shown.channel.unwrap_or(0));
+                channel
+                    .map_or(block.block, |channel| channel.number_of(block))
+                    .to_string()
+            }),
         };
         let shown = control.shown().iter().map(line);
         let notes = self.console.notes().iter().map(|note| MessageLine {

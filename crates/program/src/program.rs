@@ -286,19 +286,23 @@ impl Program {
     /// The first block that is programmed with a number.
     fn programmed_with(&self, number: u32) -> Option<u32> {
         let pieces = self.rope.pieces().iter().enumerate();
-        pieces.filter(|(_, piece)| piece.blocks > 0).find_map(|(index, piece)| {
-            let (first, line) = self.rope.start(index);
-            let raws = self.places(piece, line);
-            let is_it = |raw: &RawBlock| self.language.number(raw.text(piece.text())) == Some(number);
-            Some(first + raws.iter().position(is_it)? as u32)
-        })
+        pieces
+            .filter(|(_, piece)| piece.blocks > 0)
+            .find_map(|(index, piece)| {
+                let (first, line) = self.rope.start(index);
+                let raws = self.places(piece, line);
+                let is_it = |raw: &RawBlock| self.language.number(raw.text(piece.text())) == Some(number);
+                Some(first + raws.iter().position(is_it)? as u32)
+            })
     }
 
     /// What stands before a block on a screen: `12`, or in a language whose blocks have numbers of their own `N120`, and
     /// nothing where it has none.
     pub fn shown_number(&self, block: u32) -> String {
         match self.language.has_numbers() {
-            true => self.own_number(block).map_or_else(String::new, |number| format!("N{number}")),
+            true => self
+                .own_number(block)
+                .map_or_else(String::new, |number| format!("N{number}")),
             false => block.to_string(),
         }
     }

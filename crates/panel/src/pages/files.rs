@@ -30,8 +30,8 @@ pub(crate) enum Purpose {
 
 /// Code number that takes the protection away [000:6940] [003:7028].
 const UNPROTECT: u32 = 86_357;
-/// Ending of a file that nobody gives one.
-const ENDING: &str = "H";
+/// Endings of programs in plain language and in DIN/ISO, of which PROGRAM INPUT chooses one.
+const ENDINGS: [&str; 2] = ["H", "I"];
 
 /// The directory of the program memory.
 pub(crate) struct Directory {
@@ -76,15 +76,15 @@ impl Directory {
     }
 
     /// The name that is typed, else the one that is highlighted.
-    fn name(&self) -> Option<String> {
+    fn name(&self, site: &Site) -> Option<String> {
         match self.typed.is_empty() {
             true => self.entries.get(self.current).map(|entry| entry.name.clone()),
-            false => Some(with_ending(&self.typed)),
+            false => Some(with_ending(&self.typed, site)),
         }
     }
 
     fn choose(&self, site: &mut Site) -> Turn {
-        let Some(name) = self.name() else {
+        let Some(name) = self.name(site) else {
             return Turn::Refused;
         };
         if table::is_disabled(&name, site) {
@@ -102,7 +102,7 @@ impl Directory {
                 site.settings.edited = Some(name);
                 true
             }
-            Purpose::Run => there && site.command(Command::Select(stem(&name).to_owned())),
+            Purpose::Run => there && site.command(Command::Select(selection(&name).to_owned())),
             Purpose::Test => {
                 if there {
                     site.settings.edited = Some(name);
@@ -117,7 +117,7 @@ impl Directory {
     }
 
     fn copy(&self, site: &Site) -> Turn {
-        let Some(old) = self.name() else {
+        let Some(old) = self.name(site) else {
             return Turn::Refused;
         };
         let prompt = format!("{} {}", site.words("DESTINATION FILE ="), ending(&old));
@@ -127,7 +127,7 @@ impl Directory {
     }
 
     fn rename(&self, site: &Site) -> Turn {
-        let Some(old) = self.name() else {
+        let Some(old) = self.name(site) else {
             return Turn::Refused;
         };
         if is_needed(&old, site) {
@@ -148,7 +148,7 @@ impl Directory {
     }
 
     fn protect(&self, site: &Site) -> Turn {
-        match self.name().map(|name| site.programs.protect(&name, true)) {
+        match self.name(site).map(|name| site.programs.protect(&name, true)) {
             Some(Ok(())) => Turn::Done,
             Some(Err(denial)) => Turn::Say(said(denial, site)),
             None => Turn::Refused,
@@ -157,7 +157,7 @@ impl Directory {
 
     /// The soft key UNPROTECT asks for the code number before.
     fn cancel_protection(&self, site: &Site) -> Turn {
-        let Some(name) = self.name() else {
+        let Some(name) = self.name(site) else {
             return Turn::Refused;
         };
         let prompt = site.words("CODE NUMBER =");
@@ -170,11 +170,37 @@ impl Directory {
     }
 }
 
-/// A program whose name says no type is one in plain language.
-fn with_ending(name: &str) -> String {
-    match name.contains('.') {
-        true => name.to_owned(),
-        false => format!("{name}.{ENDING}"),
+/// A program whose name says no type is the one that is there; where both are, or none is, it is in the language of
+/// PROGRAM INPUT [003:7104-7110].
+fn with_ending(name: &str, site: &Site) -> String {
+    if name.contains('.') {
+        return name.to_owned();
+    }
+    let [plain, iso] = ENDINGS.map(|ending| format!("{name}.{ending}"));
+    let (chosen, other) = if site.settings.iso {
+        (iso, plain)
+    } else {
+        (plain, iso)
+    };
+    match !site.programs.has(&chosen) && site.programs.has(&other) {
+        true => other,
+        false => chosen,
+    }
+}
+
+/// The name by which the control knows a program: with its type where that is not plain language.
+pub(crate) fn selection(name: &str) -> &str {
+    match name.rsplit_once('.') {
+        Some((stem, ending)) if ending.eq_ignore_ascii_case("H") => stem,
+        _ => name,
+    }
+}
+
+/// Whether a program that the control has by some name is a file of the memory: without a type it may be any.
+pub(crate) fn is_same(own: &str, name: &str) -> bool {
+    match own.contains('.') {
+        true => own.eq_ignore_ascii_case(name),
+        false => own.eq_ignore_ascii_case(stem(name)),
     }
 }
 
@@ -264,12 +290,10 @@ fn is_needed(name: &str, site: &Site) -> bool {
 /// A program run, interrupted or not, has the file.
 fn runs(name: &str, site: &Site) -> bool {
     let control = site.control();
-    let selected = control
-        .selected_program()
-        .is_some_and(|own| stem(own) == stem(name));
+    let selected = control.selected_program().is_some_and(|own| is_same(own, name));
     let called = || {
         let programs = control.interpreter().map(|own| own.program_names());
-        programs.is_some_and(|mut names| names.any(|own| stem(file_name(&own)) == stem(name)))
+        programs.is_some_and(|mut names| names.any(|own| is_same(file_name(&own), name)))
     };
     control.run_state() != RunState::Idle && is_program(name) && (selected || called())
 }
@@ -306,7 +330,7 @@ impl Page for Directory {
         match key {
             Key::Ent => return self.choose(site),
             Key::ClPgm if self.purpose == Purpose::Edit => {
-                return self.name().map_or(Turn::Refused, |name| erase(name, site));
+                return self.name(site).map_or(Turn::Refused, |name| erase(name, site));
             }
             Key::End | Key::Del | Key::NoEnt | Key::PgmNr | Key::ClPgm => return Turn::Close,
             Key::Ce if !self.typed.is_empty() => self.typed.clear(),
@@ -348,7 +372,7 @@ impl Page for Directory {
             0 => self.choose(site),
             1 => self.copy(site),
             2 => self.rename(site),
-            3 => self.name().map_or(Turn::Refused, |name| erase(name, site)),
+            3 => self.name(site).map_or(Turn::Refused, |name| erase(name, site)),
             4 => self.protect(site),
             5 => self.cancel_protection(site),
             _ => Turn::Close,
