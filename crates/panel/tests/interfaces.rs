@@ -130,6 +130,11 @@ fn no_device_answers() {
     trainee.press("CE");
     for mode in ["PROGRAM", "TEST", "FULL", "SINGLE"] {
         trainee.press(mode).press("EXT");
+        if mode == "PROGRAM" || mode == "TEST" {
+            // The menu, with PROGRAM DIRECTORY at the cursor.
+            assert_eq!(trainee.screen().program.title, "EXTERNAL DATA TRANSFER");
+            trainee.press("ENT");
+        }
         assert_eq!(trainee.messages(), ["EXT. OUTPUT/INPUT NOT READY"], "{mode}");
         trainee.press("CE");
     }
@@ -139,7 +144,7 @@ fn no_device_answers() {
     // In German, too.
     trainee.press("MANUAL MOD");
     trainee.down_to("DIALOGUE LANGUAGE");
-    trainee.press("ENT MOD PROGRAM EXT");
+    trainee.press("ENT MOD PROGRAM EXT ENT");
     assert_eq!(trainee.messages(), ["EXT. AUS-/EINGABE NICHT BEREIT"]);
     trainee.press("CE MOD");
     let lines = trainee.screen().program.lines;

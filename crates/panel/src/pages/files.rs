@@ -8,10 +8,12 @@ use bahn_parameters::MessageId;
 use crate::frames;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Name};
+use crate::pages::external;
 use crate::pages::{list, table};
 use crate::programs::{Denial, Entry, NAME_MAX, is_program};
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
+use crate::transfer::TransferDeed;
 
 /// What a file is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +24,8 @@ pub(crate) enum Purpose {
     Edit,
     /// It is to be tested.
     Test,
+    /// It is to be read out: EXT [003:6906].
+    ReadOut,
     /// It is to be erased: CL PGM [003:985-990].
     Erase,
     /// Its protection is to be taken away: code number 86 357 [003:7028].
@@ -62,7 +66,7 @@ impl Directory {
         self.entries = site.programs.list();
         match self.purpose {
             Purpose::Edit => self.entries.extend(table::of_machine(site)),
-            Purpose::Erase => {}
+            Purpose::Erase | Purpose::ReadOut => {}
             Purpose::Run | Purpose::Test | Purpose::Unprotect => {
                 self.entries.retain(|entry| is_program(&entry.name));
             }
@@ -93,6 +97,13 @@ impl Directory {
         let there = site.programs.has(&name);
         let chosen = match self.purpose {
             Purpose::Erase => return erase(name, site),
+            Purpose::ReadOut if there => {
+                return match external::begin(TransferDeed::Write(vec![name]), site) {
+                    Turn::Open(page) => Turn::Replace(page),
+                    other => other,
+                };
+            }
+            Purpose::ReadOut => false,
             Purpose::Unprotect => return unprotect(&name, site),
             Purpose::Edit if self.typed == "0" => return table::tools(site),
             Purpose::Edit if table::is_of_machine(&name, site) => return table::open(&name, site),
@@ -172,7 +183,7 @@ impl Directory {
 
 /// A program whose name says no type is the one that is there; where both are, or none is, it is in the language of
 /// PROGRAM INPUT [003:7104-7110].
-fn with_ending(name: &str, site: &Site) -> String {
+pub(crate) fn with_ending(name: &str, site: &Site) -> String {
     if name.contains('.') {
         return name.to_owned();
     }
@@ -288,7 +299,7 @@ fn is_needed(name: &str, site: &Site) -> bool {
 }
 
 /// A program run, interrupted or not, has the file.
-fn runs(name: &str, site: &Site) -> bool {
+pub(crate) fn runs(name: &str, site: &Site) -> bool {
     let control = site.control();
     let selected = control.selected_program().is_some_and(|own| is_same(own, name));
     let called = || {
@@ -348,6 +359,7 @@ impl Page for Directory {
         let select = match self.purpose {
             Purpose::Erase => site.words("ERASE"),
             Purpose::Unprotect => site.words("UNPROTECT"),
+            Purpose::ReadOut => site.words("READ-OUT"),
             _ => site.words("SELECT"),
         };
         let named = [

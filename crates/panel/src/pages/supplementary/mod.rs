@@ -7,7 +7,7 @@ mod offsets;
 mod oscilloscope;
 mod timers;
 
-pub(crate) use interface::transfer;
+pub(crate) use interface::order;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
