@@ -121,12 +121,19 @@ fn programs_come_and_go_by_the_key_ext() {
     let bench = Bench::new("ext", &["--rs232", &format!("tcp:127.0.0.1:{port}")]);
     let line = format!("connect:127.0.0.1:{port},mode=fe2");
     std::fs::write(bench.folder.join("device/4711.H"), part("4711", 40)).unwrap();
-    std::fs::write(bench.folder.join("device/12.I"), "%12 G71 *\nN10 M3 *\nN99999 %12 G71 *\n").unwrap();
+    std::fs::write(
+        bench.folder.join("device/12.I"),
+        "%12 G71 *\nN10 M3 *\nN99999 %12 G71 *\n",
+    )
+    .unwrap();
     let device = ["send", "--as", "host", "--dir", "device", "--port", &line];
     // MOD: FE2, which asks by headers.
     bench.press("PROGRAM MOD");
     for _ in 0..20 {
-        if bench.screen().contains("\"current\":true,\"text\":\"DATA INTERFACES") {
+        if bench
+            .screen()
+            .contains("\"current\":true,\"text\":\"DATA INTERFACES")
+        {
             break;
         }
         bench.press("DOWN");
@@ -162,7 +169,9 @@ fn programs_come_and_go_by_the_key_ext() {
     bench.press("END");
 
     // READ-OUT SELECTED PROGRAM.
-    let host = bench.device(&["receive", "--as", "host", "--dir", "device", "--all", "--port", &line]);
+    let host = bench.device(&[
+        "receive", "--as", "host", "--dir", "device", "--all", "--port", &line,
+    ]);
     bench.press("EXT DOWN DOWN DOWN DOWN ENT 1 POINT H ENT");
     bench.until("1.H  READ OUT");
     bench.until("DATA TRANSFER HAS ENDED");
