@@ -372,3 +372,18 @@ fn blocks_are_found_by_their_numbers() {
         assert_eq!(long.block_of(block * 7), Some(block));
     }
 }
+
+/// A `~`, which joins nothing here, hides no `*` before it.
+#[test]
+fn a_name_ends_before_star_and_tilde() {
+    for text in [
+        &b"% *\x07\0\x08~"[..],
+        b"%7 G71\nN10 %8 * ~ *~\nN99 %7 G71",
+        b"%~*",
+    ] {
+        check_laws(text);
+    }
+    let program = read("%7 G71 *\nN10 %8 * ~\nN99 %7 G71 *\n");
+    let called = program.decode(0).blocks[1].operation.clone();
+    assert_eq!(called, Operation::CallProgram("8".into()));
+}
