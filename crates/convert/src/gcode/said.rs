@@ -209,6 +209,7 @@ impl Sayer {
     fn ends(&mut self, block: BlockRef, what: &str) {
         self.refuse(block, what);
         self.say(block, Said::End);
+        self.completed = true;
         self.over = true;
     }
 
