@@ -3,7 +3,7 @@
 //! The face of this room:
 //! - [`convert`]: a program block by block into the other language of the control; what that cannot say is listed;
 //! - [`prove`]: two runs side by side, element by element, function by function, message by message;
-
+//! - [`unroll`]: a run as a program whose blocks are its movements, for what a language has no blocks for;
 //! - [`gcode`]: a run as a program for LinuxCNC, and the reader that proves it.
 //!
 //! ```
@@ -29,7 +29,9 @@ mod lower;
 mod proof;
 mod reason;
 mod to_iso;
+mod unroll;
 
 pub use blocks::{Converted, Options, convert};
 pub use listed::{Language, Listed};
 pub use proof::{At, Difference, FEED_TOLERANCE, Proof, TOLERANCE_MM, prove};
+pub use unroll::{prove_unrolled, unroll};

@@ -43,7 +43,7 @@ pub fn write(run: &dyn Fn() -> Interpreter, options: &Options, stop: &Arc<Atomic
     let mut sayer = Sayer::new(run(), options, changes, stop);
     let mut writer = write::Writer::new(&sayer, options);
     while let Some((block, said)) = sayer.next() {
-        writer.said(&said, || At::of(sayer.run(), block).text);
+        writer.said(&said, || numbered(At::of(sayer.run(), block)));
     }
     GCode {
         lines: writer.lines(),
@@ -51,6 +51,20 @@ pub fn write(run: &dyn Fn() -> Interpreter, options: &Options, stop: &Arc<Atomic
         completed: sayer.completed(),
         message: sayer.message().map(str::to_owned),
         refused: sayer.into_refused(),
+    }
+}
+
+/// A block with its number, also where the file does not have it.
+fn numbered(at: At) -> String {
+    let mut first = at.text.trim_start_matches(['/', ' ']).chars();
+    let is_number = match first.next() {
+        Some('N' | 'n') => first.next().is_some_and(|c| c.is_ascii_digit()),
+        Some(c) => c.is_ascii_digit(),
+        None => true,
+    };
+    match is_number {
+        true => at.text,
+        false => format!("{} {}", at.block, at.text),
     }
 }
 

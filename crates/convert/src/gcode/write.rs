@@ -40,8 +40,9 @@ impl Writer {
         };
         let name = sayer.run().program(0).map_or("", |program| program.name());
         let name = bare(name.rsplit(std::path::MAIN_SEPARATOR).next().unwrap_or_default());
+        let model = options.model.to_string().to_uppercase();
         for line in [
-            format!("; the path of {name} as {} moves it, for LinuxCNC", options.model),
+            format!("; the path of {name} as a {model} moves it, for LinuxCNC"),
             "; It is the path of the tool's tip, its radius compensated already: no G41 or G42.".to_owned(),
             "; Behind a tool change G43 takes the length from LinuxCNC's tool table.".to_owned(),
         ] {

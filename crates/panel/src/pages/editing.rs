@@ -10,7 +10,7 @@ use crate::screen::{Dialogue, Line, Mark, SoftKeys, Window, WindowKind};
 use crate::site::Site;
 
 /// Width of block numbers.
-pub(crate) const NUMBER: usize = 5;
+const NUMBER: usize = 5;
 /// The axes of an L block with actual positions, where MOD chose none [003:2260-2321].
 const CAPTURED: &str = "XYZ";
 
@@ -99,9 +99,16 @@ pub(crate) fn view(editor: &Editor, title: &str, lines: usize) -> View {
     }
 }
 
+/// The number of a block in its column; a long one has a blank behind it.
+pub(crate) fn numbered(label: &str) -> String {
+    match label.len() < NUMBER {
+        true => format!("{label:<NUMBER$}"),
+        false => format!("{label} "),
+    }
+}
+
 fn line(row: &Row, words: &[ShownWord]) -> Line {
-    let number = row.number.map_or_else(String::new, |number| number.to_string());
-    let mut text = format!("{number:<NUMBER$}");
+    let mut text = numbered(&row.label);
     let mut marks = Vec::new();
     if row.current && !words.is_empty() {
         for word in words {

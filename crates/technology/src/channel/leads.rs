@@ -39,6 +39,8 @@ pub(super) struct Leads {
     blocks: VecDeque<f64>,
     /// Nothing is output before this, mm: the path was to come to rest here.
     barrier: f64,
+    /// Where the last one was output, mm.
+    pub(super) floor: f64,
     /// The place that was turned to last, and its functions (P-CHAN-00212).
     active: Option<(f64, Vec<OrderId>)>,
 }
@@ -104,6 +106,7 @@ impl Leads {
     pub(super) fn begin(&mut self, way: f64) {
         *self = Leads {
             barrier: way,
+            floor: way,
             ..Leads::default()
         };
     }
