@@ -67,6 +67,7 @@ fn block() -> impl Strategy<Value = Block> {
 }
 
 /// A function as the program has it.
+#[allow(dead_code, reason = "type and range are shown where a law is broken")]
 #[derive(Debug)]
 struct Known {
     kind: &'static str,
