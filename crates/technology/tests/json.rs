@@ -91,6 +91,10 @@ fn all_keys_are_there() {
         (&json!("N10"), &json!(0.0), &Value::Null)
     );
 
+    waits(&report);
+}
+
+fn waits(report: &Value) {
     let wait = &report["waits"][0];
     let mut found = keys(wait);
     found.sort_unstable();

@@ -1,7 +1,7 @@
 //! One line of a list: a name with its indices, and what stands behind it.
 
 use super::Place;
-use super::table::{Definition, pattern};
+use super::table::{Definition, canonical, pattern};
 
 /// A line with a parameter.
 #[derive(Debug, PartialEq)]
@@ -67,18 +67,9 @@ fn closes(text: &str, at: usize) -> bool {
 /// The parameter that a name means.
 pub(super) fn place(line: &Line) -> Result<Place, Fault> {
     let at_name = |message: String| (line.name_column, line.name.chars().count(), message);
-    let mut wanted = pattern(line.name);
+    let (wanted, is_start_up) = canonical(pattern(line.name));
     let mut indices = indices(line)?;
-    // The word is written in German and in English [004:210-213].
-    if let Some(rest) = wanted.strip_prefix("spindle[") {
-        wanted = format!("spindel[{rest}");
-    }
-    // The form of start-up lists, with the channel [004:225].
-    let mut channel = None;
-    if let Some(rest) = wanted.strip_prefix("configuration.channel[].") {
-        wanted = format!("configuration.{rest}");
-        channel = Some(indices.remove(0).0);
-    }
+    let channel = (is_start_up && !indices.is_empty()).then(|| indices.remove(0).0);
     let definition = Definition::find(&wanted).ok_or_else(|| at_name(unknown(line.name, &wanted)))?;
     for ((index, column, length), (first, last)) in indices.iter().zip(&definition.indices) {
         if !(first..=last).contains(&index) {

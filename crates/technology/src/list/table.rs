@@ -115,6 +115,11 @@ impl Definition {
         &ALL
     }
 
+    /// The one that a name means in any of its spellings, with or without numbers as indices.
+    pub fn named(name: &str) -> Option<&'static Definition> {
+        Definition::find(&canonical(pattern(name)).0)
+    }
+
     /// The one with a name in the form of [`pattern`].
     pub(super) fn find(wanted: &str) -> Option<&'static Definition> {
         static NAMES: LazyLock<HashMap<String, &'static Definition>> = LazyLock::new(|| {
@@ -156,6 +161,18 @@ pub(super) fn pattern(name: &str) -> String {
         pattern.push(c.to_ascii_lowercase());
     }
     pattern
+}
+
+/// A pattern in the spelling of the table, and whether it is that of a start-up list, where the channel is the first
+/// index [004:225]. The word spindle is written in German and in English [004:210-213].
+pub(super) fn canonical(pattern: String) -> (String, bool) {
+    if let Some(rest) = pattern.strip_prefix("spindle[") {
+        return (format!("spindel[{rest}"), false);
+    }
+    match pattern.strip_prefix("configuration.channel[].") {
+        Some(rest) => (format!("configuration.{rest}"), true),
+        None => (pattern, false),
+    }
 }
 
 /// Reads one row; a test proves that every row can be read.
