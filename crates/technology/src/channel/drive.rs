@@ -159,7 +159,7 @@ impl Channel<'_> {
         if let Some(passed) = here.filter(|_| arrives).or(passed) {
             self.pass(passed);
         }
-        let moved = (self.way() - way).abs() > 0.0;
+        let moved = (self.way() - way).abs() > 2.0 * ROUNDING_MM;
         self.still = speed <= 0.0;
         if self.stands && moved {
             self.record
