@@ -120,6 +120,22 @@ fn later_functions_are_not_output_before_earlier_ones() {
     at(place("M98"), 59.0);
 }
 
+/// With P-CHAN-00212 the next place is turned to when the one before is passed.
+#[test]
+fn one_place_after_the_other() {
+    let program = "%T\nN10 G01 X40 F5000\nN20 M96\nN30 X50\nN40 M97\nN50 X90\nM30\n";
+    let list = "m_synch[96] MEP_SVS\nm_pre_outp[96] 50000\nm_synch[97] MEP_SVS\nm_pre_outp[97] 250000\n\
+                m_h_pre_outp_calc_value_to_go 1\n";
+    let report = Bench::new(program, list).run();
+    at(x(report.output("M96")), 35.0);
+    // In the cycle in which the path is behind X40.
+    let place = x(report.output("M97"));
+    assert!((40.0..=40.0 + V * T).contains(&place), "{place}");
+    let held = Bench::new(program, list).script("M96 ack 1").run();
+    at(x(held.output("M97")), 40.0);
+    assert_eq!(held.output("M97").t, held.wait("M96").1);
+}
+
 #[test]
 fn what_is_to_go_is_told() {
     let list = "m_synch[96] MEP_SVS\nm_pre_outp[96] 250000\nm_h_pre_outp_calc_value_to_go 1\n";

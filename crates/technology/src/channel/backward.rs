@@ -85,22 +85,21 @@ impl Channel<'_> {
         let t = self.t() + 0.5 * self.cycle_s;
         let script = self.plc.script();
         let wanted = script.is_some_and(|script| script.backward.iter().any(|range| range.contains(&t)));
-        if wanted != self.backward.is_on() {
-            // The path turns where it stands.
-            if self.still {
-                if wanted {
-                    self.turn_back();
-                } else {
-                    self.turn_forward();
-                }
-            }
-            drive.hold = true;
-            if !self.still {
-                return self.spend_on(drive);
-            }
-            drive.hold = self.drive_now().hold || self.resets();
+        if wanted == self.backward.is_on() {
+            return self.spend_on(drive);
         }
-        self.spend_on(drive)
+        // The path turns where it stands.
+        if !self.still {
+            drive.hold = true;
+            return self.spend_on(drive);
+        }
+        if wanted {
+            self.turn_back();
+        } else {
+            self.turn_forward();
+        }
+        self.spend_on(drive);
+        true
     }
 
     fn spend_on(&mut self, drive: Drive) -> bool {
