@@ -8,8 +8,10 @@ use crate::Outcome;
 use crate::channel::ChannelOptions;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
+use crate::convert::ConvertOptions;
 use crate::faults::FaultsOptions;
 use crate::link::LinkOptions;
+use crate::lsp::LspOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
@@ -69,6 +71,12 @@ pub(crate) enum Command {
     /// Write programs as normalised listing: block numbers, signs and spacing as the control prints them.
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(FmtOptions),
+    /// Write programs in another language, and prove that they do the same.
+    #[command(after_help = crate::convert::EXAMPLES)]
+    Convert(Box<ConvertOptions>),
+    /// Serve an editor while programs and lists are written: the Language Server Protocol.
+    #[command(after_help = crate::lsp::EXAMPLES)]
+    Lsp(LspOptions),
     /// Compile, run and debug PLC programs.
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.

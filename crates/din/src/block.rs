@@ -156,6 +156,9 @@ pub(crate) fn read(line: &[Glyph], macros: &Macros) -> Result<Block, LineFault> 
     if let Some(definitions) = definitions(line)? {
         return Ok(definitions);
     }
+    if let Some(label) = label(line) {
+        return Err(label);
+    }
     let (_, line) = number(line);
     let line = macros.expand(line)?;
     let mut cursor = Cursor::new(&line);
@@ -182,6 +185,18 @@ pub(crate) fn read(line: &[Glyph], macros: &Macros) -> Result<Block, LineFault> 
     }
     one_of_each_group(&block)?;
     Ok(block)
+}
+
+/// A number of a block that is a label: `N20:`.
+fn label(line: &[Glyph]) -> Option<LineFault> {
+    let (name, rest) = number(line);
+    name?;
+    let mut cursor = Cursor::new(line);
+    cursor.skip_blanks();
+    let mark = cursor.mark();
+    cursor.go_to(line.len() - rest.len());
+    let is_label = cursor.eat(':');
+    is_label.then(|| cursor.fault(mark, format!("unknown word {} (a label)", cursor.text(mark))))
 }
 
 fn one_of_each_group(block: &Block) -> Result<(), LineFault> {
@@ -216,7 +231,8 @@ fn word(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
         '#' => return Ok(WordKind::Command(command::read(cursor)?)),
         '$' => return Err(cursor.unknown(mark, "control statement")),
         '0'..='9' | '.' | '+' | '-' | '[' | '\'' if dwells => return Ok(WordKind::Bare(expression(cursor)?)),
-        '/' => return Err(cursor.fault(mark, "unknown word / (blocks that are skipped)")),
+        '/' => return Err(cursor.fault(mark, "unknown word / (a block that may be skipped)")),
+        '\\' => return Err(cursor.fault(mark, "unknown word \\ (a block of several lines)")),
         _ => {}
     }
     if variable_begins(cursor) {
@@ -261,7 +277,7 @@ fn address(cursor: &mut Cursor, letter: char) -> Result<WordKind, LineFault> {
         'K' => Ok(WordKind::Centre(2, value(cursor)?)),
         'R' => Ok(WordKind::Radius(value(cursor)?)),
         _ => match u8::try_from(letter).ok().and_then(Axis::from_letter) {
-            Some(axis) => coordinate(cursor, axis),
+            Some(axis) => coordinate(cursor, axis, mark),
             None => Err(cursor.unknown(mark, "word")),
         },
     }
@@ -293,7 +309,7 @@ fn function(cursor: &mut Cursor, letter: char) -> Result<WordKind, LineFault> {
 }
 
 /// A coordinate, or in brackets functions of the axis [004:102]. What is neither M, H nor INDP is an expression (public).
-fn coordinate(cursor: &mut Cursor, axis: Axis) -> Result<WordKind, LineFault> {
+fn coordinate(cursor: &mut Cursor, axis: Axis, mark: usize) -> Result<WordKind, LineFault> {
     cursor.skip_blanks();
     if cursor.peek() == Some('[') {
         let mut inside = cursor.clone();
@@ -308,6 +324,10 @@ fn coordinate(cursor: &mut Cursor, axis: Axis) -> Result<WordKind, LineFault> {
             let words = list(cursor, axis.letter().to_string().as_str(), false)?;
             return Ok(WordKind::AxisBracket(axis, words));
         }
+    }
+    let mut ahead = cursor.clone();
+    if !ahead.take_while(|c| c.is_ascii_digit()).is_empty() && ahead.eat('=') {
+        return Err(cursor.unknown(mark, "axis"));
     }
     Ok(WordKind::Axis(axis, value(cursor)?))
 }
@@ -402,7 +422,7 @@ fn parameter(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
         return Ok(WordKind::SetParameter(number, expression(cursor)?));
     }
     if dwells {
-        cursor.go_back(mark);
+        cursor.go_to(mark);
         return Ok(WordKind::Bare(expression(cursor)?));
     }
     Err(cursor.fault(mark, "a parameter that is given no value"))
@@ -416,7 +436,7 @@ fn variable(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
         return Ok(WordKind::SetVariable(variable, expression(cursor)?));
     }
     if dwells {
-        cursor.go_back(mark);
+        cursor.go_to(mark);
         return Ok(WordKind::Bare(expression(cursor)?));
     }
     Err(cursor.fault(mark, "a variable that is given no value"))
@@ -444,6 +464,13 @@ fn call(cursor: &mut Cursor, letters: &str) -> Result<Option<WordKind>, LineFaul
     cursor.advance(name.chars().count());
     if name.is_empty() {
         return Err(cursor.fault(mark, format!("{letters} needs the name of a subroutine")));
+    }
+    if name.to_ascii_uppercase().starts_with("CYCLE[")
+        || name.eq_ignore_ascii_case("CYCLE") && cursor.eat('[')
+    {
+        cursor.go_to(mark);
+        cursor.take_while(|c| c != '[');
+        return Err(cursor.fault(mark, format!("unknown word {letters} CYCLE (a cycle)")));
     }
     if cursor.is_done() {
         return Ok(Some(WordKind::Call { local, name }));

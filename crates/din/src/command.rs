@@ -90,9 +90,9 @@ pub(crate) fn read(cursor: &mut Cursor) -> Result<Order, LineFault> {
         end = cursor.mark();
         cursor.skip_blanks();
     }
-    cursor.go_back(end);
+    cursor.go_to(end);
     let Some(form) = FORMS.iter().find(|form| form.words == words) else {
-        return Err(cursor.fault(mark, format!("unknown command #{words}")));
+        return Err(cursor.fault(mark, format!("unknown command {}", cursor.text(mark))));
     };
     let mut order = Order {
         what: form.what,
@@ -104,7 +104,7 @@ pub(crate) fn read(cursor: &mut Cursor) -> Result<Order, LineFault> {
     } else if !form.values.is_empty() {
         return Err(cursor.fault(mark, format!("#{words} needs its brackets [ ]")));
     } else {
-        cursor.go_back(end);
+        cursor.go_to(end);
     }
     Ok(order)
 }

@@ -81,7 +81,8 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
-    pub fn go_back(&mut self, mark: usize) {
+    /// Stands where it stood before, or where a part of the line ends.
+    pub fn go_to(&mut self, mark: usize) {
         self.at = mark;
     }
 
@@ -105,15 +106,11 @@ impl<'a> Cursor<'a> {
         let column = |index: usize| self.line.get(index).map(|glyph| glyph.column);
         let behind = self.line.last().map_or(1, |glyph| glyph.column.saturating_add(1));
         let first = column(mark).unwrap_or(behind);
-        let last = self
-            .at
-            .checked_sub(1)
-            .filter(|last| *last >= mark)
-            .and_then(column);
-        (
-            first,
-            last.map_or(1, |last| last.saturating_sub(first).saturating_add(1)),
-        )
+        // Blanks behind a word are none of it.
+        let read = self.line.get(mark..self.at).unwrap_or_default();
+        let last = read.iter().rfind(|glyph| !glyph.character.is_whitespace());
+        let length = last.map_or(1, |last| last.column.saturating_sub(first).saturating_add(1));
+        (first, length)
     }
 
     /// A fault of what was read since a mark.
@@ -124,19 +121,35 @@ impl<'a> Cursor<'a> {
 
     /// A fault of a word that is not known: takes what looks like it, so that it is named whole.
     pub fn unknown(&mut self, mark: usize, what: &str) -> LineFault {
-        self.go_back(mark);
-        let name = self.word();
-        self.fault(mark, format!("unknown {what} {name}"))
+        self.go_to(mark);
+        self.word();
+        self.fault(mark, format!("unknown {what} {}", self.text(mark)))
     }
 
-    /// A word as somebody would name it: letters, digits, points; at least one character.
+    /// A word as somebody would name it: `T12`, `#HSC`, `V.P.NAME`, `[LABEL]`; at least one character.
     pub fn word(&mut self) -> String {
         let mut name = self.take_while(|c| matches!(c, '$' | '#' | '@' | '%'));
-        name += &self.take_while(|c| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+'));
+        if name.is_empty() && self.peek() == Some('[') {
+            name += &self.take_while(|c| c != ']');
+            name.extend(self.peek());
+            self.advance(1);
+            return name;
+        }
+        name += &self.take_while(|c| c.is_alphabetic() || c == '_');
+        name += &self.take_while(|c| c.is_ascii_digit() || c == '.');
+        if name.contains(['.', '_']) {
+            name += &self.take_while(|c| c.is_alphanumeric() || matches!(c, '_' | '.'));
+        }
         if name.is_empty() {
             name.extend(self.peek());
             self.advance(1);
         }
         name
+    }
+
+    /// What was read since a mark, as it is written.
+    pub fn text(&self, mark: usize) -> String {
+        let glyphs = self.line.get(mark..self.at).unwrap_or_default();
+        glyphs.iter().map(|glyph| glyph.character).collect()
     }
 }

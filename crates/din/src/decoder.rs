@@ -112,6 +112,11 @@ impl Decoder {
         self.state.position
     }
 
+    /// The files whose subroutines were called.
+    pub fn files(&self) -> impl Iterator<Item = &Arc<Program>> {
+        self.files.values()
+    }
+
     /// Executes the next block that orders anything.
     pub fn next(&mut self, variables: &mut dyn Variables) -> Step {
         while !self.is_over {

@@ -336,12 +336,10 @@ fn reference_within(cursor: &mut Cursor, depth: u32) -> Result<Reference, LineFa
         }
         name += &part;
         cursor.skip_blanks();
-        if cursor.peek() == Some('[') {
-            if index.is_some() {
-                return Err(cursor.fault(mark, format!("unknown variable {name} with two indices")));
-            }
-            index = Some(Box::new(bracket(cursor, depth)?));
+        while cursor.peek() == Some('[') {
+            // No variable here has more than one.
             name += "[]";
+            index = Some(Box::new(bracket(cursor, depth)?));
         }
         if !cursor.eat('.') {
             break;
@@ -349,18 +347,13 @@ fn reference_within(cursor: &mut Cursor, depth: u32) -> Result<Reference, LineFa
         cursor.skip_blanks();
         name.push('.');
     }
-    if name.starts_with(EXTERNAL) || VARIABLES.contains(&name.as_str()) {
+    if name.starts_with(EXTERNAL) && !name.contains("[][]") || VARIABLES.contains(&name.as_str()) {
         return Ok(Reference {
             name: name.into(),
             index,
         });
     }
-    let (column, length) = cursor.span(mark);
-    Err(crate::line::fault_at(
-        column,
-        length,
-        format!("unknown variable {name}"),
-    ))
+    Err(cursor.fault(mark, format!("unknown variable {}", cursor.text(mark).trim())))
 }
 
 /// What expressions are made of when a block is executed.

@@ -5,6 +5,8 @@
 //! [`Unit`]: what it moves, which functions it orders, what else it commands. Whoever follows it answers for the
 //! variables of the channel ([`Variables`]) and finds subroutines ([`Shelf`]).
 //!
+//! [`examine`] tells all that is wrong with a file and those that it calls, without a channel.
+//!
 //! What the manual does not show is an error at its block with its name; nothing is skipped.
 
 mod block;
@@ -12,15 +14,19 @@ mod circle;
 mod command;
 mod cursor;
 mod decoder;
+mod examine;
 mod execute;
 mod expression;
 mod line;
 mod program;
 mod unit;
+mod words;
 
 pub use decoder::{BlockFault, Decoder, Found, Step};
+pub use examine::{Examination, FileFault, examine};
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{
     Command, Function, Independent, Kind, Motion, Place, Shelf, SpindleOrder, Target, Unit, Variable,
     Variables,
 };
+pub use words::{Span, SpanKind, words};

@@ -13,6 +13,13 @@ pub struct LineFault {
     pub message: String,
 }
 
+impl LineFault {
+    /// Whether a word is not known, whatever stands behind it.
+    pub(crate) fn names_unknown(&self) -> bool {
+        self.message.starts_with("unknown")
+    }
+}
+
 /// A character and where it stands in the line; what comes from a macro stands where the macro does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Glyph {
@@ -102,6 +109,35 @@ pub(crate) fn glyphs(line: &str) -> Vec<Glyph> {
     result
 }
 
+/// Where a command stands in a line outside of other comments and quotes, in characters.
+pub(crate) fn command(line: &str, from: usize, command: &str) -> Option<usize> {
+    if !line.contains('#') {
+        return None;
+    }
+    let characters: Vec<char> = line.chars().collect();
+    let comments = comments(&characters);
+    let is_code = |at: usize| {
+        !comments
+            .iter()
+            .any(|comment| (comment.start..comment.end).contains(&at))
+    };
+    let is_here = |at: usize| {
+        let there = characters.get(at..).unwrap_or_default();
+        there.len() >= command.len()
+            && there
+                .iter()
+                .zip(command.chars())
+                .all(|(a, b)| a.eq_ignore_ascii_case(&b))
+    };
+    (from..characters.len()).find(|at| is_here(*at) && is_code(*at))
+}
+
+/// Blanks in place of the characters of a range.
+pub(crate) fn blank(line: &mut String, from: usize, to: usize) {
+    let blanked = |(at, character)| if (from..to).contains(&at) { ' ' } else { character };
+    *line = line.chars().enumerate().map(blanked).collect();
+}
+
 fn append(to: &mut Vec<Glyph>, characters: &[char], range: std::ops::Range<usize>) {
     let first = range.start;
     for (i, character) in characters.get(range).unwrap_or_default().iter().enumerate() {
@@ -161,8 +197,8 @@ impl Macros {
         Ok(())
     }
 
-    /// Whether all macros that a line uses have a text.
-    pub fn know_all(&self, line: &[Glyph]) -> Result<bool, LineFault> {
+    /// Index of the first macro of a line that has no text.
+    pub fn first_unknown(&self, line: &[Glyph]) -> Result<Option<usize>, LineFault> {
         let mut at = 0;
         while let Some(glyph) = line.get(at) {
             if glyph.character != '"' {
@@ -171,11 +207,11 @@ impl Macros {
             }
             let (name, end) = quoted(line, at)?;
             if !self.0.contains_key(&name) {
-                return Ok(false);
+                return Ok(Some(at));
             }
             at = end;
         }
-        Ok(true)
+        Ok(None)
     }
 
     /// The line with the text of each macro in its place.

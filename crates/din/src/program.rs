@@ -1,5 +1,6 @@
 //! A file: its lines, and the programs and subroutines that stand in it.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::block;
@@ -12,6 +13,8 @@ pub struct Program {
     text: String,
     /// Where each line begins in the text, and where it ends without its ending.
     lines: Vec<(usize, usize)>,
+    /// Lines that comments of several lines touch, with blanks in their place.
+    uncommented: BTreeMap<u32, String>,
     sections: Vec<Section>,
     /// What is wrong with heads of programs.
     heads: Vec<Fault>,
@@ -89,9 +92,11 @@ impl Program {
             name: name.into(),
             text,
             lines,
+            uncommented: BTreeMap::new(),
             sections: Vec::new(),
             heads: Vec::new(),
         };
+        program.find_comments();
         program.find_sections();
         if program.lines.len() >= MAX_LINES {
             let message = format!("more than {MAX_LINES} lines in a file");
@@ -174,7 +179,7 @@ impl Program {
 
     /// The programmed number of a block without leading zeros.
     pub(crate) fn number(&self, line: u32) -> Option<Arc<str>> {
-        let text = self.line(line);
+        let text = self.code(line);
         if !text.trim_start().starts_with(['N', 'n']) {
             return None;
         }
@@ -189,7 +194,7 @@ impl Program {
     /// The characters of a block; `None` of a line that orders nothing.
     pub(crate) fn glyphs(&self, line: u32) -> Option<Vec<Glyph>> {
         match self.kind(line) {
-            Line::Block => Some(line::glyphs(self.line(line))),
+            Line::Block => Some(line::glyphs(self.code(line))),
             Line::Blank | Line::Head { .. } => None,
         }
     }
@@ -216,8 +221,16 @@ impl Program {
         let Some(glyphs) = self.glyphs(line) else {
             return Ok(());
         };
-        if block::definitions(&glyphs)?.is_none() && !macros.know_all(&glyphs)? {
-            return Ok(());
+        if block::definitions(&glyphs)?.is_none()
+            && let Some(unknown) = macros.first_unknown(&glyphs)?
+        {
+            // What stands before it is judged all the same.
+            let before = glyphs.get(..unknown).unwrap_or_default();
+            let column = glyphs.get(unknown).map_or(1, |glyph| glyph.column);
+            return match block::read(before, macros) {
+                Err(fault) if fault.column < column && fault.names_unknown() => Err(fault),
+                _ => Ok(()),
+            };
         }
         for word in block::read(&glyphs, macros)?.words {
             if let block::WordKind::Define(name, text) = &word.kind {
@@ -239,7 +252,54 @@ impl Program {
     }
 
     fn kind(&self, number: u32) -> Line<'_> {
-        kind(self.line(number))
+        kind(self.code(number))
+    }
+
+    /// A line without comments of several lines.
+    fn code(&self, number: u32) -> &str {
+        self.uncommented
+            .get(&number)
+            .map_or_else(|| self.line(number), String::as_str)
+    }
+
+    /// `#COMMENT BEGIN` and `#COMMENT END` (public), each with what stands beside it in its line.
+    fn find_comments(&mut self) {
+        let mut begin = None;
+        for number in 1..=self.line_count() {
+            let mut line = self.line(number).to_owned();
+            let mut is_touched = begin.is_some();
+            let mut at = 0;
+            loop {
+                let open = begin.is_some();
+                let mark = if open {
+                    Some(at)
+                } else {
+                    line::command(&line, at, "#COMMENT BEGIN")
+                };
+                let Some(mark) = mark else { break };
+                begin = begin.or(Some((number, mark)));
+                is_touched = true;
+                let behind = if open { mark } else { mark + "#COMMENT BEGIN".len() };
+                let end = find_end(&line, behind);
+                line::blank(&mut line, mark, end.unwrap_or(usize::MAX));
+                match end {
+                    Some(end) => (begin, at) = (None, end),
+                    None => break,
+                }
+            }
+            if is_touched {
+                self.uncommented.insert(number, line);
+            }
+        }
+        if let Some((line, column)) = begin {
+            let column = u32::try_from(column).unwrap_or(u32::MAX).saturating_add(1);
+            let message = "#COMMENT BEGIN is not closed by #COMMENT END".into();
+            let fault = self.fault(
+                line,
+                line::fault_at(column, "#COMMENT BEGIN".len() as u32, message),
+            );
+            self.heads.push(fault);
+        }
     }
 
     fn find_sections(&mut self) {
@@ -277,8 +337,18 @@ impl Program {
                 lines,
             });
         }
+        if sections.is_empty() {
+            // A file without blocks is a program that does nothing.
+            let lines = (1, self.line_count() + 1);
+            sections.push(Section {
+                name: String::new(),
+                is_subroutine: false,
+                line: 1,
+                lines,
+            });
+        }
         self.sections = sections;
-        self.heads = heads;
+        self.heads.extend(heads);
     }
 
     fn head_fault(&self, line: u32, message: String) -> Fault {
@@ -287,6 +357,20 @@ impl Program {
         let length = text.trim().chars().count() as u32;
         self.fault(line, line::fault_at(blanks + 1, length, message))
     }
+}
+
+/// Where a comment of several lines ends, in characters: behind its `#COMMENT END`.
+fn find_end(line: &str, from: usize) -> Option<usize> {
+    const END: &str = "#COMMENT END";
+    let characters: Vec<char> = line.chars().collect();
+    let rest = characters.get(from..)?;
+    let found = rest.windows(END.len()).position(|window| {
+        window
+            .iter()
+            .zip(END.chars())
+            .all(|(a, b)| a.eq_ignore_ascii_case(&b))
+    });
+    found.map(|place| from + place + END.len())
 }
 
 /// What a line is: a head begins with `%` [004:60], `%L name` is one of a subroutine (public).

@@ -65,6 +65,11 @@ pub trait Language: fmt::Debug + Send + Sync {
     /// What stands before a block of the normalised listing, whose number there is `number`.
     fn write_line_number(&self, number: u32, block: &Block, options: FormatOptions, text: &mut String);
 
+    /// Whether reports call blocks by numbers that are programmed: [`Language::number`].
+    fn numbers_blocks(&self) -> bool {
+        false
+    }
+
     /// The number that a block is programmed with, where that is what its reports call it.
     fn number(&self, _text: BlockText<'_>) -> Option<u32> {
         None

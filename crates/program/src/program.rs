@@ -256,6 +256,9 @@ impl Program {
     /// What reports call a block: the number that it is programmed with, where its language has such numbers and it
     /// has one, else its number in the normalised listing.
     pub fn number_of(&self, block: u32) -> u32 {
+        if !self.language.numbers_blocks() {
+            return block;
+        }
         let place = self.place(block);
         let number = place.and_then(|(piece, raw)| self.language.number(raw.text(piece.text())));
         number.unwrap_or(block)

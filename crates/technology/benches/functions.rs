@@ -57,7 +57,7 @@ impl Blocks for Decoded {
             return Ok(None);
         }
         self.block += 1;
-        let target = (self.block % 2 == 0).then_some(Target::Axis(Axis::X));
+        let target = self.block.is_multiple_of(2).then_some(Target::Axis(Axis::X));
         let functions = (0..EACH).map(|number| Function {
             kind: Kind::H(number),
             value: Some(i32::from(number)),

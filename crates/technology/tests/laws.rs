@@ -67,6 +67,7 @@ fn block() -> impl Strategy<Value = Block> {
 }
 
 /// A function as the program has it.
+#[allow(dead_code, reason = "type and range are shown where a law is broken")]
 #[derive(Debug)]
 struct Known {
     kind: &'static str,
@@ -123,8 +124,7 @@ fn case(blocks: &[Block]) -> Case {
             };
             list += &format!("m_synch[{}] {kind}\n", &name[1..]);
             if kind.starts_with("ME") {
-                let per = if kind.starts_with("MEP") { 1000 } else { 1000 };
-                list += &format!("m_pre_outp[{}] {}\n", &name[1..], switch.lead * per);
+                list += &format!("m_pre_outp[{}] {}\n", &name[1..], switch.lead * 1000);
             }
             script += &format!("{name} ack {:.3}\n", f64::from(switch.cycles) * T);
             let gate = match kind {

@@ -13,7 +13,6 @@ mod options;
 mod source;
 
 pub(crate) use options::MpOptions;
-pub(crate) use source::named_model;
 
 use crate::{Outcome, UsageError};
 use options::MpCommand;

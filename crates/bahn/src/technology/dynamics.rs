@@ -6,7 +6,7 @@ use bahn_motion::{Limits, SERVO_WINDOW_S};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::PerAxis;
 
-use crate::{UsageError, files, mp, settings};
+use crate::{UsageError, files, settings};
 
 /// What axes do that no list says anything of: rapid traverse 10 m/min, acceleration 1 m/s², on circles too.
 const PLAIN: [&str; 11] = [
@@ -26,7 +26,7 @@ const PLAIN: [&str; 11] = [
 /// Plain dynamics, with the lines of a list over them.
 pub(super) fn limits(list: Option<&Path>) -> Result<Limits, UsageError> {
     let bytes = list.map(files::read_table).transpose()?;
-    let named = bytes.as_deref().and_then(mp::named_model);
+    let named = bytes.as_deref().and_then(|bytes| ControlModel::named_in(bytes));
     let model = named.unwrap_or(ControlModel::Tnc415b);
     let mut parameters = ParameterList::reference(model);
     for assignment in PLAIN {

@@ -123,6 +123,10 @@ impl Language for IsoLanguage {
         write::write_number(number, block, options, text);
     }
 
+    fn numbers_blocks(&self) -> bool {
+        true
+    }
+
     fn number(&self, text: BlockText<'_>) -> Option<u32> {
         let text = trim(text.bytes);
         let text = text.strip_prefix(b"/").map_or(text, trim);

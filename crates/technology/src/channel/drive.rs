@@ -15,6 +15,12 @@ use crate::plc::cycle_at;
 /// Elements that the interpolator looks ahead.
 pub(super) const LOOK_AHEAD: usize = 512;
 
+/// Nearer to a place the path is there, in time and way.
+const ROUNDING_S: f64 = 1e-9;
+const ROUNDING_MM: f64 = 1e-9;
+/// Slower than this it stands, mm/s: it brakes over less than the way above.
+const STANDS_MM_S: f64 = 1e-3;
+
 /// Gives the interpolator the elements of the track.
 struct Feed<'a> {
     track: &'a Track,
@@ -130,17 +136,31 @@ impl Channel<'_> {
         self.drive_once(&drive, block)
     }
 
+    /// Path speed, mm/s.
+    pub(super) fn speed(&self) -> f64 {
+        let speed = self.path.speed_mm_s();
+        if speed < STANDS_MM_S && self.path.rest_mm() < ROUNDING_MM {
+            0.0
+        } else {
+            speed
+        }
+    }
+
     /// Drives a cycle. Whether anything moved.
     pub(super) fn drive_once(&mut self, drive: &Drive, block: Option<Arc<str>>) -> bool {
         let (before, way) = (self.now(), self.way());
         self.way_before = way;
         let cycle = self.path.cycle(drive);
-        if let Some(last) = self.path.passed().last() {
-            let passed = last.sequence;
+        let (rest, speed) = (self.path.rest_mm(), self.speed());
+        // What lacks rounding alone to be there is there in this cycle, not in the next one.
+        let arrives = rest > 0.0 && rest <= speed * ROUNDING_S + if speed > 0.0 { 0.0 } else { ROUNDING_MM };
+        let here = self.path.element().map(|element| element.sequence);
+        let passed = self.path.passed().last().map(|last| last.sequence);
+        if let Some(passed) = here.filter(|_| arrives).or(passed) {
             self.pass(passed);
         }
         let moved = (self.way() - way).abs() > 0.0;
-        self.still = cycle.speed_mm_s <= 0.0;
+        self.still = speed <= 0.0;
         if self.stands && moved {
             self.record
                 .path(true, block.as_deref().unwrap_or_default(), before);
@@ -148,8 +168,7 @@ impl Channel<'_> {
         }
         let ended = self.cycle_independent();
         self.held = cycle.state == State::Held;
-        self.record
-            .sample(self.t() + self.cycle_s, self.way(), cycle.speed_mm_s);
+        self.record.sample(self.t() + self.cycle_s, self.way(), speed);
         moved || ended || !self.still || !self.path.passed().is_empty()
     }
 

@@ -164,7 +164,7 @@ impl Channel<'_> {
 
     /// A function is output at a place of the path.
     fn output_at(&mut self, id: OrderId, place: u64) {
-        let (left_s, speed_mm_s) = self.passed(place).unwrap_or((0.0, self.path.speed_mm_s()));
+        let (left_s, speed_mm_s) = self.passed(place).unwrap_or((0.0, self.speed()));
         let at = Moment {
             t: self.t(),
             position: self.track.position(place),

@@ -179,7 +179,7 @@ impl<'a> Channel<'a> {
         Moment {
             t: self.t(),
             position,
-            speed_mm_s: self.path.speed_mm_s(),
+            speed_mm_s: self.speed(),
         }
     }
 }
