@@ -2,13 +2,14 @@
 //!
 //! Every block is read, and the program is rehearsed: executed without geometry, beyond its errors.
 
+mod din;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_interpreter::{Cause, Message, ProgramError, Rehearsal, Settings, Warning, rehearse};
+use bahn_interpreter::{Complete, Examination, Found, Settings, examine};
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_path::BlockRef;
-use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Reading, Severity, Uncounted};
+use bahn_program::{Diagnostic as Fault, Program, Severity, Uncounted};
 
 use crate::diagnostics::{self, FileFault, Marked};
 use crate::files::{self, FileLibrary, Loaded};
@@ -87,19 +88,13 @@ struct Entry {
     help: String,
 }
 
-/// A fault in one of the programs of the run.
-struct Found {
-    /// Number of the program; 0 is the file itself.
-    program: usize,
-    /// The headline.
-    title: String,
-    fault: Fault,
-}
-
 /// Checks a file and prints what is wrong.
 pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
-    let (programs, found, more, complete) = match files::load_program(path)? {
-        Loaded::Program(program) => examine(program, &how.settings, interrupt),
+    if files::extension(path) == "nc" {
+        return din::check(path, how.format, interrupt);
+    }
+    let examination = match files::load_program(path)? {
+        Loaded::Program(program) => examined(program, &how.settings, interrupt),
         Loaded::Empty(program) => nothing(program, MessageId::EndOfProgramMissing, files::EMPTY),
         Loaded::TooLarge => {
             let program = Arc::new(Program::from_bytes("", Vec::new()));
@@ -110,6 +105,13 @@ pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<C
             )
         }
     };
+    let Examination {
+        programs,
+        found,
+        more,
+        complete,
+        ..
+    } = examination;
     let count = |severity| {
         found
             .iter()
@@ -139,112 +141,10 @@ pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<C
     Ok(report)
 }
 
-/// Whether a program was executed to its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Complete {
-    Yes,
-    No,
-    /// There is nothing to execute.
-    NotBegun,
-}
-
-type Examined = (Vec<Arc<Program>>, Vec<Found>, Uncounted, Complete);
-
 /// Reads every block and rehearses the program.
-fn examine(program: Arc<Program>, settings: &Settings, interrupt: &Interrupt) -> Examined {
-    let (faults, more) = program.counted_diagnostics(Some(Reading {
-        limits: settings.model.limits(),
-        inch_feed: settings.inch_feed(),
-    }));
-    if program.refused().is_some() || faults.len() >= MAX_DIAGNOSTICS {
-        // Not a program that can be executed.
-        return (
-            vec![program],
-            faults.into_iter().map(of_file).collect(),
-            more,
-            Complete::NotBegun,
-        );
-    }
+fn examined(program: Arc<Program>, settings: &Settings, interrupt: &Interrupt) -> Examination {
     let library = Box::new(FileLibrary::with_main(&program));
-    let rehearsal = rehearse(program, settings.clone(), library, &interrupt.flag());
-    let found = merged(faults, &rehearsal, settings.model);
-    let complete = if rehearsal.complete {
-        Complete::Yes
-    } else {
-        Complete::No
-    };
-    (rehearsal.programs, found, more, complete)
-}
-
-/// What was read and what was rehearsed, in the order of programs and blocks. What reading has found at a
-/// block is not said again.
-fn merged(read: Vec<Fault>, rehearsal: &Rehearsal, model: ControlModel) -> Vec<Found> {
-    let is_error = |fault: &&Fault| fault.severity == Severity::Error;
-    let known = |error: &ProgramError| {
-        read.iter().filter(is_error).any(|fault| {
-            let incomplete = fault.message == MessageId::CyclIncomplete
-                && error.message == Message::Control(MessageId::CyclIncomplete)
-                && error.cause == Cause::Message;
-            incomplete || (error.block.program == 0 && error.block.block == fault.block)
-        })
-    };
-    let mut found: Vec<Found> = Vec::new();
-    for error in rehearsal.errors.iter().filter(|error| !known(error)) {
-        found.extend(rehearsed_error(error, rehearsal, model));
-    }
-    for warning in &rehearsal.warnings {
-        found.extend(rehearsed_warning(warning, rehearsal));
-    }
-    found.extend(read.into_iter().map(of_file));
-    found.sort_by_key(|found| (found.program, found.fault.block));
-    found
-}
-
-fn of_file(fault: Fault) -> Found {
-    Found {
-        program: 0,
-        title: String::new(),
-        fault,
-    }
-}
-
-fn rehearsed_error(error: &ProgramError, rehearsal: &Rehearsal, model: ControlModel) -> Option<Found> {
-    let program = program_of(rehearsal, error.block)?;
-    let message = match error.message {
-        Message::Control(id) => id,
-        Message::Numbered(_) => MessageId::ErrorBlock,
-    };
-    let mut fault = program.diagnostic(message, Severity::Error, error.block.block, "", &error.detail);
-    fault.help = error.remedy().unwrap_or_default();
-    Some(Found {
-        program: usize::from(error.block.program),
-        title: error.message.text(model).to_owned(),
-        fault,
-    })
-}
-
-fn rehearsed_warning(warning: &Warning, rehearsal: &Rehearsal) -> Option<Found> {
-    let program = program_of(rehearsal, warning.block)?;
-    let block = warning.block.block;
-    let fault = program.diagnostic(MessageId::UnexpectedText, Severity::Warning, block, "", "");
-    Some(Found {
-        program: usize::from(warning.block.program),
-        title: warning.kind.to_string(),
-        fault,
-    })
-}
-
-fn program_of(rehearsal: &Rehearsal, block: BlockRef) -> Option<&Arc<Program>> {
-    rehearsal.programs.get(usize::from(block.program))
-}
-
-impl Found {
-    fn title(&self, model: ControlModel) -> &str {
-        match self.title.as_str() {
-            "" => self.fault.message.text(model),
-            title => title,
-        }
-    }
+    examine(program, settings.clone(), library, &interrupt.flag())
 }
 
 fn entry(found: &Found, programs: &[Arc<Program>], model: ControlModel) -> Entry {
@@ -262,13 +162,8 @@ fn entry(found: &Found, programs: &[Arc<Program>], model: ControlModel) -> Entry
         column: fault.column,
         length: fault.length,
         detail: fault.detail.to_string(),
-        help: help(fault).unwrap_or_default().to_owned(),
+        help: found.help().unwrap_or_default().to_owned(),
     }
-}
-
-/// Warnings say themselves what to do.
-fn help(fault: &Fault) -> Option<&'static str> {
-    (fault.severity == Severity::Error && !fault.help.is_empty()).then_some(fault.help)
 }
 
 fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlModel) {
@@ -298,25 +193,26 @@ fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlMo
             "" => format!("block {number}"),
             detail => format!("block {number}: {detail}"),
         },
-        help: help(fault).map(str::to_owned),
+        help: found.help().map(str::to_owned),
         opened: None,
     });
 }
 
 /// A fault of the whole file, which holds nothing to be examined.
-fn nothing(program: Arc<Program>, message: MessageId, detail: &str) -> Examined {
+fn nothing(program: Arc<Program>, message: MessageId, detail: &str) -> Examination {
     let fault = Fault {
         line: 1,
         column: 1,
         length: 1,
         ..program.diagnostic(message, Severity::Error, 0, "", detail)
     };
-    (
-        vec![program],
-        vec![of_file(fault)],
-        Uncounted::default(),
-        Complete::NotBegun,
-    )
+    Examination {
+        programs: vec![program],
+        found: vec![fault.into()],
+        more: Uncounted::default(),
+        complete: Complete::NotBegun,
+        q_values: Vec::new(),
+    }
 }
 
 fn summary(report: &CheckReport, complete: Complete) {

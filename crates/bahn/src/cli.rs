@@ -5,10 +5,13 @@ use std::ffi::OsString;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::Outcome;
+use crate::channel::ChannelOptions;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
+use crate::convert::ConvertOptions;
 use crate::faults::FaultsOptions;
 use crate::link::LinkOptions;
+use crate::lsp::LspOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
@@ -21,6 +24,7 @@ use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
 use crate::table::TableOptions;
+use crate::technology::TechnologyOptions;
 use crate::test_run::TestOptions;
 use crate::torture::TortureOptions;
 use crate::tune::TuneOptions;
@@ -67,10 +71,21 @@ pub(crate) enum Command {
     /// Write programs as normalised listing: block numbers, signs and spacing as the control prints them.
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(FmtOptions),
+    /// Write programs in another language, and prove that they do the same.
+    #[command(after_help = crate::convert::EXAMPLES)]
+    Convert(Box<ConvertOptions>),
+    /// Serve an editor while programs and lists are written: the Language Server Protocol.
+    #[command(after_help = crate::lsp::EXAMPLES)]
+    Lsp(LspOptions),
     /// Compile, run and debug PLC programs.
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// Run programs with M, H and S functions on a channel: where each is output, and where the path waits for it.
+    #[command(after_help = crate::technology::EXAMPLES)]
+    Technology(Box<TechnologyOptions>),
+    /// Check, explain and write lists of channel parameters: when M, H and spindle functions reach the PLC.
+    Channel(ChannelOptions),
     /// List the cycles of the machine builder, and write EPROMs with them.
     Oem(OemOptions),
     /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.

@@ -9,11 +9,12 @@ use bahn_program::{FormatOptions, Program, format_program};
 use crate::diagnostics::printable;
 use crate::files::{self, Loaded, NewFile};
 use crate::options::FmtOptions;
-use crate::{Outcome, UsageError, console, diagnostics};
+use crate::{Outcome, UsageError, console, diagnostics, settings};
 
 /// Prints, writes or compares listings.
 pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
     let mut outcome = Outcome::Fine;
+    let iso_step = iso_step(options)?;
     for path in &options.files {
         // Read once: a pipe gives its bytes once.
         let bytes = files::read_program(path)?;
@@ -22,7 +23,7 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
             &program,
             FormatOptions {
                 decimal_comma: options.comma,
-                iso_step: options.iso_step,
+                iso_step,
             },
         );
         if !options.write && !options.check {
@@ -49,6 +50,18 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
         }
     }
     Ok(outcome)
+}
+
+/// The step of block numbers in DIN/ISO.
+fn iso_step(options: &FmtOptions) -> Result<u8, UsageError> {
+    let of_list = || match &options.parameters {
+        Some(list) => {
+            let list = settings::parameter_list(options.model, Some(list))?;
+            Ok(list.operation_parameters().iso_step)
+        }
+        None => Ok(FmtOptions::ISO_STEP),
+    };
+    options.iso_step.map_or_else(of_list, Ok)
 }
 
 fn load(path: &Path, bytes: Option<Vec<u8>>) -> Result<Arc<Program>, UsageError> {

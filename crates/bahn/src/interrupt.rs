@@ -10,6 +10,9 @@ use crate::{Outcome, files};
 /// How long a run may take to notice that it is to end, when it is asked twice.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// How often a run with a time of its own looks for Ctrl-C.
+const WATCH: Duration = Duration::from_millis(50);
+
 /// Whether somebody wants the run to end.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Interrupt {
@@ -88,6 +91,25 @@ impl Stop {
             late: Arc::default(),
             over: Arc::default(),
         }
+    }
+
+    /// Ends one of several runs: by Ctrl-C, or when its own time has passed.
+    pub fn of_one(interrupt: &Interrupt, limit: Option<Duration>) -> Stop {
+        let Some(limit) = limit else {
+            return Stop::by(interrupt);
+        };
+        let stop = Stop::default();
+        stop.after(limit);
+        let (watching, interrupt) = (stop.clone(), interrupt.clone());
+        std::thread::spawn(move || {
+            while !watching.is_requested() && !watching.over.load(Ordering::Relaxed) {
+                std::thread::sleep(WATCH);
+                if interrupt.is_requested() {
+                    watching.end();
+                }
+            }
+        });
+        stop
     }
 
     /// Ends the run when this time has passed.

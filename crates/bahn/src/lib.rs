@@ -12,23 +12,28 @@
 //! - `cli`: options and help texts; `settings` turns them into the settings of the other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
+//! - `technology`: programs with functions that the path waits for;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
+//! - `convert`: programs in another language, with the proof that they do the same;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
-//!   groups `bahn plc`, `bahn mp`, `bahn table`; `link`: the data interfaces;
+//!   groups `bahn plc`, `bahn mp`, `bahn table`, `channel` is `bahn channel`; `link`: the data interfaces;
+//!   `lsp`: the language server;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
-//! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
+//! - `paragraph`: labelled text in 80 columns, `style`: its colours; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 
 mod block_time;
+mod channel;
 mod check;
 mod cli;
 mod compensate;
 mod conformance;
 mod console;
+mod convert;
 mod cutting;
 mod diagnostics;
 mod explain;
@@ -38,6 +43,7 @@ mod format;
 mod interrupt;
 mod junit;
 mod link;
+mod lsp;
 mod machine_folder;
 mod manual;
 mod mp;
@@ -56,7 +62,9 @@ mod scope;
 mod settings;
 mod shelf;
 mod solid;
+mod style;
 mod table;
+mod technology;
 mod test_run;
 mod torture;
 mod tune;
@@ -90,8 +98,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Machine(options) => machine_folder::command(&options),
         cli::Command::Check(options) => check::command(&options),
         cli::Command::Fmt(options) => format::command(&options),
+        cli::Command::Convert(options) => convert::command(&options),
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
+        cli::Command::Channel(options) => channel::command(&options),
+        cli::Command::Lsp(options) => lsp::command(&options),
+        cli::Command::Technology(options) => technology::command(&options),
         cli::Command::Oem(options) => oem::command(&options),
         cli::Command::Table(options) => table::command(&options),
         cli::Command::Link(options) => link::command(&options),

@@ -12,6 +12,7 @@ pub(crate) const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn check *.h
   bahn check --model tnc360 --format json part.h
+  bahn check part.nc         DIN 66025 of a TF5200
 
 Every block is read; then the program is executed without geometry, with those that it calls, and beyond its
 errors: labels, calls, tools, feeds, poles, arcs, cycles. What only follows from an earlier error is not
@@ -25,7 +26,9 @@ pub(crate) const FMT_EXAMPLES: &str = "\
 Examples:
   bahn fmt part.h            the listing on standard output
   bahn fmt --write *.h       replace the files
-  bahn fmt --check *.h       name the files that are written differently; exit code 1 if there are any";
+  bahn fmt --check *.h       name the files that are written differently; exit code 1 if there are any
+  bahn fmt examples/plate.I --parameters mill.mp
+      Block numbers of DIN/ISO in the step of MP7220 of a list.";
 
 pub(crate) const EXPLAIN_EXAMPLES: &str = "\
 Examples:
@@ -237,9 +240,20 @@ pub(crate) struct FmtOptions {
     /// Write decimal commas instead of points.
     #[arg(long)]
     pub comma: bool,
-    /// Step of the block numbers of DIN/ISO programs, as MP7220; 0 writes none.
-    #[arg(long, value_name = "STEP", default_value_t = 10)]
-    pub iso_step: u8,
+    /// Step of the block numbers of DIN/ISO programs, 0 writes none; by default MP7220 of the list, or 10 without one.
+    #[arg(long, value_name = "STEP")]
+    pub iso_step: Option<u8>,
+    /// List of machine parameters with MP7220, as the control that the programs go to has it.
+    #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
+    pub parameters: Option<PathBuf>,
+    /// Control model of the list.
+    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, requires = "parameters", value_parser = model_parser())]
+    pub model: ControlModel,
+}
+
+impl FmtOptions {
+    /// Step of block numbers where no list says it.
+    pub const ISO_STEP: u8 = 10;
 }
 
 /// Options of `bahn explain`.

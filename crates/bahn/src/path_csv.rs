@@ -24,8 +24,9 @@ impl PathTable {
         })
     }
 
-    /// Writes the row of an element of a program; an element that holds still has none.
-    pub fn element(&mut self, element: &PathElement, program: &str) -> io::Result<()> {
+    /// Writes the row of an element of a program, with what reports call its block; an element that holds still has
+    /// none.
+    pub fn element(&mut self, element: &PathElement, program: &str, block: u32) -> io::Result<()> {
         let mut corner = None;
         let (kind, arc) = match (&element.curve, element.feed) {
             (Curve::Hold, _) => return Ok(()),
@@ -39,7 +40,7 @@ impl PathTable {
         };
         self.row.clear();
         push_text(&mut self.row, program);
-        write!(self.row, ",{},{kind},", element.block.block)?;
+        write!(self.row, ",{block},{kind},")?;
         if let FeedRate::Programmed(feed) = element.feed {
             push_number(&mut self.row, feed);
         }

@@ -169,7 +169,10 @@ impl Record {
         let warnings = self
             .warnings
             .into_iter()
-            .map(|(block, notice, count)| WarningReport::new(place(block), notice.text(model, block), count));
+            .map(|(block, notice, count)| WarningReport {
+                at: Some(block),
+                ..WarningReport::new(place(block), notice.text(model, block), count)
+            });
         let tool_calls = self.tool_calls.into_iter();
         let tool_calls = tool_calls.map(|(block, tool, rpm)| ToolCallReport::new(place(block), tool, rpm));
         let stops = self.stops.into_iter();
@@ -225,6 +228,7 @@ fn further(what: &str, count: u64) -> Option<WarningReport> {
         block: 0,
         line: 0,
         count,
+        at: None,
     })
 }
 
@@ -382,6 +386,9 @@ pub(crate) struct WarningReport {
     pub block: u32,
     pub line: u32,
     pub count: u64,
+    /// Its block, where it is about one.
+    #[serde(skip)]
+    pub at: Option<BlockRef>,
 }
 
 impl WarningReport {
@@ -392,6 +399,7 @@ impl WarningReport {
             block,
             line,
             count,
+            at: None,
         }
     }
 }

@@ -179,6 +179,31 @@ fn files_go_to_a_disk_and_come_back() {
 }
 
 #[test]
+fn programs_in_folders_are_transferred_by_their_name_alone() {
+    let folder = desk();
+    fs::create_dir_all(folder.path("mill/programs/parts")).unwrap();
+    folder.write("mill/programs/parts/1.H", PROGRAM);
+    let disk = Running::start(&folder, "link disk disk --port tcp:127.0.0.1:0,mode=fe2").ready();
+    let port = format!("--port connect:{},mode=fe2", disk.place);
+    let sent = folder.bahn(&format!("link send --machine mill {port} 1.H"));
+    assert_eq!(
+        (sent.code(), sent.out().as_str()),
+        (0, "1.H sent\n"),
+        "{}",
+        sent.err()
+    );
+    assert_eq!(fs::read_to_string(folder.path("disk/1.H")).unwrap(), PROGRAM);
+    // What is read in again replaces it where it lies.
+    let longer = PROGRAM.replace("X+1", "X+17");
+    folder.write("disk/1.H", &longer);
+    let received = folder.bahn(&format!("link receive --machine mill {port} 1.H --answer yes"));
+    assert_eq!(received.code(), 0, "{}", received.err());
+    let parts = folder.path("mill/programs/parts/1.H");
+    assert_eq!(fs::read_to_string(parts).unwrap(), longer);
+    assert!(!folder.path("mill/programs/1.H").exists());
+}
+
+#[test]
 fn a_disk_answers_a_control_byte_by_byte() {
     let folder = desk();
     folder.write("disk/1.HNC", PROGRAM).write("disk/secret.txt", "x");

@@ -55,7 +55,7 @@ pub(crate) fn prompts_of(function: CycleFunction, number: u16) -> Vec<&'static s
     fields.map(|field| field.slot.prompt).collect()
 }
 
-fn lines_of(function: CycleFunction, number: u16, builder: Option<&BuilderCycle>) -> Vec<Line> {
+pub(crate) fn lines_of(function: CycleFunction, number: u16, builder: Option<&BuilderCycle>) -> Vec<Line> {
     let numbers: Vec<u16> = match builder {
         Some(cycle) => cycle.parameters.iter().map(|(number, _)| *number).collect(),
         None if function == CycleFunction::Definition => {

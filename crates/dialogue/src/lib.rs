@@ -7,6 +7,7 @@
 //! - [`Setting`]: what an editor has to know of its control and machine, [`BuilderCycle`] its own cycles;
 //! - [`Draft`]: what is still open, to be kept and taken up again;
 //! - [`figure`]: the drawing of a cycle, in which the word that is asked for stands out;
+//! - [`cycle_template`]: the blocks of a cycle with what is asked for in them;
 //! - programs in DIN/ISO are entered as text by the same [`Editor`], with numbers, checks and messages of the control;
 //! - [`prompts`]: the texts of the dialogue in English and German.
 //!
@@ -62,6 +63,7 @@ mod section;
 mod setting;
 mod show;
 mod soft_keys;
+mod template;
 #[cfg(test)]
 mod tests;
 mod typing;
@@ -75,6 +77,7 @@ pub use key::{Key, KeyGroup, Tongue};
 pub use prompt::{Prompt, prompts};
 pub use reaction::{Reaction, Wanted};
 pub use setting::{BuilderCycle, Setting};
+pub use template::{TemplatePart, cycle_template};
 pub use view::{List, Question, Row, ShownWord, View};
 
 /// Cycles of the machine builder [003:4904-4906].

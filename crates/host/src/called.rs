@@ -54,6 +54,11 @@ fn candidates(name: &str, callers_ending: &str) -> Vec<String> {
     names
 }
 
+/// The file that a call of a program means, beside the calling one.
+pub fn called_program(name: &str, caller: &Path) -> Option<PathBuf> {
+    find(caller.parent().unwrap_or(Path::new("")), name, caller)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

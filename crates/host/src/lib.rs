@@ -90,6 +90,7 @@ pub mod torture;
 mod trial;
 pub mod tuning;
 
+pub use called::called_program;
 pub use columns::{Cell, TableFault, TextRow, TextTable, canonical};
 pub use deed::{Answer, Deed, DeedError, Operable, Source};
 pub use edges::Edges;

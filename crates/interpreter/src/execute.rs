@@ -15,7 +15,6 @@ use crate::cycles::{call_cycle, define_cycle};
 use crate::error::{Cause, Fault, Message, WarningKind};
 use crate::flow::Flow;
 use crate::functions::take_m_functions;
-use crate::in_force::resolved;
 use crate::path_functions::circle_centre;
 use crate::positioning::{positioning, take_compensation, take_feed};
 use crate::probe::probe;
@@ -310,7 +309,8 @@ fn execute_motion(
     settings: &Settings,
 ) -> Result<Flow, Fault> {
     take_plane(run, modality)?;
-    let mut motion = resolved(&mut run.modal.in_force, motion, modality)?;
+    let resolved = run.modal.in_force.resolve(motion, modality);
+    let mut motion = resolved.map_err(|detail| Fault::new(MessageId::EntryValueIncorrect, detail))?;
     let rapid = run.modal.in_force.function.is_rapid();
     if rapid && matches!(motion.feed, Some(Feed::Value(_))) {
         // The feed counts from the next block on that is not in rapid traverse.

@@ -5,7 +5,7 @@
 //! - [`Settings`]: control model, machine parameters, tools and options of a run;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
 //! - [`Library`]: where called programs come from;
-//! - [`rehearse`]: all faults of a program, found without moving anything;
+//! - [`rehearse`]: all faults of a program, found without moving anything; [`examine`]: with those that reading finds;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
 //! ```
@@ -45,11 +45,11 @@ mod cycles;
 mod definition;
 mod digitize;
 mod error;
+mod examination;
 mod execute;
 mod flow;
 mod functions;
 mod growing;
-mod in_force;
 mod modal;
 mod normals;
 mod numbers;
@@ -82,12 +82,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, ScanJob, Step};
-use bahn_program::{Block, Operation, Program};
+use bahn_program::{Block, InForce, Operation, Program};
 
 pub use absent::AbsentAxes;
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
+pub use examination::{Complete, Examination, Found, examine};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
@@ -104,7 +105,6 @@ use crate::cycles::Halt;
 use crate::error::Fault;
 use crate::execute::execute;
 use crate::flow::Flow;
-use crate::in_force::InForce;
 use crate::output::{Item, Output};
 use crate::run::Run;
 use crate::work::Pending;

@@ -2,12 +2,11 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Curve, Cylinder, Frame, Plane, Point2, Position};
-use bahn_program::Compensation;
+use bahn_program::{Compensation, InForce};
 
 use crate::contour::{CornerArcs, FeedLaw, Side};
 use crate::definition::{CycleData, Digitizing};
 use crate::error::{Cause, Fault};
-use crate::in_force::InForce;
 use crate::q_parameters::{QTable, preassigned};
 use crate::status::{Spindle, Status, Tilting, Tool};
 

@@ -38,6 +38,8 @@ pub struct Rehearsal {
     pub programs: Vec<Arc<Program>>,
     /// The end was reached.
     pub complete: bool,
+    /// The Q parameters at the end, by their number; none where the program set none, or from such a one.
+    pub q_values: Vec<Option<f64>>,
 }
 
 /// Rehearses a program with those that it calls.
@@ -327,6 +329,10 @@ impl Rehearser {
         if let Some(Ended::Failed(error)) = self.run.ended.take() {
             self.found.errors.push(*error);
         }
+        let values = self.run.run.numbers.q.values().iter().zip(&self.unknown_q);
+        self.found.q_values = values
+            .map(|(value, unknown)| (!unknown).then_some(*value))
+            .collect();
         self.found.programs = (0..=u16::MAX)
             .map_while(|index| self.run.program(index).cloned())
             .collect();

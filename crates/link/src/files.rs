@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Cursor, Read, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::store::{Existing, Store, StoreError};
+use crate::store::{Entry, Existing, Store, StoreError};
 
 /// A file in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,37 +47,37 @@ pub trait NewFile: Write + Send {
     fn commit(self: Box<Self>) -> Result<(), StoreError>;
 }
 
+/// The serial interfaces know no folders: a file is found by its name alone, in the folder of the drive first and then
+/// in those below it, in their order. A new file lies in the folder of the drive.
 impl Files for Store {
     fn list(&mut self) -> Vec<Listed> {
-        let entries = Store::list(self, &self.root()).unwrap_or_default();
-        let files = entries.into_iter().filter(|entry| !entry.attributes.is_folder);
-        files
-            .map(|entry| Listed {
-                name: entry.name,
-                size: entry.attributes.size,
-                protected: entry.attributes.protected,
-            })
-            .collect()
+        let files = self.everywhere();
+        files.into_iter().map(|(_, entry)| listed(entry)).collect()
     }
 
     fn find(&mut self, name: &str) -> Option<Listed> {
-        let place = self.root().join(name).ok().filter(|place| self.has(place))?;
+        let place = self.whereabouts(name).ok().filter(|place| self.has(place))?;
         let attributes = self.attributes(&place).ok()?;
-        Some(Listed {
-            name: name.to_owned(),
-            size: attributes.size,
-            protected: attributes.protected,
-        })
+        let name = name.to_owned();
+        Some(listed(Entry { name, attributes }))
     }
 
     fn open(&mut self, name: &str) -> Result<Box<dyn Read + Send>, StoreError> {
-        let file = Store::open(self, &self.root().join(name)?)?;
+        let file = Store::open(self, &self.whereabouts(name)?)?;
         Ok(Box::new(file))
     }
 
     fn create(&mut self, name: &str) -> Result<Box<dyn NewFile>, StoreError> {
-        let file = Store::create(self, &self.root().join(name)?, Existing::Replace)?;
+        let file = Store::create(self, &self.whereabouts(name)?, Existing::Replace)?;
         Ok(Box::new(file))
+    }
+}
+
+fn listed(entry: Entry) -> Listed {
+    Listed {
+        name: entry.name,
+        size: entry.attributes.size,
+        protected: entry.attributes.protected,
     }
 }
 

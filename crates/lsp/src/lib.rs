@@ -1,1 +1,67 @@
-//! Language server for part programs, PLC programs and parameter lists.
+//! A language server for part programs, PLC programs and lists of machine parameters.
+//!
+//! The face of this room:
+//! - [`serve`]: answers one editor over a [`Connection`], until it says that it has done;
+//! - [`Files`]: what the server wants to know of the disk;
+//! - [`Settings`]: how documents are read, unless the editor says otherwise.
+//!
+//! ```
+//! use std::path::{Path, PathBuf};
+//! use std::sync::Arc;
+//! use bahn_lsp::{Connection, Files, Settings, serve};
+//!
+//! struct NoFiles;
+//! impl Files for NoFiles {
+//!     fn read(&self, _: &Path) -> Option<Vec<u8>> { None }
+//!     fn called(&self, _: &str, _: &Path) -> Option<PathBuf> { None }
+//!     fn model_of(&self, _: &Path) -> Option<bahn_parameters::ControlModel> { None }
+//!     fn names(&self, _: &Path) -> Vec<String> { Vec::new() }
+//! }
+//!
+//! let (editor, server) = Connection::memory();
+//! drop(editor);
+//! assert!(serve(&server, Arc::new(NoFiles), &Settings::default()).is_err(), "the editor has gone");
+//! ```
+//!
+//! `server` is the loop, `requests` have a file for each kind of request. What a language knows stands behind the trait
+//! `Analysis` of `language`: part programs (`part`), DIN 66025 (`din`), PLC programs (`plc`), lists (`list`). One version of a document is
+//! read once, when somebody asks; what takes long, as the run that finds the values of Q parameters, is done in the
+//! `background` and broken off when the text changes.
+
+mod background;
+mod capabilities;
+mod din;
+mod document;
+mod language;
+mod list;
+mod markdown;
+mod part;
+mod plc;
+mod requests;
+mod server;
+mod settings;
+mod text;
+mod uri;
+mod world;
+
+pub use lsp_server::Connection;
+pub use server::serve;
+pub use settings::Settings;
+pub use world::Files;
+
+/// Why the server has ended before it was told to.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The editor broke the protocol.
+    #[error("the editor does not keep to the protocol: {0}")]
+    Protocol(#[from] lsp_server::ProtocolError),
+    /// The editor sent what cannot be read.
+    #[error("what the editor sends cannot be read: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The editor has gone without a word.
+    #[error("the editor has gone")]
+    EditorGone,
+    /// The thread that examines documents has ended.
+    #[error("documents are not examined any more")]
+    BackgroundGone,
+}

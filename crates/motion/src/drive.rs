@@ -188,3 +188,14 @@ pub struct Cut {
     /// Nominal position.
     pub position: Position,
 }
+
+/// The end of an element that the path came to in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passed {
+    /// Its count of executed blocks.
+    pub sequence: u64,
+    /// So long before the end of the cycle, s.
+    pub left_s: f64,
+    /// Path speed there, mm/s.
+    pub speed_mm_s: f64,
+}

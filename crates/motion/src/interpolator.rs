@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use bahn_path::{ElementSource, LiveData, PathElement, Placement, Position, Step, TechnologyFunction};
 
-use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Place, Prepared, State, Stop};
+use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Passed, Place, Prepared, State, Stop};
 use crate::gate::Gate;
 use crate::item::{Item, Output};
 use crate::limits::{Dynamics, Limits};
@@ -149,7 +149,8 @@ impl<E> Interpolator<E> {
             self.after = After::Stop(stop);
         };
         // Room for whatever the elements can output, so that no cycle allocates.
-        self.outputs.reserve(self.ring.outputs());
+        let ends = self.ring.ahead().len();
+        self.outputs.reserve(self.ring.outputs(), ends);
         answer
     }
 
@@ -173,6 +174,7 @@ impl<E> Interpolator<E> {
     /// Spends one contour cycle.
     pub fn cycle(&mut self, drive: &Drive) -> Cycle {
         self.take(drive);
+        self.outputs.begin_cycle();
         let state = self.spend(drive);
         if let Some(item) = self.ring.current() {
             if let Some(coupling) = &self.coupling {
@@ -311,6 +313,7 @@ impl<E> Interpolator<E> {
         };
         let item = self.ring.current()?;
         let (along, dwell, end) = (item.along, item.element.dwell_s, item.element.end);
+        let sequence = item.element.sequence;
         let ramp = Ramp {
             speed: self.speed,
             rest: self.rest,
@@ -333,6 +336,7 @@ impl<E> Interpolator<E> {
                 let cap = self.ring.cap();
                 self.speed = if speed * speed > cap { cap.sqrt() } else { speed };
                 (self.position, self.rest, *time) = (end, 0.0, left);
+                self.outputs.pass(sequence, left, self.speed);
                 self.phase = if dwell > 0.0 {
                     Phase::Dwell(dwell)
                 } else {
@@ -624,6 +628,11 @@ impl<E> Interpolator<E> {
     /// Whether the path follows the spindle: it has begun an element that does so, and none behind it.
     pub fn is_coupled(&self) -> bool {
         self.coupling.is_some()
+    }
+
+    /// The ends of elements that the last cycle came to, in their order.
+    pub fn passed(&self) -> &[Passed] {
+        self.outputs.passed()
     }
 
     /// Nominal position on the path.

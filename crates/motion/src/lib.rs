@@ -93,7 +93,7 @@ mod wanted;
 mod window;
 
 pub use corner::SERVO_WINDOW_S;
-pub use drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Master, Place, Prepared, State, Stop};
+pub use drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Master, Passed, Place, Prepared, State, Stop};
 pub use gate::Gate;
 pub use interpolator::Interpolator;
 pub use limits::{GEARS, Limits, SpindleGear};

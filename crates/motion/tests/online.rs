@@ -88,6 +88,28 @@ fn one_line_takes_as_long_as_planned() {
     assert_eq!(bench.cycle(), State::Empty);
 }
 
+/// 10 mm from standstill with 1000 mm/s² take sqrt(2 · 10 / 1000) s, and are passed at the speed that has grown until
+/// then, within the cycle.
+#[test]
+fn the_end_of_an_element_is_told_within_its_cycle() {
+    let mut path = Path::new(12_000.0);
+    path.line(&[(Axis::X, 10.0)]).line(&[(Axis::X, 100.0)]);
+    let mut bench = Bench::new(&path.elements, &limits());
+    let at_s = (2.0f64 * 10.0 / 1000.0).sqrt();
+    let before = (at_s / T).floor() as usize;
+    bench.cycles(before);
+    assert!(bench.path.passed().is_empty());
+    bench.cycle();
+    let [passed] = bench.path.passed() else {
+        panic!("{:?}", bench.path.passed());
+    };
+    assert_eq!(passed.sequence, 1);
+    close(passed.left_s, (before + 1) as f64 * T - at_s);
+    close(passed.speed_mm_s, 1000.0 * at_s);
+    bench.cycle();
+    assert!(bench.path.passed().is_empty());
+}
+
 /// From 100 to 50 mm/s in 50 ms over 3.75 mm.
 #[test]
 fn a_lower_override_brakes_with_the_path_acceleration() {

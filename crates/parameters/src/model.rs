@@ -90,6 +90,30 @@ impl ControlModel {
             ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425
         )
     }
+
+    /// The model that the comments at the beginning of a list name, as `TNC 415 B` or `tnc415b`; the first of several.
+    ///
+    /// ```
+    /// use bahn_parameters::ControlModel;
+    /// assert_eq!(ControlModel::named_in(b"; my mill, TNC 415 B\nMP10 : 1\n"), Some(ControlModel::Tnc415b));
+    /// ```
+    pub fn named_in(list: &[u8]) -> Option<ControlModel> {
+        let text = String::from_utf8_lossy(list);
+        let comments = text
+            .trim_start_matches('\u{feff}')
+            .lines()
+            .take_while(|line| line.trim().is_empty() || line.trim_start().starts_with([';', '*']));
+        let letters: String = comments
+            .flat_map(|line| line.chars().chain(['\n']))
+            .filter(|c| *c != ' ' && *c != '\t' && *c != '-')
+            .flat_map(char::to_lowercase)
+            .collect();
+        let place = |model: &ControlModel| letters.find(model.id());
+        ControlModel::ALL
+            .into_iter()
+            .filter(|model| place(model).is_some())
+            .min_by_key(place)
+    }
 }
 
 impl fmt::Display for ControlModel {
@@ -118,6 +142,22 @@ pub struct UnknownModel(pub String);
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_comments_at_the_beginning_name_the_control() {
+        let named = ControlModel::named_in;
+        assert_eq!(
+            named(b"; my mill, TNC 415 B\nMP10 : 1\n"),
+            Some(ControlModel::Tnc415b)
+        );
+        assert_eq!(named(b"\xEF\xBB\xBF\n* tnc-360\n"), Some(ControlModel::Tnc360));
+        assert_eq!(
+            named(b"; TNC 155, before that a TNC 151\n"),
+            Some(ControlModel::Tnc155)
+        );
+        assert_eq!(named(b"MP10 : 1 ;TNC 360\n"), None);
+        assert_eq!(named(b""), None);
+    }
 
     #[test]
     fn identifiers_read_back() {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::definition::{parse_id, parse_number};
-use crate::{ControlModel, Definition, ListError, ParameterError, ParameterId};
+use crate::{ControlModel, Definition, Inconsistency, ListError, ParameterError, ParameterId, ParameterList};
 
 /// The text of a list of machine parameters. Reading it never fails and keeps every byte; a value can be
 /// changed in its place, so that comments and order stay.
@@ -48,6 +48,13 @@ pub struct Entry {
     pub line: usize,
     /// The bytes of the value.
     value_at: Range<usize>,
+}
+
+impl Entry {
+    /// The bytes of the value in the text, a mark of UTF-8 not counted.
+    pub fn value_at(&self) -> Range<usize> {
+        self.value_at.clone()
+    }
 }
 
 const MARK: &[u8] = b"\xEF\xBB\xBF";
@@ -111,6 +118,16 @@ impl ListText {
             error: ParameterError::NotDefined(definition.id),
         }));
         faults
+    }
+
+    /// What does not go together in a list that can be read as a whole; nothing where it has no entry.
+    pub fn inconsistencies(&self) -> Vec<Inconsistency> {
+        if self.entries.is_empty() {
+            return Vec::new();
+        }
+        let mut list = ParameterList::smallest(self.model);
+        list.take(self);
+        list.inconsistencies()
     }
 
     /// The parameters of the model that the text does not define, in ascending order.

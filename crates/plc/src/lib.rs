@@ -9,7 +9,7 @@
 //!   that it speaks in; with the feature `desk`, `TestNc` stands in for it;
 //! - [`mirror_parameters`] puts the machine parameters of the PLC into its words and markers;
 //! - [`Instruction`] and [`Op`] are the compiled form, for tools that list, cross-reference or translate it; [`accesses`]
-//!   are the operands of an instruction.
+//!   are the operands of an instruction; [`line_words`] are the words of a line, [`instructions`] what they mean.
 //!
 //! ```
 //! use bahn_exchange::Exchange;
@@ -71,4 +71,7 @@ pub use run::{
     TraceStep, Tracer,
 };
 pub use source::{MemoryFiles, ProgramMemory, SourceFiles};
-pub use syntax::{check_line, code_of_line, split_comment};
+pub use syntax::{
+    InstructionForm, LineOperand, LineWords, Nesting, check_line, code_of_line, instructions, line_words,
+    listed_code, nesting, split_comment,
+};

@@ -71,7 +71,7 @@ pub trait Language: fmt::Debug + Send + Sync {
         None
     }
 
-    /// Whether blocks have numbers of their own, which are part of the program.
+    /// Whether blocks have numbers of their own, which are part of the program: [`Language::number`].
     fn has_numbers(&self) -> bool {
         false
     }

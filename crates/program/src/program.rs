@@ -261,6 +261,9 @@ impl Program {
 
     /// The number that a block is programmed with, in a language whose blocks have numbers of their own.
     pub fn own_number(&self, block: u32) -> Option<u32> {
+        if !self.language.has_numbers() {
+            return None;
+        }
         let (piece, raw) = self.place(block)?;
         self.language.number(raw.text(piece.text()))
     }

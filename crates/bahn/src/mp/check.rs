@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bahn_host::lists;
 use bahn_parameters::conformance::{Effect, Kind, find};
-use bahn_parameters::{Inconsistency, ListError, ListText, ParameterError, ParameterId, ParameterList};
+use bahn_parameters::{Inconsistency, ListError, ListText, ParameterError, ParameterId};
 use serde::Serialize;
 
 use super::options::CheckOptions;
@@ -101,7 +101,10 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     } else {
         text.all_faults()
     };
-    let inconsistent = inconsistencies(&text, options.partial || !faults.is_empty());
+    let inconsistent = match options.partial || !faults.is_empty() {
+        true => Vec::new(),
+        false => text.inconsistencies(),
+    };
     let warnings: Vec<FileFault> = inconsistent
         .iter()
         .map(|found| lists::warning(found, &text, path))
@@ -173,16 +176,6 @@ fn error_item(fault: &ListError) -> Item {
         length: fault.length,
         detail: fault.error.to_string(),
     }
-}
-
-/// What does not go together in a list that can be read as a whole.
-fn inconsistencies(text: &ListText, is_part: bool) -> Vec<Inconsistency> {
-    if is_part || text.entries().is_empty() {
-        return Vec::new();
-    }
-    let mut list = ParameterList::smallest(text.model());
-    list.take(text);
-    list.inconsistencies()
 }
 
 fn warning_item(found: &Inconsistency, fault: &FileFault) -> Item {

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::list::Row;
 use super::options::DiffOptions;
-use super::style::Style;
 use super::{count, explain, source};
 use crate::options::Format;
+use crate::style::Style;
 use crate::{Outcome, UsageError, console};
 
 /// Compares two lists, parameter by parameter.

@@ -5,9 +5,9 @@ use bahn_parameters::{Definition, chapters, with_chapters};
 use super::list::Row;
 use super::options::ExplainOptions;
 use super::source;
-use super::style::Style;
 use crate::options::Format;
 use crate::paragraph::{labelled, labelled_lines};
+use crate::style::Style;
 use crate::{Outcome, UsageError, console};
 
 /// Explains one parameter, or all indices of a number.

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::options::ListOptions;
 use super::source;
-use super::style::Style;
 use crate::options::Format;
+use crate::style::Style;
 use crate::{Outcome, UsageError, console};
 
 /// Prints the parameters that are wanted.

@@ -2,7 +2,6 @@
 //!
 //! - `options`: options and help texts;
 //! - `source`: lists from files, and for which control they are;
-//! - `style`: colours of standard output;
 //! - `check`, `list`, `explain`, `diff`, `new`: the subcommands.
 
 mod check;
@@ -12,7 +11,6 @@ mod list;
 mod new;
 mod options;
 mod source;
-mod style;
 
 pub(crate) use options::MpOptions;
 

@@ -15,7 +15,7 @@ pub(super) fn read(path: &Path, model: Option<ControlModel>) -> Result<ListText,
     let bytes = files::read_table(path)?;
     let model = model
         .or_else(|| model_of_folder(path))
-        .or_else(|| named_model(&bytes))
+        .or_else(|| ControlModel::named_in(&bytes))
         .unwrap_or_default();
     Ok(ListText::from_bytes(model, &bytes))
 }
@@ -27,25 +27,6 @@ fn model_of_folder(list: &Path) -> Option<ControlModel> {
     (list.file_name()? == folder.parameters.as_str())
         .then(|| folder.model.parse().ok())
         .flatten()
-}
-
-/// The control that the comments at the beginning of a list name, as `TNC 415 B` or `tnc415b`.
-pub(super) fn named_model(bytes: &[u8]) -> Option<ControlModel> {
-    let text = String::from_utf8_lossy(bytes);
-    let comments = text
-        .trim_start_matches('\u{feff}')
-        .lines()
-        .take_while(|line| line.trim().is_empty() || line.trim_start().starts_with([';', '*']));
-    let letters: String = comments
-        .flat_map(|line| line.chars().chain(['\n']))
-        .filter(|c| *c != ' ' && *c != '\t' && *c != '-')
-        .flat_map(char::to_lowercase)
-        .collect();
-    let place = |model: &ControlModel| letters.find(model.id());
-    ControlModel::ALL
-        .into_iter()
-        .filter(|model| place(model).is_some())
-        .min_by_key(place)
 }
 
 /// The values of a list over those of the list that the control makes by itself.
@@ -77,28 +58,5 @@ pub(super) fn shown(options: &ValueOptions) -> Result<(ParameterList, String), U
             let model = options.model.unwrap_or_default();
             Ok((ParameterList::reference(model), format!("reference list {model}")))
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_comments_at_the_beginning_name_the_control() {
-        assert_eq!(
-            named_model(b"; my mill, TNC 415 B\nMP10 : 1\n"),
-            Some(ControlModel::Tnc415b)
-        );
-        assert_eq!(
-            named_model(b"\xEF\xBB\xBF\n* tnc-360\n"),
-            Some(ControlModel::Tnc360)
-        );
-        assert_eq!(
-            named_model(b"; TNC 155, before that a TNC 151\n"),
-            Some(ControlModel::Tnc155)
-        );
-        assert_eq!(named_model(b"MP10 : 1 ;TNC 360\n"), None);
-        assert_eq!(named_model(b""), None);
     }
 }

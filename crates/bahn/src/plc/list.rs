@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bahn_plc::{Compilation, split_comment};
+use bahn_plc::{Compilation, Nesting, listed_code, nesting, split_comment};
 
 use super::check::Entry;
 use super::options::ListOptions;
@@ -72,12 +72,13 @@ impl<'a> File<'a> {
         let mut line = |(index, line): (usize, &'a String)| {
             let (code, comment) = split_comment(line);
             let (command, operand) = split_command(code);
-            let outside = closes(command) || command.eq_ignore_ascii_case("ELSE");
+            let nesting = nesting(command);
+            let outside = matches!(nesting, Nesting::Closes | Nesting::Both);
             let own_depth = depth.saturating_sub(outside.into());
-            if closes(command) {
-                depth = depth.saturating_sub(1);
-            } else if opens(command) {
-                depth += 1;
+            match nesting {
+                Nesting::Closes => depth = depth.saturating_sub(1),
+                Nesting::Opens => depth += 1,
+                Nesting::Both | Nesting::Neither => {}
             }
             let line = index + 1;
             Line {
@@ -105,15 +106,11 @@ impl<'a> File<'a> {
 impl Line<'_> {
     fn text(&self) -> String {
         let (command, operand) = (self.command, self.operand);
-        let code = if command.eq_ignore_ascii_case("LBL") {
-            format!("{command:<5} {operand}")
-        } else {
-            format!("  {:indent$}{command:<5} {operand}", "", indent = 2 * self.depth)
-        };
+        let code = listed_code(command, operand, self.depth);
         let row = if command.is_empty() {
             format!("{:>5}  {}", self.line, self.comment)
         } else {
-            format!("{:>5}  {:<30} {}", self.line, code.trim_end(), self.comment)
+            format!("{:>5}  {:<30} {}", self.line, code, self.comment)
         };
         let mut text = printable(row.trim_end()) + "\n";
         for (what, entries) in [("error", &self.errors), ("warning", &self.warnings)] {
@@ -124,16 +121,6 @@ impl Line<'_> {
         }
         text
     }
-}
-
-fn opens(command: &str) -> bool {
-    const OPENING: [&str; 7] = ["IFT", "IFF", "REPEAT", "WHILET", "WHILEF", "CASE", "KFIELD"];
-    command.ends_with('[') || OPENING.iter().any(|word| command.eq_ignore_ascii_case(word))
-}
-
-fn closes(command: &str) -> bool {
-    const CLOSING: [&str; 6] = ["ENDI", "UNTILT", "UNTILF", "ENDW", "ENDC", "ENDK"];
-    command.starts_with(']') || CLOSING.iter().any(|word| command.eq_ignore_ascii_case(word))
 }
 
 /// The command and the operand of a line.

@@ -12,7 +12,7 @@ use crate::{UsageError, files};
 const DEEPEST: usize = 64;
 
 /// The programs in the order of the command line, each once; those of a folder by name.
-pub(super) fn programs(named: &[PathBuf], endings: &[String]) -> Result<Vec<PathBuf>, UsageError> {
+pub(crate) fn programs(named: &[PathBuf], endings: &[String]) -> Result<Vec<PathBuf>, UsageError> {
     let mut found = Vec::new();
     for path in named {
         if path.as_os_str() == "-" {

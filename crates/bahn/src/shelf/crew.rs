@@ -223,7 +223,8 @@ fn without_run(path: &Path, result: Verdict, why: Option<String>) -> Done {
     }
 }
 
-fn bar(programs: usize) -> ProgressBar {
+/// The progress of many programs, on the terminal.
+pub(crate) fn bar(programs: usize) -> ProgressBar {
     // Standard error; hidden when that is no terminal.
     let bar = ProgressBar::with_draw_target(Some(programs as u64), ProgressDrawTarget::stderr_with_hz(10));
     if let Ok(style) =

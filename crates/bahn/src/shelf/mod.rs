@@ -19,6 +19,8 @@ use std::time::Duration;
 use bahn_workpiece::{Page, View3d};
 use serde::{Deserialize, Serialize};
 
+pub(crate) use collect::programs;
+pub(crate) use crew::bar;
 pub(crate) use row::Row;
 
 use crate::files::NewFile;

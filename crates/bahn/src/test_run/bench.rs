@@ -338,7 +338,7 @@ impl TestRun {
         let Place { program, block, .. } = Place::of(run, error.block);
         let line = run
             .program(error.block.program)
-            .map_or(0, |program| Marked::of_block(program, block).line);
+            .map_or(0, |program| Marked::of_block(program, error.block.block).line);
         let remedy = error.remedy();
         ErrorReport {
             message: error.message.text(self.model).to_owned(),

@@ -137,7 +137,7 @@ pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
         severity: Severity::Error,
         title: error.message.clone(),
         path,
-        marked: Marked::of_block(program, error.block),
+        marked: Marked::of_block(program, error.at.block),
         label: match error.detail.as_str() {
             "" => format!("block {}", error.block),
             detail => format!("block {}: {detail}", error.block),

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use bahn_interpreter::Interpreter;
-use bahn_path::{Function, PathElement};
+use bahn_path::{BlockRef, Function, PathElement};
 
 use crate::UsageError;
 use crate::diagnostics::printable;
@@ -23,6 +23,8 @@ pub(crate) struct Outputs {
     print: Option<(NewFile, PathBuf)>,
     /// Short names of the programs of the run by number, with nothing in them that steers a terminal.
     names: Vec<String>,
+    /// The block of the last element, and what reports call it.
+    last: Option<(BlockRef, u32)>,
 }
 
 impl Outputs {
@@ -74,9 +76,16 @@ impl Outputs {
             }
         }
         let name = self.names.get(usize::from(number)).map_or("", String::as_str);
+        // A table that is wanted asks for the number of a block once for all of its elements.
+        if !self.tables.is_empty() && self.last.is_none_or(|(last, _)| last != element.block) {
+            let program = run.program(number);
+            let called = program.map_or(element.block.block, |of| of.number_of(element.block.block));
+            self.last = Some((element.block, called));
+        }
+        let block = self.last.map_or(element.block.block, |(_, called)| called);
         for (table, path) in &mut self.tables {
             table
-                .element(element, name)
+                .element(element, name, block)
                 .map_err(|error| files::cannot("write", path, &error))?;
         }
         for (drawing, _) in &mut self.drawings {

@@ -37,16 +37,10 @@ fn about(recording: &Recording, tested: &Tested, model: ControlModel) -> About {
         .into_iter()
         .filter_map(|number| listing(run, number))
         .collect();
-    let place = |program: &str, block: u32| {
-        let listing = listings.iter().find(|listing| listing.name == program)?;
-        Some(BlockRef {
-            program: listing.program,
-            block,
-        })
-    };
+    let is_listed = |at: &BlockRef| listings.iter().any(|listing| listing.program == at.program);
     let remark = |warning: &WarningReport| Remark {
         text: warning.message.clone(),
-        block: place(&warning.program, warning.block),
+        block: warning.at.filter(is_listed),
         count: warning.count,
     };
     About {

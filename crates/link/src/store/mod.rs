@@ -4,6 +4,7 @@
 //! being written has no name until it is committed.
 
 mod error;
+mod everywhere;
 mod files;
 mod lookup;
 mod place;

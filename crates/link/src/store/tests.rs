@@ -3,6 +3,7 @@
 use std::io::{Read, Write};
 
 use super::*;
+use crate::Files;
 use proptest::prelude::*;
 
 /// A folder of its own for a test, gone behind it.
@@ -239,6 +240,50 @@ fn folders_are_made_listed_and_removed() {
         Err(StoreError::NoFolder("TNC:\\2.H".into()))
     );
     assert!(store.make_folder(&at(&store, "2.H\\A")).is_err());
+}
+
+#[test]
+fn a_name_alone_is_found_in_any_folder() {
+    let folder = Folder::new("everywhere");
+    let mut store = folder.store();
+    for name in ["A", "B", "A\\DEEP"] {
+        store.make_folder(&at(&store, name)).unwrap();
+    }
+    for (path, text) in [
+        ("1.H", "root"),
+        ("B\\1.H", "in b"),
+        ("B\\2.H", "in b"),
+        ("A\\DEEP\\2.H", "deep"),
+        ("A\\DEEP\\3.H", "deep"),
+    ] {
+        write(&store, path, text).unwrap();
+    }
+    let listed: Vec<String> = Files::list(&mut store)
+        .into_iter()
+        .map(|file| file.name)
+        .collect();
+    // Folder by folder, those on top first: B is before A\DEEP.
+    assert_eq!(listed, ["1.H", "2.H", "3.H"]);
+    let found = |store: &mut Store, name| {
+        let mut text = String::new();
+        Files::open(store, name)
+            .unwrap()
+            .read_to_string(&mut text)
+            .unwrap();
+        text
+    };
+    let texts = ["1.h", "2.H", "3.H"].map(|name| found(&mut store, name));
+    assert_eq!(texts, ["root", "in b", "deep"]);
+    // A file that is there is replaced where it lies; a new one lies in the folder of the drive.
+    for (name, text) in [("3.H", "new"), ("4.H", "new")] {
+        let mut file = Files::create(&mut store, name).unwrap();
+        file.write_all(text.as_bytes()).unwrap();
+        file.commit().unwrap();
+    }
+    assert_eq!(read(&store, "A\\DEEP\\3.H").unwrap(), "new");
+    assert_eq!(read(&store, "4.H").unwrap(), "new");
+    assert_eq!(names(&store, "TNC:"), ["1.H", "4.H", "A", "B"]);
+    assert_eq!(Files::find(&mut store, "5.H"), None);
 }
 
 #[cfg(unix)]

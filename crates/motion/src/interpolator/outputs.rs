@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bahn_path::{At, TechnologyFunction};
 
-use crate::drive::{FunctionOutput, Place};
+use crate::drive::{FunctionOutput, Passed, Place};
 use crate::gate::{Gate, place};
 use crate::item::Item;
 
@@ -13,12 +13,33 @@ pub(super) struct Outputs {
     queue: VecDeque<FunctionOutput>,
     /// Functions along the current element up to this length are output, mm.
     to: f64,
+    /// Ends of elements that the cycle came to.
+    passed: Vec<Passed>,
 }
 
 impl Outputs {
-    /// Room for so many more: within it nothing allocates.
-    pub(super) fn reserve(&mut self, count: usize) {
+    /// Room for so many more, and for the ends of so many elements: within it nothing allocates.
+    pub(super) fn reserve(&mut self, count: usize, ends: usize) {
         self.queue.reserve(count);
+        self.passed.reserve(ends);
+    }
+
+    /// A cycle begins.
+    pub(super) fn begin_cycle(&mut self) {
+        self.passed.clear();
+    }
+
+    /// The path comes to the end of an element, so long before the end of the cycle, s, at a speed, mm/s.
+    pub(super) fn pass(&mut self, sequence: u64, left_s: f64, speed_mm_s: f64) {
+        self.passed.push(Passed {
+            sequence,
+            left_s,
+            speed_mm_s,
+        });
+    }
+
+    pub(super) fn passed(&self) -> &[Passed] {
+        &self.passed
     }
 
     pub(super) fn clear(&mut self) {

@@ -4,8 +4,12 @@ mod form;
 mod line;
 mod memory;
 mod operand;
+mod words;
 
 pub(crate) use form::{CASE_ENTRY_BYTES, Class, Cost, Mnemonic};
 pub(crate) use line::{Command, parse};
 pub use line::{check_line, code_of_line, split_comment};
 pub(crate) use operand::{LineError, MODULE_NUMBERS, Operand};
+pub use words::{
+    InstructionForm, LineOperand, LineWords, Nesting, instructions, line_words, listed_code, nesting,
+};

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 
 /// How text is shown.
 #[derive(Clone, Copy)]
-pub(super) struct Style(bool);
+pub(crate) struct Style(bool);
 
 impl Style {
     /// Colours when standard output is a terminal and NO_COLOR is not set.

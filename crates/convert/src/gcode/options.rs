@@ -1,0 +1,17 @@
+//! What a text for LinuxCNC has beside the run.
+
+use bahn_parameters::ControlModel;
+use bahn_program::Unit;
+
+/// What the text has beside the run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The control that the run is of.
+    pub model: ControlModel,
+    /// Unit of the text: G21 or G20.
+    pub unit: Unit,
+    /// The block of the source behind what comes of it.
+    pub comments: bool,
+    /// Arcs in rapid traverse, which LinuxCNC does not have, move with this feed, mm/min.
+    pub rapid_mm_min: f64,
+}

@@ -1,0 +1,77 @@
+//! Every program of the repository in plain language, to DIN/ISO and back, has the same path.
+
+mod support;
+
+use bahn_parameters::ControlModel;
+use bahn_program::Program;
+use support::*;
+
+/// What DIN/ISO has no function for, by the beginning of the block.
+const WITHOUT_WORD: [&str; 5] = [
+    "TCH PROBE 5.",
+    "TCH PROBE 6.",
+    "TCH PROBE 7.",
+    "CYCL DEF 26.",
+    "LN ",
+];
+
+#[test]
+fn every_program_of_the_repository_goes_there_and_back() {
+    let files = programs("H");
+    let (mut elements, mut whole) = (0, 0);
+    for file in &files {
+        let bytes = std::fs::read(file).unwrap();
+        let program = Program::from_bytes(file.to_string_lossy(), bytes);
+        let (made, _) = converted(&program, bahn_convert::Language::Iso);
+        if let Some(first) = made.refused.first() {
+            let known = |text: &str| WITHOUT_WORD.iter().any(|begin| text.starts_with(begin));
+            assert!(
+                made.refused.iter().all(|listed| known(&listed.text)),
+                "{}: {:?}",
+                file.display(),
+                made.refused
+            );
+            println!("{}: {}", file.display(), first.reason);
+            continue;
+        }
+        let folder = file.parent().unwrap();
+        let proofs = ControlModel::ALL.map(|model| there_and_back(&program, &settings(model), folder));
+        let most = proofs.into_iter().max_by_key(|proof| proof.elements);
+        let Some(proof) = most else { continue };
+        println!(
+            "{}: {} elements, {:?}",
+            file.display(),
+            proof.elements,
+            proof.message
+        );
+        elements += proof.elements;
+        whole += 1;
+    }
+    println!("{whole} of {} programs, {elements} elements", files.len());
+    assert!(whole >= 60 && elements > 10_000);
+}
+
+#[test]
+fn every_program_of_the_repository_becomes_gcode_with_the_same_path() {
+    let files = programs("H");
+    let (mut elements, mut whole) = (0, 0);
+    for file in &files {
+        let bytes = std::fs::read(file).unwrap();
+        let program = Program::from_bytes(file.to_string_lossy(), bytes);
+        let folder = file.parent().unwrap();
+        let (made, proof) = gcode(&program, &settings(ControlModel::Tnc415b), folder);
+        assert!(proof.holds(), "{}: {proof:?}\n{}", file.display(), made.text);
+        println!(
+            "{}: {} elements, {} µm, {:?} {:?}",
+            file.display(),
+            proof.elements,
+            proof.max_deviation_um,
+            made.message,
+            made.refused
+        );
+        elements += proof.elements;
+        whole += u32::from(made.refused.is_empty());
+    }
+    println!("{whole} of {} programs, {elements} elements", files.len());
+    assert!(whole >= 55 && elements > 10_000);
+}

@@ -1,0 +1,78 @@
+//! What DIN/ISO has no blocks for is said by its path; what no path says is refused.
+
+mod support;
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use bahn_convert::{Language, prove_unrolled, unroll};
+use bahn_parameters::ControlModel;
+use bahn_program::Program;
+use support::*;
+
+const HEAD: &str = "BEGIN PGM A MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+100 Z+0\nTOOL DEF 1 L+0 R+5\n\
+                    TOOL CALL 1 Z S1000\nL X+0 Y+0 Z+2 R0 FMAX M3\n";
+
+/// The path of a program in DIN/ISO, proved.
+fn unrolled(blocks: &str) -> Result<(String, u64), String> {
+    let source = program(&format!("{HEAD}{blocks}END PGM A MM\n"), Language::Plain);
+    let settings = settings(ControlModel::Tnc415b);
+    let stop = Arc::new(AtomicBool::new(false));
+    let begin = |program: &Program| run(program, &settings, &root());
+    let plain = unroll(begin(&source), settings.model, true, &stop)?;
+    let plain = program(&plain, Language::Plain);
+    let (made, iso) = converted(&plain, Language::Iso);
+    assert!(made.refused.is_empty(), "{:?}", made.refused);
+    let proof = prove_unrolled(begin(&source), begin(&iso), settings.model, &stop);
+    assert!(proof.holds(), "{proof:?}\n{}", made.text);
+    Ok((made.text, proof.elements))
+}
+
+#[test]
+fn scaling_of_single_axes_becomes_the_scaled_path() {
+    let blocks = "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.5 Y0.5\nL Z-5 F200\nL X+10 F400\n\
+                  L Y+10 M8\nCYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 0.5\nL X+0 Y+0 FMAX\n";
+    let source = program(&format!("{HEAD}{blocks}END PGM A MM\n"), Language::Plain);
+    let (made, _) = converted(&source, Language::Iso);
+    let reasons: Vec<&str> = made.refused.iter().map(|listed| listed.reason.as_str()).collect();
+    assert_eq!(
+        reasons,
+        ["no G function defines cycle 26 AXIS-SPEC. SCALING with these words"]
+    );
+    assert!(made.text.contains("ERROR = CYCL DEF 26.0"), "{}", made.text);
+
+    let (text, elements) = unrolled(blocks).unwrap();
+    // 1.5 times 10 and half of 10.
+    assert!(text.contains("G01 G40 G90 X+15 F400"), "{text}");
+    assert!(text.contains("Y+5 F400 M8"), "{text}");
+    assert!(text.contains("G04 F0.5"), "{text}");
+    assert_eq!(elements, 5);
+}
+
+#[test]
+fn lines_with_normals_arcs_and_helices_are_unrolled() {
+    let blocks = "L X+20 Y+20 RL F300\nL X+60\nRND R5\nL Y+60\nL X-10 Y-10 R0 FMAX\nCC X+50 Y+50\n\
+                  LP PR+20 PA+0 F100\nCP IPA+1080 IZ-6 DR+\nCP IPA-360 DR-\n";
+    let (text, elements) = unrolled(blocks).unwrap();
+    assert!(text.contains("G13 G91 Z-6") || text.contains("H+1080"), "{text}");
+    assert!(elements >= 8);
+}
+
+#[test]
+fn what_no_path_says_is_refused() {
+    for (blocks, why) in [
+        (
+            "TCH PROBE 0.0 REF. PLANE Q5 Z-\nTCH PROBE 0.1 X+5 Y+0 Z-5\n",
+            "probe",
+        ),
+        ("FN14: ERROR = 12\n", "ERROR 12"),
+        (
+            "CYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -2\nCYCL DEF 17.2 DEPTH -10\n\
+             CYCL DEF 17.3 PITCH +1\nCYCL CALL\n",
+            "spindle",
+        ),
+    ] {
+        let refused = unrolled(blocks).unwrap_err();
+        assert!(refused.contains(why), "{refused}");
+    }
+}

@@ -1,0 +1,341 @@
+//! Executes programs, block by block.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use bahn_path::Position;
+
+use crate::block::{self, Block, WordKind};
+use crate::execute::{self, Modal};
+use crate::line::{LineFault, Macros};
+use crate::program::{Program, Section};
+use crate::unit::{Command, Place, Shelf, Unit, Variables};
+
+/// What the next block is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// A block that is executed.
+    Unit(Box<Unit>),
+    /// A block that cannot be executed. Nothing comes behind it.
+    Fault(BlockFault),
+    /// Everything is executed.
+    End,
+}
+
+/// Why a block cannot be executed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BlockFault {
+    /// Where it stands.
+    pub place: Place,
+    /// Column of what is wrong, from 1.
+    pub column: u32,
+    /// Number of characters.
+    pub length: u32,
+    /// What is wrong, with the name of what is not known.
+    pub message: String,
+}
+
+/// Subroutines in subroutines end here (inferred).
+const MAX_CALLS: usize = 20;
+
+/// Most files with subroutines of a program (inferred).
+const MAX_FILES: usize = 256;
+
+/// Endings that the name of a file may lack in a call (inferred).
+const ENDINGS: [&str; 3] = ["", ".nc", ".sub"];
+
+/// Executes a program of a file.
+#[derive(Clone)]
+pub struct Decoder {
+    shelf: Arc<dyn Shelf>,
+    /// Where the program begins.
+    begin: Place,
+    /// Subroutines that were called from other files, by the name in the call.
+    files: BTreeMap<String, Arc<Program>>,
+    stack: Vec<Frame>,
+    state: State,
+    /// The block that comes next waits for everything before it; so much is said already.
+    has_waited: bool,
+    is_over: bool,
+}
+
+/// What blocks change and find again.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub modal: Modal,
+    pub position: Position,
+    pub parameters: BTreeMap<u32, f64>,
+    pub macros: Macros,
+}
+
+/// A program or subroutine under way.
+#[derive(Clone, Debug)]
+struct Frame {
+    program: Arc<Program>,
+    /// The line that comes next, and the one behind the last.
+    line: u32,
+    end: u32,
+}
+
+/// What a search for a block found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Where the path stands before the block.
+    pub position: Position,
+    /// Commands that are in force there: the last of each kind.
+    pub commands: Vec<Command>,
+}
+
+impl Decoder {
+    /// Begins a program of a file. The path stands at `start`; an axis without a position there stands at 0 when it is
+    /// programmed first (inferred).
+    pub fn new(program: Arc<Program>, main: &Section, start: Position, shelf: Arc<dyn Shelf>) -> Decoder {
+        let frame = Frame::of(program, main);
+        Decoder {
+            shelf,
+            begin: frame.place(),
+            files: BTreeMap::new(),
+            stack: vec![frame],
+            state: State {
+                modal: Modal::default(),
+                position: start,
+                parameters: BTreeMap::new(),
+                macros: Macros::default(),
+            },
+            has_waited: false,
+            is_over: false,
+        }
+    }
+
+    /// Where the path stands behind the blocks that were executed.
+    pub fn position(&self) -> Position {
+        self.state.position
+    }
+
+    /// The files whose subroutines were called.
+    pub fn files(&self) -> impl Iterator<Item = &Arc<Program>> {
+        self.files.values()
+    }
+
+    /// Executes the next block that orders anything.
+    pub fn next(&mut self, variables: &mut dyn Variables) -> Step {
+        while !self.is_over {
+            self.settle();
+            let Some(frame) = self.stack.last() else { break };
+            if frame.line >= frame.end {
+                self.is_over = true;
+                return Step::Unit(Box::new(frame.last_unit()));
+            }
+            let place = frame.place();
+            match self.line(place.clone(), variables) {
+                Ok(Some(unit)) => return Step::Unit(Box::new(unit)),
+                Ok(None) => {}
+                Err(fault) => {
+                    self.is_over = true;
+                    return Step::Fault(BlockFault {
+                        place,
+                        column: fault.column,
+                        length: fault.length,
+                        message: fault.message,
+                    });
+                }
+            }
+        }
+        self.is_over = true;
+        Step::End
+    }
+
+    /// Executes the blocks before a block of the program itself without handing them on: what they write into variables
+    /// counts, what they move and switch does not happen. The block is named as in reports, `N50` or `#12`.
+    pub fn skip_to(&mut self, block: &str, variables: &mut dyn Variables) -> Result<Found, BlockFault> {
+        let mut commands: Vec<Command> = Vec::new();
+        let begin = self.begin.clone();
+        loop {
+            self.settle();
+            if let [frame] = self.stack.as_slice()
+                && frame.line < frame.end
+                && *frame.program.block_name(frame.line) == *block
+            {
+                return Ok(Found {
+                    position: self.state.position,
+                    commands,
+                });
+            }
+            match self.next(variables) {
+                Step::Unit(unit) if !unit.ends => remember(&mut commands, *unit),
+                Step::Fault(fault) => return Err(fault),
+                Step::Unit(_) | Step::End => return Err(not_found(begin, block)),
+            }
+        }
+    }
+
+    /// Goes on to the next line that is a block, out of subroutines that are at their end.
+    fn settle(&mut self) {
+        while let Some(frame) = self.stack.last_mut() {
+            while frame.line < frame.end && frame.program.glyphs(frame.line).is_none() {
+                frame.line += 1;
+            }
+            if frame.line < frame.end || self.stack.len() <= 1 {
+                return;
+            }
+            self.stack.pop();
+        }
+    }
+
+    /// Executes a line, if it is a block.
+    fn line(&mut self, place: Place, variables: &mut dyn Variables) -> Result<Option<Unit>, LineFault> {
+        let Some(frame) = self.stack.last_mut() else {
+            return Ok(None);
+        };
+        let Some(glyphs) = frame.program.glyphs(frame.line) else {
+            frame.line += 1;
+            return Ok(None);
+        };
+        let block = block::read(&glyphs, &self.state.macros)?;
+        if !self.has_waited && block.words.iter().any(block::Word::reads_external) {
+            self.has_waited = true;
+            let mut unit = Unit::at(place);
+            unit.commands.push(Command::Flush { wait: true });
+            return Ok(Some(unit));
+        }
+        self.has_waited = false;
+        frame.line += 1;
+        let mut unit = Unit::at(place);
+        let done = execute::block(&block, &mut self.state, &mut unit, variables)?;
+        self.call(&block)?;
+        if done.returns {
+            self.stack.pop();
+            unit.ends |= self.stack.is_empty();
+        }
+        if unit.ends {
+            self.is_over = true;
+        }
+        Ok(Some(unit))
+    }
+
+    /// Begins a subroutine, behind what else stands in its block (inferred).
+    fn call(&mut self, block: &Block) -> Result<(), LineFault> {
+        for word in &block.words {
+            let WordKind::Call { local, name } = &word.kind else {
+                continue;
+            };
+            let frame = self.frame(*local, name);
+            let frame = frame.map_err(|message| crate::line::fault_at(word.column, word.length, message))?;
+            self.stack.push(frame);
+        }
+        Ok(())
+    }
+
+    /// `LL` calls a subroutine of the same file (public); `L` one of another file [004:114], and one of the same file
+    /// where it has this name (inferred).
+    fn frame(&mut self, local: bool, name: &str) -> Result<Frame, String> {
+        if self.stack.len() > MAX_CALLS {
+            return Err(format!(
+                "subroutine {name} is called too deep: {MAX_CALLS} in one another at most"
+            ));
+        }
+        let own = self.stack.last().map(|frame| Arc::clone(&frame.program));
+        if let Some(program) = own
+            && let Some(section) = program.subroutine(name).cloned()
+        {
+            return Ok(Frame::of(program, &section));
+        }
+        let missing = || format!("subroutine {name} is not found");
+        if local {
+            return Err(missing());
+        }
+        let program = self.file(name)?.ok_or_else(missing)?;
+        let section = program.mains().next().cloned();
+        let section = section.ok_or_else(|| format!("{name} has no program, only subroutines"))?;
+        Ok(Frame::of(program, &section))
+    }
+
+    fn file(&mut self, name: &str) -> Result<Option<Arc<Program>>, String> {
+        if let Some(known) = self.files.get(name) {
+            return Ok(Some(Arc::clone(known)));
+        }
+        let found = ENDINGS
+            .iter()
+            .find_map(|ending| self.shelf.text(&format!("{name}{ending}")));
+        let Some((file, text)) = found else {
+            return Ok(None);
+        };
+        if self.files.len() >= MAX_FILES {
+            return Err(format!("{name} is more than the {MAX_FILES} files of a program"));
+        }
+        let program = Arc::new(Program::from_bytes(&file, &text));
+        self.files.insert(name.to_owned(), Arc::clone(&program));
+        Ok(Some(program))
+    }
+}
+
+impl Frame {
+    fn of(program: Arc<Program>, section: &Section) -> Frame {
+        Frame {
+            program,
+            line: section.lines.0,
+            end: section.lines.1,
+        }
+    }
+
+    fn place(&self) -> Place {
+        Place {
+            program: Arc::clone(self.program.name()),
+            block: self.program.block_name(self.line),
+            line: self.line,
+        }
+    }
+
+    /// The end of the text, which ends the program where no M30 does.
+    fn last_unit(&self) -> Unit {
+        let line = self.end.saturating_sub(1).max(1);
+        let mut unit = Unit::at(Frame { line, ..self.clone() }.place());
+        unit.ends = true;
+        unit
+    }
+}
+
+fn not_found(place: Place, block: &str) -> BlockFault {
+    BlockFault {
+        place,
+        column: 1,
+        length: 1,
+        message: format!("block {block} is not in the program"),
+    }
+}
+
+/// Keeps the last command of each kind that stays in force. The Micro Joint that a command shapes is that of the next
+/// function, so it is over behind one.
+fn remember(commands: &mut Vec<Command>, unit: Unit) {
+    if !unit.functions.is_empty() {
+        commands.retain(|command| !matches!(command, Command::MicroJoint { .. }));
+    }
+    for command in unit.commands {
+        let stays = matches!(
+            command,
+            Command::MicroJoint { .. }
+                | Command::VectorLimit { .. }
+                | Command::EdgeBanding(_)
+                | Command::RadiusCompensation(_)
+        );
+        if stays {
+            let kind = std::mem::discriminant(&command);
+            commands.retain(|other| std::mem::discriminant(other) != kind);
+            commands.push(command);
+        }
+    }
+}
+
+impl Unit {
+    /// A block that orders nothing yet.
+    fn at(place: Place) -> Unit {
+        Unit {
+            place,
+            motion: None,
+            functions: Vec::new(),
+            commands: Vec::new(),
+            dwell_s: 0.0,
+            ends: false,
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Open documents.
+
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+
+use lsp_types::Uri;
+
+use crate::language::{Analysis, Examined, Kind, analyse};
+use crate::text::Text;
+use crate::world::World;
+
+/// Largest document that is looked at, 16 MiB: a program with half a million blocks.
+pub(crate) const BYTES_MAX: usize = 16 << 20;
+
+/// A document that is open in the editor.
+pub(crate) struct Document {
+    pub(crate) uri: Uri,
+    pub(crate) version: Arc<Version>,
+    /// What was found in this version; in the one before while this one is examined.
+    pub(crate) examined: Option<Arc<Examined>>,
+    /// Whether [`Document::examined`] is of this version.
+    pub(crate) is_examined: bool,
+}
+
+/// One version of a document. It is read when somebody asks, once.
+pub(crate) struct Version {
+    pub(crate) path: PathBuf,
+    /// None of a language that nobody here reads, and of a text that is too large.
+    pub(crate) kind: Option<Kind>,
+    pub(crate) number: i32,
+    pub(crate) text: Arc<Text>,
+    read: OnceLock<Arc<dyn Analysis>>,
+}
+
+impl Version {
+    pub(crate) fn new(path: PathBuf, kind: Option<Kind>, number: i32, text: Text) -> Version {
+        Version {
+            path,
+            kind,
+            number,
+            text: Arc::new(text),
+            read: OnceLock::new(),
+        }
+    }
+
+    pub(crate) fn is_too_large(&self) -> bool {
+        self.text.text.len() > BYTES_MAX
+    }
+
+    /// The text, read in its language.
+    pub(crate) fn analysis(&self, world: &World) -> Option<Arc<dyn Analysis>> {
+        let kind = self.kind.filter(|_| !self.is_too_large())?;
+        let read = || analyse(kind, &self.path, self.text.clone(), world);
+        Some(self.read.get_or_init(read).clone())
+    }
+
+    /// The same text, to be read again since the settings are others.
+    pub(crate) fn unread(&self) -> Version {
+        Version {
+            path: self.path.clone(),
+            kind: self.kind,
+            number: self.number,
+            text: self.text.clone(),
+            read: OnceLock::new(),
+        }
+    }
+}

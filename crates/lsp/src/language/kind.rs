@@ -1,0 +1,37 @@
+//! Which language a document is written in.
+
+use std::path::Path;
+
+/// A language of the server.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// HEIDENHAIN plain language, `.H`.
+    Plain,
+    /// DIN/ISO, `.I`.
+    Iso,
+    /// DIN 66025, `.nc`.
+    Din,
+    /// A program of the PLC, `.PLC`.
+    Plc,
+    /// A list of machine parameters, `.MP`.
+    Parameters,
+}
+
+/// Names that editors give to the languages, and endings of files.
+const NAMES: [(&str, &str, Kind); 5] = [
+    ("tnc-plain", "h", Kind::Plain),
+    ("tnc-iso", "i", Kind::Iso),
+    ("din-66025", "nc", Kind::Din),
+    ("tnc-plc", "plc", Kind::Plc),
+    ("tnc-parameters", "mp", Kind::Parameters),
+];
+
+impl Kind {
+    /// By what the editor calls it, else by the ending of its name.
+    pub(crate) fn of(language_id: &str, path: &Path) -> Option<Kind> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        let named = NAMES.iter().find(|(name, _, _)| *name == language_id);
+        let ended = || NAMES.iter().find(|(_, own, _)| ending.eq_ignore_ascii_case(own));
+        named.or_else(ended).map(|(_, _, kind)| *kind)
+    }
+}

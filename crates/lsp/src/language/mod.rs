@@ -1,0 +1,250 @@
+//! What the server asks of a language, and what it is told; the same for all of them.
+
+mod kind;
+mod mention;
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+pub(crate) use kind::Kind;
+pub(crate) use mention::{Mention, Role, Thing, at as mention_at, of as mentions_of};
+
+use crate::text::Text;
+use crate::world::World;
+
+/// One version of a document, read in its language. Places are bytes of the text.
+pub(crate) trait Analysis: Send + Sync {
+    /// All that is wrong, and what is known behind a run; it may take long and ends soon behind `interrupt`.
+    fn examine(&self, world: &World, interrupt: &AtomicBool) -> Examined;
+
+    /// What the word at a place means.
+    fn hover(&self, at: usize, examined: Option<&Examined>) -> Option<Hover>;
+
+    /// Whether [`Analysis::hover`] has more to say behind a run.
+    fn hover_waits(&self, _at: usize) -> bool {
+        false
+    }
+
+    /// All names that the text sets or uses, in order.
+    fn mentions(&self) -> &[Mention];
+
+    /// The place in another file to which a name leads.
+    fn elsewhere(&self, _thing: &Thing, _world: &World) -> Option<Elsewhere> {
+        None
+    }
+
+    /// What the text is made of.
+    fn symbols(&self) -> Vec<Symbol>;
+
+    /// What can be folded, as lines from 0.
+    fn folds(&self) -> Vec<Fold>;
+
+    /// What may be written at a place.
+    fn completions(&self, at: usize, world: &World) -> Vec<Completion>;
+
+    /// The text as it is listed; why not, where it is not.
+    fn formatted(&self, world: &World) -> Result<String, String>;
+
+    /// How a name is written that is to be another one: all of its places with the text for each.
+    fn renamed(&self, thing: &Thing, new: &str, world: &World)
+    -> Result<Vec<(Range<usize>, String)>, String>;
+
+    /// Whether a name can be another one.
+    fn can_rename(&self, thing: &Thing) -> bool;
+
+    /// What can be made of the text.
+    fn targets(&self) -> Vec<Target> {
+        Vec::new()
+    }
+
+    /// The text in the language of a target, or why not.
+    fn converted(&self, _target: &str, _world: &World) -> Result<Conversion, String> {
+        Err("nothing can be made of this text".to_owned())
+    }
+
+    /// The words of the text by kind.
+    fn tokens(&self) -> Vec<(Range<usize>, Token)>;
+}
+
+/// Reads a text in the language of its kind.
+pub(crate) fn analyse(
+    kind: Kind,
+    path: &std::path::Path,
+    text: Arc<Text>,
+    world: &World,
+) -> Arc<dyn Analysis> {
+    match kind {
+        Kind::Plain | Kind::Iso => Arc::new(crate::part::PartProgram::new(path, text, world)),
+        Kind::Din => Arc::new(crate::din::DinProgram::new(path, text)),
+        Kind::Plc => Arc::new(crate::plc::PlcSource::new(path, text, world)),
+        Kind::Parameters => Arc::new(crate::list::ParameterText::new(path, text, world)),
+    }
+}
+
+/// How bad a fault is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Severity {
+    Error,
+    Warning,
+}
+
+/// Something wrong at a place.
+#[derive(Clone, Debug)]
+pub(crate) struct Fault {
+    pub(crate) range: Range<usize>,
+    pub(crate) severity: Severity,
+    /// Name or number by which it is explained.
+    pub(crate) code: String,
+    pub(crate) message: String,
+    /// Other places that belong to it.
+    pub(crate) related: Vec<Related>,
+}
+
+/// A place that belongs to a fault.
+#[derive(Clone, Debug)]
+pub(crate) struct Related {
+    /// The file, if it is another one.
+    pub(crate) path: Option<PathBuf>,
+    pub(crate) place: Place,
+    pub(crate) message: String,
+}
+
+/// A place: bytes of the own text, or line and characters from 0 of a text that nobody has open.
+#[derive(Clone, Debug)]
+pub(crate) enum Place {
+    Here(Range<usize>),
+    There { line: u32, characters: Range<u32> },
+}
+
+/// A place in a file that may not be open: line and characters from 0.
+#[derive(Clone, Debug)]
+pub(crate) struct Elsewhere {
+    pub(crate) path: PathBuf,
+    pub(crate) line: u32,
+    pub(crate) characters: Range<u32>,
+}
+
+impl Elsewhere {
+    /// The front of a file.
+    pub(crate) fn front(path: PathBuf) -> Elsewhere {
+        Elsewhere {
+            path,
+            line: 0,
+            characters: 0..0,
+        }
+    }
+}
+
+/// What examining has found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Examined {
+    pub(crate) faults: Vec<Fault>,
+    /// Faults that were counted only.
+    pub(crate) not_listed: usize,
+    /// The Q parameters at the end of a run; none where the program does not set them.
+    pub(crate) values: Vec<Option<f64>>,
+    /// The run came to its end.
+    pub(crate) complete: bool,
+}
+
+/// What a word means, as Markdown.
+#[derive(Clone, Debug)]
+pub(crate) struct Hover {
+    pub(crate) range: Range<usize>,
+    pub(crate) text: String,
+}
+
+/// What a part of a text is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SymbolKind {
+    Program,
+    Label,
+    Tool,
+    Cycle,
+    Section,
+    Parameter,
+    Field,
+}
+
+/// A part of a text, with what lies in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Symbol {
+    pub(crate) name: String,
+    pub(crate) detail: String,
+    pub(crate) kind: SymbolKind,
+    pub(crate) range: Range<usize>,
+    /// What is shown of it, inside [`Symbol::range`].
+    pub(crate) selection: Range<usize>,
+    pub(crate) children: Vec<Symbol>,
+}
+
+/// Lines that can be folded, from 0, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Fold {
+    pub(crate) first: usize,
+    pub(crate) last: usize,
+    pub(crate) is_comment: bool,
+}
+
+/// What a completion is, for its picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CompletionKind {
+    Word,
+    Cycle,
+    Label,
+    Function,
+    Parameter,
+    File,
+    Value,
+}
+
+/// Something that may be written.
+#[derive(Clone, Debug)]
+pub(crate) struct Completion {
+    pub(crate) label: String,
+    pub(crate) detail: String,
+    pub(crate) documentation: String,
+    pub(crate) kind: CompletionKind,
+    /// What is replaced.
+    pub(crate) range: Range<usize>,
+    /// What is written, with places to fill in as `${1:prompt}`.
+    pub(crate) snippet: String,
+}
+
+/// A language that a text can be converted to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target {
+    pub(crate) id: &'static str,
+    /// What the action says.
+    pub(crate) title: &'static str,
+}
+
+/// The text in another language.
+#[derive(Clone, Debug)]
+pub(crate) struct Conversion {
+    /// Name of the file beside this one.
+    pub(crate) file_name: String,
+    pub(crate) text: String,
+}
+
+/// What a word is, for colours; the order is that of the legend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Token {
+    Keyword,
+    Parameter,
+    Number,
+    Comment,
+    Text,
+    Function,
+    Label,
+    Variable,
+}
+
+impl Token {
+    /// The names in the order of the variants.
+    pub(crate) const LEGEND: [&'static str; 8] = [
+        "keyword", "property", "number", "comment", "string", "function", "label", "variable",
+    ];
+}

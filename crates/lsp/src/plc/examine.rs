@@ -1,0 +1,252 @@
+//! What the compiler says of a source file, and the files that belong to it.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use bahn_plc::{Compilation, Diagnostic, LineOperand, Options, SourceFiles, line_words};
+
+use super::PlcSource;
+use crate::language::{Elsewhere, Examined, Fault, Place, Related, Severity};
+use crate::world::World;
+
+/// Files of a folder that are looked through for the one that links this.
+const LOOKED_THROUGH_MAX: usize = 64;
+/// Links from the main file down to this one.
+const LINKS_MAX: usize = 8;
+
+pub(super) fn examine(source: &PlcSource, world: &World) -> Examined {
+    if source.text.text.trim().is_empty() {
+        return Examined::default();
+    }
+    let main = main_of(&source.path, world);
+    let compilation = compiled(source, &main, world);
+    let of = |severity: Severity, all: &[Diagnostic]| -> Vec<Fault> {
+        let told = all
+            .iter()
+            .filter_map(|fault| told(source, &main, severity, fault));
+        told.collect()
+    };
+    let mut faults = of(Severity::Error, &compilation.errors);
+    faults.extend(of(Severity::Warning, &compilation.warnings));
+    faults.sort_by_key(|fault| fault.range.start);
+    Examined {
+        faults,
+        not_listed: compilation.not_listed,
+        complete: true,
+        ..Examined::default()
+    }
+}
+
+fn compiled(source: &PlcSource, main: &Path, world: &World) -> Compilation {
+    let folder = Folder {
+        folder: main.parent().unwrap_or(Path::new("")),
+        world,
+    };
+    let mut options = Options::for_model(source.model);
+    options.strict = world.settings.strict;
+    let name = main.file_name().unwrap_or_default().to_string_lossy();
+    Compilation::compile(&folder, &name, options)
+}
+
+/// A fault of this file at its place; one of a linked file where this one links it.
+fn told(source: &PlcSource, main: &Path, severity: Severity, fault: &Diagnostic) -> Option<Fault> {
+    let folder = main.parent().unwrap_or(Path::new(""));
+    let error = fault.error;
+    let message = format!(
+        "{} {}\n{} {}",
+        error.number(),
+        fault.message,
+        error.cause(),
+        error.cure()
+    );
+    let path = folder.join(&fault.file);
+    let code = format!("PLC {}", error.number());
+    if is_same(&path, &source.path) {
+        let word = |line: u32, column: u32| word_at(source, line, column);
+        let related = fault.opened.map(|(line, column)| Related {
+            path: None,
+            place: Place::Here(word(line, column)),
+            message: "opened here".to_owned(),
+        });
+        return Some(Fault {
+            range: word(fault.line, fault.column),
+            severity,
+            code,
+            message,
+            related: related.into_iter().collect(),
+        });
+    }
+    // The main file tells of all; what lies beside a linked file is not its matter.
+    let is_main = is_same(main, &source.path);
+    let line = fault.line.saturating_sub(1);
+    let column = fault.column.saturating_sub(1);
+    is_main.then(|| Fault {
+        range: link_to(source, &fault.file),
+        severity,
+        code,
+        message: format!("{}, line {}: {message}", fault.file, fault.line),
+        related: vec![Related {
+            path: Some(path),
+            place: Place::There {
+                line,
+                characters: column..column + 1,
+            },
+            message: fault.message.clone(),
+        }],
+    })
+}
+
+/// The word that begins at a line and column, both from 1.
+fn word_at(source: &PlcSource, line: u32, column: u32) -> Range<usize> {
+    let Some(line) = source.lines.get((line as usize).saturating_sub(1)) else {
+        let end = source.text.text.len();
+        return end..end;
+    };
+    let text = source.text.get(line.bytes.clone());
+    let start = column.saturating_sub(1) as usize;
+    let length = text
+        .chars()
+        .skip(start)
+        .take_while(|c| !c.is_whitespace())
+        .count();
+    source
+        .text
+        .characters(line.bytes.clone(), column as usize, length.max(1))
+}
+
+/// The line that links a file, else the first.
+fn link_to(source: &PlcSource, name: &str) -> Range<usize> {
+    let links = |operand: &LineOperand| matches!(operand, LineOperand::File(file) if same_name(file, name));
+    let found = source.words().find(|(_, _, words)| links(&words.operand));
+    let first = || source.lines.first().map(|line| line.bytes.clone());
+    found
+        .map(|(_, _, words)| words.operand_at.clone())
+        .or_else(first)
+        .unwrap_or_default()
+}
+
+/// The main file of the program to which a file belongs: the one that links it, and that nobody links.
+fn main_of(path: &Path, world: &World) -> PathBuf {
+    let mut main = path.to_owned();
+    for _ in 0..LINKS_MAX {
+        match linking(&main, world) {
+            Some(next) if next != path => main = next,
+            _ => break,
+        }
+    }
+    main
+}
+
+/// A file of the folder that links a file.
+fn linking(path: &Path, world: &World) -> Option<PathBuf> {
+    let folder = path.parent()?;
+    let own = path.file_name()?.to_string_lossy();
+    let sources = world
+        .files
+        .names(folder)
+        .into_iter()
+        .filter(|name| name.to_ascii_lowercase().ends_with(".plc") && !name.eq_ignore_ascii_case(&own));
+    sources
+        .take(LOOKED_THROUGH_MAX)
+        .map(|name| folder.join(name))
+        .find(|other| {
+            let bytes = world.read(other).unwrap_or_default();
+            let text = String::from_utf8_lossy(&bytes);
+            let mut links = text.lines().filter_map(|line| {
+                let code = line.trim();
+                let front = code.get(..4)?;
+                front.eq_ignore_ascii_case("USES").then(|| code.get(4..))?
+            });
+            links.any(|name| {
+                same_name(
+                    name.split([' ', '\t', ';'])
+                        .find(|word| !word.is_empty())
+                        .unwrap_or_default(),
+                    &own,
+                )
+            })
+        })
+}
+
+/// Whether USES with one name leads to a file of another: endings may be missing, case does not count.
+fn same_name(a: &str, b: &str) -> bool {
+    let stem = |name: &str| {
+        let name = name
+            .rsplit(['\\', '/', ':'])
+            .next()
+            .unwrap_or_default()
+            .to_ascii_lowercase();
+        name.strip_suffix(".plc").map(str::to_owned).unwrap_or(name)
+    };
+    stem(a) == stem(b)
+}
+
+fn is_same(a: &Path, b: &Path) -> bool {
+    let name = |path: &Path| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_ascii_lowercase()
+    };
+    a.parent() == b.parent() && name(a) == name(b)
+}
+
+/// The file that USES names.
+pub(super) fn linked(source: &PlcSource, name: &str, world: &World) -> Option<PathBuf> {
+    let folder = source.path.parent()?;
+    let name = name.rsplit(['\\', '/', ':']).next()?;
+    let names = world.files.names(folder);
+    let found = names.iter().find(|other| same_name(other, name))?;
+    Some(folder.join(found))
+}
+
+/// Where another file of the program sets a label.
+pub(super) fn label_elsewhere(source: &PlcSource, label: &str, world: &World) -> Option<Elsewhere> {
+    let main = main_of(&source.path, world);
+    let folder = main.parent()?;
+    let compilation = compiled(source, &main, world);
+    for file in &compilation.files {
+        let path = folder.join(&file.name);
+        if is_same(&path, &source.path) {
+            continue;
+        }
+        for (line, text) in file.lines.iter().enumerate() {
+            let words = line_words(text, source.model).filter(|words| words.instruction == "LBL");
+            if let Some(words) = words.filter(|words| words.operand == LineOperand::Label(label.to_owned())) {
+                let number = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+                return Some(Elsewhere {
+                    path,
+                    line: number(line),
+                    characters: number(words.operand_at.start)..number(words.operand_at.end),
+                });
+            }
+        }
+    }
+    None
+}
+
+/// The files beside the main one, and those of its folder EPROM.
+struct Folder<'a> {
+    folder: &'a Path,
+    world: &'a World,
+}
+
+impl SourceFiles for Folder<'_> {
+    fn read(&self, name: &str) -> Option<Vec<u8>> {
+        read_in(self.folder, name, self.world)
+    }
+
+    fn read_eprom(&self, name: &str) -> Option<Vec<u8>> {
+        read_in(&self.folder.join("EPROM"), name, self.world)
+    }
+}
+
+/// Names lose their folders.
+fn read_in(folder: &Path, name: &str, world: &World) -> Option<Vec<u8>> {
+    let name = name.rsplit(['\\', '/', ':']).next().unwrap_or_default();
+    if name.is_empty() || name == "." || name == ".." {
+        return None;
+    }
+    let names = [name.to_owned(), name.to_ascii_lowercase()];
+    names.iter().find_map(|name| world.read(&folder.join(name)))
+}

@@ -1,0 +1,125 @@
+//! Sessions of a scripted editor: every request in every language, and how sessions begin, break off and end.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
+
+mod support;
+
+use serde_json::{Value, json};
+
+use support::client::Client;
+use support::{Folder, InProcess, script};
+
+/// A client with the documents of the script.
+fn session() -> (Client<InProcess>, Folder) {
+    let folder = Folder::new();
+    script::lay_out(folder.path());
+    (Client::start(InProcess::start(), Value::Null), folder)
+}
+
+#[test]
+fn plain_language() {
+    let (mut client, folder) = session();
+    script::plain(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn din_iso() {
+    let (mut client, folder) = session();
+    script::iso(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn programs_are_converted() {
+    let (mut client, folder) = session();
+    script::conversions(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn din_66025() {
+    let (mut client, folder) = session();
+    script::din(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn plc_programs() {
+    let (mut client, folder) = session();
+    script::plc(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn parameter_lists() {
+    let (mut client, folder) = session();
+    script::list(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn other_documents_and_requests() {
+    let (mut client, folder) = session();
+    script::others(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+/// What is open counts, not what lies on the disk.
+#[test]
+fn a_called_program_is_the_one_in_the_editor() {
+    let (mut client, folder) = session();
+    let mut called = client.open(&folder.path().join("15.H"), "tnc-plain");
+    client.edit(&mut called, "X+1..5", "X+1.5");
+    assert_eq!(client.diagnostics(&called), [] as [Value; 0]);
+    let caller = client.open(&folder.path().join("7.H"), "tnc-plain");
+    assert_eq!(client.diagnostics(&caller), [] as [Value; 0]);
+    client.end().ended().unwrap();
+}
+
+/// A hover that waits for a run is answered when the run has ended, or refused when the editor takes it back.
+#[test]
+fn a_hover_waits_for_the_run() {
+    let (mut client, folder) = session();
+    let endless = "0 BEGIN PGM 3 MM\n1 FN 0: Q1 = +0\n2 LBL 1\n3 FN 1: Q1 = +Q1 + +1\n4 FN 9: IF +1 EQU +1 GOTO LBL 1\n\
+                   5 END PGM 3 MM\n";
+    let mut document = client.open_text(&folder.path().join("3.H"), "tnc-plain", endless);
+    let place = document.place("Q1 = +0", 0);
+    let taken_back = client.ask("textDocument/hover", place.clone());
+    let waiting = client.ask("textDocument/hover", place);
+    client.notify("$/cancelRequest", json!({"id": taken_back}));
+    let error = client.answer(taken_back).unwrap_err();
+    assert_eq!(error["code"], -32800);
+    // A newer version breaks the run off.
+    client.edit(&mut document, "EQU +1", "EQU +2");
+    let hover = client.answer(waiting).unwrap();
+    let text = hover["contents"]["value"].as_str().unwrap();
+    assert!(text.contains("end of a run:* 1\n"), "{text}");
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn settings_come_from_the_editor() {
+    let (mut client, folder) = session();
+    // A TNC 360 has Q123 at most.
+    let text = "0 BEGIN PGM 3 MM\n1 FN 0: Q200 = +0\n2 END PGM 3 MM\n";
+    let document = client.open_text(&folder.path().join("3.H"), "tnc-plain", text);
+    assert_eq!(client.diagnostics(&document), [] as [Value; 0]);
+    client.published.clear();
+    client.notify(
+        "workspace/didChangeConfiguration",
+        json!({"settings": {"bahn": {"model": "tnc360"}}}),
+    );
+    let found = client.diagnostics(&document);
+    assert!(
+        found[0]["message"].as_str().unwrap().contains("0 to 123"),
+        "{found:?}"
+    );
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn an_editor_that_goes_without_a_word_ends_the_server() {
+    let (client, _folder) = session();
+    let wire = client.into_wire();
+    assert!(wire.ended().is_err());
+}

@@ -1,0 +1,291 @@
+//! What is done where the path is, and where it has to stop.
+
+use super::Channel;
+use super::order::{Order, OrderId};
+use super::ranges::RangeId;
+use super::record::Moment;
+use super::track::Deed;
+use crate::plc::{self, cycle_at};
+use crate::report::EventKind;
+use crate::synch::SynchType;
+
+/// What became of a deed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Done {
+    Yes,
+    /// The path stands here for it.
+    NotYet,
+}
+
+impl Channel<'_> {
+    /// PLC and spindles do what they do in this cycle. Whether anything happened.
+    pub(super) fn plc(&mut self) -> bool {
+        let mut any = false;
+        while let Some(deed) = self.plc.next(self.cycle) {
+            any = true;
+            let at = self.now();
+            match deed {
+                plc::Deed::Fetch(id) => {
+                    self.ranges.fetch(id, &mut self.orders);
+                    self.tell(EventKind::Fetch, id, at);
+                }
+                plc::Deed::Acknowledge(id) => {
+                    self.ranges.acknowledge(id, &mut self.orders);
+                    self.tell(EventKind::Acknowledge, id, at);
+                }
+                plc::Deed::Confirm(id) => {
+                    if let Some(order) = self.orders.get_mut(id) {
+                        order.state.confirmed = true;
+                    }
+                }
+            }
+        }
+        any
+    }
+
+    fn tell(&mut self, kind: EventKind, id: OrderId, at: Moment) {
+        if let Some(order) = self.orders.get(id) {
+            let target = order.range.map_or("", |range| self.ranges.name(range));
+            self.record.function(kind, order, target, at);
+        }
+    }
+
+    /// Does what is to be done up to where the path is. Whether anything was done.
+    pub(super) fn act(&mut self) -> bool {
+        let mut any = false;
+        while self.fault.is_none() && !self.ended {
+            let (place, index) = self.cursor;
+            if place > self.reached {
+                break;
+            }
+            if index < self.track.deeds(place).len() {
+                if self.deed(place, index) == Done::NotYet {
+                    break;
+                }
+                self.cursor.1 += 1;
+                any = true;
+            } else if place < self.reached {
+                self.cursor = (place + 1, 0);
+                any = true;
+            } else {
+                break;
+            }
+        }
+        any
+    }
+
+    fn deed(&mut self, place: u64, index: usize) -> Done {
+        let Some(deed) = self.track.deeds(place).get(index) else {
+            return Done::Yes;
+        };
+        match deed {
+            Deed::Command(id) => {
+                let id = *id;
+                self.command(id);
+                Done::Yes
+            }
+            Deed::Output(id) => {
+                let id = *id;
+                let blocked = self.range_of(id).and_then(|range| self.blocker(range));
+                if blocked.is_some() {
+                    return Done::NotYet;
+                }
+                self.output_at(id, place);
+                Done::Yes
+            }
+            Deed::Gate(ids) => {
+                if ids.iter().all(|id| self.is_open(*id)) {
+                    Done::Yes
+                } else {
+                    Done::NotYet
+                }
+            }
+            Deed::Dwell(seconds) => self.dwell(place, *seconds),
+            Deed::Independent(independent) => {
+                let independent = independent.as_ref().clone();
+                self.begin_independent(independent);
+                Done::Yes
+            }
+            Deed::AllEnded if self.independent.is_empty() => Done::Yes,
+            Deed::AllEnded => Done::NotYet,
+            Deed::Fault(fault) => {
+                self.fault = Some(fault.as_ref().clone());
+                Done::Yes
+            }
+            Deed::End if !self.leads.queue.is_empty() => Done::NotYet,
+            Deed::End => {
+                self.ended = true;
+                Done::Yes
+            }
+        }
+    }
+
+    /// A dwell ends in the first cycle behind its time, which begins when the path comes to rest.
+    fn dwell(&mut self, place: u64, seconds: f64) -> Done {
+        let cycle = self.cycle;
+        let left = self.passed(place).map_or(0.0, |passed| passed.0);
+        let end = *self
+            .dwell
+            .get_or_insert_with(|| cycle + cycle_at((seconds - left).max(0.0), self.cycle_s));
+        if cycle < end {
+            return Done::NotYet;
+        }
+        self.dwell = None;
+        Done::Yes
+    }
+
+    pub(super) fn range_of(&self, id: OrderId) -> Option<RangeId> {
+        self.orders.get(id).and_then(|order| order.range)
+    }
+
+    /// The function for which nothing can be output to a range.
+    pub(super) fn blocker(&self, range: RangeId) -> Option<OrderId> {
+        self.ranges.blocked(range, self.cycle)
+    }
+
+    /// A spindle of the NC executes a function.
+    fn command(&mut self, id: OrderId) {
+        let Some(order) = self.orders.get_mut(id) else {
+            return;
+        };
+        order.state.commanded = true;
+        if let Some(index) = order.spindle {
+            let names = super::resolve::names(RangeId::Spindle(index), self.settings);
+            self.plc.command(id, &names, order.process_s, self.cycle);
+        }
+    }
+
+    /// How long before this cycle, s, and how fast, mm/s, the path came to a place, if that was in the cycle before.
+    fn passed(&self, place: u64) -> Option<(f64, f64)> {
+        let passed = self.path.passed().iter();
+        let mut at = passed.filter(|passed| passed.sequence + 1 == place);
+        at.next().map(|passed| (passed.left_s, passed.speed_mm_s))
+    }
+
+    /// A function is output at a place of the path.
+    fn output_at(&mut self, id: OrderId, place: u64) {
+        let (left_s, speed_mm_s) = self.passed(place).unwrap_or((0.0, self.path.speed_mm_s()));
+        let at = Moment {
+            t: self.t(),
+            position: self.track.position(place),
+            speed_mm_s,
+        };
+        self.output(id, at);
+        let stamped = self.orders.get(id).is_some_and(|order| {
+            order.synch.kind == SynchType::MosTs && order.range == Some(RangeId::Channel)
+        });
+        if stamped {
+            // Below the cycle, however it is rounded.
+            let offset_us = (left_s * 1e9).floor() / 1e3;
+            self.record.output_beside(Some(offset_us), None);
+        }
+    }
+
+    /// A function is output.
+    pub(super) fn output(&mut self, id: OrderId, at: Moment) {
+        let simulated = self.simulated;
+        if let Some(order) = self.orders.get_mut(id)
+            && simulated
+            && !order.synch.forward
+        {
+            order.waits = false;
+        }
+        let has_room = self.ranges.output(id, &mut self.orders, self.cycle);
+        let Some(order) = self.orders.get(id) else {
+            return;
+        };
+        let Some(range) = order.range else { return };
+        let label = order.label();
+        let names = self.ranges.names(range);
+        self.plc
+            .order(id, (names, &label), order.process_s, order.waits, self.cycle);
+        let target = self.ranges.name(range);
+        self.record.function(EventKind::Output, order, target, at);
+        if !has_room {
+            let message = format!("{label} is one late function too many that is not acknowledged");
+            self.fault = Some(super::fault::numbered(&order.place, 60146, message));
+        }
+    }
+
+    /// Nothing is waited for because of this function.
+    fn is_open(&self, id: OrderId) -> bool {
+        self.orders.get(id).is_none_or(|order| self.order_is_open(order))
+    }
+
+    fn order_is_open(&self, order: &Order) -> bool {
+        order.is_done() || self.simulated && !order.state.output && !order.synch.forward
+    }
+
+    /// Whether the path has to stop at a place, looking from one of its deeds on.
+    pub(super) fn is_closed(&self, place: u64, from: usize) -> bool {
+        let deeds = self.track.deeds(place).get(from..).unwrap_or_default();
+        deeds.iter().any(|deed| match deed {
+            Deed::Gate(ids) => !ids.iter().all(|id| self.is_open(*id)),
+            Deed::Dwell(_) | Deed::AllEnded | Deed::End | Deed::Fault(_) => true,
+            Deed::Output(_) | Deed::Command(_) | Deed::Independent(_) => false,
+        })
+    }
+
+    /// The nearest place where the path has to stop, as far as it is known.
+    pub(super) fn nearest_closed(&mut self) -> Option<u64> {
+        let (cursor, index) = self.cursor;
+        let last = self.track.last();
+        let mut place = self.open_to.max(cursor);
+        while place < last && !self.is_closed(place, if place == cursor { index } else { 0 }) {
+            place += 1;
+        }
+        self.open_to = place;
+        let closed =
+            (place < last || self.is_closed(place, if place == cursor { index } else { 0 })).then_some(place);
+        if !self.ranges.any_blocked(self.cycle) {
+            return closed;
+        }
+        // What is to be output next to a range whose last function is not fetched stops the path, too.
+        let blocked = (cursor..place).find(|place| {
+            let from = if *place == cursor { index } else { 0 };
+            let deeds = self.track.deeds(*place).get(from..).unwrap_or_default();
+            deeds.iter().any(|deed| match deed {
+                Deed::Output(id) => self.range_of(*id).and_then(|range| self.blocker(range)).is_some(),
+                _ => false,
+            })
+        });
+        blocked.or(closed)
+    }
+
+    /// The path went over a place where it should have stopped, but could not any more.
+    pub(super) fn is_overrun(&self) -> bool {
+        self.cursor.0 < self.reached
+    }
+
+    /// The functions for which the path cannot go on where it is.
+    pub(super) fn missing(&self) -> Vec<OrderId> {
+        if self.backward.is_on() {
+            return self.missing_backward();
+        }
+        let (place, index) = self.cursor;
+        let mut missing = Vec::new();
+        if place <= self.reached {
+            match self.track.deeds(place).get(index) {
+                Some(Deed::Gate(ids)) => {
+                    missing.extend(ids.iter().copied().filter(|id| !self.is_open(*id)));
+                }
+                Some(Deed::Output(id)) => {
+                    missing.extend(self.range_of(*id).and_then(|range| self.blocker(range)));
+                }
+                _ => {}
+            }
+        }
+        missing.extend(self.blocked_lead());
+        missing
+    }
+
+    /// Whether something is to be done where the path is that is not done yet.
+    pub(super) fn is_waiting(&self) -> bool {
+        if self.backward.is_on() {
+            return true;
+        }
+        let (place, index) = self.cursor;
+        let waits = |deed: &Deed| !matches!(deed, Deed::End | Deed::AllEnded);
+        place <= self.reached && self.track.deeds(place).get(index).is_some_and(waits)
+    }
+}

@@ -1,0 +1,113 @@
+//! Functions that are output ahead of the place where they are synchronised, MEP_* and MET_* [004:81-90].
+
+use std::collections::VecDeque;
+
+use super::order::{Lead, OrderId};
+
+/// Places nearer together than this are one, mm.
+pub(super) const SAME: f64 = 1e-7;
+
+/// A function that is still to be output ahead.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ahead {
+    pub(super) id: OrderId,
+    /// Count of executed blocks.
+    pub(super) unit: u64,
+    pub(super) lead: Lead,
+    /// Way along the path to the place where it is synchronised, mm.
+    pub(super) point: f64,
+    /// It is not output before this, mm: the look-ahead reaches no farther back.
+    pub(super) earliest: f64,
+}
+
+impl Ahead {
+    /// Way along the path to where it is output, mm, for a lead along the path.
+    pub(super) fn place(&self) -> f64 {
+        match self.lead {
+            Lead::Way(way) => (self.point - way).max(self.earliest),
+            Lead::None => self.point,
+            Lead::Time(_) => self.earliest,
+        }
+    }
+}
+
+/// All that are still to be output ahead, in the order of their blocks.
+#[derive(Debug, Default)]
+pub(super) struct Leads {
+    pub(super) queue: VecDeque<Ahead>,
+    /// Ways to the starts of the last blocks, as many as the look-ahead takes.
+    blocks: VecDeque<f64>,
+    /// Nothing is output before this, mm: the path was to come to rest here.
+    barrier: f64,
+    /// Where the last one was output, mm.
+    pub(super) floor: f64,
+    /// The place that was turned to last, and its functions (P-CHAN-00212).
+    active: Option<(f64, Vec<OrderId>)>,
+}
+
+impl Leads {
+    /// A block with a movement begins at a way, mm; so many blocks are looked at.
+    pub(super) fn block(&mut self, way: f64, most: usize) {
+        self.blocks.push_back(way);
+        while self.blocks.len() > most {
+            self.blocks.pop_front();
+        }
+    }
+
+    /// Nothing is output across this place, mm.
+    pub(super) fn bar(&mut self, way: f64) {
+        self.barrier = way;
+        self.blocks.clear();
+    }
+
+    pub(super) fn push(&mut self, id: OrderId, unit: u64, lead: Lead, point: f64) {
+        let first = self.blocks.front().copied().unwrap_or(point);
+        self.queue.push_back(Ahead {
+            id,
+            unit,
+            lead,
+            point,
+            earliest: first.max(self.barrier).min(point),
+        });
+    }
+
+    /// The functions that may be output now: those of the first block that has any. With `one_by_one` not before the
+    /// place before is passed: `passed` says so of it and its functions.
+    pub(super) fn next(
+        &self,
+        one_by_one: bool,
+        passed: impl Fn(f64, &[OrderId]) -> bool,
+    ) -> impl Iterator<Item = (usize, &Ahead)> {
+        let first = self.queue.front();
+        let held = one_by_one
+            && match (first, &self.active) {
+                (Some(first), Some((point, ids))) => first.point > point + SAME && !passed(*point, ids),
+                _ => false,
+            };
+        let unit = first.map(|ahead| ahead.unit);
+        self.queue
+            .iter()
+            .enumerate()
+            .take_while(move |(_, ahead)| Some(ahead.unit) == unit && !held)
+    }
+
+    /// One of them is output.
+    pub(super) fn take(&mut self, index: usize) {
+        let Some(ahead) = self.queue.remove(index) else {
+            return;
+        };
+        match &mut self.active {
+            Some((point, ids)) if (*point - ahead.point).abs() <= SAME => ids.push(ahead.id),
+            active => *active = Some((ahead.point, vec![ahead.id])),
+        }
+    }
+
+    /// The path begins anew.
+    pub(super) fn begin(&mut self, way: f64) {
+        *self = Leads {
+            barrier: way,
+            floor: way,
+            ..Leads::default()
+        };
+    }
+}

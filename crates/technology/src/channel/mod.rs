@@ -1,0 +1,180 @@
+//! The channel: blocks become a path with places where functions are output and waited for; a cycle loop drives along it.
+//!
+//! `take` (in `prepare`) turns a block into elements and deeds; `gates` does what is to be done where the path is, `leads`
+//! what is to be done ahead of that, `drive` is a cycle of the path. `programs` runs one program behind the other.
+
+mod backward;
+mod drive;
+mod fault;
+mod gates;
+mod in_force;
+mod leads;
+mod order;
+mod planned;
+mod prepare;
+mod programs;
+mod ranges;
+mod record;
+mod resolve;
+mod track;
+mod window;
+
+use bahn_motion::{Interpolator, Limits, PointToPoint};
+use bahn_path::Position;
+
+use crate::plc::Plc;
+use crate::report::Fault;
+use crate::settings::ChannelSettings;
+use backward::Backward;
+use drive::LOOK_AHEAD;
+use in_force::InForce;
+use leads::Leads;
+use order::Orders;
+use prepare::Decoding;
+use ranges::Ranges;
+use record::{Moment, Record};
+use track::Track;
+use window::Window;
+
+pub(crate) use programs::execute;
+
+/// All of a channel.
+struct Channel<'a> {
+    limits: &'a Limits,
+    settings: &'a ChannelSettings,
+    cycle_s: f64,
+    /// Cycles of the run that are over.
+    cycle: u64,
+    /// Settings as the program has left them.
+    in_force: InForce,
+    decoding: Decoding,
+    window: Window,
+    leads: Leads,
+    track: Track,
+    orders: Orders,
+    ranges: Ranges,
+    plc: Plc<'a>,
+    record: Record,
+    path: Interpolator<()>,
+    /// Number of the element that the interpolator is given next.
+    fed: u64,
+    /// So much of it is executed already, mm.
+    part: Option<f64>,
+    /// Greatest path acceleration that it was given last, mm/s².
+    acceleration: f64,
+    /// The place at which deeds are done next, and which of them.
+    cursor: (u64, usize),
+    /// The place that the path has come to or stands at.
+    reached: u64,
+    /// Places before this one do not stop the path.
+    open_to: u64,
+    /// The cycle in which a dwell ends.
+    dwell: Option<u64>,
+    /// Way along the path before the last cycle, mm.
+    way_before: f64,
+    /// The path stood still in the last cycle.
+    still: bool,
+    /// That was said.
+    stands: bool,
+    /// It stands because it is held.
+    held: bool,
+    /// Resets that were done.
+    reset_count: usize,
+    /// Where axes stand that moved on their own.
+    ended_at: Position,
+    /// Axes that move on their own.
+    independent: Vec<(bahn_din::Independent, PointToPoint)>,
+    backward: Backward,
+    /// Functions are simulated.
+    simulated: bool,
+    /// Why the run cannot go on.
+    fault: Option<Fault>,
+    /// The program has ended.
+    ended: bool,
+}
+
+impl<'a> Channel<'a> {
+    fn new(
+        settings: &'a ChannelSettings,
+        limits: &'a Limits,
+        script: Option<&'a crate::plc::Script>,
+        start: Position,
+    ) -> Channel<'a> {
+        let mut path = Interpolator::new(limits, LOOK_AHEAD);
+        path.set_position(start);
+        // The interpolator has the same bounds.
+        let cycle_s = if limits.cycle_s.is_nan() {
+            0.0001
+        } else {
+            limits.cycle_s.clamp(0.0001, 1.0)
+        };
+        let mut channel = Channel {
+            limits,
+            settings,
+            cycle_s,
+            cycle: 0,
+            in_force: InForce::new(settings),
+            decoding: Decoding::default(),
+            window: Window::default(),
+            leads: Leads::default(),
+            track: Track::new(start, 1, 0.0),
+            orders: Orders::default(),
+            ranges: Ranges::default(),
+            plc: Plc::new(script, cycle_s),
+            record: Record::default(),
+            path,
+            fed: 1,
+            part: None,
+            acceleration: f64::INFINITY,
+            cursor: (1, 0),
+            reached: 1,
+            open_to: 1,
+            dwell: None,
+            way_before: 0.0,
+            still: true,
+            stands: true,
+            held: false,
+            reset_count: 0,
+            ended_at: Position::UNKNOWN,
+            independent: Vec::new(),
+            backward: Backward::default(),
+            simulated: false,
+            fault: None,
+            ended: false,
+        };
+        channel.window.begin(0.0);
+        channel
+    }
+
+    /// Time of the run, s.
+    fn t(&self) -> f64 {
+        self.cycle as f64 * self.cycle_s
+    }
+
+    /// Way along the path, mm.
+    fn way(&self) -> f64 {
+        if let Some(way) = self.way_back() {
+            return way;
+        }
+        let Some(element) = self.path.element() else {
+            return self.track.way(self.reached);
+        };
+        match self.track.leg(element.sequence) {
+            Some(leg) => leg.to() - self.path.rest_mm(),
+            None => self.track.way(self.reached),
+        }
+    }
+
+    /// Now, and where the path is.
+    fn now(&self) -> Moment {
+        let mut position = self.path.position();
+        for (independent, axis) in &self.independent {
+            position[independent.axis] = axis.position();
+        }
+        Moment {
+            t: self.t(),
+            position,
+            speed_mm_s: self.path.speed_mm_s(),
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! From blocks to the path: where each function is output, and where the path waits for it.
+
+use bahn_din::{Command, Unit};
+use bahn_motion::Limits;
+use bahn_path::{Axis, Curve};
+
+use super::Channel;
+use super::fault::{named, numbered};
+use super::order::{Lead, OrderId};
+use super::resolve::Resolve;
+use super::track::{Deed, Driving, Leg, VectorLimit};
+use super::window::{Held, JointFeed};
+use crate::report::{Fault, Warning};
+use crate::synch::SynchType;
+
+/// 0.1 µm are this part of a mm.
+const PER_MM: f64 = 1e4;
+
+/// What lies in blocks before the one that is decoded and still has its effect.
+#[derive(Debug, Default)]
+pub(super) struct Decoding {
+    /// Count of executed blocks, over all programs.
+    pub(super) units: u64,
+    /// MVS_SLM and MVS_SLP functions that wait for their place, over all programs.
+    pub(super) late: [Vec<OrderId>; 2],
+    /// Decoding goes on when the channel has run empty.
+    pub(super) holds: bool,
+    /// The end of the program is decoded.
+    pub(super) ended: bool,
+    limit: Option<VectorLimit>,
+    radius_compensation: bool,
+    edge: Option<Edge>,
+}
+
+impl Decoding {
+    /// Another program begins: what is modal ends, late functions remain.
+    pub(super) fn begin(&mut self) {
+        *self = Decoding {
+            units: self.units,
+            late: std::mem::take(&mut self.late),
+            ..Decoding::default()
+        };
+    }
+}
+
+/// Edge banding between G108 and G107: the way to where the path has passed the probe, mm.
+#[derive(Clone, Copy, Debug, Default)]
+struct Edge {
+    probed: Option<f64>,
+}
+
+/// The functions of a block by where they are output and waited for.
+#[derive(Debug, Default)]
+struct Sorted {
+    /// Spindles of the NC are commanded.
+    commanded: Vec<OrderId>,
+    /// Output before the motion.
+    before: Vec<OrderId>,
+    /// Waited for before it.
+    gate: Vec<OrderId>,
+    /// Waited for behind it.
+    gate_behind: Vec<OrderId>,
+    /// Output behind it.
+    behind: Vec<OrderId>,
+    /// Output ahead.
+    ahead: Vec<OrderId>,
+    /// Micro Joints before the motion and behind it.
+    joints: Vec<OrderId>,
+    joints_behind: Vec<OrderId>,
+    /// At the measuring event.
+    measured: Option<OrderId>,
+}
+
+impl Channel<'_> {
+    /// Takes a block into the path.
+    pub(super) fn take(&mut self, unit: &Unit) -> Result<(), Fault> {
+        self.decoding.units += 1;
+        let mut resolve = Resolve {
+            settings: &self.in_force.settings,
+            ranges: &mut self.ranges,
+            orders: &mut self.orders,
+            unit: self.decoding.units,
+            cycle_s: self.cycle_s,
+        };
+        let ids = resolve.block(unit)?;
+        let flush_and_wait = self.flush_and_wait(&ids, unit)?;
+        self.commands(unit)?;
+        let sorted = self.sort(&ids, unit)?;
+        self.before(&sorted, unit)?;
+        if let Some(motion) = &unit.motion {
+            self.motion(motion, unit);
+            if let Some(id) = sorted.measured {
+                self.measured(id, unit);
+            }
+            // Nothing is output ahead across the place where such a function is waited for [004:135].
+            let waits_behind = |id: &&OrderId| {
+                let order = self.orders.get(**id);
+                order.is_some_and(|order| order.synch.kind == SynchType::MvsSns)
+            };
+            if sorted.gate_behind.iter().any(|id| waits_behind(&id)) {
+                self.window.bar();
+            }
+        }
+        self.behind(&sorted, unit)?;
+        if flush_and_wait {
+            self.flush(true);
+        }
+        if unit.ends {
+            self.end();
+        }
+        if !self.in_force.settings.micro_joint.enabled || self.window.is_full() {
+            self.window.release(&mut self.track);
+        }
+        Ok(())
+    }
+
+    /// Whether a function holds decoding behind the block.
+    fn flush_and_wait(&self, ids: &[OrderId], unit: &Unit) -> Result<bool, Fault> {
+        let of_block = ids.iter().filter_map(|id| self.orders.get(*id));
+        let mut flushing = of_block.filter(|order| order.synch.flush_and_wait);
+        let Some(order) = flushing.next() else {
+            return Ok(false);
+        };
+        let turns_on = |command: &Command| matches!(command, Command::RadiusCompensation(true));
+        if self.decoding.radius_compensation || unit.commands.iter().any(turns_on) {
+            let message = format!(
+                "{} with FAW_SYNCH, while tool radius compensation is on",
+                order.label()
+            );
+            return Err(named(&unit.place, "faw-synch", message));
+        }
+        Ok(true)
+    }
+
+    fn commands(&mut self, unit: &Unit) -> Result<(), Fault> {
+        for command in &unit.commands {
+            match command {
+                Command::ExplicitSynchronisation => {
+                    let ids = std::mem::take(&mut self.decoding.late[1]);
+                    self.gate(ids);
+                }
+                Command::Flush { wait } => self.flush(*wait),
+                Command::MicroJoint {
+                    entry_mm_min,
+                    feed_mm_min,
+                    vector_limit_off,
+                } => {
+                    self.window.next = Some(JointFeed {
+                        entry_mm_min: *entry_mm_min,
+                        feed_mm_min: *feed_mm_min,
+                        vector_limit_off: *vector_limit_off,
+                    });
+                }
+                Command::VectorLimit {
+                    velocity_mm_min,
+                    acceleration_mm_s2,
+                    deceleration_mm_s2,
+                } => {
+                    let or_none = |value: &Option<f64>| value.unwrap_or(f64::INFINITY);
+                    self.decoding.limit = Some(VectorLimit {
+                        velocity_mm_min: or_none(velocity_mm_min),
+                        acceleration_mm_s2: or_none(acceleration_mm_s2).min(or_none(deceleration_mm_s2)),
+                    });
+                }
+                Command::EdgeBanding(on) => self.decoding.edge = on.then(Edge::default),
+                Command::RadiusCompensation(on) => self.decoding.radius_compensation = *on,
+                Command::Independent(independent) => {
+                    self.window.deed(Deed::Independent(Box::new(independent.clone())));
+                }
+                Command::Spindle(order) => {
+                    let called = self.in_force.settings.spindle_called(&order.spindle);
+                    if called.is_some_and(|(_, spindle)| spindle.plc_control) && order.position_deg.is_some()
+                    {
+                        let message = format!("a position is not available for {}", order.spindle);
+                        return Err(numbered(&unit.place, 21202, message));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Nothing is output ahead across this place; with `wait` decoding holds until the channel is empty.
+    pub(super) fn flush(&mut self, wait: bool) {
+        self.window.bar();
+        self.window.release(&mut self.track);
+        self.leads.bar(self.window.way());
+        self.decoding.holds |= wait;
+    }
+
+    /// The path stands here until functions are done.
+    fn gate(&mut self, ids: Vec<OrderId>) {
+        if !ids.is_empty() {
+            self.window.deed(Deed::Gate(ids.into()));
+        }
+    }
+
+    fn sort(&mut self, ids: &[OrderId], unit: &Unit) -> Result<Sorted, Fault> {
+        let mut sorted = Sorted::default();
+        for id in ids.iter().copied() {
+            let Some(order) = self.orders.get(id) else {
+                continue;
+            };
+            let (is_output, kind) = (order.range.is_some(), order.synch.kind);
+            let joint = kind.takes_micro_joint() && order.lead != Lead::None;
+            if order.spindle.is_some() {
+                sorted.commanded.push(id);
+            }
+            match kind {
+                SynchType::NoSynch => continue,
+                SynchType::MnsSns if joint => sorted.joints_behind.push(id),
+                _ if joint => sorted.joints.push(id),
+                SynchType::MepMos | SynchType::MetMos => sorted.ahead.push(id),
+                SynchType::MepSvs | SynchType::MetSvs => {
+                    sorted.ahead.push(id);
+                    sorted.gate.push(id);
+                }
+                SynchType::MneSns => {
+                    let motion = unit.motion.is_some() && self.decoding.edge.is_some();
+                    if !motion {
+                        let message = format!("{} without a motion between G108 and G107", order.label());
+                        return Err(named(&unit.place, "edge-banding", message));
+                    }
+                    sorted.measured = Some(id);
+                }
+                SynchType::MnsSns => {
+                    if is_output {
+                        sorted.behind.push(id);
+                    }
+                    sorted.gate_behind.push(id);
+                }
+                _ if is_output => sorted.before.push(id),
+                _ => {}
+            }
+            match kind {
+                _ if joint => {}
+                SynchType::MvsSvs => sorted.gate.push(id),
+                SynchType::MvsSns => sorted.gate_behind.push(id),
+                SynchType::MvsSlm => self.decoding.late[0].push(id),
+                SynchType::MvsSlp => self.decoding.late[1].push(id),
+                _ => {}
+            }
+        }
+        Ok(sorted)
+    }
+
+    /// What is done before the motion.
+    fn before(&mut self, sorted: &Sorted, unit: &Unit) -> Result<(), Fault> {
+        for id in &sorted.commanded {
+            self.window.deed(Deed::Command(*id));
+        }
+        for id in &sorted.joints {
+            self.joint(*id, unit)?;
+        }
+        for id in &sorted.before {
+            self.window.deed(Deed::Output(*id));
+        }
+        for id in &sorted.ahead {
+            let lead = self.orders.get(*id).map_or(Lead::None, |order| order.lead);
+            let point = self.window.way();
+            self.leads.push(*id, self.decoding.units, lead, point);
+        }
+        let mut gate = sorted.gate.clone();
+        if unit.motion.as_ref().is_some_and(|motion| !motion.rapid) {
+            gate.append(&mut self.decoding.late[0]);
+        }
+        self.gate(gate);
+        Ok(())
+    }
+
+    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit) {
+        let settings = &self.in_force.settings;
+        let leg = Leg {
+            curve: motion.curve,
+            start: motion.start,
+            end: motion.end,
+            driving: Driving {
+                rapid: motion.rapid,
+                feed_mm_min: motion.feed_mm_min,
+                limit: self.decoding.limit.unwrap_or(VectorLimit::NONE),
+            },
+            block: unit.place.block.clone(),
+            unit: self.decoding.units,
+            length: motion.curve.length(&motion.start, &motion.end),
+            from: self.window.way(),
+        };
+        if leg.length <= 0.0 || motion.curve == Curve::Hold {
+            return;
+        }
+        let blocks = settings.pre_output.blocks as usize;
+        self.leads.block(leg.from, blocks);
+        if let (Some(edge), Some(script)) = (&mut self.decoding.edge, self.plc.script())
+            && edge.probed.is_none()
+        {
+            let mut crossings = script.probes.iter().filter_map(|probe| crossing(&leg, *probe));
+            edge.probed = crossings.next().map(|along| leg.from + along);
+        }
+        let most = if settings.micro_joint.enabled {
+            settings.micro_joint.blocks as usize
+        } else {
+            0
+        };
+        self.window.leg(leg, most.max(1), &mut self.track);
+    }
+
+    /// What is done behind the motion.
+    fn behind(&mut self, sorted: &Sorted, unit: &Unit) -> Result<(), Fault> {
+        if unit.dwell_s > 0.0 {
+            self.window.deed(Deed::Dwell(unit.dwell_s));
+        }
+        for id in &sorted.joints_behind {
+            self.joint(*id, unit)?;
+        }
+        for id in &sorted.behind {
+            self.window.deed(Deed::Output(*id));
+        }
+        self.gate(sorted.gate_behind.clone());
+        Ok(())
+    }
+
+    /// A function that is output within what was decoded before.
+    fn joint(&mut self, id: OrderId, unit: &Unit) -> Result<(), Fault> {
+        let Some(order) = self.orders.get(id) else {
+            return Ok(());
+        };
+        let Lead::Way(lead) = order.lead else {
+            return Ok(());
+        };
+        let (waits, kind, label) = (order.waits, order.synch.kind, order.label());
+        let settings = self.in_force.settings.micro_joint;
+        let farthest = if settings.distance > 0 {
+            f64::from(settings.distance) / PER_MM
+        } else {
+            f64::INFINITY
+        };
+        let planned = self.window.plan(lead, farthest);
+        let tolerance = f64::from(settings.tolerance) / PER_MM;
+        if settings.tolerance > 0 && planned.deviation > tolerance {
+            let message = format!(
+                "{label} is output {:.4} mm behind its planned place, more than {tolerance} mm",
+                planned.deviation
+            );
+            return Err(numbered(&unit.place, 120_815, message));
+        }
+        if planned.held == Held::Window {
+            self.record.warnings.push(Warning {
+                message: format!(
+                    "{label} is output {:.4} mm behind its planned place: the look-ahead ends there",
+                    planned.deviation
+                ),
+                program: unit.place.program.to_string(),
+                block: unit.place.block.to_string(),
+            });
+        }
+        let gate = || Deed::Gate(Box::new([id]));
+        let mut deeds = vec![Deed::Output(id)];
+        let behind = match kind {
+            SynchType::MvsSns if waits => Some(gate()),
+            _ => {
+                if waits {
+                    deeds.push(gate());
+                }
+                None
+            }
+        };
+        self.window.insert(planned.real, deeds, behind);
+        self.window.bar();
+        self.window.release(&mut self.track);
+        Ok(())
+    }
+
+    /// A function at the measuring event of edge banding, behind its distance to go [004:69].
+    fn measured(&mut self, id: OrderId, unit: &Unit) {
+        let label = self
+            .orders
+            .get(id)
+            .map_or_else(String::new, super::order::Order::label);
+        let Some(edge) = &mut self.decoding.edge else {
+            return;
+        };
+        let Some(probed) = edge.probed.take() else {
+            let message = format!("no measuring event for {label}");
+            let fault = named(&unit.place, "probe-missing", message);
+            self.window.deed(Deed::Fault(Box::new(fault)));
+            return;
+        };
+        let place = probed + self.in_force.residual_mm;
+        let deeds = vec![Deed::Output(id), Deed::Gate(Box::new([id]))];
+        self.window.split_last(place, deeds);
+        self.window.bar();
+    }
+
+    /// The end of a program.
+    pub(super) fn end(&mut self) {
+        if self.in_force.settings.late_sync_ready {
+            let late = &mut self.decoding.late;
+            let mut ids = late[0].clone();
+            ids.append(&mut late[1].clone());
+            late.iter_mut().for_each(Vec::clear);
+            self.gate(ids);
+        }
+        self.window.deed(Deed::AllEnded);
+        self.window.deed(Deed::End);
+        self.flush(false);
+        self.decoding.ended = true;
+    }
+
+    /// A program begins. Late functions can be open here only behind an abort: with P-CHAN-00033 they are waited for [004:78].
+    pub(super) fn begin_program(&mut self) {
+        self.decoding.begin();
+        if self.in_force.settings.late_sync_ready {
+            let late = std::mem::take(&mut self.decoding.late);
+            self.gate(late.concat());
+        }
+    }
+}
+
+/// How far along an element an axis passes a place, mm.
+fn crossing(leg: &Leg, (axis, place): (Axis, f64)) -> Option<f64> {
+    /// Parts in which an arc is looked at: an axis turns back four times at most in a full circle.
+    const PARTS: u32 = 64;
+    /// Halvings: to far below a nanometre.
+    const HALVINGS: u32 = 60;
+    let value = |along: f64| leg.place(along)[axis] - place;
+    let parts = if leg.curve == Curve::Line { 1 } else { PARTS };
+    let step = leg.length / f64::from(parts);
+    for part in 0..parts {
+        let (mut a, mut b) = (step * f64::from(part), step * f64::from(part + 1));
+        let (at_a, at_b) = (value(a), value(b));
+        // The very start counts to the element before, but for the first one.
+        if at_a == 0.0 {
+            return Some(a);
+        }
+        if at_b == 0.0 {
+            return Some(b);
+        }
+        if at_a.is_nan() || at_b.is_nan() || (at_a < 0.0) == (at_b < 0.0) {
+            continue;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (a + b);
+            if (value(middle) < 0.0) == (at_a < 0.0) {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+        return Some(b);
+    }
+    None
+}
+
+/// The limits with which an element is driven within a path acceleration, mm/s².
+pub(super) fn within(limits: &Limits, acceleration_mm_s2: f64) -> Limits {
+    let greatest = acceleration_mm_s2 / 1000.0;
+    Limits {
+        acceleration_m_s2: limits.acceleration_m_s2.map(|own| own.min(greatest)),
+        ..limits.clone()
+    }
+}

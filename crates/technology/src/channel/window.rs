@@ -1,0 +1,230 @@
+//! Micro Joints: functions that are output at a place within a block, which is split for it [004:111-147].
+
+use std::collections::VecDeque;
+
+use super::track::{Deed, Leg, Track, VectorLimit};
+
+/// Places nearer together than this are one, mm: a thousandth of the unit of a lead.
+const SAME: f64 = 1e-7;
+/// Length of the piece at whose feed the path enters a joint (`E=`), mm.
+const ENTRY: f64 = 1e-5;
+
+/// Elements and deeds that are kept at most.
+const MOST: usize = 4000;
+
+/// What is decoded and may still be split.
+#[derive(Debug, Default)]
+pub(super) struct Window {
+    pieces: VecDeque<Piece>,
+    legs: usize,
+    /// Way along the path to its end, mm.
+    way: f64,
+    /// Nothing is output before this, mm.
+    barrier: f64,
+    /// How the next joint is driven.
+    pub(super) next: Option<JointFeed>,
+}
+
+#[derive(Debug)]
+enum Piece {
+    Leg(Leg),
+    Deed(Deed),
+}
+
+/// `#CHANNEL SET [M_PRE_OUTPUT ..]` [004:138].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointFeed {
+    pub(super) entry_mm_min: Option<f64>,
+    pub(super) feed_mm_min: Option<f64>,
+    pub(super) vector_limit_off: bool,
+}
+
+/// What holds a place back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Held {
+    /// Nothing: it is where it was planned.
+    No,
+    /// No more blocks, or no more way, are looked at.
+    Window,
+    /// The start, a flush, another joint or a function that is still waited for.
+    Barrier,
+}
+
+/// Where a function is output that comes before its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planned {
+    pub(super) real: f64,
+    pub(super) deviation: f64,
+    pub(super) held: Held,
+}
+
+impl Window {
+    /// What is known of the path begins here.
+    pub(super) fn begin(&mut self, way: f64) {
+        *self = Window {
+            way,
+            barrier: way,
+            ..Window::default()
+        };
+    }
+
+    /// Way along the path to its end, mm.
+    pub(super) fn way(&self) -> f64 {
+        self.way
+    }
+
+    pub(super) fn deed(&mut self, deed: Deed) {
+        self.pieces.push_back(Piece::Deed(deed));
+    }
+
+    /// An element comes; more than so many are not kept.
+    pub(super) fn leg(&mut self, mut leg: Leg, most: usize, track: &mut Track) {
+        leg.from = self.way;
+        self.way += leg.length;
+        self.pieces.push_back(Piece::Leg(leg));
+        self.legs += 1;
+        while self.legs > most {
+            self.release_one(track);
+        }
+    }
+
+    /// Nothing in it can be split, or it has no room for more.
+    pub(super) fn is_full(&self) -> bool {
+        self.legs == 0 || self.pieces.len() > MOST
+    }
+
+    /// Nothing is output before its end as it is now.
+    pub(super) fn bar(&mut self) {
+        self.barrier = self.way;
+    }
+
+    fn release_one(&mut self, track: &mut Track) {
+        match self.pieces.pop_front() {
+            Some(Piece::Leg(leg)) => {
+                self.legs -= 1;
+                track.push_leg(leg);
+            }
+            Some(Piece::Deed(deed)) => track.push_deed(deed),
+            None => self.legs = 0,
+        }
+    }
+
+    /// All that is kept goes on.
+    pub(super) fn release(&mut self, track: &mut Track) {
+        while !self.pieces.is_empty() {
+            self.release_one(track);
+        }
+    }
+
+    /// Where a function is output that belongs to the end of what is kept and has a lead, mm; `farthest` is how far back
+    /// it may be, mm.
+    pub(super) fn plan(&self, lead: f64, farthest: f64) -> Planned {
+        let first = self.pieces.iter().find_map(|piece| match piece {
+            Piece::Leg(leg) => Some(leg.from),
+            Piece::Deed(_) => None,
+        });
+        let window = first.unwrap_or(self.way).max(self.way - farthest);
+        let planned = self.way - lead;
+        let floor = window.max(self.barrier);
+        let real = planned.max(floor);
+        let held = if real <= planned + SAME {
+            Held::No
+        } else if window > self.barrier + SAME {
+            Held::Window
+        } else {
+            Held::Barrier
+        };
+        let real = if held == Held::No { planned } else { real };
+        Planned {
+            real,
+            deviation: real - planned,
+            held,
+        }
+    }
+
+    /// Puts what is to be done at a place, which is behind all that stands there already. Where an element is split for
+    /// it, `behind` is done at the end of its block, otherwise at once. The joint goes on to the end of what is kept.
+    pub(super) fn insert(&mut self, real: f64, deeds: Vec<Deed>, behind: Option<Deed>) {
+        let joint = self.next.take();
+        let at = self
+            .pieces
+            .iter()
+            .position(|piece| matches!(piece, Piece::Leg(leg) if leg.to() > real + SAME));
+        let Some(mut at) = at else {
+            self.pieces
+                .extend(deeds.into_iter().chain(behind).map(Piece::Deed));
+            return;
+        };
+        let mut behind = behind;
+        if let Some(Piece::Leg(leg)) = self.pieces.get(at)
+            && leg.from < real - SAME
+        {
+            let (unit, (first, second)) = (leg.unit, leg.split(real - leg.from));
+            self.pieces[at] = Piece::Leg(first);
+            at += 1;
+            self.pieces.insert(at, Piece::Leg(second));
+            self.legs += 1;
+            if let Some(gate) = behind.take() {
+                let of_block = |piece: &Piece| matches!(piece, Piece::Leg(leg) if leg.unit == unit);
+                let last = self.pieces.iter().rposition(of_block).unwrap_or(at);
+                self.pieces.insert(last + 1, Piece::Deed(gate));
+            }
+        }
+        for deed in deeds.into_iter().chain(behind) {
+            self.pieces.insert(at, Piece::Deed(deed));
+            at += 1;
+        }
+        if let Some(joint) = joint {
+            self.drive(at, joint);
+        }
+    }
+
+    /// Drives the elements from one on as a joint.
+    fn drive(&mut self, at: usize, joint: JointFeed) {
+        for piece in self.pieces.range_mut(at..) {
+            let Piece::Leg(leg) = piece else { continue };
+            if joint.vector_limit_off {
+                leg.driving.limit = VectorLimit::NONE;
+            }
+            if let Some(feed) = joint.feed_mm_min.filter(|_| !leg.driving.rapid) {
+                leg.driving.feed_mm_min = feed;
+            }
+        }
+        if let (Some(entry), Some(Piece::Leg(leg))) = (joint.entry_mm_min, self.pieces.get(at))
+            && leg.length > 2.0 * ENTRY
+        {
+            let (mut first, second) = leg.split(ENTRY);
+            first.driving.rapid = false;
+            first.driving.feed_mm_min = entry;
+            self.pieces[at] = Piece::Leg(first);
+            self.pieces.insert(at + 1, Piece::Leg(second));
+            self.legs += 1;
+        }
+    }
+
+    /// Splits the last element at a place, mm, with what is to be done there.
+    pub(super) fn split_last(&mut self, place: f64, deeds: Vec<Deed>) {
+        let last = |piece: &Piece| matches!(piece, Piece::Leg(_));
+        let Some(mut at) = self.pieces.iter().rposition(last) else {
+            return;
+        };
+        let Some(Piece::Leg(leg)) = self.pieces.get(at) else {
+            return;
+        };
+        if place >= leg.to() - SAME {
+            self.pieces.extend(deeds.into_iter().map(Piece::Deed));
+            return;
+        }
+        if place > leg.from + SAME {
+            let (first, second) = leg.split(place - leg.from);
+            self.pieces[at] = Piece::Leg(first);
+            at += 1;
+            self.pieces.insert(at, Piece::Leg(second));
+            self.legs += 1;
+        }
+        for deed in deeds {
+            self.pieces.insert(at, Piece::Deed(deed));
+            at += 1;
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Channel parameter lists: text with a parameter in each line [004:57] [004:195-234].
+//!
+//! Reading never fails: what cannot be read is an error with line and column, and does nothing. `table` is what a list
+//! may have, as data; `line` and `value` read a line, `field` puts the value in its place, `checks` finds what does
+//! not go together, `write` writes lists.
+
+mod checks;
+mod field;
+mod line;
+mod table;
+mod value;
+mod write;
+
+pub use table::{Definition, Kind, Owner, SynchRow};
+pub use write::template;
+
+use std::collections::BTreeMap;
+
+use crate::settings::ChannelSettings;
+use crate::synch::Synch;
+
+/// What a list says, and what is wrong with it.
+///
+/// ```
+/// use bahn_technology::{ChannelList, SynchType};
+/// let list = ChannelList::from_bytes(b"# glue\nm_synch[25] 0x2 MVS_SVS\nm_synch[1000] MOS\n");
+/// assert_eq!(list.settings().m.get(25).unwrap().synch.unwrap().kind, SynchType::MvsSvs);
+/// let error = &list.errors()[0];
+/// assert_eq!((error.line, error.column), (3, 9));
+/// assert_eq!(error.message, "index 1000 is not within 0 to 999");
+/// ```
+#[derive(Clone, Debug)]
+pub struct ChannelList {
+    settings: ChannelSettings,
+    lines: Vec<String>,
+    entries: Vec<Entry>,
+    errors: Vec<ListFault>,
+    warnings: Vec<ListFault>,
+}
+
+/// What is wrong or odd in a list, with its place there.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ListFault {
+    /// The line, from 1 on.
+    pub line: usize,
+    /// The column in characters, from 1 on.
+    pub column: usize,
+    /// How many characters are meant.
+    pub length: usize,
+    /// What it is.
+    pub message: String,
+}
+
+/// A parameter with its indices.
+#[derive(Clone, Debug)]
+struct Place {
+    definition: &'static Definition,
+    indices: Vec<u32>,
+    /// In the form of a start-up list, of a channel that is not the first.
+    is_of_other_channel: bool,
+}
+
+impl Place {
+    fn name(&self) -> String {
+        self.definition.name_with(&self.indices)
+    }
+}
+
+/// What stands behind a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Value {
+    /// A synchronisation type; `None` is `NOT_VALID`.
+    Synch(Option<Synch>),
+    Number(u32),
+    Flag(bool),
+    Name(String),
+    Functions(Vec<String>),
+}
+
+/// A line that could be read.
+#[derive(Clone, Debug)]
+struct Entry {
+    place: Place,
+    value: Value,
+    line: usize,
+    name: (usize, usize),
+    column: usize,
+    length: usize,
+}
+
+impl Entry {
+    fn at_name(&self, message: String) -> ListFault {
+        ListFault {
+            line: self.line,
+            column: self.name.0,
+            length: self.name.1,
+            message,
+        }
+    }
+
+    fn at_value(&self, message: String) -> ListFault {
+        ListFault {
+            line: self.line,
+            column: self.column,
+            length: self.length,
+            message,
+        }
+    }
+}
+
+impl ChannelList {
+    /// Reads a list in UTF-8 or Latin-1.
+    pub fn from_bytes(bytes: &[u8]) -> ChannelList {
+        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+        let text = match std::str::from_utf8(bytes) {
+            Ok(text) => text.to_owned(),
+            Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),
+        };
+        let mut list = ChannelList {
+            settings: ChannelSettings::default(),
+            lines: text.lines().map(str::to_owned).collect(),
+            entries: Vec::new(),
+            errors: Vec::new(),
+            warnings: Vec::new(),
+        };
+        for at in 0..list.lines.len() {
+            list.read_line(at);
+        }
+        list.take_entries();
+        checks::check(&mut list);
+        list.errors.sort();
+        list.warnings.sort();
+        list
+    }
+
+    /// What it sets; lines with errors set nothing.
+    pub fn settings(&self) -> &ChannelSettings {
+        &self.settings
+    }
+
+    /// What keeps it from being used, by line and column.
+    pub fn errors(&self) -> &[ListFault] {
+        &self.errors
+    }
+
+    /// What is odd in it, by line and column.
+    pub fn warnings(&self) -> &[ListFault] {
+        &self.warnings
+    }
+
+    /// How many lines say something.
+    pub fn entries(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// The text of a line, from 1 on.
+    pub fn line(&self, number: usize) -> &str {
+        let at = number.checked_sub(1).and_then(|at| self.lines.get(at));
+        at.map_or("", String::as_str)
+    }
+
+    fn read_line(&mut self, at: usize) {
+        let number = at + 1;
+        let Some(text) = self.lines.get(at) else { return };
+        let Some(line) = line::split(text) else { return };
+        let fault = |(column, length, message)| ListFault {
+            line: number,
+            column,
+            length,
+            message,
+        };
+        let read = line::place(&line).and_then(|place| {
+            let read = value::read(place.definition.kind, line.value, line.value_column)?;
+            Ok((place, read))
+        });
+        match read {
+            Ok((place, read)) => {
+                let entry = Entry {
+                    place,
+                    value: read.value,
+                    line: number,
+                    name: (line.name_column, line.name.chars().count()),
+                    column: line.value_column,
+                    length: read.length,
+                };
+                let odd = read.odd.into_iter().map(|message| entry.at_value(message));
+                self.warnings.extend(odd);
+                self.entries.push(entry);
+            }
+            Err(found) => self.errors.push(fault(found)),
+        }
+    }
+
+    /// Puts the values in their places; of two lines for the same the later one counts (inferred).
+    fn take_entries(&mut self) {
+        let mut lines: BTreeMap<String, usize> = BTreeMap::new();
+        for entry in &self.entries {
+            let name = entry.place.name();
+            if entry.place.is_of_other_channel {
+                let message = format!("{name} of another channel has no effect here");
+                self.warnings.push(entry.at_name(message));
+                continue;
+            }
+            let acts = field::set(&mut self.settings, &entry.place, &entry.value);
+            let why = entry.place.definition.without_effect;
+            if !why.is_empty() {
+                let message = format!("{name} has no effect here: {why}");
+                self.warnings.push(entry.at_name(message));
+            } else if !acts {
+                self.warnings.push(entry.at_name(without_effect(&entry.place)));
+            }
+            if let Some(first) = lines.insert(name.clone(), entry.line) {
+                let message = format!("{name} stands in line {first}, too: this line counts");
+                self.warnings.push(entry.at_name(message));
+            }
+        }
+    }
+}
+
+/// Why a line does nothing whose parameter does something otherwise.
+fn without_effect(place: &Place) -> String {
+    let name = place.name();
+    match place.definition.name.strip_prefix("spindel[i].") {
+        Some(field) if place.indices.is_empty() => {
+            format!("{field} without `spindel[i].` before it is of no spindle, and has no effect")
+        }
+        _ => format!("{name} has no effect here"),
+    }
+}

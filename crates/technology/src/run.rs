@@ -1,0 +1,68 @@
+//! The face of a run: what it is given.
+
+use bahn_din::{Command, Unit, Variables};
+use bahn_motion::Limits;
+use bahn_path::Position;
+
+use crate::plc::Script;
+use crate::report::{Fault, Report};
+use crate::settings::ChannelSettings;
+
+/// Programs in turn on one channel.
+///
+/// Time, PLC, spindles and functions that are still open go over from one to the next, which starts where it ended.
+pub struct Run<'a> {
+    /// The programs.
+    pub programs: &'a dyn Programs,
+    /// What the channel parameter list says.
+    pub settings: &'a ChannelSettings,
+    /// Dynamics; a cycle of the PLC is one of the path.
+    pub limits: &'a Limits,
+    /// Where the path starts.
+    pub start: Position,
+    /// Block of the first program that the run begins with (`N50`): what is before it is not output and not moved.
+    pub from: Option<&'a str>,
+    /// What the PLC does; without it a virtual one acknowledges each function its process time after it was output.
+    pub script: Option<&'a Script>,
+}
+
+/// Where a run has its programs from.
+pub trait Programs {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// Name of the file of a program.
+    fn name(&self, index: usize) -> String;
+
+    /// Begins a program where the path is.
+    ///
+    /// # Errors
+    /// When it cannot be begun.
+    fn open(&self, index: usize, start: &Position) -> Result<Box<dyn Blocks + '_>, Fault>;
+}
+
+/// A program that is decoded block by block.
+pub trait Blocks {
+    /// The next block; `None` behind the end.
+    ///
+    /// # Errors
+    /// What is wrong with the block.
+    fn next(&mut self, variables: &mut dyn Variables) -> Result<Option<Unit>, Fault>;
+
+    /// Goes on to a block without handing on those before it: where the path stands there, and the commands in force.
+    ///
+    /// # Errors
+    /// When there is no such block, or something is wrong with one before it.
+    fn skip_to(
+        &mut self,
+        block: &str,
+        variables: &mut dyn Variables,
+    ) -> Result<(Position, Vec<Command>), Fault>;
+}
+
+impl Run<'_> {
+    /// Runs them.
+    pub fn execute(self) -> Report {
+        crate::channel::execute(&self)
+    }
+}

@@ -1,0 +1,307 @@
+//! Synchronisation types: when a function is output, and where the path waits for its acknowledgement [004:54-57].
+//!
+//! A value is one type with bits OR-ed to it. `data/synch-types.tsv` has what each of both does, with its citation.
+
+use std::fmt;
+
+/// When a function is output and where the path waits for its acknowledgement [004:54-57] [004:204-207].
+///
+/// Read a name as M-before-block, synchronisation-after-block and so on: `MVS_SNS` is output before the motion of its
+/// block, and waited for behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SynchType {
+    /// Neither output nor waited for.
+    #[default]
+    NoSynch,
+    /// Output before the motion, not waited for; the PLC must fetch it.
+    Mos,
+    /// Output and waited for before the motion.
+    MvsSvs,
+    /// Output before the motion, waited for behind it.
+    MvsSns,
+    /// Output and waited for behind the motion, which stops there in any case.
+    MnsSns,
+    /// Output behind the measuring event and the distance to go of edge banding, waited for there.
+    MneSns,
+    /// Output before the motion, waited for at the transition to the next G01, G02 or G03.
+    MvsSlm,
+    /// Output before the motion, waited for at `#EXPL SYN`.
+    MvsSlp,
+    /// Output before the motion with the time that has passed since, not waited for.
+    MosTs,
+    /// Output a way ahead, not waited for.
+    MepMos,
+    /// Output a time ahead, not waited for.
+    MetMos,
+    /// Output a way ahead, waited for before the next block.
+    MepSvs,
+    /// Output a time ahead, waited for before the next block.
+    MetSvs,
+}
+
+/// Name and value of each type [004:204-207].
+const TYPES: [(SynchType, &str, u32); 13] = [
+    (SynchType::NoSynch, "NO_SYNCH", 0),
+    (SynchType::Mos, "MOS", 0x1),
+    (SynchType::MvsSvs, "MVS_SVS", 0x2),
+    (SynchType::MvsSns, "MVS_SNS", 0x4),
+    (SynchType::MnsSns, "MNS_SNS", 0x8),
+    (SynchType::MneSns, "MNE_SNS", 0x20),
+    (SynchType::MvsSlm, "MVS_SLM", 0x4000),
+    (SynchType::MvsSlp, "MVS_SLP", 0x8000),
+    (SynchType::MosTs, "MOS_TS", 0x0004_0000),
+    (SynchType::MepMos, "MEP_MOS", 0x0010_0000),
+    (SynchType::MetMos, "MET_MOS", 0x0020_0000),
+    (SynchType::MepSvs, "MEP_SVS", 0x0100_0000),
+    (SynchType::MetSvs, "MET_SVS", 0x0200_0000),
+];
+
+/// Name and value of each bit that is OR-ed to a type [004:51] [004:54] [004:207].
+const BITS: [(&str, u32); 4] = [
+    ("PLC_INFO", Synch::PLC_INFO),
+    ("BWD_SYNCH", Synch::BACKWARD),
+    ("FWD_SYNCH", Synch::FORWARD),
+    ("FAW_SYNCH", Synch::FLUSH_AND_WAIT),
+];
+
+/// The name of what is no function; the manual prints it with two letters exchanged, too [004:204].
+const NOT_VALID: [&str; 2] = ["NOT_VALID", "NOT_VAILD"];
+
+impl SynchType {
+    /// All types in ascending order of their values.
+    pub fn all() -> impl Iterator<Item = SynchType> {
+        TYPES.iter().map(|(kind, ..)| *kind)
+    }
+
+    /// The constant in lists, as `MVS_SVS`.
+    pub fn name(self) -> &'static str {
+        TYPES[self as usize].1
+    }
+
+    /// The value of the constant.
+    pub fn bits(self) -> u32 {
+        TYPES[self as usize].2
+    }
+
+    /// Whether a lead says how far ahead it is output, without Micro Joints.
+    pub fn is_pre_output(self) -> bool {
+        self.leads_by_time() || matches!(self, SynchType::MepMos | SynchType::MepSvs)
+    }
+
+    /// Whether its lead is a time, µs; the lead of all others is a way, 0.1 µm.
+    pub fn leads_by_time(self) -> bool {
+        matches!(self, SynchType::MetMos | SynchType::MetSvs)
+    }
+
+    /// Whether a lead makes it the function of a Micro Joint [004:114-120].
+    pub fn takes_micro_joint(self) -> bool {
+        matches!(
+            self,
+            SynchType::Mos | SynchType::MvsSvs | SynchType::MvsSns | SynchType::MnsSns | SynchType::MosTs
+        )
+    }
+
+    /// Whether it may remain open over blocks until something asks for it [004:72-78].
+    pub fn is_late(self) -> bool {
+        matches!(self, SynchType::MvsSlm | SynchType::MvsSlp)
+    }
+
+    /// Whether the path waits for its acknowledgement anywhere; what is not waited for must be fetched all the same.
+    pub fn is_waited_for(self) -> bool {
+        !matches!(
+            self,
+            SynchType::NoSynch | SynchType::Mos | SynchType::MosTs | SynchType::MepMos | SynchType::MetMos
+        )
+    }
+}
+
+impl fmt::Display for SynchType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A type and the bits with it.
+///
+/// ```
+/// use bahn_technology::{Synch, SynchType};
+/// let synch = Synch::from_bits(0x0002_0004)?;
+/// assert_eq!(synch.kind, SynchType::MvsSns);
+/// assert!(synch.plc_info && !synch.backward);
+/// assert_eq!(synch.to_string(), "PLC_INFO | MVS_SNS");
+/// assert!(Synch::from_bits(0x6).is_err());
+/// # Ok::<(), bahn_technology::SynchError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Synch {
+    /// The type.
+    pub kind: SynchType,
+    /// `PLC_INFO`: M functions of an NC spindle go to the PLC, too, and are waited for [004:159].
+    pub plc_info: bool,
+    /// `BWD_SYNCH`: waited for as `MVS_SVS` while the path is run backward [004:54].
+    pub backward: bool,
+    /// `FWD_SYNCH`: waited for as its type says in simulated forward motion [004:54].
+    pub forward: bool,
+    /// `FAW_SYNCH`: decoding holds at the end of its block until the channel has run empty [004:54].
+    pub flush_and_wait: bool,
+}
+
+/// Why a value is no synchronisation type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SynchError {
+    /// `NOT_VALID`, -1: not a function.
+    NotValid,
+    /// Bits that stand for nothing.
+    UnknownBits(u32),
+    /// More than one type; a function has one (inferred).
+    SeveralTypes(SynchType, SynchType),
+}
+
+impl fmt::Display for SynchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SynchError::NotValid => write!(f, "NOT_VALID is no synchronisation type"),
+            SynchError::UnknownBits(bits) => write!(f, "no synchronisation type has the bits 0x{bits:08X}"),
+            SynchError::SeveralTypes(a, b) => {
+                write!(f, "two synchronisation types, {a} and {b}: a function has one")
+            }
+        }
+    }
+}
+
+impl std::error::Error for SynchError {}
+
+impl From<SynchType> for Synch {
+    fn from(kind: SynchType) -> Synch {
+        Synch {
+            kind,
+            ..Synch::default()
+        }
+    }
+}
+
+impl Synch {
+    /// The bit `PLC_INFO`, found in `0x00020002` [004:51].
+    pub const PLC_INFO: u32 = 0x0002_0000;
+    /// The bit `BWD_SYNCH` [004:207].
+    pub const BACKWARD: u32 = 0x0040_0000;
+    /// The bit `FWD_SYNCH` [004:207].
+    pub const FORWARD: u32 = 0x0080_0000;
+    /// The bit `FAW_SYNCH` [004:207].
+    pub const FLUSH_AND_WAIT: u32 = 0x1000_0000;
+
+    /// The value of `NOT_VALID`, -1 as an unsigned number.
+    pub const NOT_VALID: u32 = u32::MAX;
+
+    /// What a number means, in a list as well as written to `V.G.M_FCT[n].SYNCH`.
+    ///
+    /// # Errors
+    /// When it is no type, or more than one.
+    pub fn from_bits(value: u32) -> Result<Synch, SynchError> {
+        if value == Synch::NOT_VALID {
+            return Err(SynchError::NotValid);
+        }
+        let known = |bits: u32, more: u32| bits | more;
+        let flags = BITS.iter().map(|(_, bit)| *bit).fold(0, known);
+        let all = TYPES.iter().map(|(.., bits)| *bits).fold(flags, known);
+        if value & !all != 0 {
+            return Err(SynchError::UnknownBits(value & !all));
+        }
+        let mut kinds = TYPES.iter().filter(|(.., bits)| value & bits != 0);
+        let kind = kinds.next().map_or(SynchType::NoSynch, |(kind, ..)| *kind);
+        if let Some((second, ..)) = kinds.next() {
+            return Err(SynchError::SeveralTypes(kind, *second));
+        }
+        Ok(Synch {
+            kind,
+            plc_info: value & Synch::PLC_INFO != 0,
+            backward: value & Synch::BACKWARD != 0,
+            forward: value & Synch::FORWARD != 0,
+            flush_and_wait: value & Synch::FLUSH_AND_WAIT != 0,
+        })
+    }
+
+    /// The number that means it.
+    pub fn bits(self) -> u32 {
+        let bit = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
+        self.kind.bits()
+            | bit(self.plc_info, Synch::PLC_INFO)
+            | bit(self.backward, Synch::BACKWARD)
+            | bit(self.forward, Synch::FORWARD)
+            | bit(self.flush_and_wait, Synch::FLUSH_AND_WAIT)
+    }
+
+    /// The value of a constant, a type or a bit, without regard to case.
+    pub fn constant(name: &str) -> Option<u32> {
+        if NOT_VALID.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+            return Some(Synch::NOT_VALID);
+        }
+        let types = TYPES.iter().map(|(_, name, bits)| (*name, *bits));
+        types
+            .chain(BITS)
+            .find(|(known, _)| known.eq_ignore_ascii_case(name))
+            .map(|(_, bits)| bits)
+    }
+}
+
+/// As lists have it: `PLC_INFO | MVS_SVS`.
+impl fmt::Display for Synch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let bits = self.bits();
+        let flag = |name: &str| BITS.iter().any(|(known, bit)| *known == name && bits & bit != 0);
+        if flag("PLC_INFO") {
+            write!(f, "PLC_INFO | ")?;
+        }
+        write!(f, "{}", self.kind)?;
+        for (name, _) in BITS.iter().filter(|(name, _)| *name != "PLC_INFO" && flag(name)) {
+            write!(f, " | {name}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn types_stand_in_the_order_of_the_table() {
+        for (at, (kind, name, bits)) in TYPES.iter().enumerate() {
+            assert_eq!(*kind as usize, at);
+            assert_eq!((kind.name(), kind.bits()), (*name, *bits));
+            assert!(bits.count_ones() <= 1, "{name}");
+        }
+    }
+
+    /// Every type with every set of bits goes through number and text.
+    #[test]
+    fn values_are_read_back() {
+        for kind in SynchType::all() {
+            for bits in 0..16 {
+                let synch = Synch {
+                    kind,
+                    plc_info: bits & 1 != 0,
+                    backward: bits & 2 != 0,
+                    forward: bits & 4 != 0,
+                    flush_and_wait: bits & 8 != 0,
+                };
+                assert_eq!(Synch::from_bits(synch.bits()), Ok(synch));
+                let text = synch.to_string();
+                let read = text.split('|').map(|name| Synch::constant(name.trim()));
+                let sum = read.map(Option::unwrap).fold(0, |sum, bits| sum | bits);
+                assert_eq!(sum, synch.bits(), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn wrong_values_are_named() {
+        assert_eq!(Synch::from_bits(u32::MAX), Err(SynchError::NotValid));
+        assert_eq!(Synch::from_bits(0x12), Err(SynchError::UnknownBits(0x10)));
+        let two = SynchError::SeveralTypes(SynchType::MvsSvs, SynchType::MvsSns);
+        assert_eq!(Synch::from_bits(0x6), Err(two));
+        assert_eq!(Synch::constant("not_vaild"), Some(Synch::NOT_VALID));
+        assert_eq!(Synch::constant("MVS"), None);
+    }
+}

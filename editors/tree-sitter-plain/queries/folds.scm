@@ -1,0 +1,1 @@
+; Blocks fold by the language server, which knows where subprograms and cycles end.

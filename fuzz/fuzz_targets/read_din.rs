@@ -1,0 +1,67 @@
+//! Any bytes are a program in DIN 66025: reading it, marking its words and executing it never panics and comes to the
+//! same end each time.
+//!
+//! ```text
+//! cargo +nightly fuzz run read_din
+//! ```
+
+#![no_main]
+
+use std::sync::Arc;
+
+use bahn_din::{Decoder, Program, Shelf, Step, Variable, Variables, words};
+use bahn_fuzz as _;
+use bahn_path::Position;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    assert_eq!(all_of(bytes), all_of(bytes), "another end");
+});
+
+/// What a text comes to: faults, landmarks, and the first steps of its programs.
+fn all_of(bytes: &[u8]) -> (usize, usize, Vec<Step>) {
+    let program = Arc::new(Program::from_bytes("FUZZ.NC", bytes));
+    for line in 1..=program.line_count() {
+        let _ = words(program.line(line));
+    }
+    let shelf: Arc<dyn Shelf> = Arc::new(Itself(bytes.to_vec()));
+    let mut steps = Vec::new();
+    for main in program.mains().take(8) {
+        let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, Arc::clone(&shelf));
+        for _ in 0..500 {
+            let step = decoder.next(&mut Numbers);
+            let is_over = !matches!(step, Step::Unit(_));
+            steps.push(step);
+            if is_over {
+                break;
+            }
+        }
+    }
+    (program.faults().len(), program.landmarks().len(), steps)
+}
+
+/// Every file is the program itself.
+struct Itself(Vec<u8>);
+
+impl Shelf for Itself {
+    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
+        (name.len() < 4).then(|| (name.to_owned(), self.0.clone()))
+    }
+}
+
+/// A channel whose variables are their index.
+struct Numbers;
+
+impl Variables for Numbers {
+    fn read(&mut self, variable: &Variable) -> Result<f64, String> {
+        Ok(f64::from(variable.index.unwrap_or(1)))
+    }
+
+    fn write(&mut self, _variable: &Variable, value: f64) -> Result<(), String> {
+        if value < -1e6 { Err("too small".into()) } else { Ok(()) }
+    }
+
+    fn exists(&self, m: bool, number: u16) -> bool {
+        m == (number % 2 == 0)
+    }
+}
