@@ -60,13 +60,13 @@ fn a_program_is_written_with_numbers_and_is_on_the_medium() {
     // By keys: G and letters of the alpha keyboard, axis keys, digits.
     trainee.press("G 0 0 G 4 0 X").number("-12.5").press("F");
     assert_eq!(trainee.screen().dialogue.prompt, "FEED RATE F = ?");
-    assert_eq!(current(&mut trainee), "     G00 G40 X-12.5 F");
+    assert_eq!(current(&mut trainee), "       G00 G40 X-12.5 F");
     trainee.press("2 0 0 ENT").wait(0.1);
     assert_eq!(
         trainee.file("programs/7.I"),
         "%7 G71 *\nN10 G00 G40 X-12.5 F200 *\nN99999 %7 G71 *\n"
     );
-    assert_eq!(current(&mut trainee), "N10  G00 G40 X-12.5 F200 *");
+    assert_eq!(current(&mut trainee), "N10    G00 G40 X-12.5 F200 *");
     // A fault stays out of the program, and its word is highlighted.
     trainee.press("X 1 X 2 END");
     assert_eq!(trainee.messages(), ["AXIS DOUBLE PROGRAMMED"]);
@@ -103,14 +103,14 @@ fn it_is_tested_and_run_from_the_number_of_a_block() {
     assert_eq!(trainee.screen().program.title, "7.I");
     // It starts at the cursor, which goes to the number.
     trainee.press("GOTO 5 0 ENT");
-    assert_eq!(current(&mut trainee), "N50  G01 X+60 F2000 *");
+    assert_eq!(current(&mut trainee), "N50    G01 X+60 F2000 *");
     trainee.press("GOTO 5 1 ENT");
     assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
     trainee.press("CE END GOTO 0 ENT NC_START");
     trainee.until(5.0, |screen| screen.status.star == Star::Steady);
     // It waits at G38, the seventh block.
     trainee.until(60.0, |screen| screen.status.star == Star::Blinking);
-    assert_eq!(current(&mut trainee), "N60  G38 *");
+    assert_eq!(current(&mut trainee), "N60    G38 *");
     let why = format!("{:?}", trainee.screen().why);
     assert!(why.contains("block 60"), "{why}");
     // The program that runs is edited by nobody.
@@ -120,7 +120,7 @@ fn it_is_tested_and_run_from_the_number_of_a_block() {
     trainee.until(60.0, |screen| screen.status.star == Star::Off);
     trainee.wait(0.5);
     let at: f64 = trainee.position('Y').parse().unwrap();
-    assert!((at - 40.0).abs() < 0.002, "{at}");
+    assert!((at - 40.0).abs() < 0.01, "{at}");
 }
 
 /// A message names the block by its number, and RESTORE POS. AT N goes there.

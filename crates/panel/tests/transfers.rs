@@ -75,7 +75,7 @@ fn every_line_of_the_menu_orders_what_it_says() {
     news(&mut trainee, "sent 7.I");
     news(&mut trainee, "ended complete");
     assert_eq!(lines(&mut trainee), ["7.I  READ OUT", "COMPLETE"]);
-    trainee.press("END DOWN DOWN ENT");
+    trainee.press("END DOWN ENT");
     let all = deeds(&orders);
     let TransferDeed::Write(names) = &all[0] else {
         panic!("{all:?}");
@@ -92,7 +92,7 @@ fn the_interface_is_the_one_that_mod_says() {
     trainee.press("ENT");
     trainee.down_to("RS-422 INTERFACE");
     trainee.press("RIGHT");
-    trainee.down_to("FILE TRANSFER");
+    trainee.down_to("ASSIGNMENT: FILES");
     trainee.press("RIGHT END END EXT ENT");
     let order = orders.try_recv().unwrap();
     assert_eq!((order.port, order.mode, order.baud), (1, "fe2", 9600));

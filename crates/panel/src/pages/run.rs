@@ -211,7 +211,7 @@ fn without_number(program: &Program, block: u32) -> String {
 pub(crate) fn listing(name: &str, program: &Program, current: u32, lines: usize) -> Window {
     let cursor = (current as usize, program.block_count() as usize);
     let line = |block: usize| Line {
-        text: numbered(&program.shown_number(block as u32)) + &without_number(program, block as u32),
+        text: numbered(&program.shown_number(block as u32), program) + &without_number(program, block as u32),
         current: block == current as usize,
         ..Line::default()
     };
