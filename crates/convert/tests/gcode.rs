@@ -162,7 +162,10 @@ fn what_cannot_be_said_stops_the_program_or_ends_it() {
         ("L X+0 R0 F500\nFN14: ERROR = 3\nL X+1", "ERROR 3"),
     ] {
         let (text, refused) = lines(blocks);
-        assert!(refused.len() == 1 && refused[0].contains(why), "{blocks}: {refused:?} {text:?}");
+        assert!(
+            refused.len() == 1 && refused[0].contains(why),
+            "{blocks}: {refused:?} {text:?}"
+        );
         assert!(text.ends_with(&["M0".to_owned(), "M2".to_owned()]), "{text:?}");
     }
 }

@@ -3,8 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use bahn_path::{Axis, AxisSet};
+
 use crate::block;
 use crate::line::{self, Glyph, LineFault, Macros};
+use crate::words::{SpanKind, words};
 
 /// A file that was read.
 #[derive(Clone, Debug)]
@@ -111,6 +114,18 @@ impl Program {
     /// Its name.
     pub fn name(&self) -> &Arc<str> {
         &self.name
+    }
+
+    /// The axes that its blocks name.
+    pub fn axes(&self) -> AxisSet {
+        let lines = (1..=self.line_count()).map(|number| self.line(number));
+        lines.fold(AxisSet::EMPTY, |axes, line| {
+            let words = words(line).into_iter();
+            let addresses = words.filter(|word| (word.kind, word.length) == (SpanKind::Address, 1));
+            let letters = addresses.filter_map(|word| line.chars().nth(word.column as usize - 1));
+            let letters = letters.filter_map(|letter| u8::try_from(letter).ok());
+            letters.filter_map(Axis::from_letter).fold(axes, AxisSet::with)
+        })
     }
 
     /// Number of its lines.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bahn_din::{BlockFault, Command, Decoder, Place, Program, Section, Shelf, Step, Unit, Variables};
-use bahn_path::Position;
+use bahn_path::{AxisSet, Position};
 
 use crate::report::Fault;
 use crate::run::{Blocks, Programs};
@@ -37,6 +37,12 @@ impl NcPrograms {
             }
         }
         Ok(NcPrograms { list, shelf })
+    }
+
+    /// The axes that their files name.
+    pub fn axes(&self) -> AxisSet {
+        let files = self.list.iter().map(|(file, _)| file.axes());
+        files.fold(AxisSet::EMPTY, |all, axes| axes.iter().fold(all, AxisSet::with))
     }
 }
 

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use bahn_motion::Limits;
 use bahn_parameters::ControlModel;
 use bahn_path::Position;
-use bahn_technology::{ChannelList, Coordinates, Fault, Report, Run, Script};
+use bahn_technology::{ChannelList, Coordinates, Fault, NcPrograms, Report, Run, Script};
 
 use crate::options::Format;
 use crate::{Outcome, UsageError, channel, console, diagnostics, files, scope, settings};
@@ -32,7 +32,7 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
     let programs = programs::read(&options.programs)?;
     let script = options.plc.as_deref().map(script).transpose()?;
     let limits = dynamics::limits(options.parameters.as_deref())?;
-    let start = settings::position("--start", &options.start, ControlModel::default())?;
+    let start = start(options, &programs)?;
     let list = ChannelList::from_bytes(&files::read_table(&options.channel)?);
     if options.format == Format::Text {
         let faults = channel::faults(&list, &options.channel);
@@ -63,6 +63,15 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
     } else {
         Outcome::ProgramError
     })
+}
+
+/// Where the path starts: the axes that the programs name are at 0 but for what is said otherwise.
+fn start(options: &TechnologyOptions, programs: &NcPrograms) -> Result<Position, UsageError> {
+    let mut start = settings::position("--start", &options.start, ControlModel::default())?;
+    for axis in programs.axes().iter() {
+        start[axis] = start.get(axis).unwrap_or(0.0);
+    }
+    Ok(start)
 }
 
 /// All files that are read.
