@@ -168,6 +168,9 @@ impl<'a> Channel<'a> {
     /// Now, and where the path is.
     fn now(&self) -> Moment {
         let mut position = self.path.position();
+        for axis in self.ended_at.known().iter() {
+            position[axis] = self.ended_at[axis];
+        }
         for (independent, axis) in &self.independent {
             position[independent.axis] = axis.position();
         }
