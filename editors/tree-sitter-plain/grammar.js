@@ -91,7 +91,7 @@ module.exports = grammar({
       word('IF'), word('EQU'), word('NE'), word('GT'), word('LT'), word('DIV'), word('SQRT'), word('SIN'), word('COS'),
       word('LEN'), word('ANG'), word('ERROR'), word('PRINT'), word('PLC'), word('LABEL'),
     ),
-    text: () => /[^ \t\r\n\f;~0-9+\-*\/=()^:#.][^ \t\r\n\f;~0-9+\-*\/=()^:#.]*/,
+    text: () => /[^ \t\r\n\f;~0-9+\-*\/=()^:#.][^ \t\r\n\f;~0-9+\-*\/=()^#]*/,
     name: () => /[^ \t\r\n\f;~][^\n;~]*/,
   },
 })

@@ -17,6 +17,8 @@ const EXCEPTIONS: &[(&str, i32)] = &[
     ("panel --terminal", 2),
     // No such port is there.
     ("serial:/dev/ttyUSB0", 1),
+    // There is no editor here.
+    ("bahn lsp", 2),
     // There are differences.
     ("mp diff mill.mp", 1),
 ];

@@ -110,6 +110,8 @@ fn a_list_of_machine_parameters_may_hold_one_line() {
 fn a_plc_that_is_not_there_takes_the_process_time() {
     let folder = folder(BLOCKS, "m_synch[25] 2\nm_prozess_zeit[25] 700000 # 0.7 s\n", "");
     let (_, report) = run(&folder, "");
+    // Axes that are programmed first stand at 0.
+    assert_eq!(events(&report, "go").first().map(|go| go.2), Some(0.0));
     let taken = time_of(&report, "acknowledge", "M25") - time_of(&report, "output", "M25");
     assert!((taken - 0.7).abs() <= 0.003, "{taken}");
 }

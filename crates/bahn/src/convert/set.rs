@@ -55,7 +55,8 @@ pub(super) fn jobs(options: &ConvertOptions) -> Result<Vec<Job>, UsageError> {
             input.display()
         )));
     }
-    if options.with_calls {
+    // The path has what called programs do.
+    if options.with_calls && options.to != Target::Gcode {
         add_called(options, &mut jobs)?;
     }
     mark_called(&mut jobs);
@@ -105,7 +106,7 @@ fn add(
 /// Where a program goes.
 fn target(options: &ConvertOptions, source: &Path, below: &Path) -> Option<PathBuf> {
     let ending = options.to.ending();
-    let many = options.input.is_dir() || options.with_calls;
+    let many = options.input.is_dir() || (options.with_calls && options.to != Target::Gcode);
     match &options.output {
         Some(path) if path.as_os_str() == "-" => None,
         Some(folder) if many || folder.is_dir() => Some(folder.join(below).with_extension(ending)),

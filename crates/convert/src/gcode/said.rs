@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bahn_interpreter::Interpreter;
+use bahn_interpreter::{Interpreter, WarningKind};
 use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 use bahn_path::{
@@ -73,6 +73,8 @@ pub(super) struct Sayer {
     message: Option<String>,
     completed: bool,
     over: bool,
+    /// The block that leaves the workpiece for a place that nobody knows.
+    leaves: Option<BlockRef>,
     stop: Arc<AtomicBool>,
 }
 
@@ -126,6 +128,7 @@ impl Sayer {
             message: None,
             completed: false,
             over: false,
+            leaves: None,
             stop: stop.clone(),
         }
     }
@@ -154,7 +157,11 @@ impl Sayer {
                 break;
             }
             let event = next_event(&mut self.run, self.model);
-            self.run.take_warnings();
+            for warning in self.run.take_warnings() {
+                if warning.kind == WarningKind::MachineZeroUnknown {
+                    self.leaves.get_or_insert(warning.block);
+                }
+            }
             match event {
                 Event::Element(element) => self.element(&element),
                 // It is a function of its element, too.
@@ -202,12 +209,14 @@ impl Sayer {
     fn ends(&mut self, block: BlockRef, what: &str) {
         self.refuse(block, what);
         self.say(block, Said::End);
+        self.completed = true;
         self.over = true;
     }
 
     fn element(&mut self, element: &PathElement) {
         let block = element.block;
-        if let Some(what) = unsayable(element) {
+        let leaves = self.leaves == Some(block) && element.curve == Curve::Line;
+        if let Some(what) = unsayable(element).or(leaves.then_some(UNKNOWN_PLACE)) {
             return self.ends(block, what);
         }
         let overrides = matches!(element.override_law, OverrideLaw::Free | OverrideLaw::Spindle(_));
@@ -375,6 +384,9 @@ impl Sayer {
     }
 }
 
+/// Why a movement to a place of the machine has no line.
+const UNKNOWN_PLACE: &str = "nobody has said where the machine's datum lies: M91 and M92 need --datum";
+
 /// Why a movement has no line.
 fn unsayable(element: &PathElement) -> Option<&'static str> {
     if element.placement.is_some() {
@@ -382,7 +394,7 @@ fn unsayable(element: &PathElement) -> Option<&'static str> {
     }
     let lost = |axis: Axis| element.end[axis].is_nan() && element.start[axis].is_finite();
     if Axis::ALL.into_iter().any(lost) {
-        return Some("nobody has said where the machine's datum lies: M91 and M92 need --datum");
+        return Some(UNKNOWN_PLACE);
     }
     match &element.curve {
         Curve::Corner(_) => Some("an arc in a corner (M112) may lie in no main plane"),
@@ -420,10 +432,7 @@ pub(super) fn deviation_mm(one: &Said, other: &Said) -> Result<f64, String> {
         ) => {
             let [one, other] = [one, other].map(as_element);
             if let (Some(mut one), Some(other)) = (one, other) {
-                // A cycle counts from 0 where an axis has no position; a line of the text does not know.
-                for axis in Axis::ALL.into_iter().filter(|axis| other.start[*axis].is_nan()) {
-                    one.start[axis] = f64::NAN;
-                }
+                forget_unwritten((&mut one.start, &mut one.end), (&other.start, &other.end));
                 if let Some(what) = proof::feeds_differ(one.feed, other.feed) {
                     return Err(what);
                 }
@@ -445,7 +454,9 @@ pub(super) fn deviation_mm(one: &Said, other: &Said) -> Result<f64, String> {
                 returns: other_returns,
             },
         ) if returns == other_returns => {
-            let ways = proof::between(start, other_start)?.max(proof::between(end, other_end)?);
+            let (mut start, mut end) = (*start, *end);
+            forget_unwritten((&mut start, &mut end), (other_start, other_end));
+            let ways = proof::between(&start, other_start)?.max(proof::between(&end, other_end)?);
             Ok(ways.max((pitch_mm - other_pitch).abs()))
         }
         (Said::Dwell(a), Said::Dwell(b)) if (a - b).abs() < 1e-5 => Ok(0.0),
@@ -453,6 +464,17 @@ pub(super) fn deviation_mm(one: &Said, other: &Said) -> Result<f64, String> {
         (Said::Orient(a), Said::Orient(b)) if (a - b).abs() < 1e-5 => Ok(0.0),
         (one, other) if one == other => Ok(0.0),
         (one, other) => Err(format!("{one:?} in the source, {other:?} in the target")),
+    }
+}
+
+/// A cycle counts from 0 where an axis has no position. A line of the text does not know that; an axis that stands there is
+/// not in it.
+fn forget_unwritten(one: (&mut Position, &mut Position), other: (&Position, &Position)) {
+    for axis in Axis::ALL.into_iter().filter(|axis| other.0[*axis].is_nan()) {
+        if other.1[axis].is_nan() && one.0[axis] == one.1[axis] {
+            one.1[axis] = f64::NAN;
+        }
+        one.0[axis] = f64::NAN;
     }
 }
 

@@ -77,22 +77,22 @@ impl Writer {
         match said {
             Said::Move {
                 curve,
-                start: _,
+                start,
                 end,
                 feed,
-            } => text = self.movement(curve, end, *feed),
+            } => text = self.movement(curve, [start, end], *feed),
             Said::Thread {
+                start,
                 end,
                 pitch_mm,
                 returns,
-                ..
             } => {
                 self.motion = "";
                 text.push_str(if *returns { "G33.1" } else { "G33" });
-                self.axes(&mut text, end, None);
+                self.axes(&mut text, [start, end], None);
                 push_word(&mut text, "K", pitch_mm / self.unit_mm);
                 if !*returns {
-                    self.goes_to(end);
+                    self.goes_to([start, end]);
                 }
             }
             Said::Dwell(seconds) => {
@@ -142,7 +142,8 @@ impl Writer {
         self.line(&text);
     }
 
-    fn movement(&mut self, curve: &Curve, end: &Position, feed: FeedRate) -> String {
+    fn movement(&mut self, curve: &Curve, way: [&Position; 2], feed: FeedRate) -> String {
+        let end = way[1];
         let mut text = String::new();
         let arc = match curve {
             Curve::Arc(arc) => Some(arc),
@@ -166,7 +167,7 @@ impl Writer {
             self.motion = motion;
             text.push_str(motion);
         }
-        self.axes(&mut text, end, arc);
+        self.axes(&mut text, way, arc);
         if let Some(arc) = arc {
             self.centre(&mut text, arc);
         }
@@ -184,14 +185,14 @@ impl Writer {
                 self.feed = Some(word);
             }
         }
-        self.goes_to(end);
+        self.goes_to(way);
         text.trim_start().to_owned()
     }
 
     /// The words of axes that move, and those of the plane of an arc.
-    fn axes(&self, text: &mut String, end: &Position, arc: Option<&Arc>) {
-        for axis in Axis::ALL {
-            let Some(to) = end.get(axis) else { continue };
+    fn axes(&self, text: &mut String, way: [&Position; 2], arc: Option<&Arc>) {
+        for axis in self.written(way) {
+            let to = way[1][axis];
             let in_plane = arc.is_some_and(|arc| arc.plane.contains(axis));
             if in_plane || self.at[axis] != to {
                 let unit = if axis.is_rotary() { 1.0 } else { self.unit_mm };
@@ -218,11 +219,16 @@ impl Writer {
         }
     }
 
-    fn goes_to(&mut self, end: &Position) {
-        for axis in Axis::ALL {
-            if end[axis].is_finite() {
-                self.at[axis] = end[axis];
-            }
+    /// The axes whose position the text knows behind a way: not one that stands where no line has brought it.
+    fn written(&self, [start, end]: [&Position; 2]) -> Vec<Axis> {
+        let stands = |axis: Axis| self.at[axis].is_nan() && start[axis] == end[axis];
+        let known = |axis: &Axis| end[*axis].is_finite() && !stands(*axis);
+        Axis::ALL.into_iter().filter(known).collect()
+    }
+
+    fn goes_to(&mut self, way: [&Position; 2]) {
+        for axis in self.written(way) {
+            self.at[axis] = way[1][axis];
         }
     }
 }

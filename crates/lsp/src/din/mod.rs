@@ -90,11 +90,12 @@ impl DinProgram {
         let subroutines = self.named(&[LandmarkKind::Subroutine]);
         let mut found = Vec::new();
         for line in &self.lines {
-            let text = self.text.get(line.clone());
             let words = self.words_of(line.clone());
-            for (place, (range, kind)) in words.iter().enumerate() {
+            for (range, kind) in &words {
                 let word = self.text.get(range.clone());
-                let behind = self.text.get(range.end..line.end).trim_start();
+                let rest = self.text.get(range.end..line.end);
+                let behind = rest.trim_start();
+                let blanks = rest.len() - behind.len();
                 match kind {
                     SpanKind::Variable => found.push(Mention {
                         range: range.clone(),
@@ -111,30 +112,13 @@ impl DinProgram {
                             .strip_prefix(['L', 'l'])
                             .filter(|rest| rest.starts_with([' ', '\t']));
                         if let Some(name) = subroutine.map(str::trim) {
-                            let start = range.start + word.len() - word.trim_end().len();
-                            let start = start + word.find(name).unwrap_or_default();
+                            let start = range.start + word.rfind(name).unwrap_or_default();
                             found.push(subroutine_at(start, name, Role::Sets));
                         }
                     }
                     SpanKind::Address if matches!(word, "L" | "l" | "LL" | "ll") => {
-                        let end = words
-                            .get(place + 1)
-                            .map_or(line.end, |(next, _)| next.start.max(range.end));
-                        let end = if behind.is_empty() {
-                            line.end
-                        } else {
-                            end.max(range.end)
-                        };
-                        let own = self.text.get(range.end..end);
-                        let name = if own.trim().is_empty() {
-                            first_word(behind)
-                        } else {
-                            own.trim()
-                        };
-                        let offset = text
-                            .get(range.end - line.start..)
-                            .and_then(|rest| rest.find(name));
-                        let start = range.end + offset.unwrap_or_default();
+                        let name = first_word(behind);
+                        let start = range.end + blanks;
                         let is_here = subroutines.iter().any(|landmark| landmark.name == name);
                         if is_here {
                             found.push(subroutine_at(start, name, Role::Uses));

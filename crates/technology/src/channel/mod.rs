@@ -168,6 +168,11 @@ impl<'a> Channel<'a> {
     /// Now, and where the path is.
     fn now(&self) -> Moment {
         let mut position = self.path.position();
+        // Before it moves, the path does not know where axes stand that are programmed first.
+        let place = self.track.position(self.reached);
+        for axis in place.known().iter() {
+            position[axis] = position.get(axis).unwrap_or(place[axis]);
+        }
         for axis in self.ended_at.known().iter() {
             position[axis] = self.ended_at[axis];
         }

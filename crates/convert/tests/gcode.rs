@@ -1,0 +1,168 @@
+//! What a program for LinuxCNC says, line by line.
+
+mod support;
+
+use bahn_convert::Language;
+use bahn_parameters::ControlModel;
+use bahn_path::Position;
+use support::*;
+
+/// The lines of the text without comments, behind its first four, and the reasons of what is refused.
+fn lines(blocks: &str) -> (Vec<String>, Vec<String>) {
+    let source = program(
+        &format!("BEGIN PGM A MM\n{blocks}\nEND PGM A MM\n"),
+        Language::Plain,
+    );
+    let mut settings = settings(ControlModel::Tnc415b);
+    // Nobody says where the workpiece lies.
+    settings.rules.machine_zero = Position::UNKNOWN;
+    let (made, proof) = gcode(&source, &settings, &root());
+    assert!(proof.holds(), "{proof:?}\n{}", made.text);
+    let bare = |line: &str| line.split(';').next().unwrap_or_default().trim().to_owned();
+    let lines = made.text.lines().skip(4).map(bare).collect();
+    let reasons = made.refused.into_iter().map(|listed| listed.reason);
+    (lines, reasons.collect())
+}
+
+#[track_caller]
+fn says(blocks: &str, expected: &[&str]) {
+    let (lines, refused) = lines(blocks);
+    assert_eq!(
+        (lines, refused),
+        (expected.iter().map(|line| line.to_string()).collect(), Vec::new())
+    );
+}
+
+#[test]
+fn tools_are_changed_where_m06_stands_or_at_their_call() {
+    says(
+        "TOOL CALL 1 Z S500\nL Z+20 R0 FMAX M6\nTOOL CALL 2 Z S600\nL Z+30 FMAX\nTOOL CALL S700",
+        &[
+            "T1", "S500", "G0 Z20", "M6", "G43", "T2", "M6", "G43", "S600", "Z30", "S700", "M2",
+        ],
+    );
+}
+
+#[test]
+fn taps_and_threads_follow_the_spindle() {
+    let tap = |pitch: f64| {
+        format!(
+            "TOOL CALL 1 Z S500\nL X+0 Y+0 Z+2 R0 FMAX\nCYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -2\n\
+             CYCL DEF 17.2 DEPTH -10\nCYCL DEF 17.3 PITCH {pitch:+}\nCYCL CALL\nL Z+20 FMAX"
+        )
+    };
+    let lines = |turn: &'static str| {
+        [
+            "T1",
+            "M6",
+            "G43",
+            "S500",
+            "G0 X0 Y0 Z2",
+            turn,
+            "G33.1 Z-10 K0.75",
+            "M5",
+            "G0 Z20",
+            "M2",
+        ]
+    };
+    says(&tap(0.75), &lines("M3"));
+    says(&tap(-0.75), &lines("M4"));
+    says(
+        "TOOL CALL 1 Z S500\nL Z+10 R0 FMAX\nCYCL DEF 18.0 THREAD CUTTING\nCYCL DEF 18.1 DEPTH -5\n\
+         CYCL DEF 18.2 PITCH +1\nCYCL CALL\nL Z+20 FMAX",
+        &[
+            "T1",
+            "M6",
+            "G43",
+            "S500",
+            "G0 Z10",
+            "M3",
+            "G33 Z5 K1",
+            "M5",
+            "G0 Z20",
+            "M2",
+        ],
+    );
+}
+
+#[test]
+fn arcs_lie_in_their_planes_and_helices_have_turns() {
+    says(
+        "TOOL CALL 1 Y S500\nL X+0 Y+0 Z+0 R0 FMAX\nCC X+10 Z+0\nC X+10 Z+10 DR+ F200\nCP IPA-360 DR-\n\
+         TOOL CALL 1 Z\nL X+0 Y+0 Z+0 FMAX\nCC X+5 Y+0\nCP IPA+1080 IZ-6 DR+ F300",
+        &[
+            "T1",
+            "M6",
+            "G43",
+            "S500",
+            "G0 X0 Y0 Z0",
+            // From (Z 0, X 0) about (Z 0, X 10): a quarter.
+            "G18 G3 X10 Z10 K0 I10 F200",
+            "G2 X10 Z10 K-10 I0",
+            "T1",
+            "M6",
+            "G43",
+            "S500",
+            "G0 X0 Z0",
+            "G17 G3 X0 Y0 Z-6 I5 J0 P3 F300",
+            "M2",
+        ],
+    );
+}
+
+/// M00 of the control stops spindle and coolant; STOP alone does not.
+#[test]
+fn stops_dwells_and_angles() {
+    says(
+        "L X+0 R0 F500 M13\nL X+1 M0\nSTOP\nCYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1.5\nL C+90 F360\n\
+         CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 45\nL X+2 M19",
+        &[
+            "M3",
+            "M8",
+            "G1 X0 F500",
+            "X1",
+            "M5",
+            "M9",
+            "M0",
+            "M0",
+            "G4 P1.5",
+            "C90 F360",
+            "X2",
+            "M19 R45",
+            "M2",
+        ],
+    );
+}
+
+#[test]
+fn inches_are_g20_with_feeds_in_inches() {
+    let source = program(
+        "BEGIN PGM A INCH\nL X+1 Y+0.5 R0 F10\nL C+90\nEND PGM A INCH\n",
+        Language::Plain,
+    );
+    let (made, proof) = gcode(&source, &settings(ControlModel::Tnc415b), &root());
+    assert!(proof.holds(), "{proof:?}");
+    assert!(made.text.contains("\nG20 "), "{}", made.text);
+    assert!(made.text.contains("X1 Y0.5 F"), "{}", made.text);
+}
+
+#[test]
+fn what_cannot_be_said_stops_the_program_or_ends_it() {
+    let (text, refused) = lines("L X+0 R0 F500\nL X+1 M17\nL X+2");
+    assert_eq!(refused, ["LinuxCNC has no M17: it belongs to the machine"]);
+    // The function comes at the begin of its block.
+    assert!(text.iter().any(|line| line.starts_with("(MSG,")) && text.contains(&"M0".to_owned()));
+    assert_eq!(text.last().map(String::as_str), Some("M2"));
+    for (blocks, why) in [
+        (
+            "TCH PROBE 0.0 REF. PLANE Q5 Z-\nTCH PROBE 0.1 X+5 Y+0 Z-5\nL X+2 F5",
+            "probe",
+        ),
+        ("L X+0 R0 F500\nL Z+0 FMAX M91\nL X+1", "M91"),
+        ("L X+0 R0 F500\nFN14: ERROR = 3\nL X+1", "ERROR 3"),
+    ] {
+        let (text, refused) = lines(blocks);
+        assert!(refused.len() == 1 && refused[0].contains(why), "{blocks}: {refused:?} {text:?}");
+        assert!(text.ends_with(&["M0".to_owned(), "M2".to_owned()]), "{text:?}");
+    }
+}

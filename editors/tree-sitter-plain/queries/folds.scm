@@ -1,1 +1,0 @@
-; Blocks fold by the language server, which knows where subprograms and cycles end.
