@@ -122,6 +122,25 @@ fn t19_additive_values() {
     assert_eq!(wrong.code, "additive-value");
 }
 
+/// An axis that moves on its own does so at its feed; the path goes on from there.
+#[test]
+fn an_axis_on_its_own() {
+    let program =
+        "%T\nN10 G01 X10 F6000\nN20 X[INDP G90 G01 FEED=3000 POS=60 M54=1]\nN30 M54\nN40 X70\nM30\n";
+    let report = Bench::new(program, "m_synch[54] MOS\n").run();
+    assert_eq!(delivered(&report), ["X:M54=1", "channel:M54"]);
+    let places: Vec<_> = report.outputs("M54").iter().map(|event| x(event)).collect();
+    at(places[0], 10.0);
+    at(places[1], 60.0);
+    at(report.path_end.0[Axis::X], 70.0);
+    let time = 2.0 * ramp_s(10.0, 100.0) + ramp_s(50.0, 50.0);
+    assert!(
+        (report.time_s - time).abs() <= 4.0 * T,
+        "{} {time}",
+        report.time_s
+    );
+}
+
 #[test]
 fn t20_the_range_by_default() {
     let list = "m_synch[25] MVS_SVS\nm_default_outp_ax_name[25] X\n";

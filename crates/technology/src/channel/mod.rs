@@ -173,6 +173,9 @@ impl<'a> Channel<'a> {
         for axis in place.known().iter() {
             position[axis] = position.get(axis).unwrap_or(place[axis]);
         }
+        for axis in self.ended_at.known().iter() {
+            position[axis] = self.ended_at[axis];
+        }
         for (independent, axis) in &self.independent {
             position[independent.axis] = axis.position();
         }

@@ -101,7 +101,13 @@ impl Channel<'_> {
             }
         }
         self.behind(&sorted, unit)?;
-        if flush_and_wait {
+        // An axis that moves on its own has ended with its block (inferred).
+        let moves_alone = |command: &Command| matches!(command, Command::Independent(_));
+        let alone = unit.commands.iter().any(moves_alone);
+        if alone {
+            self.window.deed(Deed::AllEnded);
+        }
+        if flush_and_wait || alone {
             self.flush(true);
         }
         if unit.ends {

@@ -62,7 +62,7 @@ pub(crate) fn execute(run: &Run<'_>) -> Report {
         error: channel.fault.take(),
         time_s: record::time(end_s),
         cycle_s: channel.cycle_s,
-        path_end: Coordinates(channel.position()),
+        path_end: Coordinates(channel.now().position),
         events: channel.record.events,
         waits: channel.record.waits,
         programs,
@@ -72,15 +72,6 @@ pub(crate) fn execute(run: &Run<'_>) -> Report {
 }
 
 impl Channel<'_> {
-    /// Where the axes stand: those that moved on their own where they went, too.
-    fn position(&self) -> Position {
-        let mut position = self.now().position;
-        for axis in self.ended_at.known().iter() {
-            position[axis] = self.ended_at[axis];
-        }
-        position
-    }
-
     /// Behind the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
     fn fetch_the_rest(&mut self) {
         self.plc.keep_fetches();
@@ -93,7 +84,7 @@ impl Channel<'_> {
     /// Runs a program of a run, from a block on.
     fn open(&mut self, run: &Run<'_>, index: usize, from: Option<&str>) -> Ended {
         self.in_force = InForce::new(self.settings);
-        let mut start = self.position();
+        let mut start = self.now().position;
         let mut blocks = match run.programs.open(index, &start) {
             Ok(blocks) => blocks,
             Err(fault) => {
@@ -214,6 +205,7 @@ impl Channel<'_> {
                     break;
                 }
                 self.decoding.holds = false;
+                self.take_over();
             }
             let last = self.track.last();
             let done = if self.cursor.0 == last { self.cursor.1 } else { 0 };
@@ -241,6 +233,16 @@ impl Channel<'_> {
             }
         }
         count > 0
+    }
+
+    /// The path goes on from where axes went on their own: all that is decoded is executed.
+    fn take_over(&mut self) {
+        if !self.ended_at.known().is_empty() {
+            let position = self.now().position;
+            self.path.set_position(position);
+            self.track.set_end(position);
+            self.ended_at = Position::UNKNOWN;
+        }
     }
 
     /// All that is decoded is executed.

@@ -268,6 +268,11 @@ impl Track {
         self.leg(number).map_or(self.end, |leg| leg.place(way - leg.from))
     }
 
+    /// It ends elsewhere, for axes moved on their own.
+    pub(crate) fn set_end(&mut self, position: Position) {
+        self.end = position;
+    }
+
     pub(crate) fn push_deed(&mut self, deed: Deed) {
         self.tail.push(deed);
     }
