@@ -26,7 +26,7 @@ const PLAIN: [&str; 11] = [
 /// Plain dynamics, with the lines of a list over them.
 pub(super) fn limits(list: Option<&Path>) -> Result<Limits, UsageError> {
     let bytes = list.map(files::read_table).transpose()?;
-    let named = bytes.as_deref().and_then(|bytes| ControlModel::named_in(bytes));
+    let named = bytes.as_deref().and_then(ControlModel::named_in);
     let model = named.unwrap_or_default();
     let mut parameters = ParameterList::reference(model);
     for assignment in PLAIN {
