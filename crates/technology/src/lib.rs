@@ -5,6 +5,50 @@
 //! - [`Run`]: programs in turn on one channel, with a [`Script`] of what the PLC does;
 //! - [`NcPrograms`]: the programs of such a run from `.nc` files;
 //! - [`Report`]: what came of it, as JSON: events, waits, the end of the path.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use bahn_din::{Program, Shelf};
+//! use bahn_motion::{Limits, SERVO_WINDOW_S};
+//! use bahn_path::{PerAxis, Position};
+//! use bahn_technology::{ChannelList, EventKind, NcPrograms, Run, Script};
+//!
+//! struct NoSubroutines;
+//! impl Shelf for NoSubroutines {
+//!     fn text(&self, _name: &str) -> Option<(String, Vec<u8>)> {
+//!         None
+//!     }
+//! }
+//!
+//! // M25 is output before the motion of its block, which waits for the PLC.
+//! let list = ChannelList::from_bytes(b"m_synch[25] MVS_SVS\n");
+//! let script: Script = "M25 ack 0.5\n".parse()?;
+//! let program = Program::from_bytes("glue.nc", b"N10 G01 F1000 X10\nN20 X20 M25\nM30\n");
+//! let report = Run {
+//!     programs: &NcPrograms::new(&[Arc::new(program)], Arc::new(NoSubroutines))?,
+//!     settings: list.settings(),
+//!     limits: &Limits {
+//!         max_feed_mm_min: PerAxis::splat(10_000.0),
+//!         acceleration_m_s2: PerAxis::splat(1.0),
+//!         radial_acceleration_m_s2: 1.0,
+//!         corner_angle_deg: 10.0,
+//!         servo_lag: true,
+//!         cycle_s: 0.003,
+//!         servo_window_s: SERVO_WINDOW_S,
+//!         spindle: Default::default(),
+//!         feed_override_percent: 100.0,
+//!         rapid_override_percent: 100.0,
+//!     },
+//!     start: Position::UNKNOWN,
+//!     from: None,
+//!     script: Some(&script),
+//! }
+//! .execute();
+//! let output = report.events.iter().find(|event| event.kind == EventKind::Output);
+//! assert_eq!(output.unwrap().position.0[bahn_path::Axis::X], 10.0);
+//! assert_eq!(report.waits[0].function, "M25");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod channel;
 pub mod list;

@@ -27,7 +27,7 @@ const PLAIN: [&str; 11] = [
 pub(super) fn limits(list: Option<&Path>) -> Result<Limits, UsageError> {
     let bytes = list.map(files::read_table).transpose()?;
     let named = bytes.as_deref().and_then(ControlModel::named_in);
-    let model = named.unwrap_or(ControlModel::Tnc415b);
+    let model = named.unwrap_or_default();
     let mut parameters = ParameterList::reference(model);
     for assignment in PLAIN {
         // Lists of the first controls have other numbers: they begin with their reference list.

@@ -40,7 +40,8 @@ struct Bar {
     name: String,
     target: String,
     block: String,
-    output_s: f64,
+    /// `None` for one that goes to a spindle of the NC alone.
+    output_s: Option<f64>,
     fetch_s: Option<f64>,
     acknowledge_s: Option<f64>,
     waits: Vec<(f64, f64)>,
@@ -156,7 +157,7 @@ fn bars(report: &Report) -> Vec<Bar> {
                 name: name_of(event, function),
                 target: target.to_owned(),
                 block: block.to_owned(),
-                output_s: event.t,
+                output_s: Some(event.t),
                 fetch_s: None,
                 acknowledge_s: None,
                 waits: Vec::new(),
@@ -180,13 +181,23 @@ fn bars(report: &Report) -> Vec<Bar> {
             let name = bar.name.split('=').next().unwrap_or_default();
             name == wait.function
                 && bar.block == wait.block
-                && bar.output_s <= end
+                && bar.output_s.is_none_or(|time| time <= end)
                 && bar.acknowledge_s.is_none_or(|time| time >= wait.from_s)
         };
-        if let Some(bar) = bars.iter_mut().find(of_wait) {
-            bar.waits.push((wait.from_s, end));
+        match bars.iter_mut().find(of_wait) {
+            Some(bar) => bar.waits.push((wait.from_s, end)),
+            None => bars.push(Bar {
+                name: wait.function.clone(),
+                target: String::new(),
+                block: wait.block.clone(),
+                output_s: None,
+                fetch_s: None,
+                acknowledge_s: None,
+                waits: vec![(wait.from_s, end)],
+            }),
         }
     }
+    bars.sort_by(|a, b| a.begin().total_cmp(&b.begin()));
     bars
 }
 
@@ -204,6 +215,12 @@ fn name_of(event: &Event, function: &str) -> String {
 }
 
 impl Bar {
+    /// When it is output, or the path begins to stand for it.
+    fn begin(&self) -> f64 {
+        let first_wait = self.waits.first().map(|(from, _)| *from);
+        self.output_s.or(first_wait).unwrap_or_default()
+    }
+
     fn draw(&self, sheet: &mut Sheet, panel: &Panel, y: f64) {
         let channel = if self.target == "channel" {
             ""
@@ -213,18 +230,19 @@ impl Bar {
         let label = [&self.block, channel, &self.name];
         let label: Vec<&str> = label.into_iter().filter(|word| !word.is_empty()).collect();
         sheet.text([LEFT - 10.0, y], Anchor::Right, SMALL, INK, &label.join(" "));
-        let from = panel.x(self.output_s);
-        let end = self.acknowledge_s.or(self.fetch_s).unwrap_or(panel.end);
-        let to = panel.x(end).max(from + 2.0);
-        sheet.area([from, y - 6.0], [to, y + 6.0], BAR);
+        if let Some(from) = self.output_s.map(|time| panel.x(time)) {
+            let end = self.acknowledge_s.or(self.fetch_s).unwrap_or(panel.end);
+            let to = panel.x(end).max(from + 2.0);
+            sheet.area([from, y - 6.0], [to, y + 6.0], BAR);
+        }
         for (start, stop) in &self.waits {
             let (start, stop) = (panel.x(*start), panel.x(*stop));
             sheet.area([start, y - 2.0], [stop.max(start + 2.0), y + 2.0], WAIT);
         }
-        sheet.area([from - 1.0, y - 8.0], [from + 1.0, y + 8.0], OUTPUT);
-        if let Some(time) = self.acknowledge_s {
-            let x = panel.x(time);
-            sheet.area([x - 1.0, y - 8.0], [x + 1.0, y + 8.0], ACKNOWLEDGED);
+        for (time, colour) in [(self.output_s, OUTPUT), (self.acknowledge_s, ACKNOWLEDGED)] {
+            if let Some(x) = time.map(|time| panel.x(time)) {
+                sheet.area([x - 1.0, y - 8.0], [x + 1.0, y + 8.0], colour);
+            }
         }
     }
 }
@@ -373,7 +391,9 @@ fn labels(report: &Report, bars: &[Bar]) -> Vec<Label> {
         found.push((way_at(report, time), time, text, colour, dashed));
     };
     for bar in bars {
-        add(bar.output_s, bar.name.clone(), OUTPUT, false);
+        if let Some(time) = bar.output_s {
+            add(time, bar.name.clone(), OUTPUT, false);
+        }
         let name = bar.name.split('=').next().unwrap_or_default();
         for (from, to) in &bar.waits {
             add(*from, format!("{:.2} s for {name}", to - from), WAIT, false);

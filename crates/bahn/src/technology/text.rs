@@ -116,7 +116,10 @@ fn rounded(value: f64) -> f64 {
 
 fn end(report: &Report) -> String {
     let stands = position(&report.path_end.0);
-    let count = |kind: EventKind| report.events.iter().filter(|event| event.kind == kind).count();
+    let count = |kind: EventKind, what: &str| {
+        let number = report.events.iter().filter(|event| event.kind == kind).count();
+        format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+    };
     let waited: f64 = stood(&report.waits);
     let what = if report.completed {
         "completed"
@@ -126,11 +129,11 @@ fn end(report: &Report) -> String {
         "not completed"
     };
     format!(
-        "{what} in {:.3} s (cycle {} ms), {} outputs, {} acknowledgements, path stood {waited:.3} s for functions{}\n",
+        "{what} in {:.3} s (cycle {} ms), {}, {}, path stood {waited:.3} s for functions{}\n",
         report.time_s,
         rounded(report.cycle_s * 1e3),
-        count(EventKind::Output),
-        count(EventKind::Acknowledge),
+        count(EventKind::Output, "output"),
+        count(EventKind::Acknowledge, "acknowledgement"),
         if stands.is_empty() {
             String::new()
         } else {
