@@ -46,3 +46,7 @@ picture=${CARGO_TARGET_DIR:-target}/debug/examples/picture
 "$bahn" test examples/housing.H --html "$copy/page.html" >/dev/null
 "$picture" "$copy/page.html" "$out/page.png" 1400x900 "js:bahn.seek(bahn.end * 0.62)" >/dev/null
 echo "$out/page.png"
+# A bead of glue with a slow valve: where functions are output, and where the path waits for them.
+"$bahn" technology examples/technology/glue.nc --channel examples/technology/glue.lis \
+    --plc examples/technology/slow-valve.txt --image "$out/glue.png" >/dev/null
+echo "$out/glue.png"

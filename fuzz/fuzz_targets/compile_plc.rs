@@ -7,9 +7,9 @@
 
 #![no_main]
 
+use bahn_fuzz as _;
 use bahn_parameters::ControlModel;
 use bahn_plc::{Compilation, MemoryFiles, Options};
-use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -26,7 +26,12 @@ fuzz_target!(|bytes: &[u8]| {
             assert!(report.line >= 1 && report.column >= 1, "{report:?}");
         }
         if let Some(program) = compilation.program {
-            assert!(!program.code.iter().any(|instruction| program.file_name(instruction.file).is_empty()));
+            assert!(
+                !program
+                    .code
+                    .iter()
+                    .any(|instruction| program.file_name(instruction.file).is_empty())
+            );
         }
     }
 });

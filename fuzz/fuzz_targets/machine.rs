@@ -7,8 +7,8 @@
 
 #![no_main]
 
-use bahn_machine::Machine;
 use bahn_fuzz as _;
+use bahn_machine::Machine;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

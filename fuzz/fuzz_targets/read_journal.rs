@@ -7,8 +7,8 @@
 
 #![no_main]
 
-use bahn_fuzz as _;
 use bahn_exchange::{JOURNAL_LENGTH, MemoryStorage, Retention};
+use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

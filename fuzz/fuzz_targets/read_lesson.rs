@@ -26,6 +26,11 @@ fuzz_target!(|bytes: &[u8]| {
     // The text may be UTF-16: it has no more lines than bytes. What is missing is told of line 1.
     let (machine, parameters) = &*STAGE;
     if let Err(lines) = bahn_panel::check_lesson(machine, parameters, bytes) {
-        assert!(!lines.is_empty() && lines.iter().all(|line| (1..=bytes.len().max(1) as u32).contains(line)));
+        assert!(
+            !lines.is_empty()
+                && lines
+                    .iter()
+                    .all(|line| (1..=bytes.len().max(1) as u32).contains(line))
+        );
     }
 });

@@ -20,7 +20,10 @@ fn site() -> &'static Arc<Site> {
     SITE.get_or_init(|| {
         let folder = std::env::temp_dir().join(format!("bahn-fuzz-lsv2-{}", std::process::id()));
         let device = StillDevice::new(&folder).expect("a folder for temporary files");
-        Arc::new(Site::new(Arc::new(device) as Arc<dyn Device>, Passwords::default()))
+        Arc::new(Site::new(
+            Arc::new(device) as Arc<dyn Device>,
+            Passwords::default(),
+        ))
     })
 }
 

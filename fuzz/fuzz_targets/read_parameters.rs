@@ -1,8 +1,8 @@
 //! Any bytes are a list of machine parameters: kept as they are, faults in their lines, values in range.
 #![no_main]
 
-use bahn_parameters::{ControlModel, Definition, ListText, ParameterId, ParameterList};
 use bahn_fuzz as _;
+use bahn_parameters::{ControlModel, Definition, ListText, ParameterId, ParameterList};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: (u8, f64, &[u8])| {

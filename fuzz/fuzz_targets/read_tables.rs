@@ -7,8 +7,8 @@
 
 #![no_main]
 
-use bahn_fuzz as _;
 use bahn_control::{CompensationAssignment, CompensationTable, CorrectionTables};
+use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
@@ -23,5 +23,10 @@ fuzz_target!(|text: &str| {
         CompensationAssignment::read(text).err(),
         CorrectionTables::read(text).err(),
     ];
-    assert!(errors.into_iter().flatten().all(|error| error.line <= lines.max(1)));
+    assert!(
+        errors
+            .into_iter()
+            .flatten()
+            .all(|error| error.line <= lines.max(1))
+    );
 });

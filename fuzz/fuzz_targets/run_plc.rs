@@ -10,9 +10,9 @@
 use std::sync::Arc;
 
 use bahn_exchange::{Bit, BitArea, Exchange, Number, Size};
+use bahn_fuzz as _;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{Compilation, Machine, MemoryFiles, Options, Start, TestNc, TraceStep, Tracer};
-use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 const CYCLES: u16 = 4;

@@ -24,6 +24,7 @@ use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
 use crate::table::TableOptions;
+use crate::technology::TechnologyOptions;
 use crate::test_run::TestOptions;
 use crate::torture::TortureOptions;
 use crate::tune::TuneOptions;
@@ -80,6 +81,9 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// Run programs with M, H and S functions on a channel: where each is output, and where the path waits for it.
+    #[command(after_help = crate::technology::EXAMPLES)]
+    Technology(Box<TechnologyOptions>),
     /// Check, explain and write lists of channel parameters: when M, H and spindle functions reach the PLC.
     Channel(ChannelOptions),
     /// List the cycles of the machine builder, and write EPROMs with them.

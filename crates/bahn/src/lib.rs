@@ -12,6 +12,7 @@
 //! - `cli`: options and help texts; `settings` turns them into the settings of the other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
+//! - `technology`: programs with functions that the path waits for;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
 //! - `convert`: programs in another language, with the proof that they do the same;
@@ -63,6 +64,7 @@ mod shelf;
 mod solid;
 mod style;
 mod table;
+mod technology;
 mod test_run;
 mod torture;
 mod tune;
@@ -101,6 +103,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Channel(options) => channel::command(&options),
         cli::Command::Lsp(options) => lsp::command(&options),
+        cli::Command::Technology(options) => technology::command(&options),
         cli::Command::Oem(options) => oem::command(&options),
         cli::Command::Table(options) => table::command(&options),
         cli::Command::Link(options) => link::command(&options),

@@ -13,13 +13,19 @@ use crate::options::model_parser;
 use crate::{Outcome, UsageError, files};
 
 pub(crate) const EXAMPLES: &str = "\
-An editor starts the command and speaks the Language Server Protocol with it by standard input and output: errors while
-you type, what words mean, labels and programs, values of Q parameters behind a run, outline, completion of cycles,
-listing, other label numbers, conversion. Files .H, .I, .PLC and .MP; docs/lsp.md has the set-up for Visual Studio
-Code and Neovim.
+Examples:
+  bahn lsp
+  bahn lsp --model tnc360 --strict
 
-The editor may send the same settings by their names (model, strict, skipUnknown, comma, isoStep), by themselves or
-below `bahn`. Without a model that of the machine counts in whose folder a file lies.";
+An editor starts the command and speaks the Language Server Protocol with it by standard input
+and output: errors while you type, what words mean, labels and programs, values of Q parameters
+behind a run, outline, completion of cycles with their prompts, listing, other label numbers,
+conversion. Files .H, .I, .nc, .PLC and .MP; docs/lsp.md has the set-up for Visual Studio Code
+and Neovim.
+
+The editor may send the same settings by their names (model, strict, skipUnknown, comma,
+isoStep), by themselves or below `bahn`. Without a model that of the machine counts in whose
+folder a file lies. Without an editor at the other end the command ends with exit code 2.";
 
 /// Options of `bahn lsp`.
 #[derive(Args, Debug)]

@@ -12,6 +12,7 @@ pub(crate) const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn check *.h
   bahn check --model tnc360 --format json part.h
+  bahn check part.nc         DIN 66025 of a TF5200
 
 Every block is read; then the program is executed without geometry, with those that it calls, and beyond its
 errors: labels, calls, tools, feeds, poles, arcs, cycles. What only follows from an earlier error is not

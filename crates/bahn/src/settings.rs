@@ -120,7 +120,12 @@ pub(crate) fn parameter_list(model: ControlModel, path: Option<&Path>) -> Result
 }
 
 fn read_list(list: &mut ParameterList, path: &Path) -> Result<(), UsageError> {
-    let errors = list.read(&files::read_table(path)?);
+    read_lines(list, path, &files::read_table(path)?)
+}
+
+/// Puts the lines of a list over the values of another.
+pub(crate) fn read_lines(list: &mut ParameterList, path: &Path, bytes: &[u8]) -> Result<(), UsageError> {
+    let errors = list.read(bytes);
     if errors.is_empty() {
         return Ok(());
     }

@@ -185,3 +185,71 @@ fn a_new_list_replaces_nothing() {
     assert_eq!(folder.bahn("channel new -o new.lis --force").code(), 0);
     assert_eq!(folder.read("new.lis"), text);
 }
+
+/// Types and parameters as docs/channel-lists.md has them, from its second half on.
+fn tables() -> String {
+    use bahn_technology::list::{Definition, Owner, SynchRow};
+    let mut text =
+        "## Synchronisation types\n\n| | value | output | waited for | for |\n|---|---|---|---|---|\n"
+            .to_owned();
+    let owners = [(Owner::M, "M"), (Owner::H, "H"), (Owner::Spindle, "spindle")];
+    for row in SynchRow::all() {
+        let of = owners
+            .iter()
+            .filter(|(owner, _)| row.is_for(*owner))
+            .map(|(_, name)| *name);
+        let of = of.collect::<Vec<_>>().join(", ");
+        let (name, bits) = (row.name, row.bits);
+        text += &match row.is_bit {
+            true => format!(
+                "| `{name}` | 0x{bits:08X} | joined to a type: {} | | {of} |\n",
+                row.meaning
+            ),
+            false => format!(
+                "| `{name}` | 0x{bits:08X} | {} | {} | {of} |\n",
+                row.output, row.wait
+            ),
+        };
+    }
+    text += "\n## Parameters\n\n| | | values | unit | default | |\n|---|---|---|---|---|---|\n";
+    for row in Definition::all() {
+        let effect = match row.without_effect {
+            "" => String::new(),
+            why => format!(" **No effect here**: {why}."),
+        };
+        let values = match row.kind {
+            bahn_technology::list::Kind::Synch(_) => "a type".to_owned(),
+            kind => kind.range(),
+        };
+        text += &format!(
+            "| {} | `{}` | {} | {} | {} | {}{effect} |\n",
+            row.id,
+            row.name,
+            values.replace('|', "\\|"),
+            row.unit,
+            row.default,
+            row.meaning.replace('|', "\\|"),
+        );
+    }
+    text
+}
+
+/// The tables of docs/channel-lists.md are those that lists are read by. They are written anew with BAHN_WRITE_DOCS=1.
+#[test]
+fn the_document_has_every_parameter() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/channel-lists.md");
+    let document = std::fs::read_to_string(&path).unwrap_or_default();
+    let prose = document
+        .split("## Synchronisation types")
+        .next()
+        .unwrap_or_default();
+    let expected = format!("{prose}{}", tables());
+    if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
+        assert!(std::fs::write(&path, &expected).is_ok());
+        return;
+    }
+    assert!(
+        document == expected,
+        "BAHN_WRITE_DOCS=1 writes the tables of docs/channel-lists.md anew"
+    );
+}

@@ -96,6 +96,7 @@ fn an_editor_works_with_documents_of_every_language() {
     script::plc(&mut client, folder.as_ref());
     script::list(&mut client, folder.as_ref());
     script::din(&mut client, folder.as_ref());
+    script::conversions(&mut client, folder.as_ref());
     script::others(&mut client, folder.as_ref());
     assert_eq!(client.end().code(), 0);
 }

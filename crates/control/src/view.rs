@@ -2,7 +2,7 @@
 
 use bahn_interpreter::Interpreter;
 use bahn_parameters::{ParameterList, PerPlcAxis};
-use bahn_path::{Axis, Frame, PathElement, Position};
+use bahn_path::{Axis, BlockRef, Frame, PathElement, Position};
 
 use crate::axes::path_positions;
 use crate::channel::Channel;
@@ -106,6 +106,13 @@ impl<'a> ChannelView<'a> {
     /// The interpreter of the program that runs, or ran last.
     pub fn interpreter(&self) -> Option<&'a Interpreter> {
         self.channel.run.source.interpreter()
+    }
+
+    /// What reports call a block: in DIN/ISO the number that it is programmed with; its place while the program is read on
+    /// another thread.
+    pub fn number_of(&self, block: BlockRef) -> u32 {
+        let program = self.interpreter().and_then(|run| run.program(block.program));
+        program.map_or(block.block, |program| program.number_of(block.block))
     }
 
     /// What the status display shows beside positions: transformations at the block that is executed, between runs those

@@ -20,6 +20,9 @@ impl Editor {
             {
                 highlight.capture(value)
             }
+            Open::Entry(entry) if entry.axis() == Some(axis) && !self.program.is_protected() => {
+                entry.capture(&value)
+            }
             _ => Err(KeyNonFunctional),
         };
         let done = done.map(|()| Reaction::Shown);
@@ -37,6 +40,13 @@ impl Editor {
     }
 
     fn insert_position(&mut self, position: &[(Axis, f64)]) -> Result<Reaction, MessageId> {
+        if self.is_iso() {
+            let words = position.iter().map(|(axis, value)| (*axis, number_text(*value)));
+            return match position.is_empty() {
+                true => Err(EntryValueIncorrect),
+                false => self.iso_position(&words.collect::<Vec<_>>()),
+            };
+        }
         let dialogue = Dialogue::of_id("L", &self.setting).ok_or(KeyNonFunctional)?;
         let mut line = dialogue.lines.into_iter().next().ok_or(KeyNonFunctional)?;
         let field = line.field_mut(0).ok_or(KeyNonFunctional)?;

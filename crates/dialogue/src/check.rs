@@ -33,14 +33,7 @@ impl Context<'_> {
             return Err(fault.message);
         }
         let mut operation = read.block.operation;
-        let unit = self.program.unit();
-        if let Some(fault) = check_limits(&operation, unit, self.setting.reading()) {
-            return Err(fault.message);
-        }
-        if InputSteps::of(self.setting.model, unit).round(&mut operation) {
-            return Err(EntryValueIncorrect);
-        }
-        self.labels(&operation, line)?;
+        self.check_operation(&mut operation, line.is_complete())?;
         let signs = std::iter::once(line).chain(others);
         let mut signs = signs.flat_map(Line::fields).filter_map(working_sign);
         let first = signs.next();
@@ -50,10 +43,23 @@ impl Context<'_> {
         }
     }
 
+    /// Checks what a block does: its limits, how fine its numbers are, and its labels, unless it is not complete.
+    pub(crate) fn check_operation(&self, operation: &mut Operation, complete: bool) -> Result<(), MessageId> {
+        let unit = self.program.unit();
+        if let Some(fault) = check_limits(operation, unit, self.setting.reading()) {
+            return Err(fault.message);
+        }
+        if InputSteps::of(self.setting.model, unit).round(operation) {
+            return Err(EntryValueIncorrect);
+        }
+        let mut parts = operation.parts().iter();
+        parts.try_for_each(|part| self.labels(part, complete))
+    }
+
     /// A label is set once [003:7881-7883], and label 0 is only an end [003:7885-7887].
-    fn labels(&self, operation: &Operation, line: &Line) -> Result<(), MessageId> {
+    fn labels(&self, operation: &Operation, complete: bool) -> Result<(), MessageId> {
         match operation {
-            Operation::Label(label) if *label > 0 && line.is_complete() => {
+            Operation::Label(label) if *label > 0 && complete => {
                 let at = self.program.label(*label);
                 match at.is_some_and(|block| Some(block) != self.replaces) {
                     true => Err(LabelNumberAllocated),

@@ -9,8 +9,12 @@ use crate::Word;
 use crate::blocks::block_row;
 use crate::dialogue::{Dialogue, Source};
 use crate::editor::{Editor, Open};
+use crate::entry::{Entry, Place};
 use crate::highlight::Highlight;
 use crate::typing::{Fresh, Typing};
+
+/// What a draft of DIN/ISO makes: its text is its only word.
+const ISO: &str = "ISO";
 
 /// Most words of a draft; more were never entered.
 const WORDS_MAX: usize = 10_000;
@@ -61,6 +65,7 @@ impl Editor {
         match &self.open {
             Open::Dialogue(dialogue) => Some(self.of_dialogue(dialogue)),
             Open::Highlight(highlight) if highlight.is_changed() => Some(self.of_highlight(highlight)),
+            Open::Entry(entry) if entry.is_changed() => Some(self.of_entry(entry)),
             _ => None,
         }
     }
@@ -95,6 +100,44 @@ impl Editor {
         draft
     }
 
+    fn of_entry(&self, entry: &Entry) -> Draft {
+        let (question, typing) = match entry.place {
+            Place::At(at) => ((at, 0), None),
+            Place::Word(word) => ((0, 0), Some((word, 1))),
+            Place::Signed(word) => ((0, 0), Some((word, 2))),
+        };
+        let word = Word {
+            incremental: false,
+            address: String::new(),
+            value: entry.text.clone(),
+        };
+        Draft {
+            block: self.cursor,
+            source: ISO.to_owned(),
+            highlighted: entry.replaces.is_some(),
+            question,
+            typing,
+            words: vec![(0, 0, word)],
+            ..Draft::default()
+        }
+    }
+
+    fn entry_of_draft(&self, draft: &Draft) -> Option<Open> {
+        let (_, _, word) = draft.words.first()?;
+        let place = match draft.typing {
+            None => Place::At(draft.question.0),
+            Some((word, 2)) => Place::Signed(word),
+            Some((word, _)) => Place::Word(word),
+        };
+        let entry = match draft.highlighted {
+            true => self.entry_of(draft.block, Place::At(0)).ok()?,
+            false if draft.block < self.last() => Entry::new(self.program.language()),
+            false => return None,
+        };
+        let entry = entry.with(word.value.clone(), place)?;
+        Some(Open::Entry(Box::new(entry)))
+    }
+
     /// Takes a draft up again; whether it belongs to the program as it is. Where it does not, nothing changes.
     pub fn restore(&mut self, draft: &Draft) -> bool {
         let Some(open) = self.taken_up(draft) else {
@@ -111,6 +154,11 @@ impl Editor {
         let word = |(_, field, word): &(usize, usize, Word)| (*field, word.clone());
         if self.program.is_protected() || draft.block > self.last() {
             return None;
+        }
+        if self.is_iso() || draft.source == ISO {
+            return (self.is_iso() && draft.source == ISO)
+                .then(|| self.entry_of_draft(draft))
+                .flatten();
         }
         if draft.highlighted {
             let known = self.line_of(draft.block)?;

@@ -10,6 +10,7 @@ use bahn_program::{Edit, Program};
 use crate::blocks::BLOCKS;
 use crate::check::Context;
 use crate::dialogue::{Dialogue, Source, Step};
+use crate::entry::Entry;
 use crate::field::Ask;
 use crate::highlight::Highlight;
 use crate::history::History;
@@ -29,6 +30,8 @@ pub(crate) enum Open {
     Dialogue(Box<Dialogue>),
     Highlight(Box<Highlight>),
     Menu(Box<Menu>),
+    /// A block of DIN/ISO as text.
+    Entry(Box<Entry>),
     /// GOTO with the digits so far.
     Goto(String),
     /// The text to find so far.
@@ -49,6 +52,10 @@ pub(crate) enum Open {
 ///
 /// The comment of a block stands behind its last word: RIGHT goes there on controls with an alpha keyboard, `;` while
 /// the block is open, and a soft key. `;` while nothing is open begins a comment in a block of its own.
+///
+/// Blocks of DIN/ISO are text: keys write their letters, those of the contour the G functions that do the same. END, ENT
+/// and `*` close a block, which has its number from the control [000:6885]; a fault highlights its word. RIGHT goes into a
+/// block word by word as above.
 ///
 /// A program is never changed in its place: whoever holds an older version keeps it.
 ///
@@ -112,7 +119,7 @@ impl Editor {
             .text_of(0)
             .starts_with(|first: char| first.is_ascii_digit());
         let new = match has_numbers {
-            true => self.program.edit(&Edit::Renumber).ok(),
+            true => self.program.edit(&Edit::Renumber { step: 1 }).ok(),
             false => None,
         };
         new.map_or_else(|| Arc::clone(&self.program), Arc::new)
@@ -147,6 +154,7 @@ impl Editor {
         match &self.open {
             Open::Nothing => false,
             Open::Highlight(highlight) => highlight.is_changed(),
+            Open::Entry(entry) => entry.is_changed(),
             _ => true,
         }
     }
@@ -180,6 +188,11 @@ impl Editor {
     pub fn type_text(&mut self, text: &str) -> Reaction {
         let mut last = Reaction::Shown;
         for character in text.chars() {
+            if matches!(self.open, Open::Entry(_)) || (self.is_iso() && matches!(self.open, Open::Nothing)) {
+                let done = self.iso_character(character);
+                last = self.reaction(done);
+                continue;
+            }
             let mut text = [0; 4];
             let text = character.encode_utf8(&mut text);
             let taken = match &mut self.open {
@@ -249,6 +262,7 @@ impl Editor {
                 None => (3, 0, 0),
             },
             Open::Menu(_) => (4, 0, 0),
+            Open::Entry(_) => (7, 0, 0),
             Open::Goto(_) => (5, 0, 0),
             Open::Find(_) => (6, 0, 0),
         }
@@ -260,6 +274,7 @@ impl Editor {
             Open::Dialogue(dialogue) => self.dialogue_key(dialogue, key),
             Open::Highlight(highlight) => self.highlight_key(highlight, key),
             Open::Menu(menu) => self.menu_key(menu, key),
+            Open::Entry(entry) => self.entry_key(entry, key),
             Open::Goto(digits) => self.goto_key(digits, key),
             Open::Find(text) => self.find_key(text, key),
         }
@@ -281,7 +296,7 @@ impl Editor {
                 self.cursor = (self.cursor + 1).min(self.last());
                 return Ok(Reaction::Shown);
             }
-            Key::Right => return self.highlight(self.cursor, None),
+            Key::Right if !self.is_iso() => return self.highlight(self.cursor, None),
             Key::Goto => return self.show(Open::Goto(String::new())),
             Key::Ce => return Ok(Reaction::Shown),
             Key::Del => return self.delete(),
@@ -289,6 +304,7 @@ impl Editor {
                 self.may_insert()?;
                 return Ok(Reaction::Position(Wanted::Block));
             }
+            _ if self.is_iso() => return self.iso_key(key),
             _ => {}
         }
         let menu = match key {
@@ -423,11 +439,18 @@ impl Editor {
 
     /// Puts blocks behind the cursor, which goes to the last of them.
     pub(crate) fn insert(&mut self, texts: &[String]) -> Result<Reaction, MessageId> {
+        match self.is_iso() {
+            true => self.insert_numbered(texts),
+            false => self.insert_blocks(&texts.join("\n")),
+        }
+    }
+
+    /// The same with text as it stands.
+    pub(crate) fn insert_blocks(&mut self, text: &str) -> Result<Reaction, MessageId> {
         self.may_insert()?;
         let before = self.cursor + 1;
-        let text = texts.join("\n");
         let old = self.program.block_count();
-        self.apply(&Edit::Insert { before, text: &text })?;
+        self.apply(&Edit::Insert { before, text })?;
         self.cursor += self.program.block_count().saturating_sub(old);
         Ok(Reaction::Edited)
     }
@@ -445,15 +468,23 @@ impl Editor {
 
     /// A new version of the program; the old one can be had back.
     pub(crate) fn apply(&mut self, edit: &Edit<'_>) -> Result<(), MessageId> {
-        let new = self.program.edit(edit).map_err(|error| error.message())?;
+        self.apply_all(std::slice::from_ref(edit))
+    }
+
+    /// The same after several edits, in one step.
+    pub(crate) fn apply_all(&mut self, edits: &[Edit<'_>]) -> Result<(), MessageId> {
+        let mut new = Arc::clone(&self.program);
+        for edit in edits {
+            new = Arc::new(new.edit(edit).map_err(|error| error.message())?);
+        }
         let full = self.setting.bytes_max < Program::MAX_BYTES
             && new.to_bytes().len() as u64 > self.setting.bytes_max
-            && !matches!(edit, Edit::Delete { .. });
+            && !matches!(edits, [Edit::Delete { .. }]);
         if full {
             return Err(FurtherProgramEntryImpossible);
         }
         self.history.keep(&self.program, self.cursor);
-        self.program = Arc::new(new);
+        self.program = new;
         self.mark = None;
         Ok(())
     }
@@ -481,7 +512,10 @@ impl Editor {
     fn goto_key(&mut self, mut digits: String, key: Key) -> Result<Reaction, MessageId> {
         match key {
             Key::Ent => {
-                let number = digits.parse::<u32>().ok().filter(|number| *number <= self.last());
+                let number = digits
+                    .parse::<u32>()
+                    .ok()
+                    .and_then(|number| self.program.block_of(number));
                 let Some(number) = number else {
                     self.open = Open::Goto(digits);
                     return Err(EntryValueIncorrect);
@@ -508,7 +542,8 @@ impl Editor {
     pub(crate) fn soft_keys(&self) -> Vec<Labelled> {
         let setting = &self.setting;
         match &self.open {
-            Open::Nothing => soft_keys::of_program(self.mark.is_some(), setting.tongue),
+            Open::Nothing => soft_keys::of_program(self.mark.is_some(), self.is_iso(), setting.tongue),
+            Open::Entry(_) => soft_keys::characters(crate::iso::CHARACTERS, setting.tongue),
             Open::Dialogue(dialogue) => soft_keys::of_dialogue(dialogue, setting),
             Open::Highlight(highlight) => match highlight.ask() {
                 Some(ask) => {
@@ -536,6 +571,13 @@ impl Editor {
             .ok_or(KeyNonFunctional)?;
         match soft {
             Soft::Function(function) => self.function(*function),
+            Soft::Answer(value) if matches!(self.open, Open::Entry(_)) => {
+                let mut last = Reaction::Shown;
+                for character in value.chars() {
+                    last = self.iso_character(character)?;
+                }
+                Ok(last)
+            }
             Soft::Answer(value) => {
                 match &mut self.open {
                     Open::Dialogue(dialogue) => dialogue.take(value, &self.setting)?,

@@ -8,6 +8,7 @@
 //! - [`Draft`]: what is still open, to be kept and taken up again;
 //! - [`figure`]: the drawing of a cycle, in which the word that is asked for stands out;
 //! - [`cycle_template`]: the blocks of a cycle with what is asked for in them;
+//! - programs in DIN/ISO are entered as text by the same [`Editor`], with numbers, checks and messages of the control;
 //! - [`prompts`]: the texts of the dialogue in English and German.
 //!
 //! ```
@@ -46,10 +47,12 @@ mod cycles;
 mod dialogue;
 mod draft;
 mod editor;
+mod entry;
 mod field;
 mod figure;
 mod highlight;
 mod history;
+mod iso;
 mod key;
 mod line;
 mod menu;

@@ -219,6 +219,7 @@ mod tests {
             "goto",
             "find",
             "comment",
+            "iso",
             "FN FORMULA",
             "parameter",
             "parameters",
@@ -269,9 +270,9 @@ mod tests {
                     menu.items
                 );
             }
-            for (label, _) in soft_keys::of_program(false, tongue)
+            for (label, _) in soft_keys::of_program(false, true, tongue)
                 .into_iter()
-                .chain(soft_keys::of_program(true, tongue))
+                .chain(soft_keys::of_program(true, true, tongue))
             {
                 assert!(!label.starts_with("soft"), "{label}");
             }

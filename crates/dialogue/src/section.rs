@@ -119,6 +119,9 @@ impl Editor {
     /// it is highlighted.
     pub(crate) fn comment(&mut self) -> Result<Reaction, MessageId> {
         self.may_edit()?;
+        if self.is_iso() {
+            return self.iso_comment();
+        }
         match std::mem::replace(&mut self.open, Open::Nothing) {
             Open::Dialogue(mut dialogue) => {
                 let done = dialogue.comment(self.context(dialogue.replaces));
@@ -186,7 +189,12 @@ impl Editor {
     }
 
     /// Looks through the blocks before or behind a block, the nearest first.
-    fn search<T>(&self, from: u32, down: bool, found: impl Fn(&Block) -> Option<T>) -> Option<(u32, T)> {
+    pub(crate) fn search<T>(
+        &self,
+        from: u32,
+        down: bool,
+        found: impl Fn(&Block) -> Option<T>,
+    ) -> Option<(u32, T)> {
         let at = from / Program::CHUNK_SIZE;
         let mut chunk = Chunk::default();
         let count = if down {
@@ -223,6 +231,10 @@ impl Editor {
         let block = self.cursor;
         if block == 0 || block >= self.last() {
             return Err(KeyNonFunctional);
+        }
+        if self.is_iso() {
+            // A cycle is one block.
+            return Ok(block..block + 1);
         }
         match self.cycle_of(block) {
             Some(cycle) if block + 1 == cycle.end => Ok(cycle),
@@ -301,12 +313,15 @@ impl Editor {
                 };
             }
             Function::Find => return self.show(Open::Find(String::new())),
+            Function::Text if self.is_iso() => return self.iso_text(""),
             Function::Text => {
                 self.may_insert()?;
                 let dialogue = Dialogue::of_id("TEXT", &self.setting).ok_or(KeyNonFunctional)?;
                 return self.show(Open::Dialogue(Box::new(dialogue)));
             }
             Function::Comment => return self.comment(),
+            Function::Number => return self.renumber(),
+            Function::Skip if self.is_iso() => return self.iso_skip(),
             Function::Skip => {
                 let mut line = self.line_of(self.cursor).ok_or(KeyNonFunctional)?;
                 line.toggle_skip();
@@ -331,6 +346,9 @@ impl Editor {
             Some(marked) => marked,
             None => self.deletable()?,
         };
+        if self.is_iso() {
+            return Ok(self.iso_section(blocks));
+        }
         let lines = blocks.filter_map(|block| self.line_of(block));
         Ok(lines.map(|line| line.text()).collect())
     }

@@ -40,6 +40,8 @@ pub struct Setting {
     pub inhibited_cycles: Vec<u16>,
     /// The cycles of the machine builder.
     pub builder_cycles: Vec<BuilderCycle>,
+    /// Step of the numbers that blocks of DIN/ISO get: MP7220; with 0 they get none [000:6885].
+    pub iso_step: u32,
     /// Bytes that a program may have in the memory of the control.
     pub bytes_max: u64,
 }
@@ -75,6 +77,7 @@ impl Setting {
                 .filter(|cycle| list.cycle_inhibited(u32::from(*cycle)))
                 .collect(),
             builder_cycles: Vec::new(),
+            iso_step: u32::from(list.operation_parameters().iso_step),
             bytes_max: Program::MAX_BYTES,
         }
     }

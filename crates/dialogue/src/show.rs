@@ -5,6 +5,7 @@ use bahn_program::{Block, Operation, Program};
 use crate::cycles::PARAMETER;
 use crate::dialogue::Dialogue;
 use crate::editor::{Editor, Open};
+use crate::entry::Entry;
 use crate::field::Field;
 use crate::highlight::Highlight;
 use crate::line::{Line, WordPlace, written};
@@ -23,8 +24,9 @@ impl Editor {
                 let words = self.words(&highlight.line, Some(highlight.place));
                 (words, self.rows(before, behind, Some(highlight)))
             }
+            Open::Entry(entry) => self.with_entry(entry, before, behind),
             _ => {
-                let line = self.line_of(self.cursor);
+                let line = self.line_of(self.cursor).filter(|_| !self.is_iso());
                 let words = line.map_or_else(Vec::new, |line| self.words(&line, None));
                 (words, self.rows(before, behind, None))
             }
@@ -61,6 +63,9 @@ impl Editor {
             .enumerate()
             .map(|(index, line)| Row {
                 number: dialogue.replaces,
+                label: dialogue
+                    .replaces
+                    .map_or_else(String::new, |block| self.program.shown_number(block)),
                 text: self.shown(&line.text()),
                 current: index == dialogue.line,
                 marked: false,
@@ -74,6 +79,49 @@ impl Editor {
                 Some(_) => rows.splice(position..=position, open),
                 None => rows.splice(position + 1..position + 1, std::mem::take(&mut open)),
             };
+        }
+        (words, rows)
+    }
+
+    fn with_entry(&self, entry: &Entry, before: u32, behind: u32) -> (Vec<ShownWord>, Vec<Row>) {
+        let mut rows = self.rows(before, behind, None);
+        let text = self.shown(&entry.text);
+        if let Some(position) = rows.iter().position(|row| row.current) {
+            match (entry.replaces, rows.get_mut(position)) {
+                (Some(_), Some(row)) => row.text = text,
+                (_, row) => {
+                    if let Some(row) = row {
+                        row.current = false;
+                    }
+                    let new = Row {
+                        number: None,
+                        label: String::new(),
+                        text,
+                        current: true,
+                        marked: false,
+                    };
+                    rows.insert(position + 1, new);
+                }
+            }
+        }
+        let highlighted = entry.current().map(|(at, _)| at);
+        let mut shown = 0;
+        let mut words: Vec<_> = (0..)
+            .zip(entry.words())
+            .map(|(at, word)| {
+                let from = std::mem::replace(&mut shown, word.span.end);
+                ShownWord {
+                    text: self.shown(entry.text.get(from..word.span.end).unwrap_or_default()),
+                    highlighted: highlighted == Some(at),
+                }
+            })
+            .collect();
+        // A blank behind the last word, before the next one.
+        if let Some(rest) = entry.text.get(shown..).filter(|rest| !rest.is_empty()) {
+            words.push(ShownWord {
+                text: rest.to_owned(),
+                highlighted: false,
+            });
         }
         (words, rows)
     }
@@ -95,6 +143,7 @@ impl Editor {
                 };
                 rows.push(Row {
                     number: Some(number),
+                    label: self.program.shown_number(number),
                     text: self.shown(&text),
                     current: number == self.cursor,
                     marked: marked.contains(&number),
@@ -153,6 +202,12 @@ impl Editor {
                 )
             }
             Open::Menu(menu) => (menu.prompt(), menu.typed.clone()),
+            Open::Entry(entry) => {
+                let word = entry
+                    .current_word()
+                    .map(|(address, value)| format!("{address}{value}"));
+                (self.iso_prompt(entry), self.shown(&word.unwrap_or_default()))
+            }
             Open::Goto(digits) => ("goto", digits.clone()),
             Open::Find(text) => ("find", text.clone()),
         };
@@ -228,6 +283,7 @@ impl Editor {
                 None => dialogue.source.name(),
             },
             Open::Highlight(highlight) => highlight.line.head().to_owned(),
+            Open::Entry(_) => self.program.language().name().to_owned(),
             _ => String::new(),
         }
     }

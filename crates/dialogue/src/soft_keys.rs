@@ -28,6 +28,7 @@ pub(crate) enum Function {
     Text,
     Comment,
     Skip,
+    Number,
 }
 
 /// M functions that are offered; any other is entered as a number.
@@ -71,18 +72,21 @@ pub(crate) fn answers(ask: Ask, address: &str, setting: &Setting) -> Vec<Labelle
             let all = M_FUNCTIONS.iter();
             all.map(|number| labelled(format!("M{number}"), number)).collect()
         }
-        Ask::Name | Ask::Text => CHARACTERS
-            .iter()
-            .map(|character| {
-                let label = match *character {
-                    " " => text_of("soft blank", setting.tongue),
-                    character => character,
-                };
-                labelled(label.to_owned(), character)
-            })
-            .collect(),
+        Ask::Name | Ask::Text => characters(CHARACTERS, setting.tongue),
         _ => Vec::new(),
     }
+}
+
+/// The soft keys that write characters.
+pub(crate) fn characters(characters: &[&str], tongue: Tongue) -> Vec<Labelled> {
+    let labelled = |character: &&str| {
+        let label = match *character {
+            " " => text_of("soft blank", tongue),
+            character => character,
+        };
+        (label.to_owned(), Soft::Answer((*character).to_owned()))
+    };
+    characters.iter().map(labelled).collect()
 }
 
 /// The soft keys of a dialogue.
@@ -94,8 +98,8 @@ pub(crate) fn of_dialogue(dialogue: &Dialogue, setting: &Setting) -> Vec<Labelle
 }
 
 /// The soft keys while nothing is open.
-pub(crate) fn of_program(marked: bool, tongue: Tongue) -> Vec<Labelled> {
-    use Function::{Comment, Copy, Cut, Find, Mark, Paste, Redo, Skip, Text, Undo, Unmark};
+pub(crate) fn of_program(marked: bool, numbered: bool, tongue: Tongue) -> Vec<Labelled> {
+    use Function::{Comment, Copy, Cut, Find, Mark, Number, Paste, Redo, Skip, Text, Undo, Unmark};
     let mark = if marked {
         ("soft unmark", Unmark)
     } else {
@@ -112,8 +116,11 @@ pub(crate) fn of_program(marked: bool, tongue: Tongue) -> Vec<Labelled> {
         ("soft text", Text),
         ("soft skip", Skip),
         ("soft comment", Comment),
+        ("soft number", Number),
     ];
-    let all = all.into_iter();
+    let all = all
+        .into_iter()
+        .filter(|(_, function)| numbered || *function != Number);
     all.map(|(id, function)| (text_of(id, tongue).to_owned(), Soft::Function(function)))
         .collect()
 }

@@ -7,6 +7,8 @@ use bahn_parameters::MessageId;
 pub struct Row {
     /// Its number; none for a block that is still being entered.
     pub number: Option<u32>,
+    /// What stands before it: its number, or `N120`.
+    pub label: String,
     /// Its text, without the number.
     pub text: String,
     /// The block between the two lines of the screen [003:574-588].

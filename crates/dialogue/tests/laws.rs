@@ -40,6 +40,19 @@ L X+1 FOO
 END PGM 7 MM
 ";
 
+const ISO: &str = "%7 G71 *
+N10 G30 G17 X+0 Y+0 Z-20 *
+N20 T1 G17 S1000 *
+N30 G00 G40 G90 Z+50 M3 *
+N40 G83 P01 -2 P02 -20 P03 -5 P04 0.5 P05 80 *
+N50 / G01 X+10 G91 Y-5.5 F200 ; optional *
+N60 ; a comment *
+X+Q5 *
+N61 X+1 FOO *
+N62 G98 L1 *
+N99999 %7 G71 *
+";
+
 /// Keys as they may come, those of numbers and ENT more often.
 fn key() -> impl Strategy<Value = Key> {
     prop_oneof![
@@ -55,8 +68,19 @@ fn model() -> impl Strategy<Value = ControlModel> {
 }
 
 fn editor(model: ControlModel) -> Editor {
-    let program = Program::from_bytes("7.H", PROGRAM.as_bytes().to_vec());
-    Editor::new(Arc::new(program), setting(model))
+    editor_of("7.H", model)
+}
+
+fn editor_of(name: &str, model: ControlModel) -> Editor {
+    let text = if name.ends_with('I') { ISO } else { PROGRAM };
+    let program = Program::from_bytes(name, text.as_bytes().to_vec());
+    let mut setting = setting(model);
+    setting.iso_step = 5;
+    Editor::new(Arc::new(program), setting)
+}
+
+fn name() -> impl Strategy<Value = &'static str> {
+    select(vec!["7.H", "7.I"])
 }
 
 /// Blocks that cannot be read.
@@ -106,15 +130,17 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
-    fn any_keys_leave_a_program(keys in prop::collection::vec(key(), 0..400), model in model()) {
-        let mut editor = editor(model);
+    fn any_keys_leave_a_program(keys in prop::collection::vec(key(), 0..400), model in model(), name in name()) {
+        let mut editor = editor_of(name, model);
+        let begins = |program: &Program| program.text_of(0);
+        let ends = |program: &Program| program.text_of(program.block_count() - 1);
+        let framed = (begins(editor.program()), ends(editor.program()));
         for key in keys {
             let before = Arc::clone(editor.program());
             let edited = press(&mut editor, key) == Reaction::Edited;
             let after = editor.program();
             prop_assert!(unreadable(after) <= unreadable(&before).max(1), "{}", key);
-            let frame = |program: &Program| (program.text_of(0), program.text_of(program.block_count() - 1));
-            prop_assert_eq!(frame(after), (String::from("BEGIN PGM 7 MM"), String::from("END PGM 7 MM")));
+            prop_assert_eq!((begins(after), ends(after)), framed.clone());
             if edited {
                 prop_assert!(texts(after) != texts(&before), "{} changed nothing", key);
             }
@@ -122,8 +148,8 @@ proptest! {
     }
 
     #[test]
-    fn undo_goes_back_to_the_beginning_and_redo_to_the_end(keys in prop::collection::vec(key(), 0..200)) {
-        let mut editor = editor(ControlModel::Tnc360);
+    fn undo_goes_back_to_the_beginning_and_redo_to_the_end(keys in prop::collection::vec(key(), 0..200), name in name()) {
+        let mut editor = editor_of(name, ControlModel::Tnc360);
         let mut versions = vec![texts(editor.program())];
         for key in keys {
             // Undo and redo themselves are tried below; they stand in the first row.
@@ -145,8 +171,8 @@ proptest! {
     }
 
     #[test]
-    fn del_drops_what_is_open(keys in prop::collection::vec(key(), 0..60)) {
-        let mut editor = editor(ControlModel::Tnc360);
+    fn del_drops_what_is_open(keys in prop::collection::vec(key(), 0..60), name in name()) {
+        let mut editor = editor_of(name, ControlModel::Tnc360);
         for key in keys {
             let open = editor.draft();
             if open.is_some() {
@@ -160,8 +186,8 @@ proptest! {
     }
 
     #[test]
-    fn what_is_open_is_taken_up_again(keys in prop::collection::vec(key(), 0..80), more in prop::collection::vec(key(), 0..20)) {
-        let mut first = editor(ControlModel::Tnc415b);
+    fn what_is_open_is_taken_up_again(keys in prop::collection::vec(key(), 0..80), more in prop::collection::vec(key(), 0..20), name in name()) {
+        let mut first = editor_of(name, ControlModel::Tnc415b);
         for key in keys {
             press(&mut first, key);
         }

@@ -200,16 +200,15 @@ fn label(line: &[Glyph]) -> Option<LineFault> {
 }
 
 fn one_of_each_group(block: &Block) -> Result<(), LineFault> {
-    let mut seen: [Option<u16>; 5] = [None; 5];
+    let mut seen: Vec<(u8, u16)> = Vec::new();
     for word in &block.words {
         let WordKind::G(g) = word.kind else { continue };
-        let Some(slot) = group(g).and_then(|group| seen.get_mut(usize::from(group))) else {
-            continue;
-        };
-        if let Some(first) = slot.replace(g) {
+        let Some(group) = group(g) else { continue };
+        if let Some((_, first)) = seen.iter().find(|(other, _)| *other == group) {
             let message = format!("G{g:02} beside G{first:02}: one of them counts in a block");
             return Err(fault_at(word.column, word.length, message));
         }
+        seen.push((group, g));
     }
     Ok(())
 }
@@ -468,6 +467,8 @@ fn call(cursor: &mut Cursor, letters: &str) -> Result<Option<WordKind>, LineFaul
     if name.to_ascii_uppercase().starts_with("CYCLE[")
         || name.eq_ignore_ascii_case("CYCLE") && cursor.eat('[')
     {
+        cursor.go_to(mark);
+        cursor.take_while(|c| c != '[');
         return Err(cursor.fault(mark, format!("unknown word {letters} CYCLE (a cycle)")));
     }
     if cursor.is_done() {

@@ -106,15 +106,11 @@ impl<'a> Cursor<'a> {
         let column = |index: usize| self.line.get(index).map(|glyph| glyph.column);
         let behind = self.line.last().map_or(1, |glyph| glyph.column.saturating_add(1));
         let first = column(mark).unwrap_or(behind);
-        let last = self
-            .at
-            .checked_sub(1)
-            .filter(|last| *last >= mark)
-            .and_then(column);
-        (
-            first,
-            last.map_or(1, |last| last.saturating_sub(first).saturating_add(1)),
-        )
+        // Blanks behind a word are none of it.
+        let read = self.line.get(mark..self.at).unwrap_or_default();
+        let last = read.iter().rfind(|glyph| !glyph.character.is_whitespace());
+        let length = last.map_or(1, |last| last.column.saturating_sub(first).saturating_add(1));
+        (first, length)
     }
 
     /// A fault of what was read since a mark.

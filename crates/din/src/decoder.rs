@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bahn_path::Position;
 
 use crate::block::{self, Block, WordKind};
-use crate::execute::{self, Modal};
+use crate::execute::{self, Modal, State};
 use crate::line::{LineFault, Macros};
 use crate::program::{Program, Section};
 use crate::unit::{Command, Place, Shelf, Unit, Variables};
@@ -57,15 +57,6 @@ pub struct Decoder {
     /// The block that comes next waits for everything before it; so much is said already.
     has_waited: bool,
     is_over: bool,
-}
-
-/// What blocks change and find again.
-#[derive(Clone, Debug)]
-pub(crate) struct State {
-    pub modal: Modal,
-    pub position: Position,
-    pub parameters: BTreeMap<u32, f64>,
-    pub macros: Macros,
 }
 
 /// A program or subroutine under way.

@@ -1,15 +1,24 @@
 //! What a block orders, from its words and what is in force.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_path::{Axis, Curve, PerAxis, Plane, Position};
 
 use crate::block::{Block, Word, WordKind};
 use crate::circle::{self, Centre};
-use crate::decoder::State;
 use crate::expression::{Expression, Values, function_number, whole};
-use crate::line::{LineFault, fault_at};
+use crate::line::{LineFault, Macros, fault_at};
 use crate::unit::{Command, Function, Independent, Kind, Motion, SpindleOrder, Target, Unit, Variables};
+
+/// What blocks change and find again.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub modal: Modal,
+    pub position: Position,
+    pub parameters: BTreeMap<u32, f64>,
+    pub macros: Macros,
+}
 
 /// What is in force until another block changes it. A program begins with G00, G90, G17 and without feed (inferred: so
 /// that all programs of the manual run).

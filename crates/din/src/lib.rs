@@ -5,13 +5,55 @@
 //! [`Unit`]: what it moves, which functions it orders, what else it commands. Whoever follows it answers for the
 //! variables of the channel ([`Variables`]) and finds subroutines ([`Shelf`]).
 //!
+//! [`examine`] tells all that is wrong with a file and those that it calls, without a channel.
+//!
 //! What the manual does not show is an error at its block with its name; nothing is skipped.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use bahn_din::{Decoder, Kind, Program, Shelf, Step, Variable, Variables};
+//! use bahn_path::{Axis, Position};
+//!
+//! /// A channel without variables and subroutines.
+//! struct Bare;
+//!
+//! impl Variables for Bare {
+//!     fn read(&mut self, variable: &Variable) -> Result<f64, String> {
+//!         Err(format!("{} is not known", variable.name))
+//!     }
+//!     fn write(&mut self, variable: &Variable, _value: f64) -> Result<(), String> {
+//!         Err(format!("{} is not known", variable.name))
+//!     }
+//!     fn exists(&self, _m: bool, _number: u16) -> bool {
+//!         false
+//!     }
+//! }
+//!
+//! impl Shelf for Bare {
+//!     fn text(&self, _name: &str) -> Option<(String, Vec<u8>)> {
+//!         None
+//!     }
+//! }
+//!
+//! let program = Arc::new(Program::from_bytes("part.nc", b"N10 G01 X25 F2000 M7=3\nN20 M30\n"));
+//! assert!(program.faults().is_empty());
+//! if let Some(main) = program.mains().next() {
+//!     let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, Arc::new(Bare));
+//!     if let Step::Unit(unit) = decoder.next(&mut Bare) {
+//!         assert_eq!(&*unit.place.block, "N10");
+//!         assert_eq!(unit.motion.map(|motion| motion.end[Axis::X]), Some(25.0));
+//!         assert_eq!((unit.functions[0].kind, unit.functions[0].value), (Kind::M(7), Some(3)));
+//!     }
+//! }
+//! ```
 
 mod block;
 mod circle;
 mod command;
 mod cursor;
 mod decoder;
+mod examine;
 mod execute;
 mod expression;
 mod line;
@@ -20,6 +62,7 @@ mod unit;
 mod words;
 
 pub use decoder::{BlockFault, Decoder, Found, Step};
+pub use examine::{Examination, FileFault, examine};
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{
     Command, Function, Independent, Kind, Motion, Place, Shelf, SpindleOrder, Target, Unit, Variable,

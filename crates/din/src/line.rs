@@ -13,6 +13,13 @@ pub struct LineFault {
     pub message: String,
 }
 
+impl LineFault {
+    /// Whether a word is not known, whatever stands behind it.
+    pub(crate) fn names_unknown(&self) -> bool {
+        self.message.starts_with("unknown")
+    }
+}
+
 /// A character and where it stands in the line; what comes from a macro stands where the macro does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Glyph {
@@ -190,8 +197,8 @@ impl Macros {
         Ok(())
     }
 
-    /// Whether all macros that a line uses have a text.
-    pub fn know_all(&self, line: &[Glyph]) -> Result<bool, LineFault> {
+    /// Index of the first macro of a line that has no text.
+    pub fn first_unknown(&self, line: &[Glyph]) -> Result<Option<usize>, LineFault> {
         let mut at = 0;
         while let Some(glyph) = line.get(at) {
             if glyph.character != '"' {
@@ -200,11 +207,11 @@ impl Macros {
             }
             let (name, end) = quoted(line, at)?;
             if !self.0.contains_key(&name) {
-                return Ok(false);
+                return Ok(Some(at));
             }
             at = end;
         }
-        Ok(true)
+        Ok(None)
     }
 
     /// The line with the text of each macro in its place.

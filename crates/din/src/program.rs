@@ -221,8 +221,16 @@ impl Program {
         let Some(glyphs) = self.glyphs(line) else {
             return Ok(());
         };
-        if block::definitions(&glyphs)?.is_none() && !macros.know_all(&glyphs)? {
-            return Ok(());
+        if block::definitions(&glyphs)?.is_none()
+            && let Some(unknown) = macros.first_unknown(&glyphs)?
+        {
+            // What stands before it is judged all the same.
+            let before = glyphs.get(..unknown).unwrap_or_default();
+            let column = glyphs.get(unknown).map_or(1, |glyph| glyph.column);
+            return match block::read(before, macros) {
+                Err(fault) if fault.column < column && fault.names_unknown() => Err(fault),
+                _ => Ok(()),
+            };
         }
         for word in block::read(&glyphs, macros)?.words {
             if let block::WordKind::Define(name, text) = &word.kind {

@@ -475,6 +475,14 @@ fn a_fault_ends_the_program() {
         (&*fault.place.block, fault.place.line, fault.length),
         ("N20", 2, 2)
     );
+    // What a macro of a caller may end is judged as far as the macro.
+    let text = b"#MSG[\"Text: %s\",@P1]\nL CYCLE [NAME=a.nc @P1 =\"S\"]\nX\"LATER\"\nT1 X\"LATER\"\nP1=[2*\"LATER\"]\n";
+    let lines: Vec<(u32, u32, u32)> = Program::from_bytes("t.nc", text)
+        .faults()
+        .iter()
+        .map(|fault| (fault.line, fault.column, fault.length))
+        .collect();
+    assert_eq!(lines, [(1, 1, 4), (2, 1, 7), (4, 1, 2)]);
     // The text has all of them.
     let program = Program::from_bytes("t.nc", b"N10 T1\nN20 X1\nN30 D2\n%L S\n%L S\n%L\nX\"LATER\"");
     let told: Vec<(u32, String)> = program

@@ -47,42 +47,42 @@ fn late_functions_and_their_explicit_gate() {
 
 #[test]
 fn additive_values_of_the_whole_list() {
-    // [004:105-108]
+    // [004:105-108], with other numbers.
     let text = "\
-N10 M52=-345
-N20 M12=123
-N35 P1=567 P2=345
-N40 X[M54=P1]
-N50 S[REV 1000 M03 M63=-789]
-N60 M12=123 M10=321 M52=-345 X[M54=567] S[REV 1000 M03 M63=-789]
-N70 M63=-789 M52=-P2 M54=567
-N80 X[M52=-345 M54=567] Y[M63=-789] S[M05 M63=789 M54=-567] M54 M63
-N135 P3=567 P4=-345
-N140 X[H7=P3]
-N150 S[REV 1500 M04 H8=-789]
-N170 H8=-789 H5=P4 H7=567
-N180 X[H8=-789 H4 H5=-345] Y[H7=567] S[M05 H5=345 H7=567] H3 H8
-N200 X[M52=-345 H4 H8=-789 M54=567 H5=345] H3=333 M54=444 H7=567 M63
-N999 M30=111
+N15 M61=-418
+N25 M15=77
+N40 P1=250 P2=418
+N45 X[M66=P1]
+N55 S[REV 1200 M03 M71=-903]
+N65 M15=77 M18=86 M61=-418 X[M66=250] S[REV 1200 M03 M71=-903]
+N75 M71=-903 M61=-P2 M66=250
+N85 X[M61=-418 M66=250] Y[M71=-903] S[M05 M71=903 M66=-250] M66 M71
+N140 P3=250 P4=-418
+N145 X[H24=P3]
+N155 S[REV 900 M04 H27=-903]
+N175 H27=-903 H21=P4 H24=250
+N185 X[H27=-903 H30 H21=-418] Y[H24=250] S[M05 H21=418 H24=250] H33 H27
+N205 X[M61=-418 H30 H27=-903 M66=250 H21=418] H33=38 M66=41 H24=250 M71
+N1004 M30=5
 ";
     assert_eq!(
         told_all(&run(text)),
         [
-            "N10 M52=-345",
-            "N20 M12=123",
-            "N35",
-            "N40 X[M54=567]",
-            "N50 S[S1000] S[M3] S[M63=-789]",
-            "N60 M12=123 M10=321 M52=-345 X[M54=567] S[S1000] S[M3] S[M63=-789]",
-            "N70 M63=-789 M52=-345 M54=567",
-            "N80 X[M52=-345] X[M54=567] Y[M63=-789] S[M5] S[M63=789] S[M54=-567] M54 M63",
-            "N135",
-            "N140 X[H7=567]",
-            "N150 S[S1500] S[M4] S[H8=-789]",
-            "N170 H8=-789 H5=-345 H7=567",
-            "N180 X[H8=-789] X[H4] X[H5=-345] Y[H7=567] S[M5] S[H5=345] S[H7=567] H3 H8",
-            "N200 X[M52=-345] X[H4] X[H8=-789] X[M54=567] X[H5=345] H3=333 M54=444 H7=567 M63",
-            "N999 M30=111 end",
+            "N15 M61=-418",
+            "N25 M15=77",
+            "N40",
+            "N45 X[M66=250]",
+            "N55 S[S1200] S[M3] S[M71=-903]",
+            "N65 M15=77 M18=86 M61=-418 X[M66=250] S[S1200] S[M3] S[M71=-903]",
+            "N75 M71=-903 M61=-418 M66=250",
+            "N85 X[M61=-418] X[M66=250] Y[M71=-903] S[M5] S[M71=903] S[M66=-250] M66 M71",
+            "N140",
+            "N145 X[H24=250]",
+            "N155 S[S900] S[M4] S[H27=-903]",
+            "N175 H27=-903 H21=-418 H24=250",
+            "N185 X[H27=-903] X[H30] X[H21=-418] Y[H24=250] S[M5] S[H21=418] S[H24=250] H33 H27",
+            "N205 X[M61=-418] X[H30] X[H27=-903] X[M66=250] X[H21=418] H33=38 M66=41 H24=250 M71",
+            "N1004 M30=5 end",
         ]
     );
 }
@@ -90,18 +90,18 @@ N999 M30=111
 #[test]
 fn an_axis_moves_on_its_own_with_functions() {
     // [004:108]
-    let units = run("N05 X[INDP G90 G01 FEED=2000 POS=555 M54=151 H8=-181]\nN10 G91 G00 X5\nM30");
-    assert_eq!(told(&units[0]), "N5 X[M54=151] X[H8=-181]");
+    let units = run("N05 X[INDP G90 G01 FEED=1500 POS=320 M66=17 H27=-18]\nN10 G91 G00 X5\nM30");
+    assert_eq!(told(&units[0]), "N5 X[M66=17] X[H27=-18]");
     let order = Independent {
         axis: Axis::X,
-        end: 555.0,
+        end: 320.0,
         rapid: false,
-        feed_mm_min: 2000.0,
+        feed_mm_min: 1500.0,
     };
     assert_eq!(units[0].commands, [Command::Independent(order)]);
     assert_eq!(
         told(&units[1]),
-        "N10 to X560 Y0 rapid",
+        "N10 to X325 Y0 rapid",
         "the path goes on where the axis stands"
     );
 }

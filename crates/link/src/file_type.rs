@@ -38,6 +38,13 @@ const TYPES: &[(&str, char, bool)] = &[
 ];
 
 impl FileType {
+    /// A program in plain language.
+    pub const PLAIN: FileType = FileType {
+        extension: "H",
+        code: 'H',
+        named_in_first_line: true,
+    };
+
     /// The types, in the order of the manual.
     pub fn all() -> impl Iterator<Item = FileType> {
         TYPES

@@ -19,7 +19,7 @@
 //! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`HardCopy`] speaks to the printer of a TNC 155, [`PrintOut`] brings it what is printed;
 //! - [`store`] is the file service that all protocols share;
-//! - [`PlcLine`] is the PLC at a line;
+//! - [`PlcLine`] is the PLC at a line, [`Resting`] a line that nobody uses;
 //! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
@@ -43,6 +43,7 @@ mod passive;
 mod plc_line;
 mod print_out;
 mod protocol;
+mod resting;
 mod settings;
 mod shared_port;
 pub mod standard;
@@ -60,5 +61,6 @@ pub use passive::{Passive, peripheral};
 pub use plc_line::PlcLine;
 pub use print_out::PrintOut;
 pub use protocol::{Event, Protocol, Question, Shown};
+pub use resting::Resting;
 pub use settings::{Mode, PATIENCE, Settings};
 pub use shared_port::{PlcHold, SharedPort};

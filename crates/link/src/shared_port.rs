@@ -37,6 +37,11 @@ impl PlcHold {
         held.line.assign(settings);
     }
 
+    /// Whether the PLC has the port.
+    pub fn is_assigned(&self) -> bool {
+        self.held().assigned
+    }
+
     /// The PLC wants a text to be sent.
     pub fn transmit(&self, text: &[u8]) {
         self.held().line.transmit(text);

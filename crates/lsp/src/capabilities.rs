@@ -34,6 +34,7 @@ pub(crate) fn offered() -> InitializeResult {
         })),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
             code_action_kinds: Some(vec![CodeActionKind::REFACTOR_REWRITE]),
+            resolve_provider: Some(true),
             ..CodeActionOptions::default()
         })),
         semantic_tokens_provider: Some(

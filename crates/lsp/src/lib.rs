@@ -24,12 +24,13 @@
 //! ```
 //!
 //! `server` is the loop, `requests` have a file for each kind of request. What a language knows stands behind the trait
-//! `Analysis` of `language`: part programs (`part`), PLC programs (`plc`), lists (`list`). One version of a document is
+//! `Analysis` of `language`: part programs (`part`), DIN 66025 (`din`), PLC programs (`plc`), lists (`list`). One version of a document is
 //! read once, when somebody asks; what takes long, as the run that finds the values of Q parameters, is done in the
 //! `background` and broken off when the text changes.
 
 mod background;
 mod capabilities;
+mod din;
 mod document;
 mod language;
 mod list;

@@ -30,6 +30,20 @@ fn din_iso() {
 }
 
 #[test]
+fn programs_are_converted() {
+    let (mut client, folder) = session();
+    script::conversions(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
+fn din_66025() {
+    let (mut client, folder) = session();
+    script::din(&mut client, folder.path());
+    client.end().ended().unwrap();
+}
+
+#[test]
 fn plc_programs() {
     let (mut client, folder) = session();
     script::plc(&mut client, folder.path());

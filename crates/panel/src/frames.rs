@@ -1,5 +1,9 @@
 //! First and last block of a program: they have its name, so they change with it.
 
+use std::ops::Range;
+
+use bahn_program::{IsoLanguage, Language, Operation};
+
 /// The text of a new file: a program has its frame, a table its columns.
 pub(crate) fn new_file(name: &str, inch: bool) -> String {
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
@@ -8,7 +12,7 @@ pub(crate) fn new_file(name: &str, inch: bool) -> String {
         "H" => format!("BEGIN PGM {stem} {unit}\nEND PGM {stem} {unit}\n"),
         "I" => {
             let unit = if inch { "G70" } else { "G71" };
-            format!("%{stem} {unit} *\nN99999999 %{stem} {unit} *\n")
+            format!("%{stem} {unit} *\nN99999 %{stem} {unit} *\n")
         }
         "D" => "NR\tX\tY\tZ\t4\t5\tDOC\n0\t0\t0\t0\t0\t0\t\n".to_owned(),
         "P" => "NR\tPGM\tDATUM\tDOC\n".to_owned(),
@@ -27,9 +31,16 @@ pub(crate) fn has_unit(name: &str) -> bool {
 /// The text of a program under another name.
 pub(crate) fn renamed(text: &[u8], name: &str) -> Vec<u8> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let is_iso = name.to_ascii_uppercase().ends_with(".I");
     let mut new = Vec::with_capacity(text.len());
+    let mut begun = false;
     for line in text.split_inclusive(|byte| *byte == b'\n') {
-        match frame_name(line) {
+        let place = match is_iso {
+            true => iso_frame_name(line, begun),
+            false => frame_name(line),
+        };
+        begun |= place.is_some();
+        match place {
             Some(at) => {
                 new.extend_from_slice(line.get(..at.start).unwrap_or_default());
                 new.extend_from_slice(stem.as_bytes());
@@ -42,21 +53,41 @@ pub(crate) fn renamed(text: &[u8], name: &str) -> Vec<u8> {
 }
 
 /// Where the name stands in a first or last block.
-fn frame_name(line: &[u8]) -> Option<std::ops::Range<usize>> {
+fn frame_name(line: &[u8]) -> Option<Range<usize>> {
     let number = line
         .iter()
-        .take_while(|byte| byte.is_ascii_digit() || matches!(byte, b' ' | b'N'))
+        .take_while(|byte| byte.is_ascii_digit() || **byte == b' ')
         .count();
     let rest = line.get(number..)?;
-    let before = [&b"BEGIN PGM "[..], b"END PGM ", b"%"]
+    let before = [&b"BEGIN PGM "[..], b"END PGM "]
         .into_iter()
         .find(|word| rest.starts_with(word))?
         .len();
-    let start = number + before;
+    name_at(line, number + before)
+}
+
+/// The same in DIN/ISO, where a program is called by its name, too: those of the frame have a unit behind it.
+fn iso_frame_name(line: &[u8], begun: bool) -> Option<Range<usize>> {
+    let text = String::from_utf8_lossy(line);
+    let read = IsoLanguage.parse_block(&text).block.operation;
+    if !matches!(read, Operation::Begin(_)) && (begun || !matches!(read, Operation::CallProgram(_))) {
+        return None;
+    }
+    let percent = line.iter().position(|byte| *byte == b'%')?;
+    let blanks = line
+        .get(percent + 1..)?
+        .iter()
+        .take_while(|byte| **byte == b' ')
+        .count();
+    name_at(line, percent + 1 + blanks)
+}
+
+/// The name that begins at a place.
+fn name_at(line: &[u8], start: usize) -> Option<Range<usize>> {
     let length = line
         .get(start..)?
         .iter()
-        .take_while(|byte| !byte.is_ascii_whitespace())
+        .take_while(|byte| !byte.is_ascii_whitespace() && **byte != b'*')
         .count();
     (length > 0).then_some(start..start + length)
 }
@@ -77,11 +108,13 @@ mod tests {
                 "0 BEGIN PGM 2A INCH P\r\n1 ; END PGM OLD\r\n2 END PGM 2A INCH P",
             ),
             (
-                "%7 G71 *\nN10 G00 X+1 *\nN99 %7 G71 *\n",
-                "%2A G71 *\nN10 G00 X+1 *\nN99 %2A G71 *\n",
+                // A program that is called keeps its name.
+                "%7 G71 *\nN10 %8 *\nN20 G00 X+1 *\nN99 % 7 G71*\n",
+                "%2A G71 *\nN10 %8 *\nN20 G00 X+1 *\nN99 % 2A G71*\n",
             ),
         ] {
-            assert_eq!(renamed(text.as_bytes(), "2A.H"), expected.as_bytes());
+            let name = if text.starts_with('%') { "2A.I" } else { "2A.H" };
+            assert_eq!(String::from_utf8_lossy(&renamed(text.as_bytes(), name)), expected);
         }
         assert_eq!(new_file("2A.H", true), "BEGIN PGM 2A INCH\nEND PGM 2A INCH\n");
     }

@@ -4,6 +4,8 @@ use bahn_dialogue::Key;
 use bahn_machine::KeyAction;
 use serde::{Deserialize, Serialize};
 
+use crate::transfer::TransferNews;
+
 /// Something that the operator does.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
@@ -37,6 +39,8 @@ pub enum Input {
     HandIn,
     /// What a script does: a command of the control or an event of the machine (docs/scripts.md).
     Deed(String),
+    /// What has happened at a data interface, told by whoever has its line.
+    Transfer(TransferNews),
 }
 
 /// Why an input was refused, in words.
@@ -102,6 +106,9 @@ pub struct InputText {
     /// A deed of a script.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deed: Option<String>,
+    /// What has happened at a data interface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transfer: Option<String>,
 }
 
 impl TryFrom<InputText> for Input {
@@ -110,6 +117,7 @@ impl TryFrom<InputText> for Input {
     fn try_from(text: InputText) -> Result<Input, Refusal> {
         let factor = text.factor.unwrap_or(3);
         let cycles = |cycles: u32| Input::Cycles(cycles.min(CYCLES_MAX));
+        let news = |text: String| text.parse().map(Input::Transfer).map_err(Refusal);
         let found = [
             text.key.map(|name| key(name, text.down)),
             text.text.map(Input::Text),
@@ -126,6 +134,7 @@ impl TryFrom<InputText> for Input {
                 .map(|name| Input::Lesson((!name.is_empty()).then_some(name))),
             text.hand_in.map(|_| Input::HandIn),
             text.deed.map(Input::Deed),
+            text.transfer.map(news).transpose()?,
         ];
         let mut found = found.into_iter().flatten();
         match (found.next(), found.next()) {
@@ -179,6 +188,7 @@ impl From<&Input> for InputText {
             Input::Lesson(name) => text.lesson = Some(name.clone().unwrap_or_default()),
             Input::HandIn => text.hand_in = Some(true),
             Input::Deed(deed) => text.deed = Some(deed.clone()),
+            Input::Transfer(news) => text.transfer = Some(news.to_string()),
         }
         text
     }
@@ -205,6 +215,7 @@ mod tests {
             r#"{"lesson":""}"#,
             r#"{"hand_in":true}"#,
             r#"{"deed":"fault drive X off"}"#,
+            r#"{"transfer":"received 15.H"}"#,
         ] {
             let read: InputText = serde_json::from_str(text).unwrap();
             let input = Input::try_from(read).unwrap();

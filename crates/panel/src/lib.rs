@@ -10,6 +10,7 @@
 //! - [`Reason`]s say what a standing machine waits for; [`Breakable`]s are what a teacher can break, a [`LessonRun`] is an
 //!   exercise;
 //! - [`SHORTCUTS`] say which key of a real keyboard does what;
+//! - [`TransferOrder`]s are what the operator wants of the data interfaces, [`TransferNews`] what happens there;
 //! - texts are in English in the sources, `texts/*.tsv` have the other languages.
 //!
 //! ```no_run
@@ -60,6 +61,7 @@ mod station;
 mod status;
 mod texts;
 mod timeline;
+mod transfer;
 mod why;
 mod wiring;
 
@@ -81,4 +83,5 @@ pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::{EMERGENCY_STOP, Station, load};
 pub use texts::{Language, around, filled, language_code, language_of_code, texts_around};
+pub use transfer::{TransferDeed, TransferNews, TransferOrder};
 pub use why::{Reason, Urgency};

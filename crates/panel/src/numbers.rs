@@ -13,7 +13,7 @@ pub(crate) fn of(snapshot: &Snapshot, control: &Control) -> Value {
                 "text": control.shown_text(shown),
                 "flashing": shown.flashing,
                 "t": shown.time_us as f64 / 1e6,
-                "block": shown.block.map(|block| block.block),
+                "block": shown.block.map(|block| control.first().number_of(block)),
             })
         })
         .collect();
@@ -23,7 +23,7 @@ pub(crate) fn of(snapshot: &Snapshot, control: &Control) -> Value {
         "run": run(snapshot.run),
         "ended": snapshot.ended,
         "program": snapshot.program,
-        "block": snapshot.block.map(|block| block.block),
+        "block": snapshot.block.map(|block| control.first().number_of(block)),
         "axes": snapshot.axes.iter().map(axis).collect::<Vec<_>>(),
         "feed": snapshot.feed_mm_min,
         "programmed_feed": snapshot.programmed_feed_mm_min,

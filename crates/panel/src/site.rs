@@ -12,6 +12,7 @@ use crate::plc_mode::PlcMode;
 use crate::programs::ProgramMemory;
 use crate::settings::Settings;
 use crate::texts::{self, Language};
+use crate::transfer::Transfers;
 
 /// The station as a page sees it: the machine that is on, its folder, the program memory and what the operator chose.
 pub(crate) struct Site<'a> {
@@ -21,6 +22,7 @@ pub(crate) struct Site<'a> {
     pub settings: &'a mut Settings,
     pub plc: &'a mut PlcMode,
     pub graphics: &'a mut Graphics,
+    pub transfers: &'a mut Transfers,
 }
 
 impl Site<'_> {

@@ -1,6 +1,7 @@
 //! The operator's station: a machine that is on, and its panel.
 
 mod teaching;
+mod transfers;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,6 +26,7 @@ use crate::session::Recorder;
 use crate::settings::Settings;
 use crate::site::Site;
 use crate::timeline::Past;
+use crate::transfer::Transfers;
 use crate::why::Waits;
 use crate::{colours, numbers, status, texts, why};
 
@@ -59,6 +61,7 @@ pub struct Station {
     lesson: Option<LessonRun>,
     plc: PlcMode,
     graphics: Graphics,
+    transfers: Transfers,
     shown: Screen,
 }
 
@@ -96,6 +99,7 @@ impl Station {
             waits: Waits::new(&machine),
             lesson: None,
             plc: PlcMode::default(),
+            transfers: Transfers::default(),
             shown: Screen::default(),
             host,
             machine,
@@ -177,6 +181,7 @@ impl Station {
             Input::Lesson(name) => self.begin_lesson(name.as_deref())?,
             Input::HandIn => self.hand_in(),
             Input::Deed(text) => self.deed(text)?,
+            Input::Transfer(news) => self.transfer_news(news),
         }
         Ok(())
     }
@@ -325,6 +330,7 @@ impl Station {
             settings: &mut self.settings,
             plc: &mut self.plc,
             graphics: &mut self.graphics,
+            transfers: &mut self.transfers,
         };
         (&mut self.console, site)
     }
@@ -412,7 +418,12 @@ impl Station {
         let line = |shown: &bahn_control::Shown| MessageLine {
             text: texts::translate(language, &control.shown_text(shown)),
             flashing: shown.flashing,
-            place: shown.block.map(|block| format!("{}", block.block)),
+            place: shown.block.map(|block| {
+                let channel = control.channel(shown.channel.unwrap_or(0));
+                channel
+                    .map_or(block.block, |channel| channel.number_of(block))
+                    .to_string()
+            }),
         };
         let shown = control.shown().iter().map(line);
         let notes = self.console.notes().iter().map(|note| MessageLine {

@@ -91,3 +91,15 @@ fn any_keys_in_the_parameter_editor() {
         hammer("PROGRAM MOD ENT 9 5 1 4 8 ENT", seed, 1000);
     }
 }
+
+/// Blocks of DIN/ISO are typed, changed and thrown away: 10,000 keys.
+#[test]
+fn any_keys_in_a_program_in_din_iso() {
+    for seed in 41..=45 {
+        hammer(
+            "PROGRAM PGM_NR 7 POINT I ENT ENT M 3 END X 5 END G 8 3 END DEL",
+            seed,
+            2000,
+        );
+    }
+}

@@ -130,6 +130,11 @@ fn no_device_answers() {
     trainee.press("CE");
     for mode in ["PROGRAM", "TEST", "FULL", "SINGLE"] {
         trainee.press(mode).press("EXT");
+        if mode == "PROGRAM" || mode == "TEST" {
+            // The menu, with PROGRAM DIRECTORY at the cursor.
+            assert_eq!(trainee.screen().program.title, "EXTERNAL DATA TRANSFER");
+            trainee.press("ENT");
+        }
         assert_eq!(trainee.messages(), ["EXT. OUTPUT/INPUT NOT READY"], "{mode}");
         trainee.press("CE");
     }
@@ -139,7 +144,7 @@ fn no_device_answers() {
     // In German, too.
     trainee.press("MANUAL MOD");
     trainee.down_to("DIALOGUE LANGUAGE");
-    trainee.press("ENT MOD PROGRAM EXT");
+    trainee.press("ENT MOD PROGRAM EXT ENT");
     assert_eq!(trainee.messages(), ["EXT. AUS-/EINGABE NICHT BEREIT"]);
     trainee.press("CE MOD");
     let lines = trainee.screen().program.lines;
@@ -149,25 +154,23 @@ fn no_device_answers() {
     );
 }
 
+/// PROGRAM INPUT says what a name without a type is [003:7104-7110].
 #[test]
-fn din_iso_is_refused_as_long_as_it_cannot_be_written() {
+fn program_input_chooses_the_language_of_new_programs() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     trainee.press("MOD");
     trainee.down_to("PROGRAM INPUT");
     assert_eq!(trainee.menu_value("PROGRAM INPUT"), "HEIDENHAIN");
     trainee.press("ENT");
-    let iso = bahn_program::FILE_TYPES
-        .iter()
-        .find(|own| own.extension == "I")
-        .unwrap();
-    match iso.language {
-        Some(_) => assert_eq!(trainee.menu_value("PROGRAM INPUT"), "ISO"),
-        None => {
-            assert_eq!(trainee.messages(), ["DIN/ISO PROGRAMS CANNOT BE ENTERED"]);
-            assert_eq!(trainee.menu_value("PROGRAM INPUT"), "HEIDENHAIN");
-        }
-    }
+    assert_eq!(trainee.menu_value("PROGRAM INPUT"), "ISO");
+    trainee.press("END PROGRAM PGM_NR 8 8 ENT ENT").wait(0.1);
+    assert_eq!(trainee.file("programs/88.I"), "%88 G71 *\nN99999 %88 G71 *\n");
+    assert_eq!(trainee.screen().program.title, "88.I");
+    // What is there is chosen, whatever the language.
+    trainee.write("programs/89.H", "BEGIN PGM 89 MM\nEND PGM 89 MM\n");
+    trainee.press("PGM_NR 8 9 ENT").wait(0.1);
+    assert_eq!(trainee.screen().program.title, "89.H");
 }
 
 /// MP7224.0 hides the files of a type, MP7224.1 protects them [000:6857-6880].

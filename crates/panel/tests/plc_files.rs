@@ -261,8 +261,8 @@ fn a_file_of_an_eprom_is_transferred_from_window_to_window() {
             "PAGE UP",
             "PAGE DOWN",
             "TRANSFER",
+            "TRANSFER TAGGED",
             "TRANSFER ALL",
-            "",
             "SELECT TYPE",
             "WINDOW",
             "END"
@@ -283,11 +283,36 @@ fn a_file_of_an_eprom_is_transferred_from_window_to_window() {
             .iter()
             .any(|line| line.split(" | ").next().unwrap().contains("EPROM 0"))
     );
-    // What is there stays; what is not is transferred.
+    // What is not there is transferred; what is there is asked for, and stays without ENT.
+    let main = trainee.file("plc/MAIN.PLC");
+    trainee.write("plc/MAIN.PLC", &format!("{main};mine\n"));
     std::fs::remove_file(trainee.folder().join("plc/MAIN.ER1")).unwrap();
     trainee.soft("TRANSFER ALL");
-    assert_eq!(last_message(&mut trainee), "MAIN.PLC: ENTRY VALUE INCORRECT");
+    let asked = "ERASE/OVERREAD MAIN.PLC: YES = ENT / NO = NO ENT";
+    assert_eq!(trainee.screen().dialogue.prompt, asked);
+    trainee.press("NO_ENT");
+    assert_eq!(last_message(&mut trainee), "1 FILES TRANSFERRED");
+    assert!(trainee.file("plc/MAIN.PLC").ends_with(";mine\n"));
     assert_eq!(trainee.file("plc/MAIN.ER1"), texts);
+    // Tagged files only: that of the EPROM behind those of the memory.
+    trainee.press("CE");
+    trainee.soft("TRANSFER TAGGED");
+    assert_eq!(last_message(&mut trainee), "KEY NON-FUNCTIONAL");
+    trainee.press("CE");
+    let count = trainee.screen().program.total;
+    for _ in 0..count {
+        trainee.press("DOWN");
+    }
+    while !lines(&mut trainee).iter().any(|line| line.contains("*MAIN.PLC")) {
+        trainee.soft("TAG");
+        trainee.press("UP UP");
+    }
+    trainee.soft("TRANSFER TAGGED");
+    while trainee.screen().dialogue.prompt.starts_with("ERASE/OVERREAD") {
+        trainee.press("ENT");
+    }
+    assert!(last_message(&mut trainee).ends_with("FILES TRANSFERRED"));
+    assert_eq!(trainee.file("plc/MAIN.PLC"), main);
     // A file of the memory lies in both windows.
     trainee.press("CE LEFT");
     trainee.soft("TRANSFER");
@@ -297,6 +322,34 @@ fn a_file_of_an_eprom_is_transferred_from_window_to_window() {
     trainee.soft("SELECT EXT");
     trainee.wait(0.1);
     assert_eq!(last_message(&mut trainee), "EXT. OUTPUT/INPUT NOT READY");
+}
+
+/// CL PGM erases a file when ENT says so; what the machine needs, and what is protected, stays.
+#[test]
+fn a_file_is_erased_by_its_key() {
+    let mut trainee = Trainee::at("mill");
+    trainee.write("plc/OLD.PLC", "  EM\n");
+    plc_mode(&mut trainee);
+    trainee.soft("EDIT");
+    trainee.down_to("OLD.PLC");
+    trainee.press("CL_PGM");
+    assert_eq!(
+        trainee.screen().dialogue.prompt,
+        "OLD.PLC: ERASE = ENT / END = NO ENT"
+    );
+    trainee.press("NO_ENT");
+    assert!(trainee.has("plc/OLD.PLC"));
+    trainee.soft("PROTECT");
+    trainee.press("CL_PGM ENT");
+    assert_eq!(last_message(&mut trainee), "PROTECTED PGM");
+    trainee.press("CE");
+    trainee.soft("UNPROTECT");
+    trainee.press("CL_PGM ENT").wait(0.1);
+    assert!(!trainee.has("plc/OLD.PLC"));
+    assert!(!lines(&mut trainee).iter().any(|line| line.contains("OLD")));
+    trainee.down_to("MAIN.PLC");
+    trainee.press("CL_PGM");
+    assert_eq!(last_message(&mut trainee), "PROTECTED PGM");
 }
 
 /// The lines of a program are checked, those of a list are not; COMPILE offers programs only.

@@ -103,6 +103,18 @@ fn correction_tables_are_edited_point_by_point() {
     assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
 }
 
+/// A machine without such a file says so.
+#[test]
+fn without_correction_tables_the_code_number_says_so() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM MOD ENT").number("105296").press("ENT");
+    assert_eq!(
+        trainee.messages(),
+        ["THE MACHINE HAS NO CORRECTION TABLES (.COM)"]
+    );
+}
+
 #[test]
 fn the_plane_of_the_swivel_axes_is_switched_by_hand() {
     let mut trainee = Trainee::at("gantry");

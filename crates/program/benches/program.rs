@@ -155,7 +155,7 @@ fn edit(bencher: Bencher, blocks: usize) {
 #[divan::bench(args = [100_000], sample_count = 20)]
 fn renumber(bencher: Bencher, blocks: usize) {
     let program = labelled(blocks);
-    bencher.bench_local(|| program.edit(&Edit::Renumber).ok());
+    bencher.bench_local(|| program.edit(&Edit::Renumber { step: 10 }).ok());
 }
 
 /// A program with a subprogram for every hundred blocks.

@@ -17,7 +17,7 @@ pub(crate) trait Bulk: Language {
     fn read_all(&self, text: &[u8], skip: usize, count: usize, may_begin: bool, blocks: &mut Vec<Block>);
 
     /// A text with other numbers before its blocks, from `first` on.
-    fn renumber(&self, text: &[u8], first: u32) -> Vec<u8>;
+    fn renumber(&self, text: &[u8], first: u32, step: u32) -> Vec<u8>;
 
     /// Cuts a file into pieces.
     fn survey(&self, file: &Arc<Vec<u8>>, start: usize) -> (Rope, Frame);
@@ -43,12 +43,12 @@ impl<L: Language> Bulk for L {
         }
     }
 
-    fn renumber(&self, text: &[u8], first: u32) -> Vec<u8> {
+    fn renumber(&self, text: &[u8], first: u32, step: u32) -> Vec<u8> {
         let mut new = Vec::with_capacity(text.len() + text.len() / 4);
         let mut copied = 0;
         for (number, raw) in (first..).zip(raw_blocks(self, text, 1)) {
             new.extend_from_slice(text.get(copied..raw.start).unwrap_or_default());
-            self.write_number(raw.text(text), number, &mut new);
+            self.write_number(raw.text(text), number, step, &mut new);
             copied = raw.end;
         }
         new.extend_from_slice(text.get(copied..).unwrap_or_default());

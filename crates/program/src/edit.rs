@@ -37,7 +37,11 @@ pub enum Edit<'a> {
         blocks: Range<u32>,
     },
     /// Writes the number of the normalised listing before every block.
-    Renumber,
+    Renumber {
+        /// What the numbers grow by in languages whose blocks have numbers of their own: MP7220, 0 for none
+        /// [000:6885].
+        step: u32,
+    },
     /// Protects the program against erasing and editing: a `P` behind its first and its last block [003:1019].
     Protect,
     /// Takes the protection away. The control asks for code number 86357 before [003:7028].
@@ -89,7 +93,7 @@ impl Program {
     /// assert_eq!(new.to_bytes(), b"BEGIN PGM 1 MM\nL X+5 R0 FMAX\nLBL 7\nEND PGM 1 MM\n");
     ///
     /// let protected = new.edit(&Edit::Protect)?;
-    /// assert_eq!(protected.edit(&Edit::Renumber).err(), Some(EditError::Protected));
+    /// assert_eq!(protected.edit(&Edit::Renumber { step: 1 }).err(), Some(EditError::Protected));
     /// # Ok::<(), EditError>(())
     /// ```
     pub fn edit(&self, edit: &Edit<'_>) -> Result<Program, EditError> {
@@ -105,7 +109,7 @@ impl Program {
                 self.replaced(*block..block.saturating_add(1), &self.own_blocks(text)?)
             }
             Edit::Delete { blocks } => self.replaced(blocks.clone(), ""),
-            Edit::Renumber => Ok(self.renumbered()),
+            Edit::Renumber { step } => Ok(self.renumbered(*step)),
             Edit::Protect => self.with_protection(true),
             Edit::Unprotect => self.with_protection(false),
         }
@@ -274,7 +278,7 @@ impl Program {
         self.language.refuses(raw.text(first.text()))
     }
 
-    fn renumbered(&self) -> Program {
+    fn renumbered(&self, step: u32) -> Program {
         let mut made = Vec::with_capacity(self.rope.pieces().len());
         for (index, piece) in self.rope.pieces().iter().enumerate() {
             if piece.blocks == 0 {
@@ -282,7 +286,7 @@ impl Program {
                 continue;
             }
             let (first, _) = self.rope.start(index);
-            made.push(piece.with_text(self.language.renumber(piece.text(), first)));
+            made.push(piece.with_text(self.language.renumber(piece.text(), first, step)));
         }
         let rope = self.rope.with_pieces(made);
         let frame = self.frame.clone();

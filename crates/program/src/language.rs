@@ -59,20 +59,21 @@ pub trait Language: fmt::Debug + Send + Sync {
     /// Writes a block as the normalised listing shows it, without number and line end.
     fn write(&self, block: &Block, options: FormatOptions, text: &mut String);
 
-    /// Appends a block's text with another number before it.
-    fn write_number(&self, text: BlockText<'_>, number: u32, new: &mut Vec<u8>);
+    /// Appends a block's text with another number before it; a language with numbers of its own multiplies it by the
+    /// step, and writes none with step 0.
+    fn write_number(&self, text: BlockText<'_>, number: u32, step: u32, new: &mut Vec<u8>);
 
     /// What stands before a block of the normalised listing, whose number there is `number`.
     fn write_line_number(&self, number: u32, block: &Block, options: FormatOptions, text: &mut String);
 
-    /// Whether reports call blocks by numbers that are programmed: [`Language::number`].
-    fn numbers_blocks(&self) -> bool {
-        false
-    }
-
     /// The number that a block is programmed with, where that is what its reports call it.
     fn number(&self, _text: BlockText<'_>) -> Option<u32> {
         None
+    }
+
+    /// Whether blocks have numbers of their own, which are part of the program: [`Language::number`].
+    fn has_numbers(&self) -> bool {
+        false
     }
 
     /// Most characters of a block, where the control counts them.

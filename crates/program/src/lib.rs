@@ -26,7 +26,7 @@
 //! let old = Program::from_bytes("7.H", b"0 BEGIN PGM 7 MM\n1 L X+5\n2 END PGM 7 MM\n".to_vec());
 //! let new = old.edit(&Edit::Insert { before: 1, text: "TOOL CALL 1 Z S500" })?;
 //! assert_eq!((old.block_count(), new.block_count()), (3, 4));
-//! assert_eq!(new.edit(&Edit::Renumber)?.text_of(2), "2 L X+5");
+//! assert_eq!(new.edit(&Edit::Renumber { step: 10 })?.text_of(2), "2 L X+5");
 //! # Ok::<(), bahn_program::EditError>(())
 //! ```
 //!

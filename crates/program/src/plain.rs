@@ -96,7 +96,7 @@ impl Language for PlainLanguage {
         write_block(block, options, text);
     }
 
-    fn write_number(&self, text: BlockText<'_>, number: u32, new: &mut Vec<u8>) {
+    fn write_number(&self, text: BlockText<'_>, number: u32, _step: u32, new: &mut Vec<u8>) {
         renumber(text.bytes, number, new);
     }
 

@@ -256,12 +256,58 @@ impl Program {
     /// What reports call a block: the number that it is programmed with, where its language has such numbers and it
     /// has one, else its number in the normalised listing.
     pub fn number_of(&self, block: u32) -> u32 {
-        if !self.language.numbers_blocks() {
-            return block;
+        self.own_number(block).unwrap_or(block)
+    }
+
+    /// The number that a block is programmed with, in a language whose blocks have numbers of their own.
+    pub fn own_number(&self, block: u32) -> Option<u32> {
+        if !self.language.has_numbers() {
+            return None;
         }
-        let place = self.place(block);
-        let number = place.and_then(|(piece, raw)| self.language.number(raw.text(piece.text())));
-        number.unwrap_or(block)
+        let (piece, raw) = self.place(block)?;
+        self.language.number(raw.text(piece.text()))
+    }
+
+    /// The first block that reports call so: [`Program::number_of`] backwards. A block that is programmed with the number
+    /// is before one that is only called by its place.
+    ///
+    /// ```
+    /// use bahn_program::Program;
+    ///
+    /// let text = "%7 G71 *\nN10 G00 X+1 *\nM3 *\nN40 M5 *\nN99999 %7 G71 *\n";
+    /// let program = Program::from_bytes("7.I", text.into());
+    /// assert_eq!((program.block_of(40), program.block_of(2), program.block_of(3)), (Some(3), Some(2), None));
+    /// ```
+    pub fn block_of(&self, number: u32) -> Option<u32> {
+        let own = match self.language.has_numbers() {
+            true => self.programmed_with(number),
+            false => None,
+        };
+        own.or_else(|| (number < self.block_count() && self.own_number(number).is_none()).then_some(number))
+    }
+
+    /// The first block that is programmed with a number.
+    fn programmed_with(&self, number: u32) -> Option<u32> {
+        let pieces = self.rope.pieces().iter().enumerate();
+        pieces
+            .filter(|(_, piece)| piece.blocks > 0)
+            .find_map(|(index, piece)| {
+                let (first, line) = self.rope.start(index);
+                let raws = self.places(piece, line);
+                let is_it = |raw: &RawBlock| self.language.number(raw.text(piece.text())) == Some(number);
+                Some(first + raws.iter().position(is_it)? as u32)
+            })
+    }
+
+    /// What stands before a block on a screen: `12`, or in a language whose blocks have numbers of their own `N120`, and
+    /// nothing where it has none.
+    pub fn shown_number(&self, block: u32) -> String {
+        match self.language.has_numbers() {
+            true => self
+                .own_number(block)
+                .map_or_else(String::new, |number| format!("N{number}")),
+            false => block.to_string(),
+        }
     }
 
     /// Line in the file where a block begins, from 1.

@@ -131,75 +131,7 @@ fn good() -> impl Strategy<Value = String> {
 }
 
 /// Blocks that are complete, each with what it is written like.
-const COMPLETE: &[&str] = &[
-    "G10 G40 R+5 H+30 F250 M3 M8",
-    "X+60 G91 Y-10",
-    "G01 G41 X+1 G90 Y+2 G91 Z+3 F200",
-    "I+5 J+6",
-    "G02 I+1 G91 J+2 X+3 G90 Y+4",
-    "T1 G17 S1000 DL+0.1 DR-0.1",
-    "T2 G17 G00 G40 G90 Z+50 M3",
-    "S500",
-    "G30 G17 X+0 Y+0 Z-20",
-    "G31 G90 X+100 Y+100 Z+0",
-    "G31 X+100 Y+100 Z+0",
-    "G99 T1 L+0 R+5",
-    "G51 T2",
-    "G24 R+5",
-    "G25 R+5 F100",
-    "G26 R+5",
-    "G27 R+5",
-    "G28",
-    "G28 X Y",
-    "G29",
-    "G04 F2.5",
-    "G36 S90",
-    "G37 P01 1 P02 12",
-    "G38 M9",
-    "G39 P01 PART.H",
-    "G53 P01 5",
-    "G54 X+5 G91 Y+6",
-    "G55 P01 10 P02 X- P03 X+5 P04 Y+0 P05 Z-5",
-    "G56 P01 -2 P02 -20 P03 -5 P04 100 P05 +1",
-    "G57 P01 -2 P02 -20 P03 -5 P04 100 P05 +1 P06 +30 P07 500",
-    "G58 P01 -2 P02 -20 P03 -5 P04 100 P05 500",
-    "G59 P01 -2 P02 -20 P03 -5 P04 100 P05 500",
-    "G72 F0.98",
-    "G73 H+45",
-    "G73 G91 H-45",
-    "G74 P01 -2 P02 -20 P03 -5 P04 100 P05 X+50 P06 Y+10 P07 200",
-    "G75 P01 -2 P02 -20 P03 -5 P04 100 P05 X+50 P06 Y+30 P07 200",
-    "G76 P01 -2 P02 -20 P03 -5 P04 100 P05 X+50 P06 Y+30 P07 200 P08 5",
-    "G77 P01 -2 P02 -20 P03 -5 P04 100 P05 35 P06 200",
-    "G78 P01 -2 P02 -20 P03 -5 P04 100 P05 35 P06 200",
-    "G79",
-    "G79 M3",
-    "G80 A+0 B+45",
-    "G83 P01 -2 P02 -20 P03 -5 P04 0.5 P05 80",
-    "G84 P01 -2 P02 -20 P03 0.5 P04 80",
-    "G85 P01 -2 P02 -20 P03 +1",
-    "G86 P01 -20 P02 +1",
-    "G98 L1",
-    "G98 L0",
-    "L1,0",
-    "L1,5",
-    "%NAME",
-    "D00 Q5 P01 +60",
-    "D01 Q1 P01 +Q2 P02 -5",
-    "D09 P01 +Q1 P02 +3 P03 5",
-    "D13 Q1 P01 +1 P02 -Q3",
-    "D14 P01 5",
-    "D15 P01 1 P02 Q5",
-    "D19 P01 +10 P02 +Q3",
-    "D68 P01 +8 P02 +40 P07 +100",
-    "Q1 = SIN 30 + 2 * Q8",
-    "G121 Q10=+5 Q11=+150 Q13=+0",
-    "G200 Q200=+2 Q201=-20",
-    "M8",
-    "; only a comment",
-    "X+5 ; with a comment",
-    "/ X+5",
-];
+const COMPLETE: &str = include_str!("data/complete-iso.txt");
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
@@ -218,7 +150,7 @@ proptest! {
     }
 
     #[test]
-    fn complete_blocks_read_back(picks in prop::collection::vec(select(COMPLETE), 1..30)) {
+    fn complete_blocks_read_back(picks in prop::collection::vec(select(COMPLETE.lines().collect::<Vec<_>>()), 1..30)) {
         let text = format!("%7 G71 *\n{} *\nN99999 %7 G71 *\n", picks.join(" *\n"));
         let program = read(text.clone());
         prop_assert!(program.blocks().all(|b| !matches!(b.block.operation, Operation::Invalid(_))), "{}", text);
@@ -239,10 +171,10 @@ proptest! {
 /// What a complete block is written like is what it was; the step of its number is that of MP7220.
 #[test]
 fn listings_are_normal() {
-    let text: String = COMPLETE.iter().map(|block| format!("{block} *\n")).collect();
+    let text: String = COMPLETE.lines().map(|block| format!("{block} *\n")).collect();
     let program = read(format!("%7 G71 *\n{text}N99999 %7 G71 *\n"));
     let listing = format_program(&program, POINT).to_string();
-    for (number, (block, line)) in (1..).zip(COMPLETE.iter().zip(listing.lines().skip(1))) {
+    for (number, (block, line)) in (1..).zip(COMPLETE.lines().zip(listing.lines().skip(1))) {
         assert_eq!(line, format!("N{} {block} *", number * 10));
     }
     let bare = FormatOptions { iso_step: 0, ..POINT };
@@ -401,4 +333,57 @@ fn open_words_take_what_is_in_force() {
     };
     assert_eq!(incremental(Distance::Absolute), [false, false]);
     assert_eq!(incremental(Distance::Incremental), [true, false]);
+}
+
+#[test]
+fn numbers_are_written_anew_by_the_step_of_mp7220() {
+    let program = read("%7 G71 *\nN3 T1 G17 S500 *\nX+5 *\n/ N9 M3 *\nN99 %7 G71 *\n");
+    let numbered = |step| {
+        let new = program.edit(&Edit::Renumber { step }).unwrap();
+        String::from_utf8(new.to_bytes()).unwrap()
+    };
+    assert_eq!(
+        numbered(5),
+        "%7 G71 *\nN5 T1 G17 S500 *\nN10 X+5 *\nN15 / M3 *\nN99999 %7 G71 *\n"
+    );
+    assert_eq!(
+        numbered(0),
+        "%7 G71 *\nT1 G17 S500 *\nX+5 *\n/ M3 *\nN99999 %7 G71 *\n"
+    );
+    // Four blocks behind the first in steps of 30,000 reach what the last is called else.
+    assert!(numbered(30_000).ends_with("N99999999 %7 G71 *\n"));
+}
+
+#[test]
+fn blocks_are_found_by_their_numbers() {
+    let program = read("%7 G71 *\nN3 M3 *\nX+5 *\nN9 M5 *\nN9 M8 *\nN99999 %7 G71 *\n");
+    let shown: Vec<_> = (0..program.block_count())
+        .map(|block| program.shown_number(block))
+        .collect();
+    assert_eq!(shown, ["", "N3", "", "N9", "N9", "N99999"]);
+    assert_eq!(program.block_of(9), Some(3));
+    // A block without a number is called by its place; 4 is the place of a block that has one.
+    assert_eq!((program.block_of(2), program.block_of(4)), (Some(2), None));
+    let long: String = (1..=1000)
+        .map(|block| format!("N{} X+{block} *\n", block * 7))
+        .collect();
+    let long = read(format!("%7 G71 *\n{long}N99999 %7 G71 *\n"));
+    for block in [1, 255, 256, 257, 999, 1000] {
+        assert_eq!(long.block_of(block * 7), Some(block));
+    }
+}
+
+/// A `~`, which joins nothing here, hides no `*` before it.
+#[test]
+fn a_name_ends_before_star_and_tilde() {
+    for text in [
+        &b"% *\x07\0\x08~"[..],
+        b"%7 G71\nN10 %8 * ~ *~\nN99 %7 G71",
+        b"%~*",
+    ] {
+        check_laws(text);
+    }
+    let program = read("%7 G71 *\nN10 %8 * ~\nN99 %7 G71 *\n");
+    let called = program.decode(0).blocks[1].operation.clone();
+    assert_eq!(called, Operation::CallProgram("8".into()));
 }

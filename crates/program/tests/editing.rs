@@ -104,7 +104,7 @@ fn apply(program: &Program, random: &Random) -> Option<Program> {
             )
         }
         Random::Renumber => {
-            let renumbered = program.edit(&Edit::Renumber).ok()?;
+            let renumbered = program.edit(&Edit::Renumber { step: 10 }).ok()?;
             let without_places = |program| blocks(program).into_iter().map(without_place).collect::<Vec<_>>();
             assert_eq!(without_places(&renumbered), without_places(program));
             let in_file = |number: &u32| !renumbered.text_of(*number).is_empty();
@@ -213,7 +213,7 @@ fn who_runs_a_version_keeps_it() {
     let new = old.edit(&Edit::Delete { blocks: 1..2 }).unwrap();
     assert_eq!((old.label(5), new.label(5)), (Some(2), Some(1)));
     assert_eq!(old.block_count(), 5);
-    let renumbered = new.edit(&Edit::Renumber).unwrap();
+    let renumbered = new.edit(&Edit::Renumber { step: 10 }).unwrap();
     let expected = "0 BEGIN PGM 1 MM\n1 LBL 5\n2 LBL 0\n3 END PGM 1 MM\n";
     assert_eq!(String::from_utf8(renumbered.to_bytes()).unwrap(), expected);
 }
@@ -268,7 +268,7 @@ fn protection() {
             block: 1,
             text: "L Y+1",
         },
-        Edit::Renumber,
+        Edit::Renumber { step: 10 },
         Edit::Protect,
     ];
     for edit in refused {

@@ -144,5 +144,8 @@ export function draw([machine, lamps]) {
     setText(input.nextElementSibling, `${Math.round(machine.knobs[place])} %`);
   }
   const select = panel.querySelector(".speed select");
-  if (document.activeElement !== select) select.value = String(machine.speed);
+  const factor = String(machine.speed);
+  // A factor of the command line or of a program may be none of those that are offered.
+  if (![...select.options].some((option) => option.value === factor)) select.append(new Option(`${factor} ×`, factor));
+  if (document.activeElement !== select) select.value = factor;
 }

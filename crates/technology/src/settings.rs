@@ -248,15 +248,9 @@ impl Default for MicroJoint {
     }
 }
 
-/// Measuring an edge between G108 and G107, with `MNE_SNS` [004:69] (public: its parameters).
+/// Measuring an edge between G108 and G107, with `MNE_SNS` [004:69] (public: its parameter).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EdgeBanding {
     /// P-CHAN-00030: distance to go behind the measuring event, 0.1 µm; `V.G.RW` changes it.
     pub residual_path: u32,
-    /// P-CHAN-00029: the event may come in any block up to G107, not only in that of the function.
-    pub several_blocks: bool,
-    /// P-CHAN-00149: the rest of the block is not travelled behind the acknowledgement.
-    pub reject_rest: bool,
-    /// P-CHAN-00153: one G108 holds for several measurements, each by its function.
-    pub remain_active: bool,
 }

@@ -29,8 +29,8 @@ pub(crate) enum ChannelCommand {
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
-  bahn channel check examples/technology/glue.lis
-  bahn channel check examples/technology/glue.lis --format json
+  bahn channel check glue.lis
+  bahn channel check glue.lis --format json
 
 A line of a list is a name and a value: `m_synch[25] 0x00000002 MVS_SVS`. Values are decimal, 0x
 hexadecimal, names, or constants joined by |: `PLC_INFO | MVS_SVS`. # and ; begin comments, what stands
@@ -54,7 +54,7 @@ Examples:
 
 const NEW_EXAMPLES: &str = "\
 Examples:
-  bahn channel new -o laser.lis
+  bahn channel new -o my.lis
   bahn channel new | less
 
 All lines are commented out: the list is that of a channel without an entry.";

@@ -6,6 +6,7 @@
 //! - `dnc`: programs that are executed while they are transferred, from both sides;
 //! - `backup`: all of a machine as one file; `print`: a picture on a printer;
 //! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones, `plc_lines` its PLC at them;
+//! - `panel_ports`: the interfaces of an operating panel;
 //! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
 //!   its log book, `lsv2_screen` its screen as a picture.
 
@@ -19,6 +20,7 @@ mod lsv2_log;
 mod lsv2_screen;
 mod monitor;
 mod options;
+mod panel_ports;
 mod plc_lines;
 mod port;
 mod print;
@@ -28,6 +30,7 @@ mod trace;
 mod transfer;
 
 pub(crate) use options::LinkOptions;
+pub(crate) use panel_ports::{ConnectedPorts, PanelPorts, RunningPorts};
 
 use crate::{Outcome, UsageError};
 use options::LinkCommand;

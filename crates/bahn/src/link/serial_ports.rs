@@ -13,7 +13,6 @@ use bahn_link::{Channel, Line, Passive, PlcHold, Protocol, Settings, SharedPort,
 use bahn_parameters::{MessageId, ParameterList};
 
 use super::desk::{Answer, Desk, Until};
-use super::options::ServeOptions;
 use super::plc_lines::PlcPort;
 use super::port::{self, Refused};
 use super::trace::Trace;
@@ -29,8 +28,7 @@ const PORTS: [(&str, &str, &str); 2] = [
 const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
 
 /// The ports that are named.
-pub(super) fn specs(options: &ServeOptions) -> Result<Vec<(usize, Spec)>, Refused> {
-    let named = [&options.rs232, &options.rs422];
+pub(super) fn specs(named: [Option<&String>; 2]) -> Result<Vec<(usize, Spec)>, Refused> {
     let mut specs = Vec::new();
     for (number, text) in named.into_iter().enumerate() {
         if let (Some(text), Some((option, ..))) = (text, PORTS.get(number)) {
@@ -42,13 +40,15 @@ pub(super) fn specs(options: &ServeOptions) -> Result<Vec<(usize, Spec)>, Refuse
 
 /// A port that is open.
 pub(super) struct Port {
-    number: usize,
+    pub number: usize,
+    /// How it is written.
+    pub spec: Spec,
     settings: Settings,
-    channel: Channel,
+    pub channel: Channel,
     /// Where it can be reached from elsewhere.
     reached: Option<SocketAddr>,
     /// As the PLC may have it.
-    plc: PlcPort,
+    pub plc: PlcPort,
 }
 
 /// The ports as the PLC may have them: RS-232-C and RS-422.
@@ -86,6 +86,7 @@ pub(super) fn open(specs: &[(usize, Spec)], list: &ParameterList) -> Result<Vec<
         let settings = port::settings(list, spec);
         ports.push(Port {
             number: *number,
+            spec: spec.clone(),
             settings,
             channel: port::open(spec, &settings)?,
             plc: PlcPort {
@@ -153,6 +154,7 @@ impl Serving {
 fn answer_on(port: Port, site: &Arc<Site>, answer: Answer, stop: &AtomicBool, trace: &Mutex<Trace>) {
     let Port {
         number,
+        spec: _,
         settings,
         mut channel,
         reached,

@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(10);
 /// Switches the machine on and answers until Ctrl-C.
 pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
     let (lsv2, passwords) = lsv2_options(options)?;
-    let Ok(specs) = serial_ports::specs(options) else {
+    let Ok(specs) = serial_ports::specs([options.rs232.as_ref(), options.rs422.as_ref()]) else {
         return Ok(Outcome::ProgramError);
     };
     let machine = match machine_folder::load(&options.machine)? {

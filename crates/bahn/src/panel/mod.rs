@@ -15,6 +15,7 @@ use bahn_panel::{Input, Live, Replay, Station};
 use bahn_server::{Server, ServerOptions};
 
 use crate::interrupt::Interrupt;
+use crate::link::{ConnectedPorts, PanelPorts, RunningPorts};
 use crate::{Outcome, UsageError, diagnostics, files, machine_folder};
 
 /// How often Ctrl-C is looked for.
@@ -56,6 +57,10 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
         }
     };
     let name = machine.folder.name.clone();
+    let named = [options.rs232.as_ref(), options.rs422.as_ref()];
+    let Some(ports) = PanelPorts::open(named, &machine)? else {
+        return Ok(Outcome::ProgramError);
+    };
     let mut station = Station::power_on(machine).map_err(in_use)?;
     station
         .input(&Input::Speed(options.speed))
@@ -63,8 +68,9 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     if let Some(path) = &options.record {
         station.record(path).map_err(UsageError::new)?;
     }
+    let ports = ports.connect(&mut station, options.print.as_deref())?;
     let interrupt = Interrupt::on_ctrl_c();
-    let desk = Desk::open(begin(station, options)?, served)?;
+    let desk = Desk::open(begin(station, options)?, served, ports)?;
     if let Some(address) = desk.page(options) {
         let ends = match options.in_the_terminal() {
             true => "",
@@ -89,32 +95,40 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     shown.map(|()| Outcome::Fine)
 }
 
-/// A station that runs, with a server or without.
-enum Desk {
+/// A station that runs, with its data interfaces.
+struct Desk {
+    front: Front,
+    ports: RunningPorts,
+}
+
+/// With a server or without.
+enum Front {
     Served(Server),
     Alone(Live),
 }
 
 impl Desk {
-    fn open(live: Live, served: Option<ServerOptions>) -> Result<Desk, UsageError> {
-        match served {
+    fn open(live: Live, served: Option<ServerOptions>, ports: ConnectedPorts) -> Result<Desk, UsageError> {
+        let ports = ports.start(&live)?;
+        let front = match served {
             Some(served) => Server::start(live, served)
-                .map(Desk::Served)
-                .map_err(|error| UsageError::new(error.to_string())),
-            None => Ok(Desk::Alone(live)),
-        }
+                .map(Front::Served)
+                .map_err(|error| UsageError::new(error.to_string()))?,
+            None => Front::Alone(live),
+        };
+        Ok(Desk { front, ports })
     }
 
     fn live(&self) -> &Live {
-        match self {
-            Desk::Served(server) => server.live(),
-            Desk::Alone(live) => live,
+        match &self.front {
+            Front::Served(server) => server.live(),
+            Front::Alone(live) => live,
         }
     }
 
     /// Where a browser finds the page, with the token.
     fn page(&self, options: &PanelOptions) -> Option<String> {
-        let Desk::Served(server) = self else {
+        let Front::Served(server) = &self.front else {
             return None;
         };
         let address = server.address();
@@ -130,9 +144,10 @@ impl Desk {
         recorded
             .map_err(|refusal| UsageError::new(refusal.to_string()))?
             .map_err(UsageError::new)?;
-        match self {
-            Desk::Served(server) => server.end(),
-            Desk::Alone(live) => live.end(),
+        self.ports.end();
+        match self.front {
+            Front::Served(server) => server.end(),
+            Front::Alone(live) => live.end(),
         }
         .map_err(UsageError::new)
     }

@@ -11,6 +11,7 @@ Examples:
   bahn panel --terminal                               the mill, in this terminal; ? shows the keys
   bahn panel --machine machines/mill-tnc360 --speed 5
       Another machine; time passes five times as fast.
+  bahn panel --rs232 serial:/dev/ttyUSB0             EXT reads programs in and out there (docs/link.md)
   bahn panel --listen 0.0.0.0:8155 --token SECRET     for others, too; they need the token once
   bahn panel --machine machines/mill --record session.jsonl
       Keeps what is done in a file ...
@@ -46,6 +47,16 @@ pub(crate) struct PanelOptions {
     /// So many times as fast as the clock on the wall, 0.1 to 100.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed)]
     pub speed: f64,
+    /// What is connected to RS-232-C/V.24, for the key EXT and the PLC: tcp:ADDR:PORT, connect:ADDR:PORT, pty:LINK,
+    /// serial:NAME (docs/link.md). Which device that is, MOD says.
+    #[arg(long, value_name = "SPEC")]
+    pub rs232: Option<String>,
+    /// The same for RS-422/V.11.
+    #[arg(long, value_name = "SPEC")]
+    pub rs422: Option<String>,
+    /// Where FN15 prints: rs232, rs422, or a file to which lines are added.
+    #[arg(long, value_name = "WHERE")]
+    pub print: Option<String>,
     /// Keeps every input with its time in a new file.
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,

@@ -82,7 +82,7 @@ impl Listed {
             text: control.shown_text(shown),
             place,
             flashing: shown.flashing,
-            block: block.map(|block| channel.map_or(block.block, |channel| number_of(channel, block))),
+            block: block.map(|block| channel.map_or(block.block, |channel| channel.number_of(block))),
             program,
         });
     }
@@ -100,15 +100,9 @@ impl Listed {
                 Why::Stop => stop_name(control, block),
                 Why::Routine | Why::ToolChange => "tool change",
             },
-            block: block.map_or(0, |block| number_of(control, block)),
+            block: block.map_or(0, |block| control.number_of(block)),
         });
     }
-}
-
-/// What reports call a block.
-fn number_of(control: ChannelView, block: BlockRef) -> u32 {
-    let program = control.interpreter().and_then(|run| run.program(block.program));
-    program.map_or(block.block, |program| program.number_of(block.block))
 }
 
 /// Name of the program of a block.

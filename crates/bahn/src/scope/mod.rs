@@ -14,7 +14,7 @@ mod step;
 mod summary;
 mod table;
 
-pub(crate) use options::{EXAMPLES, ScopeOptions};
+pub(crate) use options::{EXAMPLES, Picture, ScopeOptions, picture};
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,6 @@ use crate::files::{self, NewFile};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 use lanes::Drawing;
-use options::Picture;
 use sheet::Sheet;
 use summary::Summary;
 use table::Table;
@@ -141,7 +140,8 @@ impl Recordings {
     }
 }
 
-fn write(sheet: &Sheet, picture: &Picture) -> Result<(), UsageError> {
+/// Writes a sheet as its name says.
+pub(crate) fn write(sheet: &Sheet, picture: &Picture) -> Result<(), UsageError> {
     let (Picture::Svg(path) | Picture::Png(path)) = picture;
     let mut bytes = Vec::new();
     match picture {

@@ -1,6 +1,6 @@
 //! Options and help texts of `bahn scope`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bahn_control::split_channel;
 use clap::{Args, ValueHint};
@@ -117,7 +117,15 @@ pub(crate) enum Picture {
     Png(PathBuf),
 }
 
-fn picture(text: &str) -> Result<Picture, String> {
+impl Picture {
+    /// Where it is written.
+    pub fn path(&self) -> &Path {
+        let (Picture::Svg(path) | Picture::Png(path)) = self;
+        path
+    }
+}
+
+pub(crate) fn picture(text: &str) -> Result<Picture, String> {
     let path = PathBuf::from(text);
     match files::extension(&path).as_str() {
         "svg" => Ok(Picture::Svg(path)),

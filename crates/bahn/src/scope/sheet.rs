@@ -9,6 +9,11 @@ const HALF_CAPITALS: f64 = 0.31;
 
 /// What is drawn. Places are pixels from the upper left corner.
 enum Shape {
+    Area {
+        min: [f64; 2],
+        max: [f64; 2],
+        colour: Colour,
+    },
     Frame {
         min: [f64; 2],
         max: [f64; 2],
@@ -51,6 +56,11 @@ impl Sheet {
 
     pub fn height(&self) -> f64 {
         f64::from(self.height)
+    }
+
+    /// A filled rectangle.
+    pub fn area(&mut self, min: [f64; 2], max: [f64; 2], colour: Colour) {
+        self.shapes.push(Shape::Area { min, max, colour });
     }
 
     pub fn frame(&mut self, min: [f64; 2], max: [f64; 2], colour: Colour) {
@@ -117,6 +127,15 @@ impl Sheet {
 impl Shape {
     fn svg(&self, svg: &mut String) -> std::fmt::Result {
         match self {
+            Shape::Area { min, max, colour } => writeln!(
+                svg,
+                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{}\"/>",
+                min[0],
+                min[1],
+                max[0] - min[0],
+                max[1] - min[1],
+                hex(*colour)
+            ),
             Shape::Frame { min, max, colour } => writeln!(
                 svg,
                 "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"none\" stroke=\"{}\"/>",
@@ -170,6 +189,7 @@ impl Shape {
 
     fn paint(&self, image: &mut Image) {
         match self {
+            Shape::Area { min, max, colour } => image.rectangle(*min, *max, *colour),
             Shape::Frame { min, max, colour } => {
                 let corners = [*min, [max[0], min[1]], *max, [min[0], max[1]], *min];
                 image.outline(&corners, 1.0, *colour);
@@ -214,7 +234,7 @@ fn escaped(text: &str) -> String {
 }
 
 /// Round values between two, `count` of them or fewer.
-pub(super) fn ticks(from: f64, to: f64, count: f64) -> Vec<f64> {
+pub(crate) fn ticks(from: f64, to: f64, count: f64) -> Vec<f64> {
     let span = (to - from).max(1e-9);
     let rough = span / count.max(1.0);
     let power = 10f64.powf(rough.log10().floor());

@@ -9,6 +9,8 @@ pub(crate) enum Kind {
     Plain,
     /// DIN/ISO, `.I`.
     Iso,
+    /// DIN 66025, `.nc`.
+    Din,
     /// A program of the PLC, `.PLC`.
     Plc,
     /// A list of machine parameters, `.MP`.
@@ -16,9 +18,10 @@ pub(crate) enum Kind {
 }
 
 /// Names that editors give to the languages, and endings of files.
-const NAMES: [(&str, &str, Kind); 4] = [
+const NAMES: [(&str, &str, Kind); 5] = [
     ("tnc-plain", "h", Kind::Plain),
     ("tnc-iso", "i", Kind::Iso),
+    ("din-66025", "nc", Kind::Din),
     ("tnc-plc", "plc", Kind::Plc),
     ("tnc-parameters", "mp", Kind::Parameters),
 ];

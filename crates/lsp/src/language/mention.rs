@@ -14,6 +14,10 @@ pub(crate) enum Thing {
     Tool(u32),
     /// A part program, or a source file.
     File(String),
+    /// A subroutine of the file.
+    Subroutine(String),
+    /// A variable or parameter of DIN 66025.
+    Variable(String),
     /// A label of a PLC program.
     PlcLabel(String),
     /// An operand of the PLC.

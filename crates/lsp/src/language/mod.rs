@@ -55,8 +55,13 @@ pub(crate) trait Analysis: Send + Sync {
     fn can_rename(&self, thing: &Thing) -> bool;
 
     /// What can be made of the text.
-    fn conversions(&self, _world: &World) -> Vec<Conversion> {
+    fn targets(&self) -> Vec<Target> {
         Vec::new()
+    }
+
+    /// The text in the language of a target, or why not.
+    fn converted(&self, _target: &str, _world: &World) -> Result<Conversion, String> {
+        Err("nothing can be made of this text".to_owned())
     }
 
     /// The words of the text by kind.
@@ -72,6 +77,7 @@ pub(crate) fn analyse(
 ) -> Arc<dyn Analysis> {
     match kind {
         Kind::Plain | Kind::Iso => Arc::new(crate::part::PartProgram::new(path, text, world)),
+        Kind::Din => Arc::new(crate::din::DinProgram::new(path, text)),
         Kind::Plc => Arc::new(crate::plc::PlcSource::new(path, text, world)),
         Kind::Parameters => Arc::new(crate::list::ParameterText::new(path, text, world)),
     }
@@ -207,10 +213,17 @@ pub(crate) struct Completion {
     pub(crate) snippet: String,
 }
 
+/// A language that a text can be converted to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target {
+    pub(crate) id: &'static str,
+    /// What the action says.
+    pub(crate) title: &'static str,
+}
+
 /// The text in another language.
 #[derive(Clone, Debug)]
 pub(crate) struct Conversion {
-    pub(crate) title: String,
     /// Name of the file beside this one.
     pub(crate) file_name: String,
     pub(crate) text: String,

@@ -1,6 +1,7 @@
 //! Part programs: plain language and DIN/ISO.
 
 mod complete;
+mod convert;
 mod examine;
 mod hover;
 mod mentions;
@@ -19,7 +20,7 @@ use bahn_program::{
 };
 
 use crate::language::{
-    Analysis, Completion, Elsewhere, Examined, Fold, Hover, Mention, Symbol, Thing, Token,
+    Analysis, Completion, Conversion, Elsewhere, Examined, Fold, Hover, Mention, Symbol, Target, Thing, Token,
 };
 use crate::text::Text;
 use crate::world::World;
@@ -222,6 +223,14 @@ impl Analysis for PartProgram {
         Ok(places
             .map(|place| (place.range.clone(), number.to_string()))
             .collect())
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        convert::targets(self)
+    }
+
+    fn converted(&self, target: &str, world: &World) -> Result<Conversion, String> {
+        convert::converted(self, target, world)
     }
 
     fn tokens(&self) -> Vec<(Range<usize>, Token)> {

@@ -1,6 +1,7 @@
 //! Instructions, labels, modules and operands with a name.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use bahn_exchange::signal::{self, SignalOperand};
 use bahn_plc::{instructions, modules};
@@ -20,75 +21,84 @@ pub(super) fn completions(source: &PlcSource, at: usize, world: &World) -> Vec<C
     if before.contains(';') {
         return Vec::new();
     }
-    let front = before.trim_start();
     let range = match word_at(&source.text.text, at, "") {
         Some(word) if word.start >= line.start => word.start..word.end.min(line.end).max(at),
         _ => at..at,
     };
-    let item = |label: String, detail: String, kind: CompletionKind, snippet: String| Completion {
-        label,
-        detail,
+    let front = before.trim_start().split_once(char::is_whitespace);
+    let command = front.map(|(command, _)| command.to_ascii_uppercase());
+    match command.as_deref() {
+        None => commands(&range),
+        Some("USES") => files(source, world, &range),
+        Some(command) if GOING.contains(&command) => places(source, command, &range),
+        Some(_) => operands(&range),
+    }
+}
+
+fn item(range: &Range<usize>, kind: CompletionKind, label: &str, detail: &str) -> Completion {
+    Completion {
+        label: label.to_owned(),
+        detail: detail.to_owned(),
         documentation: String::new(),
         kind,
         range: range.clone(),
-        snippet,
-    };
-    let Some((command, _)) = front.split_once(char::is_whitespace) else {
-        let mut names = BTreeSet::new();
-        let forms = instructions().filter(|form| names.insert(form.instruction));
-        return forms
-            .map(|form| Completion {
-                documentation: instruction(form.instruction),
-                ..item(
-                    form.instruction.to_owned(),
-                    form.does.to_owned(),
-                    CompletionKind::Word,
-                    form.instruction.into(),
-                )
-            })
-            .collect();
-    };
-    let command = command.to_ascii_uppercase();
-    if command == "USES" {
-        let names = source
-            .path
-            .parent()
-            .map(|folder| world.files.names(folder))
-            .unwrap_or_default();
-        let sources = names
-            .into_iter()
-            .filter(|name| name.to_ascii_lowercase().ends_with(".plc"));
-        return sources
-            .map(|name| item(name.clone(), String::new(), CompletionKind::File, name))
-            .collect();
+        snippet: label.to_owned(),
     }
-    if GOING.contains(&command.as_str()) {
-        let set = source
-            .mentions()
-            .iter()
-            .filter(|mention| mention.role == Role::Sets);
-        let labels: BTreeSet<&str> = set
-            .filter_map(|mention| match &mention.thing {
-                Thing::PlcLabel(name) => Some(name.as_str()),
-                _ => None,
-            })
-            .collect();
-        let labels = labels.into_iter();
-        let labels = labels.map(|name| item(name.into(), "label".into(), CompletionKind::Label, name.into()));
-        let internal = modules()
-            .iter()
-            .filter(|_| command.starts_with("CM"))
-            .map(|module| {
-                let number = module.number.to_string();
-                item(
-                    number.clone(),
-                    module.name.to_owned(),
-                    CompletionKind::Function,
-                    number,
-                )
-            });
-        return labels.chain(internal).collect();
-    }
+}
+
+/// All instructions, each with what its first form does.
+fn commands(range: &Range<usize>) -> Vec<Completion> {
+    let mut names = BTreeSet::new();
+    let forms = instructions().filter(|form| names.insert(form.instruction));
+    forms
+        .map(|form| Completion {
+            documentation: instruction(form.instruction),
+            ..item(range, CompletionKind::Word, form.instruction, form.does)
+        })
+        .collect()
+}
+
+/// Source files of the folder.
+fn files(source: &PlcSource, world: &World, range: &Range<usize>) -> Vec<Completion> {
+    let folder = source.path.parent();
+    let names = folder.map(|folder| world.files.names(folder)).unwrap_or_default();
+    let sources = names
+        .iter()
+        .filter(|name| name.to_ascii_lowercase().ends_with(".plc"));
+    sources
+        .map(|name| item(range, CompletionKind::File, name, ""))
+        .collect()
+}
+
+/// Labels of the file, and behind CM the modules of the control.
+fn places(source: &PlcSource, command: &str, range: &Range<usize>) -> Vec<Completion> {
+    let set = source
+        .mentions()
+        .iter()
+        .filter(|mention| mention.role == Role::Sets);
+    let labels: BTreeSet<&str> = set
+        .filter_map(|mention| match &mention.thing {
+            Thing::PlcLabel(name) => Some(name.as_str()),
+            _ => None,
+        })
+        .collect();
+    let labels = labels
+        .into_iter()
+        .map(|name| item(range, CompletionKind::Label, name, "label"));
+    let internal = modules().iter().filter(|_| command.starts_with("CM"));
+    let internal = internal.map(|module| {
+        item(
+            range,
+            CompletionKind::Function,
+            &module.number.to_string(),
+            module.name,
+        )
+    });
+    labels.chain(internal).collect()
+}
+
+/// Operands with a fixed meaning, to be found by number or name.
+fn operands(range: &Range<usize>) -> Vec<Completion> {
     let signals = signal::all().iter().filter(|signal| signal.has_function());
     let named = signals.filter_map(|signal| {
         let operand = match signal.operand {
@@ -97,12 +107,10 @@ pub(super) fn completions(source: &PlcSource, at: usize, world: &World) -> Vec<C
             SignalOperand::Bits(_) | SignalOperand::Bytes(_) => return None,
         };
         let label = format!("{operand} {}", signal.name);
-        Some(item(
-            label,
-            signal.function.to_owned(),
-            CompletionKind::Parameter,
-            operand,
-        ))
+        Some(Completion {
+            snippet: operand,
+            ..item(range, CompletionKind::Parameter, &label, signal.function)
+        })
     });
     named.collect()
 }

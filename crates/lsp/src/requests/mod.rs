@@ -16,9 +16,9 @@ use std::sync::Arc;
 
 use lsp_server::{ErrorCode, Request as Message, Response};
 use lsp_types::request::{
-    CodeActionRequest, Completion, DocumentHighlightRequest, DocumentSymbolRequest, FoldingRangeRequest,
-    Formatting, GotoDefinition, HoverRequest, PrepareRenameRequest, References, Rename, Request,
-    SemanticTokensFullRequest,
+    CodeActionRequest, CodeActionResolveRequest, Completion, DocumentHighlightRequest, DocumentSymbolRequest,
+    FoldingRangeRequest, Formatting, GotoDefinition, HoverRequest, PrepareRenameRequest, References, Rename,
+    Request, SemanticTokensFullRequest,
 };
 use lsp_types::{TextDocumentPositionParams, Uri};
 
@@ -93,6 +93,7 @@ pub(crate) fn answer(view: &View<'_>, request: &Message) -> Answer {
         PrepareRenameRequest::METHOD => of::<PrepareRenameRequest>(view, request, rename::prepared),
         Rename::METHOD => of::<Rename>(view, request, rename::renamed),
         CodeActionRequest::METHOD => of::<CodeActionRequest>(view, request, actions::actions),
+        CodeActionResolveRequest::METHOD => of::<CodeActionResolveRequest>(view, request, actions::resolved),
         SemanticTokensFullRequest::METHOD => of::<SemanticTokensFullRequest>(view, request, tokens::tokens),
         other => {
             let text = format!("{other} is not offered");

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "every test file uses its part")]
 #![allow(
     clippy::unwrap_used,
+    clippy::expect_used,
     clippy::panic,
     reason = "what fails in the support of tests fails the test"
 )]

@@ -32,6 +32,8 @@ pub const PART: &str = "\
 const CALLED: &str = "0 BEGIN PGM 15 MM\n1 L X+0 R0 FMAX\n2 L X+1..5 FMAX\n3 END PGM 15 MM\n";
 const ISO: &str = "%9 G71 *\nN10 G99 T1 L+0 R+5 *\nN20 T1 G17 S1000 *\nN30 D00 Q05 P01 +60 *\nN40 G98 L3 *\n\
                    N50 G00 G40 G90 X+10 Y+Q5 M3 *\nN60 L3,2 *\nN70 G00 Z+50 M2 *\nN99999 %9 G71 *\n";
+const DIN: &str = "%L BORE\nN10 G91 G01 Z-5 F100 (Höhe)\nN20 Z5\nN30 M17\n%MAIN\nN10 G00 G90 X10 Y0 Z0\nN20 V.G.RW = 5\n\
+                   N30 L BORE\nN40 P1 = V.G.RW * 2\nN50 G01 X[M54=567 H4] X20 F500 ; ü\nN60 #EXPL SYN\nN70 M30\n";
 const MAIN: &str = "USES DOOR.PLC\nEXTERN OPEN\n; Tür\n  L I4 ; Knöpfe\n  S M2485\n  IFT\n  CM OPEN\n  CM 9036\n  ENDI\n\
                     LBL 20\n  L W260\n  = W8\n  JP 20\n  EM\n";
 const DOOR: &str = "GLOBAL OPEN\nLBL OPEN\n  L I5\n  = O2\n  EM\n";
@@ -43,6 +45,7 @@ pub fn lay_out(folder: &Path) {
         ("7.H", PART),
         ("15.H", CALLED),
         ("9.I", ISO),
+        ("a.nc", DIN),
         ("MAIN.PLC", MAIN),
         ("DOOR.PLC", DOOR),
         ("list.MP", LIST),
@@ -292,6 +295,54 @@ fn plain_changes<W: Wire>(client: &mut Client<W>, document: &Document) {
     }
 }
 
+/// The text that a code action makes of a document, and the name of its file.
+fn converted<W: Wire>(client: &mut Client<W>, document: &Document, title: &str) -> (String, String) {
+    let mut params = document.id();
+    params["range"] = document.range(0, 0);
+    params["context"] = json!({"diagnostics": []});
+    let actions = client.request("textDocument/codeAction", params);
+    let found = actions
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|action| action["title"] == title);
+    let action = client.request("codeAction/resolve", found.unwrap().clone());
+    let changes = &action["edit"]["documentChanges"];
+    assert_eq!(changes[0]["kind"], "create");
+    assert_eq!(changes[0]["uri"], changes[1]["textDocument"]["uri"]);
+    let uri = changes[0]["uri"].as_str().unwrap();
+    let name = uri.rsplit('/').next().unwrap().to_owned();
+    (
+        changes[1]["edits"][0]["newText"].as_str().unwrap().to_owned(),
+        name,
+    )
+}
+
+/// Code actions: a program becomes one in the other language, and G-code.
+pub fn conversions<W: Wire>(client: &mut Client<W>, folder: &Path) {
+    let text = "0 BEGIN PGM 5 MM\n1 TOOL DEF 1 L+0 R+5\n2 TOOL CALL 1 Z S1000\n3 L X+10 Y+5 R0 FMAX M3\n\
+                4 L X+20 F200\n5 END PGM 5 MM\n";
+    let document = client.open_text(&folder.join("5.H"), "tnc-plain", text);
+    let (iso, name) = converted(client, &document, "Convert to DIN/ISO");
+    assert_eq!(name, "5.I");
+    assert!(
+        iso.starts_with("%5 G71 *\nN10 G99 T1 L+0 R+5 *\nN20 T1 G17 S1000 *\n"),
+        "{iso}"
+    );
+    let back = client.open_text(&folder.join("5.I"), "tnc-iso", &iso);
+    assert_eq!(
+        converted(client, &back, "Convert to plain language"),
+        (text.to_owned(), "5.H".to_owned())
+    );
+    let (gcode, name) = converted(client, &document, "Convert to G-code for LinuxCNC");
+    assert!(name == "5.ngc" && gcode.contains("X20"), "{gcode}");
+    let data = json!({"title": "x", "data": {"uri": "file:///none/none.H", "target": "iso"}});
+    let reason = client.refused("codeAction/resolve", data);
+    assert!(reason.contains("not open"), "{reason}");
+    client.close(&document);
+    client.close(&back);
+}
+
 /// DIN/ISO: every request.
 pub fn iso<W: Wire>(client: &mut Client<W>, folder: &Path) {
     let mut document = client.open(&folder.join("9.I"), "tnc-iso");
@@ -344,6 +395,72 @@ pub fn iso<W: Wire>(client: &mut Client<W>, folder: &Path) {
         tokens
             .iter()
             .any(|(text, kind)| text == "G98" && kind == "keyword"),
+        "{tokens:?}"
+    );
+    client.close(&document);
+}
+
+/// DIN 66025: every request.
+pub fn din<W: Wire>(client: &mut Client<W>, folder: &Path) {
+    let mut document = client.open(&folder.join("a.nc"), "din-66025");
+    assert_eq!(client.diagnostics(&document), [] as [Value; 0]);
+    client.edit(&mut document, "N20 Z5", "N20 Z5 FOO7");
+    let found = client.diagnostics(&document);
+    let [(range, message)] = messages(&found)[..] else {
+        panic!("{found:?}")
+    };
+    assert!(
+        document.marked(range).starts_with("FOO") && message.contains("FOO"),
+        "{found:?}"
+    );
+    client.edit(&mut document, " FOO7", "");
+    client.edit(&mut document, "(Höhe)", "(𝄞) BAR1");
+    let found = client.diagnostics(&document);
+    assert!(
+        document.marked(&found[0]["range"]).starts_with("BAR"),
+        "{found:?}"
+    );
+    client.edit(&mut document, "(𝄞) BAR1", "(Höhe)");
+
+    let hover = client.hover(&document, "G91", 1);
+    assert!(hover.contains("Incremental"), "{hover}");
+    let hover = client.hover(&document, "F500", 0);
+    assert!(hover.contains("mm/min"), "{hover}");
+    let hover = client.hover(&document, "#EXPL", 2);
+    assert!(hover.contains("synchronisation"), "{hover}");
+    let hover = client.hover(&document, "V.G.RW", 3);
+    assert!(
+        hover.contains("*Set in lines:* 7") && hover.contains("*Used in lines:* 9"),
+        "{hover}"
+    );
+    let definition = client.places(&document, "textDocument/definition", "L BORE\nN40", 3);
+    assert_eq!(lines(&definition), ["%L BORE"]);
+    let references = client.places(&document, "textDocument/references", "V.G.RW", 2);
+    assert_eq!(references.len(), 2, "{references:?}");
+    let highlights = client.at(&document, "textDocument/documentHighlight", "BORE", 1);
+    assert_eq!(highlights.as_array().unwrap().len(), 2, "{highlights}");
+    let outline = client.request("textDocument/documentSymbol", document.id());
+    assert_eq!(names(&outline), ["%L BORE", "%MAIN"]);
+    let folding = client.request("textDocument/foldingRange", document.id());
+    assert_eq!(folds(&folding), [(0, 3), (4, 11)]);
+    let calls = client.completions(&document, "L BORE\nN40", 2);
+    assert!(
+        calls.contains(&("BORE".to_owned(), "BORE".to_owned())),
+        "{calls:?}"
+    );
+    let words = client.completions(&document, "G01 X[", 1);
+    assert!(words.iter().any(|(label, _)| label == "#FLUSH WAIT"), "{words:?}");
+    let mut params = document.place("BORE", 1);
+    params["newName"] = json!("DRILL");
+    let edit = client.request("textDocument/rename", params.clone());
+    let text = client.edited(&document, &edit["changes"][&document.uri]);
+    assert_eq!(text, document.text.replace("BORE", "DRILL"));
+    params["options"] = json!({"tabSize": 2, "insertSpaces": true});
+    let reason = client.refused("textDocument/formatting", params);
+    assert!(reason.contains("listing"), "{reason}");
+    let tokens = tokens(client, &document);
+    assert!(
+        tokens.contains(&("(Höhe)".to_owned(), "comment".to_owned())),
         "{tokens:?}"
     );
     client.close(&document);

@@ -28,7 +28,7 @@ struct Corrections {
 /// Opens the correction tables, when the machine has some.
 pub(crate) fn open(site: &Site) -> Turn {
     let Some(name) = &site.machine.folder.correction_tables else {
-        return Turn::Say(site.message(MessageId::ProgramNotFound));
+        return Turn::Say(site.words("THE MACHINE HAS NO CORRECTION TABLES (.COM)"));
     };
     let path = site.machine.root.join(name);
     match files::read_table(&path) {

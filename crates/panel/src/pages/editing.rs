@@ -3,6 +3,7 @@
 use bahn_control::AxisState;
 use bahn_dialogue::{Editor, Key, Reaction, Row, ShownWord, Wanted};
 use bahn_path::Axis;
+use bahn_program::Program;
 
 use crate::page::{Turn, View};
 use crate::pages::list;
@@ -10,7 +11,9 @@ use crate::screen::{Dialogue, Line, Mark, SoftKeys, Window, WindowKind};
 use crate::site::Site;
 
 /// Width of block numbers.
-pub(crate) const NUMBER: usize = 5;
+const NUMBER: usize = 5;
+/// The same in DIN/ISO.
+const ISO_NUMBER: usize = 7;
 /// The axes of an L block with actual positions, where MOD chose none [003:2260-2321].
 const CAPTURED: &str = "XYZ";
 
@@ -83,7 +86,11 @@ pub(crate) fn view(editor: &Editor, title: &str, lines: usize) -> View {
             kind: WindowKind::Program,
             first: view.rows.first().and_then(|row| row.number).unwrap_or_default() as usize,
             total,
-            lines: view.rows.iter().map(|row| line(row, &view.words)).collect(),
+            lines: view
+                .rows
+                .iter()
+                .map(|row| line(row, &view.words, editor.program()))
+                .collect(),
         },
     };
     let question = view.question;
@@ -99,9 +106,21 @@ pub(crate) fn view(editor: &Editor, title: &str, lines: usize) -> View {
     }
 }
 
-fn line(row: &Row, words: &[ShownWord]) -> Line {
-    let number = row.number.map_or_else(String::new, |number| number.to_string());
-    let mut text = format!("{number:<NUMBER$}");
+/// The number of a block in its column, that of DIN/ISO with its `N` and five digits; a longer one has a blank behind it.
+pub(crate) fn numbered(label: &str, program: &Program) -> String {
+    let width = if program.language().has_numbers() {
+        ISO_NUMBER
+    } else {
+        NUMBER
+    };
+    match label.len() < width {
+        true => format!("{label:<width$}"),
+        false => format!("{label} "),
+    }
+}
+
+fn line(row: &Row, words: &[ShownWord], program: &Program) -> Line {
+    let mut text = numbered(&row.label, program);
     let mut marks = Vec::new();
     if row.current && !words.is_empty() {
         for word in words {

@@ -8,10 +8,12 @@ use bahn_parameters::MessageId;
 use crate::frames;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Name};
+use crate::pages::external;
 use crate::pages::{list, table};
 use crate::programs::{Denial, Entry, NAME_MAX, is_program};
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
+use crate::transfer::TransferDeed;
 
 /// What a file is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +24,8 @@ pub(crate) enum Purpose {
     Edit,
     /// It is to be tested.
     Test,
+    /// It is to be read out: EXT [003:6906].
+    ReadOut,
     /// It is to be erased: CL PGM [003:985-990].
     Erase,
     /// Its protection is to be taken away: code number 86 357 [003:7028].
@@ -30,8 +34,8 @@ pub(crate) enum Purpose {
 
 /// Code number that takes the protection away [000:6940] [003:7028].
 const UNPROTECT: u32 = 86_357;
-/// Ending of a file that nobody gives one.
-const ENDING: &str = "H";
+/// Endings of programs in plain language and in DIN/ISO, of which PROGRAM INPUT chooses one.
+const ENDINGS: [&str; 2] = ["H", "I"];
 
 /// The directory of the program memory.
 pub(crate) struct Directory {
@@ -62,7 +66,7 @@ impl Directory {
         self.entries = site.programs.list();
         match self.purpose {
             Purpose::Edit => self.entries.extend(table::of_machine(site)),
-            Purpose::Erase => {}
+            Purpose::Erase | Purpose::ReadOut => {}
             Purpose::Run | Purpose::Test | Purpose::Unprotect => {
                 self.entries.retain(|entry| is_program(&entry.name));
             }
@@ -76,15 +80,15 @@ impl Directory {
     }
 
     /// The name that is typed, else the one that is highlighted.
-    fn name(&self) -> Option<String> {
+    fn name(&self, site: &Site) -> Option<String> {
         match self.typed.is_empty() {
             true => self.entries.get(self.current).map(|entry| entry.name.clone()),
-            false => Some(with_ending(&self.typed)),
+            false => Some(with_ending(&self.typed, site)),
         }
     }
 
     fn choose(&self, site: &mut Site) -> Turn {
-        let Some(name) = self.name() else {
+        let Some(name) = self.name(site) else {
             return Turn::Refused;
         };
         if table::is_disabled(&name, site) {
@@ -93,6 +97,13 @@ impl Directory {
         let there = site.programs.has(&name);
         let chosen = match self.purpose {
             Purpose::Erase => return erase(name, site),
+            Purpose::ReadOut if there => {
+                return match external::begin(TransferDeed::Write(vec![name]), site) {
+                    Turn::Open(page) => Turn::Replace(page),
+                    other => other,
+                };
+            }
+            Purpose::ReadOut => false,
             Purpose::Unprotect => return unprotect(&name, site),
             Purpose::Edit if self.typed == "0" => return table::tools(site),
             Purpose::Edit if table::is_of_machine(&name, site) => return table::open(&name, site),
@@ -102,7 +113,7 @@ impl Directory {
                 site.settings.edited = Some(name);
                 true
             }
-            Purpose::Run => there && site.command(Command::Select(stem(&name).to_owned())),
+            Purpose::Run => there && site.command(Command::Select(selection(&name).to_owned())),
             Purpose::Test => {
                 if there {
                     site.settings.edited = Some(name);
@@ -117,7 +128,7 @@ impl Directory {
     }
 
     fn copy(&self, site: &Site) -> Turn {
-        let Some(old) = self.name() else {
+        let Some(old) = self.name(site) else {
             return Turn::Refused;
         };
         let prompt = format!("{} {}", site.words("DESTINATION FILE ="), ending(&old));
@@ -127,7 +138,7 @@ impl Directory {
     }
 
     fn rename(&self, site: &Site) -> Turn {
-        let Some(old) = self.name() else {
+        let Some(old) = self.name(site) else {
             return Turn::Refused;
         };
         if is_needed(&old, site) {
@@ -148,7 +159,7 @@ impl Directory {
     }
 
     fn protect(&self, site: &Site) -> Turn {
-        match self.name().map(|name| site.programs.protect(&name, true)) {
+        match self.name(site).map(|name| site.programs.protect(&name, true)) {
             Some(Ok(())) => Turn::Done,
             Some(Err(denial)) => Turn::Say(said(denial, site)),
             None => Turn::Refused,
@@ -157,7 +168,7 @@ impl Directory {
 
     /// The soft key UNPROTECT asks for the code number before.
     fn cancel_protection(&self, site: &Site) -> Turn {
-        let Some(name) = self.name() else {
+        let Some(name) = self.name(site) else {
             return Turn::Refused;
         };
         let prompt = site.words("CODE NUMBER =");
@@ -170,11 +181,37 @@ impl Directory {
     }
 }
 
-/// A program whose name says no type is one in plain language.
-fn with_ending(name: &str) -> String {
-    match name.contains('.') {
-        true => name.to_owned(),
-        false => format!("{name}.{ENDING}"),
+/// A program whose name says no type is the one that is there; where both are, or none is, it is in the language of
+/// PROGRAM INPUT [003:7104-7110].
+pub(crate) fn with_ending(name: &str, site: &Site) -> String {
+    if name.contains('.') {
+        return name.to_owned();
+    }
+    let [plain, iso] = ENDINGS.map(|ending| format!("{name}.{ending}"));
+    let (chosen, other) = if site.settings.iso {
+        (iso, plain)
+    } else {
+        (plain, iso)
+    };
+    match !site.programs.has(&chosen) && site.programs.has(&other) {
+        true => other,
+        false => chosen,
+    }
+}
+
+/// The name by which the control knows a program: with its type where that is not plain language.
+pub(crate) fn selection(name: &str) -> &str {
+    match name.rsplit_once('.') {
+        Some((stem, ending)) if ending.eq_ignore_ascii_case("H") => stem,
+        _ => name,
+    }
+}
+
+/// Whether a program that the control has by some name is a file of the memory: without a type it may be any.
+pub(crate) fn is_same(own: &str, name: &str) -> bool {
+    match own.contains('.') {
+        true => own.eq_ignore_ascii_case(name),
+        false => own.eq_ignore_ascii_case(stem(name)),
     }
 }
 
@@ -262,14 +299,12 @@ fn is_needed(name: &str, site: &Site) -> bool {
 }
 
 /// A program run, interrupted or not, has the file.
-fn runs(name: &str, site: &Site) -> bool {
+pub(crate) fn runs(name: &str, site: &Site) -> bool {
     let control = site.control();
-    let selected = control
-        .selected_program()
-        .is_some_and(|own| stem(own) == stem(name));
+    let selected = control.selected_program().is_some_and(|own| is_same(own, name));
     let called = || {
         let programs = control.interpreter().map(|own| own.program_names());
-        programs.is_some_and(|mut names| names.any(|own| stem(file_name(&own)) == stem(name)))
+        programs.is_some_and(|mut names| names.any(|own| is_same(file_name(&own), name)))
     };
     control.run_state() != RunState::Idle && is_program(name) && (selected || called())
 }
@@ -306,7 +341,7 @@ impl Page for Directory {
         match key {
             Key::Ent => return self.choose(site),
             Key::ClPgm if self.purpose == Purpose::Edit => {
-                return self.name().map_or(Turn::Refused, |name| erase(name, site));
+                return self.name(site).map_or(Turn::Refused, |name| erase(name, site));
             }
             Key::End | Key::Del | Key::NoEnt | Key::PgmNr | Key::ClPgm => return Turn::Close,
             Key::Ce if !self.typed.is_empty() => self.typed.clear(),
@@ -324,6 +359,7 @@ impl Page for Directory {
         let select = match self.purpose {
             Purpose::Erase => site.words("ERASE"),
             Purpose::Unprotect => site.words("UNPROTECT"),
+            Purpose::ReadOut => site.words("READ-OUT"),
             _ => site.words("SELECT"),
         };
         let named = [
@@ -348,7 +384,7 @@ impl Page for Directory {
             0 => self.choose(site),
             1 => self.copy(site),
             2 => self.rename(site),
-            3 => self.name().map_or(Turn::Refused, |name| erase(name, site)),
+            3 => self.name(site).map_or(Turn::Refused, |name| erase(name, site)),
             4 => self.protect(site),
             5 => self.cancel_protection(site),
             _ => Turn::Close,

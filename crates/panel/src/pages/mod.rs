@@ -5,6 +5,7 @@ mod by_hand;
 mod corrections;
 mod datum;
 mod editing;
+mod external;
 mod files;
 mod handwheel;
 mod help;
@@ -28,6 +29,8 @@ use bahn_dialogue::Key;
 use crate::page::{Page, Side, Turn, View};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
+
+pub(crate) use files::runs;
 
 /// The page of a machine operating mode.
 pub(crate) fn of_mode(mode: Mode) -> Box<dyn Page> {
@@ -62,7 +65,7 @@ pub(crate) fn everywhere(key: Key, side: Side, note: Option<&str>, site: &mut Si
     match key {
         Key::Mod => Turn::Open(supplementary::menu(side)),
         Key::Help => help::key(note, site),
-        Key::Ext => supplementary::transfer(side, site),
+        Key::Ext => external::open(side, site),
         _ => Turn::Refused,
     }
 }

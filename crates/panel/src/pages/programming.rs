@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
-use crate::pages::files::{Directory, Purpose};
+use crate::pages::files::{Directory, Purpose, is_same};
 use crate::screen::SoftKeys;
 use crate::site::Site;
 use crate::texts;
@@ -220,14 +220,8 @@ impl Open {
     /// The machine runs this program.
     fn runs(&self, site: &Site) -> bool {
         let control = site.control();
-        let stem = self
-            .name
-            .rsplit_once('.')
-            .map_or(self.name.as_str(), |(stem, _)| stem);
-        control.run_state() != RunState::Idle
-            && control
-                .selected_program()
-                .is_some_and(|selected| selected.eq_ignore_ascii_case(stem))
+        let selected = control.selected_program();
+        control.run_state() != RunState::Idle && selected.is_some_and(|own| is_same(own, &self.name))
     }
 }
 

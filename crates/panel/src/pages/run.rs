@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use bahn_control::{Command, Programs, RunState};
 use bahn_dialogue::Key;
-use bahn_program::Program;
+use bahn_parameters::MessageId;
+use bahn_program::{Program, WordKind};
 
 use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
-use crate::pages::editing::NUMBER;
+use crate::pages::editing::numbered;
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::list;
 use crate::pages::number::Number;
@@ -26,6 +27,11 @@ pub(crate) struct ProgramRun {
 }
 
 impl ProgramRun {
+    /// The program that is selected.
+    fn program(&self) -> Option<Arc<Program>> {
+        self.shown.as_ref().map(|(_, program)| Arc::clone(program))
+    }
+
     fn move_cursor(&mut self, down: bool, site: &mut Site) -> Turn {
         let last = self
             .shown
@@ -50,9 +56,13 @@ impl Page for ProgramRun {
         }
         match key {
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Run, site))),
-            Key::Goto => Turn::Open(Number::ask(site.words("GOTO: NUMBER ="), |value, site| {
-                value >= 0.0 && value.fract() == 0.0 && site.command(Command::Goto(value as u32))
-            })),
+            Key::Goto => {
+                let program = self.program();
+                Turn::Open(Number::ask(site.words("GOTO: NUMBER ="), move |value, site| {
+                    let block = block_of(program.as_deref(), value);
+                    block.is_some_and(|block| site.command(Command::Goto(block)))
+                }))
+            }
             Key::Q => q_parameters(site),
             Key::Down => self.move_cursor(true, site),
             Key::Up => self.move_cursor(false, site),
@@ -92,11 +102,12 @@ impl Page for ProgramRun {
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
         let done = match (site.control().run_state(), place) {
             (RunState::Idle, 0) => {
-                return Turn::Open(Number::ask(
+                let Some(program) = self.program() else {
+                    return Turn::Say(site.message(MessageId::ProgramNotFound));
+                };
+                return Turn::Open(Number::turning(
                     site.words("RESTORE POSITION AT N ="),
-                    |value, site| {
-                        value >= 0.0 && value.fract() == 0.0 && site.command(Command::RestoreAt(value as u32))
-                    },
+                    move |value, site| restore_at(&program, value, site),
                 ));
             }
             (_, 3) => return q_parameters(site),
@@ -137,6 +148,26 @@ impl Page for ProgramRun {
     }
 }
 
+/// The block of the number that was entered: in DIN/ISO that which it is programmed with.
+fn block_of(program: Option<&Program>, value: f64) -> Option<u32> {
+    let number = (value >= 0.0 && value.fract() == 0.0).then_some(value as u32)?;
+    match program {
+        Some(program) => program.block_of(number),
+        None => Some(number),
+    }
+}
+
+/// The block scan begins, unless the control is not ready for it.
+fn restore_at(program: &Program, value: f64, site: &mut Site) -> Turn {
+    let Some(block) = block_of(Some(program), value) else {
+        return Turn::Say(site.message(MessageId::EntryValueIncorrect));
+    };
+    match site.command(Command::RestoreAt(block)) {
+        true => Turn::Close,
+        false => Turn::CloseSaying(site.message(MessageId::KeyNonFunctional)),
+    }
+}
+
 /// The soft key of the tool table, when the machine has one [000:9002-9008].
 fn tool_table(site: &Site) -> String {
     match table::has_tools(site) {
@@ -164,11 +195,15 @@ fn running_block(site: &Site) -> Option<u32> {
 }
 
 /// A block as it stands in the file, without the number that it has there.
-fn without_number(text: &str) -> &str {
-    let rest = text.trim_start().trim_start_matches(|c: char| c.is_ascii_digit());
-    match rest.starts_with(char::is_whitespace) {
-        true => rest.trim_start(),
-        false => text,
+fn without_number(program: &Program, block: u32) -> String {
+    let text = program.text_of(block);
+    let words = program.language().parse_block(&text).words;
+    let number = words.iter().find(|word| word.kind == WordKind::Number);
+    let parts = number.and_then(|word| Some((text.get(..word.span.start)?, text.get(word.span.end..)?)));
+    match parts {
+        // A `/` may stand before it.
+        Some((before, behind)) => format!("{}{}", before.trim_start(), behind.trim_start()),
+        None => text,
     }
 }
 
@@ -176,10 +211,7 @@ fn without_number(text: &str) -> &str {
 pub(crate) fn listing(name: &str, program: &Program, current: u32, lines: usize) -> Window {
     let cursor = (current as usize, program.block_count() as usize);
     let line = |block: usize| Line {
-        text: format!(
-            "{block:<NUMBER$}{}",
-            without_number(&program.text_of(block as u32))
-        ),
+        text: numbered(&program.shown_number(block as u32), program) + &without_number(program, block as u32),
         current: block == current as usize,
         ..Line::default()
     };

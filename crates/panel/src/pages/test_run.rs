@@ -9,7 +9,7 @@ use bahn_program::Program;
 
 use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
-use crate::pages::files::{Directory, Purpose};
+use crate::pages::files::{Directory, Purpose, selection};
 use crate::pages::run::listing;
 use crate::site::Site;
 
@@ -37,9 +37,9 @@ impl TestRun {
         let Some((name, _)) = &self.open else {
             return Turn::Refused;
         };
-        let program = name.rsplit_once('.').map_or(name.as_str(), |(name, _)| name);
+        let program = selection(name).to_owned();
         self.said = false;
-        match site.command(Command::Test(program.to_owned())) {
+        match site.command(Command::Test(program)) {
             true => {
                 site.graphics.test(site.host.control());
                 Turn::Done

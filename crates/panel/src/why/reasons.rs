@@ -6,6 +6,7 @@ use bahn_exchange::{Bit, BitArea};
 use bahn_host::LoadedMachine;
 use bahn_machine::Machine;
 use bahn_parameters::MessageId;
+use bahn_path::BlockRef;
 use bahn_servo::Rotation;
 
 use super::trace::{Cause, Trace, Writers};
@@ -74,7 +75,7 @@ impl Situation<'_> {
                 _ if shown.flashing => found.push(self.flashing(shown)),
                 Message::Program(_) => {
                     let text = self.words("The program stands at block {1}: {2}. Correct it, then CE");
-                    let block = shown.block.map_or(String::new(), |block| block.block.to_string());
+                    let block = self.number_of(shown.block);
                     let message = self.control.shown_text(shown);
                     found.push(reason(Urgency::Stands, fill(&text, &[&block, &message])));
                 }
@@ -226,11 +227,15 @@ impl Situation<'_> {
         Some(self.of_bit(Urgency::Told, &text, &axis.letter.to_string(), marker, false))
     }
 
+    /// What a block is called.
+    fn number_of(&self, block: Option<BlockRef>) -> String {
+        let number = block.map(|block| self.control.first().number_of(block));
+        number.map_or_else(String::new, |number| number.to_string())
+    }
+
     /// Where the program stands.
     fn run(&self, snapshot: &Snapshot, found: &mut Vec<Reason>) {
-        let block = snapshot
-            .block
-            .map_or(String::new(), |block| block.block.to_string());
+        let block = self.number_of(snapshot.block);
         let at = |text: &'static str| fill(&self.words(text), &[&block]);
         match snapshot.run {
             RunState::Idle if snapshot.ended => {

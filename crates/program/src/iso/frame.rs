@@ -2,8 +2,9 @@
 
 use bahn_parameters::MessageId::{EntryValueIncorrect, UnexpectedText};
 
+use super::code::without_star;
 use crate::parse::cursor::{Cursor, Parsed};
-use crate::text::{to_words, trim};
+use crate::text::{to_words, trim, trim_continuation};
 use crate::{Header, Operation, Unit};
 
 /// Whether a text that begins with `%` frames a program: it has a unit or no name.
@@ -17,17 +18,18 @@ pub(super) fn frame_words(text: &[u8]) -> bool {
 pub(super) fn frame_or_call(c: &mut Cursor, may_begin: bool) -> Parsed<Operation> {
     let start = c.position();
     c.advance(1);
-    let text = c.rest();
+    let length = c.rest().len();
+    let text = without_end(c.rest());
     if let Some(header) = header(text) {
-        c.advance(text.len());
+        c.advance(length);
         let header = Box::new(header);
         return Ok(match may_begin {
             true => Operation::Begin(header),
             false => Operation::End(header),
         });
     }
-    c.advance(text.len());
     let name = to_words(text);
+    c.advance(length);
     if name.is_empty() {
         return c.fault_from(start, EntryValueIncorrect, "the name of the program is missing");
     }
@@ -44,7 +46,7 @@ pub(super) fn misplaced<T>(c: &mut Cursor) -> Parsed<T> {
 
 /// Name, unit and protection behind `%`; `None` if that is the name of a program to call.
 fn header(text: &[u8]) -> Option<Header> {
-    let mut name = trim(text);
+    let mut name = trim(without_end(text));
     let mut header = Header {
         name: "".into(),
         unit: None,
@@ -62,6 +64,17 @@ fn header(text: &[u8]) -> Option<Header> {
     header.name = to_words(name);
     let frames = header.unit.is_some() || header.protected || header.name.is_empty();
     frames.then_some(header)
+}
+
+/// The text without what a listing does not have at its end: `*`, and `~` of other languages.
+fn without_end(mut text: &[u8]) -> &[u8] {
+    loop {
+        let shorter = without_star(trim_continuation(text));
+        if shorter.len() == text.len() {
+            return text;
+        }
+        text = shorter;
+    }
 }
 
 /// The last word of a text and what stands before it.

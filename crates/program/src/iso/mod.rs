@@ -106,25 +106,29 @@ impl Language for IsoLanguage {
         write::write_block(block, options, text);
     }
 
-    fn write_number(&self, text: BlockText<'_>, number: u32, new: &mut Vec<u8>) {
+    fn write_number(&self, text: BlockText<'_>, number: u32, step: u32, new: &mut Vec<u8>) {
         let mut c = Cursor::new(text.bytes);
         let skip = prefix(&mut c);
+        let ends = matches!(self.landmark(text), Some(Landmark::End(_) | Landmark::Frame(_)));
+        let number = match (number, step) {
+            // The first block has none.
+            (0, _) => None,
+            (number, step) if ends => Some(write::last_number(number, step)),
+            (_, 0) => None,
+            (number, step) => Some(u64::from(number) * u64::from(step)),
+        };
+        // Writing to a vector cannot fail.
+        if let Some(number) = number {
+            let _ = write!(new, "N{number} ");
+        }
         if skip {
             new.extend_from_slice(b"/ ");
-        }
-        // The first block has none. Writing to a vector cannot fail.
-        if number > 0 {
-            let _ = write!(new, "N{} ", number.saturating_mul(STEP));
         }
         new.extend_from_slice(trim(c.rest()));
     }
 
     fn write_line_number(&self, number: u32, block: &Block, options: FormatOptions, text: &mut String) {
         write::write_number(number, block, options, text);
-    }
-
-    fn numbers_blocks(&self) -> bool {
-        true
     }
 
     fn number(&self, text: BlockText<'_>) -> Option<u32> {
@@ -138,6 +142,10 @@ impl Language for IsoLanguage {
         digits.parse().ok()
     }
 
+    fn has_numbers(&self) -> bool {
+        true
+    }
+
     fn characters_max(&self, limits: &bahn_parameters::Limits) -> Option<u32> {
         Some(limits.iso_characters_max)
     }
@@ -146,6 +154,3 @@ impl Language for IsoLanguage {
         ["%NAME G71", "N99999 %NAME G71"]
     }
 }
-
-/// Step of the numbers of blocks that are edited.
-const STEP: u32 = 10;

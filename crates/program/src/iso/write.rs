@@ -30,13 +30,21 @@ pub(super) fn write_number(number: u32, block: &Block, options: FormatOptions, t
     let counted = u64::from(number) * u64::from(options.iso_step);
     let number = match &block.operation {
         Operation::Begin(_) => return,
-        Operation::End(_) if counted < LAST[0] => LAST[0],
-        Operation::End(_) => LAST[1],
+        Operation::End(_) => last_number(number, options.iso_step.into()),
         _ => counted,
     };
     text.push('N');
     push_integer(text, number, 1);
     text.push(' ');
+}
+
+/// The number of the last block.
+pub(super) fn last_number(number: u32, step: u32) -> u64 {
+    let [usual, greatest] = LAST;
+    match u64::from(number) * u64::from(step) < usual {
+        true => usual,
+        false => greatest,
+    }
 }
 
 /// A block without number and line end.

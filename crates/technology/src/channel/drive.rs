@@ -1,21 +1,32 @@
 //! A cycle of the path.
 
+use std::sync::Arc;
+
 use bahn_motion::{Aim, Drive, PointToPoint, Prepared, State};
 use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, PathElement, Step};
 
 use super::Channel;
 use super::leads::SAME;
 use super::prepare::within;
+use super::record::Moment;
 use super::track::Track;
 use crate::plc::cycle_at;
 
 /// Elements that the interpolator looks ahead.
 pub(super) const LOOK_AHEAD: usize = 512;
 
+/// Nearer to a place the path is there, in time and way.
+const ROUNDING_S: f64 = 1e-9;
+const ROUNDING_MM: f64 = 1e-9;
+/// Slower than this it stands, mm/s: it brakes over less than the way above.
+const STANDS_MM_S: f64 = 1e-3;
+
 /// Gives the interpolator the elements of the track.
 struct Feed<'a> {
     track: &'a Track,
     fed: &'a mut u64,
+    /// So much of the next element is executed already, mm.
+    part: &'a mut Option<f64>,
     /// Elements with another path acceleration wait until the limits are others.
     acceleration: f64,
     /// Nothing comes behind those that are known before the path has come to their end.
@@ -27,6 +38,12 @@ impl ElementSource for Feed<'_> {
 
     fn next(&mut self) -> Step<()> {
         match self.track.leg(*self.fed) {
+            Some(leg) if self.part.is_some() => {
+                let along = self.part.take().unwrap_or(0.0);
+                let element = leg.rest(along, false).element(*self.fed);
+                *self.fed += 1;
+                Step::Element(element)
+            }
             Some(leg) if leg.driving.limit.acceleration_mm_s2 == self.acceleration => {
                 let element: PathElement = leg.element(*self.fed);
                 *self.fed += 1;
@@ -84,6 +101,7 @@ impl Channel<'_> {
             let mut feed = Feed {
                 track: &self.track,
                 fed: &mut self.fed,
+                part: &mut self.part,
                 acceleration: self.acceleration,
                 closed,
             };
@@ -108,30 +126,50 @@ impl Channel<'_> {
         let closed = self.nearest_closed();
         drive.stop_before = closed;
         drive.hold |= self.is_overrun() || self.blocked_lead().is_some();
-        if closed != Some(self.reached) {
+        // The first element of a path has none before it at whose end it could stop.
+        if closed.is_some_and(|place| place <= self.reached) {
+            drive.hold = true;
+        } else {
             self.path.go_on();
         }
-        let (before, way) = (self.now(), self.way());
-        let number = self.reached;
-        let cycle = self.path.cycle(&drive);
-        if let Some(last) = self.path.passed().last() {
-            self.reached = self.reached.max(last.sequence + 1);
+        let block = self.track.leg(self.reached).map(|leg| leg.block.clone());
+        self.drive_once(&drive, block)
+    }
+
+    /// Path speed, mm/s.
+    pub(super) fn speed(&self) -> f64 {
+        let speed = self.path.speed_mm_s();
+        if speed < STANDS_MM_S && self.path.rest_mm() < ROUNDING_MM {
+            0.0
+        } else {
+            speed
         }
-        let moved = (self.way() - way).abs() > 0.0;
-        self.still = cycle.speed_mm_s <= 0.0;
+    }
+
+    /// Drives a cycle. Whether anything moved.
+    pub(super) fn drive_once(&mut self, drive: &Drive, block: Option<Arc<str>>) -> bool {
+        let (before, way) = (self.now(), self.way());
+        self.way_before = way;
+        let cycle = self.path.cycle(drive);
+        let (rest, speed) = (self.path.rest_mm(), self.speed());
+        // What lacks rounding alone to be there is there in this cycle, not in the next one.
+        let arrives = rest > 0.0 && rest <= speed * ROUNDING_S + if speed > 0.0 { 0.0 } else { ROUNDING_MM };
+        let here = self.path.element().map(|element| element.sequence);
+        let passed = self.path.passed().last().map(|last| last.sequence);
+        if let Some(passed) = here.filter(|_| arrives).or(passed) {
+            self.pass(passed);
+        }
+        let moved = (self.way() - way).abs() > 2.0 * ROUNDING_MM;
+        self.still = speed <= 0.0;
         if self.stands && moved {
-            let block = self
-                .track
-                .leg(number)
-                .map_or_else(|| "".into(), |leg| leg.block.clone());
-            self.record.path(true, &block, before);
+            self.record
+                .path(true, block.as_deref().unwrap_or_default(), before);
             self.stands = false;
         }
         let ended = self.cycle_independent();
         self.held = cycle.state == State::Held;
-        self.record
-            .sample(self.t() + self.cycle_s, self.way(), cycle.speed_mm_s);
-        moved || ended || !self.still
+        self.record.sample(self.t() + self.cycle_s, self.way(), speed);
+        moved || ended || !self.still || !self.path.passed().is_empty()
     }
 
     /// Says where the path stands, and for what.
@@ -145,14 +183,19 @@ impl Channel<'_> {
         let orders = missing.iter().filter_map(|id| Some((*id, self.orders.get(*id)?)));
         self.record.stands_for(orders, at);
         if !self.stands && (self.is_waiting() || self.held || !missing.is_empty()) {
-            let at_place = self.way() <= self.track.way(self.reached) + SAME;
-            let block = match self.track.leg(self.reached).filter(|_| !at_place) {
-                Some(leg) => leg.block.clone(),
-                None => self.track.block_before(self.reached),
-            };
-            self.record.path(false, &block, at);
-            self.stands = true;
+            self.stop(at);
         }
+    }
+
+    /// The path stands.
+    pub(super) fn stop(&mut self, at: Moment) {
+        let at_place = self.way() <= self.track.way(self.reached) + SAME;
+        let block = match self.track.leg(self.reached).filter(|_| !at_place) {
+            Some(leg) => leg.block.clone(),
+            None => self.track.block_before(self.reached),
+        };
+        self.record.path(false, &block, at);
+        self.stands = true;
     }
 
     /// An axis begins to move on its own.

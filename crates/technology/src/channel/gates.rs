@@ -66,6 +66,7 @@ impl Channel<'_> {
                 any = true;
             } else if place < self.reached {
                 self.cursor = (place + 1, 0);
+                any = true;
             } else {
                 break;
             }
@@ -111,8 +112,7 @@ impl Channel<'_> {
                 self.fault = Some(fault.as_ref().clone());
                 Done::Yes
             }
-            // The PLC fetches what was output last, if it ever does.
-            Deed::End if self.plc.fetches() || !self.leads.queue.is_empty() => Done::NotYet,
+            Deed::End if !self.leads.queue.is_empty() => Done::NotYet,
             Deed::End => {
                 self.ended = true;
                 Done::Yes
@@ -164,7 +164,7 @@ impl Channel<'_> {
 
     /// A function is output at a place of the path.
     fn output_at(&mut self, id: OrderId, place: u64) {
-        let (left_s, speed_mm_s) = self.passed(place).unwrap_or((0.0, self.path.speed_mm_s()));
+        let (left_s, speed_mm_s) = self.passed(place).unwrap_or((0.0, self.speed()));
         let at = Moment {
             t: self.t(),
             position: self.track.position(place),
@@ -259,6 +259,9 @@ impl Channel<'_> {
 
     /// The functions for which the path cannot go on where it is.
     pub(super) fn missing(&self) -> Vec<OrderId> {
+        if self.backward.is_on() {
+            return self.missing_backward();
+        }
         let (place, index) = self.cursor;
         let mut missing = Vec::new();
         if place <= self.reached {
@@ -278,6 +281,9 @@ impl Channel<'_> {
 
     /// Whether something is to be done where the path is that is not done yet.
     pub(super) fn is_waiting(&self) -> bool {
+        if self.backward.is_on() {
+            return true;
+        }
         let (place, index) = self.cursor;
         let waits = |deed: &Deed| !matches!(deed, Deed::End | Deed::AllEnded);
         place <= self.reached && self.track.deeds(place).get(index).is_some_and(waits)

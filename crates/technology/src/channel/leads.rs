@@ -39,6 +39,8 @@ pub(super) struct Leads {
     blocks: VecDeque<f64>,
     /// Nothing is output before this, mm: the path was to come to rest here.
     barrier: f64,
+    /// Where the last one was output, or had to be passed for the next one, mm.
+    pub(super) floor: f64,
     /// The place that was turned to last, and its functions (P-CHAN-00212).
     active: Option<(f64, Vec<OrderId>)>,
 }
@@ -90,10 +92,15 @@ impl Leads {
     }
 
     /// One of them is output.
-    pub(super) fn take(&mut self, index: usize) {
+    pub(super) fn take(&mut self, index: usize, one_by_one: bool) {
         let Some(ahead) = self.queue.remove(index) else {
             return;
         };
+        if let Some((point, _)) = self.active.as_ref().filter(|_| one_by_one)
+            && ahead.point > point + SAME
+        {
+            self.floor = self.floor.max(*point);
+        }
         match &mut self.active {
             Some((point, ids)) if (*point - ahead.point).abs() <= SAME => ids.push(ahead.id),
             active => *active = Some((ahead.point, vec![ahead.id])),
@@ -104,6 +111,7 @@ impl Leads {
     pub(super) fn begin(&mut self, way: f64) {
         *self = Leads {
             barrier: way,
+            floor: way,
             ..Leads::default()
         };
     }

@@ -58,6 +58,8 @@ struct Channel<'a> {
     path: Interpolator<()>,
     /// Number of the element that the interpolator is given next.
     fed: u64,
+    /// So much of it is executed already, mm.
+    part: Option<f64>,
     /// Greatest path acceleration that it was given last, mm/s².
     acceleration: f64,
     /// The place at which deeds are done next, and which of them.
@@ -68,6 +70,8 @@ struct Channel<'a> {
     open_to: u64,
     /// The cycle in which a dwell ends.
     dwell: Option<u64>,
+    /// Way along the path before the last cycle, mm.
+    way_before: f64,
     /// The path stood still in the last cycle.
     still: bool,
     /// That was said.
@@ -120,11 +124,13 @@ impl<'a> Channel<'a> {
             record: Record::default(),
             path,
             fed: 1,
+            part: None,
             acceleration: f64::INFINITY,
             cursor: (1, 0),
             reached: 1,
             open_to: 1,
             dwell: None,
+            way_before: 0.0,
             still: true,
             stands: true,
             held: false,
@@ -147,6 +153,9 @@ impl<'a> Channel<'a> {
 
     /// Way along the path, mm.
     fn way(&self) -> f64 {
+        if let Some(way) = self.way_back() {
+            return way;
+        }
         let Some(element) = self.path.element() else {
             return self.track.way(self.reached);
         };
@@ -159,13 +168,18 @@ impl<'a> Channel<'a> {
     /// Now, and where the path is.
     fn now(&self) -> Moment {
         let mut position = self.path.position();
+        // Before it moves, the path does not know where axes stand that are programmed first.
+        let place = self.track.position(self.reached);
+        for axis in place.known().iter() {
+            position[axis] = position.get(axis).unwrap_or(place[axis]);
+        }
         for (independent, axis) in &self.independent {
             position[independent.axis] = axis.position();
         }
         Moment {
             t: self.t(),
             position,
-            speed_mm_s: self.path.speed_mm_s(),
+            speed_mm_s: self.speed(),
         }
     }
 }

@@ -46,8 +46,6 @@ pub(crate) struct Order {
     /// How long PLC or spindle are thought to take, s.
     pub(crate) process_s: f64,
     pub(crate) place: Arc<Place>,
-    /// Count of executed blocks: functions of one block have the same.
-    pub(crate) unit: u64,
     pub(crate) state: State,
 }
 

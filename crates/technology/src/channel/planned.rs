@@ -10,6 +10,8 @@ use crate::report::ToGo;
 
 /// Time to go is planned up to this, s.
 const LONGEST_S: f64 = 600.0;
+/// Times nearer together than this are one, s.
+const ROUNDING_S: f64 = 1e-9;
 /// 0.1 µm and µs are these parts of a mm and a second.
 const PER_MM: f64 = 1e4;
 const PER_S: f64 = 1e6;
@@ -23,12 +25,17 @@ impl Channel<'_> {
             if blocked.is_some() {
                 break;
             }
-            self.leads.take(index);
+            self.leads
+                .take(index, self.in_force.settings.pre_output.value_to_go);
             any = true;
             let way = self.way();
             let mut at = self.now();
             if !matches!(ahead.lead, Lead::Time(_)) {
-                let place = ahead.place().min(way);
+                // What could not go out at its place, for that was not known or another came before, does so where the path is.
+                let in_cycle = |place: &f64| (self.way_before - SAME..=way).contains(place);
+                let places = [ahead.place(), self.leads.floor];
+                let place = places.into_iter().find(in_cycle).unwrap_or(way);
+                self.leads.floor = place;
                 at = Moment {
                     position: self.track.position_at(place, self.reached + 1),
                     ..at
@@ -75,13 +82,13 @@ impl Channel<'_> {
         ahead.point - way <= fastest * lead_s
             && self
                 .time_to(ahead.point, lead_s, drive)
-                .is_some_and(|time| time <= lead_s)
+                .is_some_and(|time| time <= lead_s + ROUNDING_S)
     }
 
     /// The greatest speed up to a place, mm/s, at most.
     fn fastest(&self, point: f64, drive: &Drive) -> f64 {
         let mut fastest = 0.0f64;
-        let mut number = self.reached.saturating_sub(1).max(1);
+        let mut number = self.reached;
         while let Some(leg) = self.track.leg(number).filter(|leg| leg.from < point) {
             if leg.driving.rapid {
                 return f64::INFINITY;

@@ -79,7 +79,6 @@ impl Channel<'_> {
             settings: &self.in_force.settings,
             ranges: &mut self.ranges,
             orders: &mut self.orders,
-            unit: self.decoding.units,
             cycle_s: self.cycle_s,
         };
         let ids = resolve.block(unit)?;

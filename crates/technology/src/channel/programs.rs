@@ -1,11 +1,10 @@
 //! Programs one behind the other.
 
-use std::sync::Arc;
-
 use bahn_din::{Place, Unit};
 use bahn_path::Position;
 
 use super::Channel;
+use super::backward::Backward;
 use super::fault::named;
 use super::in_force::InForce;
 use super::record::{self, EVENTS};
@@ -51,6 +50,8 @@ pub(crate) fn execute(run: &Run<'_>) -> Report {
             break;
         }
     }
+    let end_s = channel.t();
+    channel.fetch_the_rest();
     let completed =
         programs.len() == run.programs.count() && programs.iter().all(|program| program.completed);
     if completed {
@@ -59,7 +60,7 @@ pub(crate) fn execute(run: &Run<'_>) -> Report {
     Report {
         completed,
         error: channel.fault.take(),
-        time_s: record::time(channel.t()),
+        time_s: record::time(end_s),
         cycle_s: channel.cycle_s,
         path_end: Coordinates(channel.position()),
         events: channel.record.events,
@@ -78,6 +79,15 @@ impl Channel<'_> {
             position[axis] = self.ended_at[axis];
         }
         position
+    }
+
+    /// Behind the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
+    fn fetch_the_rest(&mut self) {
+        self.plc.keep_fetches();
+        while let Some(cycle) = self.plc.next_cycle() {
+            self.cycle = self.cycle.max(cycle);
+            self.plc();
+        }
     }
 
     /// Runs a program of a run, from a block on.
@@ -134,7 +144,8 @@ impl Channel<'_> {
         self.leads.begin(way);
         (self.fed, self.reached, self.open_to) = (first, first, first);
         self.cursor = (first, 0);
-        (self.dwell, self.ended) = (None, false);
+        (self.dwell, self.ended, self.part) = (None, false, None);
+        self.backward = Backward::default();
         self.ended_at = Position::UNKNOWN;
         self.independent.clear();
     }
@@ -155,7 +166,11 @@ impl Channel<'_> {
             self.follow_script();
             let drive = self.drive_now();
             for _ in 0..ROUNDS {
-                let done = self.decode(blocks) | self.output_ahead(&drive) | self.act();
+                let done = if self.backward.is_on() {
+                    self.act_backward()
+                } else {
+                    self.decode(blocks) | self.output_ahead(&drive) | self.act()
+                };
                 any |= done;
                 if !done {
                     break;
@@ -193,9 +208,6 @@ impl Channel<'_> {
     /// Decodes as far ahead as there is room. Whether there was any block.
     fn decode(&mut self, blocks: &mut dyn Blocks) -> bool {
         let mut count = 0;
-        if self.backward.is_on() {
-            return false;
-        }
         while count < BLOCKS && !self.decoding.ended && self.fault.is_none() {
             if self.decoding.holds {
                 if !self.is_empty() {
@@ -204,8 +216,13 @@ impl Channel<'_> {
                 self.decoding.holds = false;
             }
             let last = self.track.last();
-            if last > self.reached + AHEAD || self.track.deeds(last).len() > DEEDS {
+            let done = if self.cursor.0 == last { self.cursor.1 } else { 0 };
+            if last > self.reached + AHEAD || self.track.deeds(last).len() > DEEDS + done {
                 break;
+            }
+            if done > DEEDS {
+                self.track.forget_done(done);
+                self.cursor.1 = 0;
             }
             count += 1;
             let taken = match blocks.next(&mut self.in_force) {
@@ -272,13 +289,8 @@ impl Channel<'_> {
         self.reset_count += 1;
         self.record.stands_for_nothing(self.t());
         if !self.stands {
-            let block: Arc<str> = match self.track.leg(self.reached) {
-                Some(leg) => leg.block.clone(),
-                None => self.track.block_before(self.reached),
-            };
             let at = self.now();
-            self.record.path(false, &block, at);
-            self.stands = true;
+            self.stop(at);
         }
         self.plc.reset();
         self.ranges.reset();

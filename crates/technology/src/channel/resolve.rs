@@ -21,8 +21,6 @@ pub(crate) struct Resolve<'a> {
     pub(crate) settings: &'a ChannelSettings,
     pub(crate) ranges: &'a mut Ranges,
     pub(crate) orders: &'a mut Orders,
-    /// Count of executed blocks.
-    pub(crate) unit: u64,
     /// A cycle: a lead in time is never less (public: message 21203).
     pub(crate) cycle_s: f64,
 }
@@ -96,7 +94,6 @@ impl Resolve<'_> {
             lead: way.lead,
             process_s: f64::from(way.process_us) / PER_S,
             place: place.clone(),
-            unit: self.unit,
             state: State::default(),
         }))
     }

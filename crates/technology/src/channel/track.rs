@@ -221,6 +221,22 @@ impl Track {
         }
     }
 
+    /// To change that.
+    pub(crate) fn deeds_mut(&mut self, place: u64) -> &mut [Deed] {
+        let last = self.last();
+        let index = self.index(place);
+        match index.and_then(|index| self.stretches.get_mut(index)) {
+            Some(stretch) => &mut stretch.deeds,
+            None if place == last => &mut self.tail,
+            None => &mut [],
+        }
+    }
+
+    /// The first element that is kept.
+    pub(crate) fn first(&self) -> u64 {
+        self.first
+    }
+
     /// Where a place lies.
     pub(crate) fn position(&self, place: u64) -> Position {
         self.leg(place).map_or(self.end, |leg| leg.start)
@@ -252,13 +268,13 @@ impl Track {
         self.leg(number).map_or(self.end, |leg| leg.place(way - leg.from))
     }
 
-    /// Where it ends as far as it is known.
-    pub(crate) fn end(&self) -> Position {
-        self.end
-    }
-
     pub(crate) fn push_deed(&mut self, deed: Deed) {
         self.tail.push(deed);
+    }
+
+    /// So many deeds where the path ends are done: blocks without a movement may go on for ever.
+    pub(crate) fn forget_done(&mut self, count: usize) {
+        self.tail.drain(..count.min(self.tail.len()));
     }
 
     pub(crate) fn push_leg(&mut self, mut leg: Leg) {

@@ -25,6 +25,10 @@ pub(super) struct Window {
     pub(super) next: Option<JointFeed>,
 }
 
+#[allow(
+    clippy::large_enum_variant,
+    reason = "most are legs, and they are moved on once"
+)]
 #[derive(Debug)]
 enum Piece {
     Leg(Leg),

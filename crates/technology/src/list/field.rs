@@ -39,9 +39,6 @@ pub(super) fn set(settings: &mut ChannelSettings, place: &Place, value: &Value) 
         }
         ("pre_output_tolerance", Value::Number(value)) => settings.micro_joint.tolerance = *value,
         ("kasto_residual_path", Value::Number(value)) => settings.edge_banding.residual_path = *value,
-        ("kasto_multi_block", Value::Flag(value)) => settings.edge_banding.several_blocks = *value,
-        ("kasto_reject_rest_block", Value::Flag(value)) => settings.edge_banding.reject_rest = *value,
-        ("kasto_remain_active", Value::Flag(value)) => settings.edge_banding.remain_active = *value,
         _ => return set_function(settings, name, index, value),
     }
     true
@@ -118,9 +115,6 @@ pub(super) fn get(settings: &ChannelSettings, place: &Place) -> Option<Value> {
         }
         "pre_output_tolerance" => Value::Number(settings.micro_joint.tolerance),
         "kasto_residual_path" => Value::Number(settings.edge_banding.residual_path),
-        "kasto_multi_block" => Value::Flag(settings.edge_banding.several_blocks),
-        "kasto_reject_rest_block" => Value::Flag(settings.edge_banding.reject_rest),
-        "kasto_remain_active" => Value::Flag(settings.edge_banding.remain_active),
         _ => return get_function(settings, name, index?),
     })
 }

@@ -305,7 +305,7 @@ mod tests {
             functions,
             spindles,
             main,
-            any::<[bool; 10]>(),
+            any::<[bool; 6]>(),
             50_u32..=200,
             any::<[u32; 3]>(),
             0_u32..=1000,
@@ -341,9 +341,6 @@ mod tests {
                         },
                         edge_banding: EdgeBanding {
                             residual_path: ways[2] / 2,
-                            several_blocks: flags[6],
-                            reject_rest: flags[7],
-                            remain_active: flags[8],
                         },
                         ..ChannelSettings::default()
                     };

@@ -30,8 +30,6 @@ pub(crate) struct Plc<'a> {
     /// What comes, by cycle and in the order in which it was ordered.
     due: BinaryHeap<Reverse<(u64, u64, Deed)>>,
     count: u64,
-    /// Functions that will be fetched.
-    fetches: usize,
 }
 
 /// What part of a cycle may be rounding.
@@ -49,7 +47,6 @@ impl<'a> Plc<'a> {
             cycle_s,
             due: BinaryHeap::new(),
             count: 0,
-            fetches: 0,
         }
     }
 
@@ -88,7 +85,6 @@ impl<'a> Plc<'a> {
             Reply::At(time_s) => Some(cycle_at(time_s, self.cycle_s).max(cycle + 1)),
             Reply::Acknowledge(after) => self.behind(cycle, after),
         };
-        self.fetches += 1;
         self.plan(cycle + 1, Deed::Fetch(id));
         if let Some(acknowledged) = acknowledged.filter(|_| waits) {
             self.plan(acknowledged, Deed::Acknowledge(id));
@@ -113,9 +109,6 @@ impl<'a> Plc<'a> {
             return None;
         }
         let Reverse((_, _, deed)) = self.due.pop()?;
-        if matches!(deed, Deed::Fetch(_)) {
-            self.fetches -= 1;
-        }
         Some(deed)
     }
 
@@ -124,14 +117,14 @@ impl<'a> Plc<'a> {
         self.due.peek().map(|Reverse((cycle, ..))| *cycle)
     }
 
-    /// Whether functions are still to be fetched.
-    pub(crate) fn fetches(&self) -> bool {
-        self.fetches > 0
+    /// Only fetches of the functions that were output last are left of what comes.
+    pub(crate) fn keep_fetches(&mut self) {
+        self.due
+            .retain(|Reverse((.., deed))| matches!(deed, Deed::Fetch(_)));
     }
 
     /// The channel has dropped all open functions.
     pub(crate) fn reset(&mut self) {
         self.due.clear();
-        self.fetches = 0;
     }
 }

@@ -1,6 +1,8 @@
 //! The files of the PLC: in one window or two, of the memory or of an EPROM, with what is done with them
 //! [000:11273-11368].
 
+use std::collections::{BTreeSet, VecDeque};
+
 use bahn_dialogue::Key;
 use bahn_host::eprom::LoadList;
 use bahn_host::s_records::Image;
@@ -11,7 +13,7 @@ use super::editor::Editor;
 use super::keys::Keys;
 use super::source;
 use crate::page::{Page, Turn, View};
-use crate::pages::ask::{Later, Name};
+use crate::pages::ask::{Choice, Later, Name};
 use crate::pages::list;
 use crate::programs::NAME_MAX;
 use crate::screen::{Line, Mark, Window, WindowKind};
@@ -46,8 +48,8 @@ const TWO: [[&str; 8]; 2] = [
         "PAGE UP",
         "PAGE DOWN",
         "TRANSFER",
+        "TRANSFER TAGGED",
         "TRANSFER ALL",
-        "",
         "SELECT TYPE",
         "WINDOW",
         "END",
@@ -57,7 +59,7 @@ const TWO: [[&str; 8]; 2] = [
         "PAGE DOWN",
         "CONVERT",
         "MODIFY WINDOW",
-        "",
+        "TAG",
         "",
         "",
         "END",
@@ -94,6 +96,8 @@ struct Pane {
     eprom: bool,
     /// Files of this ending only.
     ending: Option<String>,
+    /// Names that are tagged.
+    tagged: BTreeSet<String>,
 }
 
 impl Pane {
@@ -114,6 +118,21 @@ impl Pane {
         };
         self.entries = of_memory.chain(of_eproms).filter(shown).collect();
         self.current = list::moved(self.current, 0, self.entries.len());
+        let names = self.entries.iter().map(|entry| entry.name.as_str());
+        let names: BTreeSet<&str> = names.collect();
+        self.tagged.retain(|name| names.contains(name.as_str()));
+    }
+
+    /// Tags the file under the cursor, or takes its tag away, and goes on to the next.
+    fn tag(&mut self) -> Turn {
+        let Some(name) = self.entry().map(|entry| entry.name.clone()) else {
+            return Turn::Refused;
+        };
+        if !self.tagged.remove(&name) {
+            self.tagged.insert(name);
+        }
+        self.current = list::moved(self.current, 1, self.entries.len());
+        Turn::Done
     }
 
     fn entry(&self) -> Option<&Entry> {
@@ -257,28 +276,45 @@ impl Files {
         }
     }
 
-    /// Copies the file under the cursor into the other window, or all of the window; what is there already stays.
-    fn transfer(&mut self, all: bool, site: &Site) -> Turn {
+    /// Erases the file under the cursor, when ENT says so; none that the machine needs [003:985-990].
+    fn erase(&self, site: &Site) -> Turn {
+        let Some(name) = self.own().map(str::to_owned) else {
+            return Turn::Refused;
+        };
+        if is_needed(&name, site) {
+            return Turn::Say(site.message(MessageId::ProtectedPgm));
+        }
+        let prompt = format!("{name}: {}", site.words("ERASE = ENT / END = NO ENT"));
+        Turn::Open(Choice::confirm(
+            prompt,
+            site.words("ERASE"),
+            move |site| match source::erase(&name, site) {
+                Ok(()) => Turn::Close,
+                Err(why) => Turn::CloseSaying(why),
+            },
+        ))
+    }
+
+    /// Copies into the other window what is under the cursor, what is tagged, or all; a file that is there already is
+    /// replaced when ENT says so.
+    fn transfer(&mut self, which: &str, site: &Site) -> Turn {
         let from = self.pane();
-        let wanted = match all {
-            true => from.entries.iter().collect(),
-            false => from.entry().into_iter().collect::<Vec<_>>(),
+        let wanted: Vec<&Entry> = match which {
+            "TRANSFER ALL" => from.entries.iter().collect(),
+            "TRANSFER" => from.entry().into_iter().collect(),
+            _ => {
+                let tagged = |entry: &&Entry| from.tagged.contains(&entry.name);
+                from.entries.iter().filter(tagged).collect()
+            }
         };
         // Both windows are of one memory: only what lies in an EPROM is somewhere else.
         let foreign = wanted
             .iter()
-            .filter_map(|entry| Some((&entry.name, &entry.eprom.as_ref()?.1)));
-        let (mut copied, mut refused) = (0, None);
-        for (name, bytes) in foreign {
-            match source::create(name, bytes, site) {
-                Ok(()) => copied += 1,
-                Err(why) => refused = Some(format!("{name}: {why}")),
-            }
-        }
-        match refused {
-            Some(why) => Turn::Say(why),
-            None if copied == 0 => Turn::Refused,
-            None => Turn::Say(format!("{copied} {}", site.words("FILES TRANSFERRED"))),
+            .filter_map(|entry| Some((entry.name.clone(), entry.eprom.as_ref()?.1.clone())));
+        let files: VecDeque<_> = foreign.collect();
+        match files.is_empty() {
+            true => Turn::Refused,
+            false => copies(files, 0, false, site),
         }
     }
 
@@ -317,7 +353,10 @@ impl Files {
             let mut shown = Line::default();
             for (place, pane) in self.panes.iter().enumerate() {
                 let at = first(pane) + row;
-                let text = pane.entries.get(at).map(text_of).unwrap_or_default();
+                let entry = pane.entries.get(at);
+                let tag = entry.is_some_and(|entry| pane.tagged.contains(&entry.name));
+                let text = entry.map(text_of).unwrap_or_default();
+                let text = if tag { format!("*{text}") } else { text };
                 let from = shown.text.chars().count();
                 shown.text += &match place {
                     0 => format!("{:<WIDTH$.WIDTH$} | ", text),
@@ -332,6 +371,46 @@ impl Files {
             shown
         };
         (0..longest.min(lines)).map(line).collect()
+    }
+}
+
+/// Copies files one after the other; one that is there already is asked for, with the others behind it.
+fn copies(mut files: VecDeque<(String, Vec<u8>)>, mut copied: u32, asked: bool, site: &Site) -> Turn {
+    while let Some((name, bytes)) = files.pop_front() {
+        let path = source::path(&name, site);
+        if !path.exists() {
+            match source::create(&name, &bytes, site) {
+                Ok(()) => copied += 1,
+                Err(why) => return said(format!("{name}: {why}"), asked),
+            }
+            continue;
+        }
+        if source::is_protected(&path) {
+            let protected = site.message(MessageId::ProtectedPgm);
+            return said(format!("{name}: {protected}"), asked);
+        }
+        let erase = site.message(MessageId::EraseOverread);
+        let prompt = format!("{erase} {name}: {}", site.words("YES = ENT / NO = NO ENT"));
+        let names = ["ENT".to_owned(), "NO ENT".to_owned()];
+        let question = Choice::ask(prompt, names, move |yes, site| {
+            if yes && let Err(why) = source::write(&name, &bytes, site) {
+                return Turn::CloseSaying(why);
+            }
+            copies(files.clone(), copied + u32::from(yes), true, site)
+        });
+        return match asked {
+            true => Turn::Replace(question),
+            false => Turn::Open(question),
+        };
+    }
+    said(format!("{copied} {}", site.words("FILES TRANSFERRED")), asked)
+}
+
+/// What is said at the end; a question that stood there goes.
+fn said(text: String, asked: bool) -> Turn {
+    match asked {
+        true => Turn::CloseSaying(text),
+        false => Turn::Say(text),
     }
 }
 
@@ -359,6 +438,10 @@ impl Page for Files {
                 self.active = usize::from(key == Key::Right);
                 Turn::Done
             }
+            Key::ClPgm => {
+                self.stale = true;
+                self.erase(site)
+            }
             Key::Ent => self.select(site),
             Key::End | Key::NoEnt | Key::Del => Turn::Close,
             _ => Turn::Refused,
@@ -380,7 +463,8 @@ impl Page for Files {
             "MODIFY WINDOW" => self.keys(DEVICES),
             "SELECT TYPE" => self.keys(TYPES),
             "CONVERT" => self.keys(&convert::KEYS),
-            "TRANSFER" | "TRANSFER ALL" => self.transfer(name == "TRANSFER ALL", site),
+            "TRANSFER" | "TRANSFER TAGGED" | "TRANSFER ALL" => self.transfer(name, site),
+            "TAG" => self.pane_mut().tag(),
             "WINDOW" => {
                 (self.two, self.active) = (!self.two, 0);
                 Turn::Done

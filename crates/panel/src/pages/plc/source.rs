@@ -158,7 +158,29 @@ pub(super) fn path(name: &str, site: &Site) -> PathBuf {
 /// # Errors
 /// In words.
 pub(super) fn replace(name: &str, text: &str, site: &Site) -> Result<(), String> {
-    files::write_whole(&folder(site).join(name), text.as_bytes()).map_err(|error| error.to_string())
+    write(name, text.as_bytes(), site)
+}
+
+/// The same with any bytes.
+///
+/// # Errors
+/// In words.
+pub(super) fn write(name: &str, bytes: &[u8], site: &Site) -> Result<(), String> {
+    files::write_whole(&folder(site).join(name), bytes).map_err(|error| error.to_string())
+}
+
+/// Erases a file of the folder.
+///
+/// # Errors
+/// In words: it is protected, or the medium does not do it.
+pub(super) fn erase(name: &str, site: &Site) -> Result<(), String> {
+    let path = path(name, site);
+    if is_protected(&path) {
+        return Err(site.message(MessageId::ProtectedPgm));
+    }
+    fs::remove_file(&path).map_err(|error| error.to_string())?;
+    files::sync_folder(&path);
+    Ok(())
 }
 
 /// Writes a new file of the folder.

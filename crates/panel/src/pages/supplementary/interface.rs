@@ -1,15 +1,16 @@
 //! The data interfaces: which device is connected to each, how fast it is, and which of both a transfer takes
 //! [000:16975-16995] [000:17216-17228] [003:7035-7062].
 //!
-//! What is chosen here is kept. Nothing is connected to the interfaces: where a transfer would begin, the key EXT says so.
+//! What is chosen here is kept; the key EXT begins a transfer with it.
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Side, Turn};
+use crate::page::{Page, Turn};
 use crate::pages::menu::{Item, Items, Menu};
 use crate::settings::{BAUD_RATES, Interface, InterfaceMode, TransferOf};
 use crate::site::Site;
+use crate::transfer::{TransferDeed, TransferOrder};
 
 /// Names of the interfaces.
 const PORTS: [&str; 2] = ["RS-232", "RS-422"];
@@ -36,16 +37,32 @@ pub(super) fn page() -> Box<dyn Page> {
     Box::new(Menu::new(Interfaces))
 }
 
-/// EXT where a transfer would begin: no device answers [003:7873-7875].
-pub(crate) fn transfer(side: Side, site: &Site) -> Turn {
-    let runs = matches!(
-        site.mode(),
-        bahn_control::Mode::SingleBlock | bahn_control::Mode::FullSequence
-    );
-    match side == Side::Programming || runs {
-        true => Turn::Say(site.message(MessageId::ExtInOutputNotReady)),
-        false => Turn::Refused,
+/// What is to be done at the interface of file transfers, as it is set up.
+///
+/// # Errors
+/// The message of the control: no device can answer there.
+pub(crate) fn order(deed: TransferDeed, site: &Site) -> Result<TransferOrder, MessageId> {
+    let [files, _] = site.settings.second_interface;
+    let port = usize::from(files && site.control().model().has_rs_422());
+    let interface = site.settings.interfaces.get(port).copied().unwrap_or_default();
+    let mode = match interface.mode {
+        InterfaceMode::Fe1 => "fe1",
+        InterfaceMode::Fe2 => "fe2",
+        InterfaceMode::Me => "me",
+        InterfaceMode::Ext1 => "ext1",
+        InterfaceMode::Ext2 => "ext2",
+        InterfaceMode::Lsv2 | InterfaceMode::None => return Err(MessageId::ExtInOutputNotReady),
+    };
+    if is_inhibited(port, site) {
+        return Err(MessageId::ExtInOutputNotReady);
     }
+    Ok(TransferOrder {
+        port,
+        mode,
+        baud: baud(port, site),
+        kind: if site.settings.iso { "I" } else { "H" },
+        deed,
+    })
 }
 
 struct Interfaces;

@@ -7,7 +7,7 @@ mod offsets;
 mod oscilloscope;
 mod timers;
 
-pub(crate) use interface::transfer;
+pub(crate) use interface::order;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -136,11 +136,7 @@ impl Function {
                 if settings.inch { "INCH" } else { "MM" },
             ),
             Function::Input => {
-                let language = if settings.iso && has_iso() {
-                    "ISO"
-                } else {
-                    "HEIDENHAIN"
-                };
+                let language = if settings.iso { "ISO" } else { "HEIDENHAIN" };
                 Item::new(site.words("PROGRAM INPUT"), language)
             }
             Function::Language => Item::new(site.words("DIALOGUE LANGUAGE"), site.words("ENGLISH")),
@@ -173,8 +169,7 @@ impl Function {
                 site.settings.position_type = next_type(site.settings.position_type, on);
             }
             Function::Unit => site.settings.inch = !site.settings.inch,
-            Function::Input if has_iso() => site.settings.iso = !site.settings.iso,
-            Function::Input => return Turn::Say(site.words("DIN/ISO PROGRAMS CANNOT BE ENTERED")),
+            Function::Input => site.settings.iso = !site.settings.iso,
             Function::Language => {
                 let other = match site.language() {
                     Language::English => Language::German,
@@ -193,12 +188,6 @@ impl Function {
         }
         Turn::Done
     }
-}
-
-/// Programs can be written in DIN/ISO.
-fn has_iso() -> bool {
-    let mut types = bahn_program::FILE_TYPES.iter();
-    types.any(|own| own.extension == "I" && own.language.is_some())
 }
 
 /// The next type of positions, or the one before.

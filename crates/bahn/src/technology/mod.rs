@@ -1,0 +1,105 @@
+//! `bahn technology`: programs with M, H and S functions on one channel, with what the PLC does.
+//!
+//! - `options`: options and help text;
+//! - `dynamics`: from a list of machine parameters to the limits of motion;
+//! - `programs`: programs and subroutines from files;
+//! - `text`: the report for people; `picture`: velocity, outputs and waits as a drawing.
+
+mod dynamics;
+mod options;
+mod picture;
+mod programs;
+mod text;
+
+pub(crate) use options::{EXAMPLES, TechnologyOptions};
+
+use std::path::{Path, PathBuf};
+
+use bahn_motion::Limits;
+use bahn_parameters::ControlModel;
+use bahn_path::Position;
+use bahn_technology::{ChannelList, Coordinates, Fault, Report, Run, Script};
+
+use crate::options::Format;
+use crate::{Outcome, UsageError, channel, console, diagnostics, files, scope, settings};
+
+/// Runs programs in turn on one channel and reports what was output and waited for.
+pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError> {
+    if let Some(picture) = &options.image {
+        let inputs: Vec<&Path> = inputs(options).map(PathBuf::as_path).collect();
+        files::keep_inputs(&inputs, &[("--image", picture.path())])?;
+    }
+    let programs = programs::read(&options.programs)?;
+    let script = options.plc.as_deref().map(script).transpose()?;
+    let limits = dynamics::limits(options.parameters.as_deref())?;
+    let start = settings::position("--start", &options.start, ControlModel::default())?;
+    let list = ChannelList::from_bytes(&files::read_table(&options.channel)?);
+    if options.format == Format::Text {
+        let faults = channel::faults(&list, &options.channel);
+        diagnostics::print_faults(&faults);
+    }
+    let report = match list.errors().first() {
+        Some(_) => refused(&list, &options.channel, &limits, start),
+        None => Run {
+            programs: &programs,
+            settings: list.settings(),
+            limits: &limits,
+            start,
+            from: options.from.as_deref(),
+            script: script.as_ref(),
+        }
+        .execute(),
+    };
+    if let Some(picture) = &options.image {
+        let title = programs::title(&options.programs);
+        scope::write(&picture::sheet(&report, &title), picture)?;
+    }
+    match options.format {
+        Format::Text => console::print(&text::text(&report))?,
+        Format::Json => console::print_json(&report)?,
+    }
+    Ok(if report.completed {
+        Outcome::Fine
+    } else {
+        Outcome::ProgramError
+    })
+}
+
+/// All files that are read.
+fn inputs(options: &TechnologyOptions) -> impl Iterator<Item = &PathBuf> {
+    let others = options.plc.iter().chain(&options.parameters);
+    options
+        .programs
+        .iter()
+        .chain(std::iter::once(&options.channel))
+        .chain(others)
+}
+
+fn script(path: &Path) -> Result<Script, UsageError> {
+    let bytes = files::read_table(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    text.parse()
+        .map_err(|error| UsageError::new(format!("{}:{error}", path.display())))
+}
+
+/// A list with errors is used for nothing: its first error ends the run before it begins.
+fn refused(list: &ChannelList, path: &Path, limits: &Limits, start: Position) -> Report {
+    let error = list.errors().first().map(|fault| Fault {
+        code: "channel-list".to_owned(),
+        message: format!("line {}, column {}: {}", fault.line, fault.column, fault.message),
+        program: programs::file_name(path),
+        block: format!("#{}", fault.line),
+    });
+    Report {
+        completed: false,
+        error,
+        time_s: 0.0,
+        cycle_s: limits.cycle_s,
+        events: Vec::new(),
+        waits: Vec::new(),
+        path_end: Coordinates(start),
+        programs: Vec::new(),
+        warnings: Vec::new(),
+        samples: Vec::new(),
+    }
+}

@@ -1,0 +1,397 @@
+//! DIN 66025 programs, `.nc`.
+
+mod words;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
+
+use bahn_din::{Landmark, LandmarkKind, Program, Shelf, SpanKind};
+
+use crate::language::{
+    Analysis, Completion, Elsewhere, Examined, Fault, Fold, Hover, Mention, Place, Related, Role, Severity,
+    Symbol, SymbolKind, Thing, Token, mention_at, mentions_of,
+};
+use crate::markdown::Markdown;
+use crate::text::Text;
+use crate::world::World;
+
+/// A program as the editor has it.
+pub(crate) struct DinProgram {
+    path: PathBuf,
+    text: Arc<Text>,
+    program: Arc<Program>,
+    /// The bytes of each line, from line 1 on.
+    lines: Vec<Range<usize>>,
+    mentions: OnceLock<Vec<Mention>>,
+}
+
+impl DinProgram {
+    pub(crate) fn new(path: &Path, text: Arc<Text>) -> DinProgram {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let program = Arc::new(Program::from_bytes(&name, text.text.as_bytes()));
+        let mut from = 0;
+        let lines = (1..=program.line_count()).map(|number| {
+            // Each line stands behind the one before it.
+            let line = program.line(number);
+            let found = text.text.get(from..).and_then(|rest| rest.find(line));
+            let start = from + found.unwrap_or_default();
+            from = start + line.len();
+            start..from
+        });
+        DinProgram {
+            path: path.to_owned(),
+            lines: lines.collect(),
+            program,
+            text,
+            mentions: OnceLock::new(),
+        }
+    }
+
+    /// The bytes of a line, from 1.
+    fn line(&self, number: u32) -> Range<usize> {
+        let end = self.text.text.len();
+        let index = (number as usize).checked_sub(1);
+        index
+            .and_then(|index| self.lines.get(index).cloned())
+            .unwrap_or(end..end)
+    }
+
+    /// All words with their places.
+    fn words(&self) -> impl Iterator<Item = (Range<usize>, SpanKind)> {
+        self.lines.iter().flat_map(|line| self.words_of(line.clone()))
+    }
+
+    fn words_of(&self, line: Range<usize>) -> Vec<(Range<usize>, SpanKind)> {
+        let spans = bahn_din::words(self.text.get(line.clone()));
+        let bytes = |span: &bahn_din::Span| {
+            self.text
+                .characters(line.clone(), span.column as usize, span.length as usize)
+        };
+        spans.iter().map(|span| (bytes(span), span.kind)).collect()
+    }
+
+    /// The word at a place, and the code of its line in front of it.
+    fn word_at(&self, at: usize) -> Option<(Range<usize>, SpanKind)> {
+        let words = self.words_of(self.text.line_at(at));
+        let inside = words.iter().find(|(range, _)| range.contains(&at));
+        inside
+            .or_else(|| words.iter().find(|(range, _)| range.end == at))
+            .cloned()
+    }
+
+    fn named(&self, kinds: &[LandmarkKind]) -> Vec<Landmark> {
+        let all = self.program.landmarks().into_iter();
+        all.filter(|landmark| kinds.contains(&landmark.kind)).collect()
+    }
+
+    fn find_mentions(&self) -> Vec<Mention> {
+        let subroutines = self.named(&[LandmarkKind::Subroutine]);
+        let mut found = Vec::new();
+        for line in &self.lines {
+            let words = self.words_of(line.clone());
+            for (range, kind) in &words {
+                let word = self.text.get(range.clone());
+                let rest = self.text.get(range.end..line.end);
+                let behind = rest.trim_start();
+                let blanks = rest.len() - behind.len();
+                match kind {
+                    SpanKind::Variable => found.push(Mention {
+                        range: range.clone(),
+                        thing: Thing::Variable(word.to_ascii_uppercase()),
+                        role: if behind.starts_with('=') {
+                            Role::Sets
+                        } else {
+                            Role::Uses
+                        },
+                    }),
+                    SpanKind::Head => {
+                        let name = word.trim_start_matches('%').trim_start();
+                        let subroutine = name
+                            .strip_prefix(['L', 'l'])
+                            .filter(|rest| rest.starts_with([' ', '\t']));
+                        if let Some(name) = subroutine.map(str::trim) {
+                            let start = range.start + word.rfind(name).unwrap_or_default();
+                            found.push(subroutine_at(start, name, Role::Sets));
+                        }
+                    }
+                    SpanKind::Address if matches!(word, "L" | "l" | "LL" | "ll") => {
+                        let name = first_word(behind);
+                        let start = range.end + blanks;
+                        let is_here = subroutines.iter().any(|landmark| landmark.name == name);
+                        if is_here {
+                            found.push(subroutine_at(start, name, Role::Uses));
+                        } else if !name.is_empty() {
+                            found.push(Mention {
+                                range: start..start + name.len(),
+                                thing: Thing::File(name.to_owned()),
+                                role: Role::Uses,
+                            });
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        found
+    }
+}
+
+fn subroutine_at(start: usize, name: &str, role: Role) -> Mention {
+    Mention {
+        range: start..start + name.len(),
+        thing: Thing::Subroutine(name.to_owned()),
+        role,
+    }
+}
+
+fn first_word(text: &str) -> &str {
+    text.split([' ', '\t', ';', '(']).next().unwrap_or_default()
+}
+
+/// Subroutines beside a program, as the editor shows them, else from the disk.
+struct Beside {
+    folder: PathBuf,
+    world: World,
+}
+
+impl Shelf for Beside {
+    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
+        let relative = name.replace('\\', "/");
+        let inside = relative
+            .split('/')
+            .all(|part| !part.is_empty() && part != ".." && !part.contains(':'));
+        let bytes = self.world.read(&self.folder.join(&relative)).filter(|_| inside)?;
+        Some((relative, bytes))
+    }
+}
+
+impl Analysis for DinProgram {
+    fn examine(&self, world: &World, interrupt: &AtomicBool) -> Examined {
+        if self.text.text.trim().is_empty() {
+            return Examined::default();
+        }
+        let folder = self.path.parent().unwrap_or(Path::new("")).to_owned();
+        let shelf: Arc<dyn Shelf> = Arc::new(Beside {
+            folder: folder.clone(),
+            world: world.clone(),
+        });
+        let examined = bahn_din::examine(&self.program, &shelf, interrupt);
+        let faults = examined.found.into_iter().map(|found| {
+            let fault = found.fault;
+            if found.program.name() == self.program.name() {
+                let line = self.line(fault.line);
+                return Fault {
+                    range: self
+                        .text
+                        .characters(line, fault.column as usize, fault.length as usize),
+                    severity: Severity::Error,
+                    code: String::new(),
+                    message: fault.message,
+                    related: Vec::new(),
+                };
+            }
+            let name = found.program.name().to_string();
+            let thing = Thing::File(name.clone());
+            let call = mentions_of(self.mentions(), &thing).next();
+            let column = fault.column.saturating_sub(1);
+            Fault {
+                range: call.map_or_else(|| self.line(1), |call| call.range.clone()),
+                severity: Severity::Error,
+                code: String::new(),
+                message: format!("{name}, block {}: {}", fault.block, fault.message),
+                related: vec![Related {
+                    path: Some(folder.join(&name)),
+                    place: Place::There {
+                        line: fault.line.saturating_sub(1),
+                        characters: column..column.saturating_add(fault.length),
+                    },
+                    message: fault.message,
+                }],
+            }
+        });
+        Examined {
+            faults: faults.collect(),
+            complete: examined.complete,
+            ..Examined::default()
+        }
+    }
+
+    fn hover(&self, at: usize, _: Option<&Examined>) -> Option<Hover> {
+        if let Some(mention) = mention_at(self.mentions(), at) {
+            let lines = |role: Role| {
+                let places = mentions_of(self.mentions(), &mention.thing).filter(|other| other.role == role);
+                let lines: Vec<String> = places
+                    .take(12)
+                    .map(|other| (self.text.lines.line_of(other.range.start) + 1).to_string())
+                    .collect();
+                lines.join(", ")
+            };
+            let name = self.text.get(mention.range.clone());
+            let (title, rule) = match &mention.thing {
+                Thing::Variable(name) => words::variable(name),
+                Thing::Subroutine(_) => ("Subroutine", ""),
+                _ => ("File with a subroutine", ""),
+            };
+            let text = Markdown::titled(&format!("{name}: {title}"))
+                .paragraph(rule)
+                .fact("Set in lines", &lines(Role::Sets))
+                .fact("Used in lines", &lines(Role::Uses));
+            return Some(Hover {
+                range: mention.range.clone(),
+                text: text.text(),
+            });
+        }
+        let (range, kind) = self.word_at(at)?;
+        Some(Hover {
+            text: words::told(self.text.get(range.clone()), kind)?,
+            range,
+        })
+    }
+
+    fn mentions(&self) -> &[Mention] {
+        self.mentions.get_or_init(|| self.find_mentions())
+    }
+
+    fn elsewhere(&self, thing: &Thing, world: &World) -> Option<Elsewhere> {
+        let Thing::File(name) = thing else { return None };
+        let path = self.path.parent()?.join(name.replace('\\', "/"));
+        world.read(&path).map(|_| Elsewhere::front(path))
+    }
+
+    fn symbols(&self) -> Vec<Symbol> {
+        let heads = self.named(&[LandmarkKind::Program, LandmarkKind::Subroutine]);
+        let end = self.text.text.len();
+        let ends = heads
+            .iter()
+            .skip(1)
+            .map(|next| self.line(next.line).start)
+            .chain([end]);
+        heads
+            .iter()
+            .zip(ends)
+            .map(|(head, end)| {
+                let line = self.line(head.line);
+                let (name, kind) = match head.kind {
+                    LandmarkKind::Subroutine => (format!("%L {}", head.name), SymbolKind::Label),
+                    _ => (format!("%{}", head.name), SymbolKind::Program),
+                };
+                Symbol {
+                    name,
+                    detail: String::new(),
+                    kind,
+                    range: line.start..end.max(line.end),
+                    selection: line,
+                    children: Vec::new(),
+                }
+            })
+            .collect()
+    }
+
+    fn folds(&self) -> Vec<Fold> {
+        let symbols = self.symbols().into_iter();
+        let folds = symbols.map(|symbol| {
+            let text = self.text.get(symbol.range.clone()).trim_end();
+            Fold {
+                first: self.text.lines.line_of(symbol.range.start),
+                last: self.text.lines.line_of(symbol.range.start + text.len()),
+                is_comment: false,
+            }
+        });
+        folds.collect()
+    }
+
+    fn completions(&self, at: usize, world: &World) -> Vec<Completion> {
+        let line = self.text.line_at(at);
+        let before = self.text.get(line.start..at);
+        if before.contains([';', '(']) {
+            return Vec::new();
+        }
+        let start = before
+            .char_indices()
+            .rev()
+            .take_while(|(_, c)| !c.is_whitespace() && *c != '=' && *c != '[')
+            .last()
+            .map_or(at, |(start, _)| line.start + start);
+        let names = |wanted: fn(&Thing) -> Option<&str>| {
+            let mut names: Vec<&str> = self
+                .mentions()
+                .iter()
+                .filter_map(|mention| wanted(&mention.thing))
+                .collect();
+            names.sort_unstable();
+            names.dedup();
+            names
+        };
+        let variables = names(|thing| match thing {
+            Thing::Variable(name) => Some(name),
+            _ => None,
+        });
+        let subroutines = names(|thing| match thing {
+            Thing::Subroutine(name) => Some(name),
+            _ => None,
+        });
+        let calls = self.text.get(line.start..start).trim_end();
+        if calls == "L" || calls.ends_with(" L") {
+            let folder = self
+                .path
+                .parent()
+                .map(|folder| world.files.names(folder))
+                .unwrap_or_default();
+            let files = folder
+                .into_iter()
+                .filter(|name| name.to_ascii_lowercase().ends_with(".nc"));
+            let all = subroutines.into_iter().map(str::to_owned).chain(files);
+            return all
+                .map(|name| words::item(start..at, name.clone(), String::new(), name))
+                .collect();
+        }
+        let mut all = words::completions(start..at);
+        all.extend(
+            variables
+                .into_iter()
+                .map(|name| words::item(start..at, name.into(), "variable".into(), name.into())),
+        );
+        all
+    }
+
+    fn formatted(&self, _: &World) -> Result<String, String> {
+        Err("programs of DIN 66025 have no normalised listing".to_owned())
+    }
+
+    fn can_rename(&self, thing: &Thing) -> bool {
+        matches!(thing, Thing::Subroutine(_))
+    }
+
+    fn renamed(&self, thing: &Thing, new: &str, _: &World) -> Result<Vec<(Range<usize>, String)>, String> {
+        let is_name = !new.is_empty()
+            && new
+                .chars()
+                .all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '-'));
+        if !is_name {
+            return Err("a subroutine is named by letters and digits".to_owned());
+        }
+        if self.program.subroutine(new).is_some() {
+            return Err(format!("subroutine {new} is there already"));
+        }
+        let places = mentions_of(self.mentions(), thing);
+        Ok(places
+            .map(|place| (place.range.clone(), new.to_owned()))
+            .collect())
+    }
+
+    fn tokens(&self) -> Vec<(Range<usize>, Token)> {
+        let token = |kind: SpanKind| match kind {
+            SpanKind::Comment => Token::Comment,
+            SpanKind::Head | SpanKind::Function | SpanKind::Command => Token::Keyword,
+            SpanKind::Number => Token::Label,
+            SpanKind::Address => Token::Parameter,
+            SpanKind::Value => Token::Number,
+            SpanKind::Variable => Token::Variable,
+            SpanKind::Text => Token::Text,
+            SpanKind::Calculation => Token::Function,
+        };
+        self.words().map(|(range, kind)| (range, token(kind))).collect()
+    }
+}

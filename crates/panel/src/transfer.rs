@@ -1,0 +1,290 @@
+//! The data interfaces as the panel has them: what the operator wants of them goes out as orders, what happens comes back
+//! as inputs. Whoever has the lines knows the protocols; nothing here does.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::mpsc::Sender;
+
+use bahn_parameters::MessageId;
+
+/// Lines of what has happened that are kept at most.
+const TOLD_MAX: usize = 1000;
+
+/// What the operator wants of an interface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TransferOrder {
+    /// RS-232-C/V.24 is 0, RS-422/V.11 is 1.
+    pub port: usize,
+    /// The device that MOD says is connected: `fe1`, `fe2`, `me`, `ext1` or `ext2`.
+    pub mode: &'static str,
+    /// Its baud rate.
+    pub baud: u32,
+    /// Which programs are read in where no name says it, by their ending: `H` or `I`, as PROGRAM INPUT says.
+    pub kind: &'static str,
+    /// What is to be done.
+    pub deed: TransferDeed,
+}
+
+/// What is to be done at an interface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TransferDeed {
+    /// PROGRAM DIRECTORY: the names on the medium.
+    Directory,
+    /// READ-IN ALL PROGRAMS.
+    ReadAll,
+    /// READ-IN PROGRAM OFFERED: each after a question.
+    ReadOffered,
+    /// READ-IN SELECTED PROGRAM, by its name.
+    Read(String),
+    /// READ-OUT, one or several.
+    Write(Vec<String>),
+    /// The same, each after a question.
+    WriteOffered(Vec<String>),
+    /// ENT or NO ENT to a question.
+    Answer(bool),
+    /// END breaks it off.
+    End,
+}
+
+/// What has happened at an interface, as it is written: `received 15.H`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TransferNews {
+    /// Somebody carries out what is ordered at this interface.
+    Connected(usize),
+    /// A name on the medium, with its sectors.
+    Listed(String, Option<u32>),
+    /// Free sectors.
+    Free(u32),
+    /// A file is stored.
+    Received(String),
+    /// A file was read out.
+    Sent(String),
+    /// ERASE/OVERREAD: is the file replaced?
+    Overread(String),
+    /// Is the file read in?
+    Offered(String),
+    /// Is it read out?
+    Output(String),
+    /// It is protected: does the transfer go on with the next one?
+    Protected(String),
+    /// A message, as the control shows it.
+    Message(String),
+    /// It is over; `true` when it is complete.
+    Ended(bool),
+}
+
+impl fmt::Display for TransferNews {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TransferNews::Connected(port) => write!(f, "connected {port}"),
+            TransferNews::Listed(name, Some(sectors)) => write!(f, "listed {name} {sectors}"),
+            TransferNews::Listed(name, None) => write!(f, "listed {name}"),
+            TransferNews::Free(sectors) => write!(f, "free {sectors}"),
+            TransferNews::Received(name) => write!(f, "received {name}"),
+            TransferNews::Sent(name) => write!(f, "sent {name}"),
+            TransferNews::Overread(name) => write!(f, "overread {name}"),
+            TransferNews::Offered(name) => write!(f, "offered {name}"),
+            TransferNews::Output(name) => write!(f, "output {name}"),
+            TransferNews::Protected(name) => write!(f, "protected {name}"),
+            TransferNews::Message(text) => write!(f, "message {text}"),
+            TransferNews::Ended(complete) => f.write_str(if *complete {
+                "ended complete"
+            } else {
+                "ended incomplete"
+            }),
+        }
+    }
+}
+
+impl FromStr for TransferNews {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<TransferNews, String> {
+        let (what, rest) = text.split_once(' ').unwrap_or((text, ""));
+        let named = (!rest.is_empty()).then(|| rest.to_owned());
+        let news = match what {
+            "connected" => rest
+                .parse()
+                .ok()
+                .filter(|port| *port < 2)
+                .map(TransferNews::Connected),
+            "listed" => named.map(|rest| match rest.rsplit_once(' ') {
+                Some((name, sectors)) if sectors.parse::<u32>().is_ok() => {
+                    TransferNews::Listed(name.to_owned(), sectors.parse().ok())
+                }
+                _ => TransferNews::Listed(rest, None),
+            }),
+            "free" => rest.parse().ok().map(TransferNews::Free),
+            "received" => named.map(TransferNews::Received),
+            "sent" => named.map(TransferNews::Sent),
+            "overread" => named.map(TransferNews::Overread),
+            "offered" => named.map(TransferNews::Offered),
+            "output" => named.map(TransferNews::Output),
+            "protected" => named.map(TransferNews::Protected),
+            "message" => named.map(TransferNews::Message),
+            "ended" if rest == "complete" => Some(TransferNews::Ended(true)),
+            "ended" if rest == "incomplete" => Some(TransferNews::Ended(false)),
+            _ => None,
+        };
+        news.ok_or_else(|| format!("`{text}` is nothing that happens at an interface"))
+    }
+}
+
+/// What stands between the panel and the interfaces.
+#[derive(Default)]
+pub(crate) struct Transfers {
+    /// Where orders go. In a session that is shown again nobody takes them, and its news come all the same.
+    orders: Option<Sender<TransferOrder>>,
+    connected: [bool; 2],
+    /// The order that is being carried out.
+    running: Option<TransferOrder>,
+    /// What waits for an answer.
+    pub question: Option<TransferNews>,
+    /// What has happened since the transfer began.
+    pub told: Vec<TransferNews>,
+}
+
+impl Transfers {
+    /// Orders go there from now on.
+    pub fn connect(&mut self, orders: Sender<TransferOrder>) {
+        self.orders = Some(orders);
+    }
+
+    /// A transfer is under way.
+    pub fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// Begins a transfer.
+    ///
+    /// # Errors
+    /// The message of the control: one is under way already, or nothing is connected.
+    pub fn begin(&mut self, order: TransferOrder) -> Result<(), MessageId> {
+        if self.is_running() {
+            return Err(MessageId::InterfaceAlreadyAssigned);
+        }
+        if self.connected.get(order.port) != Some(&true) || !self.send(&order) {
+            return Err(MessageId::ExtInOutputNotReady);
+        }
+        self.told.clear();
+        self.question = None;
+        self.running = Some(order);
+        Ok(())
+    }
+
+    /// The operator answers; `false` when nothing is asked.
+    pub fn answer(&mut self, yes: bool) -> bool {
+        self.question.take().is_some() && self.goes_on(TransferDeed::Answer(yes))
+    }
+
+    /// END breaks it off; what is said of it comes as news.
+    pub fn end(&mut self) -> bool {
+        self.goes_on(TransferDeed::End)
+    }
+
+    fn goes_on(&mut self, deed: TransferDeed) -> bool {
+        let Some(running) = self.running.clone() else {
+            return false;
+        };
+        self.send(&TransferOrder { deed, ..running })
+    }
+
+    /// `false` when whoever took the orders is not there any more.
+    fn send(&self, order: &TransferOrder) -> bool {
+        let orders = self.orders.as_ref();
+        orders.is_none_or(|orders| orders.send(order.clone()).is_ok())
+    }
+
+    /// Something has happened.
+    pub fn news(&mut self, news: TransferNews) {
+        match news {
+            TransferNews::Connected(port) => {
+                if let Some(connected) = self.connected.get_mut(port) {
+                    *connected = true;
+                }
+                return;
+            }
+            TransferNews::Ended(_) => {
+                self.running = None;
+                self.question = None;
+            }
+            TransferNews::Overread(_)
+            | TransferNews::Offered(_)
+            | TransferNews::Output(_)
+            | TransferNews::Protected(_) => {
+                self.question = Some(news);
+                return;
+            }
+            _ => {}
+        }
+        if self.told.len() < TOLD_MAX {
+            self.told.push(news);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn news_are_read_as_they_are_written() {
+        for text in [
+            "connected 1",
+            "listed PART.H 12",
+            "listed PART.H",
+            "free 1200",
+            "received 15.H",
+            "sent 15.I",
+            "overread 15.H",
+            "offered 15.H",
+            "output 15.H",
+            "protected 15.H",
+            "message TRANSFERRED DATA INCORRECT E",
+            "ended complete",
+            "ended incomplete",
+        ] {
+            assert_eq!(text.parse::<TransferNews>().unwrap().to_string(), text);
+        }
+        for text in ["", "connected 2", "received", "free much", "ended", "else X"] {
+            assert!(text.parse::<TransferNews>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn one_transfer_at_a_time_and_only_where_something_is_connected() {
+        let (sender, orders) = std::sync::mpsc::channel();
+        let mut transfers = Transfers::default();
+        transfers.connect(sender);
+        let order = |port| TransferOrder {
+            port,
+            mode: "fe1",
+            baud: 9600,
+            kind: "H",
+            deed: TransferDeed::ReadAll,
+        };
+        assert_eq!(transfers.begin(order(0)), Err(MessageId::ExtInOutputNotReady));
+        transfers.news(TransferNews::Connected(0));
+        assert_eq!(transfers.begin(order(1)), Err(MessageId::ExtInOutputNotReady));
+        assert!(!transfers.answer(true) && !transfers.end());
+        assert_eq!(transfers.begin(order(0)), Ok(()));
+        assert_eq!(
+            transfers.begin(order(0)),
+            Err(MessageId::InterfaceAlreadyAssigned)
+        );
+        transfers.news(TransferNews::Overread("1.H".to_owned()));
+        assert!(transfers.answer(false) && !transfers.answer(false) && transfers.end());
+        transfers.news(TransferNews::Ended(false));
+        assert!(!transfers.is_running());
+        let deeds: Vec<_> = orders.try_iter().map(|order| order.deed).collect();
+        let ordered = [
+            TransferDeed::ReadAll,
+            TransferDeed::Answer(false),
+            TransferDeed::End,
+        ];
+        assert_eq!(deeds, ordered);
+        // Whoever had the lines has gone.
+        drop(orders);
+        assert_eq!(transfers.begin(order(0)), Err(MessageId::ExtInOutputNotReady));
+    }
+}

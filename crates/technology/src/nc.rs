@@ -1,0 +1,100 @@
+//! Programs of a run from `.nc` files.
+
+use std::sync::Arc;
+
+use bahn_din::{BlockFault, Command, Decoder, Place, Program, Section, Shelf, Step, Unit, Variables};
+use bahn_path::Position;
+
+use crate::report::Fault;
+use crate::run::{Blocks, Programs};
+
+/// The code of what is wrong with the text of a block: the manuals have no number for it.
+const SYNTAX: &str = "syntax";
+
+/// The programs of files, one behind the other: of a file with several all of them.
+pub struct NcPrograms {
+    list: Vec<(Arc<Program>, Section)>,
+    shelf: Arc<dyn Shelf>,
+}
+
+impl NcPrograms {
+    /// The programs of these files; subroutines are found on a shelf.
+    ///
+    /// # Errors
+    /// When a file has no program but subroutines alone.
+    pub fn new(files: &[Arc<Program>], shelf: Arc<dyn Shelf>) -> Result<NcPrograms, Fault> {
+        let mut list = Vec::new();
+        for file in files {
+            let before = list.len();
+            list.extend(file.mains().map(|main| (file.clone(), main.clone())));
+            if list.len() == before {
+                return Err(Fault {
+                    code: SYNTAX.to_owned(),
+                    message: "the file has no program".to_owned(),
+                    program: file.name().to_string(),
+                    block: "#1".to_owned(),
+                });
+            }
+        }
+        Ok(NcPrograms { list, shelf })
+    }
+}
+
+impl Programs for NcPrograms {
+    fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    fn name(&self, index: usize) -> String {
+        self.list
+            .get(index)
+            .map_or_else(String::new, |(file, _)| file.name().to_string())
+    }
+
+    fn open(&self, index: usize, start: &Position) -> Result<Box<dyn Blocks + '_>, Fault> {
+        let Some((file, main)) = self.list.get(index) else {
+            return Err(Fault {
+                code: SYNTAX.to_owned(),
+                message: "there is no such program".to_owned(),
+                program: String::new(),
+                block: String::new(),
+            });
+        };
+        let decoder = Decoder::new(file.clone(), main, *start, self.shelf.clone());
+        Ok(Box::new(NcBlocks { decoder }))
+    }
+}
+
+/// A program under way.
+struct NcBlocks {
+    decoder: Decoder,
+}
+
+impl Blocks for NcBlocks {
+    fn next(&mut self, variables: &mut dyn Variables) -> Result<Option<Unit>, Fault> {
+        match self.decoder.next(variables) {
+            Step::Unit(unit) => Ok(Some(*unit)),
+            Step::End => Ok(None),
+            Step::Fault(fault) => Err(of(fault)),
+        }
+    }
+
+    fn skip_to(
+        &mut self,
+        block: &str,
+        variables: &mut dyn Variables,
+    ) -> Result<(Position, Vec<Command>), Fault> {
+        let found = self.decoder.skip_to(block, variables).map_err(of)?;
+        Ok((found.position, found.commands))
+    }
+}
+
+fn of(fault: BlockFault) -> Fault {
+    let Place { program, block, .. } = fault.place;
+    Fault {
+        code: SYNTAX.to_owned(),
+        message: fault.message,
+        program: program.to_string(),
+        block: block.to_string(),
+    }
+}

@@ -1,0 +1,384 @@
+//! Laws of random programs with random acknowledgements: no gate opens without its acknowledgement, none stays shut with
+//! it, and the order of output is that of the program in every range, but for what is output ahead.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod common;
+
+use std::collections::HashMap;
+
+use bahn_technology::{EventKind, Report};
+use common::{Asked, Bench, T};
+use proptest::prelude::*;
+
+/// Types in the order in which they are drawn.
+const TYPES: [&str; 12] = [
+    "MOS", "MVS_SVS", "MVS_SNS", "MNS_SNS", "MVS_SLM", "MVS_SLP", "MOS_TS", "MEP_MOS", "MET_MOS", "MEP_SVS",
+    "MET_SVS", "MVS_SVS",
+];
+/// The first number that is used for a function.
+const FIRST: usize = 50;
+/// More late ones may not be open.
+const LATE: usize = 12;
+/// What rounding of the programmed coordinates may add to a way, mm.
+const ROUNDING: f64 = 1e-4;
+
+#[derive(Clone, Debug)]
+struct Block {
+    /// Rapid, and the way in X and Y, mm.
+    motion: Option<(bool, f64, f64)>,
+    functions: Vec<Switch>,
+    synchronise: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Switch {
+    kind: usize,
+    of_axis: bool,
+    /// Acknowledged after so many cycles.
+    cycles: u32,
+    /// 0.1 mm, or ms.
+    lead: u32,
+}
+
+fn block() -> impl Strategy<Value = Block> {
+    let way = prop_oneof![
+        (1..40u32).prop_map(f64::from),
+        (1..30u32).prop_map(|way| f64::from(way) * 0.05)
+    ];
+    let motion = (any::<bool>(), way, prop_oneof![3 => Just(0.0), 1 => 1.0..9.0f64]);
+    let cycles = prop_oneof![2 => Just(0), 2 => 1..60u32, 2 => 60..900u32];
+    let switch = (0..TYPES.len(), prop::bool::weighted(0.3), cycles, 1..400u32);
+    let switch = switch.prop_map(|(kind, of_axis, cycles, lead)| Switch {
+        kind,
+        of_axis,
+        cycles,
+        lead,
+    });
+    (
+        prop::option::weighted(0.8, motion),
+        prop::collection::vec(switch, 0..3),
+        prop::bool::weighted(0.1),
+    )
+        .prop_map(|(motion, functions, synchronise)| Block {
+            motion,
+            functions,
+            synchronise,
+        })
+}
+
+/// A function as the program has it.
+#[allow(dead_code, reason = "type and range are shown where a law is broken")]
+#[derive(Debug)]
+struct Known {
+    kind: &'static str,
+    range: &'static str,
+    /// Place in the program: block, before or behind its motion, place in the text.
+    order: (usize, bool, usize),
+    /// The way that the path may not leave before the acknowledgement, mm.
+    gate: Option<f64>,
+    /// Where it is output, mm.
+    place: Option<f64>,
+}
+
+/// What the laws are asked of.
+struct Case {
+    bench: Bench,
+    known: HashMap<String, Known>,
+    /// Length of the path, mm.
+    way: f64,
+}
+
+fn case(blocks: &[Block]) -> Case {
+    let (mut program, mut list, mut script) =
+        ("%LAWS\nN1 G00 F4000\n".to_owned(), String::new(), String::new());
+    let mut known: HashMap<String, Known> = HashMap::new();
+    let (mut way, mut x, mut y, mut number, mut late) = (0.0f64, 0.0, 0.0, FIRST, 0);
+    let mut open: [Vec<String>; 2] = Default::default();
+    for (index, block) in blocks.iter().enumerate() {
+        if block.synchronise {
+            program += "#EXPL SYN\n";
+            for name in open[1].drain(..) {
+                known.get_mut(&name).unwrap().gate = Some(way);
+            }
+        }
+        program += &format!("N{} ", index + 2);
+        let start = way;
+        if let Some((rapid, dx, dy)) = block.motion {
+            (x, y, way) = (x + dx, y + dy, way + dx.hypot(dy));
+            program += &format!("{} X{x:.6} Y{y:.6} ", if rapid { "G00" } else { "G01" });
+        }
+        let feed = block.motion.is_some_and(|(rapid, ..)| !rapid);
+        for (at, switch) in block.functions.iter().enumerate() {
+            let mut kind = TYPES[switch.kind];
+            if kind.starts_with("MVS_SL") {
+                late += 1;
+                if late > LATE {
+                    kind = "MOS";
+                }
+            }
+            let name = format!("M{number}");
+            number += 1;
+            let range = if switch.of_axis { "X" } else { "channel" };
+            program += &if switch.of_axis {
+                format!("X[{name}] ")
+            } else {
+                format!("{name} ")
+            };
+            list += &format!("m_synch[{}] {kind}\n", &name[1..]);
+            if kind.starts_with("ME") {
+                list += &format!("m_pre_outp[{}] {}\n", &name[1..], switch.lead * 1000);
+            }
+            script += &format!("{name} ack {:.3}\n", f64::from(switch.cycles) * T);
+            let gate = match kind {
+                "MVS_SVS" | "MEP_SVS" | "MET_SVS" => Some(start),
+                "MVS_SNS" | "MNS_SNS" => Some(way),
+                "MVS_SLM" if feed => Some(start),
+                _ => None,
+            };
+            match kind {
+                "MVS_SLM" if !feed => open[0].push(name.clone()),
+                "MVS_SLP" => open[1].push(name.clone()),
+                _ => {}
+            }
+            let place = match kind {
+                "MNS_SNS" => Some(way),
+                kind if kind.starts_with("ME") => None,
+                _ => Some(start),
+            };
+            let order = (index, kind == "MNS_SNS", at);
+            let one = Known {
+                kind,
+                range,
+                order,
+                gate,
+                place,
+            };
+            known.insert(name, one);
+        }
+        if feed {
+            for name in open[0].drain(..) {
+                known.get_mut(&name).unwrap().gate = Some(start);
+            }
+        }
+        program += "\n";
+    }
+    program += "M30\n";
+    Case {
+        bench: Bench::new(&program, &list).script(&script),
+        known,
+        way,
+    }
+}
+
+/// What holds whatever happens.
+fn hold_gates(case: &Case, report: &Report) -> Result<(), TestCaseError> {
+    let mut acknowledged: HashMap<&str, f64> = HashMap::new();
+    for event in report.of(EventKind::Acknowledge) {
+        let twice = acknowledged.insert(event.function.as_deref().unwrap(), event.t);
+        prop_assert!(twice.is_none(), "{:?}", event);
+    }
+    for (name, known) in &case.known {
+        let Some(gate) = known.gate else { continue };
+        let until = acknowledged.get(name.as_str()).copied().unwrap_or(f64::INFINITY);
+        let before = report.samples.iter().filter(|sample| sample.t <= until);
+        let farthest = before.map(|sample| sample.way_mm).fold(0.0, f64::max);
+        prop_assert!(
+            farthest <= gate + ROUNDING,
+            "{name} {known:?} lets the path go to {farthest} before {until}"
+        );
+    }
+    // In program order, each range by itself; nothing beside a function of an earlier cycle that is not fetched.
+    for range in ["channel", "X"] {
+        let outputs = report.of(EventKind::Output);
+        let of_range = outputs
+            .iter()
+            .filter(|event| event.target.as_deref() == Some(range));
+        let known = of_range.map(|event| &case.known[event.function.as_deref().unwrap()]);
+        let in_place: Vec<_> = known.filter(|known| known.place.is_some()).collect();
+        for pair in in_place.windows(2) {
+            prop_assert!(pair[0].order < pair[1].order, "{pair:?}");
+        }
+        hold_range(report, range)?;
+    }
+    Ok(())
+}
+
+/// Nothing is output beside a function of an earlier cycle that is not fetched, and each is fetched once.
+fn hold_range(report: &Report, range: &str) -> Result<(), TestCaseError> {
+    let mut unfetched: HashMap<&str, Vec<f64>> = HashMap::new();
+    for event in &report.events {
+        let function = event.function.as_deref().unwrap_or_default();
+        match event.kind {
+            EventKind::Output if event.target.as_deref() == Some(range) => {
+                prop_assert!(unfetched.values().flatten().all(|t| *t >= event.t), "{event:?}");
+                unfetched.entry(function).or_default().push(event.t);
+            }
+            EventKind::Fetch if event.target.as_deref() == Some(range) => {
+                prop_assert!(
+                    unfetched.get_mut(function).and_then(Vec::pop).is_some(),
+                    "{event:?}"
+                );
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn hold_laws(case: &Case, report: &Report) -> Result<(), TestCaseError> {
+    prop_assert!(report.completed, "{:?} {:?}", report.error, report.waits);
+    hold_gates(case, report)?;
+    prop_assert_eq!(report.of(EventKind::Output).len(), case.known.len());
+    prop_assert_eq!(report.of(EventKind::Fetch).len(), case.known.len());
+    // A wait ends with its acknowledgement, in the same cycle, and the path goes when the last one ends.
+    for wait in &report.waits {
+        let acknowledged = report.events.iter().find(|event| {
+            event.kind == EventKind::Acknowledge && event.function.as_ref() == Some(&wait.function)
+        });
+        let known = &case.known[&wait.function];
+        prop_assert_eq!(
+            acknowledged.map(|event| event.t),
+            wait.to_s,
+            "{:?} {:?}",
+            wait,
+            known
+        );
+    }
+    let mut stopped = None;
+    for event in &report.events {
+        match event.kind {
+            EventKind::Stop => stopped = Some(event.t),
+            EventKind::Go => {
+                if let Some(stop) = stopped.take() {
+                    let within = report
+                        .waits
+                        .iter()
+                        .filter(|wait| wait.from_s >= stop && wait.from_s < event.t);
+                    let last = within.filter_map(|wait| wait.to_s).fold(0.0, f64::max);
+                    prop_assert!(
+                        (event.t - last).abs() < 1e-9,
+                        "{:?} goes at {}, not {}",
+                        event,
+                        event.t,
+                        last
+                    );
+                }
+            }
+            EventKind::Output => {
+                let known = &case.known[event.function.as_deref().unwrap()];
+                // Where an output lies is asked where the way is known: without a way in Y.
+                let x = event.position.0[bahn_path::Axis::X];
+                let y = event.position.0[bahn_path::Axis::Y];
+                if let Some(place) = known.place.filter(|_| y == 0.0) {
+                    prop_assert!((x - place).abs() < 1e-3, "{event:?} {known:?}");
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn check(cases: u32) {
+    let config = ProptestConfig {
+        cases,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    let mut runner = proptest::test_runner::TestRunner::new(config);
+    let blocks = prop::collection::vec(block(), 1..14);
+    let result = runner.run(&blocks, |blocks| {
+        let case = case(&blocks);
+        hold_laws(&case, &case.bench.run())
+    });
+    if let Err(error) = result {
+        panic!("{error}");
+    }
+}
+
+#[test]
+fn random_programs_with_random_acknowledgements() {
+    check(1_000);
+}
+
+/// The rest of ten thousand.
+#[test]
+#[ignore = "longer"]
+fn many_random_programs_with_random_acknowledgements() {
+    check(9_000);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Holds, other overrides and resets at any moment: gates stay gates, and every run ends.
+    #[test]
+    fn holds_and_resets_at_any_moment(
+        blocks in prop::collection::vec(block(), 1..10),
+        holds in prop::collection::vec((0.0..2.0f64, 0.0..0.5f64), 0..4),
+        overrides in prop::collection::vec((0.0..2.0f64, 1.0..150.0f64), 0..4),
+        reset in prop::option::of(0.0..2.0f64),
+    ) {
+        let mut case = case(&blocks);
+        let mut script = case.bench.script.clone().unwrap();
+        for (from, time) in &holds {
+            script += &format!("hold {from}..{}\n", from + time);
+        }
+        for (at, percent) in &overrides {
+            script += &format!("override {percent} at {at}\n");
+        }
+        if let Some(reset) = reset {
+            script += &format!("reset {reset}\n");
+        }
+        case.bench = case.bench.clone().script(&script);
+        let report = case.bench.run();
+        hold_gates(&case, &report)?;
+        let was_reset = reset.is_some_and(|reset| report.time_s >= reset);
+        prop_assert!(report.completed || was_reset, "{:?}", report.waits);
+        prop_assert!(report.error.is_none());
+    }
+
+    /// Back and forth, simulated, with functions that are never fetched or acknowledged: every run ends, and one that is
+    /// completed stands where the program ends, with everything fetched and every range served in order.
+    #[test]
+    fn back_and_forth_at_any_moment(
+        blocks in prop::collection::vec(block(), 1..10),
+        backward in prop::collection::vec((0.0..2.5f64, 0.0..0.7f64), 0..4),
+        simulated in prop::collection::vec((0.0..2.0f64, 0.0..0.5f64), 0..3),
+        holds in prop::collection::vec((0.0..2.0f64, 0.0..0.5f64), 0..3),
+        never in prop::option::weighted(0.3, (0..8usize, any::<bool>())),
+        bits in any::<u64>(),
+    ) {
+        let mut case = case(&blocks);
+        // Some have the bits for going back and for simulated motion.
+        let lines = case.bench.list.lines().zip(0..);
+        let with_bits = lines.map(|(line, at)| match (bits >> (at % 32)) & 3 {
+            0 if line.starts_with("m_synch") => format!("{line} | BWD_SYNCH\n"),
+            1 if line.starts_with("m_synch") => format!("{line} | FWD_SYNCH\n"),
+            _ => format!("{line}\n"),
+        });
+        let list: String = with_bits.collect();
+        let mut script = case.bench.script.clone().unwrap();
+        for (name, ranges) in [("backward", &backward), ("simulated", &simulated), ("hold", &holds)] {
+            for (from, time) in ranges {
+                script += &format!("{name} {from}..{}\n", from + time);
+            }
+        }
+        if let Some((at, fetched)) = never {
+            script += &format!("M{} {}\n", FIRST + at, if fetched { "ack never" } else { "nofetch" });
+        }
+        case.bench.list = list;
+        case.bench = case.bench.clone().script(&script);
+        let report = case.bench.run();
+        prop_assert!(report.error.is_none(), "{:?}", report.error);
+        if never.is_none() {
+            prop_assert!(report.completed, "{:?} {:?}", report.waits, report.time_s);
+            prop_assert_eq!(report.of(EventKind::Output).len(), report.of(EventKind::Fetch).len());
+            let way = report.samples.last().map_or(0.0, |sample| sample.way_mm);
+            prop_assert!((way - case.way).abs() < ROUNDING, "{} {}", way, case.way);
+        }
+        for range in ["channel", "X"] {
+            hold_range(&report, range)?;
+        }
+    }
+}

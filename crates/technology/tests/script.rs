@@ -1,0 +1,219 @@
+//! What the script does beside acknowledging, several programs, and how runs end.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod common;
+
+use bahn_path::Axis;
+use bahn_technology::{EventKind, Script};
+use common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
+
+const LINE: &str = "%T\nN10 G01 X100 F6000\nN20 M7\nM30\n";
+/// F6000, mm/s.
+const V: f64 = 100.0;
+
+#[test]
+fn a_hold_brakes_and_lets_go() {
+    let report = Bench::new(LINE, "m_synch[7] MOS").script("hold 0.5..0.9").run();
+    let stops = report.of(EventKind::Stop);
+    assert_eq!(stops.len(), 1);
+    // 0.5 s at 100 mm/s less half the ramp, and the way of braking.
+    at(x(stops[0]), V * 0.5 - V * V / (2.0 * A) + V * V / (2.0 * A));
+    when(stops[0].t, 0.5 + V / A);
+    when(report.of(EventKind::Go)[1].t, 0.9);
+    // It stands at X50.
+    when(report.time_s, 0.9 + ramp_s(50.0, V));
+    assert!(report.waits.is_empty());
+}
+
+/// Acknowledgements during a hold are kept.
+#[test]
+fn a_hold_at_a_gate() {
+    let program = "%T\nN10 G01 X50 F6000\nN20 X100 M7\nM30\n";
+    let report = Bench::new(program, "m_synch[7] MVS_SVS")
+        .script("M7 ack 0.2\nhold 0.5..2")
+        .run();
+    let output = report.output("M7").t;
+    when(report.wait("M7").1, output + 0.2);
+    when(report.of(EventKind::Go)[1].t, 2.0);
+    assert_eq!(report.of(EventKind::Stop).len(), 1);
+}
+
+#[test]
+fn an_override_slows_down() {
+    let report = Bench::new(LINE, "m_synch[7] MOS")
+        .script("override 50 at 0.5\noverride 100 at 0.9")
+        .run();
+    let lost = 0.4 * V * 0.5;
+    when(report.time_s, ramp_s(100.0, V) + lost / V);
+    let never = Bench::new(LINE, "m_synch[7] MOS")
+        .script("override 0 at 0.5")
+        .run();
+    assert!(!never.completed && never.error.is_none() && never.waits.is_empty());
+}
+
+#[test]
+fn a_reset_ends_a_program_and_the_next_one_runs() {
+    let second = "%T2\nN10 G01 X100 F6000\nM30\n";
+    let list = "m_synch[7] MVS_SLM\nm_synch[8] MOS";
+    let first = "%T1\nN10 M7 G00 X10\nN20 G00 X500\nN30 M8\nM30\n";
+    let report = Bench::new(first, list)
+        .and(second)
+        .script("M7 ack never\nreset 1.0\n")
+        .run();
+    assert!(!report.completed && report.error.is_none());
+    assert_eq!(
+        report
+            .programs
+            .iter()
+            .map(|program| program.completed)
+            .collect::<Vec<_>>(),
+        [false, true]
+    );
+    when(report.programs[0].time_s, 1.0 + RAPID / A);
+    // M7 is dropped: the feed of the second program does not wait for it.
+    assert!(report.waits.is_empty());
+    assert!(report.outputs("M8").is_empty());
+    at(report.path_end.0[Axis::X], 100.0);
+    let lists = report.of(EventKind::Active);
+    assert_eq!(lists.len(), 2);
+}
+
+#[test]
+fn the_next_program_begins_where_the_last_one_ended() {
+    let first = "%T1\nV.G.M_FCT[7].SYNCH = 2\nN10 G91 G01 X10 F6000\nN20 M7\nM30\n";
+    let second = "%T2\nN10 X5 M7\nM30\n";
+    let report = Bench::new(first, "m_synch[7] MOS")
+        .and(second)
+        .script("M7 ack 0.1")
+        .run();
+    assert!(report.completed, "{:?}", report.error);
+    // The type that the first one wrote is gone, and so is G91.
+    assert_eq!(report.waits.len(), 1);
+    at(report.path_end.0[Axis::X], 5.0);
+    assert_eq!(report.programs[0].program, "p1.nc");
+}
+
+#[test]
+fn after_an_error_the_following_programs_are_not_run() {
+    let report = Bench::new("%T1\nN10 M99\nM30\n", "m_synch[7] MOS")
+        .and("%T2\nN10 M7\nM30\n")
+        .run();
+    assert!(report.error.is_some());
+    assert_eq!(report.programs.len(), 1);
+    assert!(report.events.is_empty());
+}
+
+#[test]
+fn a_run_from_a_block_outputs_nothing_before_it() {
+    let program = "%T\nN10 G01 F6000 X10 M7\nN20 X20 M8\nN30 X30 M7\nM30\n";
+    let report = Bench::new(program, "m_synch[7] MOS\nm_synch[8] MOS")
+        .from("N30")
+        .run();
+    assert_eq!(report.order(), ["channel:M7"]);
+    at(x(report.output("M7")), 20.0);
+    when(report.time_s, ramp_s(10.0, V));
+    let missing = Bench::new(program, "").from("N31").run();
+    assert!(missing.error.is_some());
+}
+
+#[test]
+fn what_never_comes_ends_the_run() {
+    let program = "%T\nN10 G01 F6000 X10\nN20 X20 M8\nN30 X30\nM30\n";
+    let report = Bench::new(program, "m_synch[8] MVS_SNS")
+        .script("M8 ack never")
+        .run();
+    assert!(!report.completed && report.error.is_none());
+    assert_eq!(report.waits.len(), 1);
+    assert_eq!(
+        (report.waits[0].function.as_str(), report.waits[0].to_s),
+        ("M8", None)
+    );
+    at(report.waits[0].position.0[Axis::X], 20.0);
+    assert_eq!(report.of(EventKind::Stop).len(), 1);
+    when(report.time_s, ramp_s(20.0, V) + 2.0 * T);
+}
+
+/// Flush and wait: the block behind is decoded when the path stands, so that there is no corner to pass.
+#[test]
+fn faw_synch_holds_decoding() {
+    let program = "%T\nN10 G01 F6000 X10\nN20 X20 M8\nN30 X30\nM30\n";
+    let plain = Bench::new(program, "m_synch[8] MOS").run();
+    let flushed = Bench::new(program, "m_synch[8] MOS | FAW_SYNCH").run();
+    when(plain.time_s, ramp_s(30.0, V));
+    // Twice to a standstill, each to a cycle.
+    when(flushed.time_s - T, ramp_s(20.0, V) + ramp_s(10.0, V));
+    let compensated = program.replace("N10 G01", "N10 G41 G01");
+    let refused = Bench::new(&compensated, "m_synch[8] MOS | FAW_SYNCH").run();
+    assert!(refused.error.is_some());
+}
+
+/// In simulated motion only what has FWD_SYNCH is waited for.
+#[test]
+fn simulated_motion() {
+    let program = "%T\nN10 G01 F6000 X10\nN20 X20 M8\nN30 X30 M9\nN40 X40\nM30\n";
+    let list = "m_synch[8] MVS_SVS\nm_synch[9] MVS_SVS | FWD_SYNCH\n";
+    let report = Bench::new(program, list)
+        .script("default ack 0.5\nsimulated 0..9")
+        .run();
+    assert_eq!(report.order(), ["channel:M8", "channel:M9"]);
+    assert_eq!(report.waits.len(), 1);
+    at(report.wait("M9").2, 20.0);
+    assert_eq!(report.of(EventKind::Acknowledge).len(), 1);
+    when(report.wait("M9").1, report.output("M9").t + 0.5);
+    when(report.time_s, report.wait("M9").1 + ramp_s(20.0, V));
+}
+
+/// Back along what was executed, and forward again: functions are output as MOS on the way back, with BWD_SYNCH they are
+/// waited for; forward they have their own types again.
+#[test]
+fn backward_motion() {
+    let program = "%T\nN10 G01 F6000 X20\nN20 X40 M8\nN30 X60 M9\nN40 X80\nM30\n";
+    let list = "m_synch[8] MVS_SVS\nm_synch[9] MOS | BWD_SYNCH\n";
+    // Forward to X70 or so, back to X0, forward again.
+    let script = "default ack 0.1\nbackward 0.9..3.0\n";
+    let report = Bench::new(program, list).script(script).run();
+    assert!(report.completed, "{:?}", report.error);
+    assert_eq!(
+        report.order(),
+        ["M8", "M9", "M9", "M8", "M8", "M9"].map(|function| format!("channel:{function}"))
+    );
+    let places: Vec<_> = report
+        .of(EventKind::Output)
+        .iter()
+        .map(|event| x(event))
+        .collect();
+    for (place, expected) in places.iter().zip([20.0, 40.0, 40.0, 20.0, 20.0, 40.0]) {
+        at(*place, expected);
+    }
+    // M8 forward twice, M9 backward once.
+    let mut waits: Vec<_> = report.waits.iter().map(|wait| wait.function.as_str()).collect();
+    waits.sort_unstable();
+    assert_eq!(waits, ["M8", "M8", "M9"]);
+    at(report.path_end.0[Axis::X], 80.0);
+    // At the start the path stands until it goes forward again.
+    let goes = report.of(EventKind::Go);
+    at(x(goes[goes.len() - 2]), 0.0);
+}
+
+#[test]
+fn scripts_say_what_is_wrong() {
+    for (text, line, column) in [
+        ("M25 ack -1", 1, 9),
+        ("\nM25 what", 2, 5),
+        ("hold 2..1", 1, 6),
+        ("T5 ack 0", 1, 1),
+        ("probe 45", 1, 7),
+        ("override 50 1.0", 1, 13),
+        ("spindle S1 ready", 1, 17),
+        ("reset 1 2", 1, 9),
+        ("X[M7 ack 0", 1, 1),
+    ] {
+        let error = text.parse::<Script>().unwrap_err();
+        assert_eq!((error.line, error.column), (line, column), "{text}: {error}");
+    }
+    assert!(
+        "# nothing\n\nX[M7] ack 1 # said\nM26 at 3.0\ndefault ack never\n"
+            .parse::<Script>()
+            .is_ok()
+    );
+}
