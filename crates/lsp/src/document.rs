@@ -1,16 +1,17 @@
 //! Open documents.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use lsp_types::Uri;
 
-use crate::language::{Analysis, Examined, Kind, analyse};
+use crate::din::DinProgram;
+use crate::language::{Analysis, BYTES_MAX, Examined, Kind};
+use crate::list::ParameterText;
+use crate::part::PartProgram;
+use crate::plc::PlcSource;
 use crate::text::Text;
 use crate::world::World;
-
-/// Largest document that is looked at, 16 MiB: a program with half a million blocks.
-pub(crate) const BYTES_MAX: usize = 16 << 20;
 
 /// A document that is open in the editor.
 pub(crate) struct Document {
@@ -63,5 +64,15 @@ impl Version {
             text: self.text.clone(),
             read: OnceLock::new(),
         }
+    }
+}
+
+/// Reads a text in the language of its kind.
+fn analyse(kind: Kind, path: &Path, text: Arc<Text>, world: &World) -> Arc<dyn Analysis> {
+    match kind {
+        Kind::Plain | Kind::Iso => Arc::new(PartProgram::new(path, text, world)),
+        Kind::Din => Arc::new(DinProgram::new(path, text)),
+        Kind::Plc => Arc::new(PlcSource::new(path, text, world)),
+        Kind::Parameters => Arc::new(ParameterText::new(path, text, world)),
     }
 }

@@ -5,13 +5,11 @@ mod mention;
 
 use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 pub(crate) use kind::Kind;
 pub(crate) use mention::{Mention, Role, Thing, at as mention_at, of as mentions_of};
 
-use crate::text::Text;
 use crate::world::World;
 
 /// One version of a document, read in its language. Places are bytes of the text.
@@ -68,20 +66,8 @@ pub(crate) trait Analysis: Send + Sync {
     fn tokens(&self) -> Vec<(Range<usize>, Token)>;
 }
 
-/// Reads a text in the language of its kind.
-pub(crate) fn analyse(
-    kind: Kind,
-    path: &std::path::Path,
-    text: Arc<Text>,
-    world: &World,
-) -> Arc<dyn Analysis> {
-    match kind {
-        Kind::Plain | Kind::Iso => Arc::new(crate::part::PartProgram::new(path, text, world)),
-        Kind::Din => Arc::new(crate::din::DinProgram::new(path, text)),
-        Kind::Plc => Arc::new(crate::plc::PlcSource::new(path, text, world)),
-        Kind::Parameters => Arc::new(crate::list::ParameterText::new(path, text, world)),
-    }
-}
+/// Largest text that is looked at, 16 MiB: a program with half a million blocks.
+pub(crate) const BYTES_MAX: usize = 16 << 20;
 
 /// How bad a fault is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bahn_interpreter::Library;
 use bahn_program::Program;
 
-use crate::document::BYTES_MAX;
+use crate::language::BYTES_MAX;
 use crate::world::World;
 
 pub(super) struct Shelf {

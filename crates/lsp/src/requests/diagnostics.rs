@@ -7,8 +7,8 @@ use lsp_types::{
     PublishDiagnosticsParams, Range, Uri,
 };
 
-use crate::document::{BYTES_MAX, Document};
-use crate::language::{Examined, Fault, Place, Related, Severity};
+use crate::document::Document;
+use crate::language::{BYTES_MAX, Examined, Fault, Place, Related, Severity};
 use crate::uri::uri_of;
 
 /// Most faults that are shown: who has more has another kind of file.
