@@ -6,7 +6,7 @@ use bahn_parameters::MessageId::{
 use bahn_path::{Axis, AxisSet};
 
 use crate::parse::cursor::{Cursor, Parsed};
-use crate::text::is_blank;
+use crate::text::{is_blank, trim_continuation};
 use crate::{Coordinates, Distance, Word};
 
 /// The code of a line without its `*`, and the comment behind it with its `;`.
@@ -25,6 +25,17 @@ pub(super) fn without_star(text: &[u8]) -> &[u8] {
         text = trim_end(before);
     }
     text
+}
+
+/// The text without what a listing does not have at its end: `*`, and `~` of other languages.
+pub(super) fn without_end(mut text: &[u8]) -> &[u8] {
+    loop {
+        let shorter = without_star(trim_continuation(text));
+        if shorter.len() == text.len() {
+            return text;
+        }
+        text = shorter;
+    }
 }
 
 #[inline]

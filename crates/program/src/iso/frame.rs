@@ -2,9 +2,9 @@
 
 use bahn_parameters::MessageId::{EntryValueIncorrect, UnexpectedText};
 
-use super::code::without_star;
+use super::code::without_end;
 use crate::parse::cursor::{Cursor, Parsed};
-use crate::text::{to_words, trim, trim_continuation};
+use crate::text::{to_words, trim};
 use crate::{Header, Operation, Unit};
 
 /// Whether a text that begins with `%` frames a program: it has a unit or no name.
@@ -64,17 +64,6 @@ fn header(text: &[u8]) -> Option<Header> {
     header.name = to_words(name);
     let frames = header.unit.is_some() || header.protected || header.name.is_empty();
     frames.then_some(header)
-}
-
-/// The text without what a listing does not have at its end: `*`, and `~` of other languages.
-fn without_end(mut text: &[u8]) -> &[u8] {
-    loop {
-        let shorter = without_star(trim_continuation(text));
-        if shorter.len() == text.len() {
-            return text;
-        }
-        text = shorter;
-    }
 }
 
 /// The last word of a text and what stands before it.

@@ -4,7 +4,7 @@
 use bahn_parameters::MessageId::{BlockNotKnown, UnexpectedText};
 use bahn_path::{Axis, AxisSet};
 
-use super::code::{coordinate, distance, end, g_code, once, plane, split, without_star};
+use super::code::{coordinate, distance, end, g_code, once, plane, split, without_end, without_star};
 use super::frame::{frame_or_call, frame_words};
 use super::special::special;
 use crate::lines::BlockText;
@@ -24,7 +24,7 @@ pub(super) fn read_block(text: BlockText<'_>, may_begin: bool, block: &mut Block
     block.skip = prefix(&mut c);
     block.comment = None;
     if !comment.is_empty() {
-        block.comment = comment_text(without_star(comment));
+        block.comment = comment_text(without_end(comment));
     }
     let start = c.position();
     if c.rest().is_empty() {
