@@ -543,7 +543,7 @@ impl Editor {
         let setting = &self.setting;
         match &self.open {
             Open::Nothing => soft_keys::of_program(self.mark.is_some(), self.is_iso(), setting.tongue),
-            Open::Entry(_) => soft_keys::characters(crate::iso::CHARACTERS, setting.tongue),
+            Open::Entry(_) => soft_keys::characters(soft_keys::ISO_CHARACTERS, setting.tongue),
             Open::Dialogue(dialogue) => soft_keys::of_dialogue(dialogue, setting),
             Open::Highlight(highlight) => match highlight.ask() {
                 Some(ask) => {

@@ -40,12 +40,6 @@ const WRITTEN: &[(Key, &str)] = &[
     (Key::BlkForm, "G30"),
 ];
 
-/// Characters that soft keys offer while a block is entered: those of words that not every keyboard has.
-pub(crate) const CHARACTERS: &[&str] = &[
-    "G", "M", "F", "S", "T", "R", "H", "D", "L", "P", "Q", "I", "J", "K", "%", ";", " ", "+", "=", ",", "/",
-    "N", "E", "O",
-];
-
 /// What the prompt for a word is, by its address, where a function in the block has it mean that.
 const PROMPTS: &[(&str, &str, &str)] = &[
     ("R", "G24", "chamfer"),

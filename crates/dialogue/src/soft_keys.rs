@@ -77,6 +77,12 @@ pub(crate) fn answers(ask: Ask, address: &str, setting: &Setting) -> Vec<Labelle
     }
 }
 
+/// Characters that soft keys offer while a block of DIN/ISO is entered: those of words that not every keyboard has.
+pub(crate) const ISO_CHARACTERS: &[&str] = &[
+    "G", "M", "F", "S", "T", "R", "H", "D", "L", "P", "Q", "I", "J", "K", "%", ";", " ", "+", "=", ",", "/",
+    "N", "E", "O",
+];
+
 /// The soft keys that write characters.
 pub(crate) fn characters(characters: &[&str], tongue: Tongue) -> Vec<Labelled> {
     let labelled = |character: &&str| {

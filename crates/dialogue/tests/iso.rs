@@ -14,7 +14,13 @@ use bahn_program::Program;
 use desk::{Desk, setting};
 
 /// Blocks that are complete, as they are written.
-const COMPLETE: &str = include_str!("../../program/tests/data/complete-iso.txt");
+fn complete() -> String {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../program/tests/data/complete-iso.txt"
+    );
+    std::fs::read_to_string(path).unwrap()
+}
 
 /// A desk at a program of DIN/ISO, whose numbers go up by a step.
 fn at(blocks: &str, model: ControlModel, step: u32) -> Desk {
@@ -52,7 +58,7 @@ fn shown(desk: &Desk) -> (String, String) {
 #[test]
 fn every_block_can_be_typed() {
     let known = |block: &&str| !block.starts_with("G200");
-    for block in COMPLETE.lines().filter(known) {
+    for block in complete().lines().filter(known) {
         let mut desk = at("", Tnc415b, 10);
         typed(&mut desk, block);
         assert_eq!(

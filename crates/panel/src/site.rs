@@ -25,7 +25,28 @@ pub(crate) struct Site<'a> {
     pub transfers: &'a mut Transfers,
 }
 
+/// Endings of programs in plain language and in DIN/ISO, of which PROGRAM INPUT chooses one.
+const ENDINGS: [&str; 2] = ["H", "I"];
+
 impl Site<'_> {
+    /// A program whose name says no type is the one that is there; where both are, or none is, it is in the language of
+    /// PROGRAM INPUT [003:7104-7110].
+    pub fn with_ending(&self, name: &str) -> String {
+        if name.contains('.') {
+            return name.to_owned();
+        }
+        let [plain, iso] = ENDINGS.map(|ending| format!("{name}.{ending}"));
+        let (chosen, other) = if self.settings.iso {
+            (iso, plain)
+        } else {
+            (plain, iso)
+        };
+        match !self.programs.has(&chosen) && self.programs.has(&other) {
+            true => other,
+            false => chosen,
+        }
+    }
+
     /// Asks the control for something; `false` when it refuses.
     pub fn command(&mut self, command: Command) -> bool {
         self.act(Deed::Command(0, command))

@@ -8,7 +8,7 @@ use bahn_parameters::MessageId;
 use crate::frames;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Name};
-use crate::pages::external;
+use crate::pages::transfer;
 use crate::pages::{list, table};
 use crate::programs::{Denial, Entry, NAME_MAX, is_program};
 use crate::screen::{Dialogue, Line, WindowKind};
@@ -34,8 +34,6 @@ pub(crate) enum Purpose {
 
 /// Code number that takes the protection away [000:6940] [003:7028].
 const UNPROTECT: u32 = 86_357;
-/// Endings of programs in plain language and in DIN/ISO, of which PROGRAM INPUT chooses one.
-const ENDINGS: [&str; 2] = ["H", "I"];
 
 /// The directory of the program memory.
 pub(crate) struct Directory {
@@ -83,7 +81,7 @@ impl Directory {
     fn name(&self, site: &Site) -> Option<String> {
         match self.typed.is_empty() {
             true => self.entries.get(self.current).map(|entry| entry.name.clone()),
-            false => Some(with_ending(&self.typed, site)),
+            false => Some(site.with_ending(&self.typed)),
         }
     }
 
@@ -98,7 +96,7 @@ impl Directory {
         let chosen = match self.purpose {
             Purpose::Erase => return erase(name, site),
             Purpose::ReadOut if there => {
-                return match external::begin(TransferDeed::Write(vec![name]), site) {
+                return match transfer::begin(TransferDeed::Write(vec![name]), site) {
                     Turn::Open(page) => Turn::Replace(page),
                     other => other,
                 };
@@ -178,24 +176,6 @@ impl Directory {
             }
             done(site.programs.protect(&name, false), site)
         }))
-    }
-}
-
-/// A program whose name says no type is the one that is there; where both are, or none is, it is in the language of
-/// PROGRAM INPUT [003:7104-7110].
-pub(crate) fn with_ending(name: &str, site: &Site) -> String {
-    if name.contains('.') {
-        return name.to_owned();
-    }
-    let [plain, iso] = ENDINGS.map(|ending| format!("{name}.{ending}"));
-    let (chosen, other) = if site.settings.iso {
-        (iso, plain)
-    } else {
-        (plain, iso)
-    };
-    match !site.programs.has(&chosen) && site.programs.has(&other) {
-        true => other,
-        false => chosen,
     }
 }
 

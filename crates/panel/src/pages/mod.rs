@@ -22,6 +22,7 @@ mod run;
 mod supplementary;
 mod table;
 mod test_run;
+mod transfer;
 
 use bahn_control::Mode;
 use bahn_dialogue::Key;

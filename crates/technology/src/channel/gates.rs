@@ -1,8 +1,7 @@
 //! What is done where the path is, and where it has to stop.
 
 use super::Channel;
-use super::order::{Order, OrderId};
-use super::ranges::RangeId;
+use super::order::{Order, OrderId, RangeId};
 use super::record::Moment;
 use super::track::Deed;
 use crate::plc::{self, cycle_at};

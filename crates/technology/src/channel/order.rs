@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_din::Place;
+use bahn_path::Axis;
 
-use super::ranges::RangeId;
 use crate::report::Value;
 use crate::synch::Synch;
 
@@ -28,6 +28,14 @@ pub(crate) enum Lead {
     Way(f64),
     /// s.
     Time(f64),
+}
+
+/// Which range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RangeId {
+    Channel,
+    Axis(Axis),
+    Spindle(usize),
 }
 
 #[derive(Clone, Debug)]

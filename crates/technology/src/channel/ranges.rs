@@ -3,20 +3,10 @@
 //! A function that is output takes a slot until it is fetched, one that is waited for until it is acknowledged. Nothing is
 //! output to a range while a function stands in it that the PLC has not fetched in its cycle [004:204] (inferred).
 
-use bahn_path::Axis;
-
-use super::order::{Letter, OrderId, Orders};
+use super::order::{Letter, OrderId, Orders, RangeId};
 
 /// Slots for the functions of a range, as many as the lists of active functions show [004:150] (inferred).
 pub(crate) const SLOTS: usize = 12;
-
-/// Which range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RangeId {
-    Channel,
-    Axis(Axis),
-    Spindle(usize),
-}
 
 #[derive(Debug)]
 struct Range {

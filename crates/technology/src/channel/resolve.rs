@@ -6,8 +6,8 @@ use bahn_din::{Command, Function, Kind, Place, Target, Unit};
 use bahn_path::Axis;
 
 use super::fault::{named, numbered};
-use super::order::{Lead, Letter, Order, OrderId, Orders, State};
-use super::ranges::{RangeId, Ranges, SLOTS};
+use super::order::{Lead, Letter, Order, OrderId, Orders, RangeId, State};
+use super::ranges::{Ranges, SLOTS};
 use crate::report::{Fault, Value};
 use crate::settings::{ChannelSettings, FUNCTIONS, FunctionSettings, SpindleFunction, SpindleSettings};
 use crate::synch::{Synch, SynchType};
