@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_path::Axis;
-use bahn_technology::{EventKind, Script};
+use bahn_technology::{EventKind, Report, Script};
 use common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 
 const LINE: &str = "%T\nN10 G01 X100 F6000\nN20 M7\nM30\n";
@@ -142,6 +142,9 @@ fn faw_synch_holds_decoding() {
     when(plain.time_s, ramp_s(30.0, V));
     // Twice to a standstill, each to a cycle.
     when(flushed.time_s - T, ramp_s(20.0, V) + ramp_s(10.0, V));
+    let stops =
+        |report: &Report| -> Vec<f64> { report.of(EventKind::Stop).iter().map(|event| x(event)).collect() };
+    assert_eq!((stops(&plain), stops(&flushed)), (vec![], vec![20.0]));
     let compensated = program.replace("N10 G01", "N10 G41 G01");
     let refused = Bench::new(&compensated, "m_synch[8] MOS | FAW_SYNCH").run();
     assert!(refused.error.is_some());
@@ -190,6 +193,15 @@ fn backward_motion() {
     waits.sort_unstable();
     assert_eq!(waits, ["M8", "M8", "M9"]);
     at(report.path_end.0[Axis::X], 80.0);
+    // It stands where it turns back: at 0.9 s it begins to brake from X70 or so.
+    let turn = report
+        .of(EventKind::Stop)
+        .into_iter()
+        .find(|event| event.t >= 0.9);
+    assert!(
+        turn.is_some_and(|event| event.t < 0.9 + V / A + 2.0 * T && x(event) > 40.0),
+        "{turn:?}"
+    );
     // At the start the path stands until it goes forward again.
     let goes = report.of(EventKind::Go);
     at(x(goes[goes.len() - 2]), 0.0);

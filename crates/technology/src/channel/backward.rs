@@ -93,6 +93,10 @@ impl Channel<'_> {
             drive.hold = true;
             return self.spend_on(drive);
         }
+        if !self.stands {
+            let at = self.now();
+            self.stop(at);
+        }
         if wanted {
             self.turn_back();
         } else {

@@ -205,6 +205,10 @@ impl Channel<'_> {
                     break;
                 }
                 self.decoding.holds = false;
+                if !self.stands {
+                    let at = self.now();
+                    self.stop(at);
+                }
                 self.take_over();
             }
             let last = self.track.last();
