@@ -279,9 +279,10 @@ fn hold_laws(case: &Case, report: &Report) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-fn check(cases: u32) {
+#[test]
+fn ten_thousand_random_programs_with_random_acknowledgements() {
     let config = ProptestConfig {
-        cases,
+        cases: 10_000,
         failure_persistence: None,
         ..ProptestConfig::default()
     };
@@ -294,18 +295,6 @@ fn check(cases: u32) {
     if let Err(error) = result {
         panic!("{error}");
     }
-}
-
-#[test]
-fn random_programs_with_random_acknowledgements() {
-    check(1_000);
-}
-
-/// The rest of ten thousand.
-#[test]
-#[ignore = "longer"]
-fn many_random_programs_with_random_acknowledgements() {
-    check(9_000);
 }
 
 proptest! {
