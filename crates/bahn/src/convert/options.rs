@@ -19,24 +19,25 @@ Examples:
   bahn convert parts --to iso -o parts-iso --format json
       All programs of a folder; those that are in DIN/ISO already are left out.
 
-Block by block: what a block says is written in the other language, with comments, labels, calls, Q
-parameters, cycles and transformations. Calls by file name follow the programs that are converted with it.
-What the target cannot say is listed with block, text and reason. If the program comes to its end, it is
-then unrolled: written as the path that it moves, in the target language (--no-unroll keeps its blocks and
-puts an ERROR block, which no control passes, in place of each that cannot be said).
+Block by block: what a block says is written in the other language, with comments, labels,
+calls, Q parameters, cycles and transformations. Calls by file name follow the programs that are
+converted with it. What the target cannot say is listed with block, text and reason. If the
+program comes to its end, it is then unrolled: written as the path that it moves, in the target
+language (--no-unroll keeps its blocks and puts an ERROR block, which no control passes, in
+place of each that cannot be said).
 
-Proof: source and target are run side by side, with the same parameters, tools and Q parameters: every
-element of the path (kind, start, end, centre, length to 1 um; feed to 0.1 %), every function and stop,
-and the message at the end. A target that differs is not written. Probes answer half way in both. A path
-that depends on a probe is not written for LinuxCNC.
+Proof: source and target are run side by side, with the same parameters, tools and Q parameters:
+every element of the path (kind, start, end, centre, length to 1 um; feed to 0.1 %), every
+function and stop, and the message at the end. A target that differs is not written. Probes
+answer half way in both. A path that depends on a probe is not written for LinuxCNC.
 
-Files: an input is never replaced, another file only with --replace. Exit codes: 0 converted and proved,
-1 something is refused, differs or is not proved, 2 wrong use.
+Files: an input is never replaced, another file only with --replace. Exit codes: 0 converted and
+proved, 1 something is refused, differs or is not proved, 2 wrong use.
 
 JSON report (--format json): ok, blocks, unrolled and refused (block, line, text, reason), proof
-(elements, functions, stops, max_deviation_um, message, completed, first_difference: what, source and
-target with program, block, line, text; or null), source, target (null when nothing was written), to.
-Of several programs: ok, programs.";
+(elements, functions, stops, max_deviation_um, message, completed, first_difference: what,
+source and target with program, block, line, text; or null), source, target (null when nothing
+was written), to. Of several programs: ok, programs.";
 
 /// Options of `bahn convert`.
 #[derive(Args, Debug)]

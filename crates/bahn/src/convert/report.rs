@@ -103,7 +103,10 @@ pub(super) fn line(report: &Report) -> String {
         (_, false) if !report.refused.is_empty() => format!("{} blocks refused", report.refused.len()),
         (Some(proof), false) if proof.first_difference.is_some() => "differs".to_owned(),
         (_, false) => "not proved".to_owned(),
-        (Some(proof), true) => format!("the same: {} elements", proof.elements),
+        (Some(proof), true) => match &proof.message {
+            None => format!("the same: {} elements", proof.elements),
+            Some(message) => format!("the same: {} elements, both end with {message}", proof.elements),
+        },
         (None, true) => "without proof".to_owned(),
     };
     let unrolled = if report.unrolled.is_empty() {

@@ -14,9 +14,9 @@ Examples:
   bahn technology glue.nc --channel glue.lis --plc slow-valve.txt --image glue.png
   bahn technology laser.nc --channel laser.lis --format json
 
-Programs are DIN 66025 as a TF5200 reads it; a file may hold several, which run in turn. Subroutines called
-with L lie beside their program. Without --parameters G00 runs at 10 m/min, axes accelerate with 1 m/s2;
-the list may hold only what is to be changed (`MP1010.0 : 5000`).
+Programs are DIN 66025 as a TF5200 reads it; a file may hold several, which run in turn.
+Subroutines called with L lie beside their program. Without --parameters G00 runs at 10 m/min,
+axes accelerate with 1 m/s2; the list may hold only what is to be changed (`MP1010.0 : 5000`).
 
 PLC script, a line each; # begins a comment:
   M25 ack 0.5       acknowledged 0.5 s after its output; 0 is the next cycle
@@ -27,9 +27,10 @@ PLC script, a line each; # begins a comment:
   spindle S1 ready 0.8     probe X45     override 50 at 1.0
   hold 2.0..2.5     reset 4.0     backward 2.0..3.0     simulated 2.0..3.0
 
-JSON: completed, error (null, or code, message, program, block), time_s, cycle_s, events (t, kind output,
-fetch, acknowledge, stop, go or active, function, value, offset_us, v in mm/min, target, block, position),
-waits (function, block, from_s, to_s, position), path_end. Exit codes: 0 completed, 1 not, 2 wrong use.";
+JSON: completed, error (null, or code, message, program, block), time_s, cycle_s, events (t,
+kind output, fetch, acknowledge, stop, go or active, function, value, offset_us, v in mm/min,
+target, block, position), waits (function, block, from_s, to_s, position), path_end. Exit codes:
+0 completed, 1 not, 2 wrong use.";
 
 /// Options of `bahn technology`.
 #[derive(Args, Debug)]
