@@ -55,6 +55,7 @@ fn desk() -> Folder {
     for name in ["part.h", "PART.H"] {
         folder.write(name, part);
     }
+    folder.write("part.nc", "%PART\nN10 G00 X0 Y0\nN20 G01 X40 F2000 M3\nM30\n");
     fs::create_dir(folder.path("parts")).unwrap();
     folder.write("parts/part.h", part);
     folder.write(

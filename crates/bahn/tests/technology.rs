@@ -134,7 +134,7 @@ fn a_wrong_list_ends_the_run_before_the_first_event() {
         (&error["program"], &error["block"]),
         (&json!("a.lis"), &json!("#2"))
     );
-    assert_eq!(report["path_end"], json!({ "X": 5.0 }));
+    assert_eq!(report["path_end"], json!({ "X": 5.0, "Z": 0.0 }));
     let run = folder.bahn("technology a.nc --channel a.lis");
     assert_eq!(run.code(), 1);
     assert!(

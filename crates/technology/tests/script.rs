@@ -207,6 +207,16 @@ fn backward_motion() {
     at(x(goes[goes.len() - 2]), 0.0);
 }
 
+/// Without a motion there is no way back: the function is waited for as if nothing had been.
+#[test]
+fn there_is_no_way_back_before_the_first_motion() {
+    let report = Bench::new("%T\nN10 M7\nN20 G01 X10 F6000\nM30\n", "m_synch[7] MVS_SVS")
+        .script("M7 ack 0.5\nbackward 0..0.2\n")
+        .run();
+    assert!(report.completed, "{:?}", report.waits);
+    at(report.path_end.0[Axis::X], 10.0);
+}
+
 #[test]
 fn scripts_say_what_is_wrong() {
     for (text, line, column) in [

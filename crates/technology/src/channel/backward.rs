@@ -290,7 +290,8 @@ impl Channel<'_> {
         let number = back.reached.saturating_sub(1).max(self.track.first());
         let (mut number, mut along) = match self.track.leg(number) {
             Some(leg) => (number, (way - leg.from).max(0.0)),
-            None => (back.reached, 0.0),
+            // There is no way to go back: it is still at the place where it turned.
+            None => (number, 0.0),
         };
         if self.track.leg(number).is_some_and(|leg| along >= leg.length) {
             (number, along) = (number + 1, 0.0);
