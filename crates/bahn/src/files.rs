@@ -1,11 +1,12 @@
 //! Files of the command line: outputs replace no input. How files are read and written is the host's.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 pub(crate) use bahn_host::files::*;
 
-use crate::UsageError;
+use crate::{UsageError, console};
 
 /// Endings of files that commands read and none of these options writes: programs, PLC programs, lists and
 /// descriptions of machines, tables of tools, pallets, datums and compensation, memories.
@@ -37,6 +38,26 @@ pub(crate) fn keep_inputs(inputs: &[&Path], outputs: &[(&str, &Path)]) -> Result
         taken.push((file, "an output"));
     }
     Ok(())
+}
+
+/// Writes a text to a file, which is replaced only with `--force`; without a file to standard output. Whether it went
+/// into a file.
+pub(crate) fn write_or_print(text: &str, output: Option<&Path>, force: bool) -> Result<bool, UsageError> {
+    let Some(path) = output else {
+        console::print(text)?;
+        return Ok(false);
+    };
+    if path.is_file() && !force {
+        return Err(UsageError::new(format!(
+            "{} is there already; --force replaces it",
+            path.display()
+        )));
+    }
+    let mut file = NewFile::create(path)?;
+    file.write_all(text.as_bytes())
+        .map_err(|error| cannot("write", path, &error))?;
+    file.finish()?;
+    Ok(true)
 }
 
 /// What a path leads to, by its real name; `None` for what is there but no regular file, as `/dev/stdout`.

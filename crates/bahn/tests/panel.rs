@@ -3,30 +3,9 @@
 
 mod support;
 
-use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command};
 
-use support::request;
-
-/// A panel that was started, and its address.
-fn start(folder: &std::path::Path, options: &[&str]) -> (Child, String) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_bahn"))
-        .args(["panel", "--listen", "127.0.0.1:0"])
-        .args(options)
-        .env("XDG_DATA_HOME", folder)
-        .stderr(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut said = String::new();
-    let mut lines = BufReader::new(child.stderr.take().unwrap());
-    while !said.contains("the panel is at") {
-        said.clear();
-        assert!(lines.read_line(&mut said).unwrap() > 0, "it ended");
-    }
-    let address = said.split("http://").nth(1).unwrap().split('/').next().unwrap();
-    (child, address.to_owned())
-}
+use support::{request, start_panel, until_screen};
 
 fn end(mut child: Child) -> i32 {
     let id = child.id().to_string();
@@ -40,21 +19,11 @@ fn end(mut child: Child) -> i32 {
     child.wait().unwrap().code().unwrap()
 }
 
-fn until(address: &str, what: &str) {
-    for _ in 0..600 {
-        if request(address, "GET", "/api/screen", "").contains(what) {
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(50));
-    }
-    panic!("no {what}: {}", request(address, "GET", "/api/screen", ""));
-}
-
 #[test]
 fn the_mill_needs_no_folder_and_keeps_what_is_done() {
     let data = std::env::temp_dir().join(format!("bahn-panel-command-{}", std::process::id()));
-    let (child, address) = start(&data, &[]);
-    until(&address, "POWER INTERRUPTED");
+    let (child, address) = start_panel(&data, &[]);
+    until_screen(&address, "POWER INTERRUPTED");
     assert!(request(&address, "GET", "/", "").contains("data-region=\"header\""));
     let keys = ["CE", "PROGRAM", "MANUAL"];
     for key in keys {
@@ -64,18 +33,18 @@ fn the_mill_needs_no_folder_and_keeps_what_is_done() {
     assert_eq!(end(child), 0);
     // A second time the folder is there; a session is recorded, and shown again on a third.
     let session = data.join("session.jsonl");
-    let (child, address) = start(&data, &["--record", session.to_str().unwrap()]);
-    until(&address, "POWER INTERRUPTED");
+    let (child, address) = start_panel(&data, &["--record", session.to_str().unwrap()]);
+    until_screen(&address, "POWER INTERRUPTED");
     request(&address, "POST", "/api/key", "{\"key\":\"CE\"}");
-    until(&address, "REFERENCE");
+    until_screen(&address, "REFERENCE");
     assert_eq!(end(child), 0);
     let recorded = std::fs::read_to_string(&session).unwrap();
     assert!(
         recorded.contains("\"key\":\"CE\"") && recorded.contains("\"end\""),
         "{recorded}"
     );
-    let (child, address) = start(&data, &["--replay", session.to_str().unwrap(), "--speed", "20"]);
-    until(&address, "REFERENCE");
+    let (child, address) = start_panel(&data, &["--replay", session.to_str().unwrap(), "--speed", "20"]);
+    until_screen(&address, "REFERENCE");
     assert_eq!(end(child), 0);
     std::fs::remove_dir_all(data).unwrap();
 }
@@ -101,26 +70,26 @@ fn press(address: &str, keys: &str) {
 #[test]
 fn a_killed_panel_has_lost_nothing_of_a_program() {
     let data = std::env::temp_dir().join(format!("bahn-panel-killed-{}", std::process::id()));
-    let (mut child, address) = start(&data, &[]);
-    until(&address, "POWER INTERRUPTED");
+    let (mut child, address) = start_panel(&data, &[]);
+    until_screen(&address, "POWER INTERRUPTED");
     press(
         &address,
         "CE PROGRAM PGM_NR 7 7 ENT ENT L X 1 5 Y 2 ENT ENT ENT NO_ENT",
     );
-    until(&address, "L X+15 Y+2 R0 FMAX");
+    until_screen(&address, "L X+15 Y+2 R0 FMAX");
     // In the middle of the next block the process is gone, without a word.
     press(&address, "L X 4 2");
-    until(&address, "X+42");
+    until_screen(&address, "X+42");
     child.kill().unwrap();
     child.wait().unwrap();
-    let (child, address) = start(&data, &[]);
-    until(&address, "POWER INTERRUPTED");
+    let (child, address) = start_panel(&data, &[]);
+    until_screen(&address, "POWER INTERRUPTED");
     press(&address, "CE PROGRAM PGM_NR 7 7 ENT");
-    until(&address, "L X+15 Y+2 R0 FMAX");
+    until_screen(&address, "L X+15 Y+2 R0 FMAX");
     // The block that was open is there as it was typed, and goes on.
-    until(&address, "X+42");
+    until_screen(&address, "X+42");
     press(&address, "ENT ENT ENT NO_ENT");
-    until(&address, "L X+42 R0 FMAX");
+    until_screen(&address, "L X+42 R0 FMAX");
     assert_eq!(end(child), 0);
     std::fs::remove_dir_all(data).unwrap();
 }
@@ -129,7 +98,7 @@ fn a_killed_panel_has_lost_nothing_of_a_program() {
 fn a_second_panel_is_told_what_helps() {
     let folder = std::env::temp_dir().join(format!("bahn-panel-second-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let (first, _) = start(&folder, &[]);
+    let (first, _) = start_panel(&folder, &[]);
     let second = Command::new(env!("CARGO_BIN_EXE_bahn"))
         .args(["panel", "--listen", "127.0.0.1:0"])
         .env("XDG_DATA_HOME", &folder)

@@ -4,13 +4,12 @@
 
 mod support;
 
-use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Child, Command, Output};
+use std::time::Duration;
 
-use support::request;
+use support::{request, start_panel, until_screen};
 
 /// A panel with its data folder and a folder of the device; ended with the test, whatever comes.
 struct Bench {
@@ -31,28 +30,11 @@ impl Bench {
     fn new(name: &str, options: &[&str]) -> Bench {
         let folder = std::env::temp_dir().join(format!("bahn-{name}-{}", std::process::id()));
         std::fs::create_dir_all(folder.join("device")).unwrap();
-        let mut child = Command::new(env!("CARGO_BIN_EXE_bahn"))
-            .args(["panel", "--listen", "127.0.0.1:0"])
-            .args(options)
-            .current_dir(&folder)
-            .env("XDG_DATA_HOME", &folder)
-            .stderr(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut said = String::new();
-        let mut lines = BufReader::new(child.stderr.take().unwrap());
-        while !said.contains("the panel is at") {
-            said.clear();
-            assert!(lines.read_line(&mut said).unwrap() > 0, "it ended");
-        }
-        // What is said later is read, so that nobody waits for it.
-        std::thread::spawn(move || std::io::copy(&mut lines, &mut std::io::sink()));
-        let address = said.split("http://").nth(1).unwrap().split('/').next().unwrap();
+        let (child, address) = start_panel(&folder, options);
         let bench = Bench {
             folder,
             child,
-            address: address.to_owned(),
+            address,
         };
         bench.until("POWER INTERRUPTED");
         bench.press("CE");
@@ -97,14 +79,7 @@ impl Bench {
     }
 
     fn until(&self, what: &str) {
-        let begin = Instant::now();
-        while begin.elapsed() < Duration::from_secs(30) {
-            if self.screen().contains(what) {
-                return;
-            }
-            std::thread::sleep(Duration::from_millis(50));
-        }
-        panic!("no {what}: {}", self.screen());
+        until_screen(&self.address, what);
     }
 
     /// `bahn link` as the device, which ends by itself.

@@ -81,29 +81,15 @@ fn a_line_of_the_datum_table_is_g53() {
     assert_eq!(run.position[Axis::X], 42.0);
 }
 
-/// A double swivel head [000:4303-4340].
 #[test]
 fn tilting_the_plane_is_g80() {
-    let machine = [
-        "7500=1",
-        "7510=%000100",
-        "7512=200.4",
-        "7520=%000010",
-        "7522=-1.9",
-        "7530=%001000",
-        "7540=%000001",
-        "7542=201.5",
-        "7550=%000100",
-        "7552=3.1",
-        "7560=%010000",
-    ];
     let run = same(
         "L A+0 B+45 FMAX\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+45\nL X+10 Y+5 FMAX\n\
          CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL X+0 Y+0 FMAX",
         "A+0 B+45\nG80 A+0 B+45\nX+10 Y+5\nG80\nX+0 Y+0",
         |job| {
             job.with(|settings| {
-                rules(settings, &machine);
+                rules(settings, SWIVEL_HEAD);
                 settings.rules.machine_zero = Position::ZERO;
                 settings.start = Position::ZERO;
             })

@@ -12,21 +12,6 @@ use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, FeedRate, Placement, Position};
 use support::*;
 
-/// Example 1 of the manual: a double swivel head, right-angled [000:4303-4340].
-const HEAD: &[&str] = &[
-    "7500=1",
-    "7510=%000100",
-    "7512=200.4",
-    "7520=%000010",
-    "7522=-1.9",
-    "7530=%001000",
-    "7540=%000001",
-    "7542=201.5",
-    "7550=%000100",
-    "7552=3.1",
-    "7560=%010000",
-];
-
 const TOOL: &str = "TOOL DEF 1 L+100 R+5\nTOOL CALL 1 Z S1000\n";
 
 fn on(machine: &[&str], blocks: &str) -> Run {
@@ -83,7 +68,7 @@ fn assert_near(a: [f64; 3], b: [f64; 3]) {
 #[test]
 fn cycle_19_tilts_the_working_plane() {
     let run = on(
-        HEAD,
+        SWIVEL_HEAD,
         "L Z+50 R0 FMAX\nL B+90 FMAX\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+90\nL X+10 Y+20 Z+5 R0 FMAX",
     );
     run.assert_completed();
@@ -107,13 +92,13 @@ fn shifts_before_and_behind_cycle_19() {
     let shift = |x: &str| format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X{x}\n");
     let tilt = |angle: &str| format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 {angle}\n");
     let to = "L X+1 Y+2 Z+3 R0 FMAX\n";
-    let plain = on(HEAD, &format!("{}{to}", tilt("A-45 B+30")));
-    let shifted = on(HEAD, &format!("{}{}{to}", shift("+40"), tilt("A-45 B+30")));
+    let plain = on(SWIVEL_HEAD, &format!("{}{to}", tilt("A-45 B+30")));
+    let shifted = on(SWIVEL_HEAD, &format!("{}{}{to}", shift("+40"), tilt("A-45 B+30")));
     shifted.assert_completed();
     let [x, y, z] = noses(&plain, 0)[0];
     assert_near(noses(&shifted, 0)[0], [x + 40.0, y, z]);
     // In the plane the shift leads along its X, which B+30 has turned in the machine's X and Z.
-    let inner = on(HEAD, &format!("{}{}{to}", tilt("A-45 B+30"), shift("+40")));
+    let inner = on(SWIVEL_HEAD, &format!("{}{}{to}", tilt("A-45 B+30"), shift("+40")));
     let (sin, cos) = 30f64.to_radians().sin_cos();
     assert_near(noses(&inner, 0)[0], [x + 40.0 * cos, y, z - 40.0 * sin]);
     // Ended in the reverse order all is as before.
@@ -126,7 +111,7 @@ fn shifts_before_and_behind_cycle_19() {
         tilt(""),
         shift("+0")
     );
-    let run = on(HEAD, &ended);
+    let run = on(SWIVEL_HEAD, &ended);
     run.assert_completed();
     let last = run.moves().last().expect("a movement");
     assert!(last.placement.is_none());
@@ -158,9 +143,9 @@ fn paths_in_the_plane_are_those_of_an_upright_one() {
                    C X+40 Y+0 DR-\nL X+0\nL X-20 Y-20 R0\nL Z+50 FMAX\nCYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\n\
                    CYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG -4\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n\
                    L X+10 Y+10 FMAX M99";
-    let upright = on(HEAD, contour);
+    let upright = on(SWIVEL_HEAD, contour);
     let tilted = on(
-        HEAD,
+        SWIVEL_HEAD,
         &format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+20 B-35\n{contour}"),
     );
     upright.assert_completed();
@@ -181,7 +166,7 @@ fn a_tool_change_in_the_plane() {
     let blocks = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+90\nL X+10 Y+20 Z+5 R0 FMAX\nTOOL DEF 2 L+130 R+5\n\
                   TOOL CALL 2 Z S1000\nL IX+0 Z+5 R0 FMAX";
     let mut list = ParameterList::reference(ControlModel::Tnc415b);
-    for assignment in HEAD {
+    for assignment in SWIVEL_HEAD {
         list.assign(assignment).expect(assignment);
     }
     let run = Job::new(program(&format!("{TOOL}{blocks}")))
@@ -203,35 +188,41 @@ fn a_tool_change_in_the_plane() {
 #[test]
 fn cycle_19_is_refused() {
     let plane = |angles: &str| format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 {angles}\n");
-    let without = [&HEAD[1..], &["7500=0"]].concat();
+    let without = [&SWIVEL_HEAD[1..], &["7500=0"]].concat();
     // Blocks 1 and 2 are those of the tool.
     assert_eq!(on(&without, &plane("A+10")).message(), Some((BlockNotKnown, 4)));
     assert_eq!(
         on(&["7500=1"], &plane("A+10")).message(),
         Some((BlockNotKnown, 4))
     );
-    assert_eq!(on(HEAD, &plane("C+10")).message(), Some((WrongAxisProgrammed, 4)));
-    assert_eq!(on(HEAD, &plane("X+10")).message(), Some((WrongAxisProgrammed, 4)));
     assert_eq!(
-        on(HEAD, &plane("IA+10")).message(),
+        on(SWIVEL_HEAD, &plane("C+10")).message(),
+        Some((WrongAxisProgrammed, 4))
+    );
+    assert_eq!(
+        on(SWIVEL_HEAD, &plane("X+10")).message(),
+        Some((WrongAxisProgrammed, 4))
+    );
+    assert_eq!(
+        on(SWIVEL_HEAD, &plane("IA+10")).message(),
         Some((EntryValueIncorrect, 4))
     );
     // No M91 and M92 in the plane [000:4268].
     let m91 = format!("{}L X+1 R0 FMAX M91", plane("A+10"));
-    assert_eq!(on(HEAD, &m91).message(), Some((PlaneWronglyDefined, 5)));
+    assert_eq!(on(SWIVEL_HEAD, &m91).message(), Some((PlaneWronglyDefined, 5)));
     // What was begun last ends first.
     let rotation = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30\n";
     let before = format!("{rotation}{}", plane("A+10"));
-    assert_eq!(on(HEAD, &before).message(), Some((PlaneWronglyDefined, 6)));
+    assert_eq!(on(SWIVEL_HEAD, &before).message(), Some((PlaneWronglyDefined, 6)));
     let behind = format!("{}{rotation}{}", plane("A+10"), plane(""));
-    assert_eq!(on(HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
+    assert_eq!(on(SWIVEL_HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
     let shift = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+5\n";
     let behind = format!("{}{shift}{}", plane("A+10"), plane("A+20"));
-    assert_eq!(on(HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
+    assert_eq!(on(SWIVEL_HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
     let both = format!("{}L X+1 R0 FMAX M114", plane("A+10"));
-    assert_eq!(on(HEAD, &both).message(), Some((PlaneWronglyDefined, 5)));
+    assert_eq!(on(SWIVEL_HEAD, &both).message(), Some((PlaneWronglyDefined, 5)));
     let both = format!("L X+1 R0 FMAX M114\n{}", plane("A+10"));
-    assert_eq!(on(HEAD, &both).message(), Some((PlaneWronglyDefined, 5)));
+    assert_eq!(on(SWIVEL_HEAD, &both).message(), Some((PlaneWronglyDefined, 5)));
 }
 
 /// M114: while B swivels from 0 to 90 the tip stays where it is programmed, so the tool datum goes as in the tilted plane;
@@ -239,13 +230,13 @@ fn cycle_19_is_refused() {
 #[test]
 fn m114_keeps_the_tip_on_the_path() {
     let run = on(
-        HEAD,
+        SWIVEL_HEAD,
         "L X+10 Y+20 Z+5 B+0 R0 FMAX\nL B+90 F1000 M114\nL X+11\nL Z+6 M115\nL Z+7",
     );
     run.assert_completed();
     let plane = {
         let mut list = ParameterList::reference(ControlModel::Tnc415b);
-        for assignment in HEAD {
+        for assignment in SWIVEL_HEAD {
             list.assign(assignment).expect(assignment);
         }
         let swivels = Arc::new(list.swivels().expect("swivel axes"));

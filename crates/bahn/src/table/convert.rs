@@ -1,13 +1,10 @@
 //! `bahn table convert`: a table in another format.
 
-use std::io::Write;
-
 use bahn_host::PlainTable;
 
 use super::options::{ConvertOptions, WriteFormat};
 use super::source;
-use crate::files::{self, NewFile};
-use crate::{Outcome, UsageError, console, diagnostics};
+use crate::{Outcome, UsageError, diagnostics, files};
 
 /// Writes a table to standard output or to a file.
 pub(super) fn command(options: &ConvertOptions) -> Result<Outcome, UsageError> {
@@ -33,20 +30,9 @@ pub(super) fn command(options: &ConvertOptions) -> Result<Outcome, UsageError> {
         WriteFormat::Tsv => table.separated('\t'),
         WriteFormat::Csv => table.separated(','),
     };
-    let Some(path) = &options.output else {
-        console::print(&text)?;
-        return Ok(Outcome::Fine);
-    };
-    if path.exists() && !options.force {
-        return Err(UsageError::new(format!(
-            "{} is there already; --force replaces it",
-            path.display()
-        )));
+    let written = files::write_or_print(&text, options.output.as_deref(), options.force)?;
+    if let Some(path) = options.output.as_ref().filter(|_| written) {
+        diagnostics::print_text(&format!("{}: {} lines", path.display(), table.rows.len()));
     }
-    let mut file = NewFile::create(path)?;
-    file.write_all(text.as_bytes())
-        .map_err(|error| files::cannot("write", path, &error))?;
-    file.finish()?;
-    diagnostics::print_text(&format!("{}: {} lines", path.display(), table.rows.len()));
     Ok(Outcome::Fine)
 }

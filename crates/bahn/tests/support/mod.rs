@@ -10,14 +10,50 @@
 #[path = "../../../host/tests/support/copy.rs"]
 mod copy;
 
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 pub use copy::copy;
 use serde_json::Value;
+
+/// Starts `bahn panel` with its data in a folder and waits until it is there: the process, and its address.
+pub fn start_panel(folder: &Path, options: &[&str]) -> (Child, String) {
+    std::fs::create_dir_all(folder).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_bahn"))
+        .args(["panel", "--listen", "127.0.0.1:0"])
+        .args(options)
+        .current_dir(folder)
+        .env("XDG_DATA_HOME", folder)
+        .stderr(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = String::new();
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    while !said.contains("the panel is at") {
+        said.clear();
+        assert!(lines.read_line(&mut said).unwrap() > 0, "it ended");
+    }
+    // What is said later is read, so that nobody waits for it.
+    std::thread::spawn(move || std::io::copy(&mut lines, &mut std::io::sink()));
+    let address = said.split("http://").nth(1).unwrap().split('/').next().unwrap();
+    (child, address.to_owned())
+}
+
+/// Waits until the screen of a panel has a text.
+pub fn until_screen(address: &str, what: &str) {
+    let screen = || request(address, "GET", "/api/screen", "");
+    for _ in 0..600 {
+        if screen().contains(what) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    panic!("no {what}: {}", screen());
+}
 
 /// What a panel answers to a request, with its head.
 pub fn request(address: &str, method: &str, path: &str, body: &str) -> String {

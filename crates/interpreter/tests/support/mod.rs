@@ -19,6 +19,21 @@ use bahn_path::{
 use bahn_program::Program;
 use bahn_workpiece::{Event, Resolution, Workpiece};
 
+/// Example 1 of the manual: a double swivel head, right-angled [000:4303-4340].
+pub const SWIVEL_HEAD: &[&str] = &[
+    "7500=1",
+    "7510=%000100",
+    "7512=200.4",
+    "7520=%000010",
+    "7522=-1.9",
+    "7530=%001000",
+    "7540=%000001",
+    "7542=201.5",
+    "7550=%000100",
+    "7552=3.1",
+    "7560=%010000",
+];
+
 /// A rotary table C with its centre at (400,150,-300) of the machine, under a table B that swivels about (400,150,-500).
 pub const ROTARY_TABLE: &[&str] = &[
     "7500=1",
