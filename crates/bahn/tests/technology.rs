@@ -389,9 +389,15 @@ fn a_machine_that_does_not_answer_or_cannot() {
     let folder = folder(BLOCKS, "m_synch[25] 0x2\n", "M25 ack 1\n");
     copy(&support::machines().join("gantry"), &folder.path("gantry"));
     // The PLC looks into B128 and not into B0: after a minute it is given up.
-    let (code, report) = self::run(&folder, "--plc gantry --window B0");
-    assert_eq!((code, &report["error"]), (1, &Value::Null));
+    let silent = folder.bahn("technology a.nc --channel a.lis --plc gantry --window B0 --format json");
+    let report = silent.json();
+    assert_eq!((silent.code(), &report["error"]), (1, &Value::Null));
     assert_eq!(report["waits"][0]["to_s"], Value::Null);
+    assert!(
+        silent.err().contains("does it look at B0 to B127?"),
+        "{}",
+        silent.err()
+    );
     // An error of the index, in the scan that sees the function, stops PLC and run.
     let text = folder.read("gantry/plc/MAIN.PLC");
     let free = "       EMT                ; a free slot\n";

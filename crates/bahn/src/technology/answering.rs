@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use bahn_technology::{Report, Run, Script};
+use bahn_technology::{EventKind, Report, Run, Script, WINDOW_BYTES};
 
 use super::machine::MachinePlc;
 use super::options::TechnologyOptions;
-use crate::{UsageError, files};
+use crate::{UsageError, diagnostics, files};
 
 /// What `--plc` names.
 pub(super) struct Answering {
@@ -48,10 +48,19 @@ impl Answering {
     /// Executes a run.
     pub fn execute<'a>(&'a mut self, run: impl FnOnce(Option<&'a Script>) -> Run<'a>) -> Report {
         let run = run(self.script.as_ref());
-        match &mut self.machine {
-            Some(machine) => run.execute_beside(machine),
-            None => run.execute(),
+        let Some(machine) = &mut self.machine else {
+            return run.execute();
+        };
+        let report = run.execute_beside(machine);
+        let any = |kind: EventKind| report.events.iter().any(|event| event.kind == kind);
+        if any(EventKind::Output) && !any(EventKind::Fetch) {
+            let first = machine.window();
+            let last = first + WINDOW_BYTES - 1;
+            diagnostics::print_line(&format!(
+                "warning: the PLC program answered nothing; does it look at B{first} to B{last}?"
+            ));
         }
+        report
     }
 }
 

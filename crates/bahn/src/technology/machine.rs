@@ -60,6 +60,11 @@ impl MachinePlc {
         Ok(Some(plc))
     }
 
+    /// First byte of the window.
+    pub fn window(&self) -> u16 {
+        self.window
+    }
+
     fn power_up(&mut self) -> Result<(), String> {
         while self.host.operator().phase() != Phase::Ready {
             self.step()?;
