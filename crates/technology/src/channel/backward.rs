@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use bahn_motion::Drive;
+use bahn_motion::{Drive, Interpolator};
 use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step};
 
 use super::Channel;
@@ -33,6 +33,8 @@ struct Back {
     /// Functions that are to be output at that place, and those that are waited for.
     queue: VecDeque<OrderId>,
     gate: Vec<OrderId>,
+    /// In single block it stands there.
+    at_limit: bool,
 }
 
 impl Backward {
@@ -75,6 +77,11 @@ impl Back {
     /// The element that is so many on the way back.
     fn element(&self, back: u64) -> Option<u64> {
         (self.from + 1).checked_sub(back)
+    }
+
+    /// It cannot go on where it is.
+    fn waits(&self) -> bool {
+        !self.queue.is_empty() || !self.gate.is_empty() || self.at_limit
     }
 }
 
@@ -128,6 +135,7 @@ impl Channel<'_> {
     fn turn_back(&mut self) {
         let (from, along) = self.whereabouts();
         let position = self.path.position();
+        self.all_block_ends();
         self.path.clear();
         self.path.set_position(position);
         self.backward.back = Some(Back {
@@ -138,19 +146,17 @@ impl Channel<'_> {
             seen: from + 1,
             queue: VecDeque::new(),
             gate: Vec::new(),
+            at_limit: false,
         });
     }
 
     /// The way along the path, mm, while it is run back.
-    pub(super) fn way_back(&self) -> Option<f64> {
+    pub(super) fn way_back(&self, path: &Interpolator<()>) -> Option<f64> {
         let back = self.backward.back.as_ref()?;
-        let number = self
-            .path
-            .element()
-            .and_then(|element| back.element(element.sequence));
+        let number = path.element().and_then(|element| back.element(element.sequence));
         let leg = number.and_then(|number| self.track.leg(number));
         Some(match leg {
-            Some(leg) => leg.from + self.path.rest_mm(),
+            Some(leg) => leg.from + path.rest_mm(),
             None => self
                 .track
                 .leg(back.from)
@@ -168,7 +174,7 @@ impl Channel<'_> {
         };
         self.path.prepare(&mut feed, usize::MAX);
         let (from, seen, reached) = (back.from, back.seen, back.reached);
-        let waits = !back.queue.is_empty() || !back.gate.is_empty();
+        let waits = back.waits();
         // The next place with a function that is waited for on the way back.
         let first = self.track.first();
         let known = (from + 2).saturating_sub(back.fed).max(first);
@@ -187,9 +193,10 @@ impl Channel<'_> {
         self.drive_once(&drive, block)
     }
 
-    /// Whether a function at a place is waited for on the way back.
+    /// Whether the path stops at a place on the way back.
     fn waits_backward(&self, place: u64) -> bool {
         self.track.deeds(place).iter().any(|deed| match deed {
+            Deed::BlockEnd => self.stops_at(place, true),
             Deed::Output(id) => self.orders.get(*id).is_some_and(|order| order.synch.backward),
             _ => false,
         })
@@ -228,12 +235,18 @@ impl Channel<'_> {
                 back.gate.push(id);
             }
             back.gate.retain(|id| !self.orders.is_done(*id));
-            if !back.queue.is_empty() || !back.gate.is_empty() || back.seen <= back.reached {
+            if back.at_limit && back.queue.is_empty() && back.gate.is_empty() {
+                back.at_limit = self.stands_at_end(back.seen, true, back.reached < back.seen);
+                any |= !back.at_limit;
+            }
+            if back.waits() || back.seen <= back.reached {
                 break;
             }
             back.seen -= 1;
             any = true;
             back.queue = self.repeated(back.seen);
+            let limit = |deed: &Deed| matches!(deed, Deed::BlockEnd);
+            back.at_limit = self.track.deeds(back.seen).iter().any(limit);
         }
         self.backward.back = Some(back);
         any
@@ -297,6 +310,7 @@ impl Channel<'_> {
             (number, along) = (number + 1, 0.0);
         }
         let position = self.path.position();
+        self.all_block_ends();
         self.path.clear();
         self.path.set_position(position);
         let first = if along > 0.0 { number + 1 } else { number };

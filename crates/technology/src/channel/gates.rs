@@ -99,6 +99,13 @@ impl Channel<'_> {
                     Done::NotYet
                 }
             }
+            Deed::BlockEnd => {
+                if self.stands_at_end(place, false, place < self.reached) {
+                    Done::NotYet
+                } else {
+                    Done::Yes
+                }
+            }
             Deed::Dwell(seconds) => self.dwell(place, *seconds),
             Deed::Independent(independent) => {
                 let independent = independent.as_ref().clone();
@@ -220,6 +227,7 @@ impl Channel<'_> {
         let deeds = self.track.deeds(place).get(from..).unwrap_or_default();
         deeds.iter().any(|deed| match deed {
             Deed::Gate(ids) => !ids.iter().all(|id| self.is_open(*id)),
+            Deed::BlockEnd => self.stops_at(place, false),
             Deed::Dwell(_) | Deed::AllEnded | Deed::End | Deed::Fault(_) => true,
             Deed::Output(_) | Deed::Command(_) | Deed::Independent(_) => false,
         })

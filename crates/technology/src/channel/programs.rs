@@ -84,6 +84,7 @@ impl Channel<'_> {
     /// Runs a program of a run, from a block on.
     fn open(&mut self, run: &Run<'_>, index: usize, from: Option<&str>) -> Ended {
         self.in_force = InForce::new(self.settings);
+        self.program = run.programs.name(index);
         let mut start = self.now().position;
         let mut blocks = match run.programs.open(index, &start) {
             Ok(blocks) => blocks,
@@ -137,6 +138,7 @@ impl Channel<'_> {
         self.cursor = (first, 0);
         (self.dwell, self.ended, self.part) = (None, false, None);
         self.backward = Backward::default();
+        self.all_block_ends();
         self.ended_at = Position::UNKNOWN;
         self.independent.clear();
     }
@@ -167,6 +169,7 @@ impl Channel<'_> {
                     break;
                 }
             }
+            self.drop_start();
             self.lists();
             self.stand();
             self.limits();
@@ -274,6 +277,7 @@ impl Channel<'_> {
             self.simulated = simulated;
             self.open_to = self.cursor.0;
         }
+        self.follow_single(t);
         if self.cycle.is_multiple_of(FORGET) {
             let first = self.track.forget_before(self.reached);
             let next = self.orders.next();
