@@ -199,6 +199,15 @@ fn hold_single(case: &Case, single: &Single, report: &Report) -> Result<(), Test
     Ok(())
 }
 
+/// Where a function of a block between two ways is output; not known of one that is output ahead.
+fn place(kind: &str, start: f64, end: f64) -> Option<f64> {
+    match kind {
+        "MNS_SNS" => Some(end),
+        kind if kind.starts_with("ME") => None,
+        _ => Some(start),
+    }
+}
+
 fn case(blocks: &[Block]) -> Case {
     let (mut program, mut list, mut script) =
         ("%LAWS\nN1 G00 F4000\n".to_owned(), String::new(), String::new());
@@ -253,11 +262,7 @@ fn case(blocks: &[Block]) -> Case {
                 "MVS_SLP" => open[1].push(name.clone()),
                 _ => {}
             }
-            let place = match kind {
-                "MNS_SNS" => Some(way),
-                kind if kind.starts_with("ME") => None,
-                _ => Some(start),
-            };
+            let place = place(kind, start, way);
             let order = (index, kind == "MNS_SNS", at);
             let one = Known {
                 kind,
