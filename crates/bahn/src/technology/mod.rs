@@ -106,6 +106,7 @@ fn refused(list: &ChannelList, path: &Path, limits: &Limits, start: Position) ->
         cycle_s: limits.cycle_s,
         events: Vec::new(),
         waits: Vec::new(),
+        skipped: None,
         path_end: Coordinates(start),
         programs: Vec::new(),
         warnings: Vec::new(),

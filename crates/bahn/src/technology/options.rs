@@ -56,7 +56,7 @@ pub(crate) struct TechnologyOptions {
         allow_hyphen_values = true
     )]
     pub start: Vec<String>,
-    /// Block of the first program with which the run begins, as N50; what is before it is not output.
+    /// Block of the first file with which the run begins, as N50, also in a subroutine; what is before it is not output.
     #[arg(long, value_name = "BLOCK", value_parser = block)]
     pub from: Option<String>,
     /// How the report is written.

@@ -17,6 +17,7 @@ mod ranges;
 mod record;
 mod resolve;
 mod single;
+mod skipped;
 mod track;
 mod window;
 
@@ -24,7 +25,7 @@ use bahn_motion::{Interpolator, Limits, PointToPoint};
 use bahn_path::Position;
 
 use crate::plc::Plc;
-use crate::report::Fault;
+use crate::report::{Fault, Skipped};
 use crate::settings::ChannelSettings;
 use backward::Backward;
 use drive::LOOK_AHEAD;
@@ -88,6 +89,8 @@ struct Channel<'a> {
     independent: Vec<(bahn_din::Independent, PointToPoint)>,
     backward: Backward,
     single: Single,
+    /// What was passed over before the block with which the run began.
+    skipped: Option<Vec<Skipped>>,
     /// File of the program that runs.
     program: String,
     /// Functions are simulated.
@@ -144,6 +147,7 @@ impl<'a> Channel<'a> {
             independent: Vec::new(),
             backward: Backward::default(),
             single: Single::default(),
+            skipped: None,
             program: String::new(),
             simulated: false,
             fault: None,
