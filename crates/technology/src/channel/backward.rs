@@ -1,9 +1,10 @@
 //! The way back along what was executed, and forward again over it.
 //!
 //! On the way back functions are output as MOS, those with BWD_SYNCH as MVS_SVS; forward again they have their own types
-//! [004:54] (public: backward motion). What is output ahead is not repeated (inferred).
+//! [004:54] (public: backward motion). What is output ahead is output at the place it belongs to on the way back, and forward
+//! again ahead of it; where the path turns behind that, at once, as what does not come early enough (inferred).
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use bahn_motion::{Drive, Interpolator};
 use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step};
@@ -195,11 +196,26 @@ impl Channel<'_> {
 
     /// Whether the path stops at a place on the way back.
     fn waits_backward(&self, place: u64) -> bool {
-        self.track.deeds(place).iter().any(|deed| match deed {
-            Deed::BlockEnd => self.stops_at(place, true),
-            Deed::Output(id) => self.orders.get(*id).is_some_and(|order| order.synch.backward),
-            _ => false,
-        })
+        let deeds = self.track.deeds(place);
+        deeds.iter().any(|deed| matches!(deed, Deed::BlockEnd)) && self.stops_at(place, true)
+            || self.of_place(place).into_iter().any(|id| {
+                let order = self.orders.get(id);
+                order.is_some_and(|order| order.synch.backward)
+            })
+    }
+
+    /// The functions of a place that are output on the way back, in program order.
+    fn of_place(&self, place: u64) -> Vec<OrderId> {
+        let outputs = self.track.deeds(place).iter().filter_map(|deed| match deed {
+            Deed::Output(id) => Some(*id),
+            _ => None,
+        });
+        let mut ids: Vec<OrderId> = outputs.collect();
+        for id in self.leads.of_place(self.track.way(place)) {
+            let at = ids.iter().position(|other| *other > id).unwrap_or(ids.len());
+            ids.insert(at, id);
+        }
+        ids
     }
 
     /// The path has come to the end of an element.
@@ -254,15 +270,8 @@ impl Channel<'_> {
 
     /// The functions of a place as they are output on the way back, the last one first.
     fn repeated(&mut self, place: u64) -> VecDeque<OrderId> {
-        let deeds = self.track.deeds(place).iter().rev();
-        let ids: Vec<_> = deeds
-            .filter_map(|deed| match deed {
-                Deed::Output(id) => Some(*id),
-                _ => None,
-            })
-            .collect();
         let mut queue = VecDeque::new();
-        for id in ids {
+        for id in self.of_place(place).into_iter().rev() {
             let Some(mut order) = self.orders.get(id).cloned() else {
                 continue;
             };
@@ -314,7 +323,9 @@ impl Channel<'_> {
         self.path.clear();
         self.path.set_position(position);
         let first = if along > 0.0 { number + 1 } else { number };
-        self.renew(first, self.cursor.0);
+        let turned = self.track.leg(back.from).map_or(way, |leg| leg.from + back.along);
+        let ahead = self.leads.repeat(turned, way);
+        self.renew(first, self.cursor.0, &ahead);
         let done = if along > 0.0 {
             self.track.deeds(number).len()
         } else {
@@ -325,20 +336,21 @@ impl Channel<'_> {
         self.part = (along > 0.0).then_some(along);
     }
 
-    /// The functions of these places are new ones.
-    fn renew(&mut self, first: u64, last: u64) {
-        let mut renewed: BTreeMap<OrderId, OrderId> = BTreeMap::new();
+    /// The functions of these places, and these that are output ahead, are new ones.
+    fn renew(&mut self, first: u64, last: u64, ahead: &[OrderId]) {
+        let mut old: BTreeSet<OrderId> = ahead.iter().copied().collect();
         for place in first..=last {
             for deed in self.track.deeds(place) {
-                let (Deed::Output(id) | Deed::Command(id)) = deed else {
-                    continue;
-                };
-                if let Some(mut order) = self.orders.get(*id).cloned()
-                    && !renewed.contains_key(id)
-                {
-                    order.state = State::default();
-                    renewed.insert(*id, self.orders.push(order));
+                if let Deed::Output(id) | Deed::Command(id) = deed {
+                    old.insert(*id);
                 }
+            }
+        }
+        let mut renewed: BTreeMap<OrderId, OrderId> = BTreeMap::new();
+        for id in old {
+            if let Some(mut order) = self.orders.get(id).cloned() {
+                order.state = State::default();
+                renewed.insert(id, self.orders.push(order));
             }
         }
         let new = |id: &mut OrderId| *id = renewed.get(id).copied().unwrap_or(*id);
@@ -352,5 +364,6 @@ impl Channel<'_> {
             }
         }
         self.decoding.late.iter_mut().flatten().for_each(new);
+        self.leads.rename(new);
     }
 }

@@ -298,8 +298,10 @@ impl Channel<'_> {
         self.follow_single(t);
         if self.cycle.is_multiple_of(FORGET) {
             let first = self.track.forget_before(self.reached);
+            let ahead = self.leads.forget_before(self.track.way(self.track.first()));
             let next = self.orders.next();
-            self.orders.forget_before(first.unwrap_or(next));
+            self.orders
+                .forget_before(first.into_iter().chain(ahead).min().unwrap_or(next));
         }
     }
 
