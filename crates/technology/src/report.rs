@@ -108,6 +108,9 @@ pub struct Event {
     /// Of MEP_SVS and MET_SVS with P-CHAN-00212.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to_go: Option<ToGo>,
+    /// Number of the function among all of the run: what becomes of one that is output has the same.
+    #[serde(skip)]
+    pub order: Option<u64>,
 }
 
 /// Kinds of events.
@@ -165,6 +168,9 @@ pub struct Wait {
     pub to_s: Option<f64>,
     /// Where the path stood.
     pub position: Coordinates,
+    /// Number of the function among all of the run.
+    #[serde(skip)]
+    pub order: u64,
 }
 
 /// A function before the block with which a run began: it was not output.

@@ -33,7 +33,7 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
     let script = options.plc.as_deref().map(script).transpose()?;
     let limits = dynamics::limits(options.parameters.as_deref())?;
     let start = start(options, &programs)?;
-    let list = ChannelList::from_bytes(&files::read_table(&options.channel)?);
+    let list = ChannelList::for_cycle(&files::read_table(&options.channel)?, limits.cycle_s);
     if options.format == Format::Text {
         let faults = channel::faults(&list, &options.channel);
         diagnostics::print_faults(&faults);

@@ -227,6 +227,7 @@ mod tests {
             from_s,
             to_s,
             position: Coordinates(Position::UNKNOWN),
+            order: 0,
         };
         let waits = [
             wait(1.0, Some(3.0)),

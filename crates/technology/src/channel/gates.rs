@@ -45,7 +45,7 @@ impl Channel<'_> {
     fn tell(&mut self, kind: EventKind, id: OrderId, at: Moment) {
         if let Some(order) = self.orders.get(id) {
             let target = order.range.map_or("", |range| self.ranges.name(range));
-            self.record.function(kind, order, target, at);
+            self.record.function(kind, (id, order), target, at);
         }
     }
 
@@ -206,7 +206,7 @@ impl Channel<'_> {
         self.plc
             .order(id, (names, &label), order.process_s, order.waits, self.cycle);
         let target = self.ranges.name(range);
-        self.record.function(EventKind::Output, order, target, at);
+        self.record.function(EventKind::Output, (id, order), target, at);
         if !has_room {
             let message = format!("{label} is one late function too many that is not acknowledged");
             self.fault = Some(super::fault::numbered(&order.place, 60146, message));
