@@ -48,8 +48,8 @@ const ENDINGS: [&str; 3] = ["", ".nc", ".sub"];
 #[derive(Clone)]
 pub struct Decoder {
     shelf: Arc<dyn Shelf>,
-    /// Where the program begins.
-    begin: Place,
+    /// The program from its beginning.
+    main: Frame,
     /// Subroutines that were called from other files, by the name in the call.
     files: BTreeMap<String, Arc<Program>>,
     stack: Vec<Frame>,
@@ -68,15 +68,6 @@ struct Frame {
     end: u32,
 }
 
-/// What a search for a block found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Found {
-    /// Where the path stands before the block.
-    pub position: Position,
-    /// Commands that are in force there: the last of each kind.
-    pub commands: Vec<Command>,
-}
-
 impl Decoder {
     /// Begins a program of a file. The path stands at `start`; an axis without a position there stands at 0 when it is
     /// programmed first (inferred).
@@ -84,7 +75,7 @@ impl Decoder {
         let frame = Frame::of(program, main);
         Decoder {
             shelf,
-            begin: frame.place(),
+            main: frame.clone(),
             files: BTreeMap::new(),
             stack: vec![frame],
             state: State {
@@ -136,28 +127,27 @@ impl Decoder {
         Step::End
     }
 
-    /// Executes the blocks before a block of the program itself without handing them on: what they write into variables
-    /// counts, what they move and switch does not happen. The block is named as in reports, `N50` or `#12`.
-    pub fn skip_to(&mut self, block: &str, variables: &mut dyn Variables) -> Result<Found, BlockFault> {
-        let mut commands: Vec<Command> = Vec::new();
-        let begin = self.begin.clone();
-        loop {
-            self.settle();
-            if let [frame] = self.stack.as_slice()
-                && frame.line < frame.end
-                && *frame.program.block_name(frame.line) == *block
-            {
-                return Ok(Found {
-                    position: self.state.position,
-                    commands,
-                });
-            }
-            match self.next(variables) {
-                Step::Unit(unit) if !unit.ends => remember(&mut commands, *unit),
-                Step::Fault(fault) => return Err(fault),
-                Step::Unit(_) | Step::End => return Err(not_found(begin, block)),
-            }
+    /// Whether a block of this name, `N50` or `#12`, stands in the program itself, not only in its subroutines.
+    pub fn has(&self, block: &str) -> bool {
+        let Frame { program, line, end } = &self.main;
+        (*line..*end).any(|line| program.glyphs(line).is_some() && *program.block_name(line) == *block)
+    }
+
+    /// Whether the next block is the one of this name, in the program itself if that [has](Decoder::has) it, otherwise in
+    /// whatever subroutine is called first.
+    pub fn next_is(&mut self, block: &str) -> bool {
+        if self.is_over {
+            return false;
         }
+        self.settle();
+        let depth = self.stack.len();
+        let is_it = |frame: &Frame| frame.line < frame.end && *frame.program.block_name(frame.line) == *block;
+        self.stack.last().is_some_and(is_it) && (depth == 1 || !self.has(block))
+    }
+
+    /// Where the program begins.
+    pub fn begin(&self) -> Place {
+        self.main.place()
     }
 
     /// Goes on to the next line that is a block, out of subroutines that are at their end.
@@ -283,37 +273,6 @@ impl Frame {
         let mut unit = Unit::at(Frame { line, ..self.clone() }.place());
         unit.ends = true;
         unit
-    }
-}
-
-fn not_found(place: Place, block: &str) -> BlockFault {
-    BlockFault {
-        place,
-        column: 1,
-        length: 1,
-        message: format!("block {block} is not in the program"),
-    }
-}
-
-/// Keeps the last command of each kind that stays in force. The Micro Joint that a command shapes is that of the next
-/// function, so it is over behind one.
-fn remember(commands: &mut Vec<Command>, unit: Unit) {
-    if !unit.functions.is_empty() {
-        commands.retain(|command| !matches!(command, Command::MicroJoint { .. }));
-    }
-    for command in unit.commands {
-        let stays = matches!(
-            command,
-            Command::MicroJoint { .. }
-                | Command::VectorLimit { .. }
-                | Command::EdgeBanding(_)
-                | Command::RadiusCompensation(_)
-        );
-        if stays {
-            let kind = std::mem::discriminant(&command);
-            commands.retain(|other| std::mem::discriminant(other) != kind);
-            commands.push(command);
-        }
     }
 }
 

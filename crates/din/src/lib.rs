@@ -61,7 +61,7 @@ mod program;
 mod unit;
 mod words;
 
-pub use decoder::{BlockFault, Decoder, Found, Step};
+pub use decoder::{BlockFault, Decoder, Step};
 pub use examine::{Examination, FileFault, examine};
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{

@@ -243,37 +243,51 @@ fn subroutines_end_somewhere() {
     );
 }
 
+/// Executes what stands before a block. Its name where it was found.
+fn skip_to(decoder: &mut bahn_din::Decoder, block: &str, bench: &mut Bench) -> Option<String> {
+    while !decoder.next_is(block) {
+        match decoder.next(bench) {
+            Step::Unit(unit) if !unit.ends => {}
+            _ => return None,
+        }
+    }
+    match decoder.next(bench) {
+        Step::Unit(unit) => Some(told(&unit)),
+        _ => None,
+    }
+}
+
 #[test]
 fn search_for_a_block_executes_what_stands_before_it() {
-    let shelf = files([("sub.nc", "N50 G91 X5 M7\nV.G.RW=4")]);
-    let text = "N10 G01 F500 X10 M3\nN20 #VECTOR LIMIT ON[VEL=100]\nN30 L sub.nc\nN35 #VECTOR LIMIT ON[VEL=200]\nN37 #EXPL SYN\n(here)\nN50 X1 M9\nN60 M30";
-    let mut decoder = decoder_with(text, shelf);
+    let shelf = || files([("sub.nc", "N50 G91 X5 M7\nV.G.RW=4\nN70 X2")]);
+    let text = "N10 G01 F500 X10 M3\nN30 L sub.nc\nN37 #EXPL SYN\n(here)\nN50 X1 M9\nN60 M30";
+    let mut decoder = decoder_with(text, shelf());
     let mut bench = Bench::default();
-    let found = decoder.skip_to("N50", &mut bench).expect("the block is there");
-    assert_eq!(found.position[Axis::X], 15.0);
-    let limit = Command::VectorLimit {
-        velocity_mm_min: Some(200.0),
-        acceleration_mm_s2: None,
-        deceleration_mm_s2: None,
-    };
-    assert_eq!(found.commands, [limit]);
+    // A block of the program itself goes before one of the same name in a subroutine; G91 and F of that are in force.
+    assert_eq!(
+        skip_to(&mut decoder, "N50", &mut bench).as_deref(),
+        Some("N50 M9 to X18 Y0 F500")
+    );
     assert_eq!(bench.log, ["write V.G.RW 4"]);
-    let Step::Unit(unit) = decoder.next(&mut bench) else {
-        panic!("no unit")
-    };
-    assert_eq!(
-        told(&unit),
-        "N50 M9 to X16 Y0 F500",
-        "G91 and F of the subroutine are in force"
-    );
 
-    let missing = decoder_with(text, files([("sub.nc", "")])).skip_to("N99", &mut bench);
+    // What the program itself does not have is looked for in the subroutines that it calls; behind their end it goes on.
+    let mut decoder = decoder_with(text, shelf());
+    assert!(!decoder.has("N70") && decoder.has("N50") && !decoder.has("#4"));
     assert_eq!(
-        missing.map_err(|fault| fault.message),
-        Err("block N99 is not in the program".into())
+        skip_to(&mut decoder, "N70", &mut bench).as_deref(),
+        Some("N70 to X17 Y0 F500")
     );
-    let line = decoder_with("X1\n\nX2", Files::default()).skip_to("#3", &mut bench);
-    assert_eq!(line.map(|found| found.position[Axis::X]), Ok(1.0));
+    assert!(decoder.next_is("N37"));
+
+    let mut missing = decoder_with(text, shelf());
+    assert_eq!(skip_to(&mut missing, "N99", &mut bench), None);
+    assert_eq!(
+        (&*missing.begin().block, &*missing.begin().program),
+        ("N10", "test.nc")
+    );
+    let mut line = decoder_with("X1\n\nX2", Files::default());
+    assert!(skip_to(&mut line, "#3", &mut bench).is_some());
+    assert_eq!(line.position()[Axis::X], 2.0);
 }
 
 #[test]

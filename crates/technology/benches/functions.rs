@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use bahn_din::{Command, Function, Kind, Motion, Place, Target, Unit, Variables};
+use bahn_din::{Function, Kind, Motion, Place, Target, Unit, Variables};
 use bahn_motion::Limits;
 use bahn_path::{Axis, Curve, PerAxis, Position};
 use bahn_technology::{Blocks, ChannelSettings, Fault, Programs, Run, Script, SynchType};
@@ -86,7 +86,15 @@ impl Blocks for Decoded {
         }))
     }
 
-    fn skip_to(&mut self, _: &str, _: &mut dyn Variables) -> Result<(Position, Vec<Command>), Fault> {
+    fn next_is(&mut self, _: &str) -> bool {
+        false
+    }
+
+    fn position(&self) -> Position {
+        Position::UNKNOWN
+    }
+
+    fn not_found(&self, _: &str) -> Fault {
         unreachable!("it begins at its first block")
     }
 }

@@ -64,7 +64,7 @@ pub use list::{ChannelList, ListFault};
 pub use nc::NcPrograms;
 pub use plc::{PlcMemory, Script, ScriptError, WINDOW_BYTES};
 pub use report::{
-    Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, ToGo, Value, Wait, Warning,
+    Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, Skipped, ToGo, Value, Wait, Warning,
 };
 pub use run::{Blocks, Programs, Run};
 pub use settings::{

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bahn_din::{BlockFault, Command, Decoder, Place, Program, Section, Shelf, Step, Unit, Variables};
+use bahn_din::{BlockFault, Decoder, Place, Program, Section, Shelf, Step, Unit, Variables};
 use bahn_path::{AxisSet, Position};
 
 use crate::report::Fault;
@@ -85,13 +85,21 @@ impl Blocks for NcBlocks {
         }
     }
 
-    fn skip_to(
-        &mut self,
-        block: &str,
-        variables: &mut dyn Variables,
-    ) -> Result<(Position, Vec<Command>), Fault> {
-        let found = self.decoder.skip_to(block, variables).map_err(of)?;
-        Ok((found.position, found.commands))
+    fn next_is(&mut self, block: &str) -> bool {
+        self.decoder.next_is(block)
+    }
+
+    fn position(&self) -> Position {
+        self.decoder.position()
+    }
+
+    fn not_found(&self, block: &str) -> Fault {
+        of(BlockFault {
+            place: self.decoder.begin(),
+            column: 1,
+            length: 1,
+            message: format!("block {block} is not in the program"),
+        })
     }
 }
 

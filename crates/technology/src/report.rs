@@ -21,6 +21,9 @@ pub struct Report {
     pub events: Vec<Event>,
     /// Where the path stood for a function.
     pub waits: Vec<Wait>,
+    /// Of a run from a block: the last state of the functions before it, which were not output.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skipped: Option<Vec<Skipped>>,
     /// Where the path ends.
     pub path_end: Coordinates,
     /// How each program ended that was begun.
@@ -105,6 +108,9 @@ pub struct Event {
     /// Of MEP_SVS and MET_SVS with P-CHAN-00212.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to_go: Option<ToGo>,
+    /// Number of the function among all of the run: what becomes of one that is output has the same.
+    #[serde(skip)]
+    pub order: Option<u64>,
 }
 
 /// Kinds of events.
@@ -173,6 +179,24 @@ pub struct Wait {
     pub to_s: Option<f64>,
     /// Where the path stood.
     pub position: Coordinates,
+    /// Number of the function among all of the run.
+    #[serde(skip)]
+    pub order: u64,
+}
+
+/// A function before the block with which a run began: it was not output.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Skipped {
+    /// Letter and number, `S`.
+    pub function: String,
+    /// Additive value, speed of `S`.
+    pub value: Value,
+    /// The range or spindle it would have gone to.
+    pub target: String,
+    /// File of its block.
+    pub program: String,
+    /// Its block.
+    pub block: String,
 }
 
 /// The path at a moment.

@@ -1,6 +1,6 @@
 //! The face of a run: what it is given.
 
-use bahn_din::{Command, Unit, Variables};
+use bahn_din::{Unit, Variables};
 use bahn_motion::Limits;
 use bahn_path::Position;
 
@@ -20,7 +20,8 @@ pub struct Run<'a> {
     pub limits: &'a Limits,
     /// Where the path starts.
     pub start: Position,
-    /// Block of the first program that the run begins with (`N50`): what is before it is not output and not moved.
+    /// Block of the programs of the first file that the run begins with (`N50`): what is before it is not output and not
+    /// moved.
     pub from: Option<&'a str>,
     /// What the PLC does; without it a virtual one acknowledges each function its process time after it was output.
     pub script: Option<&'a Script>,
@@ -49,15 +50,14 @@ pub trait Blocks {
     /// What is wrong with the block.
     fn next(&mut self, variables: &mut dyn Variables) -> Result<Option<Unit>, Fault>;
 
-    /// Goes on to a block without handing on those before it: where the path stands there, and the commands in force.
-    ///
-    /// # Errors
-    /// When there is no such block, or something is wrong with one before it.
-    fn skip_to(
-        &mut self,
-        block: &str,
-        variables: &mut dyn Variables,
-    ) -> Result<(Position, Vec<Command>), Fault>;
+    /// Whether the next block is this one (`N50`, `#12`).
+    fn next_is(&mut self, block: &str) -> bool;
+
+    /// Where the path stands behind the blocks that were handed on.
+    fn position(&self) -> Position;
+
+    /// There is no such block.
+    fn not_found(&self, block: &str) -> Fault;
 }
 
 impl Run<'_> {

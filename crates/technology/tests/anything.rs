@@ -72,12 +72,13 @@ const LIST: &str = "m_synch[7] MOS\nm_synch[8] MVS_SNS\nm_pre_outp[8] 30000\nm_s
     m_synch[40] MVS_SVS\nmain_spindle_gear_change 1\nspindel[0].bezeichnung S1\nspindel[0].m3_synch PLC_INFO | MVS_SVS\n\
     spindel[0].m4_synch MVS_SNS\nspindel[0].s_synch MOS\nspindel[1].bezeichnung S2\nspindel[1].plc_control 1\n";
 
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 7] = [
     "",
     "default ack 0.05\nprobe X7\n",
     "M7 nofetch\nspindle S1 ready 0.2\n",
     "default ack never\nreset 0.5\n",
     "probe X15\nhold 0.1..0.3\nbackward 0.4..0.9\noverride 20 at 0.2\n",
+    "single 0..3\nstart 0.2\nstart 0.5\nstart 0.9\nbackward 1.0..1.5\ndefault ack 0.1\nreset 4\n",
     "simulated 0..1\nbackward 0.2..0.7\nspindle S1 ready never\n",
 ];
 

@@ -86,6 +86,126 @@ struct Case {
     known: HashMap<String, Known>,
     /// Length of the path, mm.
     way: f64,
+    /// Ways to the ends of the blocks with a motion, mm, and how many blocks there are up to each.
+    ends: Vec<(f64, usize)>,
+}
+
+/// Single block between two times, with starts at some, all in cycles.
+#[derive(Clone, Debug)]
+struct Single {
+    from: u32,
+    to: u32,
+    starts: Vec<u32>,
+}
+
+fn single() -> impl Strategy<Value = Option<Single>> {
+    let single = (0..1500u32, 1..3000u32, prop::collection::vec(0..4000u32, 0..12));
+    prop::option::of(single.prop_map(|(from, length, mut starts)| {
+        starts.sort_unstable();
+        Single {
+            from,
+            to: from + length,
+            starts,
+        }
+    }))
+}
+
+impl Single {
+    fn script(&self) -> String {
+        let time = |cycle: u32| format!("{:.3}", f64::from(cycle) * T);
+        let starts = self
+            .starts
+            .iter()
+            .map(|start| format!("start {}\n", time(*start)));
+        format!(
+            "single {}..{}\n{}",
+            time(self.from),
+            time(self.to),
+            starts.collect::<String>()
+        )
+    }
+
+    /// When the path may go on that comes to the end of a block at a time, s, at the earliest.
+    fn next_start(&self, t: f64) -> f64 {
+        let mut starts = self.starts.iter().map(|start| f64::from(*start) * T);
+        let end = f64::from(self.to) * T;
+        starts
+            .find(|start| *start > t - 1e-9)
+            .map_or(end, |start| start.min(end))
+    }
+}
+
+/// In single block no end of a block is passed without a start, and nothing of the next one is output before.
+fn hold_single(case: &Case, single: &Single, report: &Report) -> Result<(), TestCaseError> {
+    let within = |t: f64| t > f64::from(single.from) * T - 1e-9 && t < f64::from(single.to) * T - 1e-9;
+    // Where the path comes to rest at the end of a block: the last sample is the end of the run.
+    let stops = report
+        .events
+        .iter()
+        .filter(|event| event.kind == EventKind::Stop && within(event.t));
+    for stop in stops {
+        let way = report
+            .samples
+            .iter()
+            .take_while(|sample| sample.t <= stop.t + 1e-9);
+        let way = way.last().map_or(0.0, |sample| sample.way_mm);
+        let end = case.ends.iter().find(|(end, _)| (end - way).abs() < ROUNDING);
+        let Some((end, blocks)) = end.filter(|_| way > ROUNDING) else {
+            prop_assert!(way < ROUNDING, "it stands at {way}");
+            continue;
+        };
+        let start = single.next_start(stop.t);
+        let before = report.samples.iter().filter(|sample| sample.t <= start + 1e-9);
+        let farthest = before.map(|sample| sample.way_mm).fold(0.0, f64::max);
+        prop_assert!(
+            farthest <= end + ROUNDING,
+            "{end} is passed before {start}: {farthest}"
+        );
+        for event in report.of(EventKind::Output) {
+            let known = &case.known[event.function.as_deref().unwrap()];
+            if known.place.is_some() && known.order.0 >= *blocks {
+                prop_assert!(event.t >= start - 1e-9, "{event:?} {known:?} before {start}");
+            }
+        }
+    }
+    // After the first standstill a start leads over one end of a block, and no more.
+    let first = report
+        .events
+        .iter()
+        .find(|event| event.kind == EventKind::Stop && within(event.t));
+    let Some(first) = first else { return Ok(()) };
+    let mut passed = 0;
+    let mut at = None;
+    for sample in report.samples.iter().filter(|sample| within(sample.t)) {
+        let beyond = case
+            .ends
+            .iter()
+            .filter(|(end, _)| sample.way_mm > end + ROUNDING)
+            .count();
+        if sample.t <= first.t + 1e-9 {
+            at = Some(beyond);
+        }
+        passed = passed.max(beyond - at.unwrap_or(beyond));
+        let starts = single.starts.iter().map(|start| f64::from(*start) * T);
+        let starts = starts
+            .filter(|start| *start >= first.t - 1e-9 && *start <= sample.t + 1e-9)
+            .count();
+        // At a gate before the end of its block it may stand without one.
+        prop_assert!(
+            passed <= starts + 1,
+            "{passed} ends are passed with {starts} starts"
+        );
+    }
+    Ok(())
+}
+
+/// Where a function of a block between two ways is output; not known of one that is output ahead.
+fn place(kind: &str, start: f64, end: f64) -> Option<f64> {
+    match kind {
+        "MNS_SNS" => Some(end),
+        kind if kind.starts_with("ME") => None,
+        _ => Some(start),
+    }
 }
 
 fn case(blocks: &[Block]) -> Case {
@@ -93,6 +213,7 @@ fn case(blocks: &[Block]) -> Case {
         ("%LAWS\nN1 G00 F4000\n".to_owned(), String::new(), String::new());
     let mut known: HashMap<String, Known> = HashMap::new();
     let (mut way, mut x, mut y, mut number, mut late) = (0.0f64, 0.0, 0.0, FIRST, 0);
+    let mut ends = Vec::new();
     let mut open: [Vec<String>; 2] = Default::default();
     for (index, block) in blocks.iter().enumerate() {
         if block.synchronise {
@@ -105,6 +226,7 @@ fn case(blocks: &[Block]) -> Case {
         let start = way;
         if let Some((rapid, dx, dy)) = block.motion {
             (x, y, way) = (x + dx, y + dy, way + dx.hypot(dy));
+            ends.push((way, index + 1));
             program += &format!("{} X{x:.6} Y{y:.6} ", if rapid { "G00" } else { "G01" });
         }
         let feed = block.motion.is_some_and(|(rapid, ..)| !rapid);
@@ -140,11 +262,7 @@ fn case(blocks: &[Block]) -> Case {
                 "MVS_SLP" => open[1].push(name.clone()),
                 _ => {}
             }
-            let place = match kind {
-                "MNS_SNS" => Some(way),
-                kind if kind.starts_with("ME") => None,
-                _ => Some(start),
-            };
+            let place = place(kind, start, way);
             let order = (index, kind == "MNS_SNS", at);
             let one = Known {
                 kind,
@@ -167,6 +285,7 @@ fn case(blocks: &[Block]) -> Case {
         bench: Bench::new(&program, &list).script(&script),
         known,
         way,
+        ends,
     }
 }
 
@@ -225,7 +344,7 @@ fn hold_range(report: &Report, range: &str) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-fn hold_laws(case: &Case, report: &Report) -> Result<(), TestCaseError> {
+fn hold_laws(case: &Case, single: Option<&Single>, report: &Report) -> Result<(), TestCaseError> {
     prop_assert!(report.completed, "{:?} {:?}", report.error, report.waits);
     hold_gates(case, report)?;
     prop_assert_eq!(report.of(EventKind::Output).len(), case.known.len());
@@ -255,8 +374,13 @@ fn hold_laws(case: &Case, report: &Report) -> Result<(), TestCaseError> {
                         .iter()
                         .filter(|wait| wait.from_s >= stop && wait.from_s < event.t);
                     let last = within.filter_map(|wait| wait.to_s).fold(0.0, f64::max);
+                    // A start, or the end of single block, may come later than the last acknowledgement.
+                    let started = single
+                        .is_some_and(|single| (single.next_start(stop) - event.t).abs() < 1e-9)
+                        || single
+                            .is_some_and(|single| (single.next_start(last.max(stop)) - event.t).abs() < 1e-9);
                     prop_assert!(
-                        (event.t - last).abs() < 1e-9,
+                        started || (event.t - last).abs() < 1e-9,
                         "{:?} goes at {}, not {}",
                         event,
                         event.t,
@@ -287,10 +411,16 @@ fn ten_thousand_random_programs_with_random_acknowledgements() {
         ..ProptestConfig::default()
     };
     let mut runner = proptest::test_runner::TestRunner::new(config);
-    let blocks = prop::collection::vec(block(), 1..14);
-    let result = runner.run(&blocks, |blocks| {
-        let case = case(&blocks);
-        hold_laws(&case, &case.bench.run())
+    let blocks = (prop::collection::vec(block(), 1..14), single());
+    let result = runner.run(&blocks, |(blocks, single)| {
+        let mut case = case(&blocks);
+        if let Some(single) = &single {
+            let script = case.bench.script.clone().unwrap() + &single.script();
+            case.bench = case.bench.clone().script(&script);
+        }
+        let report = case.bench.run();
+        hold_laws(&case, single.as_ref(), &report)?;
+        single.map_or(Ok(()), |single| hold_single(&case, &single, &report))
     });
     if let Err(error) = result {
         panic!("{error}");
@@ -336,6 +466,7 @@ proptest! {
         simulated in prop::collection::vec((0.0..2.0f64, 0.0..0.5f64), 0..3),
         holds in prop::collection::vec((0.0..2.0f64, 0.0..0.5f64), 0..3),
         never in prop::option::weighted(0.3, (0..8usize, any::<bool>())),
+        single in single(),
         bits in any::<u64>(),
     ) {
         let mut case = case(&blocks);
@@ -353,6 +484,7 @@ proptest! {
                 script += &format!("{name} {from}..{}\n", from + time);
             }
         }
+        script += &single.map_or_else(String::new, |single| single.script());
         if let Some((at, fetched)) = never {
             script += &format!("M{} {}\n", FIRST + at, if fetched { "ack never" } else { "nofetch" });
         }

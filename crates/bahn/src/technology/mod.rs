@@ -39,7 +39,7 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
     };
     let limits = dynamics::limits(options.parameters.as_deref())?;
     let start = start(options, &programs)?;
-    let list = ChannelList::from_bytes(&files::read_table(&options.channel)?);
+    let list = ChannelList::for_cycle(&files::read_table(&options.channel)?, limits.cycle_s);
     if options.format == Format::Text {
         let faults = channel::faults(&list, &options.channel);
         diagnostics::print_faults(&faults);
@@ -104,6 +104,7 @@ fn refused(list: &ChannelList, path: &Path, limits: &Limits, start: Position) ->
         cycle_s: limits.cycle_s,
         events: Vec::new(),
         waits: Vec::new(),
+        skipped: None,
         path_end: Coordinates(start),
         programs: Vec::new(),
         warnings: Vec::new(),

@@ -29,6 +29,7 @@ PLC script, a line each; # begins a comment:
   default ack 0     what has no line of its own
   spindle S1 ready 0.8     probe X45     override 50 at 1.0
   hold 2.0..2.5     reset 4.0     backward 2.0..3.0     simulated 2.0..3.0
+  single 2.0..3.0   in single block; start 2.5 starts the next block with a motion
 
 JSON: completed, error (null, or code, message, program, block), time_s, cycle_s, events (t,
 kind output, fetch, acknowledge, stop, go or active, function, value, offset_us, v in mm/min,
@@ -62,7 +63,7 @@ pub(crate) struct TechnologyOptions {
         allow_hyphen_values = true
     )]
     pub start: Vec<String>,
-    /// Block of the first program with which the run begins, as N50; what is before it is not output.
+    /// Block of the first file with which the run begins, as N50, also in a subroutine; what is before it is not output.
     #[arg(long, value_name = "BLOCK", value_parser = block)]
     pub from: Option<String>,
     /// How the report is written.

@@ -1,6 +1,8 @@
 //! The picture of a run: velocity along the path with what is output and acknowledged there, and over time, with a bar
 //! for each function from its output to its acknowledgement.
 
+use std::collections::HashMap;
+
 use bahn_picture::{Anchor, Colour, text_width};
 use bahn_technology::{Event, EventKind, Report, Sample, Value};
 
@@ -140,52 +142,38 @@ fn spans(report: &Report) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Each function that is output, with its fetch and acknowledgement: the next ones of its name, range and block.
+/// Each function that is output, with its own fetch, acknowledgement and waits.
 fn bars(report: &Report) -> Vec<Bar> {
     let mut bars: Vec<Bar> = Vec::new();
+    let mut of_order: HashMap<u64, usize> = HashMap::new();
     for event in &report.events {
-        let Some(function) = &event.function else { continue };
-        let (target, block) = (text_of(&event.target), text_of(&event.block));
-        let open = |is_open: fn(&Bar) -> bool| {
-            move |bar: &&mut Bar| {
-                let name = bar.name.split('=').next().unwrap_or_default();
-                name == function && bar.target == target && bar.block == block && is_open(bar)
-            }
+        let (Some(function), Some(order)) = (&event.function, event.order) else {
+            continue;
         };
-        match event.kind {
-            EventKind::Output => bars.push(Bar {
+        if event.kind == EventKind::Output {
+            of_order.insert(order, bars.len());
+            bars.push(Bar {
                 name: name_of(event, function),
-                target: target.to_owned(),
-                block: block.to_owned(),
+                target: text_of(&event.target).to_owned(),
+                block: text_of(&event.block).to_owned(),
                 output_s: Some(event.t),
                 fetch_s: None,
                 acknowledge_s: None,
                 waits: Vec::new(),
-            }),
-            EventKind::Fetch => {
-                if let Some(bar) = bars.iter_mut().find(open(|bar| bar.fetch_s.is_none())) {
-                    bar.fetch_s = Some(event.t);
-                }
+            });
+        } else if let Some(bar) = of_order.get(&order).and_then(|index| bars.get_mut(*index)) {
+            match event.kind {
+                EventKind::Fetch => bar.fetch_s = Some(event.t),
+                EventKind::Acknowledge => bar.acknowledge_s = Some(event.t),
+                _ => {}
             }
-            EventKind::Acknowledge => {
-                if let Some(bar) = bars.iter_mut().find(open(|bar| bar.acknowledge_s.is_none())) {
-                    bar.acknowledge_s = Some(event.t);
-                }
-            }
-            EventKind::Stop | EventKind::Go | EventKind::Active => {}
         }
     }
     for wait in &report.waits {
-        let end = wait.to_s.unwrap_or(report.time_s);
-        let of_wait = |bar: &&mut Bar| {
-            let name = bar.name.split('=').next().unwrap_or_default();
-            name == wait.function
-                && bar.block == wait.block
-                && bar.output_s.is_none_or(|time| time <= end)
-                && bar.acknowledge_s.is_none_or(|time| time >= wait.from_s)
-        };
-        match bars.iter_mut().find(of_wait) {
-            Some(bar) => bar.waits.push((wait.from_s, end)),
+        let span = (wait.from_s, wait.to_s.unwrap_or(report.time_s));
+        let index = *of_order.entry(wait.order).or_insert(bars.len());
+        match bars.get_mut(index) {
+            Some(bar) => bar.waits.push(span),
             None => bars.push(Bar {
                 name: wait.function.clone(),
                 target: String::new(),
@@ -193,7 +181,7 @@ fn bars(report: &Report) -> Vec<Bar> {
                 output_s: None,
                 fetch_s: None,
                 acknowledge_s: None,
-                waits: vec![(wait.from_s, end)],
+                waits: vec![span],
             }),
         }
     }
@@ -455,7 +443,61 @@ fn way_at(report: &Report, time_s: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use bahn_din::{Program, Shelf};
+    use bahn_path::Position;
+    use bahn_technology::{ChannelList, NcPrograms, Run, Script};
+
     use super::*;
+
+    struct Empty;
+
+    impl Shelf for Empty {
+        fn text(&self, _: &str) -> Option<(String, Vec<u8>)> {
+            None
+        }
+    }
+
+    /// The same function of the same block twice, the way back between: fetched only, then waited for.
+    #[test]
+    fn a_function_has_its_own_acknowledgement() {
+        let list = ChannelList::from_bytes(b"m_synch[8] MVS_SVS\n");
+        let text = b"N10 G01 X20 F6000\nN20 X40 M8\nN30 X60\nM30\n";
+        let program = Program::from_bytes("back.nc", text);
+        let script: Script = "M8 ack 0.2\nbackward 0.8..1.8\n".parse().unwrap();
+        let mut start = Position::UNKNOWN;
+        start[bahn_path::Axis::X] = 0.0;
+        let report = Run {
+            programs: &NcPrograms::new(&[Arc::new(program)], Arc::new(Empty)).unwrap(),
+            settings: list.settings(),
+            limits: &crate::technology::dynamics::limits(None).unwrap(),
+            start,
+            from: None,
+            script: Some(&script),
+        }
+        .execute();
+        let bars = bars(&report);
+        // Forward, back, forward.
+        assert_eq!(bars.len(), 3, "{:?}", report.waits);
+        assert_eq!(
+            bars.iter()
+                .map(|bar| (bar.acknowledge_s.is_some(), bar.waits.len()))
+                .collect::<Vec<_>>(),
+            [(true, 1), (false, 0), (true, 1)]
+        );
+        for bar in &bars {
+            let output = bar.output_s.unwrap();
+            let fetch = bar.fetch_s.unwrap();
+            assert!((fetch - output - report.cycle_s).abs() < 1e-9);
+            if let Some(done) = bar.acknowledge_s {
+                assert!(
+                    (done - output - 0.2).abs() <= report.cycle_s + 1e-9,
+                    "{output} {done}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn a_column_keeps_its_ends_and_extremes() {

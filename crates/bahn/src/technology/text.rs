@@ -1,7 +1,7 @@
 //! The report for people: a table of events, a table of waits, how it ended.
 
 use bahn_path::Position;
-use bahn_technology::{Event, EventKind, Report, Value, Wait};
+use bahn_technology::{Event, EventKind, Report, Skipped, Value, Wait};
 
 /// Events that are printed; the others are counted.
 const PRINTED_MAX: usize = 400;
@@ -29,6 +29,14 @@ pub(super) fn text(report: &Report) -> String {
         );
         text.push('\n');
     }
+    if let Some(skipped) = report.skipped.as_ref().filter(|skipped| !skipped.is_empty()) {
+        text += "Not output before the block with which the run began, the last of each\n";
+        text += &table(
+            &["function", "range", "program", "block"],
+            skipped.iter().map(skipped_one),
+        );
+        text.push('\n');
+    }
     for warning in &report.warnings {
         text += &format!(
             "warning: {} {}: {}\n",
@@ -50,19 +58,7 @@ fn event(event: &Event) -> Vec<String> {
         EventKind::Go => "go",
         EventKind::Active => "active",
     };
-    let function = event.function.clone().unwrap_or_default();
-    let function = match &event.value {
-        Value::None => function,
-        Value::Integer(value) => format!("{function}={value}"),
-        Value::Number(value) => format!("{function}={value}"),
-        Value::Numbers(numbers) => {
-            let names = numbers.iter().map(|number| format!("{function}{number}"));
-            match names.collect::<Vec<_>>().join(" ") {
-                none if none.is_empty() => format!("no {function}"),
-                names => names,
-            }
-        }
-    };
+    let function = with_value(event.function.as_deref().unwrap_or_default(), &event.value);
     let mut remarks = Vec::new();
     if let Some(offset) = event.offset_us {
         remarks.push(format!("{offset:.0} us behind its place"));
@@ -82,6 +78,31 @@ fn event(event: &Event) -> Vec<String> {
         position(&event.position.0),
         remarks.join(", "),
     ]
+}
+
+fn skipped_one(skipped: &Skipped) -> Vec<String> {
+    vec![
+        with_value(&skipped.function, &skipped.value),
+        skipped.target.clone(),
+        skipped.program.clone(),
+        skipped.block.clone(),
+    ]
+}
+
+/// `H5=4711`, `M25 M26` of numbers.
+fn with_value(function: &str, value: &Value) -> String {
+    match value {
+        Value::None => function.to_owned(),
+        Value::Integer(value) => format!("{function}={value}"),
+        Value::Number(value) => format!("{function}={value}"),
+        Value::Numbers(numbers) => {
+            let names = numbers.iter().map(|number| format!("{function}{number}"));
+            match names.collect::<Vec<_>>().join(" ") {
+                none if none.is_empty() => format!("no {function}"),
+                names => names,
+            }
+        }
+    }
 }
 
 fn wait(wait: &Wait) -> Vec<String> {
@@ -206,6 +227,7 @@ mod tests {
             from_s,
             to_s,
             position: Coordinates(Position::UNKNOWN),
+            order: 0,
         };
         let waits = [
             wait(1.0, Some(3.0)),

@@ -1,11 +1,12 @@
 //! The way back along what was executed, and forward again over it.
 //!
 //! On the way back functions are output as MOS, those with BWD_SYNCH as MVS_SVS; forward again they have their own types
-//! [004:54] (public: backward motion). What is output ahead is not repeated (inferred).
+//! [004:54] (public: backward motion). What is output ahead is output at the place it belongs to on the way back, and forward
+//! again ahead of it; where the path turns behind that, at once, as what does not come early enough (inferred).
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use bahn_motion::Drive;
+use bahn_motion::{Drive, Interpolator};
 use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step};
 
 use super::Channel;
@@ -33,6 +34,8 @@ struct Back {
     /// Functions that are to be output at that place, and those that are waited for.
     queue: VecDeque<OrderId>,
     gate: Vec<OrderId>,
+    /// In single block it stands there.
+    at_limit: bool,
 }
 
 impl Backward {
@@ -75,6 +78,11 @@ impl Back {
     /// The element that is so many on the way back.
     fn element(&self, back: u64) -> Option<u64> {
         (self.from + 1).checked_sub(back)
+    }
+
+    /// It cannot go on where it is.
+    fn waits(&self) -> bool {
+        !self.queue.is_empty() || !self.gate.is_empty() || self.at_limit
     }
 }
 
@@ -128,6 +136,7 @@ impl Channel<'_> {
     fn turn_back(&mut self) {
         let (from, along) = self.whereabouts();
         let position = self.path.position();
+        self.all_block_ends();
         self.path.clear();
         self.path.set_position(position);
         self.backward.back = Some(Back {
@@ -138,19 +147,17 @@ impl Channel<'_> {
             seen: from + 1,
             queue: VecDeque::new(),
             gate: Vec::new(),
+            at_limit: false,
         });
     }
 
     /// The way along the path, mm, while it is run back.
-    pub(super) fn way_back(&self) -> Option<f64> {
+    pub(super) fn way_back(&self, path: &Interpolator<()>) -> Option<f64> {
         let back = self.backward.back.as_ref()?;
-        let number = self
-            .path
-            .element()
-            .and_then(|element| back.element(element.sequence));
+        let number = path.element().and_then(|element| back.element(element.sequence));
         let leg = number.and_then(|number| self.track.leg(number));
         Some(match leg {
-            Some(leg) => leg.from + self.path.rest_mm(),
+            Some(leg) => leg.from + path.rest_mm(),
             None => self
                 .track
                 .leg(back.from)
@@ -168,7 +175,7 @@ impl Channel<'_> {
         };
         self.path.prepare(&mut feed, usize::MAX);
         let (from, seen, reached) = (back.from, back.seen, back.reached);
-        let waits = !back.queue.is_empty() || !back.gate.is_empty();
+        let waits = back.waits();
         // The next place with a function that is waited for on the way back.
         let first = self.track.first();
         let known = (from + 2).saturating_sub(back.fed).max(first);
@@ -187,12 +194,28 @@ impl Channel<'_> {
         self.drive_once(&drive, block)
     }
 
-    /// Whether a function at a place is waited for on the way back.
+    /// Whether the path stops at a place on the way back.
     fn waits_backward(&self, place: u64) -> bool {
-        self.track.deeds(place).iter().any(|deed| match deed {
-            Deed::Output(id) => self.orders.get(*id).is_some_and(|order| order.synch.backward),
-            _ => false,
-        })
+        let deeds = self.track.deeds(place);
+        deeds.iter().any(|deed| matches!(deed, Deed::BlockEnd)) && self.stops_at(place, true)
+            || self.of_place(place).into_iter().any(|id| {
+                let order = self.orders.get(id);
+                order.is_some_and(|order| order.synch.backward)
+            })
+    }
+
+    /// The functions of a place that are output on the way back, in program order.
+    fn of_place(&self, place: u64) -> Vec<OrderId> {
+        let outputs = self.track.deeds(place).iter().filter_map(|deed| match deed {
+            Deed::Output(id) => Some(*id),
+            _ => None,
+        });
+        let mut ids: Vec<OrderId> = outputs.collect();
+        for id in self.leads.of_place(self.track.way(place)) {
+            let at = ids.iter().position(|other| *other > id).unwrap_or(ids.len());
+            ids.insert(at, id);
+        }
+        ids
     }
 
     /// The path has come to the end of an element.
@@ -228,12 +251,18 @@ impl Channel<'_> {
                 back.gate.push(id);
             }
             back.gate.retain(|id| !self.orders.is_done(*id));
-            if !back.queue.is_empty() || !back.gate.is_empty() || back.seen <= back.reached {
+            if back.at_limit && back.queue.is_empty() && back.gate.is_empty() {
+                back.at_limit = self.stands_at_end(back.seen, true, back.reached < back.seen);
+                any |= !back.at_limit;
+            }
+            if back.waits() || back.seen <= back.reached {
                 break;
             }
             back.seen -= 1;
             any = true;
             back.queue = self.repeated(back.seen);
+            let limit = |deed: &Deed| matches!(deed, Deed::BlockEnd);
+            back.at_limit = self.track.deeds(back.seen).iter().any(limit);
         }
         self.backward.back = Some(back);
         any
@@ -241,15 +270,8 @@ impl Channel<'_> {
 
     /// The functions of a place as they are output on the way back, the last one first.
     fn repeated(&mut self, place: u64) -> VecDeque<OrderId> {
-        let deeds = self.track.deeds(place).iter().rev();
-        let ids: Vec<_> = deeds
-            .filter_map(|deed| match deed {
-                Deed::Output(id) => Some(*id),
-                _ => None,
-            })
-            .collect();
         let mut queue = VecDeque::new();
-        for id in ids {
+        for id in self.of_place(place).into_iter().rev() {
             let Some(mut order) = self.orders.get(id).cloned() else {
                 continue;
             };
@@ -297,10 +319,13 @@ impl Channel<'_> {
             (number, along) = (number + 1, 0.0);
         }
         let position = self.path.position();
+        self.all_block_ends();
         self.path.clear();
         self.path.set_position(position);
         let first = if along > 0.0 { number + 1 } else { number };
-        self.renew(first, self.cursor.0);
+        let turned = self.track.leg(back.from).map_or(way, |leg| leg.from + back.along);
+        let ahead = self.leads.repeat(turned, way);
+        self.renew(first, self.cursor.0, &ahead);
         let done = if along > 0.0 {
             self.track.deeds(number).len()
         } else {
@@ -311,20 +336,21 @@ impl Channel<'_> {
         self.part = (along > 0.0).then_some(along);
     }
 
-    /// The functions of these places are new ones.
-    fn renew(&mut self, first: u64, last: u64) {
-        let mut renewed: BTreeMap<OrderId, OrderId> = BTreeMap::new();
+    /// The functions of these places, and these that are output ahead, are new ones.
+    fn renew(&mut self, first: u64, last: u64, ahead: &[OrderId]) {
+        let mut old: BTreeSet<OrderId> = ahead.iter().copied().collect();
         for place in first..=last {
             for deed in self.track.deeds(place) {
-                let (Deed::Output(id) | Deed::Command(id)) = deed else {
-                    continue;
-                };
-                if let Some(mut order) = self.orders.get(*id).cloned()
-                    && !renewed.contains_key(id)
-                {
-                    order.state = State::default();
-                    renewed.insert(*id, self.orders.push(order));
+                if let Deed::Output(id) | Deed::Command(id) = deed {
+                    old.insert(*id);
                 }
+            }
+        }
+        let mut renewed: BTreeMap<OrderId, OrderId> = BTreeMap::new();
+        for id in old {
+            if let Some(mut order) = self.orders.get(id).cloned() {
+                order.state = State::default();
+                renewed.insert(id, self.orders.push(order));
             }
         }
         let new = |id: &mut OrderId| *id = renewed.get(id).copied().unwrap_or(*id);
@@ -338,5 +364,6 @@ impl Channel<'_> {
             }
         }
         self.decoding.late.iter_mut().flatten().for_each(new);
+        self.leads.rename(new);
     }
 }

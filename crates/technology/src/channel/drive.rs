@@ -86,10 +86,12 @@ impl Channel<'_> {
             .holds
             .iter()
             .chain(&script.backward)
-            .chain(&script.simulated);
+            .chain(&script.simulated)
+            .chain(&script.singles);
         let times = ranges.flat_map(|range| [range.start, range.end]);
         let overrides = script.overrides.iter().map(|(from, _)| *from);
         let times = times.chain(overrides).chain(script.resets.iter().copied());
+        let times = times.chain(script.starts.iter().copied());
         let cycles = times.map(|time| cycle_at(time, self.cycle_s));
         cycles.filter(|cycle| *cycle > self.cycle).min()
     }

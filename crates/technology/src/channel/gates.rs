@@ -49,7 +49,7 @@ impl Channel<'_> {
     fn tell(&mut self, kind: EventKind, id: OrderId, at: Moment) {
         if let Some(order) = self.orders.get(id) {
             let target = order.range.map_or("", |range| self.ranges.name(range));
-            self.record.function(kind, order, target, at);
+            self.record.function(kind, (id, order), target, at);
         }
     }
 
@@ -101,6 +101,13 @@ impl Channel<'_> {
                     Done::Yes
                 } else {
                     Done::NotYet
+                }
+            }
+            Deed::BlockEnd => {
+                if self.stands_at_end(place, false, place < self.reached) {
+                    Done::NotYet
+                } else {
+                    Done::Yes
                 }
             }
             Deed::Dwell(seconds) => self.dwell(place, *seconds),
@@ -214,7 +221,7 @@ impl Channel<'_> {
         };
         self.plc.order(&output, self.cycle);
         let target = self.ranges.name(range);
-        self.record.function(EventKind::Output, order, target, at);
+        self.record.function(EventKind::Output, (id, order), target, at);
         if !has_room {
             let message = format!("{label} is one late function too many that is not acknowledged");
             self.fault = Some(super::fault::numbered(&order.place, 60146, message));
@@ -235,6 +242,7 @@ impl Channel<'_> {
         let deeds = self.track.deeds(place).get(from..).unwrap_or_default();
         deeds.iter().any(|deed| match deed {
             Deed::Gate(ids) => !ids.iter().all(|id| self.is_open(*id)),
+            Deed::BlockEnd => self.stops_at(place, false),
             Deed::Dwell(_) | Deed::AllEnded | Deed::End | Deed::Fault(_) => true,
             Deed::Output(_) | Deed::Command(_) | Deed::Independent(_) => false,
         })

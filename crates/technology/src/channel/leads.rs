@@ -18,6 +18,8 @@ pub(super) struct Ahead {
     pub(super) point: f64,
     /// It is not output before this, mm: the look-ahead reaches no farther back.
     pub(super) earliest: f64,
+    /// Where it was output last, mm.
+    output: f64,
 }
 
 impl Ahead {
@@ -35,6 +37,8 @@ impl Ahead {
 #[derive(Debug, Default)]
 pub(super) struct Leads {
     pub(super) queue: VecDeque<Ahead>,
+    /// Those that were output, by their places: for the way back.
+    taken: VecDeque<Ahead>,
     /// Ways to the starts of the last blocks, as many as the look-ahead takes.
     blocks: VecDeque<f64>,
     /// Nothing is output before this, mm: the path was to come to rest here.
@@ -68,6 +72,7 @@ impl Leads {
             lead,
             point,
             earliest: first.max(self.barrier).min(point),
+            output: point,
         });
     }
 
@@ -91,11 +96,13 @@ impl Leads {
             .take_while(move |(_, ahead)| Some(ahead.unit) == unit && !held)
     }
 
-    /// One of them is output.
-    pub(super) fn take(&mut self, index: usize, one_by_one: bool) {
+    /// One of them is output, at a way, mm.
+    pub(super) fn take(&mut self, index: usize, one_by_one: bool, output: f64) {
         let Some(ahead) = self.queue.remove(index) else {
             return;
         };
+        let at = self.taken.partition_point(|other| other.point <= ahead.point);
+        self.taken.insert(at, Ahead { output, ..ahead });
         if let Some((point, _)) = self.active.as_ref().filter(|_| one_by_one)
             && ahead.point > point + SAME
         {
@@ -105,6 +112,55 @@ impl Leads {
             Some((point, ids)) if (*point - ahead.point).abs() <= SAME => ids.push(ahead.id),
             active => *active = Some((ahead.point, vec![ahead.id])),
         }
+    }
+
+    /// One that is output does so at this place of the path, mm.
+    pub(super) fn output_at(&mut self, id: OrderId, way: f64) {
+        self.floor = way;
+        if let Some(ahead) = self.taken.iter_mut().rev().find(|ahead| ahead.id == id) {
+            ahead.output = way;
+        }
+    }
+
+    /// The functions that were output and belong to a place, mm.
+    pub(super) fn of_place(&self, way: f64) -> impl Iterator<Item = OrderId> {
+        let first = self.taken.partition_point(|ahead| ahead.point < way - SAME);
+        let here = self
+            .taken
+            .range(first..)
+            .take_while(move |ahead| ahead.point <= way + SAME);
+        here.map(|ahead| ahead.id)
+    }
+
+    /// The path has turned at a way, mm, and goes forward again from another one. What it comes over is still to be output:
+    /// the place of a function, or where it was output. They are handed on.
+    pub(super) fn repeat(&mut self, turned: f64, from: f64) -> Vec<OrderId> {
+        let (again, over): (Vec<Ahead>, Vec<Ahead>) = self.taken.drain(..).partition(|ahead| {
+            let of_point = ahead.point <= turned + SAME && ahead.point >= from - SAME;
+            of_point || ahead.output >= from - SAME
+        });
+        self.taken = over.into();
+        if !again.is_empty() {
+            self.active = None;
+        }
+        self.floor = self.floor.min(from);
+        let ids = again.iter().map(|ahead| ahead.id).collect();
+        self.queue = again.into_iter().chain(self.queue.drain(..)).collect();
+        self.queue
+            .make_contiguous()
+            .sort_by_key(|ahead| (ahead.unit, ahead.id));
+        ids
+    }
+
+    /// Their orders are others now.
+    pub(super) fn rename(&mut self, new: impl Fn(&mut OrderId)) {
+        self.queue.iter_mut().for_each(|ahead| new(&mut ahead.id));
+    }
+
+    /// Nobody goes back to what lies before this way, mm; the first order that may still be asked for.
+    pub(super) fn forget_before(&mut self, way: f64) -> Option<OrderId> {
+        self.taken.retain(|ahead| ahead.point >= way);
+        self.taken.iter().map(|ahead| ahead.id).min()
     }
 
     /// The path begins anew.

@@ -16,6 +16,8 @@ mod programs;
 mod ranges;
 mod record;
 mod resolve;
+mod single;
+mod skipped;
 mod track;
 mod window;
 
@@ -23,7 +25,7 @@ use bahn_motion::{Interpolator, Limits, PointToPoint};
 use bahn_path::Position;
 
 use crate::plc::{Plc, PlcMemory, Script};
-use crate::report::Fault;
+use crate::report::{Fault, Skipped};
 use crate::settings::ChannelSettings;
 use backward::Backward;
 use drive::LOOK_AHEAD;
@@ -33,6 +35,7 @@ use order::Orders;
 use prepare::Decoding;
 use ranges::Ranges;
 use record::{Moment, Record};
+use single::Single;
 use track::Track;
 use window::Window;
 
@@ -85,6 +88,11 @@ struct Channel<'a> {
     /// Axes that move on their own.
     independent: Vec<(bahn_din::Independent, PointToPoint)>,
     backward: Backward,
+    single: Single,
+    /// What was passed over before the block with which the run began.
+    skipped: Option<Vec<Skipped>>,
+    /// File of the program that runs.
+    program: String,
     /// Functions are simulated.
     simulated: bool,
     /// Why the run cannot go on.
@@ -139,6 +147,9 @@ impl<'a> Channel<'a> {
             ended_at: Position::UNKNOWN,
             independent: Vec::new(),
             backward: Backward::default(),
+            single: Single::default(),
+            skipped: None,
+            program: String::new(),
             simulated: false,
             fault: None,
             ended: false,
@@ -154,14 +165,19 @@ impl<'a> Channel<'a> {
 
     /// Way along the path, mm.
     fn way(&self) -> f64 {
-        if let Some(way) = self.way_back() {
+        self.way_of(&self.path)
+    }
+
+    /// Way along the path of an interpolator on it, mm.
+    fn way_of(&self, path: &Interpolator<()>) -> f64 {
+        if let Some(way) = self.way_back(path) {
             return way;
         }
-        let Some(element) = self.path.element() else {
+        let Some(element) = path.element() else {
             return self.track.way(self.reached);
         };
         match self.track.leg(element.sequence) {
-            Some(leg) => leg.to() - self.path.rest_mm(),
+            Some(leg) => leg.to() - path.rest_mm(),
             None => self.track.way(self.reached),
         }
     }

@@ -25,17 +25,17 @@ impl Channel<'_> {
             if blocked.is_some() {
                 break;
             }
-            self.leads
-                .take(index, self.in_force.settings.pre_output.value_to_go);
-            any = true;
             let way = self.way();
+            self.leads
+                .take(index, self.in_force.settings.pre_output.value_to_go, way);
+            any = true;
             let mut at = self.now();
             if !matches!(ahead.lead, Lead::Time(_)) {
                 // What could not go out at its place, for that was not known or another came before, does so where the path is.
                 let in_cycle = |place: &f64| (self.way_before - SAME..=way).contains(place);
                 let places = [ahead.place(), self.leads.floor];
                 let place = places.into_iter().find(in_cycle).unwrap_or(way);
-                self.leads.floor = place;
+                self.leads.output_at(ahead.id, place);
                 at = Moment {
                     position: self.track.position_at(place, self.reached + 1),
                     ..at

@@ -86,8 +86,9 @@ impl Channel<'_> {
         self.commands(unit)?;
         let sorted = self.sort(&ids, unit)?;
         self.before(&sorted, unit)?;
+        let mut moves = false;
         if let Some(motion) = &unit.motion {
-            self.motion(motion, unit);
+            moves = self.motion(motion, unit);
             if let Some(id) = sorted.measured {
                 self.measured(id, unit);
             }
@@ -106,6 +107,9 @@ impl Channel<'_> {
         let alone = unit.commands.iter().any(moves_alone);
         if alone {
             self.window.deed(Deed::AllEnded);
+        }
+        if (moves || alone) && !unit.ends {
+            self.window.deed(Deed::BlockEnd);
         }
         if flush_and_wait || alone {
             self.flush(true);
@@ -273,7 +277,8 @@ impl Channel<'_> {
         Ok(())
     }
 
-    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit) {
+    /// Takes the motion of a block. Whether it is one.
+    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit) -> bool {
         let settings = &self.in_force.settings;
         let leg = Leg {
             curve: motion.curve,
@@ -290,7 +295,7 @@ impl Channel<'_> {
             from: self.window.way(),
         };
         if leg.length <= 0.0 || motion.curve == Curve::Hold {
-            return;
+            return false;
         }
         let blocks = settings.pre_output.blocks as usize;
         self.leads.block(leg.from, blocks);
@@ -306,6 +311,7 @@ impl Channel<'_> {
             0
         };
         self.window.leg(leg, most.max(1), &mut self.track);
+        true
     }
 
     /// What is done behind the motion.

@@ -8,6 +8,7 @@ use super::backward::Backward;
 use super::fault::named;
 use super::in_force::InForce;
 use super::record::{self, EVENTS};
+use super::skipped::Begun;
 use super::track::{Deed, Track};
 use crate::plc::{PlcMemory, cycle_at};
 use crate::report::{Coordinates, Fault, ProgramEnd, Report};
@@ -38,9 +39,16 @@ enum Ended {
 pub(crate) fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -> Report {
     let mut channel = Channel::new(run.settings, run.limits, run.script, memory, run.start);
     let mut programs = Vec::new();
-    let mut from = run.from;
-    for index in 0..run.programs.count() {
-        let ended = channel.open(run, index, from.take());
+    let mut begun = None;
+    if let Some(block) = run.from {
+        match channel.search(run, block) {
+            Ok(found) => begun = Some(found),
+            Err(fault) => channel.fault = Some(fault),
+        }
+    }
+    let first = begun.as_ref().map_or(0, |begun| begun.index);
+    for index in first..run.programs.count() {
+        let ended = channel.open(run, index, begun.take());
         programs.push(ProgramEnd {
             program: run.programs.name(index),
             completed: matches!(ended, Ended::Completed),
@@ -53,7 +61,7 @@ pub(crate) fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemor
     let end_s = channel.t();
     channel.fetch_the_rest();
     let completed =
-        programs.len() == run.programs.count() && programs.iter().all(|program| program.completed);
+        first + programs.len() == run.programs.count() && programs.iter().all(|program| program.completed);
     if completed {
         channel.record.drop_last_stop();
     }
@@ -65,6 +73,7 @@ pub(crate) fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemor
         path_end: Coordinates(channel.now().position),
         events: channel.record.events,
         waits: channel.record.waits,
+        skipped: channel.skipped,
         programs,
         warnings: channel.record.warnings,
         samples: channel.record.samples,
@@ -81,34 +90,44 @@ impl Channel<'_> {
         }
     }
 
-    /// Runs a program of a run, from a block on.
-    fn open(&mut self, run: &Run<'_>, index: usize, from: Option<&str>) -> Ended {
-        self.in_force = InForce::new(self.settings);
-        let mut start = self.now().position;
-        let mut blocks = match run.programs.open(index, &start) {
-            Ok(blocks) => blocks,
-            Err(fault) => {
-                self.fault = Some(fault);
-                return Ended::Faulty;
-            }
-        };
-        let mut commands = Vec::new();
-        if let Some(block) = from {
-            match blocks.skip_to(block, &mut self.in_force) {
-                Ok((position, in_force)) => (start, commands) = (position, in_force),
-                Err(fault) => {
-                    self.fault = Some(self.coded(fault));
-                    return Ended::Faulty;
+    /// Runs a program of a run, from a block on where one was looked for.
+    fn open<'r>(&mut self, run: &'r Run<'_>, index: usize, begun: Option<Begun<'r>>) -> Ended {
+        self.program = run.programs.name(index);
+        if self.fault.is_some() {
+            return Ended::Faulty;
+        }
+        let begun = match begun {
+            Some(begun) => begun,
+            None => {
+                self.in_force = InForce::new(self.settings);
+                let position = self.now().position;
+                match run.programs.open(index, &position) {
+                    Ok(blocks) => Begun {
+                        index,
+                        blocks,
+                        position,
+                        commands: Vec::new(),
+                    },
+                    Err(fault) => {
+                        self.fault = Some(fault);
+                        return Ended::Faulty;
+                    }
                 }
             }
-        }
-        self.begin_path(start);
+        };
+        let Begun {
+            mut blocks,
+            position,
+            commands,
+            ..
+        } = begun;
+        self.begin_path(position);
         self.begin_program();
         if !commands.is_empty() {
             let unit = Unit {
                 place: Place {
-                    program: run.programs.name(index).into(),
-                    block: from.unwrap_or_default().into(),
+                    program: self.program.as_str().into(),
+                    block: run.from.unwrap_or_default().into(),
                     line: 0,
                 },
                 motion: None,
@@ -137,12 +156,13 @@ impl Channel<'_> {
         self.cursor = (first, 0);
         (self.dwell, self.ended, self.part) = (None, false, None);
         self.backward = Backward::default();
+        self.all_block_ends();
         self.ended_at = Position::UNKNOWN;
         self.independent.clear();
     }
 
     /// The fault of a block with the code that a variable has given it.
-    fn coded(&mut self, fault: Fault) -> Fault {
+    pub(super) fn coded(&mut self, fault: Fault) -> Fault {
         match self.in_force.code.take() {
             Some(code) => Fault { code, ..fault },
             None => fault,
@@ -167,6 +187,7 @@ impl Channel<'_> {
                     break;
                 }
             }
+            self.drop_start();
             self.lists();
             self.stand();
             self.limits();
@@ -278,10 +299,13 @@ impl Channel<'_> {
             self.simulated = simulated;
             self.open_to = self.cursor.0;
         }
+        self.follow_single(t);
         if self.cycle.is_multiple_of(FORGET) {
             let first = self.track.forget_before(self.reached);
+            let ahead = self.leads.forget_before(self.track.way(self.track.first()));
             let next = self.orders.next();
-            self.orders.forget_before(first.unwrap_or(next));
+            self.orders
+                .forget_before(first.into_iter().chain(ahead).min().unwrap_or(next));
         }
     }
 

@@ -49,13 +49,21 @@ impl Record {
             block: None,
             position: Coordinates(at.position),
             to_go: None,
+            order: None,
         });
         &mut self.events[end]
     }
 
     /// A function is output, fetched or acknowledged.
-    pub(super) fn function(&mut self, kind: EventKind, order: &Order, target: &str, at: Moment) {
+    pub(super) fn function(
+        &mut self,
+        kind: EventKind,
+        (id, order): (OrderId, &Order),
+        target: &str,
+        at: Moment,
+    ) {
         let event = self.event(kind, at);
+        event.order = Some(id);
         event.function = Some(order.label());
         event.value = order.value.clone();
         event.target = Some(target.to_owned());
@@ -107,6 +115,7 @@ impl Record {
                     from_s: time(at.t),
                     to_s: None,
                     position: Coordinates(at.position),
+                    order: id,
                 });
             }
         }

@@ -54,6 +54,31 @@ impl Resolve<'_> {
         Ok(ids)
     }
 
+    /// The functions of a block that is passed over, with value and the name of range or spindle: those that would have
+    /// been output or executed, and the speed of a spindle in any case. Without what is wrong with them.
+    pub(crate) fn skipped(&mut self, unit: &Unit) -> Vec<(String, Value, String)> {
+        let place = Arc::new(unit.place.clone());
+        let mut list = Vec::new();
+        for function in &unit.functions {
+            let order = self.function(function, &place).ok().flatten();
+            let name = |range| names(range, self.settings).into_iter().next();
+            if let Some(order) = order {
+                let range = order.range.or(order.spindle.map(RangeId::Spindle));
+                let target = range.and_then(name).unwrap_or_default();
+                list.push((order.label(), order.value, target));
+            } else if let Kind::S(rpm) = function.kind {
+                let target = match &function.target {
+                    Some(Target::Spindle(name)) => name.to_string(),
+                    _ => self.settings.main_spindle_name.clone(),
+                };
+                let called = self.settings.spindle_called(&target);
+                let known = called.and_then(|(index, _)| name(RangeId::Spindle(index)));
+                list.push(("S".to_owned(), Value::Number(rpm), known.unwrap_or(target)));
+            }
+        }
+        list
+    }
+
     fn function(&mut self, function: &Function, place: &Arc<Place>) -> Result<Option<Order>, Fault> {
         let (letter, number) = match function.kind {
             Kind::M(number) => (Letter::M, number),

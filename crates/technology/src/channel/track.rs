@@ -19,6 +19,8 @@ pub(crate) enum Deed {
     Gate(Box<[OrderId]>),
     /// The path stands for a time, s.
     Dwell(f64),
+    /// A programmed block with a motion ends: in single block the path stands here until the next start.
+    BlockEnd,
     /// An axis starts on its own.
     Independent(Box<bahn_din::Independent>),
     /// The path stands until all axes have ended that move on their own.

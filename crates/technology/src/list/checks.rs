@@ -7,18 +7,14 @@ use super::{ChannelList, Entry, ListFault, Value};
 use crate::settings::{ChannelSettings, FunctionSettings};
 use crate::synch::SynchType;
 
-/// Contour cycle of the reference machine, µs: a lead by time that is shorter is as long as the cycle
-/// (public: message 21203).
-const CYCLE_US: u32 = 3000;
-
 /// Blocks up to which the look-ahead of the interpolator need not be changed [004:222].
 const BLOCKS_WITHOUT_BUFFER: u32 = 70;
 
 /// The gear stages of the main spindle [004:174].
 const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 
-/// Adds what does not go together.
-pub(super) fn check(list: &mut ChannelList) {
+/// Adds what does not go together where a contour cycle takes so long, µs.
+pub(super) fn check(list: &mut ChannelList, cycle_us: u32) {
     let settings = &list.settings;
     let functions = || {
         list.entries
@@ -42,10 +38,10 @@ pub(super) fn check(list: &mut ChannelList) {
                 errors.extend(gear_stage(settings, entry, &of));
                 // A lead that nobody wrote is 0.
                 if !has_lead {
-                    warnings.extend(short_lead(entry, &of, function));
+                    warnings.extend(short_lead(entry, &of, function, cycle_us));
                 }
             }
-            "pre_outp" => warnings.extend(lead(settings, entry, &of, function)),
+            "pre_outp" => warnings.extend(lead((settings, cycle_us), entry, &of, function)),
             "prozess_zeit" => warnings.extend(process_time(entry, &of, function)),
             _ if of.is_gear(settings) => warnings.push(entry.at_name(format!(
                 "{of} selects a gear stage and goes to the main spindle: the name has no effect"
@@ -110,7 +106,7 @@ fn gear_stage(settings: &ChannelSettings, entry: &Entry, of: &OfFunction) -> Opt
 
 /// A lead that is not one for its type.
 fn lead(
-    settings: &ChannelSettings,
+    (settings, cycle_us): (&ChannelSettings, u32),
     entry: &Entry,
     of: &OfFunction,
     function: &FunctionSettings,
@@ -121,7 +117,7 @@ fn lead(
     };
     let kind = synch.kind;
     if kind.leads_by_time() {
-        return short_lead(entry, of, function);
+        return short_lead(entry, of, function, cycle_us);
     }
     if function.lead == 0 || kind.is_pre_output() {
         return None;
@@ -142,12 +138,17 @@ fn lead(
     )))
 }
 
-/// A lead by time that is no longer than nothing (public: message 21203).
-fn short_lead(entry: &Entry, of: &OfFunction, function: &FunctionSettings) -> Option<ListFault> {
+/// A lead by time that is shorter than a cycle is as long as that (public: message 21203).
+fn short_lead(
+    entry: &Entry,
+    of: &OfFunction,
+    function: &FunctionSettings,
+    cycle_us: u32,
+) -> Option<ListFault> {
     let leads_by_time = function.synch.is_some_and(|synch| synch.kind.leads_by_time());
-    (leads_by_time && function.lead < CYCLE_US).then(|| {
+    (leads_by_time && function.lead < cycle_us).then(|| {
         entry.at_value(format!(
-            "the lead of {of}, {} us, is shorter than a contour cycle and becomes one (message 21203; {CYCLE_US} us \
+            "the lead of {of}, {} us, is shorter than a contour cycle and becomes one (message 21203; {cycle_us} us \
              here)",
             function.lead
         ))
@@ -285,6 +286,11 @@ mod tests {
                 .warnings()
                 .is_empty()
         );
+        // A cycle of the machine that runs it.
+        let text = b"h_synch[7] MET_SVS\nh_pre_outp[7] 2999\n";
+        assert!(ChannelList::for_cycle(text, 0.002).warnings().is_empty());
+        let slow = ChannelList::for_cycle(text, 0.006);
+        assert!(slow.warnings()[0].message.contains("6000 us here"));
     }
 
     #[test]

@@ -31,6 +31,9 @@ pub struct Script {
     pub(crate) overrides: Vec<(f64, f64)>,
     pub(crate) backward: Vec<Range<f64>>,
     pub(crate) simulated: Vec<Range<f64>>,
+    /// Single block, and the starts of the operator.
+    pub(crate) singles: Vec<Range<f64>>,
+    pub(crate) starts: Vec<f64>,
 }
 
 /// What the PLC does with a function.
@@ -117,6 +120,7 @@ impl FromStr for Script {
         }
         script.overrides.sort_by(|a, b| a.0.total_cmp(&b.0));
         script.resets.sort_by(f64::total_cmp);
+        script.starts.sort_by(f64::total_cmp);
         Ok(script)
     }
 }
@@ -142,6 +146,8 @@ impl Script {
             "hold" => self.holds.push(words.range()?),
             "backward" => self.backward.push(words.range()?),
             "simulated" => self.simulated.push(words.range()?),
+            "single" => self.singles.push(words.range()?),
+            "start" => self.starts.push(words.time("a time, s")?),
             "reset" => self.resets.push(words.time("a time, s")?),
             "override" => {
                 let percent = words.time("an override, %")?;

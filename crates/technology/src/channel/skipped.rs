@@ -1,0 +1,135 @@
+//! Block search: what stands before the block with which a run begins is decoded and neither output nor moved.
+//!
+//! Its last state is listed (inferred): of each range the last of each function, of functions
+//! that replace one another the last of all.
+
+use bahn_din::{Command, Unit};
+use bahn_path::Position;
+
+use super::Channel;
+use super::in_force::InForce;
+use super::resolve::Resolve;
+use crate::report::{Fault, Skipped};
+use crate::run::{Blocks, Run};
+
+/// Functions of a spindle that replace one another, and the gear stages.
+const GROUPS: [&[&str]; 2] = [
+    &["M3", "M4", "M5", "M19"],
+    &["M40", "M41", "M42", "M43", "M44", "M45"],
+];
+
+/// Where a run begins.
+pub(super) struct Begun<'a> {
+    /// Number of the program.
+    pub(super) index: usize,
+    pub(super) blocks: Box<dyn Blocks + 'a>,
+    pub(super) position: Position,
+    /// Commands that are in force there: the last of each kind.
+    pub(super) commands: Vec<Command>,
+}
+
+impl Channel<'_> {
+    /// Looks for a block in the programs of the first file, one behind the other.
+    pub(super) fn search<'r>(&mut self, run: &'r Run<'_>, block: &str) -> Result<Begun<'r>, Fault> {
+        let mut position = self.now().position;
+        let mut list = Vec::new();
+        let mut missing = None;
+        let first = run.programs.name(0);
+        let same_file = |index: &usize| run.programs.name(*index) == first;
+        for index in (0..run.programs.count()).take_while(same_file) {
+            self.in_force = InForce::new(self.settings);
+            let mut blocks = run.programs.open(index, &position)?;
+            let mut commands = Vec::new();
+            let found = self.skip_to(blocks.as_mut(), block, &mut list, &mut commands);
+            if found.map_err(|fault| self.coded(fault))? {
+                self.skipped = Some(list);
+                return Ok(Begun {
+                    index,
+                    position: blocks.position(),
+                    blocks,
+                    commands,
+                });
+            }
+            position = blocks.position();
+            missing.get_or_insert_with(|| blocks.not_found(block));
+        }
+        Err(missing.unwrap_or(Fault {
+            code: "syntax".to_owned(),
+            message: "there is no program".to_owned(),
+            program: first,
+            block: block.to_owned(),
+        }))
+    }
+
+    /// Passes over what stands before a block of a program. Whether there is such a block.
+    fn skip_to(
+        &mut self,
+        blocks: &mut dyn Blocks,
+        block: &str,
+        list: &mut Vec<Skipped>,
+        commands: &mut Vec<Command>,
+    ) -> Result<bool, Fault> {
+        while !blocks.next_is(block) {
+            let Some(unit) = blocks.next(&mut self.in_force)? else {
+                return Ok(false);
+            };
+            self.skip(&unit, list);
+            if unit.ends {
+                return Ok(false);
+            }
+            remember(commands, unit);
+        }
+        Ok(true)
+    }
+
+    /// Notes the functions of a block that is passed over. What the channel does not know is nobody's state.
+    fn skip(&mut self, unit: &Unit, list: &mut Vec<Skipped>) {
+        let mut resolve = Resolve {
+            settings: &self.in_force.settings,
+            ranges: &mut self.ranges,
+            orders: &mut Default::default(),
+            cycle_s: self.cycle_s,
+        };
+        for (function, value, target) in resolve.skipped(unit) {
+            let free = self.in_force.settings.spindle_m_free;
+            let group = GROUPS
+                .iter()
+                .filter(|_| !free)
+                .find(|group| group.contains(&function.as_str()));
+            list.retain(|other| {
+                let replaced = other.function == function
+                    || group.is_some_and(|group| group.contains(&other.function.as_str()));
+                other.target != target || !replaced
+            });
+            list.push(Skipped {
+                function,
+                value,
+                target,
+                program: unit.place.program.to_string(),
+                block: unit.place.block.to_string(),
+            });
+        }
+    }
+}
+
+/// Keeps the last command of each kind that stays in force. The Micro Joint that a command shapes is that of the next
+/// function, so it is over behind one.
+fn remember(commands: &mut Vec<Command>, unit: Unit) {
+    if !unit.functions.is_empty() {
+        commands.retain(|command| !matches!(command, Command::MicroJoint { .. }));
+    }
+    for command in unit.commands {
+        let stays = matches!(
+            command,
+            Command::MicroJoint { .. }
+                | Command::VectorLimit { .. }
+                | Command::EdgeBanding(_)
+                | Command::RadiusCompensation(_)
+        );
+        if stays {
+            let kind = std::mem::discriminant(&command);
+            commands.retain(|other| std::mem::discriminant(other) != kind);
+            commands.push(command);
+        }
+    }
+}
