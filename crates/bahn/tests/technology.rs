@@ -226,6 +226,59 @@ fn a_run_may_begin_at_a_block() {
     assert_eq!(folder.bahn("technology a.nc --channel a.lis --from M5").code(), 2);
 }
 
+/// Also in a subroutine beside the program; what was passed over is listed with its last state.
+#[test]
+fn a_run_may_begin_in_a_subroutine() {
+    let folder = folder(
+        "%P\nN10 G01 F1000 X10 M25=1\nN20 L SUB\nN30 X30 M25\nM30\n",
+        "m_synch[25] 1\nm_synch[26] 1\n",
+        "",
+    );
+    folder.write("SUB.nc", "%SUB\nN100 X20 M25=2\nN110 X25 M26\nM17\n");
+    let (code, report) = run(&folder, "--from N110");
+    assert_eq!(code, 0);
+    let expected =
+        json!([{"function": "M25", "value": 2, "target": "channel", "program": "SUB.nc", "block": "N100"}]);
+    assert_eq!(report["skipped"], expected);
+    let blocks: Vec<String> = events(&report, "output")
+        .into_iter()
+        .map(|event| event.1)
+        .collect();
+    assert_eq!(blocks, ["N110", "N30"]);
+    let text = folder.bahn("technology a.nc --channel a.lis --from N110").out();
+    let (_, listed) = text.split_once("Not output before the block").unwrap();
+    assert!(listed.contains("M25=2") && listed.contains("SUB.nc"), "{text}");
+    assert_eq!(run(&folder, "").1["skipped"], Value::Null);
+}
+
+/// Single block: the functions of a block go out with its start.
+#[test]
+fn a_run_block_by_block() {
+    let folder = folder(
+        "%P\nN10 G01 F1000 X10\nN20 X20 M25\nM30\n",
+        "m_synch[25] 1\n",
+        "single 0..9\nstart 0.1\nstart 3\nstart 6\n",
+    );
+    let (code, report) = run(&folder, "--plc a.txt");
+    assert_eq!((code, time_of(&report, "output", "M25")), (0, 3.0));
+    assert_eq!(report["waits"], json!([]));
+    assert_eq!(report["time_s"], 6.0);
+    // The first start comes while the path moves.
+    let warning = report["warnings"][0]["message"].as_str().unwrap();
+    assert!(warning.contains("0.1 s has no effect"), "{warning}");
+}
+
+/// A lead in time is at least a cycle of the control that runs the path: 6 ms of a TNC 407, 3 ms without a list.
+#[test]
+fn a_short_lead_counts_by_the_cycle_of_the_run() {
+    let folder = folder(BLOCKS, "m_synch[25] MET_SVS\nm_pre_outp[25] 4000\n", "");
+    folder.write("a.mp", "; TNC 407\nMP1010.0 : 10000\n");
+    let command = "technology a.nc --channel a.lis";
+    assert!(!folder.bahn(command).err().contains("21203"));
+    let slow = folder.bahn(&format!("{command} --parameters a.mp")).err();
+    assert!(slow.contains("6000 us here"), "{slow}");
+}
+
 /// What nobody acknowledges ends a run that is not completed, and is no error.
 #[test]
 fn a_run_that_can_go_nowhere_ends() {
