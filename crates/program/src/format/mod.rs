@@ -9,7 +9,7 @@ use std::fmt::{self, Display};
 
 use crate::lines::lines;
 use crate::parse::rest_of_word;
-use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
+use crate::text::{BYTE_ORDER_MARK, is_blank, text_start, to_text, trim};
 use crate::{
     Block, Calculation, Condition, Coordinates, Expression, Feed, Header, MFunctions, NumberedBlock,
     Operation, Program, Unit, Value,
@@ -80,7 +80,7 @@ struct Listing<'a> {
 impl Display for Listing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (leading, trailing) = self.program.around();
-        verbatim(f, leading)?;
+        verbatim(f, leading.get(text_start(leading)..).unwrap_or_default())?;
         let language = self.program.language();
         let mut text = String::new();
         for NumberedBlock { number, block, .. } in self.program.blocks() {
@@ -100,14 +100,12 @@ impl Display for Listing<'_> {
 
 /// Writes lines as they are, without blanks at their ends. Empty ones stay: they keep a `~` before them from
 /// joining more.
-fn verbatim(f: &mut fmt::Formatter<'_>, mut text: &[u8]) -> fmt::Result {
-    // At the front blanks and byte-order marks are no text.
-    while let Some(first) = text.first() {
-        match text.strip_prefix(BYTE_ORDER_MARK) {
-            Some(behind) => text = behind,
-            None if is_blank(*first) => text = text.get(1..).unwrap_or_default(),
-            None => break,
-        }
+fn verbatim(f: &mut fmt::Formatter<'_>, text: &[u8]) -> fmt::Result {
+    let blanks = text.iter().take_while(|b| is_blank(**b)).count();
+    let text = text.get(blanks..).unwrap_or_default();
+    // A byte-order mark that is text would be none at the front of a file.
+    if text.starts_with(BYTE_ORDER_MARK) {
+        f.write_str(" ")?;
     }
     lines(text)
         .map(trim)
