@@ -393,6 +393,7 @@ fn a_name_ends_before_star_and_tilde() {
 fn a_mark_of_byte_order_is_one_at_the_front_only() {
     for text in [
         &b"\x1c\x1c\x1c\xef\xbb\xbf%\n%\x02\x08\n\n%"[..],
+        b"\n\xef\xbb\xbf\xff f%\n%\x02",
         b"\n\xef\xbb\xbf%\n%7 G71 *\nN99999 %7 G71 *\n",
         b"\xef\xbb\xbf\xef\xbb\xbf%\n%7 G71 *\nN99999 %7 G71 *\n",
         b"\xef\xbb\xbf; note\n%7 G71 *\nN99999 %7 G71 *\n\xef\xbb\xbf%",

@@ -9,7 +9,7 @@ use std::fmt::{self, Display};
 
 use crate::lines::lines;
 use crate::parse::rest_of_word;
-use crate::text::{BYTE_ORDER_MARK, is_blank, text_start, to_text, trim};
+use crate::text::{is_blank, text_start, to_text, trim};
 use crate::{
     Block, Calculation, Condition, Coordinates, Expression, Feed, Header, MFunctions, NumberedBlock,
     Operation, Program, Unit, Value,
@@ -103,14 +103,20 @@ impl Display for Listing<'_> {
 fn verbatim(f: &mut fmt::Formatter<'_>, text: &[u8]) -> fmt::Result {
     let blanks = text.iter().take_while(|b| is_blank(**b)).count();
     let text = text.get(blanks..).unwrap_or_default();
-    // A byte-order mark that is text would be none at the front of a file.
-    if text.starts_with(BYTE_ORDER_MARK) {
-        f.write_str(" ")?;
-    }
-    lines(text)
-        .map(trim)
-        .try_for_each(|line| writeln!(f, "{}", to_text(line)))
+    lines(text).map(trim).enumerate().try_for_each(|(index, line)| {
+        let line = to_text(line);
+        // At the front of a file a byte-order mark would be no text.
+        let blank = if index == 0 && line.starts_with(MARK) {
+            " "
+        } else {
+            ""
+        };
+        writeln!(f, "{blank}{line}")
+    })
 }
+
+/// The byte-order mark as a character.
+const MARK: char = '\u{feff}';
 
 /// Text being written. Words other than the first begin with a blank.
 struct Output {
