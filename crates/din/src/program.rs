@@ -14,6 +14,7 @@ use crate::words::{SpanKind, words};
 pub struct Program {
     name: Arc<str>,
     text: String,
+    encoding: Encoding,
     /// Where each line begins in the text, and where it ends without its ending.
     lines: Vec<(usize, usize)>,
     /// Lines that comments of several lines touch, with blanks in their place.
@@ -22,6 +23,18 @@ pub struct Program {
     /// What is wrong with heads of programs.
     heads: Vec<Fault>,
 }
+
+/// How the bytes of a file are its text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Encoding {
+    /// UTF-8, else one character for each byte (Latin-1), which loses nothing.
+    is_utf8: bool,
+    /// A byte-order mark stands in front.
+    has_mark: bool,
+}
+
+/// The byte-order mark of UTF-8.
+const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// A program or subroutine of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,13 +100,21 @@ enum Line<'a> {
 }
 
 impl Program {
-    /// Reads a file; whatever is wrong with it is told by [`Program::faults`]. What is no UTF-8 is shown as `�`.
+    /// Reads a file; whatever is wrong with it is told by [`Program::faults`]. A file that is no UTF-8 has one
+    /// character for each byte.
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Program {
-        let text = String::from_utf8_lossy(bytes).into_owned();
+        let own = bytes.strip_prefix(MARK);
+        let has_mark = own.is_some();
+        let bytes = own.unwrap_or(bytes);
+        let (text, is_utf8) = match std::str::from_utf8(bytes) {
+            Ok(text) => (text.to_owned(), true),
+            Err(_) => (bytes.iter().copied().map(char::from).collect(), false),
+        };
         let lines = lines(&text);
         let mut program = Program {
             name: name.into(),
             text,
+            encoding: Encoding { is_utf8, has_mark },
             lines,
             uncommented: BTreeMap::new(),
             sections: Vec::new(),
@@ -140,6 +161,36 @@ impl Program {
         bounds
             .and_then(|(start, end)| self.text.get(*start..*end))
             .unwrap_or_default()
+    }
+
+    /// What stands behind a line before the next one: its ending.
+    pub(crate) fn ending(&self, number: u32) -> &str {
+        let end = (number as usize)
+            .checked_sub(1)
+            .and_then(|index| self.lines.get(index));
+        let next = self.lines.get(number as usize);
+        let next = next.map_or(self.text.len(), |(start, _)| *start);
+        end.and_then(|(_, end)| self.text.get(*end..next))
+            .unwrap_or_default()
+    }
+
+    /// A text in the bytes that the file is written in, as one that takes its place has them.
+    pub fn encoded(&self, text: &str) -> Vec<u8> {
+        let mut bytes = match self.encoding.has_mark {
+            true => MARK.to_vec(),
+            false => Vec::new(),
+        };
+        match self.encoding.is_utf8 {
+            true => bytes.extend_from_slice(text.as_bytes()),
+            // What has no byte there is not written by the listing.
+            false => bytes.extend(text.chars().map(|c| u8::try_from(c).unwrap_or(b'?'))),
+        }
+        bytes
+    }
+
+    /// Whether comments of several lines touch a line.
+    pub(crate) fn is_commented(&self, number: u32) -> bool {
+        self.uncommented.contains_key(&number)
     }
 
     /// Its programs and subroutines in their order.
