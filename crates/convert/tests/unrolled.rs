@@ -76,3 +76,34 @@ fn what_no_path_says_is_refused() {
         assert!(refused.contains(why), "{refused}");
     }
 }
+
+/// Both warn of a tool without data and of a sign; one that warns of more is not the same.
+#[test]
+fn warnings_are_compared() {
+    let cycle = |setup: &str, depth: &str| {
+        format!(
+            "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP {setup}\nCYCL DEF 1.2 DEPTH {depth}\nCYCL DEF 1.3 PECKG -5\n\
+             CYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n"
+        )
+    };
+    let text = format!("{HEAD}TOOL CALL 9 Z S500\n{}END PGM A MM\n", cycle("+2", "-10"));
+    let source = program(&text, Language::Plain);
+    let (_, iso) = converted(&source, Language::Iso);
+    let settings = settings(ControlModel::Tnc415b);
+    let same = proof(&source, &iso, &settings, &root());
+    assert!(same.holds(), "{same:?}");
+    let defined = text.replace("TOOL CALL 9", "TOOL DEF 9 L+0 R+0\nTOOL CALL 9");
+    let defined = program(&defined, Language::Plain);
+    let other = proof(&source, &defined, &settings, &root());
+    assert!(
+        same.warnings > other.warnings && !other.holds(),
+        "{same:?} {other:?}"
+    );
+    let difference = other.first_difference.unwrap();
+    assert!(
+        difference.what.contains("tool 9 is not defined")
+            && difference.what.contains("0 times in the target"),
+        "{difference:?}"
+    );
+    assert_eq!((difference.source.block, difference.target.block), (6, 0));
+}

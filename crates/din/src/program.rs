@@ -1,11 +1,11 @@
 //! A file: its lines, and the programs and subroutines that stand in it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_path::{Axis, AxisSet};
 
-use crate::block;
+use crate::block::{self, WordKind};
 use crate::line::{self, Glyph, LineFault, Macros};
 use crate::words::{SpanKind, words};
 
@@ -62,6 +62,31 @@ pub struct Fault {
     pub block: Arc<str>,
     /// What is wrong, with the name of what is not known.
     pub message: String,
+}
+
+/// What reading every block of a file has found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Judged {
+    pub faults: Vec<Fault>,
+    /// Calls, each with the fault that it is if there is no such subroutine.
+    pub calls: Vec<Call>,
+    /// Names of macros that the file defines.
+    pub macros: BTreeSet<String>,
+    /// Macros that are used where the file has not defined them, each with the fault that it is if nobody else does.
+    pub unknown_macros: Vec<(String, Fault)>,
+}
+
+/// A block that calls a subroutine.
+#[derive(Clone, Debug)]
+pub(crate) struct Call {
+    pub local: bool,
+    pub name: String,
+    pub fault: Fault,
+}
+
+/// A subroutine that is not there.
+pub(crate) fn not_found(name: &str) -> String {
+    format!("subroutine {name} is not found")
 }
 
 /// Something to go to in a file.
@@ -268,40 +293,61 @@ impl Program {
     /// What is wrong in the file, as far as it can be said without executing it, at most [`MAX_FAULTS`]. Macros count as
     /// defined from their line on; what uses one that only its caller may define is not judged.
     pub fn faults(&self) -> Vec<Fault> {
-        let mut faults = self.heads.clone();
-        let mut macros = Macros::default();
-        for line in 1..=self.line_count() {
-            if faults.len() >= MAX_FAULTS {
-                break;
-            }
-            if let Err(fault) = self.judge(line, &mut macros) {
-                faults.push(self.fault(line, fault));
-            }
-        }
-        faults.sort_by_key(|fault| (fault.line, fault.column));
-        faults.truncate(MAX_FAULTS);
-        faults
+        self.judged().faults
     }
 
-    fn judge(&self, line: u32, macros: &mut Macros) -> Result<(), LineFault> {
+    /// Reads every block.
+    pub(crate) fn judged(&self) -> Judged {
+        let mut judged = Judged {
+            faults: self.heads.clone(),
+            ..Judged::default()
+        };
+        let mut macros = Macros::default();
+        for line in 1..=self.line_count() {
+            if judged.faults.len() >= MAX_FAULTS {
+                break;
+            }
+            if let Err(fault) = self.judge(line, &mut macros, &mut judged) {
+                judged.faults.push(self.fault(line, fault));
+            }
+        }
+        judged.faults.sort_by_key(|fault| (fault.line, fault.column));
+        judged.faults.truncate(MAX_FAULTS);
+        judged
+    }
+
+    fn judge(&self, line: u32, macros: &mut Macros, judged: &mut Judged) -> Result<(), LineFault> {
         let Some(glyphs) = self.glyphs(line) else {
             return Ok(());
         };
         if block::definitions(&glyphs)?.is_none()
-            && let Some(unknown) = macros.first_unknown(&glyphs)?
+            && let Some((unknown, name)) = macros.first_unknown(&glyphs)?
         {
             // What stands before it is judged all the same.
             let before = glyphs.get(..unknown).unwrap_or_default();
             let column = glyphs.get(unknown).map_or(1, |glyph| glyph.column);
             return match block::read(before, macros) {
                 Err(fault) if fault.column < column && fault.names_unknown() => Err(fault),
-                _ => Ok(()),
+                _ => {
+                    let fault = self.fault(line, line::unknown_macro(column, &name));
+                    judged.unknown_macros.push((name, fault));
+                    Ok(())
+                }
             };
         }
         for word in block::read(&glyphs, macros)?.words {
-            if let block::WordKind::Define(name, text) = &word.kind {
-                let told = macros.define(name, text);
-                told.map_err(|message| line::fault_at(word.column, word.length, message))?;
+            match word.kind {
+                WordKind::Define(name, text) => {
+                    let told = macros.define(&name, &text);
+                    told.map_err(|message| line::fault_at(word.column, word.length, message))?;
+                    judged.macros.insert(name);
+                }
+                WordKind::Call { local, name } => {
+                    let message = not_found(&name);
+                    let fault = self.fault(line, line::fault_at(word.column, word.length, message));
+                    judged.calls.push(Call { local, name, fault });
+                }
+                _ => {}
             }
         }
         Ok(())

@@ -28,14 +28,14 @@ place of each that cannot be said).
 
 Proof: source and target are run side by side, with the same parameters, tools and Q parameters:
 every element of the path (kind, start, end, centre, length to 1 um; feed to 0.1 %), every
-function and stop, and the message at the end. A target that differs is not written. Probes
-answer half way in both. A path that depends on a probe is not written for LinuxCNC.
+function, stop and warning, and the message at the end. A target that differs is not written.
+Probes answer half way in both. A path that depends on a probe is not written for LinuxCNC.
 
 Files: an input is never replaced, another file only with --replace. Exit codes: 0 converted and
 proved, 1 something is refused, differs or is not proved, 2 wrong use.
 
 JSON report (--format json): ok, blocks, unrolled and refused (block, line, text, reason), proof
-(elements, functions, stops, max_deviation_um, message, completed, first_difference: what,
+(elements, functions, stops, warnings, max_deviation_um, message, completed, first_difference: what,
 source and target with program, block, line, text; or null), source, target (null when nothing
 was written), to. Of several programs: ok, programs.";
 

@@ -72,8 +72,8 @@ fn list(row: &mut impl FnMut(&str, &str), label: &str, listed: &[Listed]) {
 
 fn proof(row: &mut impl FnMut(&str, &str), proof: &Proof) {
     let counted = format!(
-        "{} elements, {} functions, {} stops, {:.3} µm apart at most",
-        proof.elements, proof.functions, proof.stops, proof.max_deviation_um
+        "{} elements, {} functions, {} stops, {} warnings, {:.3} µm apart at most",
+        proof.elements, proof.functions, proof.stops, proof.warnings, proof.max_deviation_um
     );
     match &proof.first_difference {
         Some(difference) => {
