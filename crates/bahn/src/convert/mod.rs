@@ -110,6 +110,7 @@ struct Made {
     blocks: u32,
     unrolled: Vec<Listed>,
     refused: Vec<Listed>,
+    left_out: Vec<Listed>,
     proof: Option<Proof>,
 }
 
@@ -211,6 +212,7 @@ impl Bench<'_> {
             blocks: made.blocks,
             unrolled: made.unrolled,
             refused: made.refused,
+            left_out: made.left_out,
             proof: made.proof,
             source: job.source.display().to_string(),
             target,
@@ -236,6 +238,7 @@ impl Bench<'_> {
             blocks: blocks.blocks,
             unrolled: Vec::new(),
             refused: blocks.refused,
+            left_out: Vec::new(),
             proof,
         }
     }
@@ -270,6 +273,7 @@ impl Bench<'_> {
             blocks: count,
             unrolled: blocks.refused.clone(),
             refused: Vec::new(),
+            left_out: Vec::new(),
             proof: Some(proof),
         })
     }
@@ -282,6 +286,7 @@ impl Bench<'_> {
             unit: job.program.unit(),
             comments: !self.options.no_comments,
             rapid_mm_min: rapid.into_iter().fold(f64::INFINITY, f64::min),
+            user_functions: self.options.user_functions,
         };
         let run = || self.run(&job.program);
         let made = gcode::write(&run, &options, &stop.flag());
@@ -299,6 +304,7 @@ impl Bench<'_> {
             blocks: made.lines,
             unrolled: Vec::new(),
             refused: made.refused,
+            left_out: made.left_out,
             proof,
         }
     }

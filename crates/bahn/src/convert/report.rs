@@ -22,6 +22,8 @@ pub(super) struct Report {
     pub unrolled: Vec<Listed>,
     /// What the target does not say.
     pub refused: Vec<Listed>,
+    /// What the target leaves out since the path does not depend on it.
+    pub left_out: Vec<Listed>,
     /// `None` where none was wanted.
     pub proof: Option<Proof>,
     pub source: String,
@@ -48,6 +50,7 @@ pub(super) fn text(report: &Report) -> String {
     row("Blocks", &report.blocks.to_string());
     list(&mut row, "Unrolled", &report.unrolled);
     list(&mut row, "Refused", &report.refused);
+    list(&mut row, "Left out", &report.left_out);
     match &report.proof {
         None => row("Proof", "none was wanted"),
         Some(proof) => self::proof(&mut row, proof),
