@@ -36,7 +36,7 @@ impl Program {
             return None;
         }
         // The last line without an ending is none without blanks.
-        if text.trim().is_empty() && !self.ending(number).is_empty() {
+        if text.trim_ascii().is_empty() && !self.ending(number).is_empty() {
             return Some(String::new());
         }
         // Whatever a macro stands for, it may join what stands beside it.
@@ -79,8 +79,12 @@ impl Read {
         })
     }
 
-    /// The line anew; `None` with a comment within a word.
+    /// The line anew; `None` with a comment within a word, or with characters beyond ASCII between its words.
     fn written(&self) -> Option<String> {
+        // Whatever blanks they are in their code page, without them the bytes of the file may be another one.
+        if !self.glyphs.iter().all(|glyph| glyph.character.is_ascii()) {
+            return None;
+        }
         let mut parts: Vec<(u32, String)> = self.comments.clone();
         for word in &self.block.words {
             let span = word.column..word.column.checked_add(word.length)?;
