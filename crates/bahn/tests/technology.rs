@@ -352,3 +352,92 @@ fn the_examples_do_what_they_say() {
     }
     assert_eq!(&std::fs::read(folder.path("l.png")).unwrap()[1..4], b"PNG");
 }
+
+/// The PLC of the gantry: the nozzle takes 150 ms (plant.toml), the printer T9 of 50 cycles, everything else is done at once; a
+/// cycle of it is 20 ms.
+#[test]
+fn the_plc_of_a_machine_answers() {
+    let folder = Folder::new();
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/technology");
+    copy(&examples, &folder.path("."));
+    let gantry = support::machines().join("gantry");
+    let command = format!(
+        "technology glue.nc --channel glue.lis --plc {} --format json",
+        gantry.display()
+    );
+    let run = folder.bahn(&command);
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let report = run.json();
+    let took =
+        |function: &str| time_of(&report, "acknowledge", function) - time_of(&report, "output", function);
+    // A scan that sees it, and at most as much until the end of the scan that sees that it is done.
+    let within = |took: f64, done: f64| assert!((done..=done + 0.046).contains(&took), "{took} {done}");
+    within(took("M7"), 0.0);
+    within(took("M25"), 0.150);
+    within(took("H5"), 1.0);
+    // The glue runs out of the nozzle in the same time, for which nobody waits.
+    assert_eq!(report["waits"].as_array().unwrap().len(), 2);
+    // What happens to the path, a script says beside it.
+    folder.write("door.txt", "hold 3.0..3.4\n");
+    let held = folder.bahn(&format!("{command} --plc door.txt")).json();
+    let longer = held["time_s"].as_f64().unwrap() - report["time_s"].as_f64().unwrap();
+    assert!((0.3..0.6).contains(&longer), "{longer}");
+}
+
+#[test]
+fn a_machine_that_does_not_answer_or_cannot() {
+    let folder = folder(BLOCKS, "m_synch[25] 0x2\n", "M25 ack 1\n");
+    copy(&support::machines().join("gantry"), &folder.path("gantry"));
+    // The PLC looks into B128 and not into B0: after a minute it is given up.
+    let silent = folder.bahn("technology a.nc --channel a.lis --plc gantry --window B0 --format json");
+    let report = silent.json();
+    assert_eq!((silent.code(), &report["error"]), (1, &Value::Null));
+    assert_eq!(report["waits"][0]["to_s"], Value::Null);
+    assert!(
+        silent.err().contains("does it look at B0 to B127?"),
+        "{}",
+        silent.err()
+    );
+    // An error of the index, in the scan that sees the function, stops PLC and run.
+    let text = folder.read("gantry/plc/MAIN.PLC");
+    let free = "       EMT                ; a free slot\n";
+    let index = "       L     K+8000\n       =X\n       L     K+1\n       = B128[X]\n";
+    folder.write(
+        "gantry/plc/MAIN.PLC",
+        text.replace(free, &format!("{free}{index}")),
+    );
+    let (code, report) = self::run(&folder, "--plc gantry");
+    assert_eq!((code, &report["error"]["code"]), (1, &json!("plc")));
+    let line = 1
+        + text
+            .lines()
+            .take_while(|line| !line.contains("; a free slot"))
+            .count()
+        + 4;
+    let message = report["error"]["message"].as_str().unwrap();
+    assert!(
+        message.starts_with(&format!("MAIN.PLC:{line}: PLC error 56")),
+        "{message}"
+    );
+}
+
+#[test]
+fn who_answers_is_said_once() {
+    let folder = folder(BLOCKS, "m_synch[25] 0x2\n", "M25 ack 1\n");
+    copy(&support::machines().join("gantry"), &folder.path("gantry"));
+    for (options, said) in [
+        ("--plc gantry --plc a.txt", "a script says only"),
+        ("--plc a.txt --plc a.txt", "one of each"),
+        ("--plc gantry --window W128", "B0 to B128"),
+        ("--plc gantry --window B132", "B0 to B128"),
+        ("--plc nothing", "nothing"),
+    ] {
+        let run = folder.bahn(&format!("technology a.nc --channel a.lis {options}"));
+        assert_eq!(run.code(), 2, "{options}");
+        assert!(run.err().contains(said), "{options}: {}", run.err());
+    }
+    folder.write("gantry/plc/MAIN.PLC", "       L     X5\n       EM\n");
+    let run = folder.bahn("technology a.nc --channel a.lis --plc gantry");
+    assert_eq!(run.code(), 1);
+    assert!(run.err().contains("MAIN.PLC:1"), "{}", run.err());
+}

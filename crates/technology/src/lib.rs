@@ -3,6 +3,7 @@
 //! - [`ChannelSettings`]: what a channel parameter list says of each function, with [`Synch`] its synchronisation;
 //! - [`ChannelList`]: such a list as text, with its errors by line and column;
 //! - [`Run`]: programs in turn on one channel, with a [`Script`] of what the PLC does;
+//! - [`PlcMemory`]: a PLC beside the run, which reads and answers in a window of [`WINDOW_BYTES`];
 //! - [`NcPrograms`]: the programs of such a run from `.nc` files;
 //! - [`Report`]: what came of it, as JSON: events, waits, the end of the path.
 //!
@@ -61,7 +62,7 @@ mod synch;
 
 pub use list::{ChannelList, ListFault};
 pub use nc::NcPrograms;
-pub use plc::{Script, ScriptError};
+pub use plc::{PlcMemory, Script, ScriptError, WINDOW_BYTES};
 pub use report::{
     Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, ToGo, Value, Wait, Warning,
 };

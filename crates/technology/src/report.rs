@@ -140,6 +140,17 @@ pub enum Value {
     Numbers(Vec<u16>),
 }
 
+impl Value {
+    /// As the doubleword of the window has it: a speed counts 0.001 rpm.
+    pub(crate) fn in_window(&self) -> Option<i32> {
+        match self {
+            Value::Integer(value) => Some((*value).clamp(i32::MIN.into(), i32::MAX.into()) as i32),
+            Value::Number(speed) => Some((speed * 1e3).round() as i32),
+            Value::None | Value::Numbers(_) => None,
+        }
+    }
+}
+
 /// What is left to the point where a function is waited for that was output ahead [004:81].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ToGo {

@@ -4,7 +4,7 @@ use bahn_din::{Command, Unit, Variables};
 use bahn_motion::Limits;
 use bahn_path::Position;
 
-use crate::plc::Script;
+use crate::plc::{PlcMemory, Script};
 use crate::report::{Fault, Report};
 use crate::settings::ChannelSettings;
 
@@ -63,6 +63,12 @@ pub trait Blocks {
 impl Run<'_> {
     /// Runs them.
     pub fn execute(self) -> Report {
-        crate::channel::execute(&self)
+        crate::channel::execute(&self, None)
+    }
+
+    /// Runs them with a PLC that reads and answers the functions in a window of bytes. The script says nothing of them: what
+    /// it says of path and spindles holds.
+    pub fn execute_beside(self, plc: &mut dyn PlcMemory) -> Report {
+        crate::channel::execute(&self, Some(plc))
     }
 }

@@ -2,10 +2,13 @@
 //!
 //! - `options`: options and help text;
 //! - `dynamics`: from a list of machine parameters to the limits of motion;
+//! - `answering`: who answers the functions; `machine`: the PLC of a machine folder that does;
 //! - `programs`: programs and subroutines from files;
 //! - `text`: the report for people; `picture`: velocity, outputs and waits as a drawing.
 
+mod answering;
 mod dynamics;
+mod machine;
 mod options;
 mod picture;
 mod programs;
@@ -18,10 +21,11 @@ use std::path::{Path, PathBuf};
 use bahn_motion::Limits;
 use bahn_parameters::ControlModel;
 use bahn_path::Position;
-use bahn_technology::{ChannelList, Coordinates, Fault, NcPrograms, Report, Run, Script};
+use bahn_technology::{ChannelList, Coordinates, Fault, NcPrograms, Report, Run};
 
 use crate::options::Format;
 use crate::{Outcome, UsageError, channel, console, diagnostics, files, scope, settings};
+use answering::Answering;
 
 /// Runs programs in turn on one channel and reports what was output and waited for.
 pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError> {
@@ -30,7 +34,9 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
         files::keep_inputs(&inputs, &[("--image", picture.path())])?;
     }
     let programs = programs::read(&options.programs)?;
-    let script = options.plc.as_deref().map(script).transpose()?;
+    let Some(mut answering) = Answering::new(options)? else {
+        return Ok(Outcome::ProgramError);
+    };
     let limits = dynamics::limits(options.parameters.as_deref())?;
     let start = start(options, &programs)?;
     let list = ChannelList::from_bytes(&files::read_table(&options.channel)?);
@@ -40,15 +46,14 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
     }
     let report = match list.errors().first() {
         Some(_) => refused(&list, &options.channel, &limits, start),
-        None => Run {
+        None => answering.execute(|script| Run {
             programs: &programs,
             settings: list.settings(),
             limits: &limits,
             start,
             from: options.from.as_deref(),
-            script: script.as_ref(),
-        }
-        .execute(),
+            script,
+        }),
     };
     if let Some(picture) = &options.image {
         let title = programs::title(&options.programs);
@@ -82,13 +87,6 @@ fn inputs(options: &TechnologyOptions) -> impl Iterator<Item = &PathBuf> {
         .iter()
         .chain(std::iter::once(&options.channel))
         .chain(others)
-}
-
-fn script(path: &Path) -> Result<Script, UsageError> {
-    let bytes = files::read_table(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    text.parse()
-        .map_err(|error| UsageError::new(format!("{}:{error}", path.display())))
 }
 
 /// A list with errors is used for nothing: its first error ends the run before it begins.

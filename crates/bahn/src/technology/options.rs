@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
+use super::machine;
 use crate::options::Format;
 use crate::scope::{Picture, picture};
 
@@ -13,6 +14,8 @@ Examples:
       Each function is acknowledged its process time after its output.
   bahn technology glue.nc --channel glue.lis --plc slow-valve.txt --image glue.png
   bahn technology laser.nc --channel laser.lis --format json
+  bahn technology glue.nc --channel glue.lis --plc machines/gantry
+      The PLC program of a machine answers, in a window of 128 of its bytes.
 
 Programs are DIN 66025 as a TF5200 reads it; a file may hold several, which run in turn.
 Subroutines called with L lie beside their program. Without --parameters G00 runs at 10 m/min,
@@ -41,9 +44,13 @@ pub(crate) struct TechnologyOptions {
     /// Channel parameter list: how each function is synchronised.
     #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
     pub channel: PathBuf,
-    /// What the PLC does; without it every function is acknowledged its process time after its output.
-    #[arg(long, value_name = "SCRIPT", value_hint = ValueHint::FilePath)]
-    pub plc: Option<PathBuf>,
+    /// A script of what the PLC does, or the folder of a machine whose PLC answers; without it every function is
+    /// acknowledged its process time after its output.
+    #[arg(long, value_name = "SCRIPT|DIR", value_hint = ValueHint::AnyPath)]
+    pub plc: Vec<PathBuf>,
+    /// First byte of the window in which the PLC of a machine sees the functions.
+    #[arg(long, value_name = "BYTE", default_value = "B128", value_parser = machine::window)]
+    pub window: u16,
     /// List of machine parameters: rapid traverse, acceleration, corners. It may hold changes only.
     #[arg(long, value_name = "MPLIST", value_hint = ValueHint::FilePath)]
     pub parameters: Option<PathBuf>,

@@ -224,7 +224,7 @@ impl Channel<'_> {
                     position: self.track.position(back.seen),
                     ..self.now()
                 };
-                self.output(id, at);
+                self.output(id, at, None);
                 back.gate.push(id);
             }
             back.gate.retain(|id| !self.orders.is_done(*id));

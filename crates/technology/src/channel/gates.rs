@@ -4,7 +4,7 @@ use super::Channel;
 use super::order::{Order, OrderId, RangeId};
 use super::record::Moment;
 use super::track::Deed;
-use crate::plc::{self, cycle_at};
+use crate::plc::{self, Output, cycle_at};
 use crate::report::EventKind;
 use crate::synch::SynchType;
 
@@ -20,6 +20,10 @@ impl Channel<'_> {
     /// PLC and spindles do what they do in this cycle. Whether anything happened.
     pub(super) fn plc(&mut self) -> bool {
         let mut any = false;
+        self.plc.begin(self.cycle);
+        if let Some(message) = self.plc.take_fault() {
+            self.fault = Some(super::fault::named(&self.here(), "plc", message));
+        }
         while let Some(deed) = self.plc.next(self.cycle) {
             any = true;
             let at = self.now();
@@ -139,7 +143,7 @@ impl Channel<'_> {
 
     /// The function for which nothing can be output to a range.
     pub(super) fn blocker(&self, range: RangeId) -> Option<OrderId> {
-        self.ranges.blocked(range, self.cycle)
+        self.ranges.blocked(range, self.plc.fetched_before(self.cycle))
     }
 
     /// A spindle of the NC executes a function.
@@ -169,19 +173,19 @@ impl Channel<'_> {
             position: self.track.position(place),
             speed_mm_s,
         };
-        self.output(id, at);
         let stamped = self.orders.get(id).is_some_and(|order| {
             order.synch.kind == SynchType::MosTs && order.range == Some(RangeId::Channel)
         });
+        // Below the cycle, however it is rounded.
+        let offset_us = stamped.then(|| (left_s * 1e9).floor() / 1e3);
+        self.output(id, at, offset_us);
         if stamped {
-            // Below the cycle, however it is rounded.
-            let offset_us = (left_s * 1e9).floor() / 1e3;
-            self.record.output_beside(Some(offset_us), None);
+            self.record.output_beside(offset_us, None);
         }
     }
 
-    /// A function is output.
-    pub(super) fn output(&mut self, id: OrderId, at: Moment) {
+    /// A function is output, with the time since the path was at its place, µs, where the PLC gets that.
+    pub(super) fn output(&mut self, id: OrderId, at: Moment, offset_us: Option<f64>) {
         let simulated = self.simulated;
         if let Some(order) = self.orders.get_mut(id)
             && simulated
@@ -196,8 +200,19 @@ impl Channel<'_> {
         let Some(range) = order.range else { return };
         let label = order.label();
         let names = self.ranges.names(range);
-        self.plc
-            .order(id, (names, &label), order.process_s, order.waits, self.cycle);
+        let output = Output {
+            id,
+            names,
+            label: &label,
+            range: range.in_window(),
+            letter: order.letter.byte(),
+            number: order.number,
+            value: order.value.in_window(),
+            process_s: order.process_s,
+            offset_us,
+            waits: order.waits,
+        };
+        self.plc.order(&output, self.cycle);
         let target = self.ranges.name(range);
         self.record.function(EventKind::Output, order, target, at);
         if !has_room {
@@ -236,7 +251,7 @@ impl Channel<'_> {
         self.open_to = place;
         let closed =
             (place < last || self.is_closed(place, if place == cursor { index } else { 0 })).then_some(place);
-        if !self.ranges.any_blocked(self.cycle) {
+        if !self.ranges.any_blocked(self.plc.fetched_before(self.cycle)) {
             return closed;
         }
         // What is to be output next to a range whose last function is not fetched stops the path, too.

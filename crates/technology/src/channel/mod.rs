@@ -22,7 +22,7 @@ mod window;
 use bahn_motion::{Interpolator, Limits, PointToPoint};
 use bahn_path::Position;
 
-use crate::plc::Plc;
+use crate::plc::{Plc, PlcMemory, Script};
 use crate::report::Fault;
 use crate::settings::ChannelSettings;
 use backward::Backward;
@@ -97,7 +97,8 @@ impl<'a> Channel<'a> {
     fn new(
         settings: &'a ChannelSettings,
         limits: &'a Limits,
-        script: Option<&'a crate::plc::Script>,
+        script: Option<&'a Script>,
+        memory: Option<&'a mut (dyn PlcMemory + 'a)>,
         start: Position,
     ) -> Channel<'a> {
         let mut path = Interpolator::new(limits, LOOK_AHEAD);
@@ -120,7 +121,7 @@ impl<'a> Channel<'a> {
             track: Track::new(start, 1, 0.0),
             orders: Orders::default(),
             ranges: Ranges::default(),
-            plc: Plc::new(script, cycle_s),
+            plc: Plc::new(script, memory, cycle_s),
             record: Record::default(),
             path,
             fed: 1,

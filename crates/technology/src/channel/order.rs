@@ -6,6 +6,7 @@ use std::sync::Arc;
 use bahn_din::Place;
 use bahn_path::Axis;
 
+use crate::plc::WindowRange;
 use crate::report::Value;
 use crate::synch::Synch;
 
@@ -36,6 +37,27 @@ pub(crate) enum RangeId {
     Channel,
     Axis(Axis),
     Spindle(usize),
+}
+
+impl Letter {
+    pub(crate) fn byte(self) -> u8 {
+        match self {
+            Letter::M => b'M',
+            Letter::H => b'H',
+            Letter::S => b'S',
+        }
+    }
+}
+
+impl RangeId {
+    /// How the window of bytes calls it.
+    pub(crate) fn in_window(self) -> WindowRange {
+        match self {
+            RangeId::Channel => WindowRange::Channel,
+            RangeId::Axis(axis) => WindowRange::Axis(axis.index()),
+            RangeId::Spindle(index) => WindowRange::Spindle(index),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]

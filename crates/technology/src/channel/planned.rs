@@ -42,7 +42,7 @@ impl Channel<'_> {
                 };
             }
             let to_go = self.to_go(&ahead, drive);
-            self.output(ahead.id, at);
+            self.output(ahead.id, at, None);
             self.record.output_beside(None, to_go);
         }
         any
@@ -61,7 +61,7 @@ impl Channel<'_> {
 
     /// The function for which the next one that is due cannot be output.
     pub(super) fn blocked_lead(&self) -> Option<OrderId> {
-        if self.leads.queue.is_empty() || !self.ranges.any_blocked(self.cycle) {
+        if self.leads.queue.is_empty() || !self.ranges.any_blocked(self.plc.fetched_before(self.cycle)) {
             return None;
         }
         let (_, ahead) = self.next_ahead(&self.drive_now())?;

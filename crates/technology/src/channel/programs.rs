@@ -9,7 +9,7 @@ use super::fault::named;
 use super::in_force::InForce;
 use super::record::{self, EVENTS};
 use super::track::{Deed, Track};
-use crate::plc::cycle_at;
+use crate::plc::{PlcMemory, cycle_at};
 use crate::report::{Coordinates, Fault, ProgramEnd, Report};
 use crate::run::{Blocks, Run};
 
@@ -35,8 +35,8 @@ enum Ended {
     Stuck,
 }
 
-pub(crate) fn execute(run: &Run<'_>) -> Report {
-    let mut channel = Channel::new(run.settings, run.limits, run.script, run.start);
+pub(crate) fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -> Report {
+    let mut channel = Channel::new(run.settings, run.limits, run.script, memory, run.start);
     let mut programs = Vec::new();
     let mut from = run.from;
     for index in 0..run.programs.count() {
@@ -75,7 +75,7 @@ impl Channel<'_> {
     /// Behind the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
     fn fetch_the_rest(&mut self) {
         self.plc.keep_fetches();
-        while let Some(cycle) = self.plc.next_cycle() {
+        while let Some(cycle) = self.plc.next_cycle(self.cycle, 0) {
             self.cycle = self.cycle.max(cycle);
             self.plc();
         }
@@ -188,7 +188,11 @@ impl Channel<'_> {
                 self.cycle += 1;
                 continue;
             }
-            let next = [self.plc.next_cycle(), self.next_change(), self.dwell];
+            let next = [
+                self.plc.next_cycle(self.cycle, quiet),
+                self.next_change(),
+                self.dwell,
+            ];
             match next.into_iter().flatten().min() {
                 Some(next) => self.cycle = next.max(self.cycle + 1),
                 None => return Ended::Stuck,
@@ -304,13 +308,17 @@ impl Channel<'_> {
         self.lists();
     }
 
-    /// Named limits instead of runs without end.
-    fn limits(&mut self) {
-        let place = || Place {
+    /// The block at whose end the path is, for faults of no block.
+    pub(super) fn here(&self) -> Place {
+        Place {
             program: "".into(),
             block: self.track.block_before(self.reached),
             line: 0,
-        };
+        }
+    }
+
+    /// Named limits instead of runs without end.
+    fn limits(&mut self) {
         let message = if self.decoding.units > MOST_BLOCKS {
             format!("more than {MOST_BLOCKS} blocks")
         } else if self.t() > LONGEST_S {
@@ -320,6 +328,6 @@ impl Channel<'_> {
         } else {
             return;
         };
-        self.fault = Some(named(&place(), "endless", message));
+        self.fault = Some(named(&self.here(), "endless", message));
     }
 }

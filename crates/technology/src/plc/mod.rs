@@ -1,15 +1,47 @@
-//! The PLC at the other side of the ranges: a script says what it does, or it does all in its process time.
+//! The PLC at the other side of the ranges: a script says what it does, it does all in its process time, or a real one reads
+//! and answers in a window of bytes.
 
 mod script;
+mod window;
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 pub(crate) use script::{After, Reply};
 pub use script::{Script, ScriptError};
+use window::Window;
+pub(crate) use window::WindowRange;
+pub use window::{PlcMemory, WINDOW_BYTES};
 
 /// Number of a function in the channel.
 type Id = u64;
+
+/// A function as it is output.
+pub(crate) struct Output<'a> {
+    pub(crate) id: Id,
+    /// What scripts call its range.
+    pub(crate) names: &'a [String],
+    /// Letter and number: `M25`.
+    pub(crate) label: &'a str,
+    pub(crate) range: WindowRange,
+    /// `M`, `H` or `S`, and its number.
+    pub(crate) letter: u8,
+    pub(crate) number: u16,
+    /// Additive value, or speed in 0.001 rpm.
+    pub(crate) value: Option<i32>,
+    pub(crate) process_s: f64,
+    /// Time since the path was at the place, µs, of MOS_TS.
+    pub(crate) offset_us: Option<f64>,
+    /// Its acknowledgement is waited for.
+    pub(crate) waits: bool,
+}
+
+/// What a PLC answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    Fetched,
+    Acknowledged,
+}
 
 /// What happens on the other side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,9 +55,10 @@ pub(crate) enum Deed {
 }
 
 /// PLC and spindles, cycle by cycle.
-#[derive(Debug)]
 pub(crate) struct Plc<'a> {
     script: Option<&'a Script>,
+    /// The PLC that answers instead of the script.
+    window: Option<Window<'a>>,
     cycle_s: f64,
     /// What comes, by cycle and in the order in which it was ordered.
     due: BinaryHeap<Reverse<(u64, u64, Deed)>>,
@@ -41,9 +74,14 @@ pub(crate) fn cycle_at(time_s: f64, cycle_s: f64) -> u64 {
 }
 
 impl<'a> Plc<'a> {
-    pub(crate) fn new(script: Option<&'a Script>, cycle_s: f64) -> Plc<'a> {
+    pub(crate) fn new(
+        script: Option<&'a Script>,
+        memory: Option<&'a mut (dyn PlcMemory + 'a)>,
+        cycle_s: f64,
+    ) -> Plc<'a> {
         Plc {
             script,
+            window: memory.map(Window::new),
             cycle_s,
             due: BinaryHeap::new(),
             count: 0,
@@ -67,27 +105,24 @@ impl<'a> Plc<'a> {
         }
     }
 
-    /// A function is in a range, by whatever name the script calls that, since a cycle.
-    pub(crate) fn order(
-        &mut self,
-        id: Id,
-        (names, label): (&[String], &str),
-        process_s: f64,
-        waits: bool,
-        cycle: u64,
-    ) {
+    /// A function is in a range since a cycle.
+    pub(crate) fn order(&mut self, output: &Output<'_>, cycle: u64) {
+        if let Some(window) = &mut self.window {
+            window.put(output);
+            return;
+        }
         let reply = match self.script {
-            Some(script) => script.reply(names, label),
-            None => Reply::Acknowledge(After::Seconds(process_s)),
+            Some(script) => script.reply(output.names, output.label),
+            None => Reply::Acknowledge(After::Seconds(output.process_s)),
         };
         let acknowledged = match reply {
             Reply::NoFetch => return,
             Reply::At(time_s) => Some(cycle_at(time_s, self.cycle_s).max(cycle + 1)),
             Reply::Acknowledge(after) => self.behind(cycle, after),
         };
-        self.plan(cycle + 1, Deed::Fetch(id));
-        if let Some(acknowledged) = acknowledged.filter(|_| waits) {
-            self.plan(acknowledged, Deed::Acknowledge(id));
+        self.plan(cycle + 1, Deed::Fetch(output.id));
+        if let Some(acknowledged) = acknowledged.filter(|_| output.waits) {
+            self.plan(acknowledged, Deed::Acknowledge(output.id));
         }
     }
 
@@ -102,6 +137,28 @@ impl<'a> Plc<'a> {
         }
     }
 
+    /// A cycle begins: the PLC beside the channel goes on to it.
+    pub(crate) fn begin(&mut self, cycle: u64) {
+        let Plc {
+            window: Some(window),
+            due,
+            count,
+            cycle_s,
+            ..
+        } = self
+        else {
+            return;
+        };
+        window.look(cycle, *cycle_s, |id, answer| {
+            *count += 1;
+            let deed = match answer {
+                Answer::Fetched => Deed::Fetch(id),
+                Answer::Acknowledged => Deed::Acknowledge(id),
+            };
+            due.push(Reverse((cycle, *count, deed)));
+        });
+    }
+
     /// What happens in a cycle, one after the other.
     pub(crate) fn next(&mut self, cycle: u64) -> Option<Deed> {
         let Reverse((due, ..)) = self.due.peek()?;
@@ -112,19 +169,38 @@ impl<'a> Plc<'a> {
         Some(deed)
     }
 
-    /// The cycle of what comes next.
-    pub(crate) fn next_cycle(&self) -> Option<u64> {
-        self.due.peek().map(|Reverse((cycle, ..))| *cycle)
+    /// The cycle of what comes next, when nothing has happened for some cycles.
+    pub(crate) fn next_cycle(&self, cycle: u64, quiet: u64) -> Option<u64> {
+        let due = self.due.peek().map(|Reverse((cycle, ..))| *cycle);
+        let window = self.window.as_ref();
+        let asked = window.filter(|window| window.may_answer(quiet, self.cycle_s));
+        due.into_iter().chain(asked.map(|_| cycle + 1)).min()
+    }
+
+    /// What was output before this cycle, and is not fetched, the PLC had the time to fetch.
+    pub(crate) fn fetched_before(&self, cycle: u64) -> u64 {
+        self.window.as_ref().map_or(cycle, Window::fetched_before)
     }
 
     /// Only fetches of the functions that were output last are left of what comes.
     pub(crate) fn keep_fetches(&mut self) {
         self.due
             .retain(|Reverse((.., deed))| matches!(deed, Deed::Fetch(_)));
+        if let Some(window) = &mut self.window {
+            window.end();
+        }
     }
 
     /// The channel has dropped all open functions.
     pub(crate) fn reset(&mut self) {
         self.due.clear();
+        if let Some(window) = &mut self.window {
+            window.reset();
+        }
+    }
+
+    /// Why the PLC beside the channel does not run any more.
+    pub(crate) fn take_fault(&mut self) -> Option<String> {
+        self.window.as_mut().and_then(Window::take_fault)
     }
 }

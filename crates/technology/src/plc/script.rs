@@ -77,6 +77,11 @@ impl fmt::Display for ScriptError {
 impl std::error::Error for ScriptError {}
 
 impl Script {
+    /// Whether it says what the PLC does with functions, and not only what happens to path and spindles.
+    pub fn answers_functions(&self) -> bool {
+        !self.replies.is_empty() || self.default != Reply::default()
+    }
+
     /// What happens to a function in a range, by any of its names: what is said of it in this range goes before what is
     /// said of it in all.
     pub(crate) fn reply(&self, names: &[String], function: &str) -> Reply {

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use bahn_din::{Program, Shelf};
 use bahn_motion::Limits;
 use bahn_path::{Axis, PerAxis, Position};
-use bahn_technology::{ChannelList, ChannelSettings, Event, EventKind, NcPrograms, Report, Run, Script};
+use bahn_technology::{
+    ChannelList, ChannelSettings, Event, EventKind, NcPrograms, PlcMemory, Report, Run, Script,
+};
 
 /// A cycle, s.
 pub const T: f64 = 0.001;
@@ -102,6 +104,15 @@ impl Bench {
     }
 
     pub fn run(&self) -> Report {
+        self.execute(None)
+    }
+
+    /// Runs it with a PLC that has its bytes.
+    pub fn run_beside(&self, plc: &mut dyn PlcMemory) -> Report {
+        self.execute(Some(plc))
+    }
+
+    fn execute(&self, plc: Option<&mut dyn PlcMemory>) -> Report {
         let files: Vec<_> = self
             .programs
             .iter()
@@ -122,7 +133,10 @@ impl Bench {
             from: self.from.as_deref(),
             script: script.as_ref(),
         };
-        run.execute()
+        match plc {
+            Some(plc) => run.execute_beside(plc),
+            None => run.execute(),
+        }
     }
 }
 
