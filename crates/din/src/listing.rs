@@ -35,9 +35,11 @@ impl Program {
         if self.is_commented(number) {
             return None;
         }
-        // The last line without an ending is none without blanks.
-        if text.trim_ascii().is_empty() && !self.ending(number).is_empty() {
-            return Some(String::new());
+        if text.trim_ascii().is_empty() {
+            // Without blanks the last line may be none, and endings around one be a single one.
+            let (before, own) = (self.ending(number.saturating_sub(1)), self.ending(number));
+            let stays = own.is_empty() || before == "\r" && own == "\n";
+            return (!stays).then(String::new);
         }
         // Whatever a macro stands for, it may join what stands beside it.
         if text.contains('"') {

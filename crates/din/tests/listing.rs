@@ -103,6 +103,7 @@ fn bytes_and_endings_stay() {
     assert_eq!(written(b"x1 ;H\xf6he\nx2"), b"X1 ;H\xf6he\nX2");
     assert_eq!(written("x1 ;Höhe".as_bytes()), "X1 ;Höhe".as_bytes());
     assert_eq!(written(b"\xef\xbb\xbf%1\nx1"), b"\xef\xbb\xbf%1\nX1");
+    assert_eq!(written(b"x1\r \nx2 \r\n \r\n"), b"X1\r \nX2\r\n\r\n");
     // Without the blank of Latin-1 the rest would be UTF-8.
     assert_eq!(written(b"\xa0\nv\xcb\x99"), b"\xa0\nv\xcb\x99");
     assert_eq!(written(b"x1\xa0\n(\xcb\x99)  m3"), b"x1\xa0\n(\xcb\x99) M3");
