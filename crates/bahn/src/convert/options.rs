@@ -35,7 +35,7 @@ Files: an input is never replaced, another file only with --replace. Exit codes:
 proved, 1 something is refused, differs or is not proved, 2 wrong use.
 
 JSON report (--format json): ok, blocks, unrolled, refused and left_out (block, line, text,
-reason; left_out is what the path does not depend on), proof
+reason; left_out is what the path does not depend on), not_unrolled (why, or null), proof
 (elements, functions, stops, warnings, max_deviation_um, message, completed, first_difference: what,
 source and target with program, block, line, text; or null), source, target (null when nothing
 was written), to. Of several programs: ok, programs.";

@@ -24,6 +24,8 @@ pub(super) struct Report {
     pub refused: Vec<Listed>,
     /// What the target leaves out since the path does not depend on it.
     pub left_out: Vec<Listed>,
+    /// Why what is refused was not unrolled, if it was tried.
+    pub not_unrolled: Option<String>,
     /// `None` where none was wanted.
     pub proof: Option<Proof>,
     pub source: String,
@@ -50,6 +52,9 @@ pub(super) fn text(report: &Report) -> String {
     row("Blocks", &report.blocks.to_string());
     list(&mut row, "Unrolled", &report.unrolled);
     list(&mut row, "Refused", &report.refused);
+    if let Some(why) = &report.not_unrolled {
+        row("Not unrolled", why);
+    }
     list(&mut row, "Left out", &report.left_out);
     match &report.proof {
         None => row("Proof", "none was wanted"),
