@@ -55,7 +55,8 @@ impl Program {
 /// A line that could be read.
 struct Read {
     glyphs: Vec<Glyph>,
-    number: Option<String>,
+    /// The number with its column.
+    number: Option<(u32, String)>,
     block: Block,
     /// Comments with their columns.
     comments: Vec<(u32, String)>,
@@ -66,7 +67,10 @@ impl Read {
         let block = block::read(&glyphs, &Macros::default()).ok()?;
         let (name, rest) = block::number(&glyphs);
         let digits = glyphs.get(..glyphs.len() - rest.len()).unwrap_or_default();
-        let number = name.map(|_| tight(digits.iter(), false));
+        let first = digits.iter().find(|glyph| !glyph.character.is_whitespace());
+        let number = name
+            .and(first)
+            .map(|first| (first.column, tight(digits.iter(), false)));
         let characters: Vec<char> = text.chars().collect();
         let said = |comment: Comment| {
             let text = characters.get(comment.start..comment.end)?.iter().collect();
@@ -88,6 +92,8 @@ impl Read {
             return None;
         }
         let mut parts: Vec<(u32, String)> = self.comments.clone();
+        // Behind a comment it is not the name of its block, and stays there.
+        parts.extend(self.number.clone());
         for word in &self.block.words {
             let span = word.column..word.column.checked_add(word.length)?;
             if self.comments.iter().any(|(column, _)| span.contains(column)) {
@@ -96,9 +102,8 @@ impl Read {
             parts.push((word.column, self.word(word)));
         }
         parts.sort_by_key(|(column, _)| *column);
-        let parts = parts.into_iter().map(|(_, text)| text);
-        let all: Vec<String> = self.number.clone().into_iter().chain(parts).collect();
-        Some(all.join(" "))
+        let parts: Vec<String> = parts.into_iter().map(|(_, text)| text).collect();
+        Some(parts.join(" "))
     }
 
     fn word(&self, word: &Word) -> String {
@@ -131,7 +136,8 @@ impl Read {
             let texts = read.comments.iter().map(|(_, text)| text.clone());
             texts.collect()
         };
-        self.block == other.block && self.number == other.number && texts(self) == texts(other)
+        let number = |read: &Read| read.number.as_ref().map(|(_, text)| text.clone());
+        self.block == other.block && number(self) == number(other) && texts(self) == texts(other)
     }
 }
 

@@ -64,6 +64,7 @@ fn words_are_a_blank_apart_and_in_capitals() {
         ),
         ("n5  l   Laser_on.sub  ; Calls  ", "N5 L Laser_on.sub ; Calls  "),
         ("x  1 (*  ab  ", "X1 (*  ab  "),
+        ("(first)n10#flush", "(first) N10 #FLUSH"),
         ("N10 (only this)", "N10 (only this)"),
         ("H'16 # 1f'", "H'16#1F'"),
         (" \t \n", "\n"),
@@ -187,7 +188,7 @@ fn text() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
     fn a_listing_is_the_same_program_and_its_own_listing(text in text()) {
