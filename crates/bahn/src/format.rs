@@ -18,6 +18,13 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
     for path in &options.files {
         // Read once: a pipe gives its bytes once.
         let bytes = files::read_program(path)?;
+        if let Some(program) = din(path, bytes.as_deref()) {
+            match format_din(path, &program, bytes.unwrap_or_default(), options)? {
+                Outcome::Fine => {}
+                other => outcome = other,
+            }
+            continue;
+        }
         let program = load(path, bytes.clone())?;
         let listing = format_program(
             &program,
@@ -45,11 +52,50 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
                 outcome = Outcome::WrongUse;
                 continue;
             }
-            write(path, &listing)?;
+            write(path, listing.as_bytes())?;
             diagnostics::print_text(&format!("formatted {}", path.display()));
         }
     }
     Ok(outcome)
+}
+
+/// A file as one of DIN 66025: it is named `.nc`, and does not begin as one of plain language.
+fn din(path: &Path, bytes: Option<&[u8]>) -> Option<bahn_din::Program> {
+    let bytes = bytes.filter(|_| files::extension(path) == "nc")?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let is_plain = Program::from_bytes("1.H", bytes.to_vec()).begins_with_header();
+    (!is_plain && !bytes.trim_ascii().is_empty()).then(|| bahn_din::Program::from_bytes(&name, bytes))
+}
+
+/// Prints, writes or compares the listing of a DIN 66025 program.
+fn format_din(
+    path: &Path,
+    program: &bahn_din::Program,
+    bytes: Vec<u8>,
+    options: &FmtOptions,
+) -> Result<Outcome, UsageError> {
+    let listing = program.listing();
+    if !options.write && !options.check {
+        console::print_display(&listing)?;
+        return Ok(Outcome::Fine);
+    }
+    let written = program.encoded(&listing);
+    if written == bytes {
+        return Ok(Outcome::Fine);
+    }
+    if options.check {
+        console::print(&format!("{}\n", printable(&path.to_string_lossy())))?;
+        return Ok(Outcome::ProgramError);
+    }
+    if bytes.contains(&0) {
+        // Other things are named .nc, too.
+        let reason = "it holds bytes that are no text, so it may be no program";
+        diagnostics::print_usage_error(&format!("{} stays as it is: {reason}", path.display()));
+        return Ok(Outcome::WrongUse);
+    }
+    write(path, &written)?;
+    diagnostics::print_text(&format!("formatted {}", path.display()));
+    Ok(Outcome::Fine)
 }
 
 /// The step of block numbers in DIN/ISO.
@@ -76,9 +122,9 @@ fn load(path: &Path, bytes: Option<Vec<u8>>) -> Result<Arc<Program>, UsageError>
     }
 }
 
-fn write(path: &Path, listing: &str) -> Result<(), UsageError> {
+fn write(path: &Path, listing: &[u8]) -> Result<(), UsageError> {
     let mut file = NewFile::create(path)?;
-    file.write_all(listing.as_bytes())
+    file.write_all(listing)
         .map_err(|error| files::cannot("write", path, &error))?;
     Ok(file.finish()?)
 }

@@ -85,3 +85,86 @@ fn whole_programs_are_fine_and_empty_files_are_not() {
             .contains("subroutine ../part.nc is not found")
     );
 }
+
+/// What only a block behind a fault does is said all the same.
+#[test]
+fn macros_and_subroutines_that_nobody_has_are_faults_of_their_blocks() {
+    let folder = Folder::new();
+    folder.write(
+        "part.nc",
+        "%MAIN\nN10 T1\nN20 G01 F100 X\"WIDTH\"\nN30 \"HEIGHT\"\nN40 L lost\nN50 LL LOST\nN60 L sub\nN70 V.G.M_FCT[5].SYNCH = \"MOS\"\n",
+    );
+    folder.write("sub.nc", "\"WIDTH\" = \"10\"\nX\"DEPTH\"\nL deeper\nL part\n");
+    folder.write("deeper.nc", "M99999999\nG54\n");
+    let run = folder.bahn("check part.nc --format json");
+    let report = run.json();
+    let found: Vec<String> = report[0]["diagnostics"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|fault| {
+            format!(
+                "{}:{}:{} {}",
+                fault["program"], fault["line"], fault["column"], fault["message"]
+            )
+            .replace('"', "")
+        })
+        .collect();
+    assert_eq!(
+        found,
+        [
+            "part.nc:2:5 unknown word T1",
+            "part.nc:4:5 unknown macro \\HEIGHT\\",
+            "part.nc:5:5 subroutine lost is not found",
+            "part.nc:6:5 subroutine LOST is not found",
+            "deeper.nc:2:1 unknown G function G54",
+            "sub.nc:2:2 unknown macro \\DEPTH\\",
+        ]
+    );
+}
+
+#[test]
+fn a_program_that_calls_itself_has_its_faults_once() {
+    let folder = Folder::new();
+    folder.write("part.nc", "N10 X1\nN20 L part\nN30 G54\n");
+    let report = folder.bahn("check part.nc --format json").json();
+    let lines: Vec<_> = report[0]["diagnostics"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|fault| &fault["line"])
+        .collect();
+    assert_eq!(lines, [&json!(2), &json!(3)], "called too deep, and G54");
+}
+
+#[test]
+fn listings_are_printed_compared_and_written() {
+    let folder = Folder::new();
+    let text = b"%MAIN  ( head )\r\nn10g1x - 5 f200;H\xf6he \r\n  t5 x1\r\n";
+    let listed = b"%MAIN  ( head )\r\nN10 G1 X-5 F200 ;H\xf6he \r\n  t5 x1\r\n";
+    folder.write("part.nc", text);
+    assert_eq!(
+        folder.bahn("fmt part.nc").out(),
+        "%MAIN  ( head )\r\nN10 G1 X-5 F200 ;Höhe \r\n  t5 x1\r\n"
+    );
+    let compared = folder.bahn("fmt --check part.nc");
+    assert_eq!((compared.code(), compared.out()), (1, "part.nc\n".to_owned()));
+    assert_eq!(std::fs::read(folder.path("part.nc")).unwrap(), text);
+    assert_eq!(folder.bahn("fmt --write part.nc").code(), 0);
+    assert_eq!(std::fs::read(folder.path("part.nc")).unwrap(), listed);
+    assert_eq!(folder.bahn("fmt --check part.nc").code(), 0);
+    // Plain language by another name, and what is no program.
+    folder.write("plain.nc", "BEGIN PGM 3 MM\nL X+15 R0 F100\nEND PGM 3 MM\n");
+    assert!(
+        folder
+            .bahn("fmt plain.nc")
+            .out()
+            .starts_with("0 BEGIN PGM 3 MM\n1 L X+15")
+    );
+    folder.write("grid.nc", b"CDF\x01\x00\nx  1\n");
+    assert_eq!(folder.bahn("fmt --write grid.nc").code(), 2);
+    assert_eq!(
+        std::fs::read(folder.path("grid.nc")).unwrap(),
+        b"CDF\x01\x00\nx  1\n"
+    );
+}

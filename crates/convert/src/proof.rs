@@ -1,9 +1,11 @@
-//! Two runs side by side: every element of the path, every function, every stop and the message at the end.
+//! Two runs side by side: every element of the path, every function, every stop, the message at the end, and what the
+//! user is warned of on the way.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_interpreter::Interpreter;
+use bahn_interpreter::{Interpreter, WarningKind};
 use bahn_parameters::ControlModel;
 use bahn_path::{
     Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step, Touch,
@@ -24,6 +26,8 @@ pub struct Proof {
     pub functions: u64,
     /// Programmed stops that both have.
     pub stops: u64,
+    /// Warnings that both have.
+    pub warnings: u64,
     /// The farthest that two elements are apart, µm.
     pub max_deviation_um: f64,
     /// The message that both runs end with, if they do.
@@ -143,25 +147,23 @@ pub fn prove(
     target.set_interrupt(stop.clone());
     let mut proof = Proof::new();
     let (mut last_source, mut last_target) = (BlockRef::default(), BlockRef::default());
+    let mut warned = Warned::default();
     loop {
         if stop.load(std::sync::atomic::Ordering::Relaxed) {
             return proof;
         }
         let events = (next_event(&mut source, model), next_event(&mut target, model));
-        // What is told of a block on the way is not the end of it: the queue must not grow.
-        source.take_warnings();
-        target.take_warnings();
+        warned.take(&mut source, &mut target);
         last_source = block_of(&events.0).unwrap_or(last_source);
         last_target = block_of(&events.1).unwrap_or(last_target);
         let what = match &events {
             (Event::Interrupted, _) | (_, Event::Interrupted) => return proof,
             (Event::End, Event::End) => {
-                proof.completed = true;
+                proof.ends(None, warned, &source, &target);
                 return proof;
             }
             (Event::Message(_, one), Event::Message(_, other)) if one == other => {
-                proof.completed = true;
-                proof.message = Some(one.clone());
+                proof.ends(Some(one.clone()), warned, &source, &target);
                 return proof;
             }
             (Event::Stop(_), Event::Stop(_)) => {
@@ -184,6 +186,62 @@ pub fn prove(
             });
             return proof;
         }
+    }
+}
+
+/// What two runs warned of: they need not do so at the same element, since either may look ahead.
+#[derive(Default)]
+struct Warned {
+    /// How often each side said a thing, and where it did first.
+    said: HashMap<WarningKind, [(u64, BlockRef); 2]>,
+}
+
+/// Most different warnings that are compared: many texts name a number of the program.
+const WARNINGS_MAX: usize = 10_000;
+
+impl Warned {
+    fn take(&mut self, source: &mut Interpreter, target: &mut Interpreter) {
+        for (side, run) in [source, target].into_iter().enumerate() {
+            for warning in run.take_warnings() {
+                if self.said.len() >= WARNINGS_MAX && !self.said.contains_key(&warning.kind) {
+                    continue;
+                }
+                let said = self.said.entry(warning.kind).or_default();
+                if let Some((count, first)) = said.get_mut(side) {
+                    if *count == 0 {
+                        *first = warning.block;
+                    }
+                    *count += warning.count;
+                }
+            }
+        }
+    }
+
+    fn both(&self) -> u64 {
+        let least = |[(one, _), (other, _)]: &[(u64, BlockRef); 2]| *one.min(other);
+        self.said.values().map(least).sum()
+    }
+
+    /// The first warning, by its place, that one of both has more often.
+    fn difference(self, source: &Interpreter, target: &Interpreter) -> Option<Difference> {
+        let unlike = self.said.into_iter().filter(|(_, [one, other])| one.0 != other.0);
+        let first = unlike.min_by_key(|(kind, [one, other])| {
+            let at = if one.0 > 0 { one.1 } else { other.1 };
+            (at.program, at.block, kind.to_string())
+        });
+        let (kind, [one, other]) = first?;
+        let at = |run, (count, block): (u64, BlockRef)| match count {
+            0 => At::default(),
+            _ => At::of(run, block),
+        };
+        Some(Difference {
+            what: format!(
+                "the warning '{kind}' {} times in the source, {} times in the target",
+                one.0, other.0
+            ),
+            source: at(source, one),
+            target: at(target, other),
+        })
     }
 }
 
@@ -212,11 +270,20 @@ impl Proof {
             elements: 0,
             functions: 0,
             stops: 0,
+            warnings: 0,
             max_deviation_um: 0.0,
             message: None,
             completed: false,
             first_difference: None,
         }
+    }
+
+    /// Both runs are at their ends: what is left to compare is what they warned of.
+    fn ends(&mut self, message: Option<String>, warned: Warned, source: &Interpreter, target: &Interpreter) {
+        self.completed = true;
+        self.message = message;
+        self.warnings = warned.both();
+        self.first_difference = warned.difference(source, target);
     }
 
     /// Counts two elements that are the same, or says what differs.

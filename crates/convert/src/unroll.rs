@@ -1,7 +1,8 @@
 //! A run as a program in plain language: each movement a block of its own, in millimetres and with R0.
 //!
 //! It is for programs with blocks that DIN/ISO cannot say: what those do to the path is in it. What a block says beyond the path
-//! must be sayable in a block again; a tap that follows the spindle, swivel axes and what a probe finds are not.
+//! must be sayable in a block again. A tap that follows the spindle becomes a cycle from where the tool stands; one with a floating
+//! holder, swivel axes and what a probe finds are not said.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -48,6 +49,7 @@ pub fn unroll(
         number: 0,
         define_tools,
         defined: BTreeSet::new(),
+        tap: None,
     };
     writer.block(Operation::Begin(Box::new(header.clone())));
     loop {
@@ -221,6 +223,8 @@ struct Writer {
     define_tools: bool,
     /// Tools with the data that were written last.
     defined: BTreeSet<(u32, u64, u64)>,
+    /// The way into a thread whose way out comes next.
+    tap: Option<PathElement>,
 }
 
 impl Writer {
@@ -235,6 +239,10 @@ impl Writer {
     }
 
     fn element(&mut self, element: &PathElement) -> Result<(), String> {
+        let is_way_out = matches!(element.thread(), Some(thread) if thread.retracts);
+        if self.tap.is_some() && !is_way_out {
+            return Err("a movement between both ways of a tap".to_owned());
+        }
         let mut m = MFunctions::default();
         let mut stops = false;
         for of in element.functions() {
@@ -259,6 +267,15 @@ impl Writer {
             _ if stops && !by_m => return Err("a stop on the way".to_owned()),
             Curve::Hold if m.is_empty() => {}
             Curve::Hold => self.block(Operation::Miscellaneous(m)),
+            Curve::Line if element.thread().is_some() => {
+                if element.functions().iter().any(|of| of.at != At::Start) {
+                    return Err("a function on the way of a thread".to_owned());
+                }
+                if !m.is_empty() {
+                    self.block(Operation::Miscellaneous(m));
+                }
+                self.thread(element)?;
+            }
             Curve::Line => self.movement(element, m, None)?,
             Curve::Arc(arc) => self.movement(element, m, Some(arc))?,
             Curve::Corner(_) => return Err("an arc in a corner (M112)".to_owned()),
@@ -330,8 +347,14 @@ impl Writer {
         m: MFunctions,
         arc: Option<&PathArc>,
     ) -> Result<(), String> {
-        if element.override_law != OverrideLaw::Free {
-            return Err("a movement with the spindle or without overrides".to_owned());
+        match element.override_law {
+            OverrideLaw::Free => {}
+            OverrideLaw::Tapping { .. } => {
+                return Err(
+                    "tapping with a floating holder (cycle 2) turns the spindle back on the way".to_owned(),
+                );
+            }
+            _ => return Err("a movement on which overrides do not act".to_owned()),
         }
         if element.placement.is_some() {
             return Err("swivel axes are compensated".to_owned());
@@ -394,18 +417,63 @@ impl Writer {
         Ok(())
     }
 
+    /// A way with the spindle, from where the tool stands: cycle 18, and cycle 17 with the way back.
+    fn thread(&mut self, element: &PathElement) -> Result<(), String> {
+        let Some(thread) = element.thread().copied() else {
+            return Ok(());
+        };
+        let way_in = match (thread.retracts, self.tap.take()) {
+            (true, None) => {
+                self.tap = Some(element.clone());
+                return Ok(());
+            }
+            (true, Some(way_in)) if way_in.start == element.end && way_in.end == element.start => way_in,
+            (true, Some(_)) => return Err("the way out of a thread is not the way into it".to_owned()),
+            (false, _) => element.clone(),
+        };
+        let mut moved = moved(&way_in.start, &way_in.end).axes().iter();
+        let (Some(axis), None) = (moved.next(), moved.next()) else {
+            return Err("a thread that lies not along one axis".to_owned());
+        };
+        let travel = way_in.end[axis] - way_in.start[axis];
+        let clockwise = way_in.thread().is_some_and(|thread| thread.clockwise);
+        if thread.retracts {
+            let pitch = if clockwise {
+                thread.pitch_mm
+            } else {
+                -thread.pitch_mm
+            };
+            self.cycle_of(17, &[0.0, travel, pitch]);
+        } else {
+            // Away from the workpiece the other sense makes the same hand.
+            let right_hand = clockwise == (travel < 0.0);
+            let pitch = if right_hand {
+                thread.pitch_mm
+            } else {
+                -thread.pitch_mm
+            };
+            self.cycle_of(18, &[travel, pitch]);
+        }
+        self.block(Operation::CycleCall(MFunctions::default()));
+        Ok(())
+    }
+
     fn dwell(&mut self, seconds: f64) {
         self.cycle(9, seconds);
     }
 
     /// A cycle with one number.
     fn cycle(&mut self, number: u16, value: f64) {
+        self.cycle_of(number, &[value]);
+    }
+
+    /// A cycle with a number in each of its blocks.
+    fn cycle_of(&mut self, number: u16, values: &[f64]) {
         let block =
             |sub: u16, words: Vec<CycleWord>| Operation::Cycle(Box::new(CycleBlock { number, sub, words }));
-        for operation in [
-            block(0, Vec::new()),
-            block(1, vec![CycleWord::Number(self::number(value))]),
-        ] {
+        let numbered = (1..).zip(values);
+        let values = numbered.map(|(sub, value)| block(sub, vec![CycleWord::Number(self::number(*value))]));
+        for operation in [block(0, Vec::new())].into_iter().chain(values) {
             self.block(crate::canonical::decorated(operation));
         }
     }

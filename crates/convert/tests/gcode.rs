@@ -2,7 +2,10 @@
 
 mod support;
 
-use bahn_convert::Language;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use bahn_convert::{Language, gcode as linuxcnc};
 use bahn_parameters::ControlModel;
 use bahn_path::Position;
 use support::*;
@@ -167,5 +170,38 @@ fn what_cannot_be_said_stops_the_program_or_ends_it() {
             "{blocks}: {refused:?} {text:?}"
         );
         assert!(text.ends_with(&["M0".to_owned(), "M2".to_owned()]), "{text:?}");
+    }
+}
+
+/// What LinuxCNC does not know stops the program, or is a function of its user; what the path does not depend on is named.
+#[test]
+fn functions_of_the_machine_builder_may_be_those_of_the_user() {
+    let source = program(
+        "BEGIN PGM A MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+9 Y+9 Z+0\nL X+1 R0 F500 M61\nL X+2 M90\n\
+         L X+3 M105\nL X+4 M17\nEND PGM A MM\n",
+        Language::Plain,
+    );
+    let settings = settings(ControlModel::Tnc415b);
+    let begin = || run(&source, &settings, &root());
+    let stop = Arc::new(AtomicBool::new(false));
+    for (user_functions, refused, written) in [(false, 2, "M0"), (true, 0, "M161")] {
+        let options = linuxcnc::Options {
+            model: settings.model,
+            unit: source.unit(),
+            comments: false,
+            rapid_mm_min: 15_000.0,
+            user_functions,
+        };
+        let made = linuxcnc::write(&begin, &options, &stop);
+        assert_eq!(made.refused.len(), refused, "{:?}", made.refused);
+        assert!(made.text.lines().any(|line| line == written), "{}", made.text);
+        let proof = linuxcnc::prove(&begin, &made.text, "A.ngc", &options, &stop);
+        assert!(proof.holds(), "{proof:?}");
+        let left: Vec<&str> = made
+            .left_out
+            .iter()
+            .filter_map(|of| of.reason.split([':', ',']).next())
+            .collect();
+        assert_eq!(left, ["the blank", "M90", "M105"]);
     }
 }

@@ -54,11 +54,14 @@ fn every_program_of_the_repository_goes_there_and_back() {
 #[test]
 fn every_program_of_the_repository_becomes_gcode_with_the_same_path() {
     let files = programs("H");
-    let (mut elements, mut whole) = (0, 0);
+    let (mut elements, mut whole, mut with_user) = (0, 0, 0);
     for file in &files {
         let bytes = std::fs::read(file).unwrap();
         let program = Program::from_bytes(file.to_string_lossy(), bytes);
         let folder = file.parent().unwrap();
+        let (made, proof) = gcode_with(&program, &settings(ControlModel::Tnc415b), folder, true);
+        assert!(proof.holds(), "{}: {proof:?}\n{}", file.display(), made.text);
+        with_user += u32::from(made.refused.is_empty());
         let (made, proof) = gcode(&program, &settings(ControlModel::Tnc415b), folder);
         assert!(proof.holds(), "{}: {proof:?}\n{}", file.display(), made.text);
         println!(
@@ -73,5 +76,5 @@ fn every_program_of_the_repository_becomes_gcode_with_the_same_path() {
         whole += u32::from(made.refused.is_empty());
     }
     println!("{whole} of {} programs, {elements} elements", files.len());
-    assert!(whole >= 55 && elements > 10_000);
+    assert!(whole >= 55 && with_user >= whole + 5 && elements > 10_000);
 }

@@ -67,12 +67,62 @@ fn what_no_path_says_is_refused() {
         ),
         ("FN14: ERROR = 12\n", "ERROR 12"),
         (
-            "CYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -2\nCYCL DEF 17.2 DEPTH -10\n\
-             CYCL DEF 17.3 PITCH +1\nCYCL CALL\n",
-            "spindle",
+            "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP -2\nCYCL DEF 2.2 DEPTH -10\nCYCL DEF 2.3 DWELL 0\n\
+             CYCL DEF 2.4 F500\nCYCL CALL\n",
+            "floating holder (cycle 2)",
         ),
     ] {
         let refused = unrolled(blocks).unwrap_err();
         assert!(refused.contains(why), "{refused}");
+    }
+}
+
+/// Both warn of a tool without data and of a sign; one that warns of more is not the same.
+#[test]
+fn warnings_are_compared() {
+    let cycle = |setup: &str, depth: &str| {
+        format!(
+            "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP {setup}\nCYCL DEF 1.2 DEPTH {depth}\nCYCL DEF 1.3 PECKG -5\n\
+             CYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n"
+        )
+    };
+    let text = format!("{HEAD}TOOL CALL 9 Z S500\n{}END PGM A MM\n", cycle("+2", "-10"));
+    let source = program(&text, Language::Plain);
+    let (_, iso) = converted(&source, Language::Iso);
+    let settings = settings(ControlModel::Tnc415b);
+    let same = proof(&source, &iso, &settings, &root());
+    assert!(same.holds(), "{same:?}");
+    let defined = text.replace("TOOL CALL 9", "TOOL DEF 9 L+0 R+0\nTOOL CALL 9");
+    let defined = program(&defined, Language::Plain);
+    let other = proof(&source, &defined, &settings, &root());
+    assert!(
+        same.warnings > other.warnings && !other.holds(),
+        "{same:?} {other:?}"
+    );
+    let difference = other.first_difference.unwrap();
+    assert!(
+        difference.what.contains("tool 9 is not defined")
+            && difference.what.contains("0 times in the target"),
+        "{difference:?}"
+    );
+    assert_eq!((difference.source.block, difference.target.block), (6, 0));
+}
+
+/// Taps that follow the spindle are the same from where the tool stands, scaled or not, up or down, left or right.
+#[test]
+fn taps_that_follow_the_spindle_become_cycles_of_their_way() {
+    for (pitch, depth) in [("+1.5", "-10"), ("-0.75", "-10"), ("+1.5", "+10")] {
+        for scaled in ["", "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.5 Z0.5\n"] {
+            let setup = depth.replace("10", "2");
+            let (text, elements) = unrolled(&format!(
+                "{scaled}CYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP {setup}\nCYCL DEF 17.2 DEPTH {depth}\n\
+                 CYCL DEF 17.3 PITCH {pitch}\nL X+10 Y+10 FMAX M99\nCYCL DEF 18.0 THREAD CUTTING\n\
+                 CYCL DEF 18.1 DEPTH {depth}\nCYCL DEF 18.2 PITCH {pitch}\nCYCL CALL\nL Z+20 FMAX\n"
+            ))
+            .unwrap();
+            assert!(text.contains("G85 ") && text.contains("G86 "), "{text}");
+            // To the first place and over the hole, in and out, the cut, and away.
+            assert_eq!(elements, 6, "{text}");
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::expression::{
 use crate::line::{Glyph, LineFault, Macros, fault_at, quoted};
 
 /// What a line orders, as it is read.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Block {
     pub words: Vec<Word>,
 }
@@ -25,7 +25,14 @@ pub(crate) struct Word {
     pub kind: WordKind,
 }
 
-#[derive(Clone, Debug)]
+/// Words are the same when they say the same, wherever they stand.
+impl PartialEq for Word {
+    fn eq(&self, other: &Word) -> bool {
+        self.kind == other.kind
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum WordKind {
     /// G function, one of [`G_FUNCTIONS`].
     G(u16),

@@ -8,7 +8,7 @@ use bahn_path::Position;
 use crate::block::{self, Block, WordKind};
 use crate::execute::{self, Modal, State};
 use crate::line::{LineFault, Macros};
-use crate::program::{Program, Section};
+use crate::program::{Program, Section, not_found};
 use crate::unit::{Command, Place, Shelf, Unit, Variables};
 
 /// What the next block is.
@@ -39,7 +39,7 @@ pub struct BlockFault {
 const MAX_CALLS: usize = 20;
 
 /// Most files with subroutines of a program (inferred).
-const MAX_FILES: usize = 256;
+pub(crate) const MAX_FILES: usize = 256;
 
 /// Endings that the name of a file may lack in a call (inferred).
 const ENDINGS: [&str; 3] = ["", ".nc", ".sub"];
@@ -92,6 +92,14 @@ impl Decoder {
     /// Where the path stands behind the blocks that were executed.
     pub fn position(&self) -> Position {
         self.state.position
+    }
+
+    /// The P parameters that have a value.
+    pub fn parameters(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.state
+            .parameters
+            .iter()
+            .map(|(number, value)| (*number, *value))
     }
 
     /// The files whose subroutines were called.
@@ -221,11 +229,10 @@ impl Decoder {
         {
             return Ok(Frame::of(program, &section));
         }
-        let missing = || format!("subroutine {name} is not found");
         if local {
-            return Err(missing());
+            return Err(not_found(name));
         }
-        let program = self.file(name)?.ok_or_else(missing)?;
+        let program = self.file(name)?.ok_or_else(|| not_found(name))?;
         let section = program.mains().next().cloned();
         let section = section.ok_or_else(|| format!("{name} has no program, only subroutines"))?;
         Ok(Frame::of(program, &section))
@@ -235,19 +242,25 @@ impl Decoder {
         if let Some(known) = self.files.get(name) {
             return Ok(Some(Arc::clone(known)));
         }
-        let found = ENDINGS
-            .iter()
-            .find_map(|ending| self.shelf.text(&format!("{name}{ending}")));
-        let Some((file, text)) = found else {
+        let Some(program) = called_file(&*self.shelf, name) else {
             return Ok(None);
         };
         if self.files.len() >= MAX_FILES {
             return Err(format!("{name} is more than the {MAX_FILES} files of a program"));
         }
-        let program = Arc::new(Program::from_bytes(&file, &text));
+        let program = Arc::new(program);
         self.files.insert(name.to_owned(), Arc::clone(&program));
         Ok(Some(program))
     }
+}
+
+/// The file that a call names.
+pub(crate) fn called_file(shelf: &dyn Shelf, name: &str) -> Option<Program> {
+    let mut found = ENDINGS
+        .iter()
+        .filter_map(|ending| shelf.text(&format!("{name}{ending}")));
+    let (file, text) = found.next()?;
+    Some(Program::from_bytes(&file, &text))
 }
 
 impl Frame {

@@ -7,6 +7,8 @@
 //!
 //! [`examine`] tells all that is wrong with a file and those that it calls, without a channel.
 //!
+//! [`Program::listing`] is the text as it is written tidily: the same program.
+//!
 //! What the manual does not show is an error at its block with its name; nothing is skipped.
 //!
 //! ```
@@ -57,6 +59,7 @@ mod examine;
 mod execute;
 mod expression;
 mod line;
+mod listing;
 mod program;
 mod unit;
 mod words;

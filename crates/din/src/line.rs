@@ -197,8 +197,8 @@ impl Macros {
         Ok(())
     }
 
-    /// Index of the first macro of a line that has no text.
-    pub fn first_unknown(&self, line: &[Glyph]) -> Result<Option<usize>, LineFault> {
+    /// The first macro of a line that has no text, with its index.
+    pub fn first_unknown(&self, line: &[Glyph]) -> Result<Option<(usize, String)>, LineFault> {
         let mut at = 0;
         while let Some(glyph) = line.get(at) {
             if glyph.character != '"' {
@@ -207,7 +207,7 @@ impl Macros {
             }
             let (name, end) = quoted(line, at)?;
             if !self.0.contains_key(&name) {
-                return Ok(Some(at));
+                return Ok(Some((at, name)));
             }
             at = end;
         }
@@ -241,7 +241,7 @@ impl Macros {
             let text = self
                 .0
                 .get(&name)
-                .ok_or_else(|| fault_at(glyph.column, length, format!("unknown macro \"{name}\"")))?;
+                .ok_or_else(|| unknown_macro(glyph.column, &name))?;
             if depth >= MAX_NESTING {
                 return Err(fault_at(
                     glyph.column,
@@ -280,6 +280,16 @@ pub(crate) fn quoted(line: &[Glyph], start: usize) -> Result<(String, usize), Li
     }
     let column = line.get(start).map_or(1, |glyph| glyph.column);
     Err(fault_at(column, 1, "quote \" is not closed".into()))
+}
+
+/// A macro that stands at a column and has no text.
+pub(crate) fn unknown_macro(column: u32, name: &str) -> LineFault {
+    let length = u32::try_from(name.chars().count()).unwrap_or(u32::MAX);
+    fault_at(
+        column,
+        length.saturating_add(2),
+        format!("unknown macro \"{name}\""),
+    )
 }
 
 pub(crate) fn fault_at(column: u32, length: u32, message: String) -> LineFault {

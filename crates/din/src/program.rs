@@ -1,11 +1,11 @@
 //! A file: its lines, and the programs and subroutines that stand in it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_path::{Axis, AxisSet};
 
-use crate::block;
+use crate::block::{self, WordKind};
 use crate::line::{self, Glyph, LineFault, Macros};
 use crate::words::{SpanKind, words};
 
@@ -14,6 +14,7 @@ use crate::words::{SpanKind, words};
 pub struct Program {
     name: Arc<str>,
     text: String,
+    encoding: Encoding,
     /// Where each line begins in the text, and where it ends without its ending.
     lines: Vec<(usize, usize)>,
     /// Lines that comments of several lines touch, with blanks in their place.
@@ -22,6 +23,18 @@ pub struct Program {
     /// What is wrong with heads of programs.
     heads: Vec<Fault>,
 }
+
+/// How the bytes of a file are its text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Encoding {
+    /// UTF-8, else one character for each byte (Latin-1), which loses nothing.
+    is_utf8: bool,
+    /// A byte-order mark stands in front.
+    has_mark: bool,
+}
+
+/// The byte-order mark of UTF-8.
+const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// A program or subroutine of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +62,31 @@ pub struct Fault {
     pub block: Arc<str>,
     /// What is wrong, with the name of what is not known.
     pub message: String,
+}
+
+/// What reading every block of a file has found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Judged {
+    pub faults: Vec<Fault>,
+    /// Calls, each with the fault that it is if there is no such subroutine.
+    pub calls: Vec<Call>,
+    /// Names of macros that the file defines.
+    pub macros: BTreeSet<String>,
+    /// Macros that are used where the file has not defined them, each with the fault that it is if nobody else does.
+    pub unknown_macros: Vec<(String, Fault)>,
+}
+
+/// A block that calls a subroutine.
+#[derive(Clone, Debug)]
+pub(crate) struct Call {
+    pub local: bool,
+    pub name: String,
+    pub fault: Fault,
+}
+
+/// A subroutine that is not there.
+pub(crate) fn not_found(name: &str) -> String {
+    format!("subroutine {name} is not found")
 }
 
 /// Something to go to in a file.
@@ -87,13 +125,21 @@ enum Line<'a> {
 }
 
 impl Program {
-    /// Reads a file; whatever is wrong with it is told by [`Program::faults`]. What is no UTF-8 is shown as `�`.
+    /// Reads a file; whatever is wrong with it is told by [`Program::faults`]. A file that is no UTF-8 has one
+    /// character for each byte.
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Program {
-        let text = String::from_utf8_lossy(bytes).into_owned();
+        let own = bytes.strip_prefix(MARK);
+        let has_mark = own.is_some();
+        let bytes = own.unwrap_or(bytes);
+        let (text, is_utf8) = match std::str::from_utf8(bytes) {
+            Ok(text) => (text.to_owned(), true),
+            Err(_) => (bytes.iter().copied().map(char::from).collect(), false),
+        };
         let lines = lines(&text);
         let mut program = Program {
             name: name.into(),
             text,
+            encoding: Encoding { is_utf8, has_mark },
             lines,
             uncommented: BTreeMap::new(),
             sections: Vec::new(),
@@ -140,6 +186,36 @@ impl Program {
         bounds
             .and_then(|(start, end)| self.text.get(*start..*end))
             .unwrap_or_default()
+    }
+
+    /// What stands behind a line before the next one: its ending.
+    pub(crate) fn ending(&self, number: u32) -> &str {
+        let end = (number as usize)
+            .checked_sub(1)
+            .and_then(|index| self.lines.get(index));
+        let next = self.lines.get(number as usize);
+        let next = next.map_or(self.text.len(), |(start, _)| *start);
+        end.and_then(|(_, end)| self.text.get(*end..next))
+            .unwrap_or_default()
+    }
+
+    /// A text in the bytes that the file is written in, as one that takes its place has them.
+    pub fn encoded(&self, text: &str) -> Vec<u8> {
+        let mut bytes = match self.encoding.has_mark {
+            true => MARK.to_vec(),
+            false => Vec::new(),
+        };
+        match self.encoding.is_utf8 {
+            true => bytes.extend_from_slice(text.as_bytes()),
+            // What has no byte there is not written by the listing.
+            false => bytes.extend(text.chars().map(|c| u8::try_from(c).unwrap_or(b'?'))),
+        }
+        bytes
+    }
+
+    /// Whether comments of several lines touch a line.
+    pub(crate) fn is_commented(&self, number: u32) -> bool {
+        self.uncommented.contains_key(&number)
     }
 
     /// Its programs and subroutines in their order.
@@ -217,40 +293,61 @@ impl Program {
     /// What is wrong in the file, as far as it can be said without executing it, at most [`MAX_FAULTS`]. Macros count as
     /// defined from their line on; what uses one that only its caller may define is not judged.
     pub fn faults(&self) -> Vec<Fault> {
-        let mut faults = self.heads.clone();
-        let mut macros = Macros::default();
-        for line in 1..=self.line_count() {
-            if faults.len() >= MAX_FAULTS {
-                break;
-            }
-            if let Err(fault) = self.judge(line, &mut macros) {
-                faults.push(self.fault(line, fault));
-            }
-        }
-        faults.sort_by_key(|fault| (fault.line, fault.column));
-        faults.truncate(MAX_FAULTS);
-        faults
+        self.judged().faults
     }
 
-    fn judge(&self, line: u32, macros: &mut Macros) -> Result<(), LineFault> {
+    /// Reads every block.
+    pub(crate) fn judged(&self) -> Judged {
+        let mut judged = Judged {
+            faults: self.heads.clone(),
+            ..Judged::default()
+        };
+        let mut macros = Macros::default();
+        for line in 1..=self.line_count() {
+            if judged.faults.len() >= MAX_FAULTS {
+                break;
+            }
+            if let Err(fault) = self.judge(line, &mut macros, &mut judged) {
+                judged.faults.push(self.fault(line, fault));
+            }
+        }
+        judged.faults.sort_by_key(|fault| (fault.line, fault.column));
+        judged.faults.truncate(MAX_FAULTS);
+        judged
+    }
+
+    fn judge(&self, line: u32, macros: &mut Macros, judged: &mut Judged) -> Result<(), LineFault> {
         let Some(glyphs) = self.glyphs(line) else {
             return Ok(());
         };
         if block::definitions(&glyphs)?.is_none()
-            && let Some(unknown) = macros.first_unknown(&glyphs)?
+            && let Some((unknown, name)) = macros.first_unknown(&glyphs)?
         {
             // What stands before it is judged all the same.
             let before = glyphs.get(..unknown).unwrap_or_default();
             let column = glyphs.get(unknown).map_or(1, |glyph| glyph.column);
             return match block::read(before, macros) {
                 Err(fault) if fault.column < column && fault.names_unknown() => Err(fault),
-                _ => Ok(()),
+                _ => {
+                    let fault = self.fault(line, line::unknown_macro(column, &name));
+                    judged.unknown_macros.push((name, fault));
+                    Ok(())
+                }
             };
         }
         for word in block::read(&glyphs, macros)?.words {
-            if let block::WordKind::Define(name, text) = &word.kind {
-                let told = macros.define(name, text);
-                told.map_err(|message| line::fault_at(word.column, word.length, message))?;
+            match word.kind {
+                WordKind::Define(name, text) => {
+                    let told = macros.define(&name, &text);
+                    told.map_err(|message| line::fault_at(word.column, word.length, message))?;
+                    judged.macros.insert(name);
+                }
+                WordKind::Call { local, name } => {
+                    let message = not_found(&name);
+                    let fault = self.fault(line, line::fault_at(word.column, word.length, message));
+                    judged.calls.push(Call { local, name, fault });
+                }
+                _ => {}
             }
         }
         Ok(())

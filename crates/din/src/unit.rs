@@ -1,5 +1,6 @@
 //! What a block orders, as the decoder hands it on.
 
+use std::fmt;
 use std::sync::Arc;
 
 use bahn_path::{Axis, Curve, Position};
@@ -150,6 +151,15 @@ pub struct Variable {
     pub name: Arc<str>,
     /// Index, where there is one.
     pub index: Option<u32>,
+}
+
+impl fmt::Display for Variable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.index {
+            Some(index) => f.write_str(&self.name.replace("[]", &format!("[{index}]"))),
+            None => f.write_str(&self.name),
+        }
+    }
 }
 
 /// Who keeps the variables of the channel. It is asked while blocks are decoded, in their order.

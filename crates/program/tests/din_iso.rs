@@ -387,3 +387,20 @@ fn a_name_ends_before_star_and_tilde() {
     let called = program.decode(0).blocks[1].operation.clone();
     assert_eq!(called, Operation::CallProgram("8".into()));
 }
+
+/// A byte-order mark begins a file; anywhere else it is text, also in the listing, where it might come to the front.
+#[test]
+fn a_mark_of_byte_order_is_one_at_the_front_only() {
+    for text in [
+        &b"\x1c\x1c\x1c\xef\xbb\xbf%\n%\x02\x08\n\n%"[..],
+        b"\n\xef\xbb\xbf\xff f%\n%\x02",
+        b"\n\xef\xbb\xbf%\n%7 G71 *\nN99999 %7 G71 *\n",
+        b"\xef\xbb\xbf\xef\xbb\xbf%\n%7 G71 *\nN99999 %7 G71 *\n",
+        b"\xef\xbb\xbf; note\n%7 G71 *\nN99999 %7 G71 *\n\xef\xbb\xbf%",
+    ] {
+        check_laws(text);
+    }
+    let blocks = |text: &[u8]| read(text).block_count();
+    assert_eq!(blocks(b"\xef\xbb\xbf%\n%\n%"), 2);
+    assert_eq!(blocks(b" \xef\xbb\xbf%\n%\nM3\n%"), 3);
+}

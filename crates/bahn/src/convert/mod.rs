@@ -110,6 +110,8 @@ struct Made {
     blocks: u32,
     unrolled: Vec<Listed>,
     refused: Vec<Listed>,
+    left_out: Vec<Listed>,
+    not_unrolled: Option<String>,
     proof: Option<Proof>,
 }
 
@@ -184,11 +186,14 @@ impl Bench<'_> {
     ) -> Result<Report, UsageError> {
         let made = match blocks {
             Some(blocks) => {
-                let unrolled = match blocks.refused.is_empty() || self.options.no_unroll {
-                    true => None,
-                    false => self.unrolled(job, &blocks, stop),
-                };
-                unrolled.unwrap_or_else(|| self.proved_blocks(job, blocks, library, stop))
+                if blocks.refused.is_empty() || self.options.no_unroll {
+                    self.proved_blocks(job, blocks, library, stop)
+                } else {
+                    self.unrolled(job, &blocks, stop).unwrap_or_else(|why| Made {
+                        not_unrolled: Some(why),
+                        ..self.proved_blocks(job, blocks, library, stop)
+                    })
+                }
             }
             None => self.gcode(job, stop),
         };
@@ -211,6 +216,8 @@ impl Bench<'_> {
             blocks: made.blocks,
             unrolled: made.unrolled,
             refused: made.refused,
+            left_out: made.left_out,
+            not_unrolled: made.not_unrolled,
             proof: made.proof,
             source: job.source.display().to_string(),
             target,
@@ -236,16 +243,21 @@ impl Bench<'_> {
             blocks: blocks.blocks,
             unrolled: Vec::new(),
             refused: blocks.refused,
+            left_out: Vec::new(),
+            not_unrolled: None,
             proof,
         }
     }
 
-    /// The path of a program whose blocks cannot all be said; `None` where a path cannot say it either.
-    fn unrolled(&self, job: &Job, blocks: &bahn_convert::Converted, stop: &Stop) -> Option<Made> {
+    /// The path of a program whose blocks cannot all be said.
+    ///
+    /// # Errors
+    /// Why a path cannot say it either.
+    fn unrolled(&self, job: &Job, blocks: &bahn_convert::Converted, stop: &Stop) -> Result<Made, String> {
         let (model, flag) = (self.list.model(), stop.flag());
         let define_tools = self.settings.tools.is_none();
-        let plain = unroll(self.run(&job.program), model, define_tools, &flag).ok()?;
-        let language = self.options.to.language()?;
+        let plain = unroll(self.run(&job.program), model, define_tools, &flag)?;
+        let language = self.options.to.language().unwrap_or(Language::Plain);
         let plain_program = target_program(job, Language::Plain.ending(), &plain);
         let (text, count) = match language {
             Language::Plain => (plain, plain_program.block_count()),
@@ -255,8 +267,8 @@ impl Bench<'_> {
                     ..Options::default()
                 };
                 let made = convert(&plain_program, language, &options);
-                if !made.refused.is_empty() {
-                    return None;
+                if let Some(first) = made.refused.first() {
+                    return Err(format!("{}: {}", first.text, first.reason));
                 }
                 (made.text, made.blocks)
             }
@@ -265,11 +277,17 @@ impl Bench<'_> {
         let run = Interpreter::new(target, self.settings.clone(), Box::new(NoLibrary));
         // What is unrolled is proved whether that is wanted or not: only so is it known to be the whole.
         let proof = prove_unrolled(self.run(&job.program), run, model, &flag);
-        proof.holds().then(|| Made {
+        if !proof.holds() {
+            let what = proof.first_difference.map(|difference| difference.what);
+            return Err(what.unwrap_or_else(|| "the run was not followed to its end".to_owned()));
+        }
+        Ok(Made {
             text,
             blocks: count,
             unrolled: blocks.refused.clone(),
             refused: Vec::new(),
+            left_out: Vec::new(),
+            not_unrolled: None,
             proof: Some(proof),
         })
     }
@@ -282,6 +300,7 @@ impl Bench<'_> {
             unit: job.program.unit(),
             comments: !self.options.no_comments,
             rapid_mm_min: rapid.into_iter().fold(f64::INFINITY, f64::min),
+            user_functions: self.options.user_functions,
         };
         let run = || self.run(&job.program);
         let made = gcode::write(&run, &options, &stop.flag());
@@ -299,6 +318,8 @@ impl Bench<'_> {
             blocks: made.lines,
             unrolled: Vec::new(),
             refused: made.refused,
+            left_out: made.left_out,
+            not_unrolled: None,
             proof,
         }
     }

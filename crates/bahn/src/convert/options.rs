@@ -28,14 +28,15 @@ place of each that cannot be said).
 
 Proof: source and target are run side by side, with the same parameters, tools and Q parameters:
 every element of the path (kind, start, end, centre, length to 1 um; feed to 0.1 %), every
-function and stop, and the message at the end. A target that differs is not written. Probes
-answer half way in both. A path that depends on a probe is not written for LinuxCNC.
+function, stop and warning, and the message at the end. A target that differs is not written.
+Probes answer half way in both. A path that depends on a probe is not written for LinuxCNC.
 
 Files: an input is never replaced, another file only with --replace. Exit codes: 0 converted and
 proved, 1 something is refused, differs or is not proved, 2 wrong use.
 
-JSON report (--format json): ok, blocks, unrolled and refused (block, line, text, reason), proof
-(elements, functions, stops, max_deviation_um, message, completed, first_difference: what,
+JSON report (--format json): ok, blocks, unrolled, refused and left_out (block, line, text,
+reason; left_out is what the path does not depend on), not_unrolled (why, or null), proof
+(elements, functions, stops, warnings, max_deviation_um, message, completed, first_difference: what,
 source and target with program, block, line, text; or null), source, target (null when nothing
 was written), to. Of several programs: ok, programs.";
 
@@ -69,6 +70,10 @@ pub(crate) struct ConvertOptions {
     /// G-code without the source blocks as comments.
     #[arg(long)]
     pub no_comments: bool,
+    /// G-code with the machine builder's functions M00 to M99 as M100 to M199, which LinuxCNC gives to programs of its
+    /// user, instead of stops.
+    #[arg(long)]
+    pub user_functions: bool,
     /// Step of the block numbers of DIN/ISO programs, 0 writes none; by default MP7220 of a machine or a list that is
     /// given, else 10.
     #[arg(long, value_name = "STEP")]

@@ -22,6 +22,10 @@ pub(super) struct Report {
     pub unrolled: Vec<Listed>,
     /// What the target does not say.
     pub refused: Vec<Listed>,
+    /// What the target leaves out since the path does not depend on it.
+    pub left_out: Vec<Listed>,
+    /// Why what is refused was not unrolled, if it was tried.
+    pub not_unrolled: Option<String>,
     /// `None` where none was wanted.
     pub proof: Option<Proof>,
     pub source: String,
@@ -48,6 +52,10 @@ pub(super) fn text(report: &Report) -> String {
     row("Blocks", &report.blocks.to_string());
     list(&mut row, "Unrolled", &report.unrolled);
     list(&mut row, "Refused", &report.refused);
+    if let Some(why) = &report.not_unrolled {
+        row("Not unrolled", why);
+    }
+    list(&mut row, "Left out", &report.left_out);
     match &report.proof {
         None => row("Proof", "none was wanted"),
         Some(proof) => self::proof(&mut row, proof),
@@ -72,8 +80,8 @@ fn list(row: &mut impl FnMut(&str, &str), label: &str, listed: &[Listed]) {
 
 fn proof(row: &mut impl FnMut(&str, &str), proof: &Proof) {
     let counted = format!(
-        "{} elements, {} functions, {} stops, {:.3} µm apart at most",
-        proof.elements, proof.functions, proof.stops, proof.max_deviation_um
+        "{} elements, {} functions, {} stops, {} warnings, {:.3} µm apart at most",
+        proof.elements, proof.functions, proof.stops, proof.warnings, proof.max_deviation_um
     );
     match &proof.first_difference {
         Some(difference) => {

@@ -85,6 +85,10 @@ fn add(
             )));
         }
     };
+    if files::extension(&source) == "nc" && !program.begins_with_header() {
+        let why = "a program of DIN 66025 (.nc) has its own axes and functions: it is not converted";
+        return Err(UsageError::new(format!("{}: {why}", source.display())));
+    }
     let already = match options.to {
         Target::Plain => !is_iso(&program),
         Target::Iso => is_iso(&program),

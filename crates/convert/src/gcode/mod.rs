@@ -30,6 +30,8 @@ pub struct GCode {
     pub lines: u32,
     /// What it cannot say, each once.
     pub refused: Vec<Listed>,
+    /// What it leaves out since the path does not depend on it, each once.
+    pub left_out: Vec<Listed>,
     /// The message that the run ended with, if it did not come to its end.
     pub message: Option<String>,
     /// Whether the run was followed to its end.
@@ -45,12 +47,15 @@ pub fn write(run: &dyn Fn() -> Interpreter, options: &Options, stop: &Arc<Atomic
     while let Some((block, said)) = sayer.next() {
         writer.said(&said, || numbered(At::of(sayer.run(), block)));
     }
+    let (completed, message) = (sayer.completed(), sayer.message().map(str::to_owned));
+    let (refused, left_out) = sayer.into_lists();
     GCode {
         lines: writer.lines(),
         text: writer.finish(),
-        completed: sayer.completed(),
-        message: sayer.message().map(str::to_owned),
-        refused: sayer.into_refused(),
+        refused,
+        left_out,
+        message,
+        completed,
     }
 }
 

@@ -14,4 +14,6 @@ pub struct Options {
     pub comments: bool,
     /// Arcs in rapid traverse, which LinuxCNC does not have, move with this feed, mm/min.
     pub rapid_mm_min: f64,
+    /// Functions M00 to M99 of the machine builder as M100 to M199, which LinuxCNC gives to programs of its user.
+    pub user_functions: bool,
 }

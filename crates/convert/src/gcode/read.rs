@@ -235,6 +235,7 @@ fn read_word(
         b'F' => *feed = value,
         b'S' => words.said = Some(Said::Speed(value)),
         b'T' => words.said = Some(Said::Next(value as u32)),
+        b'M' if (100.0..200.0).contains(&value) => words.said = Some(Said::User(value as u16)),
         b'P' => words.p = Some(value),
         b'R' => words.r = Some(value),
         letter @ b'I'..=b'K' => {

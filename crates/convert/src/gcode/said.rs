@@ -8,8 +8,8 @@ use bahn_interpreter::{Interpreter, WarningKind};
 use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 use bahn_path::{
-    At, Axis, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Plane, Position, SpindleOrder,
-    TechnologyFunction, Thread,
+    At, Axis, BlockRef, ControlFunction, Curve, FeedRate, Function, OverrideLaw, PathElement, Plane,
+    Position, SpindleOrder, TechnologyFunction, Thread,
 };
 
 use super::options::Options;
@@ -52,6 +52,8 @@ pub(super) enum Said {
         optional: bool,
     },
     Print(String),
+    /// A function of LinuxCNC's user, M100 to M199.
+    User(u16),
     /// What cannot be said: the program stops there.
     Refused(String),
     End,
@@ -69,7 +71,9 @@ pub(super) struct Sayer {
     overrides: bool,
     /// The way into a thread whose way out comes next.
     tap: Option<(Position, Position, Thread)>,
+    user_functions: bool,
     refused: Vec<Listed>,
+    left_out: Vec<Listed>,
     message: Option<String>,
     completed: bool,
     over: bool,
@@ -124,7 +128,9 @@ impl Sayer {
             changes,
             overrides: true,
             tap: None,
+            user_functions: options.user_functions,
             refused: Vec::new(),
+            left_out: Vec::new(),
             message: None,
             completed: false,
             over: false,
@@ -145,8 +151,9 @@ impl Sayer {
         self.message.as_deref()
     }
 
-    pub fn into_refused(self) -> Vec<Listed> {
-        self.refused
+    /// What was refused, and what is left out since the path does not depend on it.
+    pub fn into_lists(self) -> (Vec<Listed>, Vec<Listed>) {
+        (self.refused, self.left_out)
     }
 
     /// The next thing; `None` behind the end.
@@ -192,17 +199,29 @@ impl Sayer {
 
     /// What cannot be said is listed once for each block; the program stops where it is.
     fn refuse(&mut self, block: BlockRef, what: &str) {
-        let at = proof::At::of(&self.run, block);
-        let listed = Listed {
-            block: at.block,
-            line: at.line,
-            text: at.text,
-            reason: what.to_owned(),
-        };
+        let listed = self.listed(block, what);
         if !self.refused.contains(&listed) {
             self.refused.push(listed);
         }
         self.say(block, Said::Refused(what.to_owned()));
+    }
+
+    /// What the path does not depend on is listed once for each block.
+    fn leave_out(&mut self, block: BlockRef, what: &str) {
+        let listed = self.listed(block, what);
+        if !self.left_out.contains(&listed) {
+            self.left_out.push(listed);
+        }
+    }
+
+    fn listed(&self, block: BlockRef, what: &str) -> Listed {
+        let at = proof::At::of(&self.run, block);
+        Listed {
+            block: at.block,
+            line: at.line,
+            text: at.text,
+            reason: what.to_owned(),
+        }
     }
 
     /// Nothing can be said behind here.
@@ -230,6 +249,9 @@ impl Sayer {
         if overrides != self.overrides {
             self.overrides = overrides;
             self.say(block, Said::Overrides(overrides));
+        }
+        if element.constant_speed {
+            self.leave_out(block, "M90: G61 holds the corners, whatever the speed");
         }
         match element.thread() {
             Some(thread) => self.thread(element, *thread),
@@ -343,12 +365,21 @@ impl Sayer {
             Function::Print(text) => self.say(block, Said::Print(bare(text))),
             Function::Voltage(_) => self.refuse(block, "LinuxCNC has no output S of M200 to M204"),
             Function::Plc(_) => self.refuse(block, "LinuxCNC has no FN19 PLC"),
-            // The blank is that of the graphics; the others act in the control's own tables and loops.
-            Function::Blank(_)
-            | Function::Control(_)
-            | Function::OrientationAngle(_)
-            | Function::Superimpose(_)
-            | Function::Synchronise => {}
+            Function::Blank(_) => self.leave_out(block, "the blank: it is that of the graphics"),
+            Function::Control(ControlFunction::SecondServoSet(_)) => {
+                self.leave_out(block, "M105, M106: the loops of LinuxCNC are its own");
+            }
+            Function::Control(_) => {
+                self.leave_out(
+                    block,
+                    "M101, M102, M107, M108: the tools of LinuxCNC have no life",
+                );
+            }
+            Function::Superimpose(_) => {
+                self.leave_out(block, "M118: LinuxCNC superimposes no handwheel by a program");
+            }
+            // The angle stands beside M19; LinuxCNC executes one line after the other.
+            Function::OrientationAngle(_) | Function::Synchronise => {}
         }
     }
 
@@ -376,6 +407,7 @@ impl Sayer {
             2 | 30 | 1 => {}
             _ if spindle.is_some() || coolant.is_some() => {}
             _ if Technology::of_m(self.model, code).is_some_and(|known| known.deeds().next().is_some()) => {}
+            _ if self.user_functions && code < 100 => self.say(block, Said::User(100 + code)),
             _ => self.refuse(
                 block,
                 &format!("LinuxCNC has no M{code}: it belongs to the machine"),

@@ -125,6 +125,9 @@ impl Writer {
             Said::Print(line) => {
                 let _ = write!(text, "(PRINT,{line})");
             }
+            Said::User(code) => {
+                let _ = write!(text, "M{code}");
+            }
             Said::Refused(what) => {
                 let _ = write!(text, "(MSG,{})", bare(what));
                 self.line(&text);

@@ -118,11 +118,22 @@ pub fn there_and_back(source: &Program, settings: &Settings, folder: &Path) -> P
 
 /// The program for LinuxCNC of a program, and the proof that it is the same path.
 pub fn gcode(source: &Program, settings: &Settings, folder: &Path) -> (gcode::GCode, Proof) {
+    gcode_with(source, settings, folder, false)
+}
+
+/// [`gcode`], with functions of the machine builder as those of LinuxCNC's user or without.
+pub fn gcode_with(
+    source: &Program,
+    settings: &Settings,
+    folder: &Path,
+    user_functions: bool,
+) -> (gcode::GCode, Proof) {
     let options = gcode::Options {
         model: settings.model,
         unit: source.unit(),
         comments: true,
         rapid_mm_min: 15_000.0,
+        user_functions,
     };
     let begin = || run(source, settings, folder);
     let stop = Arc::new(AtomicBool::new(false));

@@ -146,6 +146,28 @@ fn subroutine_at(start: usize, name: &str, role: Role) -> Mention {
     }
 }
 
+/// The value of a variable or a parameter behind a run; nothing of one whose number is calculated.
+fn value(name: &str, examined: &Examined) -> String {
+    let digits = name
+        .strip_prefix('P')
+        .map(|digits| digits.trim_start_matches('0'));
+    let name = match digits {
+        Some("") => "P0".to_owned(),
+        Some(digits) => format!("P{digits}"),
+        None => name.to_owned(),
+    };
+    let ended = if examined.complete {
+        ""
+    } else {
+        " (the run was broken off)"
+    };
+    match examined.named.get(&name) {
+        Some(Some(value)) => format!("{value}{ended}"),
+        Some(None) => format!("not known: it follows from what only the channel knows{ended}"),
+        None => String::new(),
+    }
+}
+
 fn first_word(text: &str) -> &str {
     text.split([' ', '\t', ';', '(']).next().unwrap_or_default()
 }
@@ -214,11 +236,17 @@ impl Analysis for DinProgram {
         Examined {
             faults: faults.collect(),
             complete: examined.complete,
+            named: examined.values,
             ..Examined::default()
         }
     }
 
-    fn hover(&self, at: usize, _: Option<&Examined>) -> Option<Hover> {
+    fn hover_waits(&self, at: usize) -> bool {
+        let mention = mention_at(self.mentions(), at);
+        mention.is_some_and(|mention| matches!(mention.thing, Thing::Variable(_)))
+    }
+
+    fn hover(&self, at: usize, examined: Option<&Examined>) -> Option<Hover> {
         if let Some(mention) = mention_at(self.mentions(), at) {
             let lines = |role: Role| {
                 let places = mentions_of(self.mentions(), &mention.thing).filter(|other| other.role == role);
@@ -234,8 +262,13 @@ impl Analysis for DinProgram {
                 Thing::Subroutine(_) => ("Subroutine", ""),
                 _ => ("File with a subroutine", ""),
             };
+            let value = match (&mention.thing, examined) {
+                (Thing::Variable(name), Some(examined)) => value(name, examined),
+                _ => String::new(),
+            };
             let text = Markdown::titled(&format!("{name}: {title}"))
                 .paragraph(rule)
+                .fact("At the end of a run", &value)
                 .fact("Set in lines", &lines(Role::Sets))
                 .fact("Used in lines", &lines(Role::Uses));
             return Some(Hover {
@@ -357,7 +390,7 @@ impl Analysis for DinProgram {
     }
 
     fn formatted(&self, _: &World) -> Result<String, String> {
-        Err("programs of DIN 66025 have no normalised listing".to_owned())
+        Ok(self.program.listing())
     }
 
     fn can_rename(&self, thing: &Thing) -> bool {

@@ -3,6 +3,7 @@
 mod kind;
 mod mention;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -131,6 +132,8 @@ pub(crate) struct Examined {
     pub(crate) not_listed: usize,
     /// The Q parameters at the end of a run; none where the program does not set them.
     pub(crate) values: Vec<Option<f64>>,
+    /// What else has a name and a value at the end of a run; without the value where that is not known.
+    pub(crate) named: BTreeMap<String, Option<f64>>,
     /// The run came to its end.
     pub(crate) complete: bool,
 }

@@ -128,6 +128,7 @@ fn as_gcode(program: &PartProgram, world: &World, stop: &Arc<AtomicBool>) -> Res
         unit: program.program.unit(),
         comments: true,
         rapid_mm_min: rapid.into_iter().fold(f64::INFINITY, f64::min),
+        user_functions: false,
     };
     let run = || run(&program.program, program, world);
     let made = gcode::write(&run, &options, stop);

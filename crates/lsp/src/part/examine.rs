@@ -32,6 +32,7 @@ pub(super) fn examine(program: &PartProgram, world: &World, interrupt: &AtomicBo
         not_listed: found.more.errors + found.more.warnings,
         complete: found.complete == Complete::Yes,
         values: found.q_values,
+        ..Examined::default()
     }
 }
 

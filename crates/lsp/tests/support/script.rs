@@ -455,15 +455,28 @@ pub fn din<W: Wire>(client: &mut Client<W>, folder: &Path) {
     let edit = client.request("textDocument/rename", params.clone());
     let text = client.edited(&document, &edit["changes"][&document.uri]);
     assert_eq!(text, document.text.replace("BORE", "DRILL"));
-    params["options"] = json!({"tabSize": 2, "insertSpaces": true});
-    let reason = client.refused("textDocument/formatting", params);
-    assert!(reason.contains("listing"), "{reason}");
-    let tokens = tokens(client, &document);
-    assert!(
-        tokens.contains(&("(Höhe)".to_owned(), "comment".to_owned())),
-        "{tokens:?}"
+    let hover = client.hover(&document, "P1 =", 0);
+    assert!(hover.contains("*At the end of a run:* 10\n"), "{hover}");
+    let hover = client.hover(&document, "V.G.RW", 3);
+    assert!(hover.contains("*At the end of a run:* 5\n"), "{hover}");
+    client.edit(
+        &mut document,
+        "N40 P1 = V.G.RW * 2",
+        "n40p1 = v.g.rw* 2+V.E.FORCE (Maß)",
     );
-    client.close(&document);
+    let hover = client.hover(&document, "p1 =", 0);
+    assert!(
+        hover.contains("not known: it follows from what only the channel knows\n"),
+        "{hover}"
+    );
+    params["options"] = json!({"tabSize": 2, "insertSpaces": true});
+    let edits = client.request("textDocument/formatting", params);
+    let text = client.edited(&document, &edits);
+    let listed = document.text.replace(
+        "n40p1 = v.g.rw* 2+V.E.FORCE (Maß)",
+        "N40 P1=V.G.RW*2+V.E.FORCE (Maß)",
+    );
+    assert_eq!(text, listed);
 }
 
 /// Programs of the PLC: every request.

@@ -9,7 +9,7 @@ use std::fmt::{self, Display};
 
 use crate::lines::lines;
 use crate::parse::rest_of_word;
-use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
+use crate::text::{is_blank, text_start, to_text, trim};
 use crate::{
     Block, Calculation, Condition, Coordinates, Expression, Feed, Header, MFunctions, NumberedBlock,
     Operation, Program, Unit, Value,
@@ -80,7 +80,7 @@ struct Listing<'a> {
 impl Display for Listing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (leading, trailing) = self.program.around();
-        verbatim(f, leading)?;
+        verbatim(f, leading.get(text_start(leading)..).unwrap_or_default())?;
         let language = self.program.language();
         let mut text = String::new();
         for NumberedBlock { number, block, .. } in self.program.blocks() {
@@ -100,19 +100,23 @@ impl Display for Listing<'_> {
 
 /// Writes lines as they are, without blanks at their ends. Empty ones stay: they keep a `~` before them from
 /// joining more.
-fn verbatim(f: &mut fmt::Formatter<'_>, mut text: &[u8]) -> fmt::Result {
-    // At the front blanks and byte-order marks are no text.
-    while let Some(first) = text.first() {
-        match text.strip_prefix(BYTE_ORDER_MARK) {
-            Some(behind) => text = behind,
-            None if is_blank(*first) => text = text.get(1..).unwrap_or_default(),
-            None => break,
-        }
-    }
-    lines(text)
-        .map(trim)
-        .try_for_each(|line| writeln!(f, "{}", to_text(line)))
+fn verbatim(f: &mut fmt::Formatter<'_>, text: &[u8]) -> fmt::Result {
+    let blanks = text.iter().take_while(|b| is_blank(**b)).count();
+    let text = text.get(blanks..).unwrap_or_default();
+    lines(text).map(trim).enumerate().try_for_each(|(index, line)| {
+        let line = to_text(line);
+        // At the front of a file a byte-order mark would be no text.
+        let blank = if index == 0 && line.starts_with(MARK) {
+            " "
+        } else {
+            ""
+        };
+        writeln!(f, "{blank}{line}")
+    })
 }
+
+/// The byte-order mark as a character.
+const MARK: char = '\u{feff}';
 
 /// Text being written. Words other than the first begin with a blank.
 struct Output {
