@@ -332,6 +332,36 @@ mod tests {
         assert!(std::fs::symlink_metadata(&link).is_err());
     }
 
+    /// What was sent last arrives, though the sender closes at once and has something unread itself.
+    #[test]
+    fn the_last_word_arrives() {
+        let link = std::env::temp_dir().join(format!("bahn-last-{}", std::process::id()));
+        for line in [Line::Pty(Some(link)), Line::Listen("127.0.0.1:0".into())] {
+            let mut ours = Channel::open(&Spec::of(line.clone()), Characters::FIXED).unwrap();
+            let theirs = match line {
+                Line::Pty(_) => Line::Serial(ours.place()),
+                _ => Line::Connect(ours.place()),
+            };
+            let mut theirs = Channel::open(&Spec::of(theirs), Characters::FIXED).unwrap();
+            until(&mut ours, Happened::Opened);
+            theirs.send(b"unread");
+            theirs.wait(Duration::ZERO).unwrap();
+            std::thread::sleep(Duration::from_millis(20));
+            ours.send(b"\x04");
+            let closing = std::thread::spawn(move || {
+                while !ours.outgoing.is_empty() {
+                    let written = ours.wire.write(&ours.outgoing).unwrap();
+                    ours.outgoing.drain(..written);
+                }
+                drop(ours);
+            });
+            std::thread::sleep(Duration::from_millis(100));
+            assert_eq!(hear(&mut theirs, 1), b"\x04", "{line}");
+            drop(theirs);
+            closing.join().unwrap();
+        }
+    }
+
     /// One peer at a time; who closes has pulled the cable, the next one is taken.
     #[test]
     fn one_peer_after_the_other() {

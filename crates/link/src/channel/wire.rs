@@ -1,9 +1,9 @@
 //! What carries the bytes: a socket, a pseudo terminal, a serial port.
 
 use std::io::{self, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serialport::{DataBits, FlowControl, SerialPort, StopBits};
 
@@ -14,6 +14,8 @@ use crate::{Characters, Parity};
 
 /// How long a connection may take.
 const CONNECT: Duration = Duration::from_secs(5);
+/// How long a peer has to close behind the end of what is sent.
+const FAREWELL: Duration = Duration::from_millis(200);
 
 /// One of them.
 #[derive(Debug)]
@@ -184,6 +186,35 @@ impl Wire {
     /// Whether it has control lines.
     pub fn has_lines(&self) -> bool {
         matches!(self, Wire::Serial(_))
+    }
+}
+
+/// A socket that is closed with something unread in it takes back what was sent and not yet read there: so it ends what it
+/// sends, and reads until the peer has closed, too.
+fn say_farewell(stream: &mut TcpStream) {
+    let end = Instant::now() + FAREWELL;
+    if stream.shutdown(Shutdown::Write).is_err() {
+        return;
+    }
+    let mut rest = [0; 256];
+    loop {
+        let left = end.saturating_duration_since(Instant::now());
+        let got = read_stream(stream, &mut rest, left);
+        if left.is_zero() || !matches!(got, Ok(Got::Nothing | Got::Bytes(_))) {
+            return;
+        }
+    }
+}
+
+impl Drop for Wire {
+    fn drop(&mut self) {
+        if let Wire::Listener {
+            peer: Some(stream), ..
+        }
+        | Wire::Stream(Some(stream)) = self
+        {
+            say_farewell(stream);
+        }
     }
 }
 
