@@ -1,11 +1,13 @@
 //! The byte channel: a line to a device, real or simulated, with its speed and its faults.
 //!
-//! `spec`: how a port is written; `wire`: sockets, `pty` and serial ports; `pace`: the speed of a line; `fault`: a bad one.
+//! `spec`: how a port is written; `wire`: sockets, `pty` and serial ports; `redial`: a connection
+//! that is made again; `pace`: the speed of a line; `fault`: a bad one.
 
 mod fault;
 mod pace;
 mod poll;
 mod pty;
+mod redial;
 mod spec;
 mod wire;
 
@@ -124,6 +126,11 @@ impl Channel {
             outgoing: Vec::new(),
             transparent: false,
         })
+    }
+
+    /// One that connects does so again when its peer has closed, from now on.
+    pub fn connect_again(&mut self) {
+        self.wire.redial();
     }
 
     /// All eight bits of a byte count from now on, or those of the characters again.
@@ -380,6 +387,22 @@ mod tests {
         until(&mut ours, Happened::Closed);
         until(&mut ours, Happened::Opened);
         assert_eq!(hear(&mut ours, 1), b"2");
+        // Who is told so connects again, and has what is said to it then.
+        let mut again = Channel::open(&connect, Characters::FIXED).unwrap();
+        again.connect_again();
+        drop(second);
+        until(&mut ours, Happened::Closed);
+        until(&mut ours, Happened::Opened);
+        let place = ours.place();
+        drop(ours);
+        until(&mut again, Happened::Closed);
+        assert!(!again.is_connected());
+        let mut ours = Channel::open(&Spec::of(Line::Listen(place)), Characters::FIXED).unwrap();
+        until(&mut again, Happened::Opened);
+        until(&mut ours, Happened::Opened);
+        ours.send(b"3");
+        ours.wait(Duration::ZERO).unwrap();
+        assert_eq!(hear(&mut again, 1), b"3");
         // A taken address cannot be opened twice.
         assert!(Channel::open(&Spec::of(Line::Listen(ours.place())), Characters::FIXED).is_err());
     }
