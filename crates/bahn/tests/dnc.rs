@@ -368,6 +368,52 @@ fn the_sender_goes_on_behind_a_broken_line() {
     }
 }
 
+/// By the clock on the wall, at the speed of the network and over a line that is slower than the feed: the path waits for its
+/// blocks then, and is as long as the line takes.
+#[test]
+fn in_real_time() {
+    let lines: Vec<String> = (1..=300)
+        .map(|at| format!("{at} L X+{}.{} F6000", 20 + at / 5, at % 5 * 2))
+        .collect();
+    let text = format!("0 BEGIN PGM 15 MM\n{}\n301 END PGM 15 MM\n", lines.join("\n"));
+    let run = |baud: &str| {
+        let folder = mill();
+        std::fs::create_dir(folder.path("parts")).unwrap();
+        folder.write("parts/15.H", &text);
+        let mut sender = folder
+            .command()
+            .args(format!("link dnc send --dir parts --port tcp:127.0.0.1:0,mode=fe1{baud} 15.H").split(' '))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let address = address(&mut BufReader::new(sender.stderr.take().unwrap()));
+        let begun = std::time::Instant::now();
+        let run = folder.bahn(&format!(
+            "link dnc run --machine mill --fresh --realtime --format json --port connect:{address},mode=fe1{baud} 15.H"
+        ));
+        let wall = begun.elapsed().as_secs_f64();
+        let report: Value = serde_json::from_str(run.out().lines().last().unwrap()).unwrap();
+        assert_eq!((run.code(), &report["blocks"]), (0, &302.into()), "{report}");
+        assert_eq!(report["position"]["X"], 80.0);
+        assert!(sender.wait().unwrap().success());
+        let machining = report["machining_time_s"].as_f64().unwrap();
+        assert!(wall > machining, "{wall} s for {machining} s");
+        machining
+    };
+    let (fast, slow) = std::thread::scope(|scope| {
+        let fast = scope.spawn(|| run(""));
+        let slow = scope.spawn(|| run(",baud=38400"));
+        (fast.join().unwrap(), slow.join().unwrap())
+    });
+    // Each block has STX, ETB, BCC and DC1 around it, and an acknowledgement; a character has ten bits.
+    let characters: usize = text.lines().map(|line| line.len() + 5).sum();
+    let line = characters as f64 * 10.0 / 38_400.0;
+    assert!(slow > line && slow < line * 2.0, "{slow} s, the line {line} s");
+    // 60 mm with F6000 and the ramps.
+    assert!(fast > 0.6 && fast < line, "{fast} s, the line {line} s");
+}
+
 /// A sender that connects does so again when its line drops, and goes on there; nobody there any more ends it.
 #[test]
 fn the_sender_connects_again() {
