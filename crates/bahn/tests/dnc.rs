@@ -368,6 +368,136 @@ fn the_sender_goes_on_behind_a_broken_line() {
     }
 }
 
+/// By the clock on the wall, at the speed of the network and over a line that is slower than the feed: the path waits for its
+/// blocks then, and is as long as the line takes.
+#[test]
+fn in_real_time() {
+    let lines: Vec<String> = (1..=300)
+        .map(|at| format!("{at} L X+{}.{} F6000", 20 + at / 5, at % 5 * 2))
+        .collect();
+    let text = format!("0 BEGIN PGM 15 MM\n{}\n301 END PGM 15 MM\n", lines.join("\n"));
+    let run = |baud: &str| {
+        let folder = mill();
+        std::fs::create_dir(folder.path("parts")).unwrap();
+        folder.write("parts/15.H", &text);
+        let mut sender = folder
+            .command()
+            .args(format!("link dnc send --dir parts --port tcp:127.0.0.1:0,mode=fe1{baud} 15.H").split(' '))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let address = address(&mut BufReader::new(sender.stderr.take().unwrap()));
+        let begun = std::time::Instant::now();
+        let run = folder.bahn(&format!(
+            "link dnc run --machine mill --fresh --realtime --format json --port connect:{address},mode=fe1{baud} 15.H"
+        ));
+        let wall = begun.elapsed().as_secs_f64();
+        let report: Value = serde_json::from_str(run.out().lines().last().unwrap()).unwrap();
+        assert_eq!((run.code(), &report["blocks"]), (0, &302.into()), "{report}");
+        assert_eq!(report["position"]["X"], 80.0);
+        assert!(sender.wait().unwrap().success());
+        let machining = report["machining_time_s"].as_f64().unwrap();
+        assert!(wall > machining, "{wall} s for {machining} s");
+        machining
+    };
+    let (fast, slow) = std::thread::scope(|scope| {
+        let fast = scope.spawn(|| run(""));
+        let slow = scope.spawn(|| run(",baud=38400"));
+        (fast.join().unwrap(), slow.join().unwrap())
+    });
+    // Each block has STX, ETB, BCC and DC1 around it, and an acknowledgement; a character has ten bits.
+    let characters: usize = text.lines().map(|line| line.len() + 5).sum();
+    let line = characters as f64 * 10.0 / 38_400.0;
+    assert!(slow > line && slow < line * 2.0, "{slow} s, the line {line} s");
+    // 60 mm with F6000 and the ramps.
+    assert!(fast > 0.6 && fast < line, "{fast} s, the line {line} s");
+}
+
+/// A sender that connects does so again when its line drops, and goes on there; nobody there any more ends it.
+#[test]
+fn the_sender_connects_again() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("parts")).unwrap();
+    folder.write("parts/15.H", BLOCKS.join("\n") + "\n");
+    for (comes_back, option) in [(true, "--resume"), (false, "--again 1")] {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let place = listener.local_addr().unwrap();
+        let arguments =
+            format!("link dnc send --dir parts --format json --port connect:{place} 15.H {option}");
+        let sender = folder
+            .command()
+            .args(arguments.split_whitespace())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut device = Device::new(listener.accept().unwrap().0);
+        device.send(SOH, "H15E");
+        assert_eq!(device.answer(), ACK);
+        for block in &BLOCKS[..2] {
+            assert_eq!(device.block(STX), *block);
+            device.0.write_all(&[ACK]).unwrap();
+        }
+        assert_eq!(device.block(STX), BLOCKS[2]);
+        drop((device, listener));
+        if comes_back {
+            // For a while nobody is there.
+            std::thread::sleep(Duration::from_millis(800));
+            let listener = TcpListener::bind(place).unwrap();
+            let mut device = Device::new(listener.accept().unwrap().0);
+            device.send(SOH, "H15E");
+            assert_eq!(device.answer(), ACK);
+            for block in [BLOCKS[0], BLOCKS[2], BLOCKS[3], BLOCKS[4], BLOCKS[5]] {
+                assert_eq!(device.block(STX), block);
+                device.0.write_all(&[ACK]).unwrap();
+            }
+            assert_eq!(device.answer(), ETX);
+            device.0.write_all(&[EOT]).unwrap();
+        }
+        let output = sender.wait_with_output().unwrap();
+        let told = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(i32::from(!comes_back)), "{told}");
+        assert!(
+            told.contains(r#""event":"broken","program":"15.H","blocks":2"#),
+            "{told}"
+        );
+        let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
+        assert_eq!(last["complete"], comes_back, "{told}");
+    }
+}
+
+/// A control that connects, too: START again finds the next line.
+#[test]
+fn the_control_connects_again() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = format!("connect:{}", listener.local_addr().unwrap());
+    let folder = mill();
+    let arguments =
+        format!("link dnc run --machine mill --fresh --format json --restarts 1 --port {port} 15.H");
+    let child = folder
+        .command()
+        .args(arguments.split_whitespace())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    for blocks in [3, BLOCKS.len()] {
+        let mut device = Device::new(listener.accept().unwrap().0);
+        assert_eq!(device.block(SOH), "H15E");
+        device.0.write_all(&[ACK]).unwrap();
+        for block in &BLOCKS[..blocks] {
+            device.send(STX, block);
+            assert_eq!(device.answer(), ACK);
+        }
+        if blocks == BLOCKS.len() {
+            device.0.write_all(&[ETX]).unwrap();
+            assert_eq!(device.answer(), EOT);
+        }
+    }
+    let (report, status) = report(child);
+    assert_eq!((status, &report["completed"]), (0, &true.into()), "{report}");
+    assert_eq!(report["position"]["X"], 120.0);
+}
+
 /// What is written wrongly ends before anything is opened.
 #[test]
 fn wrong_ports() {

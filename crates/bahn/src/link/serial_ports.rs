@@ -160,6 +160,8 @@ fn answer_on(port: Port, site: &Arc<Site>, answer: Answer, stop: &AtomicBool, tr
         reached,
         plc,
     } = port;
+    // A machine that is on is there again when its peer is.
+    channel.connect_again();
     let (_, name, prefix) = PORTS.get(number).copied().unwrap_or_default();
     let rights = Rights {
         asks: answer != Answer::Yes,

@@ -1,11 +1,13 @@
 //! The byte channel: a line to a device, real or simulated, with its speed and its faults.
 //!
-//! `spec`: how a port is written; `wire`: sockets, `pty` and serial ports; `pace`: the speed of a line; `fault`: a bad one.
+//! `spec`: how a port is written; `wire`: sockets, `pty` and serial ports; `redial`: a connection
+//! that is made again; `pace`: the speed of a line; `fault`: a bad one.
 
 mod fault;
 mod pace;
 mod poll;
 mod pty;
+mod redial;
 mod spec;
 mod wire;
 
@@ -124,6 +126,11 @@ impl Channel {
             outgoing: Vec::new(),
             transparent: false,
         })
+    }
+
+    /// One that connects does so again when its peer has closed, from now on.
+    pub fn connect_again(&mut self) {
+        self.wire.redial();
     }
 
     /// All eight bits of a byte count from now on, or those of the characters again.
@@ -332,6 +339,36 @@ mod tests {
         assert!(std::fs::symlink_metadata(&link).is_err());
     }
 
+    /// What was sent last arrives, though the sender closes at once and has something unread itself.
+    #[test]
+    fn the_last_word_arrives() {
+        let link = std::env::temp_dir().join(format!("bahn-last-{}", std::process::id()));
+        for line in [Line::Pty(Some(link)), Line::Listen("127.0.0.1:0".into())] {
+            let mut ours = Channel::open(&Spec::of(line.clone()), Characters::FIXED).unwrap();
+            let theirs = match line {
+                Line::Pty(_) => Line::Serial(ours.place()),
+                _ => Line::Connect(ours.place()),
+            };
+            let mut theirs = Channel::open(&Spec::of(theirs), Characters::FIXED).unwrap();
+            until(&mut ours, Happened::Opened);
+            theirs.send(b"unread");
+            theirs.wait(Duration::ZERO).unwrap();
+            std::thread::sleep(Duration::from_millis(20));
+            ours.send(b"\x04");
+            let closing = std::thread::spawn(move || {
+                while !ours.outgoing.is_empty() {
+                    let written = ours.wire.write(&ours.outgoing).unwrap();
+                    ours.outgoing.drain(..written);
+                }
+                drop(ours);
+            });
+            std::thread::sleep(Duration::from_millis(100));
+            assert_eq!(hear(&mut theirs, 1), b"\x04", "{line}");
+            drop(theirs);
+            closing.join().unwrap();
+        }
+    }
+
     /// One peer at a time; who closes has pulled the cable, the next one is taken.
     #[test]
     fn one_peer_after_the_other() {
@@ -350,6 +387,22 @@ mod tests {
         until(&mut ours, Happened::Closed);
         until(&mut ours, Happened::Opened);
         assert_eq!(hear(&mut ours, 1), b"2");
+        // Who is told so connects again, and has what is said to it then.
+        let mut again = Channel::open(&connect, Characters::FIXED).unwrap();
+        again.connect_again();
+        drop(second);
+        until(&mut ours, Happened::Closed);
+        until(&mut ours, Happened::Opened);
+        let place = ours.place();
+        drop(ours);
+        until(&mut again, Happened::Closed);
+        assert!(!again.is_connected());
+        let mut ours = Channel::open(&Spec::of(Line::Listen(place)), Characters::FIXED).unwrap();
+        until(&mut again, Happened::Opened);
+        until(&mut ours, Happened::Opened);
+        ours.send(b"3");
+        ours.wait(Duration::ZERO).unwrap();
+        assert_eq!(hear(&mut again, 1), b"3");
         // A taken address cannot be opened twice.
         assert!(Channel::open(&Spec::of(Line::Listen(ours.place())), Characters::FIXED).is_err());
     }

@@ -17,6 +17,10 @@ use super::poll::{self, Got, nothing};
 
 /// How often one looks whether somebody has opened it.
 const LOOK: Duration = Duration::from_millis(20);
+/// How often one looks whether the other side has read everything.
+const GLANCE: Duration = Duration::from_millis(5);
+/// So many looks at what is unread, before it is thrown away.
+const GLANCES: u32 = 200;
 
 /// Our side of a pseudo terminal.
 #[derive(Debug)]
@@ -102,8 +106,35 @@ impl Pty {
     }
 }
 
+impl Pty {
+    /// Waits until the other side has read what was written, at most a second: what is unread when this side closes is lost.
+    /// Nothing waits in a UART so long, and a socket keeps it.
+    fn wait_until_read(&self) -> io::Result<()> {
+        let theirs = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
+        let theirs = rustix::fs::open(&self.name, theirs, rustix::fs::Mode::empty())?;
+        // What was written a moment ago may still be on its way.
+        let mut empty = 0;
+        for _ in 0..GLANCES {
+            empty = if rustix::io::ioctl_fionread(&theirs)? == 0 {
+                empty + 1
+            } else {
+                0
+            };
+            if empty > 1 {
+                break;
+            }
+            std::thread::sleep(GLANCE);
+        }
+        Ok(())
+    }
+}
+
 impl Drop for Pty {
     fn drop(&mut self) {
+        if self.open {
+            // Who cannot look does not wait.
+            let _ = self.wait_until_read();
+        }
         if let Some(link) = &self.link {
             // Only its own: another one may have taken the name meanwhile.
             if fs::read_link(link).is_ok_and(|target| target == self.name) {

@@ -1,19 +1,22 @@
 //! What carries the bytes: a socket, a pseudo terminal, a serial port.
 
 use std::io::{self, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serialport::{DataBits, FlowControl, SerialPort, StopBits};
 
 use super::poll::{Got, nothing};
 use super::pty::Pty;
+use super::redial::{Redial, connect, prepare};
 use super::{ChannelError, Line};
 use crate::{Characters, Parity};
 
-/// How long a connection may take.
-const CONNECT: Duration = Duration::from_secs(5);
+/// How often one looks whether a connection has been made again.
+const LOOK: Duration = Duration::from_millis(20);
+/// How long a peer has to close behind the end of what is sent.
+const FAREWELL: Duration = Duration::from_millis(200);
 
 /// One of them.
 #[derive(Debug)]
@@ -22,7 +25,14 @@ pub(super) enum Wire {
         listener: TcpListener,
         peer: Option<TcpStream>,
     },
-    Stream(Option<TcpStream>),
+    Stream {
+        peer: Option<TcpStream>,
+        /// Connects again.
+        redial: Option<Redial>,
+        /// Whether it may.
+        redials: bool,
+        address: String,
+    },
     Pty(Pty),
     Serial(Serial),
 }
@@ -48,7 +58,12 @@ impl Wire {
                 Ok(Wire::Listener { listener, peer: None })
             }
             Line::Connect(address) => connect(address)
-                .map(|stream| Wire::Stream(Some(stream)))
+                .map(|stream| Wire::Stream {
+                    peer: Some(stream),
+                    redial: None,
+                    redials: false,
+                    address: address.clone(),
+                })
                 .map_err(failed),
             Line::Pty(link) => Pty::open(link.clone()).map(Wire::Pty).map_err(failed),
             Line::Serial(name) => open_serial(name, characters, baud)
@@ -57,12 +72,19 @@ impl Wire {
         }
     }
 
+    /// Connects again from now on when the peer closes.
+    pub fn redial(&mut self) {
+        if let Wire::Stream { redials, .. } = self {
+            *redials = true;
+        }
+    }
+
     /// Where others find it, when that is not what was written.
     pub fn place(&self) -> Option<String> {
         match self {
             Wire::Listener { listener, .. } => listener.local_addr().ok().map(|address| address.to_string()),
             Wire::Pty(pty) => Some(pty.name().display().to_string()),
-            Wire::Stream(_) | Wire::Serial(_) => None,
+            Wire::Stream { .. } | Wire::Serial(_) => None,
         }
     }
 
@@ -97,15 +119,26 @@ impl Wire {
                     Ok(got)
                 }
             },
-            Wire::Stream(stream) => match stream {
+            Wire::Stream {
+                peer,
+                redial,
+                redials,
+                address,
+            } => match peer {
                 None => {
-                    std::thread::sleep(wait);
+                    *peer = redial.as_mut().and_then(Redial::look);
+                    if peer.is_some() {
+                        *redial = None;
+                        return Ok(Got::Opened);
+                    }
+                    std::thread::sleep(if redial.is_some() { wait.min(LOOK) } else { wait });
                     Ok(Got::Nothing)
                 }
                 Some(open) => {
                     let got = read_stream(open, buffer, wait)?;
                     if got == Got::Closed {
-                        *stream = None;
+                        *peer = None;
+                        *redial = redials.then(|| Redial::new(address.clone()));
                     }
                     Ok(got)
                 }
@@ -128,11 +161,13 @@ impl Wire {
     /// Writes what goes at once; without a peer bytes go nowhere, as on an open cable.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = match self {
-            Wire::Listener { peer: None, .. } | Wire::Stream(None) => return Ok(bytes.len()),
+            Wire::Listener { peer: None, .. } | Wire::Stream { peer: None, .. } => return Ok(bytes.len()),
             Wire::Listener {
                 peer: Some(stream), ..
             }
-            | Wire::Stream(Some(stream)) => stream.write(bytes),
+            | Wire::Stream {
+                peer: Some(stream), ..
+            } => stream.write(bytes),
             Wire::Pty(pty) => pty.write(bytes),
             Wire::Serial(serial) => {
                 serial.port.set_timeout(Duration::from_millis(1))?;
@@ -153,7 +188,9 @@ impl Wire {
             Wire::Listener {
                 peer: Some(stream), ..
             }
-            | Wire::Stream(Some(stream)) => super::poll::writable(stream, wait),
+            | Wire::Stream {
+                peer: Some(stream), ..
+            } => super::poll::writable(stream, wait),
             Wire::Pty(pty) => pty.wait_to_write(wait),
             _ => {
                 std::thread::sleep(wait.min(Duration::from_millis(1)));
@@ -187,25 +224,35 @@ impl Wire {
     }
 }
 
-fn connect(address: &str) -> io::Result<TcpStream> {
-    use std::net::ToSocketAddrs;
-    let mut last = io::Error::from(io::ErrorKind::AddrNotAvailable);
-    for address in address.to_socket_addrs()? {
-        match TcpStream::connect_timeout(&address, CONNECT) {
-            Ok(stream) => {
-                prepare(&stream)?;
-                return Ok(stream);
-            }
-            Err(error) => last = error,
+/// A socket that is closed with something unread in it takes back what was sent and not yet read there: so it ends what it
+/// sends, and reads until the peer has closed, too.
+fn say_farewell(stream: &mut TcpStream) {
+    let end = Instant::now() + FAREWELL;
+    if stream.shutdown(Shutdown::Write).is_err() {
+        return;
+    }
+    let mut rest = [0; 256];
+    loop {
+        let left = end.saturating_duration_since(Instant::now());
+        let got = read_stream(stream, &mut rest, left);
+        if left.is_zero() || !matches!(got, Ok(Got::Nothing | Got::Bytes(_))) {
+            return;
         }
     }
-    Err(last)
 }
 
-fn prepare(stream: &TcpStream) -> io::Result<()> {
-    stream.set_nonblocking(true)?;
-    // A block is answered before the next one goes.
-    stream.set_nodelay(true)
+impl Drop for Wire {
+    fn drop(&mut self) {
+        if let Wire::Listener {
+            peer: Some(stream), ..
+        }
+        | Wire::Stream {
+            peer: Some(stream), ..
+        } = self
+        {
+            say_farewell(stream);
+        }
+    }
 }
 
 fn read_stream(stream: &mut TcpStream, buffer: &mut [u8], wait: Duration) -> io::Result<Got> {

@@ -31,6 +31,9 @@ pub struct Peripheral {
     question: Option<(String, Vec<u8>)>,
     held: VecDeque<u8>,
     failed: bool,
+    /// A text has ended with ETX, and nothing has come since then: who waits for EOT gets it at this time.
+    etx: Option<Duration>,
+    now: Duration,
     events: VecDeque<Event>,
 }
 
@@ -50,6 +53,8 @@ impl Peripheral {
             question: None,
             held: VecDeque::new(),
             failed: false,
+            etx: None,
+            now: Duration::ZERO,
             events: VecDeque::new(),
         }
     }
@@ -198,6 +203,9 @@ impl Peripheral {
         if std::mem::take(&mut self.text) {
             self.events
                 .push_back(Event::Ended(!std::mem::take(&mut self.failed)));
+            if !self.settings.never_eot {
+                self.etx = Some(self.now + self.settings.moment());
+            }
         }
     }
 
@@ -212,6 +220,7 @@ impl Peripheral {
         } else if receiving {
             // EOT without ETX ends a text whose programs are whole.
             self.end_of_text();
+            self.etx = None;
         }
     }
 
@@ -246,7 +255,9 @@ impl Peripheral {
 }
 
 impl Protocol for Peripheral {
-    fn receive(&mut self, byte: u8, _now: Duration) {
+    fn receive(&mut self, byte: u8, now: Duration) {
+        self.now = now;
+        self.etx = None;
         if self.question.is_none() {
             self.take(byte);
         } else if self.held.len() < HELD_MAX {
@@ -258,10 +269,17 @@ impl Protocol for Peripheral {
         }
     }
 
-    fn clock(&mut self, _now: Duration) {}
+    /// A control ends what it sends with ETX EOT; ETX alone is the end of a device, which a control answers EOT
+    /// [000:17321-17323]. So public senders wait for it.
+    fn clock(&mut self, now: Duration) {
+        self.now = now;
+        if self.etx.take_if(|time| now >= *time).is_some() {
+            self.outgoing.bytes.push_back(self.settings.control.eot);
+        }
+    }
 
     fn deadline(&self) -> Option<Duration> {
-        None
+        self.etx
     }
 
     fn has_output(&self) -> bool {
@@ -276,6 +294,7 @@ impl Protocol for Peripheral {
     }
 
     fn unplugged(&mut self, _now: Duration) {
+        self.etx = None;
         let open = self.taking.is_some() || self.question.is_some() || self.items.is_inside();
         let busy = self.is_sending() || open || self.text;
         self.outgoing.clear();
@@ -293,7 +312,8 @@ impl Protocol for Peripheral {
         self.events.pop_front()
     }
 
-    fn answer(&mut self, yes: bool, _now: Duration) {
+    fn answer(&mut self, yes: bool, now: Duration) {
+        self.now = now;
         let Some((name, line)) = self.question.take() else {
             return;
         };

@@ -47,14 +47,15 @@ Examples:
       Answer the header for program 15, and end when it has arrived. Without a name any program of the folder can be asked for,
       until Ctrl-C; --port serial:/dev/ttyUSB0,mode=fe1,baud=19200 is what stands in for a floppy unit at a real machine.
 
-With names only these programs can be asked for; a header without a name gets the next one by name. A transfer that was broken off
+With names only these programs can be asked for; a header without a name gets the next one by name. When the line drops, one of
+tcp:, pty or serial: waits for the next header; one of connect: connects again, tried twice a second for --again seconds. A transfer that was broken off
 begins anew with the next header, since controls pass over what they have; --resume begins with BEGIN PGM and the first block that was
 not acknowledged.
 
 JSON (--format json): one object in each line: event (begin, progress, end, broken), program, blocks (that are in the machine),
 percent; the last one has event done, and blocks of all programs.
 
-Exit codes: 0 all that was named has arrived, 1 the line or the folder does not work, 2 wrong use, 130 ended by Ctrl-C.";
+Exit codes: 0 all that was named has arrived, 1 the line or the folder does not work, or is not there again; 2 wrong use, 130 ended by Ctrl-C.";
 
 /// Options of `bahn link dnc run`.
 #[derive(Args, Debug)]
@@ -112,6 +113,9 @@ pub(crate) struct DncSendOptions {
     /// How progress is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
+    /// A port that connects is tried again for so long when the line has dropped.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    pub again: u64,
     /// Go on with the first block that was not acknowledged when a program is asked for again.
     #[arg(long)]
     pub resume: bool,

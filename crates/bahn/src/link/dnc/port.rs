@@ -9,6 +9,8 @@ use crate::link::port;
 pub(super) fn open(text: &str, list: &ParameterList) -> Option<(Channel, Settings)> {
     let spec = port::spec("--port", text).ok()?;
     let settings = port::settings(list, &spec);
-    let channel = port::open(&spec, &settings).ok()?;
+    let mut channel = port::open(&spec, &settings).ok()?;
+    // A line that drops is no end: the transfer begins again over the next one.
+    channel.connect_again();
     Some((channel, settings))
 }

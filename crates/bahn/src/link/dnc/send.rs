@@ -17,6 +17,8 @@ use crate::{Outcome, UsageError, console, diagnostics};
 
 /// How often progress is told.
 const PERIOD: Duration = Duration::from_secs(1);
+/// How long a connection that is made again must hold to count as one.
+const HOLDS: Duration = Duration::from_secs(1);
 
 /// Runs the command.
 pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
@@ -53,7 +55,14 @@ pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
         teller: teller.clone(),
         missing: options.names.clone(),
         endless: options.names.is_empty(),
-        ends_with_line: options.port.starts_with("connect:"),
+        again: Again {
+            within: options
+                .port
+                .starts_with("connect:")
+                .then(|| Duration::from_secs(options.again)),
+            lost: None,
+            held: None,
+        },
         blocks: 0,
     };
     let interrupt = Interrupt::on_ctrl_c();
@@ -138,8 +147,7 @@ struct Sender {
     /// What was named and has not arrived.
     missing: Vec<String>,
     endless: bool,
-    /// Nobody comes again over a line that is closed.
-    ends_with_line: bool,
+    again: Again,
     /// Of all programs that have arrived.
     blocks: u64,
 }
@@ -161,8 +169,35 @@ impl Sender {
     }
 }
 
+/// How long one tries to connect again.
+struct Again {
+    /// For so long; who listens waits for ever.
+    within: Option<Duration>,
+    /// When the connection was lost.
+    lost: Option<Duration>,
+    /// Since when there is one again.
+    held: Option<Duration>,
+}
+
+impl Again {
+    /// Whether it was tried for long enough.
+    fn is_in_vain(&mut self, connected: bool, now: Duration) -> bool {
+        let Some(within) = self.within else { return false };
+        if connected {
+            if now - *self.held.get_or_insert(now) >= HOLDS {
+                self.lost = None;
+            }
+            return false;
+        }
+        self.held = None;
+        now - *self.lost.get_or_insert(now) >= within
+    }
+}
+
 impl Attendant for Sender {
     fn event(&mut self, event: Event) -> Option<bool> {
+        // Somebody is there.
+        self.again.lost = None;
         match event {
             Event::Sent(name) => {
                 self.teller.spooled.arrived(&name);
@@ -183,7 +218,7 @@ impl Attendant for Sender {
         None
     }
 
-    fn is_over(&mut self, connected: bool, _: Duration) -> bool {
-        self.has_sent_all() || self.ends_with_line && !connected
+    fn is_over(&mut self, connected: bool, now: Duration) -> bool {
+        self.has_sent_all() || self.again.is_in_vain(connected, now)
     }
 }
