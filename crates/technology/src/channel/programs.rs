@@ -335,7 +335,7 @@ impl Channel<'_> {
     /// The block at whose end the path is, for faults of no block.
     pub(super) fn here(&self) -> Place {
         Place {
-            program: "".into(),
+            program: self.program.as_str().into(),
             block: self.track.block_before(self.reached),
             line: 0,
         }
