@@ -141,7 +141,7 @@ fn end(report: &Report) -> String {
         let number = report.events.iter().filter(|event| event.kind == kind).count();
         format!("{number} {what}{}", if number == 1 { "" } else { "s" })
     };
-    let waited: f64 = stood(&report.waits);
+    let waited: f64 = stood(&report.waits, report.time_s);
     let what = if report.completed {
         "completed"
     } else if report.error.is_some() {
@@ -163,11 +163,11 @@ fn end(report: &Report) -> String {
     )
 }
 
-/// How long the path stood for any function: waits for several at a time count once.
-fn stood(waits: &[Wait]) -> f64 {
+/// How long the path stood for any function up to the end of the run: waits for several at a time count once.
+fn stood(waits: &[Wait], end_s: f64) -> f64 {
     let mut spans: Vec<(f64, f64)> = waits
         .iter()
-        .filter_map(|wait| Some((wait.from_s, wait.to_s?)))
+        .map(|wait| (wait.from_s, wait.to_s.unwrap_or(end_s)))
         .collect();
     spans.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut sum = 0.0;
@@ -236,7 +236,7 @@ mod tests {
             wait(6.0, Some(7.0)),
             wait(8.0, None),
         ];
-        assert!((stood(&waits) - 4.0).abs() < 1e-12);
+        assert!((stood(&waits, 8.5) - 4.5).abs() < 1e-12);
     }
 
     #[test]
