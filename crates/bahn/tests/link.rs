@@ -178,6 +178,42 @@ fn files_go_to_a_disk_and_come_back() {
     );
 }
 
+/// All files that are sent are programs of both languages, or files of one type that is asked for.
+#[test]
+fn both_languages_are_sent() {
+    let iso = "%7 G71 *\nN10 G00 X+1 *\nN99999999 %7 G71 *\n";
+    for (arguments, expected) in [
+        ("", &["1.H", "7.I"][..]),
+        ("--type H", &["1.H"]),
+        ("--type d", &["7.I"]),
+        ("--type A", &["NOTES.A"]),
+    ] {
+        let folder = desk();
+        fs::remove_dir_all(folder.path("mill/programs")).unwrap();
+        fs::create_dir(folder.path("mill/programs")).unwrap();
+        fs::write(folder.path("mill/programs/1.H"), PROGRAM).unwrap();
+        fs::write(folder.path("mill/programs/7.I"), iso).unwrap();
+        fs::write(folder.path("mill/programs/NOTES.A"), "TWO PARTS\n").unwrap();
+        let disk = Running::start(&folder, "link disk disk --port tcp:127.0.0.1:0,mode=fe2").ready();
+        let sent = folder.bahn(&format!(
+            "link send --machine mill --port connect:{},mode=fe2 --all {arguments}",
+            disk.place
+        ));
+        assert_eq!(
+            (sent.code(), sent.err().as_str()),
+            (0, ""),
+            "{arguments}: {}",
+            sent.out()
+        );
+        let entries = fs::read_dir(folder.path("disk")).unwrap();
+        let mut there: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        there.sort();
+        assert_eq!(there, expected, "{arguments}");
+    }
+}
+
 #[test]
 fn programs_in_folders_are_transferred_by_their_name_alone() {
     let folder = desk();

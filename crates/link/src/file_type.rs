@@ -82,6 +82,11 @@ impl FileType {
         format!("{}NC", self.code)
     }
 
+    /// Whether it is a part program of one of the two languages.
+    pub fn is_program(self) -> bool {
+        ["H", "I"].contains(&self.extension)
+    }
+
     /// Whether its files carry their name in their first line, so that many can be read at once [000:16939].
     pub fn is_named_in_first_line(self) -> bool {
         self.named_in_first_line

@@ -502,6 +502,12 @@ fn three_times_and_no_more() {
     let stored = Memory::default();
     let told = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
     assert_eq!(told, ["ERR: 003", "broken off"]);
+    // NAK three times is E on this side, too; what goes back is 003.
+    let block = "P: STX \"0 BEGIN PGM 1 MM\" ETB BCC DC1\nT: NAK\n";
+    let header_e = "T: SOH H1E ETB BCC DC1\nP: ACK\n";
+    let script = format!("{header_e}{block}{block}{block}P: SOH \"ERR: 003\" ETB BCC\nT: ACK EOT");
+    let told = converse(Role::Device, &mut device(settings(Mode::Fe2), &there), &script);
+    assert_eq!(told, ["TRANSFERRED DATA INCORRECT E", "broken off"]);
     for end in ["quiet", "pulled", "T: EOT"] {
         let script = format!("{header}P: ACK\nT: STX \"0 BEGIN PGM 1 MM\" ETB BCC\nP: ACK\n{end}");
         let told = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
@@ -520,6 +526,27 @@ fn a_device_is_patient() {
         &script,
     );
     assert_eq!(told, ["sent 1.H", "complete"]);
+}
+
+/// When the answer is overdue, LSV/2 may begin: a control that is gone does not keep the port.
+#[test]
+fn a_device_that_waits_in_vain_hears_an_enquiry() {
+    let asked = "T: SOH H1E ETB BCC DC1\nP: ACK STX \"0 BEGIN PGM 1 MM\" ETB BCC DC1\n";
+    for (silence, told) in [
+        (
+            "quiet\n",
+            &["TRANSFERRED DATA INCORRECT N", "broken off", "enquiry"][..],
+        ),
+        // In time it is noise.
+        ("", &[]),
+    ] {
+        let mut device = device(settings(Mode::Fe2), &files(&[("1.H", ONE)]));
+        let script = format!("{asked}{silence}T: ENQ");
+        assert_eq!(converse(Role::Device, &mut device, &script), told, "{silence}");
+        // The next control is heard.
+        let told = converse(Role::Device, &mut device, READ_ONE);
+        assert_eq!(told, ["sent 1.H", "complete"]);
+    }
 }
 
 /// The check character of a header is 3F with a blank before ETB; without DC3 no DC1 is sent [000:17015-17017] [000:17399].

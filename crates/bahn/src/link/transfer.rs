@@ -19,6 +19,9 @@ use crate::{Outcome, UsageError, console};
 /// How long a host waits behind EOT whether something more comes *(inferred)*.
 const LINGER: Duration = Duration::from_secs(1);
 
+/// The code of the programs that are asked for when nothing is said: a header without a name asks for one type.
+const PLAIN_LANGUAGE: char = 'H';
+
 pub(super) const RECEIVE_EXAMPLES: &str = "\
 Examples:
   bahn link receive --machine machines/mill --port connect:127.0.0.1:4711,mode=fe2 PART.H
@@ -37,9 +40,10 @@ Examples:
   bahn link send --machine machines/mill --port connect:127.0.0.1:4711,mode=fe2 --all
   bahn link send --as host --dir parts --port serial:/dev/ttyUSB0,mode=fe2,baud=9600 PART.H
 
-With --machine it is the control that sends: named files, all of them, or with --offered each after a question. With
---as host it is the device from which a control reads in: it has the named files of the folder, or all of them. Exit
-codes: 0 the transfer is complete, 1 the control shows a message, which stands word for word in the output, 2 wrong use.";
+With --machine it is the control that sends: named files, all programs of both languages or with --type all files of one
+type, with --offered each after a question. With --as host it is the device from which a control reads in: it has the
+named files of the folder, or all of them. Exit codes: 0 the transfer is complete, 1 the control shows a message, which
+stands word for word in the output, 2 wrong use.";
 
 pub(super) const LIST_EXAMPLES: &str = "\
 Examples:
@@ -84,9 +88,10 @@ pub(crate) struct TransferOptions {
     /// Each file after a question.
     #[arg(long, conflicts_with = "role")]
     offered: bool,
-    /// Code letters of the types of files that --all and --offered mean.
-    #[arg(long = "type", value_name = "CODE", default_value = "H")]
-    kind: char,
+    /// Code letter of the type of files that --all and --offered mean; without it send means programs of both languages,
+    /// receive H.
+    #[arg(long = "type", value_name = "CODE")]
+    kind: Option<char>,
     /// What is answered to ERASE/OVERREAD and to what is offered.
     #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
     answer: Answer,
@@ -131,7 +136,7 @@ pub(super) fn send(options: &TransferOptions) -> Result<Outcome, UsageError> {
 fn transfer(options: &TransferOptions, receives: bool) -> Result<Outcome, UsageError> {
     let plan = Plan {
         port: &options.port,
-        kind: kind(options.kind)?,
+        kind: kind(options.kind.unwrap_or(PLAIN_LANGUAGE))?,
         offered: options.offered,
         answer: options.answer,
         format: options.format,
@@ -205,7 +210,10 @@ fn names(store: &Store, options: &TransferOptions) -> Result<Vec<String>, UsageE
         let extension = name
             .rsplit_once('.')
             .and_then(|(_, of)| FileType::of_extension(of));
-        extension.is_some_and(|kind| kind.code() == options.kind.to_ascii_uppercase())
+        extension.is_some_and(|kind| match options.kind {
+            Some(code) => kind.code() == code.to_ascii_uppercase(),
+            None => kind.is_program(),
+        })
     };
     Ok(all.filter(of_type).collect())
 }

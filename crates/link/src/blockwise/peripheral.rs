@@ -184,7 +184,7 @@ impl Peripheral {
 
     fn repeat(&mut self) {
         if !self.link.repeat() {
-            self.refuse(3);
+            self.refuse_as(3, Shown::Control(MessageId::TransferredDataIncorrect, Some('E')));
         }
     }
 
@@ -240,8 +240,7 @@ impl Peripheral {
                 .rsplit_once('.')
                 .and_then(|(_, extension)| FileType::of_extension(extension));
             let fits = kind.is_some_and(|kind| {
-                kind.is_named_in_first_line()
-                    && known.map_or(["H", "I"].contains(&kind.extension()), |code| kind.code() == code)
+                kind.is_named_in_first_line() && known.map_or(kind.is_program(), |code| kind.code() == code)
             });
             fits && self.rights.allow(&file.name)
         };
@@ -389,21 +388,35 @@ impl Peripheral {
     }
 
     fn incomplete(&mut self) {
-        self.events
-            .push_back(Event::Message(Shown::Control(MessageId::ProgramIncomplete, None)));
+        self.tell(Shown::Control(MessageId::ProgramIncomplete, None));
+    }
+
+    /// Tells why what was begun has failed.
+    fn tell(&mut self, shown: Shown) {
+        self.events.push_back(Event::Message(shown));
         self.ended(false);
+    }
+
+    /// The answer is overdue: somebody else may begin. Until somebody does, a control may keep it back as long as it wants.
+    fn is_forsaken(&self, now: Duration) -> bool {
+        let overdue = self.link.quiet_for(self.link.settings.patience);
+        matches!(self.step, Step::Sending(_)) && overdue.is_some_and(|overdue| now >= overdue)
     }
 
     /// Signals an error; nothing partial is left.
     fn refuse(&mut self, code: u16) {
-        let text = format!("ERR: {code:03}");
+        self.refuse_as(code, Shown::Device(error_text(code)));
+    }
+
+    /// Signals an error that has another name on this side of the line.
+    fn refuse_as(&mut self, code: u16, shown: Shown) {
+        let text = error_text(code);
         // The device sends no DC1 behind it.
         let with_dc1 = std::mem::replace(&mut self.link.settings.with_dc1, false);
         self.link.send_block(Kind::Header, text.as_bytes());
         self.link.settings.with_dc1 = with_dc1;
         self.step = Step::Refused;
-        self.events.push_back(Event::Message(Shown::Device(text)));
-        self.ended(false);
+        self.tell(shown);
     }
 
     /// A character of the escape sequence that asks for the directory.
@@ -472,6 +485,11 @@ impl Protocol for Peripheral {
     fn receive(&mut self, byte: u8, now: Duration) {
         if self.escaped(byte) {
             return;
+        }
+        if byte == ENQ && self.is_forsaken(now) {
+            self.step = Step::Idle;
+            self.link.clear();
+            self.tell(Shown::Control(MessageId::TransferredDataIncorrect, Some('N')));
         }
         if let Some(piece) = self.link.receive(byte, now) {
             self.piece(piece);
@@ -549,4 +567,9 @@ impl Protocol for Peripheral {
     fn is_idle(&self) -> bool {
         matches!(self.step, Step::Idle | Step::Refused | Step::Sent) && !self.link.has_output()
     }
+}
+
+/// What travels, and what the side says that has found it [000:17603-17625].
+fn error_text(code: u16) -> String {
+    format!("ERR: {code:03}")
 }

@@ -50,7 +50,7 @@ pub(super) fn candidates(stem: &str, code: Option<u8>) -> Vec<String> {
         .filter(|code| FileType::of_code(*code).is_some());
     let kinds = FileType::all().filter(|kind| match known {
         Some(code) => kind.code() == code.to_ascii_uppercase(),
-        None => ["H", "I"].contains(&kind.extension()),
+        None => kind.is_program(),
     });
     kinds.map(|kind| format!("{stem}.{}", kind.extension())).collect()
 }

@@ -92,7 +92,7 @@ impl Peripheral {
             let kind = name
                 .rsplit_once('.')
                 .and_then(|(_, of)| FileType::of_extension(of));
-            kind.is_some_and(|kind| ["H", "I"].contains(&kind.extension()))
+            kind.is_some_and(FileType::is_program)
         };
         let only = &self.rights.only;
         self.names = files
