@@ -368,9 +368,10 @@ fn curves_of_the_oscilloscope_are_seen() {
     }
     panel.until(|screen| screen["graphics"]["running"] == true);
     let picture = "document.querySelector('[data-region=graphics] img')";
+    // Its width is known a moment before the page has counted it.
     until(
         &mut page,
-        &format!("{picture}.checkVisibility() && {picture}.naturalWidth > 300"),
+        &format!("{picture}.checkVisibility() && {picture}.naturalWidth > 300 && {picture}.dataset.serial"),
     );
     assert_eq!(panel.give(&json!({"key": "X+", "down": true})), 200);
     let first = page.number(&format!("Number({picture}.dataset.serial)")).unwrap();
