@@ -371,7 +371,9 @@ fn curves_of_the_oscilloscope_are_seen() {
     // Its width is known a moment before the page has counted it.
     until(
         &mut page,
-        &format!("{picture}.checkVisibility() && {picture}.naturalWidth > 300 && {picture}.dataset.serial"),
+        &format!(
+            "{picture}.checkVisibility() && {picture}.naturalWidth > 300 && {picture}.dataset.serial !== undefined"
+        ),
     );
     assert_eq!(panel.give(&json!({"key": "X+", "down": true})), 200);
     let first = page.number(&format!("Number({picture}.dataset.serial)")).unwrap();
