@@ -8,6 +8,7 @@ use crate::axes::Axes;
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
 use crate::correction_tables::CorrectionTables;
 use crate::plc_link::NcFiles;
+use crate::setup::SelectedLine;
 
 /// A column that is active: which axis it corrects, and over which one.
 #[derive(Clone, Debug)]
@@ -72,6 +73,23 @@ impl Compensation {
             (None, _) => files.correction_tables.as_ref().map_or_else(Vec::new, old),
         };
         Compensation { corrections, line }
+    }
+
+    /// The line at power-on: that of module 9095 [000:15555], or the one that the file names, when it names another one
+    /// than it did then or the selected one is gone.
+    pub fn at_power_on(files: &NcFiles, selected: Option<SelectedLine>) -> Compensation {
+        let assignment = files.compensation.as_ref();
+        let named = assignment.and_then(|assignment| assignment.active);
+        let lines = assignment.map_or(0, |assignment| assignment.lines.len());
+        let kept = selected.filter(|selected| selected.file == named && selected.line < lines);
+        Compensation::of(files, kept.map(|kept| kept.line).or(named))
+    }
+
+    /// What module 9095 has selected, when the file names another line.
+    pub fn selected(&self, files: &NcFiles) -> Option<SelectedLine> {
+        let file = files.compensation.as_ref()?.active;
+        let line = self.line.filter(|line| Some(*line) != file)?;
+        Some(SelectedLine { line, file })
     }
 
     /// Corrects each axis with MP730 = 1 by the sum of the tables that have a column for it, over the

@@ -56,6 +56,8 @@ struct Supply {
     off: bool,
     /// How often the control has begun.
     starts: u32,
+    /// Module 9033 has reset the control, and nobody has asked since.
+    reset: bool,
 }
 
 impl Control {
@@ -83,6 +85,7 @@ impl Control {
                 made_of: Arc::new(made_of),
                 off: false,
                 starts: 1,
+                reset: false,
             },
         }
     }
@@ -160,6 +163,13 @@ impl Control {
         sampler: Option<&mut (dyn ServoSampler + '_)>,
     ) {
         self.kernel.cycle(self.supply.off, plant, tracer, sampler);
+        if std::mem::take(&mut self.kernel.machine.reset_wanted) {
+            let list = self.kernel.machine.link.list().clone();
+            self.begin_anew(list);
+            self.supply.starts += 1;
+            self.supply.reset = true;
+            self.kernel.machine.unsaved = true;
+        }
     }
 
     /// What was pressed of the oscilloscope.
@@ -405,11 +415,11 @@ impl Control {
         self.kernel.machine.unsaved = false;
     }
 
-    /// The name of the list of machine parameters that module 9033 has selected: the control is to be started
-    /// anew with it.
+    /// The name of the list of machine parameters that module 9033 has selected, when the control was reset for it since
+    /// this was asked last.
     pub fn take_restart(&mut self) -> Option<String> {
         let selected = &self.kernel.machine.link.selected_list;
-        std::mem::take(&mut self.kernel.machine.restart_wanted).then(|| selected.clone())?
+        std::mem::take(&mut self.supply.reset).then(|| selected.clone())?
     }
 
     /// What survives power-off, as of now.
@@ -423,6 +433,7 @@ impl Control {
             pallet_line: link.pallet.line,
             datum_table: link.pallet.datum_table.clone(),
             written_datums: self.kernel.machine.loaded_datums.written(link),
+            compensation_line: self.kernel.machine.compensation.selected(&link.files),
             ..self.kernel.channels.first().remember()
         }
     }

@@ -110,12 +110,14 @@ impl Kernel {
             &remembered.written,
             parameters.operation_parameters().tools.pockets,
         );
+        let compensation = Compensation::at_power_on(&link.files, remembered.compensation_line);
         let parts = MachineParts {
             plc: PlcUnit::new(plc, model),
             link,
             exchange,
             windows: others.iter().map(|other| other.window.clone()).collect(),
             axes,
+            compensation,
             spindle,
             magazine,
             loaded_tables,
@@ -243,9 +245,10 @@ impl Kernel {
     fn take_module_requests(&mut self) {
         let machine = &mut self.machine;
         self.channels.first_mut().take_module_requests(machine);
-        machine.restart_wanted |= std::mem::take(&mut machine.link.requests.restart);
+        machine.reset_wanted |= std::mem::take(&mut machine.link.requests.restart);
         if let Some(line) = machine.link.requests.compensation_line.take() {
             machine.compensation = Compensation::of(&machine.link.files, usize::try_from(line).ok());
+            machine.unsaved = true;
         }
         if std::mem::take(&mut machine.link.requests.parameters_changed) {
             machine.take_parameters();

@@ -171,8 +171,8 @@ pub use progress::RunState;
 pub use sampling::{ServoSampler, ServoSignal, ServoView};
 pub use scanning::{Digitized, DigitizedNews};
 pub use setup::{
-    AxisLimit, Calibration, ChannelError, ChannelSetup, Checking, Position0, ProbeMemory, Remembered, Setup,
-    ToolProbeCalibration,
+    AxisLimit, Calibration, ChannelError, ChannelSetup, Checking, Position0, ProbeMemory, Remembered,
+    SelectedLine, Setup, ToolProbeCalibration,
 };
 pub use signal::{AxisSignal, ProbeSignal, Signal, SignalError, split_channel};
 pub use snapshot::{AxisState, Snapshot};

@@ -62,8 +62,8 @@ pub(crate) struct MachineSide {
     pub loaded_datums: LoadedDatums,
     /// What is to be stored has changed since it was stored.
     pub unsaved: bool,
-    /// The control is to be restarted (module 9033).
-    pub restart_wanted: bool,
+    /// The control is to be reset (module 9033).
+    pub reset_wanted: bool,
     wiring: Wiring,
 }
 
@@ -75,6 +75,7 @@ pub(crate) struct MachineParts {
     pub exchange: Exchange,
     pub windows: Vec<Window>,
     pub axes: Axes,
+    pub compensation: Compensation,
     /// Of the first channel.
     pub spindle: SpindleUnit,
     pub magazine: Magazine,
@@ -193,6 +194,7 @@ impl MachineSide {
             exchange,
             windows,
             axes,
+            compensation,
             spindle,
             magazine,
             loaded_tables,
@@ -205,15 +207,13 @@ impl MachineSide {
             .iter()
             .next()
             .map_or(0.0, |unit| unit.parameters.output.offset_interval_s);
-        let assignment = link.files.compensation.as_ref();
-        let line = assignment.and_then(|assignment| assignment.active);
         MachineSide {
             model,
             timing: Timing::of(model),
             station: operation.station,
             plc_parameters: parameters.plc_parameters(),
             handwheel: operation.handwheel,
-            compensation: Compensation::of(&link.files, line),
+            compensation,
             battery: BufferBattery::default(),
             memory,
             windows,
@@ -230,7 +230,7 @@ impl MachineSide {
             loaded_tables,
             loaded_datums,
             unsaved: false,
-            restart_wanted: false,
+            reset_wanted: false,
             wiring: Wiring::of(model),
         }
     }

@@ -233,11 +233,15 @@ impl PlcLink {
         Some(Arc::new(datum_shifts(table, list)))
     }
 
-    /// The datum table with M status.
+    /// The datum table with M status: modules see what 9090 has selected in the same scan, too [000:15375].
     pub fn datum_table_name(&self) -> Option<&String> {
-        self.pallet
-            .datum_table
+        let requested = self
+            .requests
+            .pallet
             .as_ref()
+            .and_then(|pallet| pallet.datum_table.as_ref());
+        requested
+            .or(self.pallet.datum_table.as_ref())
             .or(self.files.datum_table.as_ref())
     }
 
@@ -344,6 +348,10 @@ impl NcParameters for PlcLink {
             self.requests.restart = true;
         }
         Ok(())
+    }
+
+    fn resets(&self) -> bool {
+        self.requests.restart
     }
 }
 

@@ -137,8 +137,20 @@ pub struct Remembered {
     pub pallet_line: Option<i32>,
     /// Name of the datum table that module 9090 has selected.
     pub datum_table: Option<String>,
+    /// The line of the compensation assignment that module 9095 has selected.
+    pub compensation_line: Option<SelectedLine>,
     /// What the PLC wrote with module 9094 into datum tables, by their names.
     pub written_datums: Vec<(String, WrittenElement)>,
+}
+
+/// A line of the compensation assignment (.CMA) that module 9095 has selected: it stays the active one after a control
+/// reset [000:15555].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SelectedLine {
+    /// The line.
+    pub line: usize,
+    /// The active line that the file named then. When it names another one, that counts.
+    pub file: Option<usize>,
 }
 
 impl Remembered {

@@ -3,7 +3,7 @@
 
 mod support;
 
-use bahn_control::{CompensationAssignment, CompensationTable, Control, CorrectionTables};
+use bahn_control::{CompensationAssignment, CompensationTable, Control, CorrectionTables, Remembered};
 use support::bench::*;
 use support::*;
 
@@ -17,11 +17,21 @@ fn rig(mp730: u8, assignment: &str) -> Rig {
 }
 
 fn rig_with(mp730: u8, assignment: Option<CompensationAssignment>, old: Option<CorrectionTables>) -> Rig {
+    kept_rig(mp730, assignment, old, Remembered::default())
+}
+
+fn kept_rig(
+    mp730: u8,
+    assignment: Option<CompensationAssignment>,
+    old: Option<CorrectionTables>,
+    remembered: Remembered,
+) -> Rig {
     let (mut setup, machine) = bench(
         "       L I28\n       AN M80\n       CMT 50\n       L I28\n       = M80\nLBL 50\n       SUBM 60\n       = B200\n       EM\nLBL 60\n       PS K+1\n       CM 9095\n       PL B201\n       EM\n",
     )
     .mp(&format!("730={mp730}"))
     .setup();
+    setup.remembered = remembered;
     setup.files.compensation = assignment;
     setup.files.correction_tables = old;
     for text in [Y, Z] {
@@ -81,6 +91,32 @@ fn module_9095_selects_a_line() {
     assert_eq!(rig.number("B201"), 0);
     assert_eq!(rig.control.compensation_line(), Some(1));
     let [y, z] = errors(&mut rig);
+    close(y, 0.0, 0.001);
+    close(z, -0.005, 0.001);
+}
+
+/// The line of module 9095 is the active one after a control reset, too [000:15555]; when the file names another one than
+/// it did, or lacks the line, the file counts.
+#[test]
+fn the_line_of_module_9095_survives_power_off() {
+    let lines = "0 Y=ACHSE-Y Z=ACHSE-Z\n1 Z=ACHSE-Z\n";
+    let mut rig = rig(0b110, &format!("{lines}ACTIVE 0\n"));
+    rig.control.stored();
+    rig.input("I28", true);
+    rig.seconds(0.2);
+    let kept = rig.control.unsaved().expect("a selected line is stored");
+    for (file, line) in [
+        (format!("{lines}ACTIVE 0\n"), Some(1)),
+        (lines.to_owned(), None),
+        (format!("{lines}2 Y=ACHSE-Y\nACTIVE 2\n"), Some(2)),
+        ("0 Y=ACHSE-Y Z=ACHSE-Z\nACTIVE 0\n".to_owned(), Some(0)),
+    ] {
+        let read = CompensationAssignment::read(&file).unwrap();
+        let rig = kept_rig(0b110, Some(read), None, kept.clone());
+        assert_eq!(rig.control.compensation_line(), line, "{file}");
+    }
+    let read = CompensationAssignment::read(&format!("{lines}ACTIVE 0\n")).unwrap();
+    let [y, z] = errors(&mut kept_rig(0b110, Some(read), None, kept));
     close(y, 0.0, 0.001);
     close(z, -0.005, 0.001);
 }

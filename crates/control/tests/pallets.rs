@@ -12,7 +12,8 @@ use stand::*;
 use support::*;
 
 /// Keys A and C: module 9090 with lines 0 and 1 of the pallet file, D with a line that is missing; the answer in
-/// W92. Key B: X of line 7 of the datum table is read and written 12.5 mm, and a line with Y = 30 mm is looked for.
+/// W92. Key B: X of line 7 of the datum table is read and written 12.5 mm, and a line with Y = 30 mm is looked for. Key E:
+/// what A does, and then what B does, in one submit job.
 fn plc() -> String {
     let pallet = |line| call(&[line], 9090, &["W92"]);
     let table = [
@@ -25,6 +26,7 @@ fn plc() -> String {
         (21, table.concat()),
         (22, pallet("K+1")),
         (23, pallet("K+5")),
+        (24, pallet("K+0") + &table.concat()),
     ];
     let [mut main, mut modules] = [String::from(ACKNOWLEDGE), String::new()];
     for (key, job) in jobs {
@@ -172,6 +174,26 @@ fn the_selected_datum_table_is_read_and_written() {
         tap(&mut rig, 'B');
         assert_eq!(rig.number("D100"), expected);
     }
+}
+
+/// A job that selects a line with 9090 reads and writes the table of that line: the one before stays as it is.
+#[test]
+fn a_job_works_on_the_table_it_has_selected() {
+    let mut rig = ready(build(Remembered::default()));
+    tap(&mut rig, 'E');
+    assert_eq!((rig.number("W92"), rig.number("W106")), (0, 0));
+    assert_eq!(rig.number("D100"), -150_000, "X of TWO");
+    assert_eq!(
+        (rig.number("W108"), rig.number("W110")),
+        (7, 0),
+        "Y = 30 is in TWO"
+    );
+    let written: Vec<_> = rig.control.remember().written_datums;
+    let names: Vec<_> = written
+        .iter()
+        .map(|(name, row)| (name.as_str(), row.value))
+        .collect();
+    assert_eq!(names, [("TWO.D", 12.5)]);
 }
 
 /// The PLC writes while the program waits for it: the next block finds the new datum.

@@ -357,3 +357,47 @@ fn tables_of_the_control() {
         assert_eq!(rig.number("D104"), expected);
     }
 }
+
+/// Module 9033 selects another list: the control is reset, whatever the axes do, and begins with that list; the job that
+/// called goes on no more [000:14886-14893]. The same list once more is no reset.
+#[test]
+fn a_selected_list_resets_the_control() {
+    let plc = format!(
+        "{ACKNOWLEDGE}       L     I20\n       AN    M20\n       CMT   ASK\n       L     I20\n       = M20\n       EM\n\
+         LBL ASK\n       SUBM  JOB\n       = B80\n       EM\n\
+         LBL JOB\n       L     S\"OTHER.MP\"\n       = S1\n{}       L     B84\n       +     K+1\n       = B84\n",
+        call(&["K+1"], 9033, &["B82"])
+    );
+    let mut other = bench("").setup().0.parameters;
+    other.assign("4210.0=12.5").unwrap();
+    let mut build = bench(&plc).program("1.H", "L X+400 R0 F1000");
+    build.files.parameter_lists = [("OTHER.MP".to_owned(), Some(other))].into();
+    let mut rig = ready(build);
+    rig.start();
+    rig.seconds(0.5);
+    assert!(rig.control.snapshot().axes.iter().all(|axis| axis.closed));
+    rig.control.stored();
+    // In a program it works during a strobe only; so it is stopped first [000:14897].
+    rig.event("key NC_STOP press");
+    rig.seconds(0.5);
+    rig.command("stop");
+    rig.event("key A press");
+    rig.until(0.5, "the reset", |rig| rig.control.starts() == 2);
+    assert!(!rig.control.snapshot().axes.iter().any(|axis| axis.closed));
+    assert_eq!(rig.control.take_restart().as_deref(), Some("OTHER.MP"));
+    assert_eq!(rig.control.take_restart(), None);
+    // It is kept at once; D768 shows MP4210.0 in 1/10000 mm.
+    let kept = rig.control.unsaved().unwrap();
+    assert_eq!(kept.parameter_list.as_deref(), Some("OTHER.MP"));
+    assert_eq!(rig.number("B84"), 0, "no job goes on");
+    rig.event("key NC_STOP release");
+    rig.event("key A release");
+    rig.seconds(0.2);
+    assert_eq!(rig.number("D768"), 125_000);
+    rig.event("key A press");
+    rig.seconds(0.2);
+    assert_eq!(
+        (rig.control.starts(), rig.number("B82"), rig.number("B84")),
+        (2, 0, 1)
+    );
+}

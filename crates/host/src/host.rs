@@ -230,6 +230,7 @@ impl<P: Operable> Host<P> {
             self.background.settle(&mut self.control);
         }
         if let Some(list) = self.control.take_restart() {
+            self.forget_background();
             self.tell(Notice::Restart(list.clone()));
             self.restart = Some(list);
         }
@@ -305,15 +306,19 @@ impl<P: Operable> Host<P> {
         let before = (self.control.starts(), self.control.is_off());
         let done = self.control.command_to(channel, command.clone());
         if before != (self.control.starts(), self.control.is_off()) {
-            // What is computed or read beside belongs to the control that was on before.
-            self.background = Background::default();
-            let beside = self.works_beside();
-            self.background.read_beside(&mut self.control, beside);
+            self.forget_background();
         }
         match done {
             true => Answer::Done,
             false => Answer::Refused,
         }
+    }
+
+    /// What is computed or read in the background belongs to the control that was on before.
+    fn forget_background(&mut self) {
+        self.background = Background::default();
+        let beside = self.works_beside();
+        self.background.read_beside(&mut self.control, beside);
     }
 
     /// Stores what the control waits for at once, everything else now and then.

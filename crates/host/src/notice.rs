@@ -31,7 +31,7 @@ pub enum Notice {
         /// Why.
         why: Why,
     },
-    /// Module 9033 has selected this list of machine parameters: the control is to be started anew with it.
+    /// Module 9033 has selected this list of machine parameters: the control has been reset and begins with it.
     Restart(String),
     /// What a tool change, a datum or the PLC changed is on the medium.
     Stored,

@@ -49,11 +49,14 @@ pub trait NcParameters {
     fn change_parameter(&mut self, number: u16, index: u8, value: f64) -> Result<(), NotSaved>;
 
     /// Selects a list of machine parameters by name and extension. When another one was selected, the
-    /// control restarts after this scan (9033).
+    /// control is reset (9033).
     ///
     /// # Errors
     /// When there is no such file in the RAM, or it is faulty.
     fn select_parameter_file(&mut self, name: &str) -> Result<(), ParameterFileFault>;
+
+    /// Whether the control is being reset: 9033 does not return then, and no job goes on [000:14893].
+    fn resets(&self) -> bool;
 }
 
 /// What the NC does, and where the axes and the spindle are. Axes count from 0: X, Y, Z, 4, 5.

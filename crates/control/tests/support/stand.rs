@@ -10,7 +10,7 @@ use bahn_exchange::{Bit, Number};
 use crate::support::{Build, Rig};
 
 /// Axes and spindle do at once what they are told. Spare contacts for tests
-/// are keys: I20 to I23.
+/// are keys: I20 to I24.
 const PLANT: &str = r#"
 name = "bench"
 step_us = 200
@@ -60,6 +60,7 @@ A = "I20"
 B = "I21"
 C = "I22"
 D = "I23"
+E = "I24"
 [probe]
 length = 100
 radius = 2

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use bahn_control::{
-    AxisLimit, Calibration, MovedTool, Position0, ProbeMemory, Remembered, ToolProbeCalibration,
-    WrittenElement,
+    AxisLimit, Calibration, MovedTool, Position0, ProbeMemory, Remembered, SelectedLine,
+    ToolProbeCalibration, WrittenElement,
 };
 use bahn_parameters::{PLC_AXES, PerPlcAxis};
 use bahn_path::{Axis, Position};
@@ -25,6 +25,8 @@ struct Form {
     program: Option<String>,
     pallet_line: Option<i32>,
     datum_table: Option<String>,
+    /// Line of the compensation assignment, and the active one that its file named.
+    compensation_line: Option<Vec<usize>>,
     offsets_volts: [f64; PLC_AXES],
     datum: [BTreeMap<char, f64>; 3],
     /// Pocket now and pocket in the tool table, by tool; -1 is none.
@@ -112,6 +114,13 @@ fn text(remembered: &Remembered) -> String {
     }
     if let Some(table) = &remembered.datum_table {
         line("datum_table", toml::Value::from(table.as_str()).to_string());
+    }
+    if let Some(selected) = remembered.compensation_line {
+        let SelectedLine { line: chosen, file } = selected;
+        line(
+            "# Line of the compensation assignment, and the active one in its file then\ncompensation_line",
+            file.map_or(format!("[{chosen}]"), |file| format!("[{chosen}, {file}]")),
+        );
     }
     written(remembered, &mut line);
     if let Some(probe) = remembered.probe.calibration {
@@ -296,8 +305,20 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         program: form.program,
         pallet_line: form.pallet_line,
         datum_table: form.datum_table,
+        compensation_line: form.compensation_line.as_deref().map(selected_line).transpose()?,
         written_datums,
     })
+}
+
+fn selected_line(lines: &[usize]) -> Result<SelectedLine, String> {
+    match *lines {
+        [line] => Ok(SelectedLine { line, file: None }),
+        [line, file] => Ok(SelectedLine {
+            line,
+            file: Some(file),
+        }),
+        _ => Err("compensation_line has one or two numbers".to_owned()),
+    }
 }
 
 fn axis(letter: char) -> Result<Axis, String> {
@@ -423,6 +444,10 @@ mod tests {
             program: Some("7432.H".to_owned()),
             pallet_line: Some(3),
             datum_table: Some("ZERO \"1\".D".to_owned()),
+            compensation_line: Some(SelectedLine {
+                line: 1,
+                file: Some(0),
+            }),
             written_datums: vec![(
                 "ZERO.D".to_owned(),
                 WrittenElement {

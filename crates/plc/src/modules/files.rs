@@ -21,8 +21,9 @@ fn pallet(call: &mut Call<'_>, line: i32) -> Result<(), i32> {
     const NO_DATUM_TABLE: i32 = 9;
     /// W272: program run single block, program run full sequence.
     const RUN_MODES: [i32; 2] = [4, 5];
-    /// Bit of MP7224.0.
+    /// Bits of MP7224.0.
     const DATUM_TABLES: u32 = 3;
+    const PALLET_FILES: u32 = 4;
     if !call.from_submit {
         return Err(NOT_FROM_SUBMIT);
     }
@@ -31,6 +32,9 @@ fn pallet(call: &mut Call<'_>, line: i32) -> Result<(), i32> {
     }
     if !RUN_MODES.contains(&call.image.number(signal::OPERATING_MODE)) {
         return Err(WRONG_MODE);
+    }
+    if disabled(call, PALLET_FILES) {
+        return Err(NO_PALLET_FILE);
     }
     let entry = call.nc.pallet_line(line).map_err(|fault| match fault {
         LineFault::NoFile => NO_PALLET_FILE,

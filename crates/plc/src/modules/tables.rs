@@ -3,13 +3,20 @@
 use super::{Call, Outcome};
 use crate::{Column, PlcError, TableFile, TableKind};
 
-/// 9092: the first line from a start line on where an element has a value. The line is pulled first.
+/// The element of the pocket table that names the tool in the pocket, and what it says of a vacant one [000:15422].
+const TOOL_NUMBER: i32 = 0;
+const NO_TOOL: i32 = -1;
+
+/// 9092: the first line from a start line on where an element has a value. The line is pulled first. The
+/// vacant pocket is looked for as that of tool 0 [000:15379].
 pub(super) fn search(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [kind, value, element, start] = call.arguments()?;
+    let vacant = TableKind::numbered(kind) == Some(TableKind::Pocket) && element == TOOL_NUMBER && value == 0;
     let found = table(call, kind, start, element).and_then(|(table, column)| {
         let mut line = table.next_line(start);
         while let Some(at) = line {
-            if read_element(table, at, element, column) == Some(value) {
+            let there = read_element(table, at, element, column);
+            if there == Some(value) || vacant && there == Some(NO_TOOL) {
                 return Ok(at);
             }
             line = at.checked_add(1).and_then(|next| table.next_line(next));

@@ -27,8 +27,10 @@ pub struct TestNc {
     pub parameter_files: BTreeMap<String, Option<ParameterList>>,
     /// The selected machine parameter list.
     pub parameter_file: String,
-    /// How often the control was restarted by 9033.
+    /// How often the control was reset by 9033.
     pub restarts: u32,
+    /// It was in this scan.
+    pub resets: bool,
     /// An NC program was started.
     pub program_running: bool,
     /// PLC error messages.
@@ -195,6 +197,7 @@ impl TestNc {
             parameter_files: BTreeMap::new(),
             parameter_file: String::new(),
             restarts: 0,
+            resets: false,
             program_running: false,
             messages: Vec::new(),
             dialogues: Vec::new(),
@@ -279,8 +282,13 @@ impl NcParameters for TestNc {
             self.parameters = list;
             self.changed_parameters = None;
             self.restarts = self.restarts.saturating_add(1);
+            self.resets = true;
         }
         Ok(())
+    }
+
+    fn resets(&self) -> bool {
+        self.resets
     }
 }
 

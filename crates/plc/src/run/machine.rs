@@ -385,6 +385,11 @@ impl Machine {
                     Err(error) => break Err((error, at)),
                 };
                 elapsed += cost(instruction, step);
+                if nc.resets() {
+                    // A control reset ends all of them [000:14893].
+                    self.queue = Queue::default();
+                    return Ok(());
+                }
                 if let Some(tracer) = reborrow(&mut tracer) {
                     tracer.executed(&TraceStep {
                         program,

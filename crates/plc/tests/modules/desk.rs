@@ -90,18 +90,30 @@ impl Desk {
         self.run(&program, results)
     }
 
+    /// Whether a module that is called from a submit job comes back to it.
+    pub fn returns(&mut self, module: u16, arguments: &[i32], results: usize) -> bool {
+        let program = format!("SUBM 1\nEM\nLBL 1\n{}EM\n", call(module, arguments, results));
+        self.scan(&program);
+        self.get("M901") == 1
+    }
+
     /// Runs a scan of a program that leaves results in D800, D804 and so on, and M3171 in M900.
     fn run(&mut self, program: &str, results: usize) -> Outcome {
+        self.scan(program);
+        assert_eq!(self.get("M901"), 1, "the call came to its end");
+        let result = |index: usize| Number::new(Size::Double, 800 + 4 * index as u16).unwrap();
+        let results = (0..results).map(|index| self.exchange.plc().number(result(index)));
+        (results.collect(), self.get("M900") == 1)
+    }
+
+    /// A scan of a program that sets M901 where the call has returned.
+    fn scan(&mut self, program: &str) {
         let files = MemoryFiles::from([("MAIN.PLC", program)]);
         let compilation = Compilation::compile(&files, "MAIN.PLC", Options::default());
         assert_eq!(compilation.errors, [], "{program}");
         let mut machine = Machine::new(compilation.program.unwrap().into(), Start::Interruption);
         self.exchange.plc_mut().set_bit("M901".parse().unwrap(), false);
         machine.scan(&mut self.exchange, &mut self.nc).unwrap();
-        assert_eq!(self.get("M901"), 1, "the call came to its end");
-        let result = |index: usize| Number::new(Size::Double, 800 + 4 * index as u16).unwrap();
-        let results = (0..results).map(|index| self.exchange.plc().number(result(index)));
-        (results.collect(), self.get("M900") == 1)
     }
 }
 

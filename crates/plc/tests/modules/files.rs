@@ -72,6 +72,9 @@ fn m9090_looks_for_types_that_are_not_disabled() {
     assert_eq!(desk.nc.program.as_deref(), Some("99.I"));
     assert_eq!(desk.submit(9090, &[7], 1), code(0), "the datum table is ignored");
     assert_eq!(desk.nc.datum_table, None);
+    // A locked type has no files [000:6857], so no pallet file has M status: bit 4.
+    desk.parameter("7224.0=%00010000");
+    assert_eq!(desk.submit(9090, &[0], 1), code(4));
 }
 
 #[test]

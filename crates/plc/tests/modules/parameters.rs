@@ -94,11 +94,13 @@ fn m9033_selects_a_list() {
         assert_eq!(desk.submit(9033, &[3], 1), code(1), "{name}");
     }
     assert_eq!(desk.nc.restarts, 0);
-    assert_eq!(desk.submit(9033, &[0], 1), code(0));
+    // The control is reset: nothing returns to the job [000:14893].
+    assert!(!desk.returns(9033, &[0], 1));
     assert_eq!(
         (desk.nc.restarts, desk.nc.parameters().get(7280, 0)),
         (1, Some(1.0))
     );
+    desk.nc.resets = false;
     assert_eq!(desk.submit(9033, &[0], 1), code(0), "selected already");
     assert_eq!(desk.nc.restarts, 1);
     desk.nc.program_running = true;

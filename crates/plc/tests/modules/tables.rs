@@ -18,9 +18,13 @@ fn desk() -> Desk {
 #[test]
 fn m9092_finds_the_vacant_pocket() {
     let mut desk = desk();
-    // The vacant pocket is that of tool 0 [000:15379].
-    assert_eq!(desk.submit(9094, &[POCKET, 1, 0, 0], 1), code(0));
-    assert_eq!(desk.submit(9094, &[POCKET, 3, 0, 0], 1), code(0));
+    // A pocket without a tool has number -1 [000:15422], and is looked for as that of tool 0 [000:15379].
+    for (pocket, tool) in [(0, 12), (1, -1), (2, 7), (3, 0), (4, 9)] {
+        assert_eq!(desk.submit(9094, &[POCKET, pocket, 0, tool], 1), code(0));
+    }
+    assert_eq!(desk.submit(9093, &[POCKET, 1, 0], 2), (vec![-1, 0], false));
+    assert_eq!(desk.submit(9092, &[POCKET, -1, 0, 0], 2), (vec![1, 0], false));
+    assert_eq!(desk.submit(9092, &[POCKET, 7, 0, 0], 2), (vec![2, 0], false));
     assert_eq!(desk.submit(9092, &[POCKET, 0, 0, 0], 2), (vec![1, 0], false));
     assert_eq!(
         desk.submit(9092, &[POCKET, 0, 0, 2], 2),
