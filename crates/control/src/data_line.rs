@@ -267,7 +267,7 @@ impl PlcLink {
     /// The lines and the host are those of the control that was on before; what waited is gone.
     pub(crate) fn keep_lines(&mut self, before: &PlcLink) {
         for (interface, before) in self.interfaces.iter_mut().zip(&before.interfaces) {
-            interface.ready = before.ready;
+            (interface.ready, interface.was_ready) = (before.ready, before.was_ready);
             interface.mode_baud = before.mode_baud;
             // A transfer of the operator ends with the control, and is told so by whoever has the line.
         }
@@ -281,8 +281,8 @@ fn at_line(interface: &mut DataInterface, event: LineEvent) -> bool {
         LineEvent::Ready(ready) => interface.ready = ready,
         LineEvent::ModeBaud(baud) => interface.mode_baud = baud,
         LineEvent::Taken(true) if interface.user == Some(InterfaceUser::Plc) => return false,
-        LineEvent::Taken(true) => interface.user = Some(InterfaceUser::Nc),
-        LineEvent::Taken(false) if interface.user == Some(InterfaceUser::Nc) => interface.user = None,
+        LineEvent::Taken(true) => interface.assign_to_nc(),
+        LineEvent::Taken(false) if interface.user == Some(InterfaceUser::Nc) => interface.release(),
         LineEvent::Taken(false) => {}
         LineEvent::Sent => interface.transmit.clear(),
         LineEvent::NotSent => {
@@ -340,7 +340,12 @@ mod tests {
         );
         interface.release();
         assert!(!at_line(&mut interface, LineEvent::Received(b"3".to_vec())));
+        // The operator transfers at the rate of his operating mode, which counts for the other interface, too [000:15617].
+        assert!(at_line(&mut interface, LineEvent::ModeBaud(38_400)));
         assert!(at_line(&mut interface, LineEvent::Taken(true)));
-        assert_eq!(interface.user, Some(InterfaceUser::Nc));
+        assert_eq!(
+            (interface.user, interface.baud),
+            (Some(InterfaceUser::Nc), 38_400)
+        );
     }
 }

@@ -16,6 +16,10 @@ pub(super) fn assign(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let (Some(number), true) = (interface_number(interface), call.from_submit) else {
         return Ok(Outcome::Failed);
     };
+    if call.parameter(5000, 0) as usize == number + 1 {
+        // It is inhibited for everybody [000:16984-16989].
+        return Ok(Outcome::Failed);
+    }
     let baud = match parameters {
         0 => BAUD_RATES.get(call.parameter(5040, 0) as usize).copied(),
         1 => Some(call.nc.data_interface(number).mode_baud),
@@ -53,7 +57,7 @@ pub(super) fn status(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
         [
             interface.user.is_some(),
             interface.user == Some(InterfaceUser::Plc),
-            interface.ready,
+            interface.ready_as_told(),
             interface.transmit.is_empty(),
             interface.transmit_error,
             // A string that is complete fills the buffer (inferred).

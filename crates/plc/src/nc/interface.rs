@@ -16,8 +16,10 @@ pub enum InterfaceUser {
 pub struct DataInterface {
     /// Who has it.
     pub user: Option<InterfaceUser>,
-    /// The other side is ready. The control keeps it up to date while somebody has the interface.
+    /// The other side is ready.
     pub ready: bool,
+    /// It was when somebody gave the interface back.
+    pub was_ready: bool,
     /// Baud rate in force; 0 before it was ever used.
     pub baud: u32,
     /// Baud rate of the operating mode that the operator chose.
@@ -52,6 +54,7 @@ impl DataInterface {
         *self = DataInterface {
             user: Some(InterfaceUser::Plc),
             ready: self.ready,
+            was_ready: self.was_ready,
             baud,
             mode_baud: self.mode_baud,
             receiving: true,
@@ -67,7 +70,23 @@ impl DataInterface {
     /// program is compiled anew [000:15616].
     pub fn release(&mut self) {
         self.user = None;
+        self.was_ready = self.ready;
         self.receiving = false;
+    }
+
+    /// Gives it to the operator's input and output, at the rate of the operating mode that was chosen.
+    pub fn assign_to_nc(&mut self) {
+        self.user = Some(InterfaceUser::Nc);
+        self.baud = self.mode_baud;
+    }
+
+    /// Whether the other side is ready, as 9102 tells it: without a user, whether it was when the last one gave the
+    /// interface back [000:15665].
+    pub(crate) fn ready_as_told(&self) -> bool {
+        match self.user {
+            Some(_) => self.ready,
+            None => self.was_ready,
+        }
     }
 
     /// Begins to send; false when the last text is not sent yet, or the other side is not ready (inferred).

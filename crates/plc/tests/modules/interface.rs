@@ -45,6 +45,35 @@ fn m9100_assigns() {
     assert_eq!(desk.submit(9100, &[RS232, 0], 0), failed());
 }
 
+/// The operator transfers at 38 400 baud: the PLC gets no other interface at 19 200 [000:15617].
+#[test]
+fn m9100_and_the_rate_of_the_operator() {
+    let mut desk = Desk::new();
+    desk.parameter("5040=8");
+    desk.nc.interfaces[0].mode_baud = 38_400;
+    desk.nc.interfaces[0].assign_to_nc();
+    assert_eq!(desk.submit(9100, &[RS422, 0], 0), failed());
+    desk.nc.interfaces[0].mode_baud = 9600;
+    desk.nc.interfaces[0].assign_to_nc();
+    assert_eq!(desk.submit(9100, &[RS422, 0], 0), done());
+}
+
+/// MP5000 inhibits one of both [000:16984-16989].
+#[test]
+fn m9100_finds_an_inhibited_interface() {
+    for (mp5000, free) in [
+        (0, [done(), done()]),
+        (1, [failed(), done()]),
+        (2, [done(), failed()]),
+    ] {
+        let mut desk = Desk::new();
+        desk.parameter("5040=7").parameter(&format!("5000={mp5000}"));
+        for (interface, answer) in [RS232, RS422].into_iter().zip(free) {
+            assert_eq!(desk.submit(9100, &[interface, 0], 0), answer, "MP5000 = {mp5000}");
+        }
+    }
+}
+
 #[test]
 fn m9101_releases() {
     let mut desk = assigned();
@@ -70,6 +99,18 @@ fn m9102_tells_the_status() {
     assert_eq!(desk.submit(9102, &[RS422], 1), value(0b1111_0111));
     desk.nc.interfaces[0].user = Some(InterfaceUser::Nc);
     assert_eq!(desk.cyclic(9102, &[RS232], 1), value(0b0000_1001));
+    // What was ready when the PLC gave it back stays so until somebody has it again [000:15665].
+    for ready in [true, false] {
+        let mut desk = assigned();
+        desk.nc.interfaces[1].ready = ready;
+        assert_eq!(desk.submit(9101, &[RS422], 0), done());
+        desk.nc.interfaces[1].ready = !ready;
+        let released = 0b0000_1000 | i32::from(ready) << 2;
+        assert_eq!(desk.cyclic(9102, &[RS422], 1), value(released));
+        assert_eq!(desk.submit(9100, &[RS422, 0], 0), done());
+        let again = 0b0000_1011 | i32::from(!ready) << 2;
+        assert_eq!(desk.cyclic(9102, &[RS422], 1), value(again));
+    }
     for wrong in [-1, 2] {
         assert_eq!(desk.cyclic(9102, &[wrong], 1), (vec![0], true));
     }
