@@ -41,9 +41,78 @@ fn tools_are_changed_where_m06_stands_or_at_their_call() {
     says(
         "TOOL CALL 1 Z S500\nL Z+20 R0 FMAX M6\nTOOL CALL 2 Z S600\nL Z+30 FMAX\nTOOL CALL S700",
         &[
-            "T1", "S500", "G0 Z20", "M6", "G43", "T2", "M6", "G43", "S600", "Z30", "S700", "M2",
+            "T1", "S500", "G0 Z20", "M6", "G43", "T2", "M6", "G43", "S600", "G0 Z30", "S700", "M2",
         ],
     );
+}
+
+/// Nobody knows where a machine changes its tool: behind M6 every axis is brought back, in rapid traverse. Upwards the tool
+/// axis goes first, else last; a line in feed, an arc and a thread begin where the program stood.
+#[test]
+fn behind_a_tool_change_every_axis_is_written() {
+    let behind = |block: &str, expected: &[&str]| {
+        let begin = "TOOL CALL 1 Z S500\nL X+10 Y+20 R0 FMAX\nL Z+5 FMAX\nTOOL CALL 2 Z S500\n";
+        let first = [
+            "T1",
+            "M6",
+            "G43",
+            "S500",
+            "G0 X10 Y20",
+            "Z5",
+            "T2",
+            "M6",
+            "G43",
+            "S500",
+        ];
+        let expected: Vec<&str> = first.iter().chain(expected).chain(&["M2"]).copied().collect();
+        says(&format!("{begin}{block}"), &expected);
+    };
+    behind("L X+30 R0 FMAX", &["G0 X30 Y20", "Z5"]);
+    behind("L Z+50 R0 FMAX", &["G0 Z50", "X10 Y20"]);
+    behind("L Z+2 R0 FMAX", &["G0 X10 Y20", "Z2"]);
+    behind("L X+0 Y+0 Z+50 R0 FMAX", &["G0 Z50", "X0 Y0"]);
+    behind("L Z-3 R0 F100", &["G0 X10 Y20", "Z5", "G1 Z-3 F100"]);
+    behind(
+        "CC X+0 Y+20\nC X-10 Y+20 DR+ R0 F100",
+        &["G0 X10 Y20", "Z5", "G17 G3 X-10 Y20 I-10 J0 F100"],
+    );
+    behind(
+        "CYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -2\nCYCL DEF 17.2 DEPTH -10\nCYCL DEF 17.3 PITCH +1\nCYCL CALL",
+        &["G0 X10 Y20", "Z5", "M3", "G33.1 Z-7 K1", "M5"],
+    );
+    // Nothing moves between two changes.
+    behind(
+        "TOOL CALL 3 Z\nL X+30 R0 FMAX",
+        &["T3", "M6", "G43", "S500", "G0 X30 Y20", "Z5"],
+    );
+}
+
+/// The proof does not know either: a line that leaves an axis where the change was is found.
+#[test]
+fn an_axis_that_stays_at_the_tool_change_is_a_difference() {
+    let source = program(
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S500\nL X+10 Y+20 Z+5 R0 FMAX\nTOOL CALL 2 Z S500\nL X+30 R0 FMAX\nEND PGM A MM\n",
+        Language::Plain,
+    );
+    let settings = settings(ControlModel::Tnc415b);
+    let options = linuxcnc::Options {
+        model: settings.model,
+        unit: source.unit(),
+        comments: false,
+        rapid_mm_min: 15_000.0,
+        user_functions: false,
+    };
+    let begin = || run(&source, &settings, &root());
+    let stop = Arc::new(AtomicBool::new(false));
+    let made = linuxcnc::write(&begin, &options, &stop);
+    let proof = |text: &str| linuxcnc::prove(&begin, text, "A.ngc", &options, &stop);
+    assert!(proof(&made.text).holds());
+    let (head, tail) = made.text.split_at(made.text.rfind("M6").unwrap());
+    for (word, left) in [("X30 Y20", "X30"), ("X30 Y20", "Y20"), ("\nZ5\n", "\n")] {
+        assert!(tail.contains(word), "{tail}");
+        let proof = proof(&format!("{head}{}", tail.replace(word, left)));
+        assert!(proof.first_difference.is_some(), "{word} became {left}");
+    }
 }
 
 #[test]
@@ -60,7 +129,8 @@ fn taps_and_threads_follow_the_spindle() {
             "M6",
             "G43",
             "S500",
-            "G0 X0 Y0 Z2",
+            "G0 X0 Y0",
+            "Z2",
             turn,
             "G33.1 Z-10 K0.75",
             "M5",
@@ -98,7 +168,8 @@ fn arcs_lie_in_their_planes_and_helices_have_turns() {
             "M6",
             "G43",
             "S500",
-            "G0 X0 Y0 Z0",
+            "G0 X0 Z0",
+            "Y0",
             // From (Z 0, X 0) about (Z 0, X 10): a quarter.
             "G18 G3 X10 Z10 K0 I10 F200",
             "G2 X10 Z10 K-10 I0",
@@ -106,7 +177,8 @@ fn arcs_lie_in_their_planes_and_helices_have_turns() {
             "M6",
             "G43",
             "S500",
-            "G0 X0 Z0",
+            "G0 X0 Y0",
+            "Z0",
             "G17 G3 X0 Y0 Z-6 I5 J0 P3 F300",
             "M2",
         ],

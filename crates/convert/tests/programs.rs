@@ -2,6 +2,8 @@
 
 mod support;
 
+use std::collections::BTreeSet;
+
 use bahn_parameters::ControlModel;
 use bahn_program::Program;
 use support::*;
@@ -54,7 +56,7 @@ fn every_program_of_the_repository_goes_there_and_back() {
 #[test]
 fn every_program_of_the_repository_becomes_gcode_with_the_same_path() {
     let files = programs("H");
-    let (mut elements, mut whole, mut with_user) = (0, 0, 0);
+    let (mut elements, mut whole, mut with_user, mut changes) = (0, 0, 0, 0);
     for file in &files {
         let bytes = std::fs::read(file).unwrap();
         let program = Program::from_bytes(file.to_string_lossy(), bytes);
@@ -72,9 +74,49 @@ fn every_program_of_the_repository_becomes_gcode_with_the_same_path() {
             made.message,
             made.refused
         );
+        changes += all_axes_behind_changes(&made.text);
         elements += proof.elements;
         whole += u32::from(made.refused.is_empty());
     }
-    println!("{whole} of {} programs, {elements} elements", files.len());
+    println!(
+        "{whole} of {} programs, {elements} elements, {changes} changes",
+        files.len()
+    );
+    assert!(changes >= 20, "{changes}");
     assert!(whole >= 55 && with_user >= whole + 5 && elements > 10_000);
+}
+
+/// Behind every tool change each axis that lines have moved before is in a line of rapid traverse before anything cuts. How
+/// many changes were looked at.
+fn all_axes_behind_changes(text: &str) -> u32 {
+    let (mut known, mut missing) = (BTreeSet::new(), BTreeSet::new());
+    let (mut changes, mut motion) = (0, "");
+    for line in text.lines() {
+        let words = line.split(';').next().unwrap_or_default().split_whitespace();
+        for word in words.clone() {
+            match word {
+                "M6" => {
+                    missing.clone_from(&known);
+                    changes += u32::from(!known.is_empty());
+                }
+                "G0" | "G1" | "G2" | "G3" | "G33" | "G33.1" => motion = word,
+                _ => {}
+            }
+        }
+        let axes: Vec<char> = words
+            .filter_map(|word| word.chars().next().filter(|letter| "XYZABCUVW".contains(*letter)))
+            .collect();
+        if axes.is_empty() {
+            continue;
+        }
+        if motion == "G0" {
+            missing.retain(|axis| !axes.contains(axis));
+        }
+        assert!(
+            motion == "G0" || missing.is_empty(),
+            "{line}: {missing:?} stay behind\n{text}"
+        );
+        known.extend(axes);
+    }
+    changes
 }

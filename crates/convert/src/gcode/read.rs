@@ -106,6 +106,11 @@ impl<'a> Reader<'a> {
                 Said::Stop { optional: false } if self.message.is_some() => {
                     Said::Refused(self.message.take().unwrap_or_default())
                 }
+                Said::Change => {
+                    // The machine changes its tool somewhere: an axis is nowhere until a line brings it to its place.
+                    self.at = Position::UNKNOWN;
+                    Said::Change
+                }
                 other => other,
             }));
         }

@@ -8,7 +8,7 @@ use bahn_interpreter::{Interpreter, WarningKind};
 use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 use bahn_path::{
-    At, Axis, BlockRef, ControlFunction, Curve, FeedRate, Function, OverrideLaw, PathElement, Plane,
+    At, Axis, BlockRef, ControlFunction, Curve, FeedRate, Function, OverrideLaw, PathElement, PerAxis, Plane,
     Position, SpindleOrder, TechnologyFunction, Thread,
 };
 
@@ -69,6 +69,12 @@ pub(super) struct Sayer {
     /// Whether the tools are changed by an M06 behind their call, call by call.
     changes: VecDeque<bool>,
     overrides: bool,
+    /// The axis of the tool.
+    tool_axis: Option<Axis>,
+    /// Which axes a line has brought to a place.
+    brought: PerAxis<bool>,
+    /// The tool was changed since the last movement: nobody knows where the machine does that.
+    elsewhere: bool,
     /// The way into a thread whose way out comes next.
     tap: Option<(Position, Position, Thread)>,
     user_functions: bool,
@@ -127,6 +133,9 @@ impl Sayer {
             queue: VecDeque::new(),
             changes,
             overrides: true,
+            tool_axis: None,
+            brought: PerAxis::default(),
+            elsewhere: false,
             tap: None,
             user_functions: options.user_functions,
             refused: Vec::new(),
@@ -282,6 +291,12 @@ impl Sayer {
             .into_iter()
             .any(|axis| end[axis].is_finite() && start[axis] != end[axis]);
         if moves || matches!(curve, Curve::Arc(_)) {
+            if self.elsewhere && curve == Curve::Line && feed == FeedRate::Rapid {
+                self.brings(&start, &end);
+                return self.comes(element.block, &start, &end);
+            }
+            self.comes(element.block, &start, &start);
+            self.brings(&start, &end);
             let said = Said::Move {
                 curve,
                 start,
@@ -289,6 +304,50 @@ impl Sayer {
                 feed,
             };
             self.say(element.block, said);
+        }
+    }
+
+    /// A movement brings the axes that move in it to a place; a cycle counts from 0 where an axis has none.
+    fn brings(&mut self, start: &Position, end: &Position) {
+        for axis in Axis::ALL {
+            self.brought[axis] |= end[axis].is_finite() && start[axis] != end[axis];
+        }
+    }
+
+    /// Behind a tool change: brings every axis to a place in rapid traverse, whatever place the change has left it at. Away from
+    /// where the program stood in the tool axis that goes first, else last, so that nothing plunges beside the way.
+    fn comes(&mut self, block: BlockRef, stood: &Position, to: &Position) {
+        if !std::mem::take(&mut self.elsewhere) {
+            return;
+        }
+        let mut to = *to;
+        for axis in Axis::ALL.into_iter().filter(|axis| !self.brought[*axis]) {
+            to[axis] = f64::NAN;
+        }
+        let mut first = to;
+        if let Some(tool) = self.tool_axis {
+            let leaves = to[tool] > stood[tool];
+            for axis in Axis::ALL.into_iter().filter(|axis| (*axis == tool) != leaves) {
+                first[axis] = f64::NAN;
+            }
+        }
+        let mut start = Position::UNKNOWN;
+        for end in [first, to] {
+            if Axis::ALL
+                .into_iter()
+                .any(|axis| end[axis].is_finite() && start[axis] != end[axis])
+            {
+                self.say(
+                    block,
+                    Said::Move {
+                        curve: Curve::Line,
+                        start,
+                        end,
+                        feed: FeedRate::Rapid,
+                    },
+                );
+                start = end;
+            }
         }
     }
 
@@ -325,6 +384,9 @@ impl Sayer {
                 returns: true,
             };
         }
+        if let Said::Thread { start, .. } = said {
+            self.comes(element.block, &start, &start);
+        }
         self.say(element.block, Said::Spindle(order));
         self.say(element.block, said);
         self.say(element.block, Said::Spindle(SpindleOrder::Stop));
@@ -344,9 +406,10 @@ impl Sayer {
         match &function.function {
             Function::M(code) => self.m_function(block, *code),
             Function::Tool(call) => {
+                self.tool_axis = Some(call.axis);
                 self.say(block, Said::Next(call.tool));
                 if self.changes.pop_front() == Some(false) {
-                    self.say(block, Said::Change);
+                    self.change(block);
                 }
                 if call.speed_rpm > 0.0 {
                     self.say(block, Said::Speed(call.speed_rpm));
@@ -383,6 +446,11 @@ impl Sayer {
         }
     }
 
+    fn change(&mut self, block: BlockRef) {
+        self.say(block, Said::Change);
+        self.elsewhere = true;
+    }
+
     fn m_function(&mut self, block: BlockRef, code: u16) {
         let spindle = match code {
             3 | 13 => Some(SpindleOrder::Clockwise),
@@ -402,7 +470,7 @@ impl Sayer {
             self.say(block, Said::Coolant(on));
         }
         match code {
-            6 => self.say(block, Said::Change),
+            6 => self.change(block),
             // The end says the same.
             2 | 30 | 1 => {}
             _ if spindle.is_some() || coolant.is_some() => {}

@@ -105,6 +105,8 @@ impl Writer {
             Said::Change => {
                 self.line("M6");
                 text.push_str("G43");
+                // Where the machine changes tools is its own matter: every word is written anew.
+                (self.at, self.motion) = (Position::UNKNOWN, "");
             }
             Said::Speed(rpm) => {
                 text.push('S');
