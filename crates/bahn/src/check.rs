@@ -90,7 +90,8 @@ struct Entry {
 
 /// Checks a file and prints what is wrong.
 pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
-    if files::extension(path) == "nc" {
+    // What cannot be read is said by whoever reads it next.
+    if std::fs::read(path).is_ok_and(|bytes| files::is_din(path, &bytes)) {
         return din::check(path, how.format, interrupt);
     }
     let examination = match files::load_program(path)? {

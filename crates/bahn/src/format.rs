@@ -59,12 +59,11 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
     Ok(outcome)
 }
 
-/// A file as one of DIN 66025: it is named `.nc`, and does not begin as one of plain language.
+/// A file as one of DIN 66025, if it is one.
 fn din(path: &Path, bytes: Option<&[u8]>) -> Option<bahn_din::Program> {
-    let bytes = bytes.filter(|_| files::extension(path) == "nc")?;
+    let bytes = bytes.filter(|bytes| files::is_din(path, bytes))?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let is_plain = Program::from_bytes("1.H", bytes.to_vec()).begins_with_header();
-    (!is_plain && !bytes.trim_ascii().is_empty()).then(|| bahn_din::Program::from_bytes(&name, bytes))
+    Some(bahn_din::Program::from_bytes(&name, bytes))
 }
 
 /// Prints, writes or compares the listing of a DIN 66025 program.

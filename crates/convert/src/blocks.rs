@@ -2,15 +2,15 @@
 
 use bahn_parameters::MessageId;
 use bahn_program::{
-    Block, BlockError, Compensation, CycleWord, FormatOptions, InvalidBlock, NumberedBlock, Operation,
-    Program, format_block,
+    Block, BlockError, CycleWord, FormatOptions, InvalidBlock, NumberedBlock, Operation, Program,
+    format_block,
 };
 
 use crate::canonical::{canonical, decorated};
 use crate::flow::{Flow, States};
 use crate::lower::{State, lower};
 use crate::reason::reason;
-use crate::to_iso::{cycle_block, encoded, expected, goes_on};
+use crate::to_iso::{Ways, cycle_block, encoded, expected, goes_on};
 use crate::{Language, Listed};
 
 /// How a program is written in the other language.
@@ -52,6 +52,8 @@ pub struct Converted {
     pub blocks: u32,
     /// Blocks that cannot be said: ERROR blocks stand in their place, which end a run that comes to them.
     pub refused: Vec<Listed>,
+    /// Comments that are too long for a block: they go on in the next ones.
+    pub wrapped: u32,
 }
 
 /// Writes a program in another language than its own, block by block.
@@ -67,6 +69,7 @@ pub fn convert(program: &Program, language: Language, options: &Options<'_>) -> 
             text: String::new(),
             blocks: 0,
             refused: Vec::new(),
+            wrapped: 0,
         },
     };
     match language {
@@ -118,13 +121,7 @@ fn lowered(operation: &Operation, states: States) -> Result<Vec<Operation>, &'st
 
 /// What the blocks of the source become in DIN/ISO; those of a cycle are gathered.
 fn to_iso(program: &Program, writer: &mut Writer<'_>) {
-    let lengthens = program.blocks().any(|numbered| match &numbered.block.operation {
-        Operation::Motion(motion) => matches!(
-            motion.compensation,
-            Some(Compensation::Lengthen | Compensation::Shorten)
-        ),
-        _ => false,
-    });
+    let ways = Ways::of(program);
     let mut open: Vec<NumberedBlock> = Vec::new();
     let mut aside: Vec<NumberedBlock> = Vec::new();
     for numbered in program.blocks() {
@@ -139,14 +136,14 @@ fn to_iso(program: &Program, writer: &mut Writer<'_>) {
             open.push(numbered);
             continue;
         }
-        cycle_to_iso(&mut open, &mut aside, writer);
+        cycle_to_iso(&mut open, &mut aside, &ways, writer);
         if cycle_block(&numbered.block.operation).is_some() {
             open.push(numbered);
         } else {
-            block_to_iso(&[numbered], lengthens, writer);
+            block_to_iso(&[numbered], &ways, writer);
         }
     }
-    cycle_to_iso(&mut open, &mut aside, writer);
+    cycle_to_iso(&mut open, &mut aside, &ways, writer);
 }
 
 fn operations_of(blocks: &[NumberedBlock]) -> Vec<Operation> {
@@ -157,7 +154,12 @@ fn operations_of(blocks: &[NumberedBlock]) -> Vec<Operation> {
 }
 
 /// Writes the cycle that was gathered, and the comment blocks that came up in it: those before it that stood inside.
-fn cycle_to_iso(open: &mut Vec<NumberedBlock>, aside: &mut Vec<NumberedBlock>, writer: &mut Writer<'_>) {
+fn cycle_to_iso(
+    open: &mut Vec<NumberedBlock>,
+    aside: &mut Vec<NumberedBlock>,
+    ways: &Ways,
+    writer: &mut Writer<'_>,
+) {
     let last = open.last().map_or(0, |last| last.number);
     let (inside, behind): (Vec<_>, Vec<_>) = aside.drain(..).partition(|comment| comment.number < last);
     let open = std::mem::take(open);
@@ -165,16 +167,30 @@ fn cycle_to_iso(open: &mut Vec<NumberedBlock>, aside: &mut Vec<NumberedBlock>, w
         writer.comment(&comment.block);
     }
     if !open.is_empty() {
-        block_to_iso(&open, false, writer);
+        block_to_iso(&open, ways, writer);
     }
     for comment in behind {
         writer.comment(&comment.block);
     }
 }
 
-fn block_to_iso(source: &[NumberedBlock], lengthens: bool, writer: &mut Writer<'_>) {
+fn block_to_iso(source: &[NumberedBlock], ways: &Ways, writer: &mut Writer<'_>) {
     let operations = operations_of(source);
-    let Some(encoded) = encoded(&operations, lengthens) else {
+    if let [
+        NumberedBlock {
+            block:
+                block @ Block {
+                    operation: Operation::Comment(text),
+                    ..
+                },
+            ..
+        },
+    ] = source
+        && writer.is_too_long(block, None)
+    {
+        return writer.own_comment(text);
+    }
+    let Some(encoded) = encoded(&operations, ways) else {
         return;
     };
     let expected = expected(&operations, &encoded);
@@ -364,22 +380,18 @@ impl Writer<'_> {
         }
     }
 
-    /// A comment in blocks of its own, as many as it needs.
+    /// A comment in blocks of its own, as many as it needs; words stay whole where they fit.
     fn own_comment(&mut self, text: &str) {
         let max = self.options.characters_max.map_or(usize::MAX, |max| {
             max.saturating_sub(COMMENT_FRAME).max(1) as usize
         });
-        let characters: Vec<char> = text.chars().collect();
-        let mut pieces = characters.chunks(max);
-        let mut piece = pieces.next().unwrap_or_default();
-        loop {
-            let text: String = piece.iter().collect();
+        let pieces = wrapped(text, max);
+        self.made.wrapped += u32::from(pieces.len() > 1);
+        for piece in pieces {
             self.push(&Block {
-                operation: Operation::Comment(text.into()),
+                operation: Operation::Comment(piece.into()),
                 ..Block::EMPTY
             });
-            let Some(next) = pieces.next() else { return };
-            piece = next;
         }
     }
 
@@ -408,4 +420,21 @@ impl Writer<'_> {
         self.made.text.push('\n');
         self.made.blocks += 1;
     }
+}
+
+/// A text in pieces of so many characters at most, parted at blanks where there are any. An empty text is one piece.
+fn wrapped(text: &str, max: usize) -> Vec<String> {
+    let mut pieces = Vec::new();
+    let mut rest: Vec<char> = text.chars().collect();
+    while rest.len() > max {
+        let blank = rest.iter().take(max + 1).rposition(|c| *c == ' ');
+        let at = blank.filter(|at| *at > 0).unwrap_or(max);
+        let tail = rest.split_off(at);
+        pieces.push(rest.iter().collect::<String>().trim_end().to_owned());
+        rest = tail.into_iter().skip_while(|c| *c == ' ').collect();
+    }
+    if !rest.is_empty() || pieces.is_empty() {
+        pieces.push(rest.into_iter().collect());
+    }
+    pieces
 }

@@ -1,8 +1,9 @@
 //! Operations of a language that says all itself as blocks of DIN/ISO: the blocks of a cycle become one.
 
+use bahn_path::{Axis, Plane};
 use bahn_program::{
-    Compensation, CycleBlock, CycleWord, Distance, Feed, Header, ModalBlock, Modality, MotionKind, Operation,
-    Unit,
+    Compensation, CycleBlock, CycleWord, Distance, Feed, Header, ModalBlock, Modality, Motion, MotionKind,
+    Operation, Program, Unit, Value, Word,
 };
 
 use crate::canonical::without_names;
@@ -31,8 +32,42 @@ pub(crate) fn cycle_block(operation: &Operation) -> Option<&CycleBlock> {
     }
 }
 
+/// What of a program decides how its blocks are written.
+pub(crate) struct Ways {
+    /// R+ and R- stand somewhere: an axis key is no line then.
+    lengthens: bool,
+    /// The working plane, where all its tools have one axis.
+    plane: Option<Plane>,
+}
+
+impl Ways {
+    pub fn of(program: &Program) -> Ways {
+        let mut ways = Ways {
+            lengthens: false,
+            plane: Plane::of_tool_axis(Axis::Z),
+        };
+        let mut tool_axis = None;
+        for numbered in program.blocks() {
+            match &numbered.block.operation {
+                Operation::Motion(motion) => {
+                    ways.lengthens |= matches!(
+                        motion.compensation,
+                        Some(Compensation::Lengthen | Compensation::Shorten)
+                    );
+                }
+                Operation::ToolCall { axis: Some(axis), .. } => {
+                    let same = *tool_axis.get_or_insert(*axis) == *axis;
+                    ways.plane = Plane::of_tool_axis(*axis).filter(|_| same && ways.plane.is_some());
+                }
+                _ => {}
+            }
+        }
+        ways
+    }
+}
+
 /// What is written for operations that make one block.
-pub(crate) fn encoded(operations: &[Operation], lengthens: bool) -> Option<Operation> {
+pub(crate) fn encoded(operations: &[Operation], ways: &Ways) -> Option<Operation> {
     let first = operations.first()?;
     if let Some(block) = cycle_block(first) {
         let incremental = operations.iter().filter_map(cycle_block).any(is_incremental);
@@ -55,15 +90,31 @@ pub(crate) fn encoded(operations: &[Operation], lengthens: bool) -> Option<Opera
         Operation::End(header) => Operation::End(with_unit(header)),
         Operation::Motion(motion) if motion.kind == MotionKind::Paraxial => {
             // Without R+ and R- an axis key moves as L does.
-            let plain = matches!(motion.compensation, None | Some(Compensation::Off)) && !lengthens;
+            let plain = matches!(motion.compensation, None | Some(Compensation::Off)) && !ways.lengthens;
             let mut motion = motion.clone();
             if plain && motion.feed == Some(Feed::Max) {
                 motion.kind = MotionKind::Line;
             }
             Operation::Motion(motion)
         }
+        Operation::Motion(motion) if motion.kind == MotionKind::Circle && motion.coordinates.is_empty() => {
+            Operation::Motion(full_circle(motion, ways.plane))
+        }
         other => other.clone(),
     })
+}
+
+/// `C DR+` goes all the way round. A block of DIN/ISO needs words for that: no way in either axis of the plane.
+fn full_circle(motion: &Motion, plane: Option<Plane>) -> Motion {
+    let mut motion = motion.clone();
+    for axis in plane.iter().flat_map(|plane| [plane.first, plane.second]) {
+        let stays = Word {
+            value: Value::Number(0.0),
+            incremental: true,
+        };
+        motion.coordinates.set(axis, stays);
+    }
+    motion
 }
 
 /// What [`encoded`] comes back as.

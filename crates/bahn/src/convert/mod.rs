@@ -111,6 +111,7 @@ struct Made {
     unrolled: Vec<Listed>,
     refused: Vec<Listed>,
     left_out: Vec<Listed>,
+    wrapped: u32,
     not_unrolled: Option<String>,
     proof: Option<Proof>,
 }
@@ -217,6 +218,7 @@ impl Bench<'_> {
             unrolled: made.unrolled,
             refused: made.refused,
             left_out: made.left_out,
+            wrapped_comments: made.wrapped,
             not_unrolled: made.not_unrolled,
             proof: made.proof,
             source: job.source.display().to_string(),
@@ -244,6 +246,7 @@ impl Bench<'_> {
             unrolled: Vec::new(),
             refused: blocks.refused,
             left_out: Vec::new(),
+            wrapped: blocks.wrapped,
             not_unrolled: None,
             proof,
         }
@@ -287,6 +290,7 @@ impl Bench<'_> {
             unrolled: blocks.refused.clone(),
             refused: Vec::new(),
             left_out: Vec::new(),
+            wrapped: 0,
             not_unrolled: None,
             proof: Some(proof),
         })
@@ -319,6 +323,7 @@ impl Bench<'_> {
             unrolled: Vec::new(),
             refused: made.refused,
             left_out: made.left_out,
+            wrapped: 0,
             not_unrolled: None,
             proof,
         }

@@ -24,6 +24,8 @@ pub(super) struct Report {
     pub refused: Vec<Listed>,
     /// What the target leaves out since the path does not depend on it.
     pub left_out: Vec<Listed>,
+    /// Comments that go on in the next block, since one has so few characters.
+    pub wrapped_comments: u32,
     /// Why what is refused was not unrolled, if it was tried.
     pub not_unrolled: Option<String>,
     /// `None` where none was wanted.
@@ -56,6 +58,10 @@ pub(super) fn text(report: &Report) -> String {
         row("Not unrolled", why);
     }
     list(&mut row, "Left out", &report.left_out);
+    if report.wrapped_comments > 0 {
+        let what = "longer than a block: they go on in the next one";
+        row("Comments", &format!("{} {what}", report.wrapped_comments));
+    }
     match &report.proof {
         None => row("Proof", "none was wanted"),
         Some(proof) => self::proof(&mut row, proof),

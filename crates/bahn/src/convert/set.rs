@@ -36,11 +36,11 @@ pub(super) fn is_iso(program: &Program) -> bool {
 
 /// The programs of the command line, each once, those in the target language left out.
 pub(super) fn jobs(options: &ConvertOptions) -> Result<Vec<Job>, UsageError> {
-    let endings = ["H".to_owned(), "I".to_owned()];
+    let endings = ["H", "I", "NC"].map(str::to_owned);
     let input = &options.input;
     let folder = input.is_dir();
     let sources = match folder {
-        true => shelf::programs(std::slice::from_ref(input), &endings)?,
+        true => shelf::programs(std::slice::from_ref(input), &endings, "")?,
         false => vec![input.clone()],
     };
     let mut jobs = Vec::new();
@@ -86,6 +86,10 @@ fn add(
         }
     };
     if files::extension(&source) == "nc" && !program.begins_with_header() {
+        // One of a folder is left out, as one in the language that is wanted.
+        if options.input.is_dir() {
+            return Ok(());
+        }
         let why = "a program of DIN 66025 (.nc) has its own axes and functions: it is not converted";
         return Err(UsageError::new(format!("{}: {why}", source.display())));
     }

@@ -11,8 +11,13 @@ use crate::{UsageError, files};
 /// Folders in folders; deeper ones are no shelf of programs.
 const DEEPEST: usize = 64;
 
-/// The programs in the order of the command line, each once; those of a folder by name.
-pub(crate) fn programs(named: &[PathBuf], endings: &[String]) -> Result<Vec<PathBuf>, UsageError> {
+/// The programs in the order of the command line, each once; those of a folder by name. `remedy` is said where there are
+/// none.
+pub(crate) fn programs(
+    named: &[PathBuf],
+    endings: &[String],
+    remedy: &str,
+) -> Result<Vec<PathBuf>, UsageError> {
     let mut found = Vec::new();
     for path in named {
         if path.as_os_str() == "-" {
@@ -35,7 +40,7 @@ pub(crate) fn programs(named: &[PathBuf], endings: &[String]) -> Result<Vec<Path
     found.retain(|path| seen.insert(path.clone()));
     if found.is_empty() {
         return Err(UsageError::new(format!(
-            "there is no program with the ending {}; --ext names others",
+            "there is no program with the ending {}{remedy}",
             endings.join(" or ")
         )));
     }

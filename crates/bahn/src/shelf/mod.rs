@@ -98,7 +98,7 @@ impl Totals {
 /// Runs all programs and writes the table.
 pub(crate) fn command(options: &TestOptions, equipment: Equipment) -> Result<Outcome, UsageError> {
     refuse_single_outputs(options)?;
-    let files = collect::programs(&options.files, &options.table.ext)?;
+    let files = collect::programs(&options.files, &options.table.ext, "; --ext names others")?;
     let inputs: Vec<&Path> = files.iter().map(AsRef::as_ref).collect();
     files::keep_inputs(&inputs, &options.written())?;
     let datum = equipment.datum;
