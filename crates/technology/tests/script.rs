@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_path::Axis;
-use bahn_technology::{EventKind, Report, Script};
+use bahn_technology::{ChannelList, EventKind, Report, Script};
 use common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 
 const LINE: &str = "%T\nN10 G01 X100 F6000\nN20 M7\nM30\n";
@@ -131,6 +131,46 @@ fn what_never_comes_ends_the_run() {
     at(report.waits[0].position.0[Axis::X], 20.0);
     assert_eq!(report.of(EventKind::Stop).len(), 1);
     when(report.time_s, ramp_s(20.0, V) + 2.0 * T);
+}
+
+/// FAW_SYNCH can be set in addition to a type [004:54], so it stands without one, too: output, and decoding holds.
+#[test]
+fn faw_synch_alone_is_output_and_holds_decoding() {
+    let program = "%T\nN10 G01 X10 F2000\nN20 X20 M8\nN30 X30\nM30\n";
+    let alone = Bench::new(program, "m_synch[8] FAW_SYNCH").run();
+    let with_mos = Bench::new(program, "m_synch[8] MOS | FAW_SYNCH").run();
+    assert_eq!(alone.of(EventKind::Output).len(), 1);
+    assert_eq!(alone.events, with_mos.events);
+    let stop = alone.of(EventKind::Stop);
+    at(x(stop[0]), 20.0);
+    let of_h = Bench::new(&program.replace("M8", "H8"), "h_synch[8] FAW_SYNCH").run();
+    assert_eq!(of_h.of(EventKind::Stop).len(), 1);
+    let speed = program.replace("M8", "S500");
+    let list = "spindel[0].bezeichnung S1\nspindel[0].s_synch FAW_SYNCH\n";
+    let report = Bench::new(&speed, list).run();
+    assert_eq!(report.of(EventKind::Output).len(), 1);
+    at(x(report.of(EventKind::Stop)[0]), 20.0);
+}
+
+/// BWD_SYNCH and FWD_SYNCH say when a type counts [004:54] [004:207]: without one they are refused where they stand.
+#[test]
+fn bits_of_the_way_back_need_a_type() {
+    for bit in ["BWD_SYNCH", "FWD_SYNCH", "0x00400000", "BWD_SYNCH | FWD_SYNCH"] {
+        let list = ChannelList::from_bytes(format!("m_synch[7] MOS\nm_synch[8] {bit}\n").as_bytes());
+        let errors = list.errors();
+        assert_eq!(errors.len(), 1, "{bit}: {errors:?}");
+        assert_eq!((errors[0].line, errors[0].column), (2, 12));
+        assert!(
+            errors[0].message.contains("needs a type"),
+            "{}",
+            errors[0].message
+        );
+    }
+    let program = "%T\nN10 V.G.M_FCT[8].SYNCH = 4194304\nN20 M8\nM30\n";
+    let report = Bench::new(program, "m_synch[8] MOS").run();
+    let error = report.error.unwrap();
+    assert_eq!(error.block, "N10");
+    assert!(error.message.contains("needs a type"), "{}", error.message);
 }
 
 /// Flush and wait: the block behind is decoded when the path stands, so that there is no corner to pass.

@@ -97,7 +97,7 @@ impl Channel<'_> {
     }
 
     /// Gives the interpolator what is known of the path.
-    fn feed(&mut self) {
+    pub(super) fn feed(&mut self) {
         let closed = self.decoding.holds || self.decoding.ended;
         loop {
             let mut feed = Feed {
@@ -161,6 +161,7 @@ impl Channel<'_> {
         if let Some(passed) = here.filter(|_| arrives).or(passed) {
             self.pass(passed);
         }
+        self.passed_leads(self.t() + self.cycle_s);
         let moved = (self.way() - way).abs() > 2.0 * ROUNDING_MM;
         self.still = speed <= 0.0;
         if self.stands && moved {

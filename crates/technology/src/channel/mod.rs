@@ -8,6 +8,7 @@ mod drive;
 mod fault;
 mod gates;
 mod in_force;
+mod kept;
 mod leads;
 mod order;
 mod planned;

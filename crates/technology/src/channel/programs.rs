@@ -203,7 +203,9 @@ impl Channel<'_> {
                 return Ended::Reset;
             }
             let moved = self.spend(drive);
-            quiet = if any || moved { 0 } else { quiet + 1 };
+            // In a dwell the time of what is output ahead comes nearer.
+            let nears = self.dwell.is_some() && !self.leads.queue.is_empty();
+            quiet = if any || moved || nears { 0 } else { quiet + 1 };
             // Twice without anything to do, and nothing changes until something comes from outside.
             if quiet < 2 {
                 self.cycle += 1;

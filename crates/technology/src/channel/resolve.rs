@@ -195,9 +195,9 @@ impl Resolve<'_> {
             let message = format!("{letter:?}{number} has no synchronisation type");
             return Err(numbered(place, 20157, message));
         };
-        if synch.kind == SynchType::NoSynch {
+        let Some(synch) = told(synch) else {
             return Ok(None);
-        }
+        };
         let range = match (range, own.default_target.as_deref()) {
             (Some(range), _) => range,
             (None, Some(name)) if !name.is_empty() => self.range_called(name, place)?,
@@ -254,10 +254,9 @@ impl Resolve<'_> {
                 None => Ok(None),
             };
         };
-        let synch = settings.s.synch.unwrap_or_default();
-        if synch.kind == SynchType::NoSynch {
+        let Some(synch) = told(settings.s.synch.unwrap_or_default()) else {
             return Ok(None);
-        }
+        };
         Ok(Some(Way {
             synch,
             range: Some(range_of(index, settings)),
@@ -383,6 +382,19 @@ impl Resolve<'_> {
 
 fn unknown_spindle(name: &str, place: &Place) -> Fault {
     numbered(place, 21548, format!("no spindle {name} is configured"))
+}
+
+/// What is output and has no type is not waited for; `NO_SYNCH` is not output. FAW_SYNCH is set in addition to a type and says
+/// itself that the function is output [004:54], so it stands alone as well (inferred).
+fn told(synch: Synch) -> Option<Synch> {
+    match synch.kind {
+        SynchType::NoSynch if synch.flush_and_wait => Some(Synch {
+            kind: SynchType::Mos,
+            ..synch
+        }),
+        SynchType::NoSynch => None,
+        _ => Some(synch),
+    }
 }
 
 /// The range of a spindle: with `plc_control` all of it goes through that of the channel [004:171].
