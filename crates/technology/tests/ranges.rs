@@ -222,6 +222,26 @@ fn m19_mns_sns_stands_without_plc_info() {
     when(report.wait("M19").1, report.wait("M19").0 + 0.5);
 }
 
+/// On machines without spindles M3, M4, M5 and M19 are free with `spindle_m_fct_free 1` [004:159], and then need a type as any
+/// other function [004:42].
+#[test]
+fn free_spindle_functions_need_a_type() {
+    for number in [3, 4, 5, 19] {
+        let program = format!("%T\nN10 G01 F1000 X10 M{number}\nM30\n");
+        let free = "spindle_m_fct_free 1\n";
+        let error = Bench::new(&program, free).run().error.unwrap();
+        assert_eq!((&*error.code, &*error.block), ("P-ERR-20157", "N10"), "M{number}");
+        let typed = Bench::new(&program, &format!("{free}m_synch[{number}] MOS\n")).run();
+        assert_eq!(delivered(&typed), [format!("channel:M{number}")]);
+        let said = Bench::new(&program, &format!("{free}m_synch[{number}] NO_SYNCH\n")).run();
+        assert!(delivered(&said).is_empty());
+        // Switched on by the program it is the same.
+        let switched = program.replace("%T\n", "%T\nN5 V.SPDL.M_FCT_FREE = 1\n");
+        let error = Bench::new(&switched, "").run().error.unwrap();
+        assert_eq!(error.code, "P-ERR-20157", "M{number}");
+    }
+}
+
 #[test]
 fn t24_spindle_and_plc_both() {
     let list = "spindel[0].bezeichnung S1\nspindel[0].m3_synch 0x00020002\n";
