@@ -319,7 +319,11 @@ fn without_end_point(c: &mut Cursor, start: usize, function: PathFunction) -> Pa
     c.go_to(start);
     let is_it = |c: &mut Cursor| {
         let at = c.position();
-        let number = if c.peek_upper() == b'G' { g_code(c).ok() } else { None };
+        let number = if c.peek_upper() == b'G' {
+            g_code(c).ok()
+        } else {
+            None
+        };
         c.go_to(at);
         number.is_some_and(|number| PathFunction::ALL.contains(&(number, function)))
     };
