@@ -259,6 +259,13 @@ fn there_is_no_way_back_before_the_first_motion() {
 
 #[test]
 fn scripts_say_what_is_wrong() {
+    let (_, errors) = Script::from_text("M25 akc 1\nM26 ack 1\nhold 1\novreride 50 at 1\n");
+    let told = errors
+        .iter()
+        .map(|error| (error.line, error.column, error.length));
+    assert_eq!(told.collect::<Vec<_>>(), [(1, 5, 3), (3, 6, 1), (4, 1, 8)]);
+    let help: Vec<_> = errors.iter().filter_map(|error| error.help.as_deref()).collect();
+    assert_eq!(help, ["did you mean `ack`?", "did you mean `override`?"]);
     for (text, line, column) in [
         ("M25 ack -1", 1, 9),
         ("\nM25 what", 2, 5),
@@ -278,4 +285,54 @@ fn scripts_say_what_is_wrong() {
             .parse::<Script>()
             .is_ok()
     );
+}
+
+/// What the channel does not have is not answered either: a script that names it is mistaken.
+#[test]
+fn functions_and_spindles_of_a_script_are_those_of_the_channel() {
+    let list = "m_synch[25] MOS\nm_synch[26] MVS_SVS\nh_synch[5] MOS\nspindel[0].bezeichnung S1\n";
+    let settings = common::settings(list);
+    let unknown = |text: &str| -> Vec<(usize, usize, String, Option<String>)> {
+        let (script, errors) = Script::from_text(text);
+        assert_eq!(errors, []);
+        let unknown = script
+            .unknown(&settings, |function| function == "M77")
+            .into_iter();
+        unknown
+            .map(|error| (error.line, error.column, error.message, error.help))
+            .collect()
+    };
+    let fine = "M25 ack 1\nX[M26] ack 1\nH5 ack never\nM3 ack 1\nS[M3] ack 1\nS1[M5] ack 0\nM30 ack 1\nS ack 1\n\
+                channel[M25] ack 1\nM77 ack 1\nspindle S1 ready 1\nspindle S ready 1\n";
+    assert_eq!(unknown(fine), []);
+    let found = unknown("M25 ack 1\n  M52 ack 1\nS2[M3] ack 1\nspindle S3 ready 1\nH9 ack 0\nQ[M25] ack 0\n");
+    let places: Vec<_> = found.iter().map(|(line, column, ..)| (*line, *column)).collect();
+    assert_eq!(places, [(2, 3), (3, 1), (4, 9), (5, 1), (6, 1)]);
+    assert!(
+        found[0].2.contains("M52 has no synchronisation type"),
+        "{found:?}"
+    );
+    assert_eq!(found[0].3.as_deref(), Some("did you mean `M25`?"));
+    assert_eq!(found[2].3.as_deref(), Some("did you mean `S1`?"));
+}
+
+/// What takes longer than it may ends at the block where it is.
+#[test]
+fn a_run_has_its_bounds() {
+    let program = "%T\nN10 G01 X1 F1\nN20 X100\nM30\n";
+    let mut bench = Bench::new(program, "");
+    bench.bounds.time_s = 120.0;
+    let report = bench.run();
+    let error = report.error.unwrap();
+    assert_eq!(
+        (&*error.code, &*error.block, &*error.program),
+        ("endless", "N20", "p1.nc")
+    );
+    assert!(error.message.contains("120 s"), "{}", error.message);
+    assert!((report.time_s - 120.0).abs() <= 2.0 * T, "{}", report.time_s);
+    let mut bench = Bench::new(program, "");
+    bench.bounds.blocks = 2;
+    assert_eq!(bench.run().error.unwrap().code, "endless");
+    bench.bounds.blocks = 3;
+    assert!(bench.run().completed);
 }

@@ -190,13 +190,18 @@ impl Channel<'_> {
         }
     }
 
-    /// The path stands.
-    pub(super) fn stop(&mut self, at: Moment) {
+    /// The block in which the path is, or at whose end.
+    pub(super) fn block_now(&self) -> Arc<str> {
         let at_place = self.way() <= self.track.way(self.reached) + SAME;
-        let block = match self.track.leg(self.reached).filter(|_| !at_place) {
+        match self.track.leg(self.reached).filter(|_| !at_place) {
             Some(leg) => leg.block.clone(),
             None => self.track.block_before(self.reached),
-        };
+        }
+    }
+
+    /// The path stands.
+    pub(super) fn stop(&mut self, at: Moment) {
+        let block = self.block_now();
         self.record.path(false, &block, at);
         self.stands = true;
     }

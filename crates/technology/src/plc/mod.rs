@@ -1,6 +1,7 @@
 //! The PLC at the other side of the ranges: a script says what it does, it does all in its process time, or a real one reads
 //! and answers in a window of bytes.
 
+mod said;
 mod script;
 mod window;
 
