@@ -3,7 +3,7 @@
 use bahn_din::nearest;
 use bahn_path::Axis;
 
-use super::script::{ScriptError, Word, Words};
+use super::error::ScriptError;
 use crate::settings::{ChannelSettings, SPINDLE_M};
 
 /// A name that stands somewhere in a script.
@@ -23,8 +23,7 @@ pub(super) enum Named {
 }
 
 impl Said {
-    pub(super) fn new(words: &Words<'_>, word: Word<'_>, named: Named) -> Said {
-        let place = words.error(word, String::new());
+    pub(super) fn new(place: ScriptError, named: Named) -> Said {
         Said { place, named }
     }
 

@@ -1,13 +1,13 @@
 //! What a scripted PLC does: a line for each function, and what happens at which time.
 
 use std::collections::HashMap;
-use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
 use bahn_din::nearest;
 use bahn_path::Axis;
 
+use super::error::ScriptError;
 use super::said::{Named, Said};
 use crate::settings::ChannelSettings;
 
@@ -80,29 +80,6 @@ pub(crate) enum After {
     Never,
 }
 
-/// What is wrong with a script.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ScriptError {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// How many characters are meant.
-    pub length: usize,
-    /// What.
-    pub message: String,
-    /// What to do about it, where that can be guessed.
-    pub help: Option<String>,
-}
-
-impl fmt::Display for ScriptError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.line, self.column, self.message)
-    }
-}
-
-impl std::error::Error for ScriptError {}
-
 impl Script {
     /// Whether it says what the PLC does with functions, and not only what happens to path and spindles.
     pub fn answers_functions(&self) -> bool {
@@ -173,8 +150,10 @@ impl Script {
                 let name = word.1.to_uppercase();
                 words.keyword("ready")?;
                 let after = words.after()?;
-                self.said
-                    .push(Said::new(words, word, Named::Spindle(name.clone())));
+                self.said.push(Said::new(
+                    words.error(word, String::new()),
+                    Named::Spindle(name.clone()),
+                ));
                 self.spindles.insert(name, after);
             }
             "probe" => {
@@ -204,8 +183,7 @@ impl Script {
                 let key = function(name).ok_or_else(wrong)?;
                 let reply = words.reply()?;
                 self.said.push(Said::new(
-                    words,
-                    first,
+                    words.error(first, String::new()),
                     Named::Function(key.0.clone(), key.1.clone()),
                 ));
                 self.replies.insert(key, reply);
@@ -233,10 +211,10 @@ fn function(name: &str) -> Option<(String, String)> {
 }
 
 /// A word and the column where it begins, from 0.
-pub(super) type Word<'a> = (usize, &'a str);
+type Word<'a> = (usize, &'a str);
 
 /// The words of a line.
-pub(super) struct Words<'a> {
+struct Words<'a> {
     code: &'a str,
     line: usize,
     at: usize,
@@ -252,7 +230,7 @@ impl<'a> Words<'a> {
         Some((from, self.code.get(from..to)?))
     }
 
-    pub(super) fn error(&self, at: Word<'_>, message: String) -> ScriptError {
+    fn error(&self, at: Word<'_>, message: String) -> ScriptError {
         let before = self.code.get(..at.0).unwrap_or_default();
         ScriptError {
             line: self.line,
