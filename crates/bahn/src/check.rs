@@ -2,7 +2,7 @@
 //!
 //! Every block is read, and the program is rehearsed: executed without geometry, beyond its errors.
 
-mod din;
+pub(crate) mod din;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

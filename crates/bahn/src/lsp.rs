@@ -1,10 +1,11 @@
 //! `bahn lsp`: the language server over standard input and output.
 
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_host::called_program;
-use bahn_lsp::{Connection, Files, Settings, serve};
+use bahn_lsp::{Files, Settings, Streams, serve};
 use bahn_machine::MachineFolder;
 use bahn_parameters::ControlModel;
 use clap::Args;
@@ -52,12 +53,12 @@ pub(crate) fn command(options: &LspOptions) -> Result<Outcome, UsageError> {
         skip_unknown: options.skip_unknown,
         ..Settings::default()
     };
-    let (connection, threads) = Connection::stdio();
+    let input = BufReader::new(std::io::stdin());
+    let (connection, streams) = Streams::connect(input, std::io::stdout());
     let served = serve(&connection, Arc::new(Disk), &settings);
     drop(connection);
-    served.map_err(|error| UsageError::new(error.to_string()))?;
-    threads
-        .join()
+    streams
+        .end(served)
         .map_err(|error| UsageError::new(error.to_string()))?;
     Ok(Outcome::Fine)
 }

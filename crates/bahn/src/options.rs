@@ -383,7 +383,7 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "it takes a time of 0 s or more".to_owned())
 }
 
-fn time_limit(text: &str) -> Result<f64, String> {
+pub(crate) fn time_limit(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
         .filter(|value| (0.001..=1e9).contains(value))

@@ -7,7 +7,7 @@ mod client;
 mod script;
 mod support;
 
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
@@ -16,6 +16,9 @@ use serde_json::{Value, json};
 
 use client::{Client, Wire};
 use support::Folder;
+
+/// How long an answer may take.
+const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The command, with the messages that it has written.
 struct Command {
@@ -31,7 +34,8 @@ impl Command {
             .arg("lsp")
             .args(options)
             .stdin(Stdio::piped())
-            .stdout(Stdio::piped());
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let input = child.stdin.take();
         let mut reader = BufReader::new(child.stdout.take().unwrap());
@@ -125,4 +129,40 @@ fn a_server_ends_with_its_editor() {
     assert_eq!(client.into_wire().code(), 2);
     let command = Command::start(&folder, &[]);
     assert_eq!(command.code(), 2, "before it has begun");
+}
+
+/// What is no message is answered or logged; a length beyond all messages ends the server with a word.
+#[test]
+fn what_is_no_message_does_not_end_the_server() {
+    let folder = Folder::new();
+    let client = Client::start(Command::start(&folder, &[]), Value::Null);
+    let mut wire = client.into_wire();
+    let raw = |wire: &mut Command, text: &str| {
+        let input = wire.input.as_mut().unwrap();
+        input.write_all(text.as_bytes()).unwrap();
+        input.flush().unwrap();
+    };
+    raw(&mut wire, "Content-Length: 1\r\n\r\n{");
+    let log = wire.receive(PATIENCE).unwrap();
+    assert_eq!(log["method"], "window/logMessage");
+    raw(&mut wire, "Content-Length: 22\r\n\r\n{\"id\":7,\"method\":null}");
+    let refused = wire.receive(PATIENCE).unwrap();
+    assert_eq!(
+        (&refused["id"], &refused["error"]["code"]),
+        (&json!(7), &json!(-32600))
+    );
+    wire.send(json!({"jsonrpc": "2.0", "id": 8, "method": "shutdown"}));
+    assert_eq!(wire.receive(PATIENCE).unwrap()["id"], 8);
+    let client = Client::start(Command::start(&folder, &[]), Value::Null);
+    let mut wire = client.into_wire();
+    raw(&mut wire, "Content-Length: 4611686018427387904\r\n\r\n{}");
+    let mut error = String::new();
+    wire.child
+        .stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut error)
+        .unwrap();
+    assert!(error.contains("Content-Length 4611686018427387904"), "{error}");
+    assert_eq!(wire.child.wait().unwrap().code(), Some(2));
 }

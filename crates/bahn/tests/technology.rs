@@ -318,7 +318,7 @@ fn wrong_use_is_told() {
         );
     }
     let script = folder.bahn("technology a.nc --channel a.lis --plc a.txt").err();
-    assert!(script.contains("a.txt:1:9: "), "{script}");
+    assert!(script.contains("a.txt:1:9\n"), "{script}");
     assert_eq!(folder.bahn("technology a.nc").code(), 2, "a list is needed");
     assert_eq!(folder.bahn("technology none.nc --channel a.lis").code(), 2);
     folder.write("sub.nc", "%L SUB\nN10 M17\n");
@@ -493,4 +493,82 @@ fn who_answers_is_said_once() {
     let run = folder.bahn("technology a.nc --channel a.lis --plc gantry");
     assert_eq!(run.code(), 1);
     assert!(run.err().contains("MAIN.PLC:1"), "{}", run.err());
+}
+
+/// All that is wrong stands with its line and a mark on standard error, with what is probably meant: in list, script and program.
+#[test]
+fn what_is_wrong_has_its_place() {
+    let program = "N10 G01 F1000 X1O\nN20 X[M7 Y5\nN30 X5 M8\nM30\n";
+    let folder = folder(
+        program,
+        "m_synch[7] MOS\n",
+        "M7 akc 1\nM9 ack 0\nspindle S3 ready 1\n",
+    );
+    let text = folder.bahn("technology a.nc --channel a.lis").err();
+    for words in [
+        "--> a.nc:1:17",
+        "help: did you mean `X10`?",
+        "--> a.nc:2:",
+        "help: `]` is missing for the bracket in column 6",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let script = folder.bahn("technology a.nc --channel a.lis --plc a.txt");
+    let told = script.err();
+    for words in [
+        "--> a.txt:1:4",
+        "did you mean `ack`?",
+        "--> a.txt:2:1",
+        "did you mean `M7`?",
+        "--> a.txt:3:9",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    assert_eq!(script.code(), 2);
+    let (code, report) = run(&folder, "--plc a.txt");
+    assert_eq!((code, &report["error"]["code"]), (2, &json!("script")));
+    let found = report["diagnostics"].as_array().unwrap();
+    let places: Vec<_> = found
+        .iter()
+        .map(|one| (one["file"].as_str().unwrap(), one["line"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(
+        places,
+        [("a.nc", 1), ("a.nc", 2), ("a.txt", 1), ("a.txt", 2), ("a.txt", 3)]
+    );
+    assert_eq!(found[0]["help"], "did you mean `X10`?");
+    // A fault of the run: M8 has no type.
+    folder.write("a.nc", "N30 X5 M8\nM30\n");
+    let ended = folder.bahn("technology a.nc --channel a.lis");
+    assert!(ended.err().contains("--> a.nc:1:1") && ended.err().contains("help: give the function a type"));
+    assert_eq!(ended.code(), 1);
+    folder.write("a.lis", "m_sinch[8] MOS\nm_synch[7 MOS\nm_synch[8] MVS_SSV\n");
+    let list = folder.bahn("channel check a.lis");
+    for words in [
+        "did you mean `m_synch[8]`?",
+        "did you mean `m_synch[7]`?",
+        "did you mean `MVS_SVS`?",
+    ] {
+        assert!(list.err().contains(words), "{words}: {}", list.err());
+    }
+    let json = folder.bahn("channel check a.lis --format json").json();
+    assert_eq!(json["errors"][2]["help"], "did you mean `MVS_SVS`?");
+    assert_eq!(json["errors"][2]["length"], 7);
+}
+
+/// A run that takes longer than it may ends at its block, as `bahn run` does.
+#[test]
+fn a_run_has_limits() {
+    let folder = folder("N10 G01 F1 X100\nM30\n", "", "");
+    let (code, report) = run(&folder, "--max-time 5");
+    assert_eq!(code, 1);
+    assert_eq!(
+        (&report["error"]["code"], &report["error"]["block"]),
+        (&json!("endless"), &json!("N10"))
+    );
+    assert!((report["time_s"].as_f64().unwrap() - 5.0).abs() < 0.01);
+    let (code, report) = run(&folder, "--max-blocks 1");
+    assert_eq!((code, &report["error"]["code"]), (1, &json!("endless")));
+    let wrong = folder.bahn("technology a.nc --channel a.lis --max-time 0");
+    assert_eq!((wrong.code(), wrong.out()), (2, String::new()));
 }

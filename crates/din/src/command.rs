@@ -72,6 +72,11 @@ const FORMS: [Form; 6] = [
     },
 ];
 
+/// The commands as they are written, without `#`.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    FORMS.iter().map(|form| form.words)
+}
+
 /// Reads a command, from its `#` on.
 pub(crate) fn read(cursor: &mut Cursor) -> Result<Order, LineFault> {
     let mark = cursor.mark();

@@ -53,6 +53,7 @@
 mod block;
 mod circle;
 mod command;
+mod cure;
 mod cursor;
 mod decoder;
 mod examine;
@@ -60,12 +61,14 @@ mod execute;
 mod expression;
 mod line;
 mod listing;
+mod nearest;
 mod program;
 mod unit;
 mod words;
 
 pub use decoder::{BlockFault, Decoder, Step};
 pub use examine::{Examination, FileFault, examine};
+pub use nearest::nearest;
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{
     Command, Function, Independent, Kind, Motion, Place, Shelf, SpindleOrder, Target, Unit, Variable,

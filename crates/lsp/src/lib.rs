@@ -23,7 +23,7 @@
 //! assert!(serve(&server, Arc::new(NoFiles), &Settings::default()).is_err(), "the editor has gone");
 //! ```
 //!
-//! `server` is the loop, `requests` have a file for each kind of request. What a language knows stands behind the trait
+//! `transport` reads and writes messages, `server` is the loop, `requests` have a file for each kind of request. What a language knows stands behind the trait
 //! `Analysis` of `language`: part programs (`part`), DIN 66025 (`din`), PLC programs (`plc`), lists (`list`). One version of a document is
 //! read once, when somebody asks; what takes long, as the run that finds the values of Q parameters, is done in the
 //! `background` and broken off when the text changes.
@@ -41,12 +41,14 @@ mod requests;
 mod server;
 mod settings;
 mod text;
+mod transport;
 mod uri;
 mod world;
 
 pub use lsp_server::Connection;
 pub use server::serve;
 pub use settings::Settings;
+pub use transport::{Frame, Streams, read};
 pub use world::Files;
 
 /// Why the server has ended before it was told to.
@@ -58,6 +60,9 @@ pub enum ServeError {
     /// The editor sent what cannot be read.
     #[error("what the editor sends cannot be read: {0}")]
     Json(#[from] serde_json::Error),
+    /// What comes cannot be read any more, or nothing can be written.
+    #[error("{0}")]
+    Stream(String),
     /// The editor has gone without a word.
     #[error("the editor has gone")]
     EditorGone,

@@ -8,6 +8,7 @@
 
 use std::fmt::Write;
 
+use bahn_parameters::ControlModel;
 use bahn_program::{Block, Chunk, Edit, FormatOptions, Operation, Program, format_program};
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
@@ -169,4 +170,20 @@ fn labelled(blocks: usize) -> Program {
     }
     text.push_str("END PGM BENCH MM\n");
     Program::from_bytes("BENCH.H", text.into_bytes())
+}
+
+/// All that is wrong in a text of 20,000 blocks, as `bahn check` asks it: in DIN/ISO the lengths of the blocks, too.
+#[divan::bench(args = ["plain", "iso"])]
+fn diagnostics(bencher: Bencher, language: &str) {
+    const CHECKED: usize = 20_000;
+    let (name, text) = match language {
+        "plain" => ("BENCH.H", short_lines()),
+        _ => ("BENCH.I", iso_lines()),
+    };
+    let lines: Vec<&str> = text.lines().take(CHECKED).collect();
+    let program = Program::from_bytes(name, lines.join("\n").into_bytes());
+    let limits = ControlModel::default().limits();
+    bencher
+        .counter(ItemsCount::new(CHECKED))
+        .bench(|| black_box(program.diagnostics(Some(limits.into())).len()));
 }

@@ -8,8 +8,9 @@ use bahn_parameters::MessageId::{
 };
 
 use crate::lines::lines;
+use crate::program::Places;
 use crate::sequence::{Sequence, SequenceFault};
-use crate::text::trim_continuation;
+use crate::text::{character_count, trim_continuation};
 use crate::{BlockError, CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
 
 /// Most diagnostics of one program; with more it is not a program at all.
@@ -84,6 +85,7 @@ impl Program {
             sequence: Sequence::default(),
             found: Vec::new(),
             more: Uncounted::default(),
+            places: None,
         };
         if let Some(reason) = self.refused() {
             // One line says all.
@@ -130,6 +132,8 @@ struct Pass<'a> {
     sequence: Sequence,
     found: Vec<Diagnostic>,
     more: Uncounted,
+    /// Those of the piece that is looked at.
+    places: Option<Places<'a>>,
 }
 
 impl Pass<'_> {
@@ -208,11 +212,9 @@ impl Pass<'_> {
         let max = self
             .reading
             .and_then(|reading| language.characters_max(reading.limits));
-        let text = max.map(|_| self.program.text_of(number)).unwrap_or_default();
-        let length = text.chars().count() as u32;
-        if let Some(max) = max.filter(|max| length > *max)
-            && !self.is_full(Severity::Error)
-        {
+        let Some(max) = max else { return };
+        let length = self.length_of(number);
+        if length > max && !self.is_full(Severity::Error) {
             self.found.push(Diagnostic {
                 message: EntryValueIncorrect,
                 severity: Severity::Error,
@@ -224,6 +226,20 @@ impl Pass<'_> {
                 help: EntryValueIncorrect.remedy(),
             });
         }
+    }
+
+    /// The characters of a block.
+    fn length_of(&mut self, number: u32) -> u32 {
+        let places = match self.places.take() {
+            Some(places) if places.of(number).is_some() => Some(places),
+            _ => self.program.places_of(number),
+        };
+        self.places = places;
+        let here = self.places.as_ref();
+        let Some((places, raw)) = here.and_then(|places| Some((places, places.of(number)?))) else {
+            return 0;
+        };
+        character_count(raw.text(places.piece.text()).bytes)
     }
 
     /// The labels that a block sets, calls or lists.

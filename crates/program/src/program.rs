@@ -380,20 +380,26 @@ impl Program {
         Some((self.rope.pieces().get(index)?, index))
     }
 
+    /// The place of a block that stands in the file.
+    pub(crate) fn place(&self, block: u32) -> Option<(&Arc<Piece>, RawBlock)> {
+        let places = self.places_of(block)?;
+        Some((places.piece, places.of(block)?))
+    }
+
+    /// The places of all blocks of the piece in which a block stands: to cut a piece costs as much for one as for all.
+    pub(crate) fn places_of(&self, block: u32) -> Option<Places<'_>> {
+        let (piece, index) = self.piece_of(block)?;
+        let (first, line) = self.rope.start(index);
+        Some(Places {
+            piece,
+            first,
+            blocks: self.places(piece, line),
+        })
+    }
+
     /// The places of the blocks of a piece that begins with a line.
     fn places(&self, piece: &Piece, line: u32) -> Vec<RawBlock> {
         self.language.cut(piece.text(), line)
-    }
-
-    /// The place of a block that stands in the file.
-    pub(crate) fn place(&self, block: u32) -> Option<(&Arc<Piece>, RawBlock)> {
-        let (piece, index) = self.piece_of(block)?;
-        let (first, line) = self.rope.start(index);
-        let raw = self
-            .places(piece, line)
-            .into_iter()
-            .nth(block.checked_sub(first)? as usize)?;
-        Some((piece, raw))
     }
 
     /// Line of the last block that stands in the file.
@@ -401,6 +407,21 @@ impl Program {
         let last = self.rope.end().checked_sub(1);
         let place = last.and_then(|last| self.place(last));
         place.map_or(1, |(_, raw)| raw.line)
+    }
+}
+
+/// Where the blocks of a piece stand.
+#[derive(Debug)]
+pub(crate) struct Places<'a> {
+    pub(crate) piece: &'a Arc<Piece>,
+    first: u32,
+    blocks: Vec<RawBlock>,
+}
+
+impl Places<'_> {
+    /// The place of a block, if it is of this piece.
+    pub(crate) fn of(&self, block: u32) -> Option<RawBlock> {
+        self.blocks.get(block.checked_sub(self.first)? as usize).copied()
     }
 }
 

@@ -404,3 +404,60 @@ fn a_mark_of_byte_order_is_one_at_the_front_only() {
     assert_eq!(blocks(b"\xef\xbb\xbf%\n%\n%"), 2);
     assert_eq!(blocks(b" \xef\xbb\xbf%\n%\nM3\n%"), 3);
 }
+
+/// A path function that is not a straight line needs its end point in the block that says it: nothing is accepted and then
+/// not done. `CP DR+` and `LP` of plain language are ANGLE REFERENCE MISSING, too.
+#[test]
+fn a_path_function_needs_its_end_point() {
+    let message = |block: &str| {
+        let program = read(format!("%7 G71 *\nN10 {block} *\nN99999 %7 G71 *\n"));
+        match program.decode(0).blocks[1].operation.clone() {
+            Operation::Invalid(block) => Some((
+                block.error.message,
+                block.error.column,
+                block.error.detail.to_string(),
+            )),
+            _ => None,
+        }
+    };
+    for number in ["02", "03", "05", "06", "2", "3"] {
+        let arc = "the end point of the arc is missing".to_owned();
+        assert_eq!(
+            message(&format!("G{number}")),
+            Some((MessageId::AngleReferenceMissing, 5, arc)),
+            "G{number}"
+        );
+    }
+    for number in [10, 11, 12, 13, 15, 16] {
+        for (block, column) in [(format!("G{number}"), 5), (format!("G40 G{number} F100 M3"), 9)] {
+            let polar = "H is missing".to_owned();
+            assert_eq!(
+                message(&block),
+                Some((MessageId::AngleReferenceMissing, column, polar)),
+                "{block}"
+            );
+        }
+        assert_eq!(message(&format!("G{number} H+90")), None);
+        assert_eq!(
+            message(&format!("G{number} Z+5")),
+            None,
+            "the tool axis of a helix"
+        );
+    }
+    let single = "G07 moves one axis".to_owned();
+    assert_eq!(message("G07 F100"), Some((MessageId::UnexpectedText, 5, single)));
+    let centre = message("I+10 J+10 G02");
+    assert_eq!(
+        centre.map(|(message, column, _)| (message, column)),
+        Some((MessageId::AngleReferenceMissing, 15))
+    );
+    for fine in [
+        "G00 G40 G90",
+        "G01 F100",
+        "G02 X+5 Y+5",
+        "G03 R10 X+5",
+        "I+10 J+10",
+    ] {
+        assert_eq!(message(fine), None, "{fine}");
+    }
+}

@@ -125,6 +125,7 @@ fn run(bencher: Bencher<'_, '_>, moves: bool, kind: SynchType) {
             limits: &limits,
             start: Position::ZERO,
             from: None,
+            bounds: Default::default(),
             script: Some(&script),
         };
         let report = run.execute();

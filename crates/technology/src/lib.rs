@@ -42,6 +42,7 @@
 //!     },
 //!     start: Position::UNKNOWN,
 //!     from: None,
+//!     bounds: Default::default(),
 //!     script: Some(&script),
 //! }
 //! .execute();
@@ -66,7 +67,7 @@ pub use plc::{PlcMemory, Script, ScriptError, WINDOW_BYTES};
 pub use report::{
     Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, Skipped, ToGo, Value, Wait, Warning,
 };
-pub use run::{Blocks, Programs, Run};
+pub use run::{Blocks, Bounds, Programs, Run};
 pub use settings::{
     ChannelSettings, EdgeBanding, FUNCTIONS, FunctionSettings, FunctionTable, INTERNAL_M, MicroJoint,
     PreOutput, SPINDLES, SpindleFunction, SpindleSettings,

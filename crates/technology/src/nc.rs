@@ -33,6 +33,7 @@ impl NcPrograms {
                     message: "the file has no program".to_owned(),
                     program: file.name().to_string(),
                     block: "#1".to_owned(),
+                    line: 1,
                 });
             }
         }
@@ -64,6 +65,7 @@ impl Programs for NcPrograms {
                 message: "there is no such program".to_owned(),
                 program: String::new(),
                 block: String::new(),
+                line: 0,
             });
         };
         let decoder = Decoder::new(file.clone(), main, *start, self.shelf.clone());
@@ -104,11 +106,12 @@ impl Blocks for NcBlocks {
 }
 
 fn of(fault: BlockFault) -> Fault {
-    let Place { program, block, .. } = fault.place;
+    let Place { program, block, line } = fault.place;
     Fault {
         code: SYNTAX.to_owned(),
         message: fault.message,
         program: program.to_string(),
         block: block.to_string(),
+        line,
     }
 }

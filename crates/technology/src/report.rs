@@ -46,6 +46,8 @@ pub struct Fault {
     pub program: String,
     /// The block: `N40`, without a number its line, `#12`.
     pub block: String,
+    /// Its line in the file, from 1; 0 where none is known.
+    pub line: u32,
 }
 
 impl fmt::Display for Fault {
@@ -55,6 +57,7 @@ impl fmt::Display for Fault {
             message,
             program,
             block,
+            ..
         } = self;
         write!(f, "{program} {block}: {message} ({code})")
     }

@@ -8,6 +8,25 @@ use crate::plc::{PlcMemory, Script};
 use crate::report::{Fault, Report};
 use crate::settings::ChannelSettings;
 
+/// How far a run goes at most: what is longer ends with the fault `endless` at the block where it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Time of the run, s.
+    pub time_s: f64,
+    /// Blocks that are executed.
+    pub blocks: u64,
+}
+
+impl Default for Bounds {
+    /// A day, and far more blocks than anybody waits for.
+    fn default() -> Bounds {
+        Bounds {
+            time_s: 86_400.0,
+            blocks: 50_000_000,
+        }
+    }
+}
+
 /// Programs in turn on one channel.
 ///
 /// Time, PLC, spindles and functions that are still open go over from one to the next, which starts where it ended.
@@ -23,6 +42,8 @@ pub struct Run<'a> {
     /// Block of the programs of the first file that the run begins with (`N50`): what is before it is not output and not
     /// moved.
     pub from: Option<&'a str>,
+    /// How far it goes at most.
+    pub bounds: Bounds,
     /// What the PLC does; without it a virtual one acknowledges each function its process time after it was output.
     pub script: Option<&'a Script>,
 }

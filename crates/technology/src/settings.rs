@@ -14,6 +14,9 @@ pub const SPINDLES: usize = 16;
 /// they may be programmed [004:48] [004:204]. M5 is missing in the manual's list; it is like M3 and M4 (inferred).
 pub const INTERNAL_M: [u32; 10] = [0, 1, 2, 3, 4, 5, 17, 19, 29, 30];
 
+/// The functions of a spindle among them, unless they are free [004:159]: then they are known with an entry only.
+pub(crate) const SPINDLE_M: [u32; 4] = [3, 4, 5, 19];
+
 /// All that a channel parameter list sets, with the values of an empty list as default.
 ///
 /// ```
@@ -55,7 +58,10 @@ pub struct ChannelSettings {
 impl Default for ChannelSettings {
     fn default() -> ChannelSettings {
         let mut m = FunctionTable::default();
-        for number in INTERNAL_M {
+        for number in INTERNAL_M
+            .into_iter()
+            .filter(|number| !SPINDLE_M.contains(number))
+        {
             if let Some(function) = m.get_mut(number) {
                 function.synch = Some(SynchType::NoSynch.into());
             }

@@ -142,7 +142,8 @@ pub struct Synch {
     pub backward: bool,
     /// `FWD_SYNCH`: waited for as its type says in simulated forward motion [004:54].
     pub forward: bool,
-    /// `FAW_SYNCH`: decoding holds at the end of its block until the channel has run empty [004:54].
+    /// `FAW_SYNCH`: decoding holds at the end of its block until the channel has run empty [004:54]; without a type the function
+    /// is output all the same, and not waited for (inferred).
     pub flush_and_wait: bool,
 }
 
@@ -154,6 +155,8 @@ pub enum SynchError {
     NotValid,
     /// Bits that stand for nothing.
     UnknownBits(u32),
+    /// `BWD_SYNCH` or `FWD_SYNCH` without a type: they say when a type counts [004:54] [004:207].
+    NoType(&'static str),
     /// More than one type; a function has one (inferred).
     SeveralTypes(SynchType, SynchType),
 }
@@ -163,6 +166,12 @@ impl fmt::Display for SynchError {
         match self {
             SynchError::NotValid => write!(f, "NOT_VALID is no synchronisation type"),
             SynchError::UnknownBits(bits) => write!(f, "no synchronisation type has the bits 0x{bits:08X}"),
+            SynchError::NoType(bit) => {
+                write!(
+                    f,
+                    "{bit} needs a type beside it, as MVS_SVS | {bit}: alone nothing is output"
+                )
+            }
             SynchError::SeveralTypes(a, b) => {
                 write!(f, "two synchronisation types, {a} and {b}: a function has one")
             }
@@ -212,6 +221,13 @@ impl Synch {
         let kind = kinds.next().map_or(SynchType::NoSynch, |(kind, ..)| *kind);
         if let Some((second, ..)) = kinds.next() {
             return Err(SynchError::SeveralTypes(kind, *second));
+        }
+        let way = [("BWD_SYNCH", Synch::BACKWARD), ("FWD_SYNCH", Synch::FORWARD)];
+        let of_way = way.iter().find(|(_, bit)| value & bit != 0);
+        // PLC_INFO and FAW_SYNCH say themselves that the function is output.
+        let is_output = value & (Synch::PLC_INFO | Synch::FLUSH_AND_WAIT) != 0;
+        if let Some((bit, _)) = of_way.filter(|_| kind == SynchType::NoSynch && !is_output) {
+            return Err(SynchError::NoType(bit));
         }
         Ok(Synch {
             kind,
@@ -286,7 +302,14 @@ mod tests {
                     forward: bits & 4 != 0,
                     flush_and_wait: bits & 8 != 0,
                 };
-                assert_eq!(Synch::from_bits(synch.bits()), Ok(synch));
+                let alone = kind == SynchType::NoSynch && matches!(bits, 2 | 4 | 6);
+                let bit = if bits & 2 != 0 { "BWD_SYNCH" } else { "FWD_SYNCH" };
+                let known = if alone {
+                    Err(SynchError::NoType(bit))
+                } else {
+                    Ok(synch)
+                };
+                assert_eq!(Synch::from_bits(synch.bits()), known);
                 let text = synch.to_string();
                 let read = text.split('|').map(|name| Synch::constant(name.trim()));
                 let sum = read.map(Option::unwrap).fold(0, |sum, bits| sum | bits);

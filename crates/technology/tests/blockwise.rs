@@ -122,6 +122,24 @@ fn t06_without_a_motion_all_types_are_one() {
     when(svs.time_s, svs.wait("M25").1 + ramp_s(20.0, F2000));
 }
 
+/// So functions go out in the order of the block: MNS_SNS waits for no motion that is not there, nor for one of no length.
+#[test]
+fn t06_functions_without_a_motion_keep_their_order() {
+    for kind in ["MVS_SVS", "MVS_SNS", "MNS_SNS"] {
+        for block in ["N20 M25 M26", "N20 M25 X20 M26"] {
+            let program = format!("%T\nN10 G01 X20 F2000\n{block}\nN30 X40\nM30\n");
+            let list = format!("m_synch[25] {kind}\nm_synch[26] MOS\nh_synch[7] {kind}\n");
+            let report = Bench::new(&program, &list).script("M25 ack 0.2").run();
+            assert_eq!(report.order(), ["channel:M25", "channel:M26"], "{kind} {block}");
+            at(report.wait("M25").2, 20.0);
+            let turned = program.replace("M26", "H7");
+            let turned = turned.replace("M25", "M26").replace("H7", "M25");
+            let report = Bench::new(&turned, &list).script("M25 ack 0.2").run();
+            assert_eq!(report.order(), ["channel:M26", "channel:M25"], "{kind} {block}");
+        }
+    }
+}
+
 const LATE: &str =
     "%T\nN05 M24\nN10 M25 G00 X25\nN20 X50\nN30 X75\nN40 X100\nN50 G01 X125 F2000\nN60 Z100\nM30\n";
 

@@ -112,7 +112,7 @@ fn an_error_has_code_message_program_and_block() {
     let error = &report["error"];
     let mut found = keys(error);
     found.sort_unstable();
-    assert_eq!(found, ["block", "code", "message", "program"]);
+    assert_eq!(found, ["block", "code", "line", "message", "program"]);
     assert_eq!(
         (&error["code"], &error["block"]),
         (&json!("P-ERR-20157"), &json!("N10"))

@@ -263,7 +263,7 @@ fn case(blocks: &[Block]) -> Case {
                 _ => {}
             }
             let place = place(kind, start, way);
-            let order = (index, kind == "MNS_SNS", at);
+            let order = (index, kind == "MNS_SNS" && block.motion.is_some(), at);
             let one = Known {
                 kind,
                 range,

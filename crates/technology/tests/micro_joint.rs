@@ -274,3 +274,25 @@ fn t38_a_lead_without_micro_joints_is_a_licence_error() {
     let without = program.replace("SYNCH = 1\n", "SYNCH = 1\nN25 V.G.M_FCT[96].PRE_OUTP_PATH = 0\n");
     assert!(Bench::new(&without, functions).run().completed);
 }
+
+/// Micro Joints are of the channel alone [004:111]: a lead in the brackets of an axis, or of a default axis, is refused at its
+/// block; a lead by MEP_SVS goes to any range.
+#[test]
+fn a_lead_to_an_axis_is_refused() {
+    let program = "%T\nN10 G01 X40 F5000\nN20 X60 X[M11]\nM30\n";
+    let enabled = "configuration.path_preparation.function FCT_DEFAULT | FCT_M_PRE_OUTPUT\n";
+    let list = |kind: &str| format!("{enabled}m_synch[11] {kind}\nm_pre_outp[11] 100000\n");
+    for kind in ["MOS", "MVS_SVS", "MVS_SNS", "MNS_SNS", "MOS_TS"] {
+        let error = Bench::new(program, &list(kind)).run().error.unwrap();
+        assert_eq!((&*error.code, &*error.block), ("micro-joint", "N20"), "{kind}");
+        assert!(error.message.contains("X takes no lead"), "{}", error.message);
+        let by_default = format!("{}m_default_outp_ax_name[11] X\n", list(kind));
+        let error = Bench::new(&program.replace("X[M11]", "M11"), &by_default)
+            .run()
+            .error;
+        assert_eq!(error.unwrap().code, "micro-joint", "{kind}");
+    }
+    let report = Bench::new(program, &list("MEP_SVS")).run();
+    at(x(report.output("M11")), 30.0);
+    assert!(report.error.is_none());
+}

@@ -199,6 +199,49 @@ fn t23_a_spindle_of_the_nc_confirms_by_itself() {
     when(report.wait("M3").1, 0.4);
 }
 
+/// The spindle executes M19 at once; behind the motion the path stands in any case, however early it has confirmed [004:66].
+#[test]
+fn m19_mns_sns_stands_without_plc_info() {
+    let program = "%T\nN10 G01 F1000 X10 M19\nN20 X20\nM30\n";
+    let list = "spindel[0].bezeichnung S1\nspindel[0].m19_synch MNS_SNS\n";
+    let v = 1000.0 / 60.0;
+    for (ready, stands) in [(0.0, T), (5.0, 5.0 - ramp_s(10.0, v))] {
+        let script = format!("spindle S1 ready {ready}");
+        let report = Bench::new(program, list).script(&script).run();
+        assert!(delivered(&report).is_empty());
+        let stops = report.of(EventKind::Stop);
+        assert_eq!(stops.len(), 1, "ready {ready}: {stops:?}");
+        at(x(stops[0]), 10.0);
+        when(stops[0].t, ramp_s(10.0, v));
+        let go = report.of(EventKind::Go)[1].t;
+        assert!((go - stops[0].t - stands).abs() <= 2.0 * T, "ready {ready}: {go}");
+    }
+    // Without a motion it is MVS_SVS, and waits only for the spindle.
+    let alone = program.replace("X10 M19", "X10\nN15 M19");
+    let report = Bench::new(&alone, list).script("spindle S1 ready 0.5").run();
+    when(report.wait("M19").1, report.wait("M19").0 + 0.5);
+}
+
+/// On machines without spindles M3, M4, M5 and M19 are free with `spindle_m_fct_free 1` [004:159], and then need a type as any
+/// other function [004:42].
+#[test]
+fn free_spindle_functions_need_a_type() {
+    for number in [3, 4, 5, 19] {
+        let program = format!("%T\nN10 G01 F1000 X10 M{number}\nM30\n");
+        let free = "spindle_m_fct_free 1\n";
+        let error = Bench::new(&program, free).run().error.unwrap();
+        assert_eq!((&*error.code, &*error.block), ("P-ERR-20157", "N10"), "M{number}");
+        let typed = Bench::new(&program, &format!("{free}m_synch[{number}] MOS\n")).run();
+        assert_eq!(delivered(&typed), [format!("channel:M{number}")]);
+        let said = Bench::new(&program, &format!("{free}m_synch[{number}] NO_SYNCH\n")).run();
+        assert!(delivered(&said).is_empty());
+        // Switched on by the program it is the same.
+        let switched = program.replace("%T\n", "%T\nN5 V.SPDL.M_FCT_FREE = 1\n");
+        let error = Bench::new(&switched, "").run().error.unwrap();
+        assert_eq!(error.code, "P-ERR-20157", "M{number}");
+    }
+}
+
 #[test]
 fn t24_spindle_and_plc_both() {
     let list = "spindel[0].bezeichnung S1\nspindel[0].m3_synch 0x00020002\n";

@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_path::Axis;
-use bahn_technology::{EventKind, Report, Script};
+use bahn_technology::{ChannelList, EventKind, Report, Script};
 use common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 
 const LINE: &str = "%T\nN10 G01 X100 F6000\nN20 M7\nM30\n";
@@ -133,6 +133,46 @@ fn what_never_comes_ends_the_run() {
     when(report.time_s, ramp_s(20.0, V) + 2.0 * T);
 }
 
+/// FAW_SYNCH can be set in addition to a type [004:54], so it stands without one, too: output, and decoding holds.
+#[test]
+fn faw_synch_alone_is_output_and_holds_decoding() {
+    let program = "%T\nN10 G01 X10 F2000\nN20 X20 M8\nN30 X30\nM30\n";
+    let alone = Bench::new(program, "m_synch[8] FAW_SYNCH").run();
+    let with_mos = Bench::new(program, "m_synch[8] MOS | FAW_SYNCH").run();
+    assert_eq!(alone.of(EventKind::Output).len(), 1);
+    assert_eq!(alone.events, with_mos.events);
+    let stop = alone.of(EventKind::Stop);
+    at(x(stop[0]), 20.0);
+    let of_h = Bench::new(&program.replace("M8", "H8"), "h_synch[8] FAW_SYNCH").run();
+    assert_eq!(of_h.of(EventKind::Stop).len(), 1);
+    let speed = program.replace("M8", "S500");
+    let list = "spindel[0].bezeichnung S1\nspindel[0].s_synch FAW_SYNCH\n";
+    let report = Bench::new(&speed, list).run();
+    assert_eq!(report.of(EventKind::Output).len(), 1);
+    at(x(report.of(EventKind::Stop)[0]), 20.0);
+}
+
+/// BWD_SYNCH and FWD_SYNCH say when a type counts [004:54] [004:207]: without one they are refused where they stand.
+#[test]
+fn bits_of_the_way_back_need_a_type() {
+    for bit in ["BWD_SYNCH", "FWD_SYNCH", "0x00400000", "BWD_SYNCH | FWD_SYNCH"] {
+        let list = ChannelList::from_bytes(format!("m_synch[7] MOS\nm_synch[8] {bit}\n").as_bytes());
+        let errors = list.errors();
+        assert_eq!(errors.len(), 1, "{bit}: {errors:?}");
+        assert_eq!((errors[0].line, errors[0].column), (2, 12));
+        assert!(
+            errors[0].message.contains("needs a type"),
+            "{}",
+            errors[0].message
+        );
+    }
+    let program = "%T\nN10 V.G.M_FCT[8].SYNCH = 4194304\nN20 M8\nM30\n";
+    let report = Bench::new(program, "m_synch[8] MOS").run();
+    let error = report.error.unwrap();
+    assert_eq!(error.block, "N10");
+    assert!(error.message.contains("needs a type"), "{}", error.message);
+}
+
 /// Flush and wait: the block behind is decoded when the path stands, so that there is no corner to pass.
 #[test]
 fn faw_synch_holds_decoding() {
@@ -219,6 +259,13 @@ fn there_is_no_way_back_before_the_first_motion() {
 
 #[test]
 fn scripts_say_what_is_wrong() {
+    let (_, errors) = Script::from_text("M25 akc 1\nM26 ack 1\nhold 1\novreride 50 at 1\n");
+    let told = errors
+        .iter()
+        .map(|error| (error.line, error.column, error.length));
+    assert_eq!(told.collect::<Vec<_>>(), [(1, 5, 3), (3, 6, 1), (4, 1, 8)]);
+    let help: Vec<_> = errors.iter().filter_map(|error| error.help.as_deref()).collect();
+    assert_eq!(help, ["did you mean `ack`?", "did you mean `override`?"]);
     for (text, line, column) in [
         ("M25 ack -1", 1, 9),
         ("\nM25 what", 2, 5),
@@ -238,4 +285,54 @@ fn scripts_say_what_is_wrong() {
             .parse::<Script>()
             .is_ok()
     );
+}
+
+/// What the channel does not have is not answered either: a script that names it is mistaken.
+#[test]
+fn functions_and_spindles_of_a_script_are_those_of_the_channel() {
+    let list = "m_synch[25] MOS\nm_synch[26] MVS_SVS\nh_synch[5] MOS\nspindel[0].bezeichnung S1\n";
+    let settings = common::settings(list);
+    let unknown = |text: &str| -> Vec<(usize, usize, String, Option<String>)> {
+        let (script, errors) = Script::from_text(text);
+        assert_eq!(errors, []);
+        let unknown = script
+            .unknown(&settings, |function| function == "M77")
+            .into_iter();
+        unknown
+            .map(|error| (error.line, error.column, error.message, error.help))
+            .collect()
+    };
+    let fine = "M25 ack 1\nX[M26] ack 1\nH5 ack never\nM3 ack 1\nS[M3] ack 1\nS1[M5] ack 0\nM30 ack 1\nS ack 1\n\
+                channel[M25] ack 1\nM77 ack 1\nspindle S1 ready 1\nspindle S ready 1\n";
+    assert_eq!(unknown(fine), []);
+    let found = unknown("M25 ack 1\n  M52 ack 1\nS2[M3] ack 1\nspindle S3 ready 1\nH9 ack 0\nQ[M25] ack 0\n");
+    let places: Vec<_> = found.iter().map(|(line, column, ..)| (*line, *column)).collect();
+    assert_eq!(places, [(2, 3), (3, 1), (4, 9), (5, 1), (6, 1)]);
+    assert!(
+        found[0].2.contains("M52 has no synchronisation type"),
+        "{found:?}"
+    );
+    assert_eq!(found[0].3.as_deref(), Some("did you mean `M25`?"));
+    assert_eq!(found[2].3.as_deref(), Some("did you mean `S1`?"));
+}
+
+/// What takes longer than it may ends at the block where it is.
+#[test]
+fn a_run_has_its_bounds() {
+    let program = "%T\nN10 G01 X1 F1\nN20 X100\nM30\n";
+    let mut bench = Bench::new(program, "");
+    bench.bounds.time_s = 120.0;
+    let report = bench.run();
+    let error = report.error.unwrap();
+    assert_eq!(
+        (&*error.code, &*error.block, &*error.program),
+        ("endless", "N20", "p1.nc")
+    );
+    assert!(error.message.contains("120 s"), "{}", error.message);
+    assert!((report.time_s - 120.0).abs() <= 2.0 * T, "{}", report.time_s);
+    let mut bench = Bench::new(program, "");
+    bench.bounds.blocks = 2;
+    assert_eq!(bench.run().error.unwrap().code, "endless");
+    bench.bounds.blocks = 3;
+    assert!(bench.run().completed);
 }

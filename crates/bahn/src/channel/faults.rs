@@ -21,7 +21,9 @@ pub(super) struct Report<'a> {
 struct Item<'a> {
     line: usize,
     column: usize,
+    length: usize,
     message: &'a str,
+    help: &'a str,
 }
 
 impl<'a> Report<'a> {
@@ -29,7 +31,9 @@ impl<'a> Report<'a> {
         let item = |fault: &'a ListFault| Item {
             line: fault.line,
             column: fault.column,
+            length: fault.length,
             message: &fault.message,
+            help: fault.help.as_deref().unwrap_or_default(),
         };
         Report {
             file: None,
@@ -65,7 +69,7 @@ pub(crate) fn faults(list: &ChannelList, path: &Path) -> Vec<FileFault> {
             )),
         },
         label: String::new(),
-        help: None,
+        help: fault.help.clone(),
         opened: None,
     };
     errors.chain(warnings).map(at_its_place).collect()

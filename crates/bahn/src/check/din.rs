@@ -101,7 +101,7 @@ fn entry(found: &Found) -> Entry {
         column: fault.column,
         length: fault.length,
         detail: String::new(),
-        help: String::new(),
+        help: found.program.cure(fault).unwrap_or_default(),
     }
 }
 
@@ -112,22 +112,27 @@ fn number(fault: &Fault) -> u32 {
 }
 
 fn print(found: &Found, main: &Program, path: &Path) {
-    let fault = &found.fault;
-    diagnostics::print_fault(&FileFault {
+    let path = match found.program.name() == main.name() {
+        true => path.to_owned(),
+        // Called programs lie beside their caller.
+        false => path.with_file_name(&**found.program.name()),
+    };
+    diagnostics::print_fault(&located(&found.fault, &found.program, &path));
+}
+
+/// A fault of a program with its line.
+pub(crate) fn located(fault: &Fault, program: &Program, path: &Path) -> FileFault {
+    FileFault {
         severity: diagnostics::Severity::Error,
         title: fault.message.clone(),
-        path: match found.program.name() == main.name() {
-            true => path.to_owned(),
-            // Called programs lie beside their caller.
-            false => path.with_file_name(&**found.program.name()),
-        },
+        path: path.to_owned(),
         marked: Marked {
             line: fault.line,
-            text: found.program.line(fault.line).to_owned(),
+            text: program.line(fault.line).to_owned(),
             columns: Some((fault.column, fault.length)),
         },
         label: format!("block {}", fault.block),
-        help: None,
+        help: program.cure(fault),
         opened: None,
-    });
+    }
 }

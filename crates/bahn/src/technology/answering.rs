@@ -1,16 +1,22 @@
 //! Who answers the functions: process times, a script, or the PLC of a machine folder.
 
-use std::path::Path;
+use std::cell::LazyCell;
+use std::path::PathBuf;
 
-use bahn_technology::{EventKind, Report, Run, Script, WINDOW_BYTES};
+use bahn_technology::{ChannelSettings, EventKind, Report, Run, Script, ScriptError, WINDOW_BYTES};
 
 use super::machine::MachinePlc;
 use super::options::TechnologyOptions;
-use crate::{UsageError, diagnostics, files};
+use super::programs::Sources;
+use crate::diagnostics::{self, FileFault, Marked, Severity};
+use crate::{UsageError, files};
 
 /// What `--plc` names.
 pub(super) struct Answering {
     script: Option<Script>,
+    /// What is wrong in the text of the script.
+    pub faults: Vec<FileFault>,
+    source: Option<(PathBuf, String)>,
     machine: Option<MachinePlc>,
 }
 
@@ -26,10 +32,24 @@ impl Answering {
                 "--plc names one script, or the folder of one machine, or one of each",
             ));
         }
-        let script = scripts.first().map(|path| script(path)).transpose()?;
+        let source = match scripts.first() {
+            Some(path) => {
+                let text = String::from_utf8_lossy(&files::read_table(path)?).into_owned();
+                Some((PathBuf::from(path), text))
+            }
+            None => None,
+        };
+        let read = source.as_ref().map(|(_, text)| Script::from_text(text));
+        let (script, errors) = match read {
+            Some((script, errors)) => (Some(script), errors),
+            None => (None, Vec::new()),
+        };
+        let faults = located(&source, &errors);
         let Some(folder) = folders.first() else {
             return Ok(Some(Answering {
                 script,
+                faults,
+                source,
                 machine: None,
             }));
         };
@@ -41,8 +61,21 @@ impl Answering {
         let machine = MachinePlc::new(folder, options.window)?;
         Ok(machine.map(|machine| Answering {
             script,
+            faults,
+            source,
             machine: Some(machine),
         }))
+    }
+
+    /// Adds what the script names that the channel does not have.
+    pub fn check(&mut self, settings: &ChannelSettings, sources: &Sources) {
+        let Some(script) = &self.script else { return };
+        // Programs give types, too; only where one seems to lack they are examined.
+        let typed = LazyCell::new(|| sources.typed());
+        let unknown = script.unknown(settings, |function| typed.contains(function));
+        let unknown = located(&self.source, &unknown);
+        self.faults.extend(unknown);
+        self.faults.sort_by_key(|fault| fault.marked.line);
     }
 
     /// Executes a run.
@@ -64,9 +97,24 @@ impl Answering {
     }
 }
 
-fn script(path: &Path) -> Result<Script, UsageError> {
-    let bytes = files::read_table(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    text.parse()
-        .map_err(|error| UsageError::new(format!("{}:{error}", path.display())))
+/// Errors of a script with their lines.
+fn located(source: &Option<(PathBuf, String)>, errors: &[ScriptError]) -> Vec<FileFault> {
+    let Some((path, text)) = source else {
+        return Vec::new();
+    };
+    let number = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+    let faults = errors.iter().map(|error| FileFault {
+        severity: Severity::Error,
+        title: error.message.clone(),
+        path: path.clone(),
+        marked: Marked {
+            line: number(error.line),
+            text: text.lines().nth(error.line - 1).unwrap_or_default().to_owned(),
+            columns: Some((number(error.column), number(error.length))),
+        },
+        label: String::new(),
+        help: error.help.clone(),
+        opened: None,
+    });
+    faults.collect()
 }

@@ -3,11 +3,13 @@
 //! - `options`: options and help text;
 //! - `dynamics`: from a list of machine parameters to the limits of motion;
 //! - `answering`: who answers the functions; `machine`: the PLC of a machine folder that does;
+//! - `faults`: what is wrong in the files, with its place;
 //! - `programs`: programs and subroutines from files;
 //! - `text`: the report for people; `picture`: velocity, outputs and waits as a drawing.
 
 mod answering;
 mod dynamics;
+mod faults;
 mod machine;
 mod options;
 mod picture;
@@ -21,10 +23,11 @@ use std::path::{Path, PathBuf};
 use bahn_motion::Limits;
 use bahn_parameters::ControlModel;
 use bahn_path::Position;
-use bahn_technology::{ChannelList, Coordinates, Fault, NcPrograms, Report, Run};
+use bahn_technology::{Bounds, ChannelList, Coordinates, Fault, ListFault, NcPrograms, Report, Run};
 
+use crate::diagnostics::{self, FileFault};
 use crate::options::Format;
-use crate::{Outcome, UsageError, channel, console, diagnostics, files, scope, settings};
+use crate::{Outcome, UsageError, console, files, scope, settings};
 use answering::Answering;
 
 /// Runs programs in turn on one channel and reports what was output and waited for.
@@ -33,37 +36,62 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
         let inputs: Vec<&Path> = inputs(options).map(PathBuf::as_path).collect();
         files::keep_inputs(&inputs, &[("--image", picture.path())])?;
     }
-    let programs = programs::read(&options.programs)?;
+    let sources = programs::read(&options.programs)?;
     let Some(mut answering) = Answering::new(options)? else {
         return Ok(Outcome::ProgramError);
     };
     let limits = dynamics::limits(options.parameters.as_deref())?;
-    let start = start(options, &programs)?;
+    let start = start(options, &sources.programs)?;
     let list = ChannelList::for_cycle(&files::read_table(&options.channel)?, limits.cycle_s);
+    let mut faults = faults::of_texts(&list, &options.channel, &sources);
+    if list.errors().is_empty() {
+        answering.check(list.settings(), &sources);
+    }
+    let is_scripted = answering.faults.is_empty();
+    faults.append(&mut answering.faults);
     if options.format == Format::Text {
-        let faults = channel::faults(&list, &options.channel);
         diagnostics::print_faults(&faults);
     }
+    if !is_scripted && options.format == Format::Text {
+        return Ok(Outcome::WrongUse);
+    }
     let report = match list.errors().first() {
-        Some(_) => refused(&list, &options.channel, &limits, start),
+        Some(error) => refused(list_fault(error, &options.channel), &limits, start),
+        None if !is_scripted => refused(script_fault(&faults), &limits, start),
         None => answering.execute(|script| Run {
-            programs: &programs,
+            programs: &sources.programs,
             settings: list.settings(),
             limits: &limits,
             start,
             from: options.from.as_deref(),
+            bounds: Bounds {
+                time_s: options.max_time,
+                blocks: options.max_blocks,
+            },
             script,
         }),
     };
+    let ended = report.error.as_ref();
+    if let Some(fault) = ended.and_then(|error| faults::of_run(error, &sources, &faults)) {
+        if options.format == Format::Text {
+            diagnostics::print_fault(&fault);
+        }
+        faults.push(fault);
+    }
     if let Some(picture) = &options.image {
         let title = programs::title(&options.programs);
         scope::write(&picture::sheet(&report, &title), picture)?;
     }
     match options.format {
         Format::Text => console::print(&text::text(&report))?,
-        Format::Json => console::print_json(&report)?,
+        Format::Json => console::print_json(&WithFaults {
+            report: &report,
+            diagnostics: faults::items(&faults),
+        })?,
     }
-    Ok(if report.completed {
+    Ok(if !is_scripted {
+        Outcome::WrongUse
+    } else if report.completed {
         Outcome::Fine
     } else {
         Outcome::ProgramError
@@ -89,17 +117,43 @@ fn inputs(options: &TechnologyOptions) -> impl Iterator<Item = &PathBuf> {
         .chain(others)
 }
 
-/// A list with errors is used for nothing: its first error ends the run before it begins.
-fn refused(list: &ChannelList, path: &Path, limits: &Limits, start: Position) -> Report {
-    let error = list.errors().first().map(|fault| Fault {
+/// The report with what is wrong in the files.
+#[derive(serde::Serialize)]
+struct WithFaults<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    diagnostics: Vec<faults::Item<'a>>,
+}
+
+/// The first error of a list.
+fn list_fault(fault: &ListFault, path: &Path) -> Fault {
+    Fault {
         code: "channel-list".to_owned(),
         message: format!("line {}, column {}: {}", fault.line, fault.column, fault.message),
         program: programs::file_name(path),
         block: format!("#{}", fault.line),
-    });
+        line: u32::try_from(fault.line).unwrap_or_default(),
+    }
+}
+
+/// The first error of a script, which stands behind those of all others.
+fn script_fault(faults: &[FileFault]) -> Fault {
+    let last = faults.last();
+    let line = last.map_or(0, |fault| fault.marked.line);
+    Fault {
+        code: "script".to_owned(),
+        message: last.map_or_else(String::new, |fault| fault.title.clone()),
+        program: last.map_or_else(String::new, |fault| programs::file_name(&fault.path)),
+        block: format!("#{line}"),
+        line,
+    }
+}
+
+/// A list or script with errors is used for nothing: an error ends the run before it begins.
+fn refused(error: Fault, limits: &Limits, start: Position) -> Report {
     Report {
         completed: false,
-        error,
+        error: Some(error),
         time_s: 0.0,
         cycle_s: limits.cycle_s,
         events: Vec::new(),

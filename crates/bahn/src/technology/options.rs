@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueHint};
 
 use super::machine;
-use crate::options::Format;
+use crate::options::{Format, time_limit};
 use crate::scope::{Picture, picture};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -14,6 +14,8 @@ Examples:
       Each function is acknowledged its process time after its output.
   bahn technology glue.nc --channel glue.lis --plc slow-valve.txt --image glue.png
   bahn technology laser.nc --channel laser.lis --format json
+  bahn technology glue.nc --channel glue.lis --max-time 60
+      A run that takes longer ends with the block where it is.
   bahn technology glue.nc --channel glue.lis --plc machines/gantry
       The PLC program of a machine answers, in a window of 128 of its bytes.
 
@@ -31,10 +33,11 @@ PLC script, a line each; # begins a comment:
   hold 2.0..2.5     reset 4.0     backward 2.0..3.0     simulated 2.0..3.0
   single 2.0..3.0   in single block; start 2.5 starts the next block with a motion
 
-JSON: completed, error (null, or code, message, program, block), time_s, cycle_s, events (t,
+JSON: completed, error (null, or code, message, program, block, line), time_s, cycle_s, events (t,
 kind output, fetch, acknowledge, stop, go or active, function, value, offset_us, v in mm/min,
-target, block, position), waits (function, block, from_s, to_s, position), path_end. Exit codes:
-0 completed, 1 not, 2 wrong use.";
+target, block, position), waits (function, block, from_s, to_s, position), path_end, diagnostics
+(what is wrong in list, script and programs: severity, file, line, column, length, message, help).
+Exit codes: 0 completed, 1 not, or longer than --max-time or --max-blocks, 2 wrong use.";
 
 /// Options of `bahn technology`.
 #[derive(Args, Debug)]
@@ -66,6 +69,12 @@ pub(crate) struct TechnologyOptions {
     /// Block of the first file with which the run begins, as N50, also in a subroutine; what is before it is not output.
     #[arg(long, value_name = "BLOCK", value_parser = block)]
     pub from: Option<String>,
+    /// Time of the run after which it ends, s.
+    #[arg(long, value_name = "S", default_value = "86400", value_parser = time_limit)]
+    pub max_time: f64,
+    /// Blocks that may be executed; more are taken for an endless run.
+    #[arg(long, value_name = "N", default_value_t = 50_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_blocks: u64,
     /// How the report is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,

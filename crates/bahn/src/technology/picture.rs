@@ -474,6 +474,7 @@ mod tests {
             limits: &crate::technology::dynamics::limits(None).unwrap(),
             start,
             from: None,
+            bounds: Default::default(),
             script: Some(&script),
         }
         .execute();

@@ -1,15 +1,23 @@
 //! Programs and subroutines from files.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use bahn_din::{Program, Shelf};
 use bahn_technology::NcPrograms;
 
 use crate::{UsageError, files};
 
+/// The programs of a run, and the files that they stand in.
+pub(super) struct Sources {
+    pub programs: NcPrograms,
+    pub files: Vec<(PathBuf, Arc<Program>)>,
+}
+
 /// The programs of files in turn; a file may hold several.
-pub(super) fn read(paths: &[PathBuf]) -> Result<NcPrograms, UsageError> {
+pub(super) fn read(paths: &[PathBuf]) -> Result<Sources, UsageError> {
     let mut programs = Vec::new();
     let mut folders: Vec<PathBuf> = Vec::new();
     for path in paths {
@@ -22,8 +30,41 @@ pub(super) fn read(paths: &[PathBuf]) -> Result<NcPrograms, UsageError> {
             folders.push(folder);
         }
     }
-    NcPrograms::new(&programs, Arc::new(Folders(folders)))
-        .map_err(|fault| UsageError::new(format!("{}: {}", fault.program, fault.message)))
+    let files = paths.iter().cloned().zip(programs.iter().cloned()).collect();
+    let programs = NcPrograms::new(&programs, Arc::new(Folders(folders)))
+        .map_err(|fault| UsageError::new(format!("{}: {}", fault.program, fault.message)))?;
+    Ok(Sources { programs, files })
+}
+
+impl Sources {
+    /// Functions that the programs give types: `M5` for `V.G.M_FCT[5].SYNCH`.
+    pub fn typed(&self) -> BTreeSet<String> {
+        let folders = self.files.iter().filter_map(|(path, _)| path.parent());
+        let shelf: Arc<dyn Shelf> = Arc::new(Folders(folders.map(Path::to_owned).collect()));
+        let values = self.files.iter().flat_map(|(_, program)| {
+            let examined = bahn_din::examine(program, &shelf, &AtomicBool::new(false));
+            examined.values.into_keys()
+        });
+        let of = |name: String| {
+            let (letter, rest) = name.strip_prefix("V.G.")?.split_once("_FCT[")?;
+            let number = rest.strip_suffix("].SYNCH")?;
+            Some(format!("{letter}{number}"))
+        };
+        values.filter_map(of).collect()
+    }
+
+    /// The file that reports call so: one of the run, or a subroutine beside one.
+    pub fn file(&self, name: &str) -> Option<(PathBuf, Arc<Program>)> {
+        let mut files = self.files.iter();
+        if let Some((path, program)) = files.find(|(_, program)| &**program.name() == name) {
+            return Some((path.clone(), program.clone()));
+        }
+        let mut folders = self.files.iter().filter_map(|(path, _)| path.parent());
+        let path = folders.find_map(|folder| find(folder, name))?;
+        let bytes = files::read_program(&path).ok()??;
+        let program = Arc::new(Program::from_bytes(name, &bytes));
+        Some((path, program))
+    }
 }
 
 /// What a picture is called.

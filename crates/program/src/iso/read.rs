@@ -1,7 +1,7 @@
 //! The reader of ISO blocks: the text of a block to a [`Block`]. It never fails; what cannot be read becomes
 //! [`Operation::Invalid`].
 
-use bahn_parameters::MessageId::{BlockNotKnown, UnexpectedText};
+use bahn_parameters::MessageId::{AngleReferenceMissing, BlockNotKnown, UnexpectedText};
 use bahn_path::{Axis, AxisSet};
 
 use super::code::{coordinate, distance, end, g_code, once, plane, split, without_end, without_star};
@@ -271,6 +271,9 @@ fn check(c: &mut Cursor, start: usize, motion: &Motion) -> Parsed<()> {
     let Some(function) = motion.modal.and_then(|modal| modal.function) else {
         return Ok(());
     };
+    if motion.coordinates.is_empty() && motion.polar_radius.is_none() && motion.polar_angle.is_none() {
+        return without_end_point(c, start, function);
+    }
     let arc = function.kind() == MotionKind::Circle;
     let radius = motion.polar_radius.is_some() && !function.is_polar() && !arc;
     let angle = motion.polar_angle.is_some() && !function.is_polar();
@@ -302,6 +305,32 @@ fn check(c: &mut Cursor, start: usize, motion: &Motion) -> Parsed<()> {
         );
     }
     Ok(())
+}
+
+/// A block that says a path function and no end point: a straight line may so come into force for the blocks behind it, as
+/// in `G00 G40 G90`; every other function needs its end point where it stands, as its block in plain language does.
+fn without_end_point(c: &mut Cursor, start: usize, function: PathFunction) -> Parsed<()> {
+    let message = match function {
+        PathFunction::Rapid | PathFunction::Line => return Ok(()),
+        PathFunction::Paraxial => (UnexpectedText, "G07 moves one axis"),
+        function if function.is_polar() => (AngleReferenceMissing, "H is missing"),
+        _ => (AngleReferenceMissing, "the end point of the arc is missing"),
+    };
+    c.go_to(start);
+    let is_it = |c: &mut Cursor| {
+        let at = c.position();
+        let number = if c.peek_upper() == b'G' {
+            g_code(c).ok()
+        } else {
+            None
+        };
+        c.go_to(at);
+        number.is_some_and(|number| PathFunction::ALL.contains(&(number, function)))
+    };
+    while !c.rest().is_empty() && !is_it(c) {
+        c.advance(1);
+    }
+    c.fault_at_word(message.0, message.1)
 }
 
 /// Goes to the first word from `start` on that begins with one of the letters, or stays at `start`.

@@ -137,6 +137,7 @@ impl Channel<'_> {
         let (from, along) = self.whereabouts();
         let position = self.path.position();
         self.all_block_ends();
+        self.leads.watched.clear();
         self.path.clear();
         self.path.set_position(position);
         self.backward.back = Some(Back {
@@ -357,7 +358,7 @@ impl Channel<'_> {
         for place in first..=self.track.last() {
             for deed in self.track.deeds_mut(place) {
                 match deed {
-                    Deed::Output(id) | Deed::Command(id) => new(id),
+                    Deed::Output(id) | Deed::Command(id) | Deed::Stand(id) => new(id),
                     Deed::Gate(ids) => ids.iter_mut().for_each(new),
                     _ => {}
                 }

@@ -97,7 +97,7 @@ impl Channel<'_> {
     }
 
     /// Gives the interpolator what is known of the path.
-    fn feed(&mut self) {
+    pub(super) fn feed(&mut self) {
         let closed = self.decoding.holds || self.decoding.ended;
         loop {
             let mut feed = Feed {
@@ -161,6 +161,7 @@ impl Channel<'_> {
         if let Some(passed) = here.filter(|_| arrives).or(passed) {
             self.pass(passed);
         }
+        self.passed_leads(self.t() + self.cycle_s);
         let moved = (self.way() - way).abs() > 2.0 * ROUNDING_MM;
         self.still = speed <= 0.0;
         if self.stands && moved {
@@ -189,13 +190,18 @@ impl Channel<'_> {
         }
     }
 
-    /// The path stands.
-    pub(super) fn stop(&mut self, at: Moment) {
+    /// The block in which the path is, or at whose end.
+    pub(super) fn block_now(&self) -> Arc<str> {
         let at_place = self.way() <= self.track.way(self.reached) + SAME;
-        let block = match self.track.leg(self.reached).filter(|_| !at_place) {
+        match self.track.leg(self.reached).filter(|_| !at_place) {
             Some(leg) => leg.block.clone(),
             None => self.track.block_before(self.reached),
-        };
+        }
+    }
+
+    /// The path stands.
+    pub(super) fn stop(&mut self, at: Moment) {
+        let block = self.block_now();
         self.record.path(false, &block, at);
         self.stands = true;
     }

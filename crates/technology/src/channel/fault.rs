@@ -16,6 +16,7 @@ pub(crate) fn at(place: &Place, code: String, message: String) -> Fault {
         message,
         program: place.program.to_string(),
         block: place.block.to_string(),
+        line: place.line,
     }
 }
 

@@ -103,6 +103,8 @@ impl Channel<'_> {
                     Done::NotYet
                 }
             }
+            Deed::Stand(id) if self.stands || !self.stands_for(*id) => Done::Yes,
+            Deed::Stand(_) => Done::NotYet,
             Deed::BlockEnd => {
                 if self.stands_at_end(place, false, place < self.reached) {
                     Done::NotYet
@@ -166,7 +168,7 @@ impl Channel<'_> {
     }
 
     /// How long before this cycle, s, and how fast, mm/s, the path came to a place, if that was in the cycle before.
-    fn passed(&self, place: u64) -> Option<(f64, f64)> {
+    pub(super) fn passed(&self, place: u64) -> Option<(f64, f64)> {
         let passed = self.path.passed().iter();
         let mut at = passed.filter(|passed| passed.sequence + 1 == place);
         at.next().map(|passed| (passed.left_s, passed.speed_mm_s))
@@ -233,6 +235,11 @@ impl Channel<'_> {
         self.orders.get(id).is_none_or(|order| self.order_is_open(order))
     }
 
+    /// Whether the path comes to a standstill for a function in any case: not in simulated motion, as its type says there.
+    fn stands_for(&self, id: OrderId) -> bool {
+        !self.simulated || self.orders.get(id).is_some_and(|order| order.synch.forward)
+    }
+
     fn order_is_open(&self, order: &Order) -> bool {
         order.is_done() || self.simulated && !order.state.output && !order.synch.forward
     }
@@ -242,6 +249,7 @@ impl Channel<'_> {
         let deeds = self.track.deeds(place).get(from..).unwrap_or_default();
         deeds.iter().any(|deed| match deed {
             Deed::Gate(ids) => !ids.iter().all(|id| self.is_open(*id)),
+            Deed::Stand(id) => self.stands_for(*id),
             Deed::BlockEnd => self.stops_at(place, false),
             Deed::Dwell(_) | Deed::AllEnded | Deed::End | Deed::Fault(_) => true,
             Deed::Output(_) | Deed::Command(_) | Deed::Independent(_) => false,

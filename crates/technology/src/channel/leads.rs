@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use super::kept::Watched;
 use super::order::{Lead, OrderId};
 
 /// Places nearer together than this are one, mm.
@@ -18,8 +19,19 @@ pub(super) struct Ahead {
     pub(super) point: f64,
     /// It is not output before this, mm: the look-ahead reaches no farther back.
     pub(super) earliest: f64,
+    /// Why not before that.
+    pub(super) held: Held,
     /// Where it was output last, mm.
     output: f64,
+}
+
+/// What holds a function back that is to be output ahead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Held {
+    /// The path begins there, or was to come to rest there.
+    Barrier,
+    /// No more blocks are looked at (P-CHAN-00274).
+    LookAhead,
 }
 
 impl Ahead {
@@ -37,6 +49,8 @@ impl Ahead {
 #[derive(Debug, Default)]
 pub(super) struct Leads {
     pub(super) queue: VecDeque<Ahead>,
+    /// Those that were output and whose places are not passed yet.
+    pub(super) watched: Watched,
     /// Those that were output, by their places: for the way back.
     taken: VecDeque<Ahead>,
     /// Ways to the starts of the last blocks, as many as the look-ahead takes.
@@ -66,12 +80,18 @@ impl Leads {
 
     pub(super) fn push(&mut self, id: OrderId, unit: u64, lead: Lead, point: f64) {
         let first = self.blocks.front().copied().unwrap_or(point);
+        let held = if first > self.barrier + SAME {
+            Held::LookAhead
+        } else {
+            Held::Barrier
+        };
         self.queue.push_back(Ahead {
             id,
             unit,
             lead,
             point,
             earliest: first.max(self.barrier).min(point),
+            held,
             output: point,
         });
     }
@@ -120,6 +140,12 @@ impl Leads {
         if let Some(ahead) = self.taken.iter_mut().rev().find(|ahead| ahead.id == id) {
             ahead.output = way;
         }
+    }
+
+    /// Where one that is output was so, mm.
+    pub(super) fn placed(&self, id: OrderId) -> Option<f64> {
+        let taken = self.taken.iter().rev().find(|ahead| ahead.id == id);
+        taken.map(|ahead| ahead.output)
     }
 
     /// The functions that were output and belong to a place, mm.

@@ -8,6 +8,7 @@ mod drive;
 mod fault;
 mod gates;
 mod in_force;
+mod kept;
 mod leads;
 mod order;
 mod planned;
@@ -26,6 +27,7 @@ use bahn_path::Position;
 
 use crate::plc::{Plc, PlcMemory, Script};
 use crate::report::{Fault, Skipped};
+use crate::run::Bounds;
 use crate::settings::ChannelSettings;
 use backward::Backward;
 use drive::LOOK_AHEAD;
@@ -99,6 +101,8 @@ struct Channel<'a> {
     fault: Option<Fault>,
     /// The program has ended.
     ended: bool,
+    /// How far the run goes at most.
+    bounds: Bounds,
 }
 
 impl<'a> Channel<'a> {
@@ -153,6 +157,7 @@ impl<'a> Channel<'a> {
             simulated: false,
             fault: None,
             ended: false,
+            bounds: Bounds::default(),
         };
         channel.window.begin(0.0);
         channel

@@ -6,6 +6,8 @@ use super::Channel;
 use super::leads::{Ahead, SAME};
 use super::order::{Lead, OrderId};
 use super::record::Moment;
+use super::track::Deed;
+use crate::plc::cycle_at;
 use crate::report::ToGo;
 
 /// Time to go is planned up to this, s.
@@ -20,6 +22,9 @@ impl Channel<'_> {
     /// Outputs the functions whose places come near. Whether there were any.
     pub(super) fn output_ahead(&mut self, drive: &Drive) -> bool {
         let mut any = false;
+        if !self.leads.queue.is_empty() {
+            self.feed();
+        }
         while let Some((index, ahead)) = self.next_ahead(drive) {
             let blocked = self.range_of(ahead.id).and_then(|range| self.blocker(range));
             if blocked.is_some() {
@@ -42,8 +47,10 @@ impl Channel<'_> {
                 };
             }
             let to_go = self.to_go(&ahead, drive);
+            let planned_s = self.planned_s(&ahead, drive);
             self.output(ahead.id, at, None);
             self.record.output_beside(None, to_go);
+            self.watch(&ahead, at.t, planned_s);
         }
         any
     }
@@ -100,8 +107,9 @@ impl Channel<'_> {
         fastest.max(self.path.speed_mm_s() * 60.0) / 60.0 * percent / 100.0
     }
 
-    /// How long the path takes to a place of it, s, where it comes to a stop: planned as the path is planned, with stops where
-    /// it has to wait. `None` when that is longer than asked for.
+    /// How long the path takes to a place of it, s: as it is planned, with the standstills that are known now. So it stops at
+    /// the place of a function that it waits for, whose gate is closed [004:87], and passes that of any other.
+    /// `None` when that is longer than asked for.
     fn time_to(&self, point: f64, most_s: f64, drive: &Drive) -> Option<f64> {
         let last = self.track.last();
         let mut target = self.reached + u64::from(self.path.rest_mm() <= 0.0);
@@ -111,8 +119,7 @@ impl Channel<'_> {
         if self.track.way(target) < point - SAME {
             return None;
         }
-        let closed = |place: &u64| *place == target || self.is_closed(*place, 0);
-        let mut stops = (self.reached + 1..=target).filter(closed);
+        let mut stops = (self.open_to.max(self.reached + 1)..=last).filter(|place| self.is_closed(*place, 0));
         let mut path = self.path.clone();
         let mut drive = Drive {
             hold: false,
@@ -121,7 +128,9 @@ impl Channel<'_> {
         };
         path.go_on();
         let most = (most_s / self.cycle_s).ceil() as u64 + 1;
-        for cycle in 1..=most {
+        let mut cycle = self.dwells_now();
+        while cycle < most {
+            cycle += 1;
             let state = path.cycle(&drive).state;
             let arrived = path.passed().iter().find(|end| end.sequence + 1 == target);
             if let Some(end) = arrived {
@@ -129,6 +138,8 @@ impl Channel<'_> {
             }
             match state {
                 State::BlockEnd => {
+                    let left_s = path.passed().last().map_or(0.0, |end| end.left_s);
+                    cycle += drive.stop_before.map_or(0, |place| self.dwells(place, 0, left_s));
                     drive.stop_before = stops.next();
                     path.go_on();
                 }
@@ -137,6 +148,39 @@ impl Channel<'_> {
             }
         }
         None
+    }
+
+    /// Cycles that the path dwells at a place to which it came so long before the end of a cycle, s, from one of its deeds on.
+    fn dwells(&self, place: u64, from: usize, left_s: f64) -> u64 {
+        let deeds = self.track.deeds(place).get(from..).unwrap_or_default();
+        let dwell = deeds.iter().filter_map(|deed| match deed {
+            Deed::Dwell(seconds) => Some(cycle_at((seconds - left_s).max(0.0), self.cycle_s)),
+            _ => None,
+        });
+        dwell.sum()
+    }
+
+    /// Cycles that it dwells where it is.
+    fn dwells_now(&self) -> u64 {
+        let place = self.reached;
+        let index = if self.cursor.0 == place { self.cursor.1 } else { 0 };
+        match self.dwell {
+            Some(end) => end.saturating_sub(self.cycle) + self.dwells(place, index + 1, 0.0),
+            None => {
+                let left_s = self.passed(place).map_or(0.0, |passed| passed.0);
+                self.dwells(place, index, left_s)
+            }
+        }
+    }
+
+    /// How long the path takes to the place of a function that is output a time ahead of it now, s, up to that time.
+    fn planned_s(&self, ahead: &Ahead, drive: &Drive) -> f64 {
+        match ahead.lead {
+            Lead::Time(lead_s) if self.way() + SAME < ahead.point => {
+                self.time_to(ahead.point, lead_s, drive).unwrap_or(lead_s)
+            }
+            _ => 0.0,
+        }
     }
 
     /// What is left to the place where a function is synchronised that is output now.

@@ -60,8 +60,8 @@ struct Sorted {
     gate: Vec<OrderId>,
     /// Waited for behind it.
     gate_behind: Vec<OrderId>,
-    /// Output behind it.
-    behind: Vec<OrderId>,
+    /// Done behind it.
+    behind: Vec<Deed>,
     /// Output ahead.
     ahead: Vec<OrderId>,
     /// Micro Joints before the motion and behind it.
@@ -84,18 +84,20 @@ impl Channel<'_> {
         let ids = resolve.block(unit)?;
         let flush_and_wait = self.flush_and_wait(&ids, unit)?;
         self.commands(unit)?;
-        let sorted = self.sort(&ids, unit)?;
+        let moves = unit.motion.as_ref().is_some_and(is_moving);
+        let sorted = self.sort(&ids, unit, moves)?;
         self.before(&sorted, unit)?;
-        let mut moves = false;
         if let Some(motion) = &unit.motion {
-            moves = self.motion(motion, unit);
+            if moves {
+                self.motion(motion, unit);
+            }
             if let Some(id) = sorted.measured {
                 self.measured(id, unit);
             }
             // Nothing is output ahead across the place where such a function is waited for [004:135].
             let waits_behind = |id: &&OrderId| {
                 let order = self.orders.get(**id);
-                order.is_some_and(|order| order.synch.kind == SynchType::MvsSns)
+                moves && order.is_some_and(|order| order.synch.kind == SynchType::MvsSns)
             };
             if sorted.gate_behind.iter().any(|id| waits_behind(&id)) {
                 self.window.bar();
@@ -204,13 +206,18 @@ impl Channel<'_> {
         }
     }
 
-    fn sort(&mut self, ids: &[OrderId], unit: &Unit) -> Result<Sorted, Fault> {
+    fn sort(&mut self, ids: &[OrderId], unit: &Unit, moves: bool) -> Result<Sorted, Fault> {
         let mut sorted = Sorted::default();
         for id in ids.iter().copied() {
             let Some(order) = self.orders.get(id) else {
                 continue;
             };
-            let (is_output, kind) = (order.range.is_some(), order.synch.kind);
+            let is_output = order.range.is_some();
+            // Without a motion both are MVS_SVS [004:57], so that functions go out in the order of the block.
+            let kind = match order.synch.kind {
+                SynchType::MvsSns | SynchType::MnsSns if !moves => SynchType::MvsSvs,
+                kind => kind,
+            };
             let joint = kind.takes_micro_joint() && order.lead != Lead::None;
             if order.spindle.is_some() {
                 sorted.commanded.push(id);
@@ -233,9 +240,9 @@ impl Channel<'_> {
                     sorted.measured = Some(id);
                 }
                 SynchType::MnsSns => {
-                    if is_output {
-                        sorted.behind.push(id);
-                    }
+                    // The path stands in any case [004:66], also for a spindle that has confirmed by then.
+                    let deed = if is_output { Deed::Output } else { Deed::Stand };
+                    sorted.behind.push(deed(id));
                     sorted.gate_behind.push(id);
                 }
                 _ if is_output => sorted.before.push(id),
@@ -277,8 +284,8 @@ impl Channel<'_> {
         Ok(())
     }
 
-    /// Takes the motion of a block. Whether it is one.
-    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit) -> bool {
+    /// Takes the motion of a block.
+    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit) {
         let settings = &self.in_force.settings;
         let leg = Leg {
             curve: motion.curve,
@@ -294,9 +301,6 @@ impl Channel<'_> {
             length: motion.curve.length(&motion.start, &motion.end),
             from: self.window.way(),
         };
-        if leg.length <= 0.0 || motion.curve == Curve::Hold {
-            return false;
-        }
         let blocks = settings.pre_output.blocks as usize;
         self.leads.block(leg.from, blocks);
         if let (Some(edge), Some(script)) = (&mut self.decoding.edge, self.plc.script())
@@ -311,7 +315,6 @@ impl Channel<'_> {
             0
         };
         self.window.leg(leg, most.max(1), &mut self.track);
-        true
     }
 
     /// What is done behind the motion.
@@ -322,8 +325,8 @@ impl Channel<'_> {
         for id in &sorted.joints_behind {
             self.joint(*id, unit)?;
         }
-        for id in &sorted.behind {
-            self.window.deed(Deed::Output(*id));
+        for deed in &sorted.behind {
+            self.window.deed(deed.clone());
         }
         self.gate(sorted.gate_behind.clone());
         Ok(())
@@ -424,6 +427,11 @@ impl Channel<'_> {
             self.gate(late.concat());
         }
     }
+}
+
+/// Whether the axes move.
+fn is_moving(motion: &bahn_din::Motion) -> bool {
+    motion.curve != Curve::Hold && motion.curve.length(&motion.start, &motion.end) > 0.0
 }
 
 /// How far along an element an axis passes a place, mm.

@@ -12,7 +12,7 @@ use super::skipped::Begun;
 use super::track::{Deed, Track};
 use crate::plc::{PlcMemory, cycle_at};
 use crate::report::{Coordinates, Fault, ProgramEnd, Report};
-use crate::run::{Blocks, Run};
+use crate::run::{Blocks, Bounds, Run};
 
 /// Elements of the path that are decoded ahead of it at most.
 const AHEAD: u64 = 300;
@@ -21,9 +21,6 @@ const DEEDS: usize = 2000;
 const BLOCKS: usize = 2000;
 /// Rounds of decoding and doing in a cycle.
 const ROUNDS: usize = 8;
-/// Blocks and simulated time of a run at most: far above what anybody waits for.
-const MOST_BLOCKS: u64 = 50_000_000;
-const LONGEST_S: f64 = 7.0 * 86_400.0;
 /// What lies behind is forgotten every so many cycles.
 const FORGET: u64 = 1024;
 
@@ -38,6 +35,7 @@ enum Ended {
 
 pub(crate) fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -> Report {
     let mut channel = Channel::new(run.settings, run.limits, run.script, memory, run.start);
+    channel.bounds = run.bounds;
     let mut programs = Vec::new();
     let mut begun = None;
     if let Some(block) = run.from {
@@ -203,7 +201,9 @@ impl Channel<'_> {
                 return Ended::Reset;
             }
             let moved = self.spend(drive);
-            quiet = if any || moved { 0 } else { quiet + 1 };
+            // In a dwell the time of what is output ahead comes nearer.
+            let nears = self.dwell.is_some() && !self.leads.queue.is_empty();
+            quiet = if any || moved || nears { 0 } else { quiet + 1 };
             // Twice without anything to do, and nothing changes until something comes from outside.
             if quiet < 2 {
                 self.cycle += 1;
@@ -332,21 +332,22 @@ impl Channel<'_> {
         self.lists();
     }
 
-    /// The block at whose end the path is, for faults of no block.
+    /// The block in which the path is, or at whose end it stands, for faults of no block.
     pub(super) fn here(&self) -> Place {
         Place {
             program: self.program.as_str().into(),
-            block: self.track.block_before(self.reached),
+            block: self.block_now(),
             line: 0,
         }
     }
 
     /// Named limits instead of runs without end.
     fn limits(&mut self) {
-        let message = if self.decoding.units > MOST_BLOCKS {
-            format!("more than {MOST_BLOCKS} blocks")
-        } else if self.t() > LONGEST_S {
-            format!("longer than {LONGEST_S} s")
+        let Bounds { time_s, blocks } = self.bounds;
+        let message = if self.decoding.units > blocks {
+            format!("more than {blocks} blocks")
+        } else if self.t() > time_s {
+            format!("longer than {time_s} s")
         } else if self.record.events.len() > EVENTS {
             format!("more than {EVENTS} events")
         } else {

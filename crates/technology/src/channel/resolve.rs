@@ -9,7 +9,9 @@ use super::fault::{named, numbered};
 use super::order::{Lead, Letter, Order, OrderId, Orders, RangeId, State};
 use super::ranges::{Ranges, SLOTS};
 use crate::report::{Fault, Value};
-use crate::settings::{ChannelSettings, FUNCTIONS, FunctionSettings, SpindleFunction, SpindleSettings};
+use crate::settings::{
+    ChannelSettings, FUNCTIONS, FunctionSettings, SPINDLE_M, SpindleFunction, SpindleSettings,
+};
 use crate::synch::{Synch, SynchType};
 
 /// 0.1 µm and µs are these parts of a mm and a second.
@@ -191,13 +193,18 @@ impl Resolve<'_> {
             let message = format!("{letter:?}{number} is above {}", FUNCTIONS - 1);
             return Err(numbered(place, 20160, message));
         };
+        let is_spindle_m = letter == Letter::M && SPINDLE_M.contains(&number.into());
         let Some(synch) = own.synch else {
+            // Without an entry they are internal [004:48]; when they are free, as any other [004:159].
+            if is_spindle_m && !self.settings.spindle_m_free {
+                return Ok(None);
+            }
             let message = format!("{letter:?}{number} has no synchronisation type");
             return Err(numbered(place, 20157, message));
         };
-        if synch.kind == SynchType::NoSynch {
+        let Some(synch) = told(synch) else {
             return Ok(None);
-        }
+        };
         let range = match (range, own.default_target.as_deref()) {
             (Some(range), _) => range,
             (None, Some(name)) if !name.is_empty() => self.range_called(name, place)?,
@@ -226,10 +233,16 @@ impl Resolve<'_> {
         match synch.kind {
             kind if kind.leads_by_time() => Ok(Lead::Time((f64::from(own.lead) / PER_S).max(self.cycle_s))),
             kind if kind.is_pre_output() => Ok(Lead::Way(way)),
-            // Micro Joints are of the channel alone [004:111].
-            kind if kind.takes_micro_joint() && own.lead > 0 && range == RangeId::Channel => {
-                if self.settings.micro_joint.enabled {
+            kind if kind.takes_micro_joint() && own.lead > 0 => {
+                if self.settings.micro_joint.enabled && range == RangeId::Channel {
                     return Ok(Lead::Way(way));
+                }
+                if self.settings.micro_joint.enabled {
+                    let name = names(range, self.settings).into_iter().next().unwrap_or_default();
+                    let message = format!(
+                        "a lead with {kind} is a Micro Joint, which is of the range of the channel: {name} takes no lead"
+                    );
+                    return Err(named(place, "micro-joint", message));
                 }
                 let message = format!("a lead with {kind} is a Micro Joint, which is not enabled");
                 Err(named(place, "licence", message))
@@ -254,10 +267,9 @@ impl Resolve<'_> {
                 None => Ok(None),
             };
         };
-        let synch = settings.s.synch.unwrap_or_default();
-        if synch.kind == SynchType::NoSynch {
+        let Some(synch) = told(settings.s.synch.unwrap_or_default()) else {
             return Ok(None);
-        }
+        };
         Ok(Some(Way {
             synch,
             range: Some(range_of(index, settings)),
@@ -383,6 +395,19 @@ impl Resolve<'_> {
 
 fn unknown_spindle(name: &str, place: &Place) -> Fault {
     numbered(place, 21548, format!("no spindle {name} is configured"))
+}
+
+/// What is output and has no type is not waited for; `NO_SYNCH` is not output. FAW_SYNCH is set in addition to a type and says
+/// itself that the function is output [004:54], so it stands alone as well (inferred).
+fn told(synch: Synch) -> Option<Synch> {
+    match synch.kind {
+        SynchType::NoSynch if synch.flush_and_wait => Some(Synch {
+            kind: SynchType::Mos,
+            ..synch
+        }),
+        SynchType::NoSynch => None,
+        _ => Some(synch),
+    }
 }
 
 /// The range of a spindle: with `plc_control` all of it goes through that of the channel [004:171].

@@ -58,6 +58,7 @@ impl Channel<'_> {
             message: "there is no program".to_owned(),
             program: first,
             block: block.to_owned(),
+            line: 0,
         }))
     }
 

@@ -17,6 +17,8 @@ pub(crate) enum Deed {
     Output(OrderId),
     /// The path stands until all of these are done.
     Gate(Box<[OrderId]>),
+    /// The path comes to a standstill here in any case, for a function.
+    Stand(OrderId),
     /// The path stands for a time, s.
     Dwell(f64),
     /// A programmed block with a motion ends: in single block the path stands here until the next start.
@@ -302,7 +304,7 @@ impl Track {
         }
         let first = self.stretches.iter().map(|stretch| &stretch.deeds);
         first.chain([&self.tail]).flatten().find_map(|deed| match deed {
-            Deed::Command(id) | Deed::Output(id) => Some(*id),
+            Deed::Command(id) | Deed::Output(id) | Deed::Stand(id) => Some(*id),
             Deed::Gate(ids) => ids.first().copied(),
             _ => None,
         })

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use super::{ChannelList, Entry, ListFault, Value};
-use crate::settings::{ChannelSettings, FunctionSettings};
+use crate::settings::{ChannelSettings, FunctionSettings, SPINDLE_M};
 use crate::synch::SynchType;
 
 /// Blocks up to which the look-ahead of the interpolator need not be changed [004:222].
@@ -52,6 +52,7 @@ pub(super) fn check(list: &mut ChannelList, cycle_us: u32) {
     for entry in &list.entries {
         warnings.extend(look_ahead(list, entry));
         warnings.extend(unknown_functions(entry));
+        warnings.extend(spindle_functions(settings, entry));
     }
     list.errors.extend(errors);
     list.warnings.extend(warnings);
@@ -134,7 +135,7 @@ fn lead(
     }
     let target = function.default_target.as_deref()?;
     Some(entry.at_value(format!(
-        "Micro Joints are of the range of the channel: {of} goes to {target}, and its lead has no effect"
+        "Micro Joints are of the range of the channel: {of} goes to {target}, and to program it is the error micro-joint"
     )))
 }
 
@@ -180,6 +181,43 @@ fn drop_process_times(settings: &mut ChannelSettings) {
             }
         }
     }
+}
+
+/// Which of two lines counts for M3, M4, M5 and M19: that of the spindle, or, when they are free, that of the channel
+/// [004:51] [004:159]. Without its line a function is refused where it is programmed.
+fn spindle_functions(settings: &ChannelSettings, entry: &Entry) -> Option<ListFault> {
+    let is_free = settings.spindle_m_free;
+    if entry.place.definition.name == "spindle_m_fct_free" && is_free {
+        let of = |number: &u32| settings.m.get(*number).and_then(|function| function.synch);
+        let without: Vec<String> = SPINDLE_M
+            .iter()
+            .filter(|number| of(number).is_none())
+            .map(|number| format!("M{number}"))
+            .collect();
+        return (!without.is_empty()).then(|| {
+            entry.at_value(format!(
+                "{} without m_synch: free, and to program them is P-ERR-20157",
+                without.join(", ")
+            ))
+        });
+    }
+    let field = entry.place.definition.name.strip_prefix("spindel[i].m");
+    let of_spindle = field.and_then(|field| field.strip_suffix("_synch"));
+    if let Some(number) = of_spindle.filter(|_| is_free) {
+        return Some(entry.at_name(format!(
+            "M{number} is free with spindle_m_fct_free 1: m_synch[{number}] counts, and this line does nothing"
+        )));
+    }
+    let number = *entry.place.indices.first()?;
+    let of_channel = entry.place.definition.name == "m_synch[i]" && SPINDLE_M.contains(&number);
+    let mut spindles = settings.spindles.values();
+    let beside = spindles.any(|spindle| spindle.m(number).is_some_and(|of| of.synch.is_some()));
+    (of_channel && !is_free && beside).then(|| {
+        entry.at_name(format!(
+            "M{number} is of a spindle: spindel[i].m{number}_synch counts, and this line only for X[M{number}] and with \
+             spindle_m_fct_free 1"
+        ))
+    })
 }
 
 /// More blocks of look-ahead than the interpolator has [004:222].
@@ -302,6 +340,29 @@ mod tests {
         assert_eq!(warnings.warnings().len(), 1, "the buffer itself has no effect");
         assert_eq!(warnings.warnings()[0].line, 2);
         assert!(list("m_h_pre_outp_nbr_block 70\n").warnings().is_empty());
+    }
+
+    /// The manual has both lines for M3: that of the spindle, and that of the channel [004:51].
+    #[test]
+    fn it_is_said_which_line_of_a_spindle_function_counts() {
+        let both = "spindel[0].m3_synch MVS_SVS\nm_synch[3] MVS_SVS\n";
+        let told = |text: &str| -> Vec<(usize, String)> {
+            let found = list(text);
+            assert!(found.errors().is_empty(), "{:?}", found.errors());
+            let warnings = found.warnings().iter();
+            warnings
+                .map(|fault| (fault.line, fault.message.clone()))
+                .collect()
+        };
+        let [(line, message)] = told(both).try_into().unwrap();
+        assert_eq!(line, 2);
+        assert!(message.contains("spindel[i].m3_synch counts"), "{message}");
+        let free = format!("{both}m_synch[4] MOS\nm_synch[5] MOS\nspindle_m_fct_free 1\n");
+        let [(first, counts), (second, without)] = told(&free).try_into().unwrap();
+        assert_eq!((first, second), (1, 5));
+        assert!(counts.contains("m_synch[3] counts"), "{counts}");
+        assert!(without.starts_with("M19 without m_synch"), "{without}");
+        assert!(told(&format!("{free}m_synch[19] MOS\n")).len() == 1);
     }
 
     #[test]

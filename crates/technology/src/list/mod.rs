@@ -5,6 +5,7 @@
 //! not go together, `write` writes lists.
 
 mod checks;
+mod cure;
 mod field;
 mod line;
 mod table;
@@ -49,6 +50,8 @@ pub struct ListFault {
     pub length: usize,
     /// What it is.
     pub message: String,
+    /// What to do about it, where that can be guessed.
+    pub help: Option<String>,
 }
 
 /// A parameter with its indices.
@@ -95,6 +98,7 @@ impl Entry {
             column: self.name.0,
             length: self.name.1,
             message,
+            help: None,
         }
     }
 
@@ -104,6 +108,7 @@ impl Entry {
             column: self.column,
             length: self.length,
             message,
+            help: None,
         }
     }
 }
@@ -176,6 +181,7 @@ impl ChannelList {
             column,
             length,
             message,
+            help: cure::cure(&line),
         };
         let read = line::place(&line).and_then(|place| {
             let read = value::read(place.definition.kind, line.value, line.value_column)?;

@@ -216,12 +216,15 @@ mod tests {
     }
 
     fn synch(kinds: Vec<SynchType>) -> impl Strategy<Value = Synch> {
-        (proptest::sample::select(kinds), any::<[bool; 4]>()).prop_map(|(kind, bits)| Synch {
+        let any = (proptest::sample::select(kinds), any::<[bool; 4]>()).prop_map(|(kind, bits)| Synch {
             kind,
             plc_info: bits[0],
             backward: bits[1],
             forward: bits[2],
             flush_and_wait: bits[3],
+        });
+        any.prop_filter("bits of the way back need a type", |synch| {
+            Synch::from_bits(synch.bits()).is_ok()
         })
     }
 

@@ -1,14 +1,17 @@
 //! The PLC at the other side of the ranges: a script says what it does, it does all in its process time, or a real one reads
 //! and answers in a window of bytes.
 
+mod error;
+mod said;
 mod script;
 mod window;
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+pub use error::ScriptError;
+pub use script::Script;
 pub(crate) use script::{After, Reply};
-pub use script::{Script, ScriptError};
 use window::Window;
 pub(crate) use window::WindowRange;
 pub use window::{PlcMemory, WINDOW_BYTES};

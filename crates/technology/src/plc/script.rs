@@ -1,11 +1,29 @@
 //! What a scripted PLC does: a line for each function, and what happens at which time.
 
 use std::collections::HashMap;
-use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
+use bahn_din::nearest;
 use bahn_path::Axis;
+
+use super::error::ScriptError;
+use super::said::{Named, Said};
+use crate::settings::ChannelSettings;
+
+/// What a line begins with that says nothing of a function.
+const COMMANDS: [&str; 10] = [
+    "default",
+    "spindle",
+    "probe",
+    "hold",
+    "backward",
+    "simulated",
+    "single",
+    "start",
+    "reset",
+    "override",
+];
 
 /// A PLC script.
 ///
@@ -31,6 +49,8 @@ pub struct Script {
     pub(crate) overrides: Vec<(f64, f64)>,
     pub(crate) backward: Vec<Range<f64>>,
     pub(crate) simulated: Vec<Range<f64>>,
+    /// Where functions and spindles are named.
+    said: Vec<Said>,
     /// Single block, and the starts of the operator.
     pub(crate) singles: Vec<Range<f64>>,
     pub(crate) starts: Vec<f64>,
@@ -60,25 +80,6 @@ pub(crate) enum After {
     Never,
 }
 
-/// What is wrong with a script.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ScriptError {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// What.
-    pub message: String,
-}
-
-impl fmt::Display for ScriptError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.line, self.column, self.message)
-    }
-}
-
-impl std::error::Error for ScriptError {}
-
 impl Script {
     /// Whether it says what the PLC does with functions, and not only what happens to path and spindles.
     pub fn answers_functions(&self) -> bool {
@@ -107,32 +108,52 @@ impl FromStr for Script {
     type Err = ScriptError;
 
     fn from_str(text: &str) -> Result<Script, ScriptError> {
-        let mut script = Script::default();
-        for (line, text) in (1..).zip(text.lines()) {
-            let code = text.split('#').next().unwrap_or_default();
-            let mut words = Words { code, line, at: 0 };
-            if let Some(first) = words.next() {
-                script.read(first, &mut words)?;
-                if let Some(more) = words.next() {
-                    return Err(words.error(more, format!("`{}` is too much", more.1)));
-                }
-            }
-        }
-        script.overrides.sort_by(|a, b| a.0.total_cmp(&b.0));
-        script.resets.sort_by(f64::total_cmp);
-        script.starts.sort_by(f64::total_cmp);
-        Ok(script)
+        let (script, errors) = Script::from_text(text);
+        errors.into_iter().next().map_or(Ok(script), Err)
     }
 }
 
 impl Script {
+    /// Reads a script, with all that is wrong in it; lines with errors say nothing.
+    pub fn from_text(text: &str) -> (Script, Vec<ScriptError>) {
+        let mut script = Script::default();
+        let mut errors = Vec::new();
+        for (line, text) in (1..).zip(text.lines()) {
+            let code = text.split('#').next().unwrap_or_default();
+            let mut words = Words { code, line, at: 0 };
+            let Some(first) = words.next() else { continue };
+            let read = script.read(first, &mut words);
+            let read = read.and_then(|()| match words.next() {
+                Some(more) => Err(words.error(more, format!("`{}` is too much", more.1))),
+                None => Ok(()),
+            });
+            errors.extend(read.err());
+        }
+        script.overrides.sort_by(|a, b| a.0.total_cmp(&b.0));
+        script.resets.sort_by(f64::total_cmp);
+        script.starts.sort_by(f64::total_cmp);
+        (script, errors)
+    }
+
+    /// Functions, ranges and spindles that a channel with these settings does not have; the programs may give functions their
+    /// types as well.
+    pub fn unknown(&self, settings: &ChannelSettings, typed: impl Fn(&str) -> bool) -> Vec<ScriptError> {
+        let errors = self.said.iter().filter_map(|said| said.unknown(settings, &typed));
+        errors.collect()
+    }
+
     fn read<'a>(&mut self, first: Word<'a>, words: &mut Words<'a>) -> Result<(), ScriptError> {
         match first.1 {
             "default" => self.default = words.reply()?,
             "spindle" => {
-                let name = words.some("the name of a spindle")?.1.to_uppercase();
+                let word = words.some("the name of a spindle")?;
+                let name = word.1.to_uppercase();
                 words.keyword("ready")?;
                 let after = words.after()?;
+                self.said.push(Said::new(
+                    words.error(word, String::new()),
+                    Named::Spindle(name.clone()),
+                ));
                 self.spindles.insert(name, after);
             }
             "probe" => {
@@ -155,9 +176,16 @@ impl Script {
                 self.overrides.push((words.time("a time, s")?, percent));
             }
             name => {
-                let wrong = || words.error(first, format!("`{name}` is no function and no command"));
+                let wrong = || ScriptError {
+                    help: nearest(name, COMMANDS).map(|known| format!("did you mean `{known}`?")),
+                    ..words.error(first, format!("`{name}` is no function and no command"))
+                };
                 let key = function(name).ok_or_else(wrong)?;
                 let reply = words.reply()?;
+                self.said.push(Said::new(
+                    words.error(first, String::new()),
+                    Named::Function(key.0.clone(), key.1.clone()),
+                ));
                 self.replies.insert(key, reply);
             }
         }
@@ -207,7 +235,9 @@ impl<'a> Words<'a> {
         ScriptError {
             line: self.line,
             column: before.chars().count() + 1,
+            length: at.1.chars().count().max(1),
             message,
+            help: None,
         }
     }
 
@@ -222,7 +252,11 @@ impl<'a> Words<'a> {
         if word.1 == keyword {
             return Ok(());
         }
-        Err(self.error(word, format!("`{}` stands where `{keyword}` is expected", word.1)))
+        let near = nearest(word.1, [keyword]).map(|known| format!("did you mean `{known}`?"));
+        Err(ScriptError {
+            help: near,
+            ..self.error(word, format!("`{}` stands where `{keyword}` is expected", word.1))
+        })
     }
 
     fn number(&self, word: Word<'_>, text: &str, what: &str) -> Result<f64, ScriptError> {
@@ -268,7 +302,11 @@ impl<'a> Words<'a> {
             "nofetch" => Ok(Reply::NoFetch),
             other => {
                 let message = format!("`{other}` stands where `ack`, `at` or `nofetch` is expected");
-                Err(self.error(word, message))
+                let near = nearest(other, ["ack", "at", "nofetch"]);
+                Err(ScriptError {
+                    help: near.map(|known| format!("did you mean `{known}`?")),
+                    ..self.error(word, message)
+                })
             }
         }
     }

@@ -7,7 +7,7 @@ use bahn_din::{Program, Shelf};
 use bahn_motion::Limits;
 use bahn_path::{Axis, PerAxis, Position};
 use bahn_technology::{
-    ChannelList, ChannelSettings, Event, EventKind, NcPrograms, PlcMemory, Report, Run, Script,
+    Bounds, ChannelList, ChannelSettings, Event, EventKind, NcPrograms, PlcMemory, Report, Run, Script,
 };
 
 /// A cycle, s.
@@ -62,6 +62,7 @@ pub struct Bench {
     pub from: Option<String>,
     pub subroutines: Texts,
     pub limits: Limits,
+    pub bounds: Bounds,
 }
 
 impl Bench {
@@ -74,6 +75,7 @@ impl Bench {
             from: None,
             subroutines: Texts::default(),
             limits: limits(),
+            bounds: Bounds::default(),
         }
     }
 
@@ -131,6 +133,7 @@ impl Bench {
             limits: &self.limits,
             start,
             from: self.from.as_deref(),
+            bounds: self.bounds,
             script: script.as_ref(),
         };
         match plc {
