@@ -1,13 +1,14 @@
 //! The folder of a machine.
 //!
 //! `load`: everything in it, all faults at once, with its `channels`; `compensation`: the tables of axis errors; `nc_memory` and `tool_files`: its tables; `programs`: its part programs; `state`:
-//! what survives power-off, `remembered` as a file.
+//! what survives power-off, `remembered` and `mechanics` as files.
 
 mod channel;
 mod channels;
 mod compensation;
 mod functions;
 mod load;
+mod mechanics;
 mod nc_memory;
 mod programs;
 mod remembered;
@@ -18,7 +19,7 @@ pub use channel::LoadedChannel;
 pub use load::{LoadedMachine, decode};
 pub use programs::FolderPrograms;
 pub(crate) use remembered::{read as read_remembered, write as write_remembered};
-pub use state::{Found, State};
+pub use state::{Found, FoundMechanics, State};
 
 use bahn_parameters::PerPlcAxis;
 
