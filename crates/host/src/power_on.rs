@@ -8,6 +8,7 @@ use bahn_machine::{Machine, Mechanics};
 use bahn_parameters::{InchFeed, ParameterList};
 
 use crate::error::HostError;
+use crate::fault::FileFault;
 use crate::machine_folder::{FolderPrograms, FoundMechanics, LoadedMachine, State};
 
 /// What a control finds at power-on, and how it takes programs. What is read here can be changed until the
@@ -60,7 +61,7 @@ impl PowerOn {
             checking: Checking::default(),
             inch_feed: None,
             block_time: false,
-            warnings: Vec::new(),
+            warnings: refused(&machine.refused),
             channels: (1..)
                 .zip(&machine.channels)
                 .map(|(number, channel)| ChannelPowerOn {
@@ -84,12 +85,13 @@ impl PowerOn {
             1 + machine.channels.len(),
             pockets_sum(machine),
         )?;
+        machine.sweep();
         let mut power_on = PowerOn {
             exchange: found.exchange,
             state: Some(found.state),
-            warnings: found.warnings,
             ..PowerOn::fresh(machine)
         };
+        power_on.warnings.extend(found.warnings);
         for (channel, found) in power_on.channels.iter_mut().zip(found.others) {
             channel.remembered = found.unwrap_or_else(|| channel.remembered.clone());
         }
@@ -115,10 +117,11 @@ impl PowerOn {
         if let Some(name) = &remembered.datum_table
             && !machine.files.datum_tables.contains_key(name)
         {
-            return Err(HostError::new(format!(
-                "{name}, the datum table that module 9090 selected, is missing in {}",
+            power_on.warnings.push(format!(
+                "{name}, the datum table that module 9090 selected, is missing or faulty in {}: the datums of cycle 7 are \
+                 refused until it is there, or another one is selected",
                 machine.root.join(&machine.folder.programs).display()
-            )));
+            ));
         }
         power_on.remembered = remembered;
         power_on.put_up(machine, found.mechanics);
@@ -179,6 +182,22 @@ pub(crate) fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, rememb
         Some((pocket?, *number))
     });
     plant.load_magazine(tools, remembered.tool);
+}
+
+/// Files with faults that stop nothing, each with its first one.
+fn refused(faults: &[FileFault]) -> Vec<String> {
+    let mut said: Vec<String> = Vec::new();
+    for (at, fault) in faults.iter().enumerate() {
+        let earlier = faults.iter().take(at);
+        if !earlier.into_iter().any(|earlier| earlier.path == fault.path) {
+            said.push(format!(
+                "{}: {}; it is refused when it is used",
+                fault.path.display(),
+                fault.at_line()
+            ));
+        }
+    }
+    said
 }
 
 /// Check sum of what the tables say of pockets.

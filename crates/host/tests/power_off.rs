@@ -253,8 +253,8 @@ impl Mill {
 /// A mill that has put tool 2 into its spindle, switched off.
 fn with_tool_2(what: &str) -> Mill {
     let mill = Mill::new(what, "3", "3");
-    let (mut host, _) =
-        mill.switch_on("TOOL CALL 2 Z S0\nL X+210 R0 FMAX\nTOOL CALL 5 Z S0\nTOOL CALL 7 Z S0\nTOOL CALL 2 Z S0");
+    let (mut host, _) = mill
+        .switch_on("TOOL CALL 2 Z S0\nL X+210 R0 FMAX\nTOOL CALL 5 Z S0\nTOOL CALL 7 Z S0\nTOOL CALL 2 Z S0");
     let first = mill.copy.path().join("first");
     until(&mut host, 120.0, "the first tool", |host| {
         host.control().tool() == 2

@@ -21,8 +21,6 @@ pub use programs::FolderPrograms;
 pub(crate) use remembered::{read as read_remembered, write as write_remembered};
 pub use state::{Found, FoundMechanics, State};
 
-use bahn_parameters::PerPlcAxis;
-
 use crate::columns::TableFault;
 
 /// Reads what a control remembers and writes it again, for fuzzing: `None` when it is damaged, else whether the
@@ -35,8 +33,8 @@ pub fn check_state(file: &[u8]) -> Option<bool> {
 
 /// The faults of a datum table whose axes 4 and 5 turn.
 pub(crate) fn check_datum_table(text: &str) -> Result<(), Vec<TableFault>> {
-    let turns = PerPlcAxis([false, false, false, true, true]);
-    nc_memory::datum_table(text, turns, nc_memory::LINES_MAX).map(drop)
+    let axes = nc_memory::DatumAxes::turning();
+    nc_memory::datum_table(text, &axes, nc_memory::LINES_MAX).map(drop)
 }
 
 /// The faults of a pallet file.
@@ -49,7 +47,7 @@ pub(crate) fn check_pallet_file(text: &str) -> Result<(), Vec<TableFault>> {
 pub fn check_nc_tables(text: &str) -> [Result<(), Vec<u32>>; 2] {
     let lines = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
     [
-        nc_memory::datum_table(text, PerPlcAxis::splat(false), nc_memory::LINES_MAX)
+        nc_memory::datum_table(text, &nc_memory::DatumAxes::default(), nc_memory::LINES_MAX)
             .map(drop)
             .map_err(lines),
         nc_memory::pallet_file(text, nc_memory::LINES_MAX)

@@ -108,9 +108,7 @@ impl State {
         if !kept::lock(&lock, &lock_path)? {
             return Err(HostError::SwitchedOn(folder.display().to_string()));
         }
-        for path in paths.iter().chain([&mechanics]) {
-            remove_half_written(folder, path);
-        }
+        files::sweep(folder);
         let mut warnings = Vec::new();
         let moment = moment_in(&mechanics, &mut warnings)?;
         let mut others = match &moment {
@@ -348,21 +346,6 @@ fn unknown(file: &Path, aside: &Path, what: &str) -> HostError {
     ))
 }
 
-/// What a process that was killed was writing is of no use to anybody.
-fn remove_half_written(folder: &Path, file: &Path) {
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let begun = format!(".{name}.");
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    for entry in entries {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        if name.starts_with(&begun) && name.ends_with(".tmp") {
-            // It is in nobody's way.
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may fail")]
@@ -395,7 +378,13 @@ mod tests {
             fs::write(&half, &new.as_bytes()[..written]).unwrap();
             let found = State::open(&folder, 1, 0).unwrap();
             assert_eq!(found.remembered.unwrap().tool, 3, "{written} bytes");
-            assert!(!half.exists() && found.warnings.is_empty(), "{written} bytes");
+            assert!(!half.exists(), "{written} bytes");
+            // Nobody has written where the mechanics stand.
+            let said = found.warnings.join("\n");
+            assert!(
+                said.contains("mechanics.toml is missing") && found.warnings.len() == 1,
+                "{said}"
+            );
         }
         // The name changes in one step.
         fs::write(folder.join(".control.toml.4711.tmp"), &new).unwrap();
