@@ -206,3 +206,33 @@ fn a_faulty_table_is_refused_where_it_is_used() {
         "{warnings:?}"
     );
 }
+
+/// What was half written in any folder of the machine by who was killed goes at the next power-on, and nothing else.
+#[test]
+fn half_written_files_go() {
+    let copy = Copy::of("mill", "half-written");
+    let folders = [".", "programs", "plc", "state", "lessons"];
+    let ours = [".X.H.4711-3.tmp", ".control.toml.4711.tmp"];
+    let others = [".X.H.tmp", "X.H.4711-3.tmp", ".X.H.47a-3.tmp", ".4711.tmp.H"];
+    for folder in folders {
+        let folder = copy.path().join(folder);
+        fs::create_dir_all(&folder).unwrap();
+        for name in ours.iter().chain(&others) {
+            fs::write(folder.join(name), "half").unwrap();
+        }
+    }
+    drop(switch_on(&copy));
+    for folder in folders {
+        let folder = copy.path().join(folder);
+        assert!(
+            ours.iter().all(|name| !folder.join(name).exists()),
+            "{}",
+            folder.display()
+        );
+        assert!(
+            others.iter().all(|name| folder.join(name).exists()),
+            "{}",
+            folder.display()
+        );
+    }
+}

@@ -191,3 +191,33 @@ pub(crate) fn screen_sum(screen: &Screen) -> String {
 fn sum(bytes: &[u8]) -> String {
     format!("{:08x}", crc32fast::hash(bytes))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    /// What was noted is on the medium a second later, without another input.
+    #[test]
+    fn a_kill_loses_a_second_at_most() {
+        let path = std::env::temp_dir().join(format!("bahn-session-{}.jsonl", std::process::id()));
+        let _ = std::fs::remove_file(&path);
+        let head = Head {
+            session: FORM,
+            machine: "Mill".to_owned(),
+            model: "tnc415b".to_owned(),
+            version: "1".to_owned(),
+            kept: "0".to_owned(),
+        };
+        let mut recorder = Recorder::create(&path, &head).unwrap();
+        assert!(recorder.is_safe());
+        recorder.note(1000, &Input::Power(true)).unwrap();
+        recorder.keep().unwrap();
+        assert!(!recorder.is_safe(), "not every key waits for the medium");
+        std::thread::sleep(SAFE_AFTER);
+        recorder.keep().unwrap();
+        assert!(recorder.is_safe());
+        assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 2);
+        std::fs::remove_file(&path).unwrap();
+    }
+}
