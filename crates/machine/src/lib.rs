@@ -54,6 +54,7 @@ mod panel;
 mod probe;
 mod reader;
 mod spindle;
+mod standing;
 mod tool_probe;
 
 pub use axis::{AxisState, DriveFault};
