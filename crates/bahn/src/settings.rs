@@ -25,7 +25,7 @@ pub(crate) struct Equipment {
     /// The M functions that are synchronised otherwise than the control model does.
     pub functions: OwnFunctions,
     /// The datum table of the machine with M status.
-    pub datum_table: Option<MemoryTable>,
+    pub datum_table: Result<MemoryTable, String>,
     /// The other channels of the machine, whose axes a program may get; `None` without a machine.
     pub others: Option<Vec<ParameterList>>,
     /// Where the workpiece lies unless the options say it.
@@ -42,7 +42,7 @@ impl Equipment {
                 tools: None,
                 texts: MachineTexts::default(),
                 functions: OwnFunctions::default(),
-                datum_table: None,
+                datum_table: Err(bahn_interpreter::NO_DATUM_TABLE.to_owned()),
                 others: None,
                 datum: Position::UNKNOWN,
             },
@@ -175,7 +175,8 @@ pub(crate) fn interpreter(
         datum_table: equipment
             .datum_table
             .as_ref()
-            .map(|table| datum_shifts(table, list).into()),
+            .map(|table| datum_shifts(table, list).into())
+            .map_err(String::clone),
         texts: equipment.texts.clone(),
         barred_tools: tool_table::barred(tools.into_iter().flatten()),
         tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),

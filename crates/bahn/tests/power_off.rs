@@ -608,3 +608,55 @@ fn a_state_that_may_not_be_read_is_kept() {
         assert_eq!(names, ["control.toml", "lock", "plc.mem"]);
     }
 }
+
+/// The process is killed in the midst of changes with the magazine, and begins again where it was: no file disagrees, and the last
+/// run, in which nobody kills it, comes to its end with the tool that it called.
+#[test]
+fn killed_in_a_change_of_the_magazine() {
+    let folder = Folder::new();
+    assert_eq!(folder.bahn("machine new m --model tnc415b --name Test").code(), 0);
+    let list = folder.read("m/parameters.mp");
+    let list = list
+        .replace("MP7480.0 : 1 ", "MP7480.0 : 3 ")
+        .replace("MP4310.0 : 1 ", "MP4310.0 : 3 ");
+    assert!(list.contains("MP7480.0 : 3 ") && list.contains("MP4310.0 : 3 "));
+    folder.write("m/parameters.mp", list);
+    let calls: String = [1, 5, 2, 7, 1, 3]
+        .map(|tool| format!("TOOL CALL {tool} Z S0\n"))
+        .concat();
+    folder.write(
+        "m/programs/CHANGES.H",
+        format!("BEGIN PGM CHANGES MM\n{calls}END PGM CHANGES MM\n"),
+    );
+    let started = Instant::now();
+    let whole = start(&folder, "--fresh").wait_with_output().unwrap();
+    assert_eq!(
+        whole.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&whole.stderr)
+    );
+    let whole_time = started.elapsed();
+    for part in [0.5, 0.63, 0.72, 0.81, 0.9] {
+        let mut child = start(&folder, "");
+        std::thread::sleep(whole_time.mul_f64(part));
+        child.kill().unwrap();
+        let killed = child.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&killed.stderr);
+        assert!(!said.contains("moment") && !said.contains("missing"), "{said}");
+    }
+    let last = start(&folder, "").wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&last.stderr);
+    assert_eq!(
+        (last.status.code(), said.as_ref()),
+        (Some(0), ""),
+        "{}",
+        String::from_utf8_lossy(&last.stdout)
+    );
+    let mechanics = folder.read("m/state/mechanics.toml");
+    let control = folder.read("m/state/control.toml");
+    assert!(
+        control.contains("\ntool = 3\n") && mechanics.contains("\nspindle = 3\n"),
+        "{mechanics}"
+    );
+}

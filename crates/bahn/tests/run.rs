@@ -235,6 +235,22 @@ fn faults_of_a_script_have_line_and_column() {
     assert!(run.out().is_empty(), "nothing was run");
 }
 
+/// A change with the magazine, in which for half a minute no axis moves, comes on all the time: it is no run that hangs. An arm
+/// that is stuck is one.
+#[test]
+fn a_change_is_no_run_that_hangs() {
+    let folder = Folder::with_program("TOOL CALL 1 Z S0\nTOOL CALL 7 Z S0\nTOOL CALL 2 Z S0");
+    let (code, change) = report(&folder, "--mp 7480.0=3,4310.0=3 --max-wait 6");
+    assert_eq!((code, &change["waits_for"]), (0, &Value::Null), "{change}");
+    folder.write("stuck.txt", "start+1: fault device arm_draw jammed\n");
+    let (code, stuck) = report(
+        &folder,
+        "--mp 7480.0=3,4310.0=3 --max-wait 20 --script stuck.txt --operator full",
+    );
+    let waits = stuck["waits_for"].as_str().unwrap();
+    assert!(code == 1 && waits.contains("M2483"), "{waits}");
+}
+
 /// With a script nobody confirms M0; without movement the run hangs and says why.
 #[test]
 fn a_run_that_hangs_says_what_it_waits_for() {
@@ -247,7 +263,10 @@ fn a_run_that_hangs_says_what_it_waits_for() {
     let (code, change) = report(&folder, "--mp 4310.0=0 --operator start");
     assert_eq!(code, 1);
     let waits = change["waits_for"].as_str().unwrap();
-    assert!(waits.contains("strobe M2046: the PLC must set M2483"), "{waits}");
+    assert!(
+        waits.contains("strobe M2046: the PLC must set M2483 (Ack: T/P code with TOOL CALL)"),
+        "{waits}"
+    );
     assert!(waits.contains("CHANGE TOOL, THEN CONFIRM"), "{waits}");
     let (_, stands) = report(&folder, "--override 0 --max-wait 5");
     assert!(
@@ -334,7 +353,7 @@ fn what_survives_power_off_is_kept_in_the_folder() {
     assert_eq!(second.code(), 0, "{}", second.err());
     assert_eq!(time_for(&second.json(), "tool change"), 0.0);
     // Another datum stays.
-    folder.write("d.txt", "20: datum X 100\n+0.1: end\n");
+    folder.write("d.txt", "20: datum X 90\n+0.1: end\n");
     let datum = folder.bahn("run --machine mill --script d.txt");
     assert_eq!(datum.code(), 0, "{}", datum.err());
     assert!(

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use bahn_interpreter::{DatumTable, MachineTexts};
+use bahn_interpreter::{DatumTable, MachineTexts, NO_DATUM_TABLE};
 use bahn_parameters::{ParameterId, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::{
@@ -35,6 +35,8 @@ pub struct NcFiles {
     pub datum_tables: BTreeMap<String, MemoryTable>,
     /// The datum table with M status until module 9090 selects another one.
     pub datum_table: Option<String>,
+    /// Why datum tables that are there cannot be used, by their name with extension.
+    pub faulty: BTreeMap<String, String>,
     /// Machine parameter lists by name; `None` for a faulty one.
     pub parameter_lists: BTreeMap<String, Option<ParameterList>>,
     /// The compensation assignment (.CMA).
@@ -43,6 +45,21 @@ pub struct NcFiles {
     pub compensation_tables: BTreeMap<String, CompensationTable>,
     /// The correction tables of code number 105 296: they apply where there is no assignment.
     pub correction_tables: Option<CorrectionTables>,
+}
+
+impl NcFiles {
+    /// The datum table of this name.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn datum_table_of(&self, name: Option<&String>) -> Result<&MemoryTable, String> {
+        let name = name.ok_or(NO_DATUM_TABLE)?;
+        let table = self.datum_tables.get(name);
+        table.ok_or_else(|| match self.faulty.get(name) {
+            Some(why) => format!("the datum table {name} is faulty: {why}"),
+            None => format!("the datum table {name}, which is selected, is missing"),
+        })
+    }
 }
 
 /// A pocket of the magazine as the pocket table has it, beside the tool in it [000:9076-9082].
@@ -227,10 +244,10 @@ impl PlcLink {
         }
     }
 
-    /// The datums of `CYCL DEF 7.1 #n` for the axes of a list of machine parameters.
-    pub fn datums(&self, list: &ParameterList) -> Option<Arc<DatumTable>> {
-        let table = self.files.datum_tables.get(self.datum_table_name()?)?;
-        Some(Arc::new(datum_shifts(table, list)))
+    /// The datums of `CYCL DEF 7.1 #n` for the axes of a list of machine parameters, or why there are none.
+    pub fn datums(&self, list: &ParameterList) -> Result<Arc<DatumTable>, String> {
+        let table = self.files.datum_table_of(self.datum_table_name())?;
+        Ok(Arc::new(datum_shifts(table, list)))
     }
 
     /// The datum table with M status: modules see what 9090 has selected in the same scan, too [000:15375].

@@ -262,6 +262,7 @@ impl ProgramRun {
 
     /// Interprets ahead; begins a run.
     pub fn prepare(&mut self, site: &mut Site, basis: &Basis) {
+        let allowed = self.block_time.allow(site.now.us, BUDGET);
         let source = &mut self.source;
         let mdi = site.now.mode == Mode::Mdi;
         if self
@@ -313,7 +314,6 @@ impl ProgramRun {
         }
         feeder.allow_work();
         let before = feeder.elements_read();
-        let allowed = self.block_time.allow(site.now.us, BUDGET);
         path.prepare(feeder, allowed);
         self.block_time.spend(feeder.elements_read() - before);
     }

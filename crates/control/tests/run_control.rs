@@ -349,3 +349,29 @@ fn emergency_stop() {
     near(display(&rig, 'X'), 50.0);
     near(display(&rig, 'Y'), 70.0);
 }
+
+/// The first blocks take their time as all others, however long the control was on before [000:143]: N lines of 0.01 mm at 6000 mm/min,
+/// 0.1 ms each, with 40 ms for a block take 40 ms for each of them, also behind a pause.
+#[test]
+fn block_processing_time_counts_from_the_first_block() {
+    for blocks in [100_u32, 200, 300] {
+        let lines = (1..=blocks).map(|block| format!("L X+{:.2} R0 F6000", 50.0 + f64::from(block) * 0.01));
+        let program = lines.collect::<Vec<_>>().join("\n");
+        let mut rig = bench_with(ACKNOWLEDGE, &format!("L X+50 R0 F6000\n{program}"));
+        rig.control.set_block_time(40_000);
+        rig.seconds(30.0);
+        for _ in 0..2 {
+            rig.start();
+            rig.until(1.0, "the run begins", |rig| state(rig) == RunState::Running);
+            let begin_us = rig.control.time_us();
+            rig.until(60.0, "the run ends", |rig| rig.control.snapshot().ended);
+            let seconds = (rig.control.time_us() - begin_us) as f64 / 1e6;
+            let least = f64::from(blocks) * 0.040;
+            assert!(
+                seconds > least - 0.1 && seconds < least + 4.0,
+                "{blocks} blocks: {seconds} s"
+            );
+            rig.seconds(20.0);
+        }
+    }
+}

@@ -43,5 +43,6 @@ pub use exchanging::Exchange;
 pub use image::{CELLS, Image, STRING_LENGTH, STRINGS};
 pub use operand::{Assignment, Content, Operand, parts};
 pub use retention::{
-    Damage, JOURNAL_LENGTH, Loss, MemoryStorage, Retention, RetentionError, RetentionStorage,
+    Damage, JOURNAL_LENGTH, Loss, MemoryStorage, Retention, RetentionError, RetentionStorage, image_of,
+    retained_memory,
 };

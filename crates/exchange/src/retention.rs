@@ -250,6 +250,18 @@ fn place_of(number: u64) -> usize {
     (number % RECORDS as u64) as usize * RECORD
 }
 
+/// What of an image survives power-off, packed: M1000-M1999, eight to a byte, and B0-B127.
+pub fn retained_memory(image: &Image) -> Vec<u8> {
+    pack(image).to_vec()
+}
+
+/// An image with the packed memory of [`retained_memory`]; `None` when it has another length.
+pub fn image_of(memory: &[u8]) -> Option<Image> {
+    let mut image = Image::default();
+    unpack(memory.try_into().ok()?, &mut image);
+    Some(image)
+}
+
 fn pack(image: &Image) -> Payload {
     let mut payload = [0; PAYLOAD];
     let cells = image.cells();

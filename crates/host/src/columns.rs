@@ -136,7 +136,9 @@ impl TextTable {
     /// Its lengths are in inches.
     pub fn in_inches(&self) -> bool {
         let frame = self.frame.as_deref().unwrap_or_default();
-        frame.to_ascii_uppercase().contains("INCH")
+        // Behind BEGIN and the name, which may be INCH.
+        let mut words = frame.split_whitespace().skip(2);
+        words.any(|word| word.trim_matches(['[', ']']).eq_ignore_ascii_case("INCH"))
     }
 
     /// The character between its columns, when there is one.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use bahn_control::{Command, CommandError, split_channel};
-use bahn_machine::{Event, KeyAction, Machine};
+use bahn_machine::{Event, KeyAction, Machine, Mechanics};
 use bahn_servo::Plant;
 use thiserror::Error;
 
@@ -17,6 +17,11 @@ pub trait Operable: Plant {
 
     /// The tool that the control has in the spindle; who changes tools by hand puts it there.
     fn tool_is_called(&mut self, _tool: u32) {}
+
+    /// Where everything stands, for a plant that ends with the program; a real one stays where it is.
+    fn mechanics(&self) -> Option<Mechanics> {
+        None
+    }
 }
 
 impl Operable for Machine {
@@ -26,6 +31,10 @@ impl Operable for Machine {
 
     fn tool_is_called(&mut self, tool: u32) {
         Machine::tool_is_called(self, tool);
+    }
+
+    fn mechanics(&self) -> Option<Mechanics> {
+        Some(Machine::mechanics(self))
     }
 }
 

@@ -23,6 +23,13 @@ pub struct FileFault {
     pub opened: Option<Marked>,
 }
 
+impl FileFault {
+    /// Line and fault, in words.
+    pub fn at_line(&self) -> String {
+        format!("line {}: {}", self.marked.line, self.label)
+    }
+}
+
 /// How bad a fault is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {

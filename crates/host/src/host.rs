@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use bahn_control::{
-    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, Remembered, ServoSampler, Setup,
-    Snapshot, SpindleWiring,
+    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, ServoSampler, Setup, Snapshot,
+    SpindleWiring,
 };
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
@@ -24,7 +24,7 @@ use crate::notice::{Before, Notice, Stamped, Why};
 use crate::operator::Operator;
 use crate::orders::{Desk, Waiting, When};
 use crate::pace::{Clock, Lateness, Pace};
-use crate::power_on::{ChannelPowerOn, PowerOn};
+use crate::power_on::{ChannelPowerOn, PowerOn, load_magazine};
 
 /// Notices that wait for slow readers.
 const NOTICES: usize = 1024;
@@ -77,19 +77,15 @@ impl Host {
         operator: Operator,
     ) -> Host {
         let mut plant = machine.plant.clone();
-        load_magazine(&mut plant, machine, &power_on.remembered);
+        if !power_on
+            .mechanics
+            .as_ref()
+            .is_some_and(|place| plant.stand_at(place).is_ok())
+        {
+            load_magazine(&mut plant, machine, &power_on.remembered);
+        }
         Host::with_plant(machine, plant, power_on, programs, operator)
     }
-}
-
-/// The tools lie in the magazine where the control remembers them.
-fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Remembered) {
-    let moved = |tool: u32| remembered.pockets.iter().find(|moved| moved.tool == tool);
-    let tools = machine.tools.iter().flatten().filter_map(|(number, tool)| {
-        let pocket = moved(*number).map_or(tool.pocket, |moved| moved.pocket);
-        Some((pocket?, *number))
-    });
-    plant.load_magazine(tools, remembered.tool);
 }
 
 impl<P: Operable> Host<P> {
@@ -336,7 +332,7 @@ impl<P: Operable> Host<P> {
             }
             return Ok(());
         }
-        if let Err(error) = state.keep(&mut self.control) {
+        if let Err(error) = state.keep(&mut self.control, &self.plant) {
             self.tell(Notice::Fault(error.to_string()));
             return Err(HostError::NotStored(error.to_string()));
         }
@@ -423,7 +419,7 @@ impl<P: Operable> Host<P> {
         self.background.settle(&mut self.control);
         match &mut self.state {
             Some(state) => state
-                .flush(&self.control)
+                .flush(&self.control, &self.plant)
                 .map_err(|error| HostError::NotStored(error.to_string())),
             None => Ok(()),
         }

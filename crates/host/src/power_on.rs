@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use bahn_control::{Checking, NcFiles, Position0, Programs, Remembered};
 use bahn_exchange::Exchange;
+use bahn_machine::{Machine, Mechanics};
 use bahn_parameters::{InchFeed, ParameterList};
 
 use crate::error::HostError;
-use crate::machine_folder::{FolderPrograms, LoadedMachine, State};
+use crate::fault::FileFault;
+use crate::machine_folder::{FolderPrograms, FoundMechanics, LoadedMachine, State};
 
 /// What a control finds at power-on, and how it takes programs. What is read here can be changed until the
 /// [`Host`](crate::Host) is made of it.
@@ -18,6 +20,9 @@ pub struct PowerOn {
     pub remembered: Remembered,
     /// Memory of the PLC.
     pub exchange: Exchange,
+    /// Where the mechanics of the simulated machine stand; `None` as its description says, with the tools where the control
+    /// remembers them.
+    pub mechanics: Option<Mechanics>,
     /// Where it keeps what changes; `None` keeps nothing.
     pub state: Option<State>,
     /// How programs are taken.
@@ -51,11 +56,12 @@ impl PowerOn {
                 ..Remembered::default()
             },
             exchange: Exchange::default(),
+            mechanics: None,
             state: None,
             checking: Checking::default(),
             inch_feed: None,
             block_time: false,
-            warnings: Vec::new(),
+            warnings: refused(&machine.refused),
             channels: (1..)
                 .zip(&machine.channels)
                 .map(|(number, channel)| ChannelPowerOn {
@@ -77,17 +83,20 @@ impl PowerOn {
         let found = State::open(
             &machine.root.join(&machine.folder.state),
             1 + machine.channels.len(),
+            pockets_sum(machine),
         )?;
+        machine.sweep();
         let mut power_on = PowerOn {
             exchange: found.exchange,
             state: Some(found.state),
-            warnings: found.warnings,
             ..PowerOn::fresh(machine)
         };
+        power_on.warnings.extend(found.warnings);
         for (channel, found) in power_on.channels.iter_mut().zip(found.others) {
             channel.remembered = found.unwrap_or_else(|| channel.remembered.clone());
         }
         let Some(mut remembered) = found.remembered else {
+            power_on.put_up(machine, found.mechanics);
             return Ok(power_on);
         };
         if !remembered.fit_pockets(machine.tools.as_ref()) {
@@ -108,14 +117,129 @@ impl PowerOn {
         if let Some(name) = &remembered.datum_table
             && !machine.files.datum_tables.contains_key(name)
         {
-            return Err(HostError::new(format!(
-                "{name}, the datum table that module 9090 selected, is missing in {}",
+            power_on.warnings.push(format!(
+                "{name}, the datum table that module 9090 selected, is missing or faulty in {}: the datums of cycle 7 are \
+                 refused until it is there, or another one is selected",
                 machine.root.join(&machine.folder.programs).display()
-            )));
+            ));
         }
         power_on.remembered = remembered;
+        power_on.put_up(machine, found.mechanics);
         Ok(power_on)
     }
+
+    /// Where the mechanics stand, if they are those of this machine; what does not agree with control and PLC is said.
+    fn put_up(&mut self, machine: &LoadedMachine, found: Option<FoundMechanics>) {
+        let (Some(found), Some(state)) = (found, &self.state) else {
+            return;
+        };
+        let file = state.mechanics_file().display();
+        let mut plant = machine.plant.clone();
+        if let Err(what) = plant.stand_at(&found.mechanics) {
+            self.warnings.push(format!(
+                "{file} is of another machine: {what}; the machine stands as at its start, its tools lie where the control \
+                 remembers them"
+            ));
+            return;
+        }
+        if found.loaded_anew {
+            load_magazine(&mut plant, machine, &self.remembered);
+            if machine.plant.magazine().is_some() {
+                self.warnings.push(
+                    "the pockets of the tables have changed since the last run: the tools lie in the magazine as they say"
+                        .to_owned(),
+                );
+            }
+        }
+        if !found.others.is_empty() {
+            let names: Vec<String> = found
+                .others
+                .iter()
+                .map(|path| path.display().to_string())
+                .collect();
+            let mut text = format!(
+                "{file} and {} are not of the same moment: one of them was changed, removed or put there from elsewhere",
+                names.join(", ")
+            );
+            for difference in differences(&plant, machine, &self.remembered) {
+                text += &format!("\n  {difference}");
+            }
+            text += &format!(
+                "\n  what each file says counts; without {file} the machine stands as at its start, its tools lie where the \
+                 control remembers them"
+            );
+            self.warnings.push(text);
+        }
+        self.mechanics = Some(plant.mechanics());
+    }
+}
+
+/// The tools lie in the magazine where the control remembers them.
+pub(crate) fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Remembered) {
+    let moved = |tool: u32| remembered.pockets.iter().find(|moved| moved.tool == tool);
+    let tools = machine.tools.iter().flatten().filter_map(|(number, tool)| {
+        let pocket = moved(*number).map_or(tool.pocket, |moved| moved.pocket);
+        Some((pocket?, *number))
+    });
+    plant.load_magazine(tools, remembered.tool);
+}
+
+/// Files with faults that stop nothing, each with its first one.
+fn refused(faults: &[FileFault]) -> Vec<String> {
+    let mut said: Vec<String> = Vec::new();
+    for (at, fault) in faults.iter().enumerate() {
+        let earlier = faults.iter().take(at);
+        if !earlier.into_iter().any(|earlier| earlier.path == fault.path) {
+            said.push(format!(
+                "{}: {}; it is refused when it is used",
+                fault.path.display(),
+                fault.at_line()
+            ));
+        }
+    }
+    said
+}
+
+/// Check sum of what the tables say of pockets.
+fn pockets_sum(machine: &LoadedMachine) -> u32 {
+    let mut sum = crc32fast::Hasher::new();
+    for (number, tool) in machine.tools.iter().flatten() {
+        sum.update(&number.to_le_bytes());
+        sum.update(&tool.pocket.map_or(-1, i32::from).to_le_bytes());
+    }
+    sum.finalize()
+}
+
+/// Tools that are elsewhere in the magazine than the control remembers them.
+fn differences(plant: &Machine, machine: &LoadedMachine, remembered: &Remembered) -> Vec<String> {
+    let mut expected = machine.plant.clone();
+    load_magazine(&mut expected, machine, remembered);
+    let (Some(is), Some(said)) = (plant.magazine(), expected.magazine()) else {
+        return Vec::new();
+    };
+    let tool = |tool: u32| match tool {
+        0 => "no tool".to_owned(),
+        tool => format!("tool {tool}"),
+    };
+    let mut different = Vec::new();
+    let mut compare = |place: String, is: u32, said: u32| {
+        if is != said {
+            different.push(format!(
+                "{place}: {}; the control has {} there",
+                tool(is),
+                tool(said)
+            ));
+        }
+    };
+    compare("spindle".to_owned(), is.spindle, said.spindle);
+    compare("shuttle".to_owned(), is.shuttle, said.shuttle);
+    for (gripper, (is, said)) in is.arm.iter().zip(said.arm).enumerate() {
+        compare(format!("gripper {}", gripper + 1), *is, said);
+    }
+    for (pocket, (is, said)) in is.pockets.iter().zip(said.pockets).enumerate() {
+        compare(format!("pocket {}", pocket + 1), *is, *said);
+    }
+    different
 }
 
 fn selected_list(files: &NcFiles, name: &str) -> Option<ParameterList> {

@@ -92,8 +92,8 @@ pub use examination::{Complete, Examination, Found, examine};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    BasicRotation, ContourPocketRules, DatumTable, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings,
-    TappingRules, ToolState, ToolTable, tool_key,
+    BasicRotation, ContourPocketRules, DatumTable, MFunctionRules, MachineTexts, NO_DATUM_TABLE, ProbeRules,
+    Rules, Settings, TappingRules, ToolState, ToolTable, tool_key,
 };
 pub use status::Status;
 pub use work::{Done, Work};

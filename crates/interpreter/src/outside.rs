@@ -44,8 +44,8 @@ impl Interpreter {
         self.settings.barred_tools = barred;
     }
 
-    /// The datum table, for the blocks that are read from now on.
-    pub fn set_datum_table(&mut self, table: Option<Arc<DatumTable>>) {
+    /// The datum table, or why there is none, for the blocks that are read from now on.
+    pub fn set_datum_table(&mut self, table: Result<Arc<DatumTable>, String>) {
         self.settings.datum_table = table;
     }
 

@@ -30,8 +30,8 @@ pub struct Settings {
     pub barred_tools: BTreeMap<u32, ToolState>,
     /// Cycles of the machine builder in the EPROM that the PLC inhibits: bit n is cycle 68 + n [000:17812-17821].
     pub inhibited_oem_cycles: u32,
-    /// The datum table of `CYCL DEF 7.1 #n`; `None` when none is selected.
-    pub datum_table: Option<Arc<DatumTable>>,
+    /// The datum table of `CYCL DEF 7.1 #n`, or why there is none.
+    pub datum_table: Result<Arc<DatumTable>, String>,
     /// The M functions that the machine builder synchronises otherwise than the model.
     pub functions: OwnFunctions,
     /// Texts of the machine for FN14 and FN15.
@@ -84,7 +84,7 @@ impl Default for Settings {
             point_angles_deg: BTreeMap::new(),
             barred_tools: BTreeMap::new(),
             inhibited_oem_cycles: 0,
-            datum_table: None,
+            datum_table: Err(NO_DATUM_TABLE.to_owned()),
             functions: OwnFunctions::default(),
             texts: MachineTexts::default(),
             q_values: Vec::new(),
@@ -167,6 +167,9 @@ impl Default for BasicRotation {
         }
     }
 }
+
+/// Why there is no datum table where nobody has selected one.
+pub const NO_DATUM_TABLE: &str = "no datum table is selected (`datum_table` in machine.toml, or module 9090)";
 
 /// Datums by their line, mm and degrees; axes without a position are not shifted.
 pub type DatumTable = BTreeMap<i32, Position>;

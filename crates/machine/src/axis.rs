@@ -3,6 +3,7 @@
 use crate::current_drive::CurrentDrive;
 use crate::deviation::Deviation;
 use crate::encoder::{Counter, EncoderFault};
+use crate::mechanics::AxisPlace;
 use crate::noise::Noise;
 use crate::reader::{Coil, Contact, Section};
 use bahn_servo::{INPUTS, OUTPUTS};
@@ -233,6 +234,8 @@ pub(crate) struct Load {
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// Speeds below this count as standing, units/s.
 const STANDING: f64 = 1e-12;
+/// So far beyond its play a motor may stand, mm or degrees: places are rounded.
+const PLACE_WINDOW: f64 = 1e-6;
 
 impl Axis {
     /// Reads `[axis.X]`.
@@ -327,6 +330,38 @@ impl Axis {
         self.seen = measured;
         if let Some(counter) = self.counter.as_mut().filter(|_| self.deviation.is_some()) {
             counter.begin(measured);
+        }
+    }
+
+    /// Where it stands.
+    pub fn place(&self) -> AxisPlace {
+        AxisPlace {
+            letter: self.letter,
+            table: self.table,
+            motor: self.motor,
+        }
+    }
+
+    /// Whether it can stand there.
+    pub fn has(&self, place: &AxisPlace) -> Result<(), String> {
+        let [from, to] = self.travel;
+        let there = (from..=to).contains(&place.table)
+            && place.table.is_finite()
+            && (place.motor - place.table).abs() <= self.play / 2.0 + PLACE_WINDOW;
+        there.then_some(()).ok_or_else(|| {
+            format!(
+                "{} stands at {}, its motor at {}",
+                self.letter, place.table, place.motor
+            )
+        })
+    }
+
+    /// Stands there at power-on: incremental encoders count from 0 again.
+    pub fn stand_at(&mut self, place: &AxisPlace) {
+        (self.table, self.motor, self.motor_start) = (place.table, place.motor, place.motor);
+        self.seen = self.measured();
+        if let Some(counter) = &mut self.counter {
+            counter.begin(self.seen);
         }
     }
 

@@ -20,6 +20,16 @@ impl ByHand {
         }
     }
 
+    /// The tool, and the one that was called.
+    pub fn place(self) -> [u32; 2] {
+        [self.tool, self.called]
+    }
+
+    /// As it was.
+    pub fn stand_at(&mut self, [tool, called]: [u32; 2]) {
+        (self.tool, self.called) = (tool, called);
+    }
+
     pub fn tool(self) -> u32 {
         self.tool
     }

@@ -2,6 +2,7 @@
 
 use bahn_servo::{INPUTS, OUTPUTS};
 
+use crate::mechanics::DevicePlace;
 use crate::reader::{Coil, Contact, Section};
 
 /// How such a thing can fail.
@@ -127,6 +128,20 @@ impl Device {
             (before - back).max(0.0)
         };
         self.position != before
+    }
+
+    /// Where it is.
+    pub fn place(&self) -> DevicePlace {
+        DevicePlace {
+            name: self.name.clone(),
+            position: self.position,
+            forth: self.forth,
+        }
+    }
+
+    /// Is there at power-on.
+    pub fn stand_at(&mut self, place: &DevicePlace) {
+        (self.position, self.forth) = (place.position, place.forth);
     }
 
     /// Something holds it in its first state.

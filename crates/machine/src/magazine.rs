@@ -7,6 +7,7 @@
 use bahn_servo::{INPUTS, OUTPUTS};
 
 use crate::device::{Device, DeviceFault};
+use crate::mechanics::MagazinePlace;
 use crate::reader::{Coil, Contact, Section};
 
 /// Pockets of a magazine at most [000:10398].
@@ -42,6 +43,13 @@ struct Parts {
     grip: usize,
     draw: usize,
     turn: usize,
+}
+
+impl Parts {
+    /// Where shuttle, draw and turn are.
+    fn places(self, devices: &[Device]) -> [Place; 3] {
+        [self.shuttle, self.draw, self.turn].map(|at| Place::of(devices.get(at)))
+    }
 }
 
 /// See the module. 0 is no tool.
@@ -126,7 +134,7 @@ impl Magazine {
             .collect(),
             shuttle_full: section.contact("shuttle_full"),
             spindle_full: section.contact("spindle_full"),
-            before: [parts.shuttle, parts.draw, parts.turn].map(|at| Place::of(devices.get(at))),
+            before: parts.places(devices),
             parts,
             fault: None,
             has_changed: false,
@@ -145,6 +153,32 @@ impl Magazine {
             }
         }
         (self.spindle, self.shuttle, self.arm) = (spindle, 0, [0; 2]);
+    }
+
+    /// Pockets of the chain.
+    pub fn count(&self) -> usize {
+        self.pockets.len()
+    }
+
+    /// Where chain and tools are.
+    pub fn place(&self) -> MagazinePlace {
+        MagazinePlace {
+            position: self.position,
+            pockets: self.pockets.clone(),
+            shuttle: self.shuttle,
+            arm: self.arm,
+            spindle: self.spindle,
+            has_changed: self.has_changed,
+        }
+    }
+
+    /// Chain and tools are there at power-on, behind the things that move them.
+    pub fn stand_at(&mut self, place: &MagazinePlace, devices: &[Device]) {
+        self.position = place.position;
+        self.pockets.clone_from(&place.pockets);
+        (self.shuttle, self.arm, self.spindle) = (place.shuttle, place.arm, place.spindle);
+        self.has_changed = place.has_changed;
+        self.before = self.parts.places(devices);
     }
 
     /// A tool is put into the spindle by hand; 0 takes it out.
@@ -180,8 +214,8 @@ impl Magazine {
     pub fn advance(&mut self, outputs: &[bool; OUTPUTS], devices: &mut [Device]) -> bool {
         let at = |place: usize| Place::of(devices.get(place));
         let parts = self.parts;
-        let now = [parts.shuttle, parts.draw, parts.turn].map(at);
         let (grips, released) = (at(parts.grip) == Place::Forth, at(parts.clamp) == Place::Forth);
+        let now = parts.places(devices);
         let [shuttle_before, draw_before, turn_before] = self.before;
         let [shuttle, draw, turn] = now;
         self.before = now;

@@ -210,6 +210,12 @@ impl Probe {
         self.inserted_at_deg = spindle_deg;
     }
 
+    /// How far the spindle has turned since it was put in, degrees; `None` while it is out.
+    pub fn turned_deg(&self, spindle_deg: f64) -> Option<f64> {
+        self.inserted
+            .then(|| (spindle_deg - self.inserted_at_deg).rem_euclid(360.0))
+    }
+
     /// How far the ball stands beside the axis of the spindle, which turns it.
     fn beside(&self, spindle_deg: f64) -> [f64; 2] {
         let [x, y] = self.offset;

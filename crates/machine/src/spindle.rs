@@ -5,6 +5,7 @@ use bahn_servo::{Encoder, INPUTS, OUTPUTS};
 use crate::axis::DriveFault;
 use crate::device::DeviceFault;
 use crate::encoder::{Counter, EncoderFault};
+use crate::mechanics::SpindlePlace;
 use crate::noise::Noise;
 use crate::reader::{Coil, Contact, Section};
 
@@ -129,6 +130,34 @@ impl Spindle {
         };
         section.finish();
         spindle
+    }
+
+    /// Where it stands.
+    pub fn place(&self) -> SpindlePlace {
+        SpindlePlace {
+            turn: self.turns.rem_euclid(1.0),
+            gear: self.engaged.map_or(0, |gear| gear + 1),
+        }
+    }
+
+    /// Whether it can stand there.
+    pub fn has(&self, place: &SpindlePlace) -> Result<(), String> {
+        let there = (0.0..=1.0).contains(&place.turn) && place.gear <= self.gears.len();
+        there.then_some(()).ok_or_else(|| {
+            format!(
+                "the spindle stands at {} turns in gear {}",
+                place.turn, place.gear
+            )
+        })
+    }
+
+    /// Stands there at power-on.
+    pub fn stand_at(&mut self, place: &SpindlePlace) {
+        self.turns = place.turn;
+        self.engaged = place.gear.checked_sub(1);
+        if let Some(counter) = &mut self.counter {
+            counter.begin(self.turns);
+        }
     }
 
     pub fn set_power(&mut self, voltage: bool, outputs: &[bool; OUTPUTS]) {

@@ -84,4 +84,4 @@ pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::{EMERGENCY_STOP, Station, load};
 pub use texts::{Language, around, filled, language_code, language_of_code, texts_around};
 pub use transfer::{TransferDeed, TransferNews, TransferOrder};
-pub use why::{Reason, Urgency};
+pub use why::{Reason, Urgency, Waits, in_words};

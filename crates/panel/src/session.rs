@@ -6,12 +6,13 @@
 //! {"t_us":93000000,"end":{"inputs":1,"screen":"91ad03b2","check":"0a7be33c"}}
 //! ```
 //!
-//! A line is in the file as soon as the input is taken, whatever happens to the station then: a file without its last
-//! line, or with a torn one, is a session that was cut off.
+//! A line is in the file as soon as the input is taken, and on the medium a second later, whatever happens to station and computer then: a file without its last line, or with a torn one, is a session that was
+//! cut off.
 
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use bahn_control::Control;
 use bahn_host::{LoadedMachine, files};
@@ -83,7 +84,12 @@ pub struct Recorder {
     path: PathBuf,
     inputs: u64,
     check: Hasher,
+    /// When the first line was written that may not be on the medium.
+    unsafe_since: Option<Instant>,
 }
+
+/// What was written is on the medium after so long.
+const SAFE_AFTER: Duration = Duration::from_secs(1);
 
 impl Recorder {
     /// Begins a file; one that is there stays as it is.
@@ -97,8 +103,10 @@ impl Recorder {
             path: path.to_owned(),
             inputs: 0,
             check: Hasher::new(),
+            unsafe_since: None,
         };
         recorder.write(head)?;
+        recorder.make_safe()?;
         files::sync_folder(path);
         Ok(recorder)
     }
@@ -126,14 +134,44 @@ impl Recorder {
             check: format!("{:08x}", self.check.clone().finalize()),
         };
         self.write(&EndLine { t_us, end })?;
-        let synced = self.file.sync_all();
-        synced.map_err(|error| files::cannot("write", &self.path, &error).to_string())
+        self.make_safe()
+    }
+
+    /// Puts on the medium what was written a second ago or earlier; to be called in every cycle.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn keep(&mut self) -> Result<(), String> {
+        match self.unsafe_since {
+            Some(since) if since.elapsed() >= SAFE_AFTER => self.make_safe(),
+            _ => Ok(()),
+        }
+    }
+
+    /// Everything that was written is on the medium.
+    pub fn is_safe(&self) -> bool {
+        self.unsafe_since.is_none()
+    }
+
+    /// Puts on the medium what was written.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    fn make_safe(&mut self) -> Result<(), String> {
+        if self.is_safe() {
+            return Ok(());
+        }
+        let synced = self.file.sync_data();
+        synced.map_err(|error| files::cannot("write", &self.path, &error).to_string())?;
+        self.unsafe_since = None;
+        Ok(())
     }
 
     fn write(&mut self, line: &impl Serialize) -> Result<(), String> {
         let mut text = serde_json::to_vec(line).map_err(|error| error.to_string())?;
         text.push(b'\n');
         self.check.update(&text);
+        self.unsafe_since.get_or_insert_with(Instant::now);
         let written = self.file.write_all(&text);
         written.map_err(|error| files::cannot("write", &self.path, &error).to_string())
     }
@@ -152,4 +190,34 @@ pub(crate) fn screen_sum(screen: &Screen) -> String {
 
 fn sum(bytes: &[u8]) -> String {
     format!("{:08x}", crc32fast::hash(bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    /// What was noted is on the medium a second later, without another input.
+    #[test]
+    fn a_kill_loses_a_second_at_most() {
+        let path = std::env::temp_dir().join(format!("bahn-session-{}.jsonl", std::process::id()));
+        let _ = std::fs::remove_file(&path);
+        let head = Head {
+            session: FORM,
+            machine: "Mill".to_owned(),
+            model: "tnc415b".to_owned(),
+            version: "1".to_owned(),
+            kept: "0".to_owned(),
+        };
+        let mut recorder = Recorder::create(&path, &head).unwrap();
+        assert!(recorder.is_safe());
+        recorder.note(1000, &Input::Power(true)).unwrap();
+        recorder.keep().unwrap();
+        assert!(!recorder.is_safe(), "not every key waits for the medium");
+        std::thread::sleep(SAFE_AFTER);
+        recorder.keep().unwrap();
+        assert!(recorder.is_safe());
+        assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 2);
+        std::fs::remove_file(&path).unwrap();
+    }
 }

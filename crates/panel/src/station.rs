@@ -142,17 +142,18 @@ impl Station {
     /// When there is no such key, or it cannot be done.
     pub fn input(&mut self, input: &Input) -> Result<(), Refusal> {
         let now_us = self.host.control().time_us();
-        let noted = self
-            .recorder
-            .as_mut()
-            .map(|recorder| recorder.note(now_us, input));
-        if let Some(Err(error)) = noted {
-            self.console.say(error);
-            self.recorder = None;
-        }
+        self.record_with(|recorder| recorder.note(now_us, input));
         let taken = self.take(input);
         self.past.settle(&self.host);
         taken
+    }
+
+    /// Does something with the session that is recorded; one that cannot be written ends, and that is said.
+    fn record_with(&mut self, write: impl FnOnce(&mut Recorder) -> Result<(), String>) {
+        if let Some(Err(error)) = self.recorder.as_mut().map(write) {
+            self.console.say(error);
+            self.recorder = None;
+        }
     }
 
     fn take(&mut self, input: &Input) -> Result<(), Refusal> {
@@ -212,6 +213,7 @@ impl Station {
             }
             console.tick(&mut site);
         }
+        self.record_with(Recorder::keep);
         self.past.follow(&mut self.host);
         self.waits.follow(self.host.control());
         self.follow_lesson();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_host::{HostError, LoadedMachine, State, files};
+use bahn_host::{HostError, LoadedMachine, files};
 use bahn_link::backup::{BACKUP_NAME, BackupError, Restore, back_up};
 use bahn_link::blockwise::Want;
 use bahn_link::{FileType, Memory};
@@ -159,14 +159,13 @@ fn is_off(folder: &Path) -> Result<(), UsageError> {
         // Nobody can.
         return Ok(());
     };
-    let state = machine.root.join(&machine.folder.state);
-    if !state.is_dir() {
-        return Ok(());
-    }
-    match State::open(&state, 1 + machine.channels.len()) {
-        Err(error @ HostError::SwitchedOn(_)) => Err(UsageError(format!("{error}; end what runs it"))),
-        // What cannot be read is what is to be restored.
-        _ => Ok(()),
+    match machine.is_switched_on() {
+        true => {
+            let state = machine.root.join(&machine.folder.state);
+            let error = HostError::SwitchedOn(state.display().to_string());
+            Err(UsageError(format!("{error}; end what runs it")))
+        }
+        false => Ok(()),
     }
 }
 

@@ -67,7 +67,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
 fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report, UsageError> {
     let (loaded, faults) = match load(folder)? {
         Ok(machine) => {
-            let faults = machine.warnings.clone();
+            let faults = [machine.refused.as_slice(), machine.warnings.as_slice()].concat();
             (Some(machine), faults)
         }
         Err(faults) => (None, faults),
@@ -100,7 +100,7 @@ fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report,
         folder: folder.display().to_string(),
         name: loaded.as_ref().map(|machine| machine.folder.name.clone()),
         model: loaded.as_ref().map(|machine| machine.parameters.model().id()),
-        ok: loaded.is_some() && programs.iter().all(|program| program.errors == 0),
+        ok: loaded.is_some() && errors == 0 && programs.iter().all(|program| program.errors == 0),
         faults: faults.iter().map(Entry::new).collect(),
         programs,
     })

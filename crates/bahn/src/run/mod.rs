@@ -1,7 +1,7 @@
 //! `bahn run`: a part program on the simulated machine.
 //!
 //! - `options`: options and help text;
-//! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it;
+//! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it; `standstill`: whether it comes on;
 //! - `beside`: the channels beside the first one; `executed`: what was done of the path; `measured`: `deviation` and `times`; `listed`: messages and keys;
 //!   `recording`: signals over time;
 //! - `report`: what is said in the end.
@@ -17,6 +17,7 @@ mod oscilloscope;
 mod recording;
 mod report;
 mod session;
+mod standstill;
 mod table;
 mod times;
 mod turning;
@@ -31,6 +32,7 @@ use bahn_host::{
     Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Observable, Observed,
     Operator, Play, PowerOn, Script, Source, Stage, is_whole,
 };
+use bahn_panel::Waits;
 use bahn_workpiece::Projection;
 
 use crate::cutting::{self, Written};
@@ -120,10 +122,11 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let mut session = Session::new(host, Play::new(script), executed, recording, patience);
     session.oscilloscope = oscilloscope;
     session.table = table;
+    session.waits = Some(Waits::new(&machine));
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(blocks);
     // A file that cannot be written loses no report.
-    let ended = session.run(&interrupt, &mut progress);
+    let ended = session.run(&interrupt, &mut progress, &machine);
     let ended = ended.unwrap_or_else(|error| Ended::Failed(error.to_string()));
     drop(progress);
     let switched_off = session.host.store();

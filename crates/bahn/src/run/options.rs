@@ -51,8 +51,8 @@ the program was started (start+3), `+20 cycles` of the control, or a condition: 
 A number before a colon is a channel: `+1: 2: mode manual`, `+1: expect 2:X.actual=100`, `when 2: run ended: end`.
 `bahn machine list` names all events, commands, keys and lamps.
 
-State: what survives power-off is read from the state folder of the machine and kept there; --fresh begins
-without it and leaves no trace. A tool change is on the medium before its strobe falls. When control.toml there
+State: what survives power-off is read from the state folder of the machine and kept there, with where the
+simulated mechanics stand; --fresh begins without it and leaves no trace. A tool change is on the medium before its strobe falls. When control.toml there
 is damaged nothing is started: the message says what to do.
 
 JSON report (--format json): the fields of `bahn test`; machining_time_s is that of the machine with all
@@ -175,7 +175,8 @@ pub(crate) struct RunControl {
     /// move differently, each with a warning, instead of ending with an error.
     #[arg(long, conflicts_with = "strict")]
     pub skip_unknown: bool,
-    /// Simulate the block processing time of the model: the path waits for blocks that are not read yet.
+    /// Simulate the block processing time of the model: the path waits for blocks that are not read yet, from the first
+    /// one on.
     #[arg(long)]
     pub block_time: bool,
     /// Keep pace with the clock on the wall, and report late cycles.
@@ -184,7 +185,8 @@ pub(crate) struct RunControl {
     /// Time of the machine after which the run ends, s.
     #[arg(long, value_name = "S", default_value = "86400", value_parser = seconds)]
     pub max_time: f64,
-    /// Time of the machine without any movement after which a run hangs, s.
+    /// Time of the machine after which a run hangs in which no axis moves, no dwell runs, and control, PLC and machine come
+    /// into no state that is new, s; while a timer of the PLC runs, its longest time besides.
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds)]
     pub max_wait: f64,
 }

@@ -1,10 +1,13 @@
 //! A program, a script and an operator on a machine: cycle after cycle until the run ends.
 
-use bahn_control::{ChannelView, Command, Message, RunState, Shown};
+use bahn_control::{ChannelView, Command, Message, RunState, Shown, Waiting};
+use bahn_exchange::signal::{self, SignalOperand};
 use bahn_host::{
-    Answer, Deed, Host, HostError, Next, Notice, Phase, Play, Reader, Source, Stamped, run_name,
+    Answer, Deed, Host, HostError, LoadedMachine, Next, Notice, Phase, Play, Reader, Source, Stamped,
+    run_name,
 };
 use bahn_machine::Event;
+use bahn_panel::{Language, Waits, in_words};
 use bahn_path::{BlockRef, PathElement};
 
 use super::beside::{Beside, is_idle};
@@ -13,6 +16,7 @@ use super::listed::Listed;
 use super::measured::Measured;
 use super::oscilloscope::Scoped;
 use super::recording::Recording;
+use super::standstill::Standstill;
 use super::table::Table;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
@@ -66,7 +70,9 @@ pub(super) struct Session {
     notices: Reader<Stamped>,
     /// When the program was started.
     start_us: Option<u64>,
-    moved_us: u64,
+    standstill: Standstill,
+    /// What the machine waits for.
+    pub waits: Option<Waits>,
     broken_by: Option<Box<Shown>>,
     ended: Option<Ended>,
 }
@@ -95,7 +101,8 @@ impl Session {
             patience,
             notices: host.notices(),
             start_us: None,
-            moved_us: 0,
+            standstill: Standstill::default(),
+            waits: None,
             broken_by: None,
             ended: None,
             host,
@@ -103,7 +110,12 @@ impl Session {
     }
 
     /// Runs to the end.
-    pub fn run(&mut self, interrupt: &Interrupt, progress: &mut Progress) -> Result<Ended, UsageError> {
+    pub fn run(
+        &mut self,
+        interrupt: &Interrupt,
+        progress: &mut Progress,
+        machine: &LoadedMachine,
+    ) -> Result<Ended, UsageError> {
         loop {
             self.follow_script()?;
             self.host.begin()?;
@@ -137,7 +149,7 @@ impl Session {
             self.ended = if interrupt.is_requested() {
                 Some(Ended::Interrupted)
             } else {
-                self.end()
+                self.end(machine)
             };
         }
     }
@@ -239,9 +251,12 @@ impl Session {
             channel.cycle(&mut self.host)?;
         }
         let control = self.host.control();
-        if !control.stands() || self.is_dwelling() {
-            self.moved_us = control.time_us();
+        if let Some(waits) = &mut self.waits {
+            waits.follow(control);
         }
+        let moves = !control.stands() || self.is_dwelling();
+        self.standstill.cycle(&self.host, moves);
+        let control = self.host.control();
         match &mut self.recording {
             Some(recording) => recording.cycle(control, self.host.plant(), self.start_us.is_some()),
             None => Ok(()),
@@ -284,14 +299,21 @@ impl Session {
 
     /// Nothing has moved for the time allowed and a dwell besides.
     fn waits_too_long(&self, dwell_s: f64) -> bool {
-        let still = self.host.control().time_us().saturating_sub(self.moved_us);
+        let still = self
+            .host
+            .control()
+            .time_us()
+            .saturating_sub(self.standstill.since_us());
         still > self.patience.wait_us.saturating_add((dwell_s * 1e6) as u64)
     }
 
     /// Why the session ends with this cycle.
-    fn end(&mut self) -> Option<Ended> {
+    fn end(&mut self, machine: &LoadedMachine) -> Option<Ended> {
         let now = self.host.control().time_us();
-        let waited = now.saturating_sub(self.moved_us) > self.patience.wait_us && !self.is_dwelling();
+        let still = self
+            .standstill
+            .is_longer_than(&self.host, machine, self.patience.wait_us);
+        let waited = still && !self.is_dwelling();
         // What nothing moves for any more does not come.
         let script_done = self.play.is_done() || waited && self.play.is_timed_out();
         if now >= self.patience.time_us {
@@ -321,11 +343,11 @@ impl Session {
         if !script_done || !waited {
             return None;
         }
-        let waits_for = self.waits_for();
+        let waits_for = self.waits_for(machine);
         let stopped_by = self.host.control().shown().last().cloned();
         if let Some(shown) = &stopped_by {
             // Waiting after the message is no machining time.
-            let since = shown.time_us.max(self.moved_us);
+            let since = shown.time_us.max(self.standstill.since_us());
             self.measured.take_back(now.saturating_sub(since));
         }
         Some(Ended::Hangs(waits_for, stopped_by.map(Box::new)))
@@ -344,7 +366,7 @@ impl Session {
     }
 
     /// What keeps a run from going on.
-    fn waits_for(&self) -> String {
+    fn waits_for(&self, machine: &LoadedMachine) -> String {
         let mut reasons = Vec::new();
         for channel in self.channels() {
             let number = match self.beside.is_empty() {
@@ -352,7 +374,7 @@ impl Session {
                 false => format!("{}: ", channel.number() + 1),
             };
             if let Some(waiting) = channel.waiting() {
-                reasons.push(format!("{number}{waiting}"));
+                reasons.push(format!("{number}{waiting}{}", meaning(waiting)));
             }
             if channel.feed_override_percent() == 0.0 {
                 reasons.push(format!("{number}the feed override is 0 %"));
@@ -372,13 +394,32 @@ impl Session {
                 .iter()
                 .map(|shown| format!("message {}", self.host.control().shown_text(shown))),
         );
+        if let Some(waits) = self.waits.as_ref().filter(|_| reasons.is_empty()) {
+            let found = waits.reasons(&self.host, machine, Language::English);
+            reasons.extend(in_words(&found));
+        }
         if reasons.is_empty() {
             reasons.push(match self.host.operator().phase() {
                 Phase::PowerUp => "the loops are not closed: no control voltage".to_owned(),
                 Phase::Reference => "the reference run does not go on".to_owned(),
-                Phase::Program | Phase::Ready => "no axis moves, no function is under way".to_owned(),
+                Phase::Program | Phase::Ready => self.standing_block(),
             });
         }
         reasons.join("; ")
     }
+
+    /// Where a run stands of which nothing says what it waits for.
+    fn standing_block(&self) -> String {
+        let block = self
+            .block()
+            .map_or("no block".to_owned(), |block| format!("block {}", block.block));
+        format!("{block} is executed, and nothing of control, PLC and machine changes")
+    }
+}
+
+/// What the marker that the PLC is to set or reset means.
+fn meaning(waiting: Waiting) -> String {
+    let (Waiting::Acknowledge(pair) | Waiting::AcknowledgeReset(pair)) = waiting;
+    let signal = signal::named(SignalOperand::Bit(pair.acknowledge));
+    signal.map_or(String::new(), |signal| format!(" ({})", signal.function))
 }

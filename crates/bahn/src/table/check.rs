@@ -87,7 +87,7 @@ fn of_machine(path: &Path, options: &CheckOptions) -> Result<Report, UsageError>
     let (rows, faults) = match LoadedMachine::load(path)? {
         Ok(machine) => (
             machine.tables.len() + usize::from(machine.tools.is_some()),
-            Vec::new(),
+            machine.refused,
         ),
         Err(faults) => (0, faults),
     };

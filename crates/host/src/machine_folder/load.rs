@@ -1,6 +1,6 @@
 //! Everything that belongs to a machine, from its folder; all faults of all files at once.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -51,6 +51,9 @@ pub struct LoadedMachine {
     pub functions: OwnFunctions,
     /// What is accepted, but looks wrong.
     pub warnings: Vec<FileFault>,
+    /// Faults of files that are refused when they are used: they come from outside, so that none of them keeps a machine
+    /// from being switched on.
+    pub refused: Vec<FileFault>,
 }
 
 impl LoadedMachine {
@@ -115,8 +118,11 @@ impl LoadedMachine {
     }
 
     /// The datum table of `machine.toml`.
-    pub fn datum_table(&self) -> Option<&MemoryTable> {
-        self.files.datum_tables.get(self.files.datum_table.as_ref()?)
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn datum_table(&self) -> Result<&MemoryTable, String> {
+        self.files.datum_table_of(self.files.datum_table.as_ref())
     }
 
     /// The datum of `machine.toml`, for the axes that it names.
@@ -129,6 +135,18 @@ impl LoadedMachine {
     pub fn remembered(&self) -> Option<Remembered> {
         let file = self.root.join(&self.folder.state).join(state::control_file(0));
         remembered::read(&files::read_table(&file).ok()?).ok()
+    }
+
+    /// Removes what was half written in its folders by who was killed; to be called by who has switched it on.
+    pub(crate) fn sweep(&self) {
+        let files = self.inputs();
+        let folders = files.iter().filter_map(|file| file.parent().map(Path::to_owned));
+        let programs = (0..=self.channels.len()).map(|channel| self.programs(channel));
+        let own = [self.root.clone(), self.root.join("lessons")];
+        let folders: BTreeSet<PathBuf> = folders.chain(programs).chain(own).collect();
+        for folder in folders {
+            files::sweep(&folder);
+        }
     }
 
     /// Somebody has switched it on: its state is in use.
@@ -172,6 +190,7 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
         file: instead.file,
         faults: Vec::new(),
         warnings: Vec::new(),
+        refused: Vec::new(),
         description: (file.clone(), text),
     };
     for fault in faults {
@@ -181,6 +200,7 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
     Ok(match machine {
         Some(mut machine) if loader.faults.is_empty() => {
             machine.warnings = loader.warnings;
+            machine.refused = loader.refused;
             Ok(machine)
         }
         _ => {
@@ -207,6 +227,8 @@ pub(super) struct Loader<'a> {
     file: Option<(&'a str, &'a [u8])>,
     pub faults: Vec<FileFault>,
     pub warnings: Vec<FileFault>,
+    /// See [`LoadedMachine::refused`].
+    pub refused: Vec<FileFault>,
     /// `machine.toml`: its path and text.
     description: (PathBuf, String),
 }
@@ -255,6 +277,7 @@ impl Loader<'_> {
             hand_overs,
             functions,
             warnings: Vec::new(),
+            refused: Vec::new(),
             folder,
         })
     }

@@ -1,13 +1,14 @@
 //! The folder of a machine.
 //!
 //! `load`: everything in it, all faults at once, with its `channels`; `compensation`: the tables of axis errors; `nc_memory` and `tool_files`: its tables; `programs`: its part programs; `state`:
-//! what survives power-off, `remembered` as a file.
+//! what survives power-off, `remembered` and `mechanics` as files.
 
 mod channel;
 mod channels;
 mod compensation;
 mod functions;
 mod load;
+mod mechanics;
 mod nc_memory;
 mod programs;
 mod remembered;
@@ -18,9 +19,7 @@ pub use channel::LoadedChannel;
 pub use load::{LoadedMachine, decode};
 pub use programs::FolderPrograms;
 pub(crate) use remembered::{read as read_remembered, write as write_remembered};
-pub use state::{Found, State};
-
-use bahn_parameters::PerPlcAxis;
+pub use state::{Found, FoundMechanics, State};
 
 use crate::columns::TableFault;
 
@@ -34,8 +33,8 @@ pub fn check_state(file: &[u8]) -> Option<bool> {
 
 /// The faults of a datum table whose axes 4 and 5 turn.
 pub(crate) fn check_datum_table(text: &str) -> Result<(), Vec<TableFault>> {
-    let turns = PerPlcAxis([false, false, false, true, true]);
-    nc_memory::datum_table(text, turns, nc_memory::LINES_MAX).map(drop)
+    let axes = nc_memory::DatumAxes::turning();
+    nc_memory::datum_table(text, &axes, nc_memory::LINES_MAX).map(drop)
 }
 
 /// The faults of a pallet file.
@@ -48,7 +47,7 @@ pub(crate) fn check_pallet_file(text: &str) -> Result<(), Vec<TableFault>> {
 pub fn check_nc_tables(text: &str) -> [Result<(), Vec<u32>>; 2] {
     let lines = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
     [
-        nc_memory::datum_table(text, PerPlcAxis::splat(false), nc_memory::LINES_MAX)
+        nc_memory::datum_table(text, &nc_memory::DatumAxes::default(), nc_memory::LINES_MAX)
             .map(drop)
             .map_err(lines),
         nc_memory::pallet_file(text, nc_memory::LINES_MAX)

@@ -12,6 +12,7 @@ use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
 
 use super::load::{Loader, decode, file_fault};
 use crate::columns::{self, Form, Row, RowFault, TableFault};
+use crate::fault::FileFault;
 use crate::files;
 
 /// Lines that MP7226 gives a table at most [000:6892-6896].
@@ -21,9 +22,14 @@ const WRONG: &str = "the table is wrong";
 
 const DATUM_TABLE: Form = Form {
     needed: &["NR"],
-    known: Some(&["NR", "X", "Y", "Z", "4", "5", "DOC"]),
+    known: Some(&[
+        "NR", "X", "Y", "Z", "4", "5", "A", "B", "C", "U", "V", "W", "NAME", "DOC",
+    ]),
     example: "NR X Y Z 4 5",
 };
+
+/// Axes that the datum tables of later controls name by their letters.
+const LETTERS: [&str; 6] = ["A", "B", "C", "U", "V", "W"];
 
 const PALLET_FILE: Form = Form {
     needed: &["NR", "PGM"],
@@ -31,22 +37,64 @@ const PALLET_FILE: Form = Form {
     example: "NR PGM DATUM",
 };
 
-/// Reads a datum table, with the elements that turn and so have no unit of length.
-pub(super) fn datum_table(
-    text: &str,
+/// The axes of a machine in its datum tables.
+#[derive(Clone, Copy, Default)]
+pub(super) struct DatumAxes {
+    /// The letters of axes 4 and 5, which the tables of later controls have as names of their columns.
+    letters: PerPlcAxis<Option<char>>,
+    /// These have degrees, and so no unit of length.
     turns: PerPlcAxis<bool>,
-    most: u16,
-) -> Result<MemoryTable, Vec<TableFault>> {
+}
+
+impl DatumAxes {
+    /// Those of a list of machine parameters.
+    fn of(list: &ParameterList) -> DatumAxes {
+        let mut axes = DatumAxes::default();
+        for axis in list.axes().iter() {
+            let Some(index) = list.axis_index(axis).map(usize::from) else {
+                continue;
+            };
+            if let (Some(letter), Some(turns)) = (axes.letters.get_mut(index), axes.turns.get_mut(index)) {
+                (*letter, *turns) = (Some(axis.letter()), axis.is_rotary());
+            }
+        }
+        axes
+    }
+
+    /// A machine whose axes 4 and 5 turn.
+    pub fn turning() -> DatumAxes {
+        DatumAxes {
+            letters: PerPlcAxis([Some('X'), Some('Y'), Some('Z'), Some('A'), Some('B')]),
+            turns: PerPlcAxis([false, false, false, true, true]),
+        }
+    }
+
+    /// The column in which the value of an axis stands: that of its number, or of its letter.
+    fn column<'r>(letter: Option<char>, name: &'static str, row: &Row<'r>) -> &'static str {
+        let by_letter = LETTERS.into_iter().find(|column| column.chars().eq(letter));
+        by_letter.filter(|_| row.text(name).is_empty()).unwrap_or(name)
+    }
+}
+
+/// Reads a datum table. A later control writes a column for each axis it can have: those that this machine has not are 0.
+pub(super) fn datum_table(text: &str, axes: &DatumAxes, most: u16) -> Result<MemoryTable, Vec<TableFault>> {
     let mut lines: BTreeMap<i32, PerPlcAxis<f64>> = BTreeMap::new();
     columns::read(text, &DATUM_TABLE, |row| {
         let mut values = PerPlcAxis::splat(0.0);
         let columns = TableKind::Datum.columns().iter().flatten();
-        for (((value, name), turns), column) in values.iter_mut().zip(PLC_AXIS_NAMES).zip(turns).zip(columns)
-        {
+        let names = axes.letters.into_iter().zip(PLC_AXIS_NAMES);
+        let names = names.map(|(letter, name)| DatumAxes::column(letter, name, row));
+        for (((value, name), turns), column) in values.iter_mut().zip(names).zip(axes.turns).zip(columns) {
             let unit = if turns { 1.0 } else { row.unit_mm };
             *value = row.number(name)? * unit;
             if !(column.min..=column.max).contains(value) {
                 return Err(row.fault(name, &format!("{} is too large", row.text(name))));
+            }
+        }
+        let has = |letter: &str| axes.letters.into_iter().any(|own| letter.chars().eq(own));
+        for letter in LETTERS.into_iter().filter(|letter| !has(letter)) {
+            if row.number(letter)? != 0.0 {
+                return Err(row.fault(letter, &format!("the machine has no axis {letter}")));
             }
         }
         insert(&mut lines, row, values, most)
@@ -105,16 +153,10 @@ impl Loader<'_> {
         let sizes = list.table_parameters();
         let [datum_lines, pallet_lines] =
             [sizes.datum_lines, sizes.pallet_lines].map(|lines| lines.unwrap_or(LINES_MAX));
-        let mut turns = PerPlcAxis::splat(false);
-        for axis in list.axes().iter().filter(|axis| axis.is_rotary()) {
-            if let Some(turns) = list
-                .axis_index(axis)
-                .and_then(|index| turns.get_mut(usize::from(index)))
-            {
-                *turns = true;
-            }
-        }
+        let axes = DatumAxes::of(list);
+        let of_others = self.faults.len();
         let mut paths = BTreeMap::new();
+        let mut twice = BTreeMap::new();
         let entries = std::fs::read_dir(self.root.join(&folder.programs));
         for entry in entries.into_iter().flatten().flatten() {
             let name = entry.file_name().to_string_lossy().to_uppercase();
@@ -123,14 +165,20 @@ impl Loader<'_> {
                 && name.ends_with(".D")
             {
                 let message = format!("the datum table {} has the same name", other.display());
+                twice.insert(name, message.clone());
                 self.fault_in_table(&entry.path(), WRONG, "", vec![TableFault::of_table(message)]);
             }
         }
         for (name, path) in paths.iter().filter(|(name, _)| name.ends_with(".D")) {
-            if let Some(table) = self.table(path, WRONG, |text| datum_table(text, turns, datum_lines)) {
-                memory.datum_tables.insert(name.clone(), table);
-                read.push(path.clone());
+            let before = self.faults.len();
+            let table = self.table(path, WRONG, |text| datum_table(text, &axes, datum_lines));
+            let first = || self.faults.get(before).map(FileFault::at_line);
+            match table.ok_or_else(first) {
+                Ok(_) if twice.contains_key(name) => {}
+                Ok(table) => drop(memory.datum_tables.insert(name.clone(), table)),
+                Err(why) => drop(memory.faulty.insert(name.clone(), why.unwrap_or_default())),
             }
+            read.push(path.clone());
         }
         if let Some(name) = folder.datum_table.as_ref().map(|name| name.to_uppercase()) {
             if !paths.contains_key(&name) || !name.ends_with(".D") {
@@ -151,7 +199,9 @@ impl Loader<'_> {
                 }
             }
         }
+        memory.faulty.extend(twice);
         memory.names = paths.into_keys().collect();
+        self.refused = self.faults.split_off(of_others);
         read
     }
 
@@ -190,7 +240,10 @@ mod tests {
     use super::*;
     use bahn_parameters::PLC_AXES;
 
-    const LENGTHS: PerPlcAxis<bool> = PerPlcAxis::splat(false);
+    const LENGTHS: &DatumAxes = &DatumAxes {
+        letters: PerPlcAxis::splat(None),
+        turns: PerPlcAxis::splat(false),
+    };
 
     /// Values of a line of a datum table.
     fn line(table: &MemoryTable, number: i32) -> Option<Vec<f64>> {
@@ -210,8 +263,36 @@ mod tests {
         );
         // As a control writes it, in inches: degrees stay.
         let text = "BEGIN ZERO .D INCH\nNR   X      4\n3    +1     -30\n[END]\n";
-        let table = datum_table(text, PerPlcAxis([false, false, false, true, false]), LINES_MAX).unwrap();
+        let table = datum_table(text, &DatumAxes::turning(), LINES_MAX).unwrap();
         assert_eq!(line(&table, 3), Some(vec![25.4, 0.0, 0.0, -30.0, 0.0]));
+    }
+
+    /// As a TNC 426 writes it: a column for each axis that it can have, names at the lines.
+    #[test]
+    fn tables_of_later_controls_are_read() {
+        let text = "BEGIN INCH .D MM\n\
+                    NR   X        Y        Z        A        B        C        U        V        W        NAME\n\
+                    0    +10      +20.5    +0       +30      +0       +0       +0       +0       +0       VICE\n\
+                    1    +1       +2       +3       +4       +5       +0       +0       +0       +0\n\
+                    [END]\n";
+        let table = datum_table(text, &DatumAxes::turning(), LINES_MAX).unwrap();
+        // A table of that name is not in inches; A and B are axes 4 and 5.
+        assert_eq!(line(&table, 0), Some(vec![10.0, 20.5, 0.0, 30.0, 0.0]));
+        assert_eq!(line(&table, 1), Some(vec![1.0, 2.0, 3.0, 4.0, 5.0]));
+        let inches = text.replace(".D MM", ".D [INCH]");
+        let table = datum_table(&inches, &DatumAxes::turning(), LINES_MAX).unwrap();
+        assert_eq!(
+            line(&table, 1),
+            Some(vec![25.4, 2.0 * 25.4, 3.0 * 25.4, 4.0, 5.0])
+        );
+        let faults = datum_table(
+            &text.replacen("+0       VICE", "+7       VICE", 1),
+            &DatumAxes::turning(),
+            LINES_MAX,
+        );
+        let faults = faults.unwrap_err();
+        assert_eq!((faults.len(), faults[0].line), (1, 3));
+        assert_eq!(faults[0].message, "W: the machine has no axis W");
     }
 
     #[test]
@@ -225,7 +306,8 @@ mod tests {
             [3, 4, 5, 6, 7]
         );
         // A column that nobody reads would be a datum that nobody shifts.
-        assert_eq!(found("NR X B\n0 1 30\n"), [0]);
+        assert_eq!(found("NR X Q\n0 1 30\n"), [0]);
+        assert_eq!(found("NR X B\n0 1 30\n1 1 0\n"), [2]);
         assert_eq!((found("X Y\n0 1\n"), found("")), (vec![0], vec![0]));
     }
 

@@ -51,7 +51,11 @@ struct Form {
 
 /// What the control remembers as a file, with its end mark.
 pub(crate) fn write(remembered: &Remembered) -> String {
-    let text = text(remembered);
+    with_end(text(remembered))
+}
+
+/// A text with its end mark.
+pub(super) fn with_end(text: String) -> String {
     let end = end_mark(text.as_bytes());
     text + &end
 }
@@ -61,20 +65,32 @@ pub(crate) fn write(remembered: &Remembered) -> String {
 /// # Errors
 /// What of it is damaged.
 pub(crate) fn read(file: &[u8]) -> Result<Remembered, String> {
+    content_of(whole(file)?)
+}
+
+/// A file without its last line.
+pub(super) fn split_end(file: &[u8]) -> (&[u8], &[u8]) {
     let whole = file.strip_suffix(b"\n").unwrap_or(file);
     let end = whole
         .iter()
         .rposition(|byte| *byte == b'\n')
         .map_or(0, |newline| newline + 1);
-    let (content, mark) = file.split_at(end);
+    file.split_at(end)
+}
+
+/// The text of a file that is as it was written, or mended by hand, without its last line.
+///
+/// # Errors
+/// What of it is damaged.
+pub(super) fn whole(file: &[u8]) -> Result<&str, String> {
+    let (content, mark) = split_end(file);
     if mark != end_mark(content).as_bytes() && mark.trim_ascii() != MENDED.as_bytes() {
         return Err(match mark.starts_with(b"# end") {
             true => "its check sum is wrong".to_owned(),
             false => "its end is missing".to_owned(),
         });
     }
-    let text = str::from_utf8(content).map_err(|error| error.to_string())?;
-    content_of(text)
+    str::from_utf8(content).map_err(|error| error.to_string())
 }
 
 /// The last line: it shows that the file is whole, and that it is as it was written.

@@ -1,4 +1,4 @@
-//! What survives power-off: the journal of the PLC's memory, and what the control remembers.
+//! What survives power-off: the journal of the PLC's memory, what the control remembers, and where the mechanics stand.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -6,13 +6,18 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use bahn_control::{Control, Remembered};
-use bahn_exchange::Exchange;
+use bahn_exchange::{Exchange, image_of, retained_memory};
+use bahn_machine::Mechanics;
 
+use super::mechanics::{Found as Place, Moment, Part, bytes, digits, sum_of_text};
 use super::remembered;
+use crate::deed::Operable;
 use crate::files::{self, NewFile};
 use crate::retained::Retained;
 use crate::{HostError, kept};
 
+/// Where the mechanics stand.
+const MECHANICS: &str = "mechanics.toml";
 /// The journal of retained markers and bytes.
 const JOURNAL: &str = "plc.mem";
 /// What the control remembers, of the first channel and of a further one.
@@ -26,6 +31,8 @@ pub(super) fn control_file(channel: usize) -> String {
 pub(super) const LOCK: &str = "lock";
 /// How often changes are looked for that nothing waits for.
 const PERIOD: Duration = Duration::from_millis(200);
+/// How often it is written where axes and spindles stand while nothing else changes.
+const MOVES_PERIOD: Duration = Duration::from_secs(1);
 
 /// A control is on that uses a state folder; nothing is made where there is none.
 pub(super) fn is_in_use(folder: &Path) -> bool {
@@ -39,7 +46,15 @@ pub struct State {
     journal: Retained,
     /// The file of each channel, and what stands in it.
     files: Vec<(PathBuf, String)>,
+    /// Where everything stands, and what is written of it.
+    mechanics: PathBuf,
+    moment: Option<Moment>,
+    /// Check sum of the pockets of the tables.
+    pockets: u32,
+    /// What the journal holds.
+    memory: Vec<u8>,
     looked: Instant,
+    moved: Instant,
     /// Unlocked when the control is switched off.
     _lock: File,
 }
@@ -54,23 +69,36 @@ pub struct Found {
     pub others: Vec<Option<Remembered>>,
     /// Both images with the retained markers and bytes.
     pub exchange: Exchange,
+    /// Where the mechanics stand.
+    pub mechanics: Option<FoundMechanics>,
     /// What was lost, in words.
     pub warnings: Vec<String>,
 }
 
+/// Where the mechanics stand, and whether the rest is of the same moment.
+pub struct FoundMechanics {
+    /// Where everything is.
+    pub mechanics: Mechanics,
+    /// The pockets of the tables have changed since: who changed them has put the tools there.
+    pub loaded_anew: bool,
+    /// The files that were changed, or put in their place, since.
+    pub others: Vec<PathBuf>,
+}
+
 impl State {
-    /// Opens the folder of a machine with so many channels; it is made when it is missing.
+    /// Opens the folder of a machine with so many channels, and tables with this check sum of pockets; it is made when it
+    /// is missing.
     ///
     /// # Errors
     /// When the folder cannot be used, another control uses it, or what the control remembered cannot be
     /// read: a machine does not start with another datum than it had.
-    pub fn open(folder: &Path, channels: usize) -> Result<Found, HostError> {
+    pub fn open(folder: &Path, channels: usize, pockets: u32) -> Result<Found, HostError> {
         fs::create_dir_all(folder).map_err(|error| files::cannot("make", folder, &error))?;
-        let [lock_path, journal] = [LOCK, JOURNAL].map(|name| folder.join(name));
+        let [lock_path, journal, mechanics] = [LOCK, JOURNAL, MECHANICS].map(|name| folder.join(name));
         let paths: Vec<PathBuf> = (0..channels.max(1))
             .map(|channel| folder.join(control_file(channel)))
             .collect();
-        for path in [folder, &lock_path, &journal]
+        for path in [folder, &lock_path, &journal, &mechanics]
             .into_iter()
             .chain(paths.iter().map(PathBuf::as_path))
         {
@@ -80,35 +108,67 @@ impl State {
         if !kept::lock(&lock, &lock_path)? {
             return Err(HostError::SwitchedOn(folder.display().to_string()));
         }
+        files::sweep(folder);
+        let mut warnings = Vec::new();
+        let moment = moment_in(&mechanics, &mut warnings)?;
+        let mut others = match &moment {
+            Some(moment) => finish_control(moment, &paths)?,
+            None => Vec::new(),
+        };
         let (mut files, mut found) = (Vec::new(), Vec::new());
         for path in paths {
-            remove_half_written(folder, &path);
             let (written, remembered) = remembered_in(&path)?.unzip();
             files.push((path, written.unwrap_or_default()));
             found.push(remembered);
         }
-        let others = found.split_off(1);
+        let further = found.split_off(1);
         let remembered = found.pop().flatten();
-        let mut warnings = Vec::new();
-        if remembered.is_some() && kept::open(&journal)?.is_none() {
+        let journal_is_missing = kept::open(&journal)?.is_none();
+        if remembered.is_some() && journal_is_missing {
             warnings.push(format!(
                 "{} is missing: all retained markers and bytes begin with 0",
                 journal.display()
             ));
         }
-        let journal = Retained::open(&journal)?;
+        if remembered.is_some() && moment.is_none() && warnings.is_empty() {
+            warnings.push(format!(
+                "{} is missing: the machine stands as at its start, its tools lie where the control remembers them; \
+                 look whether they do before a tool is changed",
+                mechanics.display()
+            ));
+        }
+        let path = journal;
+        let mut journal = Retained::open(&path)?;
         warnings.extend(journal.damage().map(str::to_owned));
+        if let Some(moment) = &moment
+            && !finish_journal(moment, &mut journal)?
+        {
+            others.push(path);
+        }
         let exchange = journal.restore();
+        let memory = retained_memory(exchange.plc());
+        let found_mechanics = moment.as_ref().map(|moment| FoundMechanics {
+            mechanics: moment.mechanics.clone(),
+            loaded_anew: moment.pockets != pockets,
+            others,
+        });
         Ok(Found {
             state: State {
                 journal,
                 files,
+                mechanics,
+                // What is there now may be something else: it is written anew.
+                moment: None,
+                pockets,
+                memory,
                 looked: Instant::now(),
+                moved: Instant::now(),
                 _lock: lock,
             },
             remembered,
-            others,
+            others: further,
             exchange,
+            mechanics: found_mechanics,
             warnings,
         })
     }
@@ -118,14 +178,18 @@ impl State {
         self.looked.elapsed() >= PERIOD
     }
 
+    /// Where the mechanics stand is kept here.
+    pub fn mechanics_file(&self) -> &Path {
+        &self.mechanics
+    }
+
     /// Writes what changed: at once what the control waits for, everything else now and then.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn keep(&mut self, control: &mut Control) -> Result<(), HostError> {
+    pub fn keep<P: Operable>(&mut self, control: &mut Control, plant: &P) -> Result<(), HostError> {
         if control.unsaved().is_some() {
-            // First what the PLC did when it acknowledged, then what follows from it.
-            self.flush(control)?;
+            self.flush(control, plant)?;
             control.stored();
             return Ok(());
         }
@@ -133,36 +197,120 @@ impl State {
             return Ok(());
         }
         self.looked = Instant::now();
-        self.journal.tick(control.exchange().plc())?;
-        self.write(control)
+        let moves = self.moved.elapsed() >= MOVES_PERIOD;
+        self.write(control, plant, moves)
     }
 
     /// Writes what changed at once: the control is switched off.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn flush(&mut self, control: &Control) -> Result<(), HostError> {
-        self.journal.flush(control.exchange().plc())?;
-        self.write(control)
+    pub fn flush<P: Operable>(&mut self, control: &Control, plant: &P) -> Result<(), HostError> {
+        self.write(control, plant, true)
     }
 
-    fn write(&mut self, control: &Control) -> Result<(), HostError> {
-        for (number, (path, written)) in self.files.iter_mut().enumerate() {
-            let remembered = match control.channel(number).filter(|_| number > 0) {
-                Some(channel) => channel.remember(),
-                None => control.remember(),
+    /// Writes a moment of the machine, where it has changed; movement alone is none when it is not said so.
+    fn write<P: Operable>(&mut self, control: &Control, plant: &P, moves: bool) -> Result<(), HostError> {
+        let image = control.exchange().plc();
+        let memory = retained_memory(image);
+        let texts: Vec<String> = (0..self.files.len())
+            .map(|number| {
+                let further = control.channel(number).filter(|_| number > 0);
+                let remembered = further.map_or_else(|| control.remember(), |channel| channel.remember());
+                remembered::write(&remembered)
+            })
+            .collect();
+        if let Some(mechanics) = plant.mechanics() {
+            let sums = [&self.memory, &memory].map(|memory| crc32fast::hash(memory));
+            let part = |(text, (_, written)): (&String, &(PathBuf, String))| {
+                Part::new([written, text].map(|text| sum_of_text(text)), text.clone())
             };
-            let text = remembered::write(&remembered);
-            if text == *written {
-                continue;
+            let control = texts.iter().zip(&self.files).map(part).collect();
+            let moment = Moment::new(self.pockets, Part::new(sums, digits(&memory)), control, mechanics);
+            let same = self.moment.as_ref().is_some_and(|last| match moves {
+                true => moment.says_the_same(last),
+                false => moment.differs_only_in_movement(last),
+            });
+            if !same {
+                let text = moment.write().map_err(HostError::new)?;
+                put(&self.mechanics, &text)?;
+                self.moment = Some(moment);
+                self.moved = Instant::now();
             }
-            let mut file = NewFile::create(path)?;
-            file.write_all(text.as_bytes())
-                .map_err(|error| files::cannot("write", path, &error))?;
-            file.finish()?;
-            *written = text;
+        }
+        // First what the PLC did when it acknowledged, then what follows from it.
+        self.journal.flush(image)?;
+        self.memory = memory;
+        for ((path, written), text) in self.files.iter_mut().zip(texts) {
+            if text != *written {
+                put(path, &text)?;
+                *written = text;
+            }
         }
         Ok(())
+    }
+}
+
+/// Replaces a file by a text, in one step.
+fn put(path: &Path, text: &str) -> Result<(), HostError> {
+    let mut file = NewFile::create(path)?;
+    file.write_all(text.as_bytes())
+        .map_err(|error| files::cannot("write", path, &error))?;
+    file.finish()
+}
+
+/// The moment that the file holds; `None` when there is none, or it is damaged: it is kept aside then, and that is said.
+fn moment_in(file: &Path, warnings: &mut Vec<String>) -> Result<Option<Moment>, HostError> {
+    if kept::open(file)?.is_none() {
+        return Ok(None);
+    }
+    let bytes = files::read_table(file)?;
+    match Moment::read(&bytes) {
+        Ok(moment) => Ok(Some(moment)),
+        Err(what) => {
+            let aside = kept::set_aside(file, &bytes).map_err(|error| files::cannot("keep", file, &error))?;
+            fs::remove_file(file).map_err(|error| files::cannot("put aside", file, &error))?;
+            files::sync_folder(file);
+            warnings.push(format!(
+                "{}: {what}\n  the machine stands as at its start, its tools lie where the control remembers them; look \
+                 whether they do before a tool is changed\n  the file is kept: {}",
+                file.display(),
+                aside.display()
+            ));
+            Ok(None)
+        }
+    }
+}
+
+/// Finishes the files of the control that were to be written with the moment; those that are something else.
+fn finish_control(moment: &Moment, paths: &[PathBuf]) -> Result<Vec<PathBuf>, HostError> {
+    let mut others = Vec::new();
+    for (path, part) in paths.iter().zip(&moment.control) {
+        let is_there = kept::open(path)?.is_some();
+        let bytes = if is_there {
+            files::read_table(path)?
+        } else {
+            Vec::new()
+        };
+        match part.find(sum_of_text(&String::from_utf8_lossy(&bytes))) {
+            Place::Same => {}
+            Place::Before => put(path, &part.content)?,
+            Place::Other => others.push(path.clone()),
+        }
+    }
+    Ok(others)
+}
+
+/// Finishes the journal that was to be written with the moment; `false` when it holds something else.
+fn finish_journal(moment: &Moment, journal: &mut Retained) -> Result<bool, HostError> {
+    let memory = retained_memory(journal.restore().plc());
+    match moment.plc.find(crc32fast::hash(&memory)) {
+        Place::Same => Ok(true),
+        Place::Other => Ok(false),
+        Place::Before => {
+            let image = bytes(&moment.plc.content).and_then(|memory| image_of(&memory));
+            image.map_or(Ok(false), |image| journal.flush(&image).map(|()| true))
+        }
     }
 }
 
@@ -198,21 +346,6 @@ fn unknown(file: &Path, aside: &Path, what: &str) -> HostError {
     ))
 }
 
-/// What a process that was killed was writing is of no use to anybody.
-fn remove_half_written(folder: &Path, file: &Path) {
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let begun = format!(".{name}.");
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    for entry in entries {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        if name.starts_with(&begun) && name.ends_with(".tmp") {
-            // It is in nobody's way.
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may fail")]
@@ -237,20 +370,26 @@ mod tests {
     #[test]
     fn a_power_failure_inside_a_write_keeps_what_was_remembered() {
         let folder = folder("torn");
-        drop(State::open(&folder, 1).unwrap());
+        drop(State::open(&folder, 1, 0).unwrap());
         let (old, new) = (with_tool(3), with_tool(4));
         fs::write(folder.join("control.toml"), &old).unwrap();
         for written in 0..=new.len() {
             let half = folder.join(".control.toml.4711.tmp");
             fs::write(&half, &new.as_bytes()[..written]).unwrap();
-            let found = State::open(&folder, 1).unwrap();
+            let found = State::open(&folder, 1, 0).unwrap();
             assert_eq!(found.remembered.unwrap().tool, 3, "{written} bytes");
-            assert!(!half.exists() && found.warnings.is_empty(), "{written} bytes");
+            assert!(!half.exists(), "{written} bytes");
+            // Nobody has written where the mechanics stand.
+            let said = found.warnings.join("\n");
+            assert!(
+                said.contains("mechanics.toml is missing") && found.warnings.len() == 1,
+                "{said}"
+            );
         }
         // The name changes in one step.
         fs::write(folder.join(".control.toml.4711.tmp"), &new).unwrap();
         fs::rename(folder.join(".control.toml.4711.tmp"), folder.join("control.toml")).unwrap();
-        assert_eq!(State::open(&folder, 1).unwrap().remembered.unwrap().tool, 4);
+        assert_eq!(State::open(&folder, 1, 0).unwrap().remembered.unwrap().tool, 4);
         fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -79,6 +79,13 @@ impl Copy {
         Copy(path)
     }
 
+    /// A copy of any machine's folder.
+    pub fn of_folder(from: &Path, what: &str) -> Copy {
+        let path = std::env::temp_dir().join(format!("bahn-host-{what}-{}", std::process::id()));
+        copy(from, &path);
+        Copy(path)
+    }
+
     pub fn path(&self) -> &Path {
         &self.0
     }

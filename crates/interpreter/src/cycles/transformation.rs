@@ -49,15 +49,14 @@ pub(super) fn datum_shift(c: &mut Context<'_>, words: &[Resolved]) -> Result<(),
 /// for what is missing: it is that of a wrong entry (inferred).
 fn datum_from_table(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault> {
     let wrong = |detail: String| Fault::new(MessageId::EntryValueIncorrect, detail);
-    let Some(table) = &c.settings.datum_table else {
-        let detail = "no datum table is selected (`datum_table` in machine.toml, or module 9090)";
-        return match c.settings.skip_unknown {
-            true => {
-                c.warn(WarningKind::PassedOver { what: detail.into() });
-                Ok(())
-            }
-            false => Err(wrong(detail.into())),
-        };
+    let table = match &c.settings.datum_table {
+        Ok(table) => table,
+        Err(why) if c.settings.skip_unknown => {
+            let what = why.clone();
+            c.warn(WarningKind::PassedOver { what });
+            return Ok(());
+        }
+        Err(why) => return Err(wrong(why.clone())),
     };
     let number = match words {
         [Resolved::Text(mark), Resolved::Number(number)] if &**mark == "#" => *number,

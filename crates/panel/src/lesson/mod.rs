@@ -90,11 +90,8 @@ pub(crate) fn begin(station: &mut dyn Driven, name: &str) -> Result<LessonRun, S
     })
 }
 
-/// The lessons of a machine: names and titles.
-///
-/// # Errors
-/// File, line and fault of the first that cannot be read.
-pub(crate) fn list(machine: &LoadedMachine, language: Language) -> Result<Vec<(String, String)>, String> {
+/// The lessons of a machine: names and titles; one that cannot be read has its faults, with file and line, as title.
+pub(crate) fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, String)> {
     let folder = machine.root.join(FOLDER);
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
@@ -104,8 +101,10 @@ pub(crate) fn list(machine: &LoadedMachine, language: Language) -> Result<Vec<(S
     paths.sort();
     let titled = |path: &PathBuf| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let lesson = load(machine, &name)?;
-        Ok((lesson.name.clone(), lesson.title.of(language).to_owned()))
+        match load(machine, &name) {
+            Ok(lesson) => (lesson.name.clone(), lesson.title.of(language).to_owned()),
+            Err(faults) => (name.into_owned(), faults),
+        }
     };
     paths.iter().map(titled).collect()
 }

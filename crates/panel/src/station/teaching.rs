@@ -88,11 +88,8 @@ impl Station {
         drawer::of(&self.machine, self.language())
     }
 
-    /// The lessons of the machine's folder: names and titles.
-    ///
-    /// # Errors
-    /// File, line and fault of one that cannot be read.
-    pub fn lessons(&self) -> Result<Vec<(String, String)>, String> {
+    /// The lessons of the machine's folder: names and titles; one that cannot be read has its faults as title.
+    pub fn lessons(&self) -> Vec<(String, String)> {
         lesson::list(&self.machine, self.language())
     }
 

@@ -54,7 +54,7 @@ const STANDS_US: u64 = 1_000_000;
 const WAITED: usize = 256;
 
 /// What is waited for, and since when.
-pub(crate) struct Waits {
+pub struct Waits {
     wired: Vec<Wired>,
     writers: Writers,
     start: String,
@@ -153,7 +153,7 @@ impl Waits {
 }
 
 /// The reasons as the screen shows them, while something stands or waits.
-pub(crate) fn in_words(reasons: &[Reason]) -> Vec<String> {
+pub fn in_words(reasons: &[Reason]) -> Vec<String> {
     let all = reasons.iter().filter(|reason| reason.urgency != Urgency::Told);
     all.map(|reason| match reason.causes.is_empty() {
         true => reason.text.clone(),

@@ -1,0 +1,124 @@
+//! Where everything of a machine stands, and how it is put there.
+
+use crate::axis::Axis;
+use crate::device::Device;
+use crate::machine::Machine;
+use crate::mechanics::Mechanics;
+
+impl Machine {
+    /// Where everything stands now.
+    pub fn mechanics(&self) -> Mechanics {
+        Mechanics {
+            axis: self.axes.iter().map(Axis::place).collect(),
+            spindle: self.spindles.iter().map(|spindle| spindle.place()).collect(),
+            device: self.devices.iter().map(Device::place).collect(),
+            magazine: self.magazine.as_ref().map(|magazine| magazine.place()),
+            by_hand: self.by_hand.place(),
+            probe_deg: self
+                .probe
+                .as_ref()
+                .and_then(|probe| probe.turned_deg(self.spindle_deg())),
+        }
+    }
+
+    /// Puts everything where it stood, at rest: the machine at power-on. What does not fit leaves all as it was.
+    ///
+    /// # Errors
+    /// In words, what this machine does not have, or cannot be.
+    pub fn stand_at(&mut self, mechanics: &Mechanics) -> Result<(), String> {
+        self.fits(mechanics)?;
+        self.rests = false;
+        for (axis, place) in self.axes.iter_mut().zip(&mechanics.axis) {
+            axis.stand_at(place);
+        }
+        for (spindle, place) in self.spindles.iter_mut().zip(&mechanics.spindle) {
+            spindle.stand_at(place);
+        }
+        for (device, place) in self.devices.iter_mut().zip(&mechanics.device) {
+            device.stand_at(place);
+        }
+        if let (Some(magazine), Some(place)) = (&mut self.magazine, &mechanics.magazine) {
+            magazine.stand_at(place, &self.devices);
+        }
+        self.by_hand.stand_at(mechanics.by_hand);
+        let angle = self.spindle_deg();
+        if let Some(probe) = &mut self.probe {
+            probe.insert(
+                mechanics.probe_deg.is_some(),
+                angle - mechanics.probe_deg.unwrap_or_default(),
+            );
+        }
+        Ok(())
+    }
+
+    /// Whether these are places of this machine.
+    fn fits(&self, mechanics: &Mechanics) -> Result<(), String> {
+        let names = |places: Vec<String>, own: Vec<String>, what: &str| match places == own {
+            true => Ok(()),
+            false => Err(format!(
+                "it has the {what} {}, the machine has {}",
+                list(&places),
+                list(&own)
+            )),
+        };
+        names(
+            mechanics
+                .axis
+                .iter()
+                .map(|axis| axis.letter.to_string())
+                .collect(),
+            self.axes.iter().map(|axis| axis.letter.to_string()).collect(),
+            "axes",
+        )?;
+        names(
+            mechanics
+                .device
+                .iter()
+                .map(|device| device.name.clone())
+                .collect(),
+            self.devices.iter().map(|device| device.name.clone()).collect(),
+            "things",
+        )?;
+        if mechanics.spindle.len() != self.spindles.len() {
+            return Err(format!(
+                "it has {} spindles, the machine has {}",
+                mechanics.spindle.len(),
+                self.spindles.len()
+            ));
+        }
+        let count = |pockets: Option<usize>| pockets.map_or("none".to_owned(), |count| count.to_string());
+        let own = self.magazine.as_ref().map(|magazine| magazine.count());
+        let places = mechanics.magazine.as_ref().map(|magazine| magazine.pockets.len());
+        if own != places {
+            return Err(format!(
+                "it has a magazine of {} pockets, the machine one of {}",
+                count(places),
+                count(own)
+            ));
+        }
+        let axes = self.axes.iter().zip(&mechanics.axis);
+        let axes = axes.map(|(axis, place)| axis.has(place));
+        let spindles = self.spindles.iter().zip(&mechanics.spindle);
+        let spindles = spindles.map(|(spindle, place)| spindle.has(place));
+        let devices = mechanics.device.iter().map(|device| {
+            let there = (0.0..=1.0).contains(&device.position);
+            there
+                .then_some(())
+                .ok_or_else(|| format!("{} stands at {}", device.name, device.position))
+        });
+        let chain = mechanics.magazine.iter().map(|magazine| {
+            let there = (0.0..magazine.pockets.len() as f64).contains(&magazine.position);
+            there
+                .then_some(())
+                .ok_or_else(|| format!("the chain stands at {}", magazine.position))
+        });
+        axes.chain(spindles).chain(devices).chain(chain).collect()
+    }
+}
+
+fn list(names: &[String]) -> String {
+    match names {
+        [] => "none".to_owned(),
+        names => names.join(" "),
+    }
+}
