@@ -55,7 +55,6 @@ fn take_m_function(
         act_on_block(c.modal, deed, block);
         act_on_feed(c.modal, c.numbers, c.settings, deed, m)?;
         let function = match deed {
-            Deed::Control(ControlFunction::SecondServoSet(_)) if !rules.m105_enabled => continue,
             Deed::Control(control) => Function::Control(control),
             Deed::Voltage => Function::Voltage(voltage::of(code, m, c.numbers, c.settings)?),
             Deed::Superimpose => Function::Superimpose(superimposing::ranges(m, c.numbers)?),
@@ -133,7 +132,7 @@ fn act_on_feed(
     m: &MFunctions,
 ) -> Result<(), Fault> {
     match deed {
-        Deed::PlungingFeed if settings.rules.m_functions.m103_enabled => {
+        Deed::PlungingFeed => {
             let percent = m
                 .argument(103, 'F')
                 .map(|value| numbers.q.value(value))

@@ -242,6 +242,20 @@ fn inhibited_by_the_machine_builder() {
     let measuring = "TOOL CALL 1 Z S1\nTCH PROBE 31.0 TOOL LENGTH";
     assert_eq!(with_list("7245.1=$8000", measuring), Some((BlockNotKnown, 2)));
     assert_eq!(with_list("7245.1=$4000", measuring), None);
+    // MP7440 bit 3 enables M105 and M106, bit 4 M103 F; without it the function is not active [000:7292-7304].
+    for (bit, blocks) in [
+        (8, "L X+1 FMAX M105"),
+        (8, "L X+1 FMAX M106"),
+        (16, "L X+1 F100 M103 F25"),
+    ] {
+        let value = |bits: u32| format!("7440={bits}");
+        assert_eq!(
+            with_list(&value(0b11111 - bit), blocks),
+            Some((BlockNotKnown, 1)),
+            "{blocks}"
+        );
+        assert_eq!(with_list(&value(bit), blocks), None, "{blocks}");
+    }
     let paraxial = "TOOL CALL 0 Z S100\nX+20 R+ F100";
     assert_eq!(with_list("7246=1", paraxial), Some((BlockNotKnown, 2)));
     assert_eq!(with_list("7246=0", paraxial), None);

@@ -33,7 +33,7 @@ use crate::definition::{Definition, OEM_CYCLES, Resolved, is_contour_cycle, reso
 use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::settings::Settings;
-use crate::tilting::{geometry, working_plane};
+use crate::tilting::{geometry, working_plane, works_as_defined};
 
 /// One block of a cycle definition.
 pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<Flow, Fault> {
@@ -142,6 +142,7 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
     if definition.number == CYLINDER_SURFACE && !c.pen.rehearsal && geometry(c, "CYCL DEF 27")?.is_none() {
         return Ok(Flow::Next);
     }
+    works_as_defined(c)?;
     c.pen.finish_contour()?;
     let mut m = Machining::new(c);
     match definition.number {
