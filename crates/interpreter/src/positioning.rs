@@ -413,6 +413,12 @@ pub(crate) fn take_compensation(modal: &mut Modal, q: &mut QTable, motion: &Moti
             "R+ and R- belong to paraxial blocks",
         ));
     }
+    // "Only for single-axis movements in the working plane" [003:2046]; the message is inferred.
+    let beside_plane = |axis: Axis| axis.is_rotary() || axis.main() == modal.plane.normal.main();
+    if paraxial && motion.coordinates.axes().iter().any(beside_plane) {
+        let detail = "R+ and R- act in the working plane";
+        return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
+    }
     // R+/R- and RL/RR must not follow each other [000:7016-7030].
     if (paraxial && modal.compensation != Compensation::Off)
         || (contour && modal.paraxial != Compensation::Off)
