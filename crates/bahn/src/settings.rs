@@ -52,7 +52,7 @@ impl Equipment {
         }
         assign(&mut equipment.list, &options.mp)?;
         if let Some(path) = &options.tools {
-            equipment.tools = Some(tool_table::load(path)?);
+            equipment.tools = Some(tool_table::load(path, model)?);
         }
         Ok(equipment)
     }

@@ -198,9 +198,9 @@ fn a_test_run_of_another_program() {
 fn printed_lines_and_texts_of_the_machine() {
     let folder =
         Folder::with_program("FN 0: Q1 = +20.25\nFN 15: PRINT 1/Q1\nL Z+50 R0 FMAX\nFN 15: PRINT Q1");
-    let lines = "ERROR 1 +20.25\n+20.25\n";
+    let lines = "ERROR 1/+20.25\n+20.25\n";
     let expected = json!([
-        { "block": 2, "text": "ERROR 1 +20.25", "program": "main.H", "line": 3 },
+        { "block": 2, "text": "ERROR 1/+20.25", "program": "main.H", "line": 3 },
         { "block": 4, "text": "+20.25", "program": "main.H", "line": 5 }
     ]);
     let (code, test) = folder.test("--print test.txt");

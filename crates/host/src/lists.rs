@@ -14,7 +14,10 @@ pub fn machine_list(text: &ListText, list: &ParameterList, path: &Path) -> Vec<F
         return faults.iter().map(|found| fault(found, text, path)).collect();
     }
     let found = list.inconsistencies();
-    found.iter().map(|found| warning(found, text, path)).collect()
+    found
+        .iter()
+        .map(|found| inconsistency(found, text, path))
+        .collect()
 }
 
 /// A fault of a list at its place.
@@ -34,11 +37,14 @@ pub fn fault(fault: &ListError, text: &ListText, path: &Path) -> FileFault {
     }
 }
 
-/// What does not go together, at the first parameter of it that the list names.
-pub fn warning(found: &Inconsistency, text: &ListText, path: &Path) -> FileFault {
+/// What does not go together, at the first parameter of it that the list names: an error where no machine can be so.
+pub fn inconsistency(found: &Inconsistency, text: &ListText, path: &Path) -> FileFault {
     let line = line_of(found, text);
     FileFault {
-        severity: Severity::Warning,
+        severity: match found.impossible {
+            true => Severity::Error,
+            false => Severity::Warning,
+        },
         title: found.rule.to_owned(),
         path: path.to_owned(),
         marked: Marked {

@@ -6,23 +6,43 @@ use std::path::Path;
 use bahn_control::{Edges, Tool, ToolLife};
 use bahn_interpreter::{ToolState, tool_key};
 use bahn_parameters::operation::ToolParameters;
+use bahn_parameters::{ControlModel, Definition};
 use bahn_path::{Oversize, ToolShape};
 
 use crate::columns::{self, Form, Row, RowFault, TableFault};
 use crate::{HostError, files};
 
-/// Reads the tool table of a file.
+/// Reads the tool table of a file for a control, which has as many tools as MP7260 (old MP225) can be: 254, or 99
+/// [000:10397] [003:7299].
 ///
 /// # Errors
 /// When it cannot be read; its first fault.
-pub fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, HostError> {
+pub fn load(path: &Path, model: ControlModel) -> Result<BTreeMap<u32, Tool>, HostError> {
     let bytes = files::read_table(path)?;
-    parse(&String::from_utf8_lossy(&bytes)).map_err(|faults| {
-        HostError::new(format!(
-            "{}: {}",
-            path.display(),
-            faults.first().map(TableFault::to_string).unwrap_or_default()
-        ))
+    let text = String::from_utf8_lossy(&bytes);
+    let size = [7260, 225]
+        .into_iter()
+        .find_map(|number| Definition::find(model, number, 0));
+    let most = size.map_or(TOOL_MAX, |size| size.max as u32);
+    parse(&text)
+        .and_then(|table| ends_with(&text, most).map(|()| table))
+        .map_err(|faults| {
+            HostError::new(format!(
+                "{}: {}",
+                path.display(),
+                faults.first().map(TableFault::to_string).unwrap_or_default()
+            ))
+        })
+}
+
+/// Whether no tool of a table lies behind the last one that a control can have.
+fn ends_with(text: &str, most: u32) -> Result<(), Vec<TableFault>> {
+    columns::read(text, &FORM, |row| match tool(row)? {
+        (number, _) if number & NUMBER_MASK > most => Err(row.fault(
+            "T",
+            &format!("the tool table of this control ends with tool {most}"),
+        )),
+        _ => Ok(()),
     })
 }
 
@@ -54,6 +74,16 @@ pub fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
             None => Ok(()),
         }
     })?;
+    // A tool may stand in front of the one that replaces it.
+    columns::read(text, &FORM, |row| match tool(row)? {
+        (number, Tool { life, .. }) if life.replacement == Some(number) => {
+            Err(row.fault("RT", "a tool does not replace itself"))
+        }
+        (_, Tool { life, .. }) if life.replacement.is_some_and(|tool| !table.contains_key(&tool)) => {
+            Err(row.fault("RT", &format!("the table has no tool {}", row.text("RT"))))
+        }
+        _ => Ok(()),
+    })?;
     Ok(table)
 }
 
@@ -62,10 +92,9 @@ pub fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
 /// # Errors
 /// What does not fit, with its line.
 pub fn fits(text: &str, sizes: &ToolParameters) -> Result<(), Vec<TableFault>> {
-    const INDEX_SHIFT: u32 = 16;
     columns::read(text, &FORM, |row| {
         let (number, tool) = tool(row)?;
-        let number = number & ((1 << INDEX_SHIFT) - 1);
+        let number = number & NUMBER_MASK;
         if number > sizes.table_size {
             return Err(match sizes.table_size {
                 0 => row.fault("T", "the control has no tool table (MP7260 = 0)"),
@@ -84,6 +113,10 @@ pub fn fits(text: &str, sizes: &ToolParameters) -> Result<(), Vec<TableFault>> {
 
 /// Pockets of a magazine: MP7261 [000:10398]; 255 in W262 is a tool without one.
 pub(crate) const POCKET_MAX: u16 = 254;
+/// Greatest tool number of a control: MP7260 [000:10397].
+const TOOL_MAX: u32 = 254;
+/// Bits of a key that are the number of the tool; above them is the index of later controls.
+const NUMBER_MASK: u32 = 0xFFFF;
 /// Edges of a tool (inferred).
 const EDGES_MAX: f64 = 20.0;
 /// Greatest tolerance, mm, and oversize in the table of a control (inferred).
@@ -108,6 +141,13 @@ fn tool(row: &Row<'_>) -> Result<(u32, Tool), RowFault> {
     }
     let tool = row.text("T");
     let tool = key(tool).ok_or_else(|| row.fault("T", &format!("`{tool}` is no tool number")))?;
+    if tool & NUMBER_MASK > TOOL_MAX {
+        return Err(row.fault("T", &format!("tool numbers go from 0 to {TOOL_MAX}")));
+    }
+    let has_size = shape.length != 0.0 || shape.radius != 0.0 || shape.corner_radius != 0.0;
+    if tool == 0 && has_size {
+        return Err(row.fault("T", "tool 0 has length and radius 0"));
+    }
     let pocket = match row.text("P") {
         "" | "-" => None,
         text => Some(
@@ -277,14 +317,52 @@ mod tests {
         assert_eq!(all.iter().map(|fault| fault.line).collect::<Vec<_>>(), [2, 3, 5]);
     }
 
+    /// RT names another tool of the table; numbers end with 254 [000:10397] [003:7785].
+    #[test]
+    fn replacement_tools_and_numbers() {
+        assert!(parse("T;R;RT\n1;5;2\n2;5;1").is_ok());
+        let error = |text| parse(text).unwrap_err().first().unwrap().to_string();
+        assert_eq!(
+            error("T;R;RT\n1;5;2\n2;5;2"),
+            "line 3: RT: a tool does not replace itself"
+        );
+        assert_eq!(
+            error("T;R;RT\n1;5;2\n2;5;7"),
+            "line 3: RT: the table has no tool 7"
+        );
+        assert!(parse("T;R\n254;5\n253.1;5").is_ok());
+        assert_eq!(error("T;R\n255;5"), "line 2: T: tool numbers go from 0 to 254");
+        assert_eq!(error("T;R\n300.1;5"), "line 2: T: tool numbers go from 0 to 254");
+        // "In tool tables, T0 should also be defined with L=0 and R=0" [003:1816].
+        assert!(parse("T;L;R\n0;+0;0").is_ok());
+        for sized in ["T;L;R\n0;1;0", "T;L;R\n0;0;1", "T;L;R;DR\n0;0;0;1"] {
+            assert_eq!(error(sized), "line 2: T: tool 0 has length and radius 0");
+        }
+        // The table of a TNC 360 has 99 tools at most.
+        let path = std::env::temp_dir().join(format!("bahn-tools-{}.t", std::process::id()));
+        std::fs::write(&path, "T;R\n99;5\n100;5").unwrap();
+        assert_eq!(
+            load(&path, ControlModel::Tnc415b)
+                .map(|table| table.len())
+                .unwrap(),
+            2
+        );
+        let error = load(&path, ControlModel::Tnc360).unwrap_err().to_string();
+        std::fs::remove_file(&path).unwrap();
+        assert!(
+            error.ends_with("line 3: T: the tool table of this control ends with tool 99"),
+            "{error}"
+        );
+    }
+
     #[test]
     fn locks_and_lives() {
         let text =
-            "T;R;TL;TIME2;CUR.TIME;RT\n1;5;L;;;\n2;5;;20;20;\n3;5;-;20;20.1;-\n4;5;;20;21;7\n5;5;;0;99;\n";
+            "T;R;TL;TIME2;CUR.TIME;RT\n1;5;L;;;\n2;5;;20;20;\n3;5;-;20;20.1;-\n4;5;;20;21;5\n5;5;;0;99;\n";
         let table = parse(text).unwrap();
         let states: Vec<_> = table.values().map(Tool::state).collect();
         use ToolState::{Expired, Locked, Replaced, Usable};
-        assert_eq!(states, [Locked, Usable, Expired, Replaced(7), Usable]);
+        assert_eq!(states, [Locked, Usable, Expired, Replaced(5), Usable]);
         assert_eq!(barred(table.iter()).len(), 3);
         for wrong in ["T;R;TIME1\n1;5;-1", "T;R;CUR.TIME\n1;5;x", "T;R;RT\n1;5;y"] {
             assert!(parse(wrong).is_err(), "{wrong}");
@@ -299,6 +377,7 @@ mod tests {
             TT:R-OFFS TT:L-OFFS LBREAK RBREAK DOC\n\
             4    MILL 3 EDGES     +80.1    +10      +0.003  -0.02    L  7   3    0.1    0.05   +       %00000101 \
             R         +2.5      1      2      ROUGH\n\
+            7    MILL 3 EDGES     +80.1    +10\n\
             [END]\n";
         let tool = parse(text).unwrap()[&4];
         assert_eq!(

@@ -9,7 +9,7 @@ use bahn_parameters::{ControlModel, MessageId};
 use bahn_program::{CycleBlock, CycleWord};
 
 use crate::error::{Fault, WarningKind};
-use crate::settings::Settings;
+use crate::settings::{Rules, Settings};
 
 /// A function of a block that has a row of its own in the registry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -64,8 +64,8 @@ impl Feature {
         let Some(entry) = self.entry(settings.model) else {
             return passed_over(format!("this control has no {self}"));
         };
-        if self.is_voltage() && settings.rules.voltages.is_none() {
-            return passed_over(format!("{self} is for output S with MP3011 = 3"));
+        if let Some(why) = self.not_enabled(&settings.rules) {
+            return passed_over(format!("{self} {why}"));
         }
         let Some(remark) = entry.remark() else {
             return Ok((true, None));
@@ -82,9 +82,17 @@ impl Feature {
 }
 
 impl Feature {
-    /// M200 to M204, which a machine has by MP3011 [000:9841-9848].
-    fn is_voltage(self) -> bool {
-        matches!(self, Feature::M(200..=204))
+    /// Why a function that the model has is not active on this machine: M103, M105 and M106 by MP7440
+    /// [000:7292-7304], M200 to M204 by MP3011 [000:9841-9848]. The path, its feed or the loops would be others with
+    /// it: it is refused as those functions are that the model does not have (inferred: no manual prints a message).
+    fn not_enabled(self, rules: &Rules) -> Option<&'static str> {
+        let (enabled, why) = match self {
+            Feature::M(103) => (rules.m_functions.m103_enabled, "is active with MP7440 bit 4 = 1"),
+            Feature::M(105 | 106) => (rules.m_functions.m105_enabled, "is active with MP7440 bit 3 = 1"),
+            Feature::M(200..=204) => (rules.voltages.is_some(), "is for output S with MP3011 = 3"),
+            _ => return None,
+        };
+        (!enabled).then_some(why)
     }
 }
 

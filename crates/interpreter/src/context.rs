@@ -1,6 +1,6 @@
 //! What a block may touch while it is executed.
 
-use bahn_parameters::technology;
+use bahn_parameters::{MessageId, technology};
 use bahn_path::Function;
 
 use crate::availability::Feature;
@@ -32,6 +32,15 @@ impl Context<'_> {
     /// Warns of the block.
     pub fn warn(&mut self, kind: WarningKind) {
         self.told.warn(self.pen.block, kind);
+    }
+
+    /// Says that what the block programs does nothing, or not all of it; with strict checking it is refused.
+    pub fn without_effect(&mut self, text: String) -> Result<(), Fault> {
+        if self.settings.strict {
+            return Err(Fault::new(MessageId::BlockNotKnown, text));
+        }
+        self.warn(WarningKind::Function { text });
+        Ok(())
     }
 
     /// See [`Pen::output_function`].

@@ -238,8 +238,8 @@ fn numbered_error(q: &QTable, number: Value, settings: &Settings) -> Fault {
     }
 }
 
-/// FN15: PRINT. A number up to 200 prints the FN14 text of that number, a Q parameter its value
-/// [003:4371-4385].
+/// FN15: PRINT. A number up to 200 prints the FN14 text of that number, a Q parameter its value; slashes separate
+/// them [003:4371-4385].
 fn print(c: &mut Context<'_>, items: &[Value]) -> Result<(), Fault> {
     const TEXT_NUMBER_MAX: f64 = 200.0;
     if !c.executes(Feature::Fn(15))? {
@@ -268,7 +268,7 @@ fn print(c: &mut Context<'_>, items: &[Value]) -> Result<(), Fault> {
             Value::Q { .. } => format!("{:+}", c.numbers.q.value(*item)?),
         });
     }
-    c.output_function(Function::Print(line.join(" ").into()), technology::Block::Print)
+    c.output_function(Function::Print(line.join("/").into()), technology::Block::Print)
 }
 
 /// FN19: two values to the PLC in the unit of the control model [003:4387-4395] [000:11597-11655].
@@ -308,7 +308,7 @@ fn execute_motion(
     modality: &Modality,
     settings: &Settings,
 ) -> Result<Flow, Fault> {
-    take_plane(run, modality)?;
+    take_plane(run, modality, settings)?;
     let resolved = run.modal.in_force.resolve(motion, modality);
     let mut motion = resolved.map_err(|detail| Fault::new(MessageId::EntryValueIncorrect, detail))?;
     let rapid = run.modal.in_force.function.is_rapid();
@@ -340,7 +340,7 @@ fn execute_motion(
 
 /// A block that does several things; the first that leads elsewhere ends it.
 fn execute_block(run: &mut Run, block: &ModalBlock, settings: &Settings) -> Result<Flow, Fault> {
-    take_plane(run, &block.modality)?;
+    take_plane(run, &block.modality, settings)?;
     let before = run.modal.in_force.distance;
     if let Some(distance) = block.modality.distance {
         run.modal.in_force.distance = distance;
@@ -355,7 +355,7 @@ fn execute_block(run: &mut Run, block: &ModalBlock, settings: &Settings) -> Resu
 }
 
 /// G17 to G19 without a tool call choose the tool axis where it is another one (inferred).
-fn take_plane(run: &mut Run, modality: &Modality) -> Result<(), Fault> {
+fn take_plane(run: &mut Run, modality: &Modality, settings: &Settings) -> Result<(), Fault> {
     let Some(axis) = modality.plane else {
         return Ok(());
     };
@@ -363,5 +363,5 @@ fn take_plane(run: &mut Run, modality: &Modality) -> Result<(), Fault> {
         return Ok(());
     }
     run.pen.finish_contour()?;
-    set_tool_axis(&mut run.modal, &mut run.numbers, axis)
+    set_tool_axis(&mut run.modal, &mut run.numbers, settings, axis)
 }

@@ -3,7 +3,7 @@
 use bahn_parameters::own_functions::OwnFunction;
 use bahn_parameters::technology::{Deed, Output, Technology};
 use bahn_path::{At, Axis, ControlFunction, Function, SpindleOrder, Synchronisation, TechnologyFunction};
-use bahn_program::MFunctions;
+use bahn_program::{Compensation, MFunctions};
 
 use crate::availability::Feature;
 use crate::block_functions::{BlockFunctions, Reference};
@@ -50,12 +50,14 @@ fn take_m_function(
         return Ok(());
     }
     for deed in technology.deeds() {
+        if let Some(why) = idle(c, deed) {
+            c.without_effect(format!("M{code} has no effect {why}"))?;
+        }
         act(c, deed, block);
         tilting::act(c, deed)?;
         act_on_block(c.modal, deed, block);
         act_on_feed(c.modal, c.numbers, c.settings, deed, m)?;
         let function = match deed {
-            Deed::Control(ControlFunction::SecondServoSet(_)) if !rules.m105_enabled => continue,
             Deed::Control(control) => Function::Control(control),
             Deed::Voltage => Function::Voltage(voltage::of(code, m, c.numbers, c.settings)?),
             Deed::Superimpose => Function::Superimpose(superimposing::ranges(m, c.numbers)?),
@@ -83,6 +85,20 @@ fn take_m_function(
         });
     }
     Ok(())
+}
+
+/// Why a function does nothing where it stands: M97 and M98 act on the corners of compensated paths
+/// [003:3467-3512], M101 on the lives of a tool table [000:9103] [000:9175].
+fn idle(c: &Context<'_>, deed: Deed) -> Option<&'static str> {
+    match deed {
+        Deed::Intersection | Deed::OpenContour if c.modal.compensation == Compensation::Off => {
+            Some("without radius compensation")
+        }
+        Deed::Control(ControlFunction::ReplaceWornTools(true)) if c.settings.tools.is_none() => {
+            Some("without a tool table: tool lives and replacement tools stand there")
+        }
+        _ => None,
+    }
 }
 
 /// Program, spindle and coolant.
@@ -133,7 +149,7 @@ fn act_on_feed(
     m: &MFunctions,
 ) -> Result<(), Fault> {
     match deed {
-        Deed::PlungingFeed if settings.rules.m_functions.m103_enabled => {
+        Deed::PlungingFeed => {
             let percent = m
                 .argument(103, 'F')
                 .map(|value| numbers.q.value(value))

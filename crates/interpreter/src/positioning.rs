@@ -19,7 +19,7 @@ use crate::q_parameters::{QTable, preassigned};
 use crate::settings::Settings;
 use crate::status::Way;
 use crate::surface_feed::surface_feed;
-use crate::tilting::take_way;
+use crate::tilting::{stands_as_defined, take_way};
 use crate::unrolled::unrolled;
 
 /// L, C, CR, CT, LP, CP, CTP and paraxial blocks; with it whether the block calls the cycle behind its movement.
@@ -75,6 +75,7 @@ fn is_short_way(modal: &Modal, pen: &Pen, motion: &Motion) -> bool {
         && modal.frame.is_identity()
         && modal.tilting.way == Way::Programmed
         && !modal.tilting.surface_feed
+        && modal.tilting.plane.is_none()
         && pen.contour.is_idle()
 }
 
@@ -359,6 +360,7 @@ fn emit_movement(
             }
         }
     }
+    stands_as_defined(c, [&start, &end], axes)?;
     c.modal.take_contour_axes(axes);
     let plane = c.modal.contour_plane;
     let in_plane = axes.contains(plane.first) || axes.contains(plane.second);
@@ -410,6 +412,12 @@ pub(crate) fn take_compensation(modal: &mut Modal, q: &mut QTable, motion: &Moti
             MessageId::EntryValueIncorrect,
             "R+ and R- belong to paraxial blocks",
         ));
+    }
+    // "Only for single-axis movements in the working plane" [003:2046]; the message is inferred.
+    let beside_plane = |axis: Axis| axis.is_rotary() || axis.main() == modal.plane.normal.main();
+    if paraxial && motion.coordinates.axes().iter().any(beside_plane) {
+        let detail = "R+ and R- act in the working plane";
+        return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
     }
     // R+/R- and RL/RR must not follow each other [000:7016-7030].
     if (paraxial && modal.compensation != Compensation::Off)

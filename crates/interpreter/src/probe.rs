@@ -14,6 +14,7 @@ use crate::numbers::{Numbers, known};
 use crate::pen::Pen;
 use crate::q_parameters::{QTable, preassigned};
 use crate::settings::ProbeRules;
+use crate::tilting::works_as_defined;
 
 /// A probing that waits for its touch.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +76,7 @@ fn start_probing(c: &mut Context<'_>, words: &[Resolved]) -> Result<Probing, Fau
     let Some(plane) = c.modal.probe.take() else {
         return Err(Fault::new(MessageId::CyclIncomplete, "TCH PROBE 0.0 is missing"));
     };
+    works_as_defined(c)?;
     let rules = &c.settings.rules.probe;
     c.pen.finish_contour()?;
     if !c.settings.rules.probe_keeps_tool {

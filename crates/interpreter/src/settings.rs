@@ -9,7 +9,8 @@ use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
 use bahn_path::{
-    Function, MeasuringRules, PerAxis, Plane, Position, ScanRules, Swivels, TechnologyFunction, ToolShape,
+    Axis, Function, MeasuringRules, PerAxis, Plane, Position, ScanRules, Swivels, TechnologyFunction,
+    ToolShape,
 };
 
 use crate::absent::AbsentAxes;
@@ -237,6 +238,8 @@ pub struct Rules {
     pub tilting: bool,
     /// MP810: the modulo values of rotary axes, degrees [000:6468-6484].
     pub modulo_deg: PerAxis<Option<f64>>,
+    /// MP410.4: the 5th axis of the machine, which is never the tool axis [000:3410-3416].
+    pub fifth_axis: Option<Axis>,
 }
 
 impl Rules {
@@ -303,6 +306,9 @@ impl Rules {
                 let index = list.axis_index(axis)?;
                 list.axis_parameters(index).travel.modulo_deg
             }),
+            fifth_axis: Axis::ALL
+                .into_iter()
+                .find(|axis| list.axis_index(*axis) == Some(4)),
             oem_cycles: OemCycleRules::of(list),
             ..Rules::default()
         }
@@ -366,6 +372,7 @@ impl Default for Rules {
             swivels: None,
             tilting: false,
             modulo_deg: PerAxis::splat(None),
+            fifth_axis: None,
             oem_cycles: OemCycleRules::default(),
         }
     }

@@ -67,6 +67,67 @@ fn tilting_frame(modal: &Modal) -> Frame {
     outer
 }
 
+/// In the plane of cycle 19 a movement of other axes begins and ends where the swivel axes stand as the cycle says: they
+/// "must first be positioned" [000:4250-4252]. The manual names no message: it is that of a plane that is not as it was
+/// defined (inferred). An axis that nobody knows the position of is not looked at; neither are swivel axes that move alone.
+pub(crate) fn stands_as_defined(c: &Context<'_>, ends: [&Position; 2], moved: AxisSet) -> Result<(), Fault> {
+    /// So far an axis may stand beside its angle, degrees (inferred): what jogging by hand and a display leave.
+    const BESIDE_DEG: f64 = 0.01;
+    let (Some(plane), Some(swivels)) = (&c.modal.tilting.plane, &c.settings.rules.swivels) else {
+        return Ok(());
+    };
+    let free: AxisSet = swivels.free_axes().collect();
+    if moved.iter().all(|axis| free.contains(axis)) {
+        return Ok(());
+    }
+    for (end, axis) in ends
+        .into_iter()
+        .flat_map(|end| free.iter().map(move |axis| (end, axis)))
+    {
+        let zero = c.settings.rules.machine_zero[axis];
+        // Where nobody knows the datum the workpiece lies at that of the machine, as for the placement.
+        let stands = end[axis] - if zero.is_nan() { 0.0 } else { zero };
+        let angle = plane.angles[axis];
+        let beside = (stands - angle + 180.0).rem_euclid(360.0) - 180.0;
+        if beside.abs() > BESIDE_DEG {
+            let detail = format!("{axis} stands at {stands:.3} degrees, cycle 19 says {angle:.3}");
+            return Err(out_of_order(&detail));
+        }
+    }
+    Ok(())
+}
+
+/// The same for what works from where the axes stand: cycles and the probe.
+pub(crate) fn works_as_defined(c: &Context<'_>) -> Result<(), Fault> {
+    let plane = c.modal.plane;
+    let moved = AxisSet::EMPTY
+        .with(plane.first)
+        .with(plane.second)
+        .with(plane.normal);
+    stands_as_defined(c, [&c.modal.actual; 2], moved)
+}
+
+/// Cycle 7 in the plane of cycle 19 is a shift in that plane; the one that was begun before cycle 19 ends behind it, in
+/// the reverse order of their beginning [000:4254].
+pub(crate) fn ends_within(modal: &Modal, shift: &Position, named: AxisSet) -> Result<(), Fault> {
+    let Some(plane) = &modal.tilting.plane else {
+        return Ok(());
+    };
+    let linear = |axis: &Axis| !axis.is_rotary();
+    let is_none = |shift: &Position| {
+        let mut axes = Axis::ALL.into_iter().filter(linear);
+        axes.all(|axis| shift[axis] == 0.0)
+    };
+    let begun_before = |axis: Axis| plane.outer.shift[axis] != 0.0;
+    let mut named = named.iter().filter(linear);
+    if is_none(shift) && is_none(&modal.frame.shift) && named.any(begun_before) {
+        return Err(out_of_order(
+            "the datum shift was begun before cycle 19 and ends behind the plane",
+        ));
+    }
+    Ok(())
+}
+
 fn out_of_order(detail: &str) -> Fault {
     Fault::new(MessageId::PlaneWronglyDefined, detail)
 }

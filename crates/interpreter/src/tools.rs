@@ -106,7 +106,7 @@ impl Tools {
         let Some(tool) = tool else {
             if let Some(axis) = axis {
                 c.pen.finish_contour()?;
-                set_tool_axis(c.modal, c.numbers, axis)?;
+                set_tool_axis(c.modal, c.numbers, c.settings, axis)?;
             }
             let speed = Function::SpindleSpeed(c.modal.speed_rpm);
             return c.output_function(speed, technology::Block::SpindleSpeed);
@@ -124,7 +124,7 @@ impl Tools {
             }
         }
         let axis = axis.or(c.modal.tool.map(|tool| tool.axis)).unwrap_or(Axis::Z);
-        set_tool_axis(c.modal, c.numbers, axis)?;
+        set_tool_axis(c.modal, c.numbers, c.settings, axis)?;
         let tool = Tool::new(number, axis, (shape, defined), delta);
         insert_tool(c, blank, tool, false)
     }
@@ -294,8 +294,19 @@ fn checked_speed(numbers: &Numbers, speed: Value, settings: &Settings) -> Result
 }
 
 /// The tool axis decides the working plane [003:2733-2738]. It must not change while a rotation is
-/// active [003:7973-7975].
-pub(crate) fn set_tool_axis(modal: &mut Modal, numbers: &mut Numbers, axis: Axis) -> Result<(), Fault> {
+/// active [003:7973-7975], and is "X, Y, Z or the 4th axis", never the 5th [000:3410-3416].
+pub(crate) fn set_tool_axis(
+    modal: &mut Modal,
+    numbers: &mut Numbers,
+    settings: &Settings,
+    axis: Axis,
+) -> Result<(), Fault> {
+    if settings.rules.fifth_axis == Some(axis) {
+        return Err(Fault::new(
+            MessageId::WrongAxisProgrammed,
+            format!("{axis} is the 5th axis here (MP410.4): it cannot be the tool axis"),
+        ));
+    }
     let Some(plane) = Plane::of_tool_axis(axis) else {
         return Err(Fault::new(
             MessageId::WrongAxisProgrammed,

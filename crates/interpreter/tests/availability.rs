@@ -39,6 +39,35 @@ fn no_effect_is_said_once() {
     assert_eq!(run.moves().count(), 8);
 }
 
+/// M97 and M98 are for compensated corners [003:3467-3512], M101 for the lives in a tool table [000:9103]: without them they
+/// do nothing, and that is said.
+#[test]
+fn functions_without_what_they_act_on() {
+    let said = |blocks: &str| {
+        let run = run(&format!(
+            "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S100\nL X+0 Y+0 R0 FMAX\n{blocks}"
+        ));
+        run.assert_completed();
+        warnings(&run)
+    };
+    for m in [97, 98] {
+        let text = format!("M{m} has no effect without radius compensation");
+        assert_eq!(said(&format!("L X+10 R0 F100 M{m}\nL Y+10")), [(4, text)]);
+        assert_eq!(
+            said(&format!("L X+10 RL F100\nL Y+10 M{m}\nL X+20\nL Y+20 R0")),
+            []
+        );
+        let strict = with(&format!("L X+1 FMAX\nL X+2 FMAX M{m}"), |settings| {
+            settings.strict = true
+        });
+        assert_eq!(strict.message(), Some((BlockNotKnown, 2)));
+    }
+    let text = "M101 has no effect without a tool table: tool lives and replacement tools stand there";
+    assert_eq!(said("L X+10 FMAX M101\nL X+5 FMAX M102"), [(4, text.to_owned())]);
+    let with_table = with("L X+10 FMAX M101", |settings| settings.tools = Some([].into()));
+    assert_eq!(warnings(&with_table), []);
+}
+
 /// Cycle 31 of the release notes measures tools [000:838]: it has the blocks of a probe function, and as CYCL DEF it is refused
 /// with a message that says so.
 #[test]
@@ -242,6 +271,24 @@ fn inhibited_by_the_machine_builder() {
     let measuring = "TOOL CALL 1 Z S1\nTCH PROBE 31.0 TOOL LENGTH";
     assert_eq!(with_list("7245.1=$8000", measuring), Some((BlockNotKnown, 2)));
     assert_eq!(with_list("7245.1=$4000", measuring), None);
+    // MP7440 bit 3 enables M105 and M106, bit 4 M103 F; without it the function is not active [000:7292-7304].
+    for (bit, blocks) in [
+        (8, "L X+1 FMAX M105"),
+        (8, "L X+1 FMAX M106"),
+        (16, "L X+1 F100 M103 F25"),
+    ] {
+        let value = |bits: u32| format!("7440={bits}");
+        assert_eq!(
+            with_list(&value(0b11111 - bit), blocks),
+            Some((BlockNotKnown, 1)),
+            "{blocks}"
+        );
+        assert_eq!(with_list(&value(bit), blocks), None, "{blocks}");
+    }
+    // The tool axis is X, Y, Z or the 4th axis, never the 5th: MP410.4 = 5 is W [000:3410-3416] [000:3370].
+    let tool_axis = |assignment| with_list(assignment, "TOOL CALL 0 W S100");
+    assert_eq!(tool_axis("410.4=5"), Some((WrongAxisProgrammed, 1)));
+    assert_eq!(tool_axis("410.4=4"), None);
     let paraxial = "TOOL CALL 0 Z S100\nX+20 R+ F100";
     assert_eq!(with_list("7246=1", paraxial), Some((BlockNotKnown, 2)));
     assert_eq!(with_list("7246=0", paraxial), None);

@@ -91,6 +91,17 @@ fn paraxial_compensation() {
     }
     // In negative direction the path is lengthened to the negative side.
     assert_eq!(contour("X-60 R+ F100"), [[-70.0, -20.0]]);
+    // "Only for single-axis movements in the working plane": not for the tool axis and rotary ones [003:2046].
+    for block in ["Z-5 R+ F100", "Z+5 R- F100", "W+5 R+ F100", "C+5 R+ F100"] {
+        let run = Job::new(program(&format!("{TOOL}\n{block}"))).run();
+        assert_eq!(
+            run.message(),
+            Some((MessageId::WrongAxisProgrammed, 4)),
+            "{block}"
+        );
+    }
+    // One that stays in force behind a block of the plane waits for the next one there.
+    run(&format!("{TOOL}\nX+40 R+ F100\nZ-5\nX+50")).assert_completed();
 }
 
 /// The side changes with an R0 block between; RL and RR without one is an error [003:2042].

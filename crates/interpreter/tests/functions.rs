@@ -112,7 +112,7 @@ fn tool_length_does_not_change_the_path() {
     assert_eq!(path("+0"), path("+120.5"));
 }
 
-/// FN 15 prints texts and values, FN 19 hands values to the PLC: the TNC 360 counts in micrometres, later
+/// FN 15 prints texts and values, with slashes between them [003:4383-4385], FN 19 hands values to the PLC: the TNC 360 counts in micrometres, later
 /// controls take millimetres in 1/10 000 [003:4371-4395] [000:11597-11655].
 #[test]
 fn output_to_printer_and_plc() {
@@ -125,7 +125,7 @@ fn output_to_printer_and_plc() {
             .map(|(_, f)| f.clone())
             .collect::<Vec<_>>()
     };
-    let print = Function::Print("ERROR 1 +20.25".into());
+    let print = Function::Print("ERROR 1/+20.25".into());
     assert_eq!(
         on(ControlModel::Tnc360),
         [print.clone(), Function::Plc([Some(10.0), Some(20.25)])]

@@ -34,6 +34,57 @@ fn on_datum(machine: &[&str], datum: Position, blocks: &str) -> Run {
         .run()
 }
 
+/// Cycle 19, the swivel axes first where it says [000:4250-4252].
+fn tilted(angles: &str) -> String {
+    format!("L {angles} R0 FMAX\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 {angles}\n")
+}
+
+/// "The swivel axes must first be positioned manually or with an appropriate NC block" [000:4250-4252]: what moves in the
+/// plane while they stand elsewhere, or moves them beside, is refused. Alone they may go to where they are to be.
+#[test]
+fn swivel_axes_stand_where_cycle_19_says() {
+    let plane = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+30\n";
+    let message = |blocks: &str| on(SWIVEL_HEAD, &format!("{plane}{blocks}")).message();
+    // Blocks 1 and 2 are those of the tool, 3 and 4 the cycle.
+    assert_eq!(message("L X+1 R0 FMAX"), Some((PlaneWronglyDefined, 5)));
+    assert_eq!(message("L B+30 R0 FMAX\nL X+1 FMAX"), None);
+    // A whole turn is the same place for the head.
+    assert_eq!(message("L B-330 R0 FMAX\nL X+1 FMAX"), None);
+    // Moved while the plane is in force: with the linear axes, or before them; A is to stand at 0.
+    assert_eq!(message("L X+1 B+30 R0 FMAX"), Some((PlaneWronglyDefined, 5)));
+    let behind = |blocks: &str| message(&format!("L B+30 R0 FMAX\nL X+1 FMAX\n{blocks}"));
+    assert_eq!(behind("L X+2 B+40 FMAX"), Some((PlaneWronglyDefined, 7)));
+    assert_eq!(behind("L B+40 FMAX\nL X+2 FMAX"), Some((PlaneWronglyDefined, 8)));
+    assert_eq!(behind("L A+5 FMAX\nL X+2 FMAX"), Some((PlaneWronglyDefined, 8)));
+    let peck = "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG -4\n\
+                CYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n";
+    assert_eq!(
+        behind(&format!("{peck}L B+40 FMAX\nCYCL CALL M3")),
+        Some((PlaneWronglyDefined, 14))
+    );
+    assert_eq!(
+        behind(&format!("{peck}L B+40 FMAX M99")),
+        Some((PlaneWronglyDefined, 13))
+    );
+    let probe = "TCH PROBE 0.0 REF. PLANE Q1 X-\nTCH PROBE 0.1 X+0 Y+0 Z+0";
+    assert_eq!(
+        behind(&format!("L B+40 FMAX\n{probe}")),
+        Some((PlaneWronglyDefined, 9))
+    );
+    // The cycle takes positions of the machine: with the datum of B at 10, B+20 is its 30.
+    let mut datum = Position::ZERO;
+    datum[Axis::B] = 10.0;
+    let on_datum =
+        |b: &str| on_datum(SWIVEL_HEAD, datum, &format!("{plane}L B{b} R0 FMAX\nL X+1 FMAX")).message();
+    assert_eq!(on_datum("+20"), None);
+    assert_eq!(on_datum("+30"), Some((PlaneWronglyDefined, 6)));
+    // Behind the plane they go where they are told.
+    assert_eq!(
+        behind("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL X+2 B+40 FMAX"),
+        None
+    );
+}
+
 fn at(x: f64, y: f64, z: f64) -> Position {
     let mut position = Position::ZERO;
     (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);
@@ -90,17 +141,20 @@ fn cycle_19_tilts_the_working_plane() {
 #[test]
 fn shifts_before_and_behind_cycle_19() {
     let shift = |x: &str| format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X{x}\n");
-    let tilt = |angle: &str| format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 {angle}\n");
+    let tilt = |angles: &str| match angles {
+        "" => "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\n".to_owned(),
+        _ => tilted(angles),
+    };
     let to = "L X+1 Y+2 Z+3 R0 FMAX\n";
     let plain = on(SWIVEL_HEAD, &format!("{}{to}", tilt("A-45 B+30")));
     let shifted = on(SWIVEL_HEAD, &format!("{}{}{to}", shift("+40"), tilt("A-45 B+30")));
     shifted.assert_completed();
-    let [x, y, z] = noses(&plain, 0)[0];
-    assert_near(noses(&shifted, 0)[0], [x + 40.0, y, z]);
+    let [x, y, z] = noses(&plain, 1)[0];
+    assert_near(noses(&shifted, 1)[0], [x + 40.0, y, z]);
     // In the plane the shift leads along its X, which B+30 has turned in the machine's X and Z.
     let inner = on(SWIVEL_HEAD, &format!("{}{}{to}", tilt("A-45 B+30"), shift("+40")));
     let (sin, cos) = 30f64.to_radians().sin_cos();
-    assert_near(noses(&inner, 0)[0], [x + 40.0 * cos, y, z - 40.0 * sin]);
+    assert_near(noses(&inner, 1)[0], [x + 40.0 * cos, y, z - 40.0 * sin]);
     // Ended in the reverse order all is as before.
     let ended = format!(
         "{}{}{}{}{to}{}{}{to}",
@@ -113,6 +167,13 @@ fn shifts_before_and_behind_cycle_19() {
     );
     let run = on(SWIVEL_HEAD, &ended);
     run.assert_completed();
+    // One that was begun before the plane does not end in it, and goes on behind it.
+    let within = |inner: &str| on(SWIVEL_HEAD, &format!("{}{}{inner}", shift("+40"), tilt("B+30")));
+    assert_eq!(within(&shift("+0")).message(), Some((PlaneWronglyDefined, 9)));
+    within(&shift("+5")).assert_completed();
+    // The plane has no shift in Y, and one of its own in X that ends.
+    within(&shift("+0").replace('X', "Y")).assert_completed();
+    within(&format!("{}{}", shift("+5"), shift("+0"))).assert_completed();
     let last = run.moves().last().expect("a movement");
     assert!(last.placement.is_none());
     assert_near(xyz(&last.end), [1.0, 2.0, 3.0]);
@@ -121,14 +182,14 @@ fn shifts_before_and_behind_cycle_19() {
 /// A tilting table leaves the directions as they are: the datum has gone with the table [000:4264].
 #[test]
 fn a_tilting_table_carries_the_datum() {
-    let blocks = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 C+90 B+0\nL X+1 Y+2 Z+3 R0 FMAX";
+    let blocks = format!("{}L X+1 Y+2 Z+3 R0 FMAX", tilted("C+90 B+0"));
     // The datum lies 60 in X beside the centre of C: with C+90 it lies 60 in -Y from it.
-    let run = on_datum(ROTARY_TABLE, at(460.0, 150.0, -250.0), blocks);
+    let run = on_datum(ROTARY_TABLE, at(460.0, 150.0, -250.0), &blocks);
     run.assert_completed();
     let gone = [400.0 - 460.0, 90.0 - 150.0, 0.0];
-    assert_near(noses(&run, 0)[0], [1.0 + gone[0], 2.0 + gone[1], 103.0 + gone[2]]);
+    assert_near(noses(&run, 1)[0], [1.0 + gone[0], 2.0 + gone[1], 103.0 + gone[2]]);
     // The direction of the tool, too.
-    let element = run.moves().next().expect("a movement");
+    let element = run.moves().nth(1).expect("a movement");
     let placement = element.placement.as_ref().expect("a placement");
     assert_eq!(
         placement.rotation(),
@@ -143,15 +204,12 @@ fn paths_in_the_plane_are_those_of_an_upright_one() {
                    C X+40 Y+0 DR-\nL X+0\nL X-20 Y-20 R0\nL Z+50 FMAX\nCYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\n\
                    CYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG -4\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n\
                    L X+10 Y+10 FMAX M99";
-    let upright = on(SWIVEL_HEAD, contour);
-    let tilted = on(
-        SWIVEL_HEAD,
-        &format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+20 B-35\n{contour}"),
-    );
+    let upright = on(SWIVEL_HEAD, &format!("L A+20 B-35 R0 FMAX\n{contour}"));
+    let tilted = on(SWIVEL_HEAD, &format!("{}{contour}", tilted("A+20 B-35")));
     upright.assert_completed();
     tilted.assert_completed();
     assert_eq!(upright.moves().count(), tilted.moves().count());
-    for (a, b) in upright.moves().zip(tilted.moves()).skip(1) {
+    for (a, b) in upright.moves().zip(tilted.moves()).skip(2) {
         assert!(b.placement.is_some());
         assert_eq!(
             (&a.curve, &a.start, &a.end, a.feed),
@@ -163,7 +221,7 @@ fn paths_in_the_plane_are_those_of_an_upright_one() {
 /// Another tool in the tilted plane: the axes stand still, the tip is farther out along the tool.
 #[test]
 fn a_tool_change_in_the_plane() {
-    let blocks = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+90\nL X+10 Y+20 Z+5 R0 FMAX\nTOOL DEF 2 L+130 R+5\n\
+    let blocks = "L B+90 R0 FMAX\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+90\nL X+10 Y+20 Z+5 R0 FMAX\nTOOL DEF 2 L+130 R+5\n\
                   TOOL CALL 2 Z S1000\nL IX+0 Z+5 R0 FMAX";
     let mut list = ParameterList::reference(ControlModel::Tnc415b);
     for assignment in SWIVEL_HEAD {
@@ -177,8 +235,8 @@ fn a_tool_change_in_the_plane() {
         })
         .run();
     run.assert_completed();
-    let [end, start] = noses(&run, 1);
-    assert_near(start, noses(&run, 0)[0]);
+    let [end, start] = noses(&run, 2);
+    assert_near(start, noses(&run, 1)[0]);
     // It goes back by 30 along the tool, +X of the machine.
     assert_near(end, [start[0] + 30.0, start[1], start[2]]);
     let last = run.moves().last().expect("a movement");

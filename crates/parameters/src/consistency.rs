@@ -16,6 +16,8 @@ pub struct Inconsistency {
     pub detail: String,
     /// Where the manuals say so, as `000:5012`.
     pub source: &'static str,
+    /// There is no such machine: the list is faulty, and no control is switched on with it.
+    pub impossible: bool,
 }
 
 impl ParameterList {
@@ -42,6 +44,7 @@ impl ParameterList {
             }
             offset(axis, &mut report);
         }
+        letters(&axes, &mut report);
         assignment(&axes, &mut report);
         same_kv(&axes, &mut report);
         reference_run(&axes, &mut report);
@@ -87,7 +90,23 @@ impl Reporter<'_> {
             rule,
             detail: detail(),
             source,
+            impossible: false,
         });
+    }
+
+    /// Reports what no machine can be when a rule does not hold.
+    fn demand(
+        &mut self,
+        holds: bool,
+        name: (u16, Option<u8>, u16),
+        rule: &'static str,
+        source: &'static str,
+        detail: impl FnOnce() -> String,
+    ) {
+        self.check(holds, name, rule, source, detail);
+        if let (false, Some(found)) = (holds, self.found.last_mut()) {
+            found.impossible = true;
+        }
     }
 }
 
@@ -188,6 +207,28 @@ fn offset(axis: &AxisParameters, report: &mut Reporter) {
     });
 }
 
+/// A block names an axis by its letter: the 4th and the 5th axis have different ones (inferred) [000:3350-3370].
+fn letters(axes: &[AxisParameters], report: &mut Reporter) {
+    for (at, axis) in axes.iter().enumerate() {
+        let before = axes.get(..at).unwrap_or_default();
+        let alike = before.iter().find(|other| other.letter == axis.letter);
+        let letter = axis.letter.map_or(' ', bahn_path::Axis::letter);
+        report.demand(
+            alike.is_none(),
+            (410, Some(axis.index), 90),
+            "two axes have the same letter",
+            "000:3350-3370",
+            || {
+                format!(
+                    "axes {} and {} are {letter}",
+                    alike.map_or(0, |other| other.index + 1),
+                    axis.index + 1
+                )
+            },
+        );
+    }
+}
+
 fn assignment(axes: &[AxisParameters], report: &mut Reporter) {
     for (at, axis) in axes.iter().enumerate() {
         let before = axes.get(..at).unwrap_or_default();
@@ -263,14 +304,17 @@ fn synchronized(axes: &[AxisParameters], report: &mut Reporter) {
             .find(|axis| Some(axis.index) == slave.synchronization.master);
         let Some(master) = master.filter(|master| master.index != slave.index && master.controlled) else {
             let rule = "the axis follows one that does not exist, or itself";
-            report.check(false, name(850), rule, "000:4467-4486", String::new);
+            let number = slave.synchronization.master.map_or(0, |master| master + 1);
+            report.demand(false, name(850), rule, "000:4467-4486", || {
+                format!("axis {} follows axis {number}", slave.index + 1)
+            });
             continue;
         };
         let pair = || format!("master is axis {}", master.index + 1);
         let is_rotary = |axis: &AxisParameters| axis.letter.is_some_and(bahn_path::Axis::is_rotary);
         let alone = master.synchronization.master.is_none();
         let rule = "an axis is master and slave at the same time";
-        report.check(alone, name(850), rule, "000:4519-4539", pair);
+        report.demand(alone, name(850), rule, "000:4519-4539", pair);
         let rule = "master and slave are to be linear axes";
         let linear = !is_rotary(master) && !is_rotary(slave);
         report.check(linear, name(850), rule, "000:4519-4539", pair);

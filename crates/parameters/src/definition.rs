@@ -98,6 +98,16 @@ pub struct Definition {
     pub notes: &'static str,
     /// Where the manuals print it, as `000:10095`.
     pub source: &'static str,
+    /// What may be entered, which a control may store coarser.
+    entry: Entry,
+}
+
+/// Range and decimal places of an entry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Entry {
+    min: f64,
+    max: f64,
+    decimals: u8,
 }
 
 impl Definition {
@@ -165,6 +175,7 @@ impl Definition {
         const OF_SOFTWARE: [&str; 7] = ["from ", "only ", "243 ", "259 36", "dropped", "TT 110", "option"];
         OF_SOFTWARE.iter().any(|start| self.versions.starts_with(start))
             || self.versions.contains("; from ")
+            || self.versions.contains("; only ")
             || self.versions.contains("; added ")
             || self.notes.starts_with("NOT IN THE PRINTED LIST")
     }
@@ -213,13 +224,24 @@ impl Definition {
     ///
     /// # Errors
     /// [`ParameterError::OutOfRange`] for a value outside the range, [`ParameterError::NotWhole`] for a
-    /// fraction where whole numbers or bits are meant.
+    /// fraction where whole numbers or bits are meant, [`ParameterError::NoChoice`] for a number between those that
+    /// there are.
     pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
-        let scale = 10f64.powi(self.decimals.into());
+        let entered = self.check_entry(value)?;
+        let scale = scale(self.decimals);
+        // A list of a finer control may lie on the limit.
+        let stored = ((entered * scale).round() / scale).clamp(self.min, self.max);
+        Ok(stored + 0.0) // no negative zero
+    }
+
+    /// Checks a value as it may be entered.
+    fn check_entry(&self, value: f64) -> Result<f64, ParameterError> {
+        let Entry { min, max, decimals } = self.entry;
+        let scale = scale(decimals);
         let rounded = (value * scale).round() / scale;
         // Binary and hexadecimal numbers have no sign.
         let unsigned = self.format != Format::Decimal && rounded < 0.0;
-        if !rounded.is_finite() || unsigned || !(self.min..=self.max).contains(&rounded) {
+        if !rounded.is_finite() || unsigned || !(min..=max).contains(&rounded) {
             return Err(ParameterError::OutOfRange {
                 id: self.id,
                 value,
@@ -228,13 +250,40 @@ impl Definition {
             });
         }
         // What has no printed range is stored in 32 bits (inferred).
-        if self.min.is_infinite() && (rounded * scale).abs() > f64::from(u32::MAX) {
+        if min.is_infinite() && (rounded * scale).abs() > f64::from(u32::MAX) {
             return Err(ParameterError::NotStorable(self.id, value));
         }
-        if self.decimals == 0 && rounded != value {
+        if decimals == 0 && rounded != value {
             return Err(ParameterError::NotWhole(self.id, value));
         }
-        Ok(rounded + 0.0) // no negative zero
+        if self.has_only_choices() && !self.is_choice(rounded) {
+            return Err(ParameterError::NoChoice(self.id, value));
+        }
+        Ok(rounded)
+    }
+
+    /// Whether the list names all values: MP340 takes 0, 1 and 5 [000:3238-3244].
+    fn has_only_choices(&self) -> bool {
+        self.values.ends_with("other values invalid")
+    }
+
+    fn is_choice(&self, value: f64) -> bool {
+        let mut named = self.choices().filter_map(|choice| choice.split_once('='));
+        named.any(|(number, _)| number.parse() == Ok(value))
+    }
+
+    /// A TNC 407 (and a TNC 360, which has its list) takes lengths and angles to 0.0001, and stores them to 0.001
+    /// [000:10015].
+    fn stored_by(mut self, model: ControlModel) -> Definition {
+        const COARSE_DECIMALS: u8 = 3;
+        let is_coarse = matches!(model, ControlModel::Tnc407 | ControlModel::Tnc360);
+        if is_coarse && self.decimals > COARSE_DECIMALS && matches!(self.unit, "mm" | "deg" | "mm or deg") {
+            let scale = scale(COARSE_DECIMALS);
+            self.decimals = COARSE_DECIMALS;
+            self.min = (self.min * scale).ceil() / scale;
+            self.max = (self.max * scale).floor() / scale;
+        }
+        self
     }
 
     /// Writes a value in the best format, without needless zeros.
@@ -275,9 +324,13 @@ impl Definition {
                     && !versions.contains("TNC 415/425")
             }
             ControlModel::Tnc415b => {
-                !versions.starts_with("TNC 425 only") && !versions.starts_with("TNC 407 only")
+                !versions.starts_with("TNC 425 only")
+                    && !versions.starts_with("TNC 407 only")
+                    && !versions.starts_with("not TNC 415")
             }
-            ControlModel::Tnc425 => !versions.starts_with("TNC 407 only"),
+            ControlModel::Tnc425 => {
+                !versions.starts_with("TNC 407 only") && !versions.starts_with("not TNC 415")
+            }
         }
     }
 }
@@ -294,7 +347,11 @@ fn list(model: ControlModel) -> Vec<Definition> {
     rows.extend(self::rows(family).filter(|row| !numbers.contains(&row.id.number)));
     rows.retain(|row| row.exists_on(model));
     rows.sort_by_key(Definition::key);
-    rows
+    rows.into_iter().map(|row| row.stored_by(model)).collect()
+}
+
+fn scale(decimals: u8) -> f64 {
+    10f64.powi(decimals.into())
 }
 
 fn rows(table: &'static str) -> impl Iterator<Item = Definition> {
@@ -309,23 +366,21 @@ fn row(line: &'static str) -> Option<Definition> {
     let name = next()?;
     let (min_text, max_text) = (next()?, next()?);
     let unprinted = min_text.is_empty() && max_text.is_empty();
+    let (min, max) = match unprinted {
+        true => (f64::NEG_INFINITY, f64::INFINITY),
+        false => (parse_number(min_text)?, parse_number(max_text)?),
+    };
+    let decimals = match next()? {
+        "" => 0,
+        digits => digits.parse().ok()?,
+    };
     Some(Definition {
         id,
         name,
-        min: if unprinted {
-            f64::NEG_INFINITY
-        } else {
-            parse_number(min_text)?
-        },
-        max: if unprinted {
-            f64::INFINITY
-        } else {
-            parse_number(max_text)?
-        },
-        decimals: match next()? {
-            "" => 0,
-            digits => digits.parse().ok()?,
-        },
+        min,
+        max,
+        decimals,
+        entry: Entry { min, max, decimals },
         unit: next()?,
         format: match next()? {
             "bits" => Format::Binary(max_text.len().saturating_sub(1)),
@@ -417,7 +472,11 @@ mod tests {
                 assert!(!row.name.is_empty() && !row.source.is_empty(), "{line}");
             }
         }
-        assert_eq!(rows(TNC_4XX).count(), 890);
+        assert_eq!(
+            rows(TNC_4XX).count(),
+            890 + 6,
+            "six of them differ on the TNC 407"
+        );
         assert_eq!(rows(TNC_15X).count(), 264, "MP0 to MP263 [001:3144-3369]");
     }
 
@@ -445,6 +504,44 @@ mod tests {
                 assert_eq!(row.check(row.max), Ok(row.max), "{}", row.id);
             }
         }
+    }
+
+    /// "With the TNC 407 you can enter to 0.0001 mm, but the entry value is rounded to 0.001 mm" [000:10015].
+    #[test]
+    fn entries_of_a_tnc_407_are_rounded() {
+        use ControlModel::{Tnc407, Tnc415b};
+        let stored = |model, number, value| Definition::find(model, number, 0).unwrap().check(value).ok();
+        for (number, entered, coarse) in [
+            (4210, 0.0006, 0.001),
+            (4210, -0.0004, 0.0),
+            // As a list of a TNC 415 B has it where there is no limit.
+            (910, 99_999.9999, 99_999.999),
+            (1030, 0.0001, 0.001),
+        ] {
+            assert_eq!(stored(Tnc407, number, entered), Some(coarse), "MP{number}");
+            assert_eq!(stored(Tnc415b, number, entered), Some(entered), "MP{number}");
+        }
+        assert_eq!(stored(Tnc407, 910, 100_000.0), None);
+        // Neither length nor angle: mm/m [000:10123].
+        assert_eq!(stored(Tnc407, 720, 0.0006), Some(0.0006));
+    }
+
+    /// MP340 takes 0, 1 and 5 [000:3238-3244]; steps of 0.0005 and 0.0001 [000:6447-6448] and a measuring probe [000:1763]
+    /// are not for the TNC 407.
+    #[test]
+    fn values_that_a_control_does_not_have() {
+        use ControlModel::{Tnc407, Tnc415b, Tnc425};
+        let takes =
+            |model, number, value: f64| Definition::find(model, number, 0).unwrap().check(value).is_ok();
+        let taken: Vec<u8> = (0..=6)
+            .filter(|value| takes(Tnc407, 340, f64::from(*value)))
+            .collect();
+        assert_eq!(taken, [0, 1, 5]);
+        for model in [Tnc415b, Tnc425] {
+            assert!(takes(model, 7290, 6.0) && takes(model, 6200, 1.0));
+        }
+        assert!(takes(Tnc407, 7290, 4.0) && !takes(Tnc407, 7290, 5.0) && !takes(Tnc407, 7290, 6.0));
+        assert!(takes(Tnc407, 6200, 0.0) && !takes(Tnc407, 6200, 1.0));
     }
 
     #[test]

@@ -35,6 +35,9 @@ pub enum ParameterError {
     /// The value has a fraction, and the parameter takes whole numbers.
     #[error("{0}: {1} is no whole number")]
     NotWhole(ParameterId, f64),
+    /// The value lies between those that the parameter takes.
+    #[error("{0} takes no {1}")]
+    NoChoice(ParameterId, f64),
     /// The value needs more bits than there are.
     #[error("{0}: {1} cannot be stored")]
     NotStorable(ParameterId, f64),
@@ -60,7 +63,8 @@ impl ParameterError {
             ParameterError::NoSeparator(..) => 2,
             ParameterError::NotANumber(..)
             | ParameterError::OutOfRange { .. }
-            | ParameterError::NotWhole(..) => 3,
+            | ParameterError::NotWhole(..)
+            | ParameterError::NoChoice(..) => 3,
             ParameterError::DoublyDefined { .. } => 4,
             ParameterError::NotDefined(_) => 5,
             ParameterError::NotStorable(..) => 6,
@@ -91,6 +95,7 @@ impl ParameterError {
             | ParameterError::NotANumber(id, _)
             | ParameterError::OutOfRange { id, .. }
             | ParameterError::NotWhole(id, _)
+            | ParameterError::NoChoice(id, _)
             | ParameterError::NotStorable(id, _)
             | ParameterError::NotDefined(id)
             | ParameterError::DoublyDefined { id, .. } => Some(id),

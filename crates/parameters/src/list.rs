@@ -101,7 +101,7 @@ impl ParameterList {
     /// let mut list = ParameterList::reference(ControlModel::Tnc407);
     /// let errors = list.read(b"MP7430 : 1.0   ;overlap\nMP7440 : %00010\nMP7460 : 200\n");
     /// assert_eq!(list.get(7430, 0), Some(1.0));
-    /// assert_eq!(errors[0].to_string(), "line 3: MP7460: 200 is not between 0.0001 and 179.9999");
+    /// assert_eq!(errors[0].to_string(), "line 3: MP7460: 200 is not between 0.001 and 179.999");
     /// ```
     pub fn read(&mut self, text: &[u8]) -> Vec<ListError> {
         let text = ListText::from_bytes(self.model, text);

@@ -267,7 +267,9 @@ fn display_steps_of_the_models() {
     };
     // 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001 mm; the last two not on the TNC 407 [000:6436-6457].
     assert_eq!(step(ControlModel::Tnc415b, "7290.1=6"), 0.0001);
-    assert_eq!(step(ControlModel::Tnc407, "7290.1=6"), 0.001);
+    assert_eq!(step(ControlModel::Tnc407, "7290.1=4"), 0.001);
+    let mut list = ParameterList::reference(ControlModel::Tnc407);
+    assert!(list.assign("7290.1=5").is_err() && list.assign("7290.1=6").is_err());
     assert_eq!(step(ControlModel::Tnc407, "7290.1=1"), 0.05);
     assert_eq!(step(ControlModel::Tnc360, "7290=1"), 0.005);
     assert_eq!(step(ControlModel::Tnc155, "65=0"), 0.001);

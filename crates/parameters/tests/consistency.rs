@@ -145,6 +145,44 @@ fn masters_and_slaves_go_together() {
     }
 }
 
+/// What no machine can be: axes in a circle, or behind one that does not exist (MP850) [000:4467-4486]
+/// [000:4519-4539], and two axes of one letter (MP410) [000:3350-3370].
+#[test]
+fn what_no_machine_can_be() {
+    let impossible = |assignments: &[&str]| -> Vec<String> {
+        let mut list = ParameterList::reference(ControlModel::Tnc415b);
+        for assignment in assignments {
+            list.assign(assignment).unwrap();
+        }
+        let found = list
+            .inconsistencies()
+            .into_iter()
+            .filter(|found| found.impossible);
+        found
+            .map(|found| format!("{} {}", found.id, found.detail))
+            .collect()
+    };
+    let five = "10=%11111";
+    let slave = ["410.3=4", "410.4=5", "850.3=1"];
+    assert_eq!(impossible(&[&[five], &slave[..]].concat()), [""; 0]);
+    assert_eq!(impossible(&["850.1=2"]), ["MP850.1 axis 2 follows axis 2"]);
+    assert_eq!(
+        impossible(&["850.0=2", "850.1=1"]),
+        ["MP850.0 master is axis 2", "MP850.1 master is axis 1"]
+    );
+    assert_eq!(
+        impossible(&["10=%00111", "850.1=5"]),
+        ["MP850.1 axis 2 follows axis 5"]
+    );
+    assert_eq!(
+        impossible(&[five, "410.3=2", "410.4=2"]),
+        ["MP410.4 axes 4 and 5 are C"]
+    );
+    assert_eq!(impossible(&["10=%01111", "410.3=2", "410.4=2"]), [""; 0]);
+    // What is only doubtful is none of these.
+    assert_eq!(impossible(&["1720.2=14"]), [""; 0]);
+}
+
 #[test]
 fn the_kink_counts_in_the_lag() {
     // v/kv * (0.5 + 0.5/0.25) = 15 * 2.5 = 37.5 mm [000:4907].

@@ -239,7 +239,8 @@ proptest! {
             if definition.min.is_finite() {
                 let value = definition.min + part * (definition.max - definition.min);
                 let value = if definition.decimals == 0 { value.round() } else { value };
-                list.set(definition.id.number, definition.id.index.unwrap_or(0), value).unwrap();
+                let set = list.set(definition.id.number, definition.id.index.unwrap_or(0), value);
+                prop_assert!(matches!(set, Ok(_) | Err(ParameterError::NoChoice(..))), "{set:?}");
             }
         }
         for index in 0..=u8::MAX {

@@ -162,7 +162,8 @@ proptest! {
             // Bit-coded parameters take whole numbers only.
             let value = if definition.decimals == 0 { value.round() } else { value };
             if definition.min.is_finite() {
-                list.set(id.number, id.index.unwrap_or(0), value).unwrap();
+                let set = list.set(id.number, id.index.unwrap_or(0), value);
+                prop_assert!(matches!(set, Ok(_) | Err(ParameterError::NoChoice(..))), "{set:?}");
             }
         }
         let mut copy = ParameterList::smallest(model);

@@ -84,7 +84,7 @@ struct Report {
 
 #[derive(Debug, Serialize)]
 struct Item {
-    /// Number of the control's editor; none for a warning.
+    /// Number of the control's editor; none for what does not go together.
     number: Option<u8>,
     text: String,
     parameter: Option<String>,
@@ -105,23 +105,33 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         true => Vec::new(),
         false => text.inconsistencies(),
     };
-    let warnings: Vec<FileFault> = inconsistent
-        .iter()
-        .map(|found| lists::warning(found, &text, path))
-        .collect();
+    let (impossible, doubtful): (Vec<Inconsistency>, Vec<_>) =
+        inconsistent.into_iter().partition(|found| found.impossible);
+    let marked = |found: &Inconsistency| lists::inconsistency(found, &text, path);
+    let (impossible_at, warnings): (Vec<FileFault>, Vec<FileFault>) = (
+        impossible.iter().map(marked).collect(),
+        doubtful.iter().map(marked).collect(),
+    );
+    let items = |found: &[Inconsistency], at: &[FileFault]| -> Vec<Item> {
+        found
+            .iter()
+            .zip(at)
+            .map(|(found, fault)| inconsistent_item(found, fault))
+            .collect()
+    };
     let report = Report {
         file: path.display().to_string(),
         model: text.model().id(),
         entries: text.entries().len(),
         without_effect: entries_with(&text, Effect::None),
         acting_partly: entries_with(&text, Effect::Partly),
-        errors: faults.iter().map(error_item).collect(),
-        not_listed: text.not_listed(),
-        warnings: inconsistent
+        errors: faults
             .iter()
-            .zip(&warnings)
-            .map(|(found, fault)| warning_item(found, fault))
+            .map(error_item)
+            .chain(items(&impossible, &impossible_at))
             .collect(),
+        not_listed: text.not_listed(),
+        warnings: items(&doubtful, &warnings),
     };
     if options.format == Format::Text {
         let unreadable: Vec<FileFault> = faults
@@ -134,7 +144,10 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         if let Some(first) = missing.first() {
             print_missing(&missing, first);
         }
-        warnings.iter().for_each(diagnostics::print_fault);
+        impossible_at
+            .iter()
+            .chain(&warnings)
+            .for_each(diagnostics::print_fault);
         diagnostics::print_line(&format!(
             "{}: {}, {} ({} without effect here, {} in part), {}{}, {}",
             report.file,
@@ -178,7 +191,7 @@ fn error_item(fault: &ListError) -> Item {
     }
 }
 
-fn warning_item(found: &Inconsistency, fault: &FileFault) -> Item {
+fn inconsistent_item(found: &Inconsistency, fault: &FileFault) -> Item {
     Item {
         number: None,
         text: fault.title.clone(),

@@ -103,7 +103,9 @@ impl Loader<'_> {
             return;
         };
         let text = ListText::from_bytes(list.model(), &bytes);
-        let warnings = found.iter().map(|found| lists::warning(found, &text, &path));
+        let warnings = found
+            .iter()
+            .map(|found| lists::inconsistency(found, &text, &path));
         self.warnings.extend(warnings);
     }
 }
@@ -119,6 +121,7 @@ fn nonlinear(list: &ParameterList, files: &NcFiles) -> Vec<Inconsistency> {
         id,
         rule,
         detail,
+        impossible: false,
         source: SOURCE,
     };
     let old = files.correction_tables.as_ref();

@@ -30,10 +30,10 @@ use self::transformation::{
 use crate::availability::{Feature, names_datum_table, not_inhibited, words};
 use crate::context::Context;
 use crate::definition::{Definition, OEM_CYCLES, Resolved, is_contour_cycle, resolve};
-use crate::error::{Cause, Fault, WarningKind};
+use crate::error::{Cause, Fault};
 use crate::flow::Flow;
 use crate::settings::Settings;
-use crate::tilting::{geometry, working_plane};
+use crate::tilting::{geometry, working_plane, works_as_defined};
 
 /// One block of a cycle definition.
 pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<Flow, Fault> {
@@ -142,6 +142,7 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
     if definition.number == CYLINDER_SURFACE && !c.pen.rehearsal && geometry(c, "CYCL DEF 27")?.is_none() {
         return Ok(Flow::Next);
     }
+    works_as_defined(c)?;
     c.pen.finish_contour()?;
     let mut m = Machining::new(c);
     match definition.number {
@@ -154,11 +155,9 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         number if is_contour_cycle(number) => {
             contour_data::check(c.modal, &definition)?;
             if contour_data::reciprocates(&definition) {
-                let text = format!("cycle {number}: Q19, the tool reaches the floor straight down");
-                if c.settings.strict {
-                    return Err(Fault::new(MessageId::BlockNotKnown, text));
-                }
-                c.warn(WarningKind::Function { text });
+                c.without_effect(format!(
+                    "cycle {number}: Q19, the tool reaches the floor straight down"
+                ))?;
             }
             return Ok(Flow::ContourCycle);
         }

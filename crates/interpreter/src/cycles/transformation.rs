@@ -1,7 +1,7 @@
 //! Cycles that act when they are defined: transformations, dwell, spindle orientation, contour labels.
 
 use bahn_parameters::{MessageId, technology};
-use bahn_path::{Axis, AxisScaling, Curve, FeedRate, Function};
+use bahn_path::{Axis, AxisScaling, AxisSet, Curve, FeedRate, Function, Position};
 
 use crate::context::Context;
 use crate::definition::{Resolved, dwell_time};
@@ -9,6 +9,7 @@ use crate::error::{Fault, WarningKind};
 use crate::modal::Modal;
 use crate::pen::Pen;
 use crate::settings::Settings;
+use crate::tilting;
 
 /// Cycle 7 DATUM SHIFT: absolute to the set datum, incremental to the last valid one [003:6222].
 pub(super) fn datum_shift(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault> {
@@ -17,6 +18,7 @@ pub(super) fn datum_shift(c: &mut Context<'_>, words: &[Resolved]) -> Result<(),
     if words.iter().any(is_mark) {
         return datum_from_table(c, words);
     }
+    let (mut shift, mut named) = (c.modal.frame.shift, AxisSet::EMPTY);
     for word in words {
         let Resolved::Coordinate {
             axis,
@@ -27,20 +29,24 @@ pub(super) fn datum_shift(c: &mut Context<'_>, words: &[Resolved]) -> Result<(),
             continue;
         };
         let value = value * c.numbers.axis_unit(*axis);
-        let shift = if *incremental {
-            c.modal.frame.shift[*axis] + value
-        } else {
-            value
-        };
-        if shift.abs() > max {
+        let shifted = if *incremental { shift[*axis] + value } else { value };
+        if shifted.abs() > max {
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,
                 format!("{axis} is beyond {max}"),
             ));
         }
-        c.modal.frame.shift[*axis] = shift;
+        shift[*axis] = shifted;
+        named.insert(*axis);
     }
-    c.modal.forget_tangent();
+    take_shift(c.modal, shift, named)
+}
+
+/// The datum shift of cycle 7 on the axes that it names.
+fn take_shift(modal: &mut Modal, shift: Position, named: AxisSet) -> Result<(), Fault> {
+    tilting::ends_within(modal, &shift, named)?;
+    modal.frame.shift = shift;
+    modal.forget_tangent();
     Ok(())
 }
 
@@ -82,9 +88,7 @@ fn datum_from_table(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault
             return Err(wrong(what));
         }
     }
-    c.modal.frame.shift = shift;
-    c.modal.forget_tangent();
-    Ok(())
+    take_shift(c.modal, shift, datum.known())
 }
 
 /// Cycle 8 MIRROR IMAGE: the named axes; none cancels. Neither the tool axis nor a rotary axis can be

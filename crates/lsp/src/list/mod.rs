@@ -152,7 +152,10 @@ impl Analysis for ParameterText {
                         .iter()
                         .find(|entry| entry.definition.id == found.id)
                         .map_or_else(|| self.line(1), |entry| entry.value.clone()),
-                    severity: Severity::Warning,
+                    severity: match found.impossible {
+                        true => Severity::Error,
+                        false => Severity::Warning,
+                    },
                     code: found.id.to_string(),
                     message: format!(
                         "{}: {} ({})",

@@ -153,11 +153,15 @@ impl Parameters {
         if site.control().run_state() != RunState::Idle {
             return Turn::Say(site.message(MessageId::KeyNonFunctional));
         }
+        let found = self.list.inconsistencies();
+        // No control is switched on with such a list: it is not written, and the editor stays open.
+        if let Some(found) = found.iter().find(|found| found.impossible) {
+            return Turn::Say(format!("{}: {}", found.id, found.rule));
+        }
         if let Err(why) = self.write(site) {
             return Turn::Say(why);
         }
         self.take_over(site);
-        let found = self.list.inconsistencies();
         match found.iter().find(|found| self.changed.contains(&found.id)) {
             Some(found) => Turn::CloseSaying(format!("{}: {}", found.id, found.rule)),
             None => Turn::Close,
