@@ -12,6 +12,7 @@ use bahn_path::{
     Position, SpindleOrder, TechnologyFunction, Thread,
 };
 
+use super::back::Stand;
 use super::options::Options;
 use super::text::bare;
 use crate::Listed;
@@ -59,6 +60,16 @@ pub(super) enum Said {
     End,
 }
 
+impl Said {
+    /// Whether the machine may stand elsewhere behind it: at its tool changer, or where somebody has moved it.
+    pub fn may_move_the_machine(&self) -> bool {
+        matches!(
+            self,
+            Said::Change | Said::Stop { .. } | Said::User(_) | Said::Refused(_)
+        )
+    }
+}
+
 /// Runs a program and says what it does.
 pub(super) struct Sayer {
     run: Interpreter,
@@ -68,6 +79,7 @@ pub(super) struct Sayer {
     queue: VecDeque<(BlockRef, Said)>,
     /// Whether the tools are changed by an M06 behind their call, call by call.
     changes: VecDeque<bool>,
+    stand: Stand,
     overrides: bool,
     /// The way into a thread whose way out comes next.
     tap: Option<(Position, Position, Thread)>,
@@ -126,6 +138,7 @@ impl Sayer {
             rapid_mm_min: options.rapid_mm_min,
             queue: VecDeque::new(),
             changes,
+            stand: Stand::new(),
             overrides: true,
             tap: None,
             user_functions: options.user_functions,
@@ -194,6 +207,7 @@ impl Sayer {
     }
 
     fn say(&mut self, block: BlockRef, said: Said) {
+        self.stand.said(&said);
         self.queue.push_back((block, said));
     }
 
@@ -282,6 +296,9 @@ impl Sayer {
             .into_iter()
             .any(|axis| end[axis].is_finite() && start[axis] != end[axis]);
         if moves || matches!(curve, Curve::Arc(_)) {
+            if self.brought_back(element.block, [&start, &end], &curve, feed) {
+                return;
+            }
             let said = Said::Move {
                 curve,
                 start,
@@ -290,6 +307,14 @@ impl Sayer {
             };
             self.say(element.block, said);
         }
+    }
+
+    /// Brings the axes back for a way where they may stand elsewhere; whether that was the way already.
+    fn brought_back(&mut self, block: BlockRef, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> bool {
+        let (lines, whole) = self.stand.back(way, curve, feed);
+        lines.into_iter().for_each(|line| self.say(block, line));
+        self.stand.goes(way[0], way[1]);
+        whole
     }
 
     /// Both ways of a tap are one line; the spindle turns by the cycle alone.
@@ -325,6 +350,11 @@ impl Sayer {
                 returns: true,
             };
         }
+        // Both ways of a tap end where it began.
+        let ends = if thread.retracts { start } else { end };
+        let begins = if thread.retracts { end } else { start };
+        self.brought_back(element.block, [&begins, &begins], &Curve::Line, FeedRate::Rapid);
+        self.stand.goes(&begins, &ends);
         self.say(element.block, Said::Spindle(order));
         self.say(element.block, said);
         self.say(element.block, Said::Spindle(SpindleOrder::Stop));
@@ -344,6 +374,7 @@ impl Sayer {
         match &function.function {
             Function::M(code) => self.m_function(block, *code),
             Function::Tool(call) => {
+                self.stand.tool_axis(call.axis);
                 self.say(block, Said::Next(call.tool));
                 if self.changes.pop_front() == Some(false) {
                     self.say(block, Said::Change);
