@@ -1,6 +1,7 @@
 //! A program block by block in the other language.
 
 use bahn_parameters::MessageId;
+use bahn_path::Plane;
 use bahn_program::{
     Block, BlockError, Compensation, CycleWord, FormatOptions, InvalidBlock, NumberedBlock, Operation,
     Program, format_block,
@@ -10,7 +11,7 @@ use crate::canonical::{canonical, decorated};
 use crate::flow::{Flow, States};
 use crate::lower::{State, lower};
 use crate::reason::reason;
-use crate::to_iso::{cycle_block, encoded, expected, goes_on};
+use crate::to_iso::{Planes, cycle_block, encoded, expected, goes_on};
 use crate::{Language, Listed};
 
 /// How a program is written in the other language.
@@ -127,7 +128,9 @@ fn to_iso(program: &Program, writer: &mut Writer<'_>) {
     });
     let mut open: Vec<NumberedBlock> = Vec::new();
     let mut aside: Vec<NumberedBlock> = Vec::new();
+    let mut planes = Planes::start();
     for numbered in program.blocks() {
+        planes.take(&numbered.block.operation);
         let operations = operations_of(&open);
         let next = &numbered.block;
         if !open.is_empty() && matches!(next.operation, Operation::Comment(_)) {
@@ -143,7 +146,7 @@ fn to_iso(program: &Program, writer: &mut Writer<'_>) {
         if cycle_block(&numbered.block.operation).is_some() {
             open.push(numbered);
         } else {
-            block_to_iso(&[numbered], lengthens, writer);
+            block_to_iso(&[numbered], lengthens, planes.centre, writer);
         }
     }
     cycle_to_iso(&mut open, &mut aside, writer);
@@ -165,16 +168,21 @@ fn cycle_to_iso(open: &mut Vec<NumberedBlock>, aside: &mut Vec<NumberedBlock>, w
         writer.comment(&comment.block);
     }
     if !open.is_empty() {
-        block_to_iso(&open, false, writer);
+        block_to_iso(&open, false, Plane::XY, writer);
     }
     for comment in behind {
         writer.comment(&comment.block);
     }
 }
 
-fn block_to_iso(source: &[NumberedBlock], lengthens: bool, writer: &mut Writer<'_>) {
+fn block_to_iso(source: &[NumberedBlock], lengthens: bool, plane: Plane, writer: &mut Writer<'_>) {
+    if let [numbered] = source
+        && matches!(numbered.block.operation, Operation::Comment(_))
+    {
+        return writer.comment(&numbered.block);
+    }
     let operations = operations_of(source);
-    let Some(encoded) = encoded(&operations, lengthens) else {
+    let Some(encoded) = encoded(&operations, lengthens, plane) else {
         return;
     };
     let expected = expected(&operations, &encoded);
@@ -357,9 +365,10 @@ impl Writer<'_> {
         }
     }
 
+    /// A block that is a comment, in several where it is too long.
     fn comment(&mut self, block: &Block) {
         match &block.operation {
-            Operation::Comment(text) => self.own_comment(text),
+            Operation::Comment(text) if self.is_too_long(block, None) => self.own_comment(text),
             _ => self.push(block),
         }
     }
@@ -369,17 +378,11 @@ impl Writer<'_> {
         let max = self.options.characters_max.map_or(usize::MAX, |max| {
             max.saturating_sub(COMMENT_FRAME).max(1) as usize
         });
-        let characters: Vec<char> = text.chars().collect();
-        let mut pieces = characters.chunks(max);
-        let mut piece = pieces.next().unwrap_or_default();
-        loop {
-            let text: String = piece.iter().collect();
+        for piece in wrapped(text, max) {
             self.push(&Block {
-                operation: Operation::Comment(text.into()),
+                operation: Operation::Comment(piece.into()),
                 ..Block::EMPTY
             });
-            let Some(next) = pieces.next() else { return };
-            piece = next;
         }
     }
 
@@ -408,4 +411,22 @@ impl Writer<'_> {
         self.made.text.push('\n');
         self.made.blocks += 1;
     }
+}
+
+/// A text in pieces of so many characters at most, parted between words where that can be.
+fn wrapped(text: &str, max: usize) -> Vec<String> {
+    let characters: Vec<char> = text.chars().collect();
+    let mut rest = characters.as_slice();
+    let mut pieces = Vec::new();
+    while rest.len() > max {
+        let begin = rest.iter().take(max + 1);
+        let blank = begin.rev().position(|c| *c == ' ').map(|back| max - back);
+        let word = rest.iter().position(|c| *c != ' ').unwrap_or(0);
+        let cut = blank.filter(|at| *at > word).unwrap_or(max);
+        let (piece, behind) = rest.split_at(cut);
+        pieces.push(piece.iter().collect());
+        rest = behind.strip_prefix(&[' ']).unwrap_or(behind);
+    }
+    pieces.push(rest.iter().collect());
+    pieces
 }

@@ -1,8 +1,9 @@
 //! Operations of a language that says all itself as blocks of DIN/ISO: the blocks of a cycle become one.
 
+use bahn_path::Plane;
 use bahn_program::{
-    Compensation, CycleBlock, CycleWord, Distance, Feed, Header, ModalBlock, Modality, MotionKind, Operation,
-    Unit,
+    Compensation, CycleBlock, CycleWord, Distance, Feed, Header, ModalBlock, Modality, Motion, MotionKind,
+    Operation, Unit, Value, Word,
 };
 
 use crate::canonical::without_names;
@@ -31,8 +32,42 @@ pub(crate) fn cycle_block(operation: &Operation) -> Option<&CycleBlock> {
     }
 }
 
-/// What is written for operations that make one block.
-pub(crate) fn encoded(operations: &[Operation], lengthens: bool) -> Option<Operation> {
+/// The planes that a text has chosen up to a block: that of the tool, and that of the last centre.
+#[derive(Clone, Copy)]
+pub(crate) struct Planes {
+    tool: Plane,
+    pub centre: Plane,
+}
+
+impl Planes {
+    /// Before the first block.
+    pub fn start() -> Planes {
+        Planes {
+            tool: Plane::XY,
+            centre: Plane::XY,
+        }
+    }
+
+    /// A centre with two axes names its plane; one where the tool stands lies in that of the tool.
+    pub fn take(&mut self, operation: &Operation) {
+        match operation {
+            Operation::ToolCall { axis: Some(axis), .. } => {
+                self.tool = Plane::of_tool_axis(*axis).unwrap_or(self.tool);
+            }
+            Operation::CircleCentre(centre) => {
+                let mut axes = centre.axes().iter();
+                self.centre = match (axes.next(), axes.next()) {
+                    (Some(first), Some(second)) => Plane::of_axes(first, second).unwrap_or(self.tool),
+                    _ => self.tool,
+                };
+            }
+            _ => {}
+        }
+    }
+}
+
+/// What is written for operations that make one block, with the plane of the centre before them.
+pub(crate) fn encoded(operations: &[Operation], lengthens: bool, plane: Plane) -> Option<Operation> {
     let first = operations.first()?;
     if let Some(block) = cycle_block(first) {
         let incremental = operations.iter().filter_map(cycle_block).any(is_incremental);
@@ -62,8 +97,27 @@ pub(crate) fn encoded(operations: &[Operation], lengthens: bool) -> Option<Opera
             }
             Operation::Motion(motion)
         }
+        Operation::Motion(motion) if is_bare_circle(motion) => Operation::Motion(full_circle(motion, plane)),
         other => other.clone(),
     })
+}
+
+/// A circle without an end ends where it began; in DIN/ISO a block without words only chooses its function.
+fn is_bare_circle(motion: &Motion) -> bool {
+    motion.kind == MotionKind::Circle && motion.coordinates.is_empty()
+}
+
+/// A full circle, to where the tool stands in the axes of its plane.
+fn full_circle(motion: &Motion, plane: Plane) -> Motion {
+    let mut circle = motion.clone();
+    for axis in [plane.first, plane.second] {
+        let word = Word {
+            value: Value::Number(0.0),
+            incremental: true,
+        };
+        circle.coordinates.set(axis, word);
+    }
+    circle
 }
 
 /// What [`encoded`] comes back as.

@@ -6,6 +6,61 @@ use bahn_parameters::ControlModel;
 use bahn_program::Program;
 use support::*;
 
+/// A circle without an end ends where it began: G03 with both axes of its plane, 0 farther on. In the plane of Y as the tool axis
+/// these are Z and X.
+#[test]
+fn a_circle_without_an_end_is_a_full_one() {
+    for (tool_axis, begin, centre, written) in [
+        ("Z", "L X+10 Y+20", "CC X+0 Y+0", "G03 G91 X+0 Y+0"),
+        ("Y", "L X+10 Z+20", "CC X+0 Z+0", "G03 G91 X+0 Z+0"),
+        // The plane of a circle is that of its centre.
+        ("Z", "L X+10 Z+20", "CC X+0 Z+0", "G03 G91 X+0 Z+0"),
+        ("X", "L Y+10 Z+20", "CC Y+0 Z+0", "G03 G91 Y+0 Z+0"),
+    ] {
+        let source = program(
+            &format!(
+                "BEGIN PGM A MM\nTOOL CALL 1 {tool_axis} S500\n{begin} R0 F500\n{centre}\nC DR+\nC DR-\nEND PGM A MM\n"
+            ),
+            bahn_convert::Language::Plain,
+        );
+        let (made, _) = converted(&source, bahn_convert::Language::Iso);
+        assert!(made.text.contains(written), "{}", made.text);
+        let proof = there_and_back(&source, &settings(ControlModel::Tnc415b), &root());
+        assert_eq!((proof.elements, &proof.message), (4, &None), "{}", made.text);
+    }
+}
+
+/// A comment that is longer than a block may be becomes several, parted between words; nothing of it is lost.
+#[test]
+fn a_long_comment_becomes_several_blocks() {
+    let words = "A plate is milled round its outside with radius compensation, then drilled.";
+    let source = program(
+        &format!("BEGIN PGM A MM\n; {words}\n; {}\nEND PGM A MM\n", "x".repeat(100)),
+        bahn_convert::Language::Plain,
+    );
+    let limited = bahn_convert::Options {
+        characters_max: Some(64),
+        ..options()
+    };
+    let made = bahn_convert::convert(&source, bahn_convert::Language::Iso, &limited);
+    assert!(made.refused.is_empty(), "{:?}", made.refused);
+    assert!(
+        made.text.lines().all(|line| line.chars().count() <= 64),
+        "{}",
+        made.text
+    );
+    let comments: Vec<&str> = made
+        .text
+        .lines()
+        .filter_map(|line| Some(line.split_once("; ")?.1.trim_end_matches(" *")))
+        .collect();
+    let [one, other, long @ ..] = comments.as_slice() else {
+        panic!("{}", made.text)
+    };
+    assert_eq!(format!("{one} {other}"), words);
+    assert_eq!(long.concat(), "x".repeat(100));
+}
+
 /// What DIN/ISO has no function for, by the beginning of the block.
 const WITHOUT_WORD: [&str; 5] = [
     "TCH PROBE 5.",
