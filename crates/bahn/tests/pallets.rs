@@ -125,7 +125,11 @@ fn killed_and_started_again_the_pallet_is_selected() {
     let run = folder.bahn("run --machine m --script start.txt --no-graphics");
     let said = "TWO.D, the datum table that module 9090 selected, is missing";
     assert!(run.code() == 1 && run.err().contains(said), "{}", run.err());
-    assert!(run.err().contains("TWO.D, which is selected, is missing"), "{}", run.err());
+    assert!(
+        run.err().contains("TWO.D, which is selected, is missing"),
+        "{}",
+        run.err()
+    );
 }
 
 /// All faults of all tables, at their lines; a name that is nowhere, at its key.

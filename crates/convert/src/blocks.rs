@@ -1,16 +1,17 @@
 //! A program block by block in the other language.
 
 use bahn_parameters::MessageId;
+use bahn_path::Plane;
 use bahn_program::{
-    Block, BlockError, CycleWord, FormatOptions, InvalidBlock, NumberedBlock, Operation, Program,
-    format_block,
+    Block, BlockError, Compensation, CycleWord, FormatOptions, InvalidBlock, NumberedBlock, Operation,
+    Program, format_block,
 };
 
 use crate::canonical::{canonical, decorated};
 use crate::flow::{Flow, States};
 use crate::lower::{State, lower};
 use crate::reason::reason;
-use crate::to_iso::{Ways, cycle_block, encoded, expected, goes_on};
+use crate::to_iso::{Planes, cycle_block, encoded, expected, goes_on};
 use crate::{Language, Listed};
 
 /// How a program is written in the other language.
@@ -121,10 +122,18 @@ fn lowered(operation: &Operation, states: States) -> Result<Vec<Operation>, &'st
 
 /// What the blocks of the source become in DIN/ISO; those of a cycle are gathered.
 fn to_iso(program: &Program, writer: &mut Writer<'_>) {
-    let ways = Ways::of(program);
+    let lengthens = program.blocks().any(|numbered| match &numbered.block.operation {
+        Operation::Motion(motion) => matches!(
+            motion.compensation,
+            Some(Compensation::Lengthen | Compensation::Shorten)
+        ),
+        _ => false,
+    });
     let mut open: Vec<NumberedBlock> = Vec::new();
     let mut aside: Vec<NumberedBlock> = Vec::new();
+    let mut planes = Planes::start();
     for numbered in program.blocks() {
+        planes.take(&numbered.block.operation);
         let operations = operations_of(&open);
         let next = &numbered.block;
         if !open.is_empty() && matches!(next.operation, Operation::Comment(_)) {
@@ -136,14 +145,14 @@ fn to_iso(program: &Program, writer: &mut Writer<'_>) {
             open.push(numbered);
             continue;
         }
-        cycle_to_iso(&mut open, &mut aside, &ways, writer);
+        cycle_to_iso(&mut open, &mut aside, writer);
         if cycle_block(&numbered.block.operation).is_some() {
             open.push(numbered);
         } else {
-            block_to_iso(&[numbered], &ways, writer);
+            block_to_iso(&[numbered], lengthens, planes.centre, writer);
         }
     }
-    cycle_to_iso(&mut open, &mut aside, &ways, writer);
+    cycle_to_iso(&mut open, &mut aside, writer);
 }
 
 fn operations_of(blocks: &[NumberedBlock]) -> Vec<Operation> {
@@ -154,12 +163,7 @@ fn operations_of(blocks: &[NumberedBlock]) -> Vec<Operation> {
 }
 
 /// Writes the cycle that was gathered, and the comment blocks that came up in it: those before it that stood inside.
-fn cycle_to_iso(
-    open: &mut Vec<NumberedBlock>,
-    aside: &mut Vec<NumberedBlock>,
-    ways: &Ways,
-    writer: &mut Writer<'_>,
-) {
+fn cycle_to_iso(open: &mut Vec<NumberedBlock>, aside: &mut Vec<NumberedBlock>, writer: &mut Writer<'_>) {
     let last = open.last().map_or(0, |last| last.number);
     let (inside, behind): (Vec<_>, Vec<_>) = aside.drain(..).partition(|comment| comment.number < last);
     let open = std::mem::take(open);
@@ -167,30 +171,21 @@ fn cycle_to_iso(
         writer.comment(&comment.block);
     }
     if !open.is_empty() {
-        block_to_iso(&open, ways, writer);
+        block_to_iso(&open, false, Plane::XY, writer);
     }
     for comment in behind {
         writer.comment(&comment.block);
     }
 }
 
-fn block_to_iso(source: &[NumberedBlock], ways: &Ways, writer: &mut Writer<'_>) {
-    let operations = operations_of(source);
-    if let [
-        NumberedBlock {
-            block:
-                block @ Block {
-                    operation: Operation::Comment(text),
-                    ..
-                },
-            ..
-        },
-    ] = source
-        && writer.is_too_long(block, None)
+fn block_to_iso(source: &[NumberedBlock], lengthens: bool, plane: Plane, writer: &mut Writer<'_>) {
+    if let [numbered] = source
+        && matches!(numbered.block.operation, Operation::Comment(_))
     {
-        return writer.own_comment(text);
+        return writer.comment(&numbered.block);
     }
-    let Some(encoded) = encoded(&operations, ways) else {
+    let operations = operations_of(source);
+    let Some(encoded) = encoded(&operations, lengthens, plane) else {
         return;
     };
     let expected = expected(&operations, &encoded);
@@ -373,14 +368,15 @@ impl Writer<'_> {
         }
     }
 
+    /// A block that is a comment, in several where it is too long.
     fn comment(&mut self, block: &Block) {
         match &block.operation {
-            Operation::Comment(text) => self.own_comment(text),
+            Operation::Comment(text) if self.is_too_long(block, None) => self.own_comment(text),
             _ => self.push(block),
         }
     }
 
-    /// A comment in blocks of its own, as many as it needs; words stay whole where they fit.
+    /// A comment in blocks of its own, as many as it needs.
     fn own_comment(&mut self, text: &str) {
         let max = self.options.characters_max.map_or(usize::MAX, |max| {
             max.saturating_sub(COMMENT_FRAME).max(1) as usize
@@ -422,19 +418,20 @@ impl Writer<'_> {
     }
 }
 
-/// A text in pieces of so many characters at most, parted at blanks where there are any. An empty text is one piece.
+/// A text in pieces of so many characters at most, parted between words where that can be.
 fn wrapped(text: &str, max: usize) -> Vec<String> {
+    let characters: Vec<char> = text.chars().collect();
+    let mut rest = characters.as_slice();
     let mut pieces = Vec::new();
-    let mut rest: Vec<char> = text.chars().collect();
     while rest.len() > max {
-        let blank = rest.iter().take(max + 1).rposition(|c| *c == ' ');
-        let at = blank.filter(|at| *at > 0).unwrap_or(max);
-        let tail = rest.split_off(at);
-        pieces.push(rest.iter().collect::<String>().trim_end().to_owned());
-        rest = tail.into_iter().skip_while(|c| *c == ' ').collect();
+        let begin = rest.iter().take(max + 1);
+        let blank = begin.rev().position(|c| *c == ' ').map(|back| max - back);
+        let word = rest.iter().position(|c| *c != ' ').unwrap_or(0);
+        let cut = blank.filter(|at| *at > word).unwrap_or(max);
+        let (piece, behind) = rest.split_at(cut);
+        pieces.push(piece.iter().collect());
+        rest = behind.strip_prefix(&[' ']).unwrap_or(behind);
     }
-    if !rest.is_empty() || pieces.is_empty() {
-        pieces.push(rest.into_iter().collect());
-    }
+    pieces.push(rest.iter().collect());
     pieces
 }

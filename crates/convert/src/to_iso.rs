@@ -1,9 +1,9 @@
 //! Operations of a language that says all itself as blocks of DIN/ISO: the blocks of a cycle become one.
 
-use bahn_path::{Axis, Plane};
+use bahn_path::Plane;
 use bahn_program::{
     Compensation, CycleBlock, CycleWord, Distance, Feed, Header, ModalBlock, Modality, Motion, MotionKind,
-    Operation, Program, Unit, Value, Word,
+    Operation, Unit, Value, Word,
 };
 
 use crate::canonical::without_names;
@@ -32,42 +32,42 @@ pub(crate) fn cycle_block(operation: &Operation) -> Option<&CycleBlock> {
     }
 }
 
-/// What of a program decides how its blocks are written.
-pub(crate) struct Ways {
-    /// R+ and R- stand somewhere: an axis key is no line then.
-    lengthens: bool,
-    /// The working plane, where all its tools have one axis.
-    plane: Option<Plane>,
+/// The planes that a text has chosen up to a block: that of the tool, and that of the last centre.
+#[derive(Clone, Copy)]
+pub(crate) struct Planes {
+    tool: Plane,
+    pub centre: Plane,
 }
 
-impl Ways {
-    pub fn of(program: &Program) -> Ways {
-        let mut ways = Ways {
-            lengthens: false,
-            plane: Plane::of_tool_axis(Axis::Z),
-        };
-        let mut tool_axis = None;
-        for numbered in program.blocks() {
-            match &numbered.block.operation {
-                Operation::Motion(motion) => {
-                    ways.lengthens |= matches!(
-                        motion.compensation,
-                        Some(Compensation::Lengthen | Compensation::Shorten)
-                    );
-                }
-                Operation::ToolCall { axis: Some(axis), .. } => {
-                    let same = *tool_axis.get_or_insert(*axis) == *axis;
-                    ways.plane = Plane::of_tool_axis(*axis).filter(|_| same && ways.plane.is_some());
-                }
-                _ => {}
-            }
+impl Planes {
+    /// Before the first block.
+    pub fn start() -> Planes {
+        Planes {
+            tool: Plane::XY,
+            centre: Plane::XY,
         }
-        ways
+    }
+
+    /// A centre with two axes names its plane; one where the tool stands lies in that of the tool.
+    pub fn take(&mut self, operation: &Operation) {
+        match operation {
+            Operation::ToolCall { axis: Some(axis), .. } => {
+                self.tool = Plane::of_tool_axis(*axis).unwrap_or(self.tool);
+            }
+            Operation::CircleCentre(centre) => {
+                let mut axes = centre.axes().iter();
+                self.centre = match (axes.next(), axes.next()) {
+                    (Some(first), Some(second)) => Plane::of_axes(first, second).unwrap_or(self.tool),
+                    _ => self.tool,
+                };
+            }
+            _ => {}
+        }
     }
 }
 
-/// What is written for operations that make one block.
-pub(crate) fn encoded(operations: &[Operation], ways: &Ways) -> Option<Operation> {
+/// What is written for operations that make one block, with the plane of the centre before them.
+pub(crate) fn encoded(operations: &[Operation], lengthens: bool, plane: Plane) -> Option<Operation> {
     let first = operations.first()?;
     if let Some(block) = cycle_block(first) {
         let incremental = operations.iter().filter_map(cycle_block).any(is_incremental);
@@ -90,31 +90,34 @@ pub(crate) fn encoded(operations: &[Operation], ways: &Ways) -> Option<Operation
         Operation::End(header) => Operation::End(with_unit(header)),
         Operation::Motion(motion) if motion.kind == MotionKind::Paraxial => {
             // Without R+ and R- an axis key moves as L does.
-            let plain = matches!(motion.compensation, None | Some(Compensation::Off)) && !ways.lengthens;
+            let plain = matches!(motion.compensation, None | Some(Compensation::Off)) && !lengthens;
             let mut motion = motion.clone();
             if plain && motion.feed == Some(Feed::Max) {
                 motion.kind = MotionKind::Line;
             }
             Operation::Motion(motion)
         }
-        Operation::Motion(motion) if motion.kind == MotionKind::Circle && motion.coordinates.is_empty() => {
-            Operation::Motion(full_circle(motion, ways.plane))
-        }
+        Operation::Motion(motion) if is_bare_circle(motion) => Operation::Motion(full_circle(motion, plane)),
         other => other.clone(),
     })
 }
 
-/// `C DR+` goes all the way round. A block of DIN/ISO needs words for that: no way in either axis of the plane.
-fn full_circle(motion: &Motion, plane: Option<Plane>) -> Motion {
-    let mut motion = motion.clone();
-    for axis in plane.iter().flat_map(|plane| [plane.first, plane.second]) {
-        let stays = Word {
+/// A circle without an end ends where it began; in DIN/ISO a block without words only chooses its function.
+fn is_bare_circle(motion: &Motion) -> bool {
+    motion.kind == MotionKind::Circle && motion.coordinates.is_empty()
+}
+
+/// A full circle, to where the tool stands in the axes of its plane.
+fn full_circle(motion: &Motion, plane: Plane) -> Motion {
+    let mut circle = motion.clone();
+    for axis in [plane.first, plane.second] {
+        let word = Word {
             value: Value::Number(0.0),
             incremental: true,
         };
-        motion.coordinates.set(axis, stays);
+        circle.coordinates.set(axis, word);
     }
-    motion
+    circle
 }
 
 /// What [`encoded`] comes back as.

@@ -41,78 +41,9 @@ fn tools_are_changed_where_m06_stands_or_at_their_call() {
     says(
         "TOOL CALL 1 Z S500\nL Z+20 R0 FMAX M6\nTOOL CALL 2 Z S600\nL Z+30 FMAX\nTOOL CALL S700",
         &[
-            "T1", "S500", "G0 Z20", "M6", "G43", "T2", "M6", "G43", "S600", "G0 Z30", "S700", "M2",
+            "T1", "S500", "G0 Z20", "M6", "G43", "T2", "M6", "G43", "S600", "Z30", "S700", "M2",
         ],
     );
-}
-
-/// Nobody knows where a machine changes its tool: behind M6 every axis is brought back, in rapid traverse. Upwards the tool
-/// axis goes first, else last; a line in feed, an arc and a thread begin where the program stood.
-#[test]
-fn behind_a_tool_change_every_axis_is_written() {
-    let behind = |block: &str, expected: &[&str]| {
-        let begin = "TOOL CALL 1 Z S500\nL X+10 Y+20 R0 FMAX\nL Z+5 FMAX\nTOOL CALL 2 Z S500\n";
-        let first = [
-            "T1",
-            "M6",
-            "G43",
-            "S500",
-            "G0 X10 Y20",
-            "Z5",
-            "T2",
-            "M6",
-            "G43",
-            "S500",
-        ];
-        let expected: Vec<&str> = first.iter().chain(expected).chain(&["M2"]).copied().collect();
-        says(&format!("{begin}{block}"), &expected);
-    };
-    behind("L X+30 R0 FMAX", &["G0 X30 Y20", "Z5"]);
-    behind("L Z+50 R0 FMAX", &["G0 Z50", "X10 Y20"]);
-    behind("L Z+2 R0 FMAX", &["G0 X10 Y20", "Z2"]);
-    behind("L X+0 Y+0 Z+50 R0 FMAX", &["G0 Z50", "X0 Y0"]);
-    behind("L Z-3 R0 F100", &["G0 X10 Y20", "Z5", "G1 Z-3 F100"]);
-    behind(
-        "CC X+0 Y+20\nC X-10 Y+20 DR+ R0 F100",
-        &["G0 X10 Y20", "Z5", "G17 G3 X-10 Y20 I-10 J0 F100"],
-    );
-    behind(
-        "CYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -2\nCYCL DEF 17.2 DEPTH -10\nCYCL DEF 17.3 PITCH +1\nCYCL CALL",
-        &["G0 X10 Y20", "Z5", "M3", "G33.1 Z-7 K1", "M5"],
-    );
-    // Nothing moves between two changes.
-    behind(
-        "TOOL CALL 3 Z\nL X+30 R0 FMAX",
-        &["T3", "M6", "G43", "S500", "G0 X30 Y20", "Z5"],
-    );
-}
-
-/// The proof does not know either: a line that leaves an axis where the change was is found.
-#[test]
-fn an_axis_that_stays_at_the_tool_change_is_a_difference() {
-    let source = program(
-        "BEGIN PGM A MM\nTOOL CALL 1 Z S500\nL X+10 Y+20 Z+5 R0 FMAX\nTOOL CALL 2 Z S500\nL X+30 R0 FMAX\nEND PGM A MM\n",
-        Language::Plain,
-    );
-    let settings = settings(ControlModel::Tnc415b);
-    let options = linuxcnc::Options {
-        model: settings.model,
-        unit: source.unit(),
-        comments: false,
-        rapid_mm_min: 15_000.0,
-        user_functions: false,
-    };
-    let begin = || run(&source, &settings, &root());
-    let stop = Arc::new(AtomicBool::new(false));
-    let made = linuxcnc::write(&begin, &options, &stop);
-    let proof = |text: &str| linuxcnc::prove(&begin, text, "A.ngc", &options, &stop);
-    assert!(proof(&made.text).holds());
-    let (head, tail) = made.text.split_at(made.text.rfind("M6").unwrap());
-    for (word, left) in [("X30 Y20", "X30"), ("X30 Y20", "Y20"), ("\nZ5\n", "\n")] {
-        assert!(tail.contains(word), "{tail}");
-        let proof = proof(&format!("{head}{}", tail.replace(word, left)));
-        assert!(proof.first_difference.is_some(), "{word} became {left}");
-    }
 }
 
 #[test]
@@ -129,8 +60,7 @@ fn taps_and_threads_follow_the_spindle() {
             "M6",
             "G43",
             "S500",
-            "G0 X0 Y0",
-            "Z2",
+            "G0 X0 Y0 Z2",
             turn,
             "G33.1 Z-10 K0.75",
             "M5",
@@ -168,8 +98,7 @@ fn arcs_lie_in_their_planes_and_helices_have_turns() {
             "M6",
             "G43",
             "S500",
-            "G0 X0 Z0",
-            "Y0",
+            "G0 X0 Y0 Z0",
             // From (Z 0, X 0) about (Z 0, X 10): a quarter.
             "G18 G3 X10 Z10 K0 I10 F200",
             "G2 X10 Z10 K-10 I0",
@@ -177,8 +106,9 @@ fn arcs_lie_in_their_planes_and_helices_have_turns() {
             "M6",
             "G43",
             "S500",
-            "G0 X0 Y0",
-            "Z0",
+            "G0 X10 Y0",
+            "Z10",
+            "X0 Z0",
             "G17 G3 X0 Y0 Z-6 I5 J0 P3 F300",
             "M2",
         ],
@@ -201,7 +131,8 @@ fn stops_dwells_and_angles() {
             "M0",
             "M0",
             "G4 P1.5",
-            "C90 F360",
+            "G0 X1",
+            "G1 C90 F360",
             "X2",
             "M19 R45",
             "M2",
@@ -276,4 +207,116 @@ fn functions_of_the_machine_builder_may_be_those_of_the_user() {
             .collect();
         assert_eq!(left, ["the blank", "M90", "M105"]);
     }
+}
+
+/// The axes that a line names.
+fn moves(line: &str) -> Vec<char> {
+    let words = line.split_whitespace();
+    let axes = words
+        .filter_map(|word| word.chars().next())
+        .filter(|c| "XYZABC".contains(*c));
+    axes.collect()
+}
+
+/// A tool changer, an operator or a program M100 may leave the axes anywhere: every axis that the program has brought somewhere
+/// is brought back by G0, with the tool axis last, or first where the path begins with its retraction.
+#[test]
+fn every_axis_is_brought_back_behind_what_may_move_the_machine() {
+    let begin = "TOOL CALL 1 Z S500\nL Z+50 R0 FMAX\nL X+10 Y+20 FMAX\nL Z-5 F200\n";
+    let lines_behind = |mark: &str, blocks: &str| {
+        let (lines, _) = lines(&format!("{begin}{blocks}"));
+        let at = lines.iter().rposition(|line| line == mark).unwrap();
+        lines[at + 1..].to_vec()
+    };
+    // X alone moves: Y and Z as they stood, Z last.
+    for (mark, blocks) in [
+        ("S600", "L Z+50 FMAX\nTOOL CALL 2 Z S600\nL X+30 FMAX"),
+        ("M0", "L Z+50 FMAX\nSTOP\nL X+30 FMAX"),
+    ] {
+        let behind = lines_behind(mark, blocks);
+        assert_eq!(behind, ["X10 Y20", "Z50", "X30", "M2"], "{blocks}");
+    }
+    // In the workpiece: up first, nothing goes down to where the tool was.
+    let behind = lines_behind("S600", "TOOL CALL 2 Z S600\nL Z+50 FMAX\nL X+30 FMAX");
+    assert_eq!(behind, ["G0 Z50", "X10 Y20", "X30", "M2"]);
+    let behind = lines_behind("S600", "TOOL CALL 2 Z S600\nL X+30 Z+50 FMAX");
+    assert_eq!(behind, ["G0 Z50", "X30 Y20", "M2"]);
+    let behind = lines_behind("M0", "L Z+50 FMAX M17");
+    assert_eq!(behind, ["G0 Z50", "X10 Y20", "M2"]);
+    // Up by feed is up by feed: behind a stop the tool may stand where it was.
+    let behind = lines_behind("M0", "STOP\nL Z+50 F300");
+    assert_eq!(behind, ["Z50 F300", "G0 X10 Y20", "M2"]);
+}
+
+/// A line that leaves an axis out behind a tool change is found: the machine stands elsewhere there.
+#[test]
+fn the_proof_finds_an_axis_that_is_left_out_behind_a_tool_change() {
+    let text =
+        "TOOL CALL 1 Z S500\nL Z+50 R0 FMAX\nL X+10 Y+20 FMAX\nTOOL CALL 2 Z S600\nL X+30 F500\nL X+0 F500";
+    let source = program(
+        &format!("BEGIN PGM A MM\n{text}\nEND PGM A MM\n"),
+        Language::Plain,
+    );
+    let settings = settings(ControlModel::Tnc415b);
+    let (made, proof) = gcode(&source, &settings, &root());
+    assert!(proof.holds(), "{proof:?}");
+    let back = made.text.rfind("X10 Y20").unwrap();
+    let mut without = made.text.clone();
+    without.replace_range(back..back + "X10 Y20".len(), "X10");
+    let begin = || run(&source, &settings, &root());
+    let options = linuxcnc::Options {
+        model: settings.model,
+        unit: source.unit(),
+        comments: true,
+        rapid_mm_min: 15_000.0,
+        user_functions: false,
+    };
+    let proof = linuxcnc::prove(
+        &begin,
+        &without,
+        "A.ngc",
+        &options,
+        &Arc::new(AtomicBool::new(false)),
+    );
+    assert!(!proof.holds(), "{without}");
+}
+
+/// In all programs of the repository: between a tool change and the first cut every axis is said that was said before.
+#[test]
+fn no_program_of_the_repository_cuts_behind_a_tool_change_with_an_axis_left_out() {
+    let mut changes = 0;
+    for file in programs("H") {
+        let bytes = std::fs::read(&file).unwrap();
+        let source = bahn_program::Program::from_bytes(file.to_string_lossy(), bytes);
+        let folder = file.parent().unwrap();
+        let (made, _) = gcode_with(&source, &self::settings(ControlModel::Tnc415b), folder, true);
+        let (mut known, mut left) = (Vec::new(), Vec::new());
+        let mut motion = "";
+        for line in made
+            .text
+            .lines()
+            .map(|line| line.split([';', '(']).next().unwrap().trim())
+        {
+            for word in ["G0", "G1", "G2", "G3", "G33", "G33.1"] {
+                if line.split(' ').any(|of| of == word) {
+                    motion = word;
+                }
+            }
+            if line == "M6" {
+                left = std::mem::take(&mut known);
+                changes += usize::from(!left.is_empty());
+            }
+            let axes = moves(line);
+            left.retain(|axis| !axes.contains(axis));
+            // A retraction by feed alone moves the tool axis.
+            let cuts = !axes.is_empty() && motion != "G0" && (axes.len() > 1 || axes[0] != 'Z');
+            assert!(!cuts || left.is_empty(), "{}: {line}: {left:?}", file.display());
+            for axis in axes {
+                if !known.contains(&axis) {
+                    known.push(axis);
+                }
+            }
+        }
+    }
+    assert!(changes >= 9, "{changes}");
 }

@@ -4,6 +4,7 @@
 //! `said` is what of a run such a program can say; `write` writes it, `read` reads what was written, for the proof. What the
 //! words mean is public: the G and M code reference of LinuxCNC.
 
+mod back;
 mod options;
 mod read;
 mod said;

@@ -2,6 +2,7 @@
 
 use bahn_path::{Arc, Axis, Curve, FeedRate, Plane, Position, SpindleOrder};
 
+use super::back::elsewhere;
 use super::said::Said;
 use super::text::{turns, turns_only};
 
@@ -89,6 +90,9 @@ impl<'a> Reader<'a> {
                 .ok_or_else(|| format!("no line has the word {word} here"))?;
             }
             if let Some(said) = self.said(words)? {
+                if said.may_move_the_machine() {
+                    self.at = elsewhere(&self.at);
+                }
                 return Ok(Some(said));
             }
         }
@@ -105,11 +109,6 @@ impl<'a> Reader<'a> {
                 Said::Orient(_) => Said::Orient(words.r.ok_or("M19 has no angle")?),
                 Said::Stop { optional: false } if self.message.is_some() => {
                     Said::Refused(self.message.take().unwrap_or_default())
-                }
-                Said::Change => {
-                    // The machine changes its tool somewhere: an axis is nowhere until a line brings it to its place.
-                    self.at = Position::UNKNOWN;
-                    Said::Change
                 }
                 other => other,
             }));

@@ -8,10 +8,11 @@ use bahn_interpreter::{Interpreter, WarningKind};
 use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 use bahn_path::{
-    At, Axis, BlockRef, ControlFunction, Curve, FeedRate, Function, OverrideLaw, PathElement, PerAxis, Plane,
+    At, Axis, BlockRef, ControlFunction, Curve, FeedRate, Function, OverrideLaw, PathElement, Plane,
     Position, SpindleOrder, TechnologyFunction, Thread,
 };
 
+use super::back::Stand;
 use super::options::Options;
 use super::text::bare;
 use crate::Listed;
@@ -59,6 +60,16 @@ pub(super) enum Said {
     End,
 }
 
+impl Said {
+    /// Whether the machine may stand elsewhere behind it: at its tool changer, or where somebody has moved it.
+    pub fn may_move_the_machine(&self) -> bool {
+        matches!(
+            self,
+            Said::Change | Said::Stop { .. } | Said::User(_) | Said::Refused(_)
+        )
+    }
+}
+
 /// Runs a program and says what it does.
 pub(super) struct Sayer {
     run: Interpreter,
@@ -68,13 +79,8 @@ pub(super) struct Sayer {
     queue: VecDeque<(BlockRef, Said)>,
     /// Whether the tools are changed by an M06 behind their call, call by call.
     changes: VecDeque<bool>,
+    stand: Stand,
     overrides: bool,
-    /// The axis of the tool.
-    tool_axis: Option<Axis>,
-    /// Which axes a line has brought to a place.
-    brought: PerAxis<bool>,
-    /// The tool was changed since the last movement: nobody knows where the machine does that.
-    elsewhere: bool,
     /// The way into a thread whose way out comes next.
     tap: Option<(Position, Position, Thread)>,
     user_functions: bool,
@@ -132,10 +138,8 @@ impl Sayer {
             rapid_mm_min: options.rapid_mm_min,
             queue: VecDeque::new(),
             changes,
+            stand: Stand::new(),
             overrides: true,
-            tool_axis: None,
-            brought: PerAxis::default(),
-            elsewhere: false,
             tap: None,
             user_functions: options.user_functions,
             refused: Vec::new(),
@@ -203,6 +207,7 @@ impl Sayer {
     }
 
     fn say(&mut self, block: BlockRef, said: Said) {
+        self.stand.said(&said);
         self.queue.push_back((block, said));
     }
 
@@ -291,12 +296,9 @@ impl Sayer {
             .into_iter()
             .any(|axis| end[axis].is_finite() && start[axis] != end[axis]);
         if moves || matches!(curve, Curve::Arc(_)) {
-            if self.elsewhere && curve == Curve::Line && feed == FeedRate::Rapid {
-                self.brings(&start, &end);
-                return self.comes(element.block, &start, &end);
+            if self.brought_back(element.block, [&start, &end], &curve, feed) {
+                return;
             }
-            self.comes(element.block, &start, &start);
-            self.brings(&start, &end);
             let said = Said::Move {
                 curve,
                 start,
@@ -307,48 +309,12 @@ impl Sayer {
         }
     }
 
-    /// A movement brings the axes that move in it to a place; a cycle counts from 0 where an axis has none.
-    fn brings(&mut self, start: &Position, end: &Position) {
-        for axis in Axis::ALL {
-            self.brought[axis] |= end[axis].is_finite() && start[axis] != end[axis];
-        }
-    }
-
-    /// Behind a tool change: brings every axis to a place in rapid traverse, whatever place the change has left it at. Away from
-    /// where the program stood in the tool axis that goes first, else last, so that nothing plunges beside the way.
-    fn comes(&mut self, block: BlockRef, stood: &Position, to: &Position) {
-        if !std::mem::take(&mut self.elsewhere) {
-            return;
-        }
-        let mut to = *to;
-        for axis in Axis::ALL.into_iter().filter(|axis| !self.brought[*axis]) {
-            to[axis] = f64::NAN;
-        }
-        let mut first = to;
-        if let Some(tool) = self.tool_axis {
-            let leaves = to[tool] > stood[tool];
-            for axis in Axis::ALL.into_iter().filter(|axis| (*axis == tool) != leaves) {
-                first[axis] = f64::NAN;
-            }
-        }
-        let mut start = Position::UNKNOWN;
-        for end in [first, to] {
-            if Axis::ALL
-                .into_iter()
-                .any(|axis| end[axis].is_finite() && start[axis] != end[axis])
-            {
-                self.say(
-                    block,
-                    Said::Move {
-                        curve: Curve::Line,
-                        start,
-                        end,
-                        feed: FeedRate::Rapid,
-                    },
-                );
-                start = end;
-            }
-        }
+    /// Brings the axes back for a way where they may stand elsewhere; whether that was the way already.
+    fn brought_back(&mut self, block: BlockRef, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> bool {
+        let (lines, whole) = self.stand.back(way, curve, feed);
+        lines.into_iter().for_each(|line| self.say(block, line));
+        self.stand.goes(way[0], way[1]);
+        whole
     }
 
     /// Both ways of a tap are one line; the spindle turns by the cycle alone.
@@ -384,9 +350,11 @@ impl Sayer {
                 returns: true,
             };
         }
-        if let Said::Thread { start, .. } = said {
-            self.comes(element.block, &start, &start);
-        }
+        // Both ways of a tap end where it began.
+        let ends = if thread.retracts { start } else { end };
+        let begins = if thread.retracts { end } else { start };
+        self.brought_back(element.block, [&begins, &begins], &Curve::Line, FeedRate::Rapid);
+        self.stand.goes(&begins, &ends);
         self.say(element.block, Said::Spindle(order));
         self.say(element.block, said);
         self.say(element.block, Said::Spindle(SpindleOrder::Stop));
@@ -406,10 +374,10 @@ impl Sayer {
         match &function.function {
             Function::M(code) => self.m_function(block, *code),
             Function::Tool(call) => {
-                self.tool_axis = Some(call.axis);
+                self.stand.tool_axis(call.axis);
                 self.say(block, Said::Next(call.tool));
                 if self.changes.pop_front() == Some(false) {
-                    self.change(block);
+                    self.say(block, Said::Change);
                 }
                 if call.speed_rpm > 0.0 {
                     self.say(block, Said::Speed(call.speed_rpm));
@@ -446,11 +414,6 @@ impl Sayer {
         }
     }
 
-    fn change(&mut self, block: BlockRef) {
-        self.say(block, Said::Change);
-        self.elsewhere = true;
-    }
-
     fn m_function(&mut self, block: BlockRef, code: u16) {
         let spindle = match code {
             3 | 13 => Some(SpindleOrder::Clockwise),
@@ -470,7 +433,7 @@ impl Sayer {
             self.say(block, Said::Coolant(on));
         }
         match code {
-            6 => self.change(block),
+            6 => self.say(block, Said::Change),
             // The end says the same.
             2 | 30 | 1 => {}
             _ if spindle.is_some() || coolant.is_some() => {}

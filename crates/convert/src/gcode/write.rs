@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use bahn_path::{Arc, Axis, Curve, FeedRate, Position, SpindleOrder};
 use bahn_program::Unit;
 
+use super::back::elsewhere;
 use super::options::Options;
 use super::said::{STEPS, Said, Sayer, plane_word};
 use super::text::{bare, turns, turns_only};
@@ -74,6 +75,9 @@ impl Writer {
     /// one than before.
     pub fn said(&mut self, said: &Said, block: impl FnOnce() -> String) {
         let mut text = String::new();
+        if said.may_move_the_machine() {
+            self.at = elsewhere(&self.at);
+        }
         match said {
             Said::Move {
                 curve,
@@ -105,8 +109,6 @@ impl Writer {
             Said::Change => {
                 self.line("M6");
                 text.push_str("G43");
-                // Where the machine changes tools is its own matter: every word is written anew.
-                (self.at, self.motion) = (Position::UNKNOWN, "");
             }
             Said::Speed(rpm) => {
                 text.push('S');

@@ -1,0 +1,110 @@
+//! The way back of axes that may stand elsewhere.
+//!
+//! LinuxCNC's machine may leave for its tool changer at M6 and stay there (TOOL_CHANGE_POSITION, G28 or G30), and whoever goes
+//! on behind a stop or a function M100 to M199 may have moved it. What the control's path leaves out there, since the axis
+//! stands still, the text has to say.
+
+use bahn_path::{Axis, Curve, FeedRate, Position};
+
+use super::said::Said;
+
+/// Where the machine stands in the proof when it may stand anywhere, mm or degrees: for each axis somewhere else, and nowhere
+/// that a program goes. An axis that no line has brought anywhere stays unknown.
+pub(super) fn elsewhere(at: &Position) -> Position {
+    let mut elsewhere = *at;
+    for axis in at.known().iter() {
+        elsewhere[axis] = 1e6 + 1e3 * axis.index() as f64;
+    }
+    elsewhere
+}
+
+/// Where the text has brought the axes.
+pub(super) struct Stand {
+    at: Position,
+    tool_axis: Axis,
+    away: bool,
+}
+
+impl Stand {
+    pub fn new() -> Stand {
+        Stand {
+            at: Position::UNKNOWN,
+            tool_axis: Axis::Z,
+            away: false,
+        }
+    }
+
+    pub fn tool_axis(&mut self, axis: Axis) {
+        self.tool_axis = axis;
+    }
+
+    /// What was said may move the machine.
+    pub fn said(&mut self, said: &Said) {
+        if said.may_move_the_machine() {
+            self.at = elsewhere(&self.at);
+            self.away = true;
+        }
+    }
+
+    /// An axis that gets its first position is brought there; one that stands at its first is not in the text.
+    pub fn goes(&mut self, start: &Position, end: &Position) {
+        for axis in end.known().iter() {
+            if self.at[axis].is_finite() || start[axis] != end[axis] {
+                self.at[axis] = end[axis];
+            }
+        }
+    }
+
+    /// The lines that bring every axis back for a way, and whether they are the way already.
+    ///
+    /// The tool axis comes last, down to where the way begins. A way that retracts it begins with that: the tool does not go
+    /// back to where it was in the workpiece first.
+    pub fn back(&mut self, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, bool) {
+        if !std::mem::take(&mut self.away) {
+            return (Vec::new(), false);
+        }
+        let [start, end] = way;
+        let tool = self.tool_axis;
+        let moves = |axis: &Axis| end[*axis].is_finite() && start[*axis] != end[*axis];
+        let alone = Axis::ALL.into_iter().filter(moves).all(|axis| axis == tool);
+        let retracts =
+            matches!(curve, Curve::Line) && end[tool] > start[tool] && (alone || feed == FeedRate::Rapid);
+        let others = |axis: &Axis| *axis != tool;
+        let only = |axis: &Axis| *axis == tool;
+        let mut lines = Vec::new();
+        match retracts {
+            true => {
+                self.line(end, &only, feed, &mut lines);
+                self.line(end, &others, FeedRate::Rapid, &mut lines);
+            }
+            false => {
+                self.line(start, &others, FeedRate::Rapid, &mut lines);
+                self.line(start, &only, FeedRate::Rapid, &mut lines);
+            }
+        }
+        // An axis that the way brings to its first position is not brought back.
+        let whole = end
+            .known()
+            .iter()
+            .all(|axis| self.at[axis] == end[axis] || !moves(&axis));
+        (lines, retracts && whole)
+    }
+
+    /// A line of some axes, among those that stand somewhere.
+    fn line(&mut self, to: &Position, of: &dyn Fn(&Axis) -> bool, feed: FeedRate, lines: &mut Vec<Said>) {
+        let start = self.at;
+        for axis in self.at.known().iter().filter(of) {
+            if to[axis].is_finite() {
+                self.at[axis] = to[axis];
+            }
+        }
+        if self.at.known().iter().any(|axis| start[axis] != self.at[axis]) {
+            lines.push(Said::Move {
+                curve: Curve::Line,
+                start,
+                end: self.at,
+                feed,
+            });
+        }
+    }
+}
