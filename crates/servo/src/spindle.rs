@@ -209,11 +209,7 @@ impl Spindle {
     /// one goes the way said, and the shorter one when it is within the window MP3420 already
     /// [000:5867-5873] [000:16120-16160].
     pub fn orient(&mut self, angle_deg: f64, rpm: f64, way: Way) {
-        let turning = if self.in_position() {
-            0.0
-        } else {
-            self.physical_sign() * self.ramp_volts
-        };
+        let turning = self.turning();
         let direction = match way {
             _ if turning != 0.0 => turning.signum(),
             Way::In(rotation) => rotation.sign(),
@@ -237,13 +233,24 @@ impl Spindle {
         }
     }
 
+    /// What turns the spindle: positive as M03. The voltage by which a loop holds it in its place does not.
+    fn turning(&self) -> f64 {
+        match self.mode {
+            Mode::Lead => self.lead.profile_deg_min(),
+            Mode::Orientation(orientation) if orientation.reached => 0.0,
+            _ => self.physical_sign() * self.ramp_volts,
+        }
+    }
+
     /// Leads the spindle to an angle on the scale of [`Spindle::turned_deg`] for the end of the contour cycle
     /// that begins; once in each of them, before its first servo step. The angles bring their own ramps. It
     /// stays led, and stands at the last one, until something else is asked of it.
     pub fn lead(&mut self, angle_deg: f64) {
         if self.mode != Mode::Lead {
+            // What holds it is asked of the mode that ends.
+            let held_deg = self.held_deg();
             self.go_over(Mode::Lead);
-            self.lead.begin(self.held_deg());
+            self.lead.begin(held_deg);
         }
         if angle_deg.is_finite() {
             self.lead.command(angle_deg);
