@@ -174,6 +174,22 @@ struct ServoStep {
     z: f64,
 }
 
+impl ServoStep {
+    fn seen(&self) -> Seen {
+        Seen {
+            angle: self.turns * 360.0,
+            z: self.z,
+            rpm: 0.0,
+        }
+    }
+}
+
+/// The greatest change of the voltage from one servo step to the next, V.
+fn greatest_step(steps: &[ServoStep]) -> f64 {
+    let volts = steps.windows(2).map(|pair| pair[1].volts - pair[0].volts);
+    volts.fold(0.0, |greatest, volts| f64::max(greatest, volts.abs()))
+}
+
 impl Plant for Recorder<'_> {
     fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
         self.machine.exchange(step, commands, measured);
@@ -242,26 +258,62 @@ CYCL CALL
                 }
             }
             let steps = &recorder.steps[coupled.unwrap()..free];
-            let volts = steps.windows(2).map(|pair| pair[1].volts - pair[0].volts);
-            let greatest = volts.fold(0.0, |greatest: f64, volts| greatest.max(volts.abs()));
+            let greatest = greatest_step(steps);
             let name = format!("thread {threads}, {milliseconds} ms");
             assert!(
                 greatest <= 0.006 * reserve,
                 "{name}: {greatest} V in a servo step"
             );
-            let seen: Vec<Seen> = steps
-                .iter()
-                .map(|s| Seen {
-                    angle: s.turns * 360.0,
-                    z: s.z,
-                    rpm: 0.0,
-                })
-                .collect();
+            let seen: Vec<Seen> = steps.iter().map(ServoStep::seen).collect();
             let off = self::greatest(&deviations(&seen));
             assert!(off < TOLERANCE, "{name}: {off} mm off the thread");
             threads += 1;
         }
         assert_eq!(rig.messages(), [""; 0]);
+    }
+}
+
+/// In a thread nothing but the thread moves the spindle: what the PLC asks of it meanwhile, to jog (M2490, M2491), to turn
+/// (M2501), to be oriented (M2712), M04, does nothing, and the tool stays in the thread (inferred).
+#[test]
+fn the_plc_does_not_turn_a_spindle_in_a_thread() {
+    for marker in ["M2490", "M2491", "M2501", "M2712", "M2486"] {
+        let mut build = rigid("");
+        let others = if marker == "M2486" {
+            "       L     M1999\n       R     M2485\n       R     M2487\n"
+        } else {
+            ""
+        };
+        build.plc = build.plc.replace(
+            "       CM    PANEL\n",
+            &format!(
+                "       CM    PANEL\n       L     I134\n       AN    M1999\n       S     M1999\n{others}       L     M1999\n       S     {marker}\n"
+            ),
+        );
+        let mut rig = ready(build);
+        rig.start();
+        rig.until(60.0, "M2095", |rig| rig.bit("M2095"));
+        rig.until(30.0, "in the thread", |rig| observe(rig, "S.rpm") > 0.9 * RPM);
+        rig.event("key Y+ press");
+        let mut recorder = Recorder {
+            machine: &mut rig.machine,
+            steps: Vec::new(),
+        };
+        for _ in 0..2000 {
+            rig.control.prepare();
+            rig.control.cycle(&mut recorder);
+        }
+        let steps = std::mem::take(&mut recorder.steps);
+        assert!(rig.bit("M1999") && !rig.bit("M2095"), "{marker}");
+        let out = steps.iter().position(|s| s.volts < -3.5).unwrap();
+        assert!(
+            greatest_step(&steps[..out]) <= 0.006 * 3.0,
+            "{marker}: {}",
+            greatest_step(&steps[..out])
+        );
+        let seen: Vec<Seen> = steps[..out].iter().map(ServoStep::seen).collect();
+        let off = greatest(&deviations(&seen));
+        assert!(off < TOLERANCE, "{marker}: {off} mm off the thread");
     }
 }
 
