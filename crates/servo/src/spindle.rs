@@ -209,11 +209,7 @@ impl Spindle {
     /// one goes the way said, and the shorter one when it is within the window MP3420 already
     /// [000:5867-5873] [000:16120-16160].
     pub fn orient(&mut self, angle_deg: f64, rpm: f64, way: Way) {
-        let turning = if self.in_position() {
-            0.0
-        } else {
-            self.physical_sign() * self.ramp_volts
-        };
+        let turning = self.turning();
         let direction = match way {
             _ if turning != 0.0 => turning.signum(),
             Way::In(rotation) => rotation.sign(),
@@ -237,13 +233,49 @@ impl Spindle {
         }
     }
 
+    /// Turns a spindle that stands by a way in degrees from where it is held, at MP3520.1; the reference mark need not
+    /// be known. `false` for one that turns.
+    pub fn turn_by(&mut self, way_deg: f64) -> bool {
+        if self.turning() != 0.0 || !way_deg.is_finite() {
+            return false;
+        }
+        let target_deg = self.held_deg() + way_deg;
+        self.go_over(Mode::Orientation(Orientation {
+            angle_deg: target_deg,
+            rpm: self.parameters.orientation.speed_rpm,
+            direction: way_deg.signum(),
+            phase: Phase::Controlled { target_deg },
+            reached: false,
+            steps: 0,
+        }));
+        true
+    }
+
+    /// How it turns, degrees/min, positive as M03; 0 for a spindle that stands. What a loop does to hold it in its place
+    /// is no turning, nor is a speed with which a loop still comes to a standstill within the window (inferred).
+    fn turning(&self) -> f64 {
+        let parameters = &self.parameters.orientation;
+        let slow = self
+            .dynamics(parameters.speed_rpm)
+            .velocity(parameters.window_deg);
+        match self.mode {
+            Mode::Lead => self.lead.profile_deg_min(),
+            Mode::Orientation(orientation) if orientation.reached => 0.0,
+            _ => Some(self.encoder.rpm() * 360.0)
+                .filter(|speed| speed.abs() > slow)
+                .unwrap_or(0.0),
+        }
+    }
+
     /// Leads the spindle to an angle on the scale of [`Spindle::turned_deg`] for the end of the contour cycle
     /// that begins; once in each of them, before its first servo step. The angles bring their own ramps. It
     /// stays led, and stands at the last one, until something else is asked of it.
     pub fn lead(&mut self, angle_deg: f64) {
         if self.mode != Mode::Lead {
+            // What holds it is asked of the mode that ends.
+            let held_deg = self.held_deg();
             self.go_over(Mode::Lead);
-            self.lead.begin(self.held_deg());
+            self.lead.begin(held_deg);
         }
         if angle_deg.is_finite() {
             self.lead.command(angle_deg);

@@ -77,6 +77,53 @@ impl Bench {
         self.run(1.0);
     }
 
+    /// Leads it on by so many volts more in each millisecond, for contour cycles, from where it is held; the
+    /// greatest change of the voltage in a servo step.
+    fn lead(&mut self, volts_ms: f64, cycles: u32) -> f64 {
+        let cycle_ms = f64::from(self.timing.contour_us()) * 1e-3;
+        // V to degrees/ms.
+        let rate = volts_ms * self.rpm_per_volt * 6e-3;
+        let from = self.spindle.held_deg();
+        let mut greatest = 0.0f64;
+        for k in 1..=cycles {
+            let t = f64::from(k) * cycle_ms;
+            self.spindle.lead(from + 0.5 * rate * t * t);
+            for _ in 0..self.timing.steps() {
+                let before = self.spindle.volts();
+                let now = self.step();
+                greatest = greatest.max((now - before).abs());
+            }
+        }
+        greatest
+    }
+
+    /// Leads it up to half of the greatest speed along 0.1 V/ms, and down to standstill; the greatest change of the
+    /// voltage in a servo step.
+    fn thread(&mut self) -> f64 {
+        let cycle_ms = f64::from(self.timing.contour_us()) * 1e-3;
+        let rate = 0.1 * self.rpm_per_volt * 6e-3;
+        let from = self.spindle.held_deg();
+        let ramp = 15.0 * cycle_ms;
+        let angle = |t: f64| {
+            let left = (2.0 * ramp - t).max(0.0);
+            if t < ramp {
+                0.5 * rate * t * t
+            } else {
+                rate * ramp * ramp - 0.5 * rate * left * left
+            }
+        };
+        let mut greatest = 0.0f64;
+        for k in 1..=100 {
+            self.spindle.lead(from + angle(f64::from(k) * cycle_ms));
+            for _ in 0..self.timing.steps() {
+                let before = self.spindle.volts();
+                let now = self.step();
+                greatest = greatest.max((now - before).abs());
+            }
+        }
+        greatest
+    }
+
     /// Angle of the table of the test from the reference mark, degrees.
     fn angle(&self) -> f64 {
         ((self.turns - self.mark_turns) * 360.0).rem_euclid(360.0)
@@ -370,6 +417,109 @@ fn after_an_orientation_the_offset_goes_by_1_mv_in_7_seconds() {
     let second = lag(&bench);
     // 7 steps of 0.1526 mV = 1.07 mV of 5 mV: 0.096 degrees.
     assert!((first - second - 0.096).abs() < 0.02, "{first} {second}");
+}
+
+/// A thread takes the spindle over where it is held, whatever it did before: standing still after M05, in the
+/// loop of an orientation, behind an earlier thread, after an EMERGENCY STOP in a thread. MP3410.3 = 0.1 V/ms are
+/// 0.06 V in a servo step of 0.6 ms [000:6056] [000:5790]; the loop adds kv of a lag that changes by the way of two
+/// steps at most, 16.7/s · 1.2 ms = 2 %.
+#[test]
+fn a_thread_takes_the_spindle_over_where_it_is_held() {
+    type Before = fn(&mut Bench);
+    let befores: [(&str, Before); 6] = [
+        ("M05", |bench| {
+            bench.turning(333.0, Rotation::M3);
+            bench.spindle.rotate(Rotation::M5);
+            bench.run(1.0);
+        }),
+        ("orientation", |bench| {
+            bench.turning(333.0, Rotation::M3);
+            bench.spindle.orient(77.0, 0.0, Way::Shortest);
+            bench.run(3.0);
+        }),
+        ("jog", |bench| {
+            bench.spindle.jog(Rotation::M4);
+            bench.run(0.5);
+            bench.spindle.rotate(Rotation::M5);
+            bench.run(0.5);
+        }),
+        ("M2501", |bench| {
+            bench.spindle.turn(Rotation::M3);
+            bench.run(1.0);
+            bench.spindle.turn(Rotation::M5);
+            bench.run(1.0);
+        }),
+        ("an earlier thread", |bench| {
+            bench.thread();
+            bench.turning(500.0, Rotation::M4);
+            bench.spindle.rotate(Rotation::M5);
+            bench.run(1.0);
+        }),
+        ("EMERGENCY STOP in a thread", |bench| {
+            bench.lead(0.1, 200);
+            bench.spindle.rotate(Rotation::M5);
+            bench.spindle.set_enabled(false);
+            bench.run(0.5);
+            // Turned by hand while the drive is off.
+            bench.turns += 0.4;
+            bench.run(0.1);
+            bench.spindle.set_enabled(true);
+        }),
+    ];
+    for (name, before) in befores {
+        let entries = ["7130=0.5", "7140=0.5", "3510.0=1500", "3210.0=9", "3410.3=0.1"];
+        let mut bench = Bench::new(&entries);
+        before(&mut bench);
+        let held = bench.spindle.held_deg();
+        assert!((held - bench.spindle.turned_deg()).abs() < 0.05, "{name}");
+        let greatest = bench.thread();
+        let allowed = 0.1 * 0.6 * 1.02;
+        assert!(
+            greatest <= allowed,
+            "{name}: {greatest} V in a servo step of {allowed}"
+        );
+        assert!(greatest > 0.05, "{name}: it was on its ramp: {greatest}");
+    }
+}
+
+/// From one thread to the next orientation the spindle goes the shorter way, as from standstill: what the loop puts
+/// out to hold it is no turning [000:6122].
+#[test]
+fn a_led_spindle_that_stands_goes_the_shorter_way_to_its_orientation() {
+    for (start, target, way) in [(10.0, 350.0, -20.0), (350.0, 10.0, 20.0), (300.0, 210.0, -90.0)] {
+        for push in [-0.1, 0.0, 0.1] {
+            let mut bench = Bench::new(DIAGRAM);
+            bench.turning(500.0, Rotation::M3);
+            bench.spindle.orient(start, 0.0, Way::Shortest);
+            bench.run(3.0);
+            let held = bench.spindle.held_deg();
+            bench.lead(0.0, 100);
+            bench.turns += push / 360.0;
+            bench.lead(0.0, 1);
+            bench.spindle.orient(target, 0.0, Way::Shortest);
+            bench.run(3.0);
+            assert!(bench.spindle.in_position());
+            let turned = bench.spindle.turned_deg() - held;
+            assert!((turned - way).abs() < 0.05, "{start} to {target}: {turned}");
+        }
+    }
+}
+
+/// A spindle that has never turned, and does not know its reference mark, turns by 180 degrees and back [000:7654]; one that
+/// turns does not.
+#[test]
+fn a_standing_spindle_turns_by_a_way() {
+    let mut bench = Bench::new(DIAGRAM);
+    bench.mark_turns = 0.9;
+    bench.run(0.1);
+    for (way, turned) in [(180.0, 180.0), (-180.0, 0.0)] {
+        assert!(bench.spindle.turn_by(way) && bench.spindle.orienting());
+        bench.run(2.0);
+        assert!(bench.spindle.in_position() && bench.spindle.angle_deg().is_none());
+        assert!((bench.turns * 360.0 - turned).abs() < 0.05, "{}", bench.turns);
+    }
+    bench.turning(100.0, Rotation::M3);
+    assert!(!bench.spindle.turn_by(180.0));
 }
 
 /// Led through 3 turns there and back at 600 rpm, ramps of 0.1 s: an ideal drive follows the velocity, the loop
