@@ -91,7 +91,8 @@ impl Live {
         });
         let published = Arc::clone(&shared);
         let thread = std::thread::spawn(move || {
-            station.run_by_the_wall(Arc::clone(&published.alarm));
+            station.wait_outside(Arc::clone(&published.alarm));
+            station.run_by_the_wall();
             run(&mut station, &mut replay, &taken, &published);
             station
         });

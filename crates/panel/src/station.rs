@@ -126,12 +126,16 @@ impl Station {
         station
     }
 
-    /// Runs by the clock on the wall from now on, as fast as the operator chose. Whoever lets cycles pass waits for
-    /// [`Station::rest`]; nothing waits for long work while this is set, since something urgent does.
-    pub(crate) fn run_by_the_wall(&mut self, urgent: Arc<AtomicBool>) {
-        self.by_the_wall = true;
+    /// Whoever lets cycles pass waits for [`Station::rest`] himself; nothing waits for long work while this is set, since
+    /// something urgent does.
+    pub(crate) fn wait_outside(&mut self, urgent: Arc<AtomicBool>) {
         self.host.pace_outside();
         self.host.break_off_by(urgent);
+    }
+
+    /// Runs by the clock on the wall from now on, as fast as the operator chose.
+    pub fn run_by_the_wall(&mut self) {
+        self.by_the_wall = true;
         self.graphics.run_beside();
         self.host.set_clock(self.clock());
     }
