@@ -2,15 +2,18 @@
 
 use std::io::{self, Write};
 
-use crate::UsageError;
+use crate::diagnostics::printable_lines;
+use crate::{UsageError, refused};
 
-/// Prints text to standard output.
+/// Prints text for people to standard output. Names and texts in it may come from anywhere: nothing in it steers the
+/// terminal.
 pub(crate) fn print(text: &str) -> Result<(), UsageError> {
-    print_bytes(text.as_bytes())
+    print_bytes(printable_lines(text).as_bytes())
 }
 
-/// Prints bytes to standard output. A reader that has gone away is no error; a full disk is one.
+/// Prints bytes to standard output: files, JSON, and what has colours of ours. A reader that has gone away is no error; a full disk is one.
 pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), UsageError> {
+    refused::has_printed();
     let mut out = io::stdout().lock();
     finish(out.write_all(bytes).and_then(|()| out.flush()))
 }
@@ -24,11 +27,19 @@ pub(crate) fn json(report: &impl serde::Serialize) -> Result<String, UsageError>
 
 /// Prints a report as JSON.
 pub(crate) fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
-    print(&json(report)?)
+    print_bytes(json(report)?.as_bytes())
+}
+
+/// Prints a value as one line of JSON, since lines of others may stand before it and behind it.
+pub(crate) fn print_json_line(value: &impl serde::Serialize) -> Result<(), UsageError> {
+    let line = serde_json::to_string(value)
+        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
+    print_bytes((line + "\n").as_bytes())
 }
 
 /// Prints something that writes itself piece by piece.
 pub(crate) fn print_display(value: &impl std::fmt::Display) -> Result<(), UsageError> {
+    refused::has_printed();
     let mut out = io::BufWriter::with_capacity(1 << 16, io::stdout().lock());
     finish(write!(out, "{value}").and_then(|()| out.flush()))
 }

@@ -3,7 +3,9 @@
 use std::io::{self, IsTerminal, Write};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-pub(crate) use bahn_host::{FileFault, Marked, Severity, printable};
+pub(crate) use bahn_host::{FileFault, Marked, Severity, printable, printable_lines};
+
+use crate::refused;
 
 /// Faults of a file that are printed; the others are counted.
 pub(crate) const PRINTED_MAX: usize = 100;
@@ -13,7 +15,8 @@ const MAX_COLUMNS: usize = 200;
 
 /// Prints a fault as rustc does, with an empty line behind it.
 pub(crate) fn print_fault(fault: &FileFault) {
-    print_line(&render(fault, is_styled()));
+    refused::fault(fault);
+    print_styled(&render(fault, is_styled()));
     print_line("");
 }
 
@@ -96,8 +99,9 @@ pub(crate) fn print_usage_error(text: &str) {
     } else {
         "error"
     };
+    refused::error(text);
     let text: Vec<String> = text.lines().map(printable).collect();
-    print_line(&format!("{level}: {}", text.join("\n  ")));
+    print_styled(&format!("{level}: {}", text.join("\n  ")));
 }
 
 /// Prints a line to standard error, with nothing in it that would steer the terminal.
@@ -105,8 +109,16 @@ pub(crate) fn print_text(text: &str) {
     print_line(&printable(text));
 }
 
-/// Prints a line to standard error; nobody can be told when that fails.
+/// Prints lines to standard error, with nothing in them that would steer the terminal.
 pub(crate) fn print_line(text: &str) {
+    if text.starts_with("error: ") {
+        refused::error(text);
+    }
+    print_styled(&printable_lines(text));
+}
+
+/// Prints what has colours of ours; nobody can be told when that fails.
+fn print_styled(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 

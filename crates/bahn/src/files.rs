@@ -44,7 +44,7 @@ pub(crate) fn keep_inputs(inputs: &[&Path], outputs: &[(&str, &Path)]) -> Result
 /// into a file.
 pub(crate) fn write_or_print(text: &str, output: Option<&Path>, force: bool) -> Result<bool, UsageError> {
     let Some(path) = output else {
-        console::print(text)?;
+        console::print_bytes(text.as_bytes())?;
         return Ok(false);
     };
     if path.is_file() && !force {

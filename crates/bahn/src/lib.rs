@@ -55,6 +55,7 @@ mod path_csv;
 mod path_svg;
 mod plc;
 mod progress;
+mod refused;
 mod report;
 mod report_text;
 mod run;
@@ -84,6 +85,8 @@ use bahn_host::HostError;
 ///
 /// The first argument is the name of the command, as in [`std::env::args_os`].
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    refused::begin(&arguments);
     let command = match cli::parse(arguments) {
         Ok(command) => command,
         Err(code) => return code.into(),
@@ -114,13 +117,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Completions(options) => manual::completions(&options, cli::whole_command()),
         cli::Command::Man(options) => manual::man(&options, cli::whole_command()),
     };
-    match result {
-        Ok(outcome) => outcome.into(),
-        Err(error) => {
-            diagnostics::print_usage_error(&error.to_string());
-            Outcome::WrongUse.into()
-        }
+    let outcome = result.unwrap_or_else(|error| {
+        diagnostics::print_usage_error(&error.to_string());
+        Outcome::WrongUse
+    });
+    if outcome != Outcome::Fine {
+        refused::end();
     }
+    outcome.into()
 }
 
 /// How a command ended.

@@ -2,6 +2,8 @@
 
 use std::io::IsTerminal;
 
+use crate::diagnostics::printable_lines;
+
 /// How text is shown.
 #[derive(Clone, Copy)]
 pub(crate) struct Style(bool);
@@ -40,9 +42,9 @@ impl Style {
 
     fn wrap(self, code: &str, text: &str) -> String {
         if self.0 {
-            format!("\x1b[{code}m{text}\x1b[0m")
+            format!("\x1b[{code}m{}\x1b[0m", printable_lines(text))
         } else {
-            text.to_owned()
+            printable_lines(text)
         }
     }
 }

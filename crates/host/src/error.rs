@@ -23,6 +23,9 @@ pub enum HostError {
     /// What was done since a saved state is not known any more.
     #[error("what was done since is not known any more")]
     Forgotten,
+    /// Something urgent broke off what was repeated: the machine is at an earlier moment than was asked for.
+    #[error("what was to be repeated was broken off")]
+    BrokenOff,
     /// A file cannot be read, written or used; which one and why.
     #[error("{0}")]
     File(String),

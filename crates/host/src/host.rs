@@ -1,7 +1,8 @@
 //! A machine that is switched on.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use bahn_control::{
     Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, ServoSampler, Setup, Snapshot,
@@ -61,6 +62,8 @@ pub struct Host<P = Machine> {
     sink: Option<Box<dyn Sink + Send>>,
     clock: Clock,
     pace: Option<Pace>,
+    /// Whoever lets cycles pass waits for the clock.
+    paced_outside: bool,
     break_off: Arc<AtomicBool>,
     notices: Feed<Stamped>,
     snapshots: Feed<Snapshot>,
@@ -149,6 +152,7 @@ impl<P: Operable> Host<P> {
             sink: None,
             clock: Clock::Free,
             pace: None,
+            paced_outside: false,
             break_off: Arc::default(),
             notices: Feed::new(NOTICES),
             snapshots: Feed::new(SNAPSHOTS),
@@ -233,7 +237,10 @@ impl<P: Operable> Host<P> {
         let kept = self.keep().and(self.keep_digitized());
         self.look();
         if let Some(pace) = self.pace.as_mut().filter(|_| !self.repeats) {
-            pace.cycle(self.control.time_us());
+            pace.note(self.control.time_us());
+            if !self.paced_outside {
+                pace.wait();
+            }
         }
         kept
     }
@@ -492,6 +499,17 @@ impl<P: Operable> Host<P> {
         self.background.read_beside(&mut self.control, beside);
     }
 
+    /// From now on no cycle waits for the clock on the wall: whoever lets them pass waits as long as [`Host::rest`] says,
+    /// and can do something else meanwhile.
+    pub fn pace_outside(&mut self) {
+        self.paced_outside = true;
+    }
+
+    /// How long it is until the time of the last cycle is over by the clock on the wall.
+    pub fn rest(&self) -> Duration {
+        self.pace.as_ref().map_or(Duration::ZERO, Pace::rest)
+    }
+
     /// From now on a cycle waits for what programs need to be read and computed, also by the clock on the wall: what is
     /// given then at the same times gives the same bits again, at the price of cycles that come late.
     pub fn be_exact(&mut self) {
@@ -551,9 +569,14 @@ impl<P: Operable> Host<P> {
         self.sink.take().map_or(Ok(()), |mut sink| sink.finish())
     }
 
-    /// While this is set, nothing waits for a computation that takes long.
+    /// While this is set, nothing waits for a computation that takes long, and nothing that was is repeated.
     pub fn break_off_by(&mut self, flag: Arc<AtomicBool>) {
         self.break_off = flag;
+    }
+
+    /// It is set.
+    pub fn is_broken_off(&self) -> bool {
+        self.break_off.load(Ordering::Relaxed)
     }
 
     /// Keeps the path elements of runs of all channels that begin from now on, for [`Host::take_path`].

@@ -140,4 +140,4 @@ pub use saved::{Course, Saved, Timeline};
 pub use script::{Action, Base, Line, Script, Stage};
 pub use table_edit::{LineChange, delete_line, set_line, with_column};
 pub use table_kind::{Content as CellContent, KnownColumn, PlainTable, TableForm};
-pub use text::printable;
+pub use text::{printable, printable_lines};

@@ -78,6 +78,8 @@ pub(crate) struct Pace {
     factor: f64,
     /// Time of the machine at the end of the cycle before, µs, and processor time of the thread behind it.
     before: (u64, Duration),
+    /// When the time of the cycle before is over, since it started.
+    due: Duration,
     pub lateness: Lateness,
 }
 
@@ -96,14 +98,15 @@ impl Pace {
                 origin_us: time_us,
                 factor,
                 before: (time_us, processor_time()),
+                due: Duration::ZERO,
                 lateness: Lateness::new(),
             }),
             _ => None,
         }
     }
 
-    /// A contour cycle is done whose time has ended: waits for it, or notes that it is over.
-    pub fn cycle(&mut self, time_us: u64) {
+    /// A contour cycle is done whose time has ended: notes when it is over, and by how much it is late.
+    pub fn note(&mut self, time_us: u64) {
         let (before_us, used) = self.before;
         let used = processor_time().saturating_sub(used);
         let cycle_ms = time_us.saturating_sub(before_us) as f64 * 1e-3 / self.factor;
@@ -111,21 +114,29 @@ impl Pace {
         self.lateness.overrun_cycles += u64::from(used_ms > cycle_ms);
         self.lateness.longest_ms = self.lateness.longest_ms.max(used_ms);
         let passed_us = time_us.saturating_sub(self.origin_us);
-        let due = Duration::try_from_secs_f64(passed_us as f64 * 1e-6 / self.factor).unwrap_or(Duration::MAX);
-        let now = self.started.elapsed();
+        self.due =
+            Duration::try_from_secs_f64(passed_us as f64 * 1e-6 / self.factor).unwrap_or(Duration::MAX);
         self.lateness.cycles += 1;
-        match due.checked_sub(now) {
-            Some(rest) => {
-                if let Some(sleep) = rest.checked_sub(SPIN) {
-                    std::thread::sleep(sleep);
-                }
-                while self.started.elapsed() < due {
-                    std::hint::spin_loop();
-                }
-            }
-            None => self.lateness.add((now - due).as_secs_f64() * 1e3),
+        if let Some(late) = self.started.elapsed().checked_sub(self.due) {
+            self.lateness.add(late.as_secs_f64() * 1e3);
         }
         self.before = (time_us, processor_time());
+    }
+
+    /// How long it is until the time of the cycle that was noted is over.
+    pub fn rest(&self) -> Duration {
+        self.due.saturating_sub(self.started.elapsed())
+    }
+
+    /// Waits until then.
+    pub fn wait(&mut self) {
+        if let Some(sleep) = self.rest().checked_sub(SPIN) {
+            std::thread::sleep(sleep);
+        }
+        while self.started.elapsed() < self.due {
+            std::hint::spin_loop();
+        }
+        self.before.1 = processor_time();
     }
 }
 
@@ -152,9 +163,11 @@ mod tests {
         while processor_time() - used < Duration::from_millis(10) && busy.elapsed() < Duration::from_secs(60)
         {
         }
-        pace.cycle(3_000);
+        pace.note(3_000);
+        pace.wait();
         for cycle in 1..=20 {
-            pace.cycle(100_000 + cycle * 3_000);
+            pace.note(100_000 + cycle * 3_000);
+            pace.wait();
         }
         assert_eq!(pace.lateness.overrun_cycles, 1);
         assert!(pace.lateness.longest_ms >= 10.0);

@@ -102,8 +102,8 @@ impl<P: Operable + Clone> Host<P> {
     /// machine had come. What was given later is forgotten.
     ///
     /// # Errors
-    /// [`HostError::Logged`], [`HostError::Forgotten`], [`HostError::NotStored`]. In the first two cases
-    /// everything stays as it is.
+    /// [`HostError::Logged`], [`HostError::Forgotten`], [`HostError::NotStored`], [`HostError::BrokenOff`]. In the
+    /// first two cases everything stays as it is.
     pub fn replay(&mut self, saved: &Saved<P>, time_us: u64) -> Result<(), HostError> {
         if self.is_logged() {
             return Err(HostError::Logged);
@@ -160,6 +160,9 @@ impl<P: Operable + Clone> Host<P> {
             }
             if at_end {
                 break Ok(());
+            }
+            if self.is_broken_off() {
+                break Err(HostError::BrokenOff);
             }
             if let Err(error) = self.step() {
                 break Err(error);

@@ -1,5 +1,10 @@
 //! Text that steers no terminal.
 
+/// Lines of text of which each is [`printable`].
+pub fn printable_lines(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
+}
+
 /// Text in which every character that would steer the terminal is shown by a picture of it, one for one: the
 /// start of an escape sequence as \u{241b}. A tab is a blank.
 pub fn printable(text: &str) -> String {

@@ -438,7 +438,28 @@ fn a_program_without_end() {
     assert_eq!(stored.get("1.H"), None);
 }
 
-/// Three times NAK is E, three wrong blocks are M, silence is N [000:17584-17599].
+/// "The program name may contain up to 16 characters" [000:17482]: a longer one is not sent, and none is stored.
+#[test]
+fn names_have_sixteen_characters_at_most() {
+    let (fits, long) = ("ABCDEFGHIJKLMNOP", "ABCDEFGHIJKLMNOPQ");
+    assert_eq!((fits.len(), long.len()), (16, 17));
+    let names = [fits, long].map(|name| format!("{name}.H"));
+    let there = files(&[(&names[0], ONE), (&names[1], ONE)]);
+    let control = &mut writing(settings(Mode::Fe2), &there, &[&names[0]]);
+    let script = format!("T: SOH H{fits}A ETB BCC DC1\nEND\nT: EOT");
+    assert_eq!(
+        converse(Role::Control, control, &script),
+        ["PROGRAM INCOMPLETE", "broken off"]
+    );
+    let control = &mut writing(settings(Mode::Fe2), &there, &[&names[1]]);
+    let told = converse(Role::Control, control, "");
+    assert!(
+        told.len() == 2 && told[0].contains(long) && told[1] == "broken off",
+        "{told:?}"
+    );
+}
+
+/// NAK three times from the device is E, three times to it M, silence is N [000:17584-17599].
 #[test]
 fn three_times_and_no_more() {
     let there = files(&[("1.H", ONE)]);
@@ -453,7 +474,7 @@ fn three_times_and_no_more() {
 
     let asked = "T: SOH H1E ETB BCC DC1\nP: ACK\n";
     let wrong = "P: STX \"0 BEGIN PGM 1 MM\" ETB BAD DC1\n";
-    let script = format!("{asked}{wrong}T: NAK\n{wrong}T: NAK\n{wrong}T: EOT");
+    let script = format!("{asked}{wrong}T: NAK\n{wrong}T: NAK\n{wrong}T: NAK EOT");
     let control = &mut reading(settings(Mode::Fe2), &Memory::default(), selected("1.H"));
     assert_eq!(
         converse(Role::Control, control, &script),

@@ -4,6 +4,7 @@ use bahn_dialogue::Key;
 use bahn_machine::KeyAction;
 use serde::{Deserialize, Serialize};
 
+use crate::station::EMERGENCY_STOP;
 use crate::transfer::TransferNews;
 
 /// Something that the operator does.
@@ -29,7 +30,7 @@ pub enum Input {
     Speed(f64),
     /// Time stands, or goes on.
     Pause(bool),
-    /// So many contour cycles, while time stands.
+    /// So many contour cycles pass, also while time stands; 10,000 wait at most.
     Cycles(u32),
     /// To a moment since power-on, s, of this way or of a branch; time stands there.
     GoTo(f64, Option<u32>),
@@ -43,13 +44,17 @@ pub enum Input {
     Transfer(TransferNews),
 }
 
+impl Input {
+    /// It does not wait behind other inputs, nor for work that takes long.
+    pub fn is_urgent(&self) -> bool {
+        matches!(self, Input::Machine(name, _) if name == EMERGENCY_STOP)
+    }
+}
+
 /// Why an input was refused, in words.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Refusal(pub String);
-
-/// Contour cycles that one input asks for at most: 30 s of a TNC 415.
-const CYCLES_MAX: u32 = 10_000;
 
 /// An input as JSON. Exactly one of its fields is set, beside `down`, `factor` and `branch`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
@@ -116,7 +121,6 @@ impl TryFrom<InputText> for Input {
 
     fn try_from(text: InputText) -> Result<Input, Refusal> {
         let factor = text.factor.unwrap_or(3);
-        let cycles = |cycles: u32| Input::Cycles(cycles.min(CYCLES_MAX));
         let news = |text: String| text.parse().map(Input::Transfer).map_err(Refusal);
         let found = [
             text.key.map(|name| key(name, text.down)),
@@ -128,7 +132,7 @@ impl TryFrom<InputText> for Input {
             text.power.map(Input::Power),
             text.speed.map(Input::Speed),
             text.pause.map(Input::Pause),
-            text.cycles.map(cycles),
+            text.cycles.map(Input::Cycles),
             text.go_to.map(|time_s| Input::GoTo(time_s, text.branch)),
             text.lesson
                 .map(|name| Input::Lesson((!name.is_empty()).then_some(name))),

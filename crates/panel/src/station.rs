@@ -6,6 +6,8 @@ mod transfers;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
@@ -25,6 +27,7 @@ use crate::screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen};
 use crate::session::Recorder;
 use crate::settings::Settings;
 use crate::site::Site;
+use crate::steps::{Steps, StepsEnd, Ticket};
 use crate::timeline::Past;
 use crate::transfer::Transfers;
 use crate::why::Waits;
@@ -52,6 +55,7 @@ pub struct Station {
     speed: f64,
     by_the_wall: bool,
     paused: bool,
+    steps: Steps,
     is_on: bool,
     /// Less than a minute of each machine time, µs.
     timers_us: [u64; 3],
@@ -91,6 +95,7 @@ impl Station {
             speed: 1.0,
             by_the_wall: false,
             paused: false,
+            steps: Steps::default(),
             is_on: true,
             timers_us: [0; 3],
             recorder: None,
@@ -121,11 +126,23 @@ impl Station {
         station
     }
 
+    /// Whoever lets cycles pass waits for [`Station::rest`] himself; nothing waits for long work while this is set, since
+    /// something urgent does.
+    pub(crate) fn wait_outside(&mut self, urgent: Arc<AtomicBool>) {
+        self.host.pace_outside();
+        self.host.break_off_by(urgent);
+    }
+
     /// Runs by the clock on the wall from now on, as fast as the operator chose.
     pub fn run_by_the_wall(&mut self) {
         self.by_the_wall = true;
         self.graphics.run_beside();
         self.host.set_clock(self.clock());
+    }
+
+    /// How long it is until the next cycle by the clock on the wall.
+    pub(crate) fn rest(&self) -> Duration {
+        self.host.rest()
     }
 
     /// The clock by which the machine runs.
@@ -172,11 +189,9 @@ impl Station {
             }
             Input::Power(on) => self.power(*on),
             Input::Speed(factor) => self.set_speed(*factor)?,
-            Input::Pause(paused) => self.paused = *paused,
+            Input::Pause(paused) => self.pause(*paused),
             Input::Cycles(cycles) => {
-                for _ in 0..*cycles {
-                    self.cycle().map_err(|error| Refusal(error.to_string()))?;
-                }
+                self.ask_for_steps(*cycles);
             }
             Input::GoTo(time_s, branch) => self.go_to_in(*time_s, *branch)?,
             Input::Lesson(name) => self.begin_lesson(name.as_deref())?,
@@ -192,6 +207,7 @@ impl Station {
     /// # Errors
     /// When what survives power-off cannot be written; the machine goes on all the same.
     pub fn cycle(&mut self) -> Result<(), HostError> {
+        self.steps.pass();
         let keys = self.host.control().oscilloscope();
         let sampler = self.graphics.scope.sampler(keys);
         let cycled = self.plc.cycle(&mut self.host, sampler);
@@ -230,9 +246,42 @@ impl Station {
         }
     }
 
-    /// Time stands.
-    pub fn is_paused(&self) -> bool {
-        self.paused
+    /// Time stands: the operator lets it, and no cycles are asked for.
+    pub fn stands(&self) -> bool {
+        self.paused && !self.steps.wait()
+    }
+
+    /// Cycles that are asked for.
+    pub(crate) fn steps(&self) -> &Steps {
+        &self.steps
+    }
+
+    fn pause(&mut self, paused: bool) {
+        self.steps.break_off(StepsEnd::Paused);
+        self.set_going(|station| station.paused = paused);
+    }
+
+    /// The same as [`Input::Cycles`], for whoever waits for them.
+    pub(crate) fn begin_steps(&mut self, cycles: u32) -> Ticket {
+        let ticket = self.steps.clone().ask(cycles);
+        // They can always be asked for.
+        let _ = self.input(&Input::Cycles(cycles));
+        ticket
+    }
+
+    /// So many cycles are to pass.
+    fn ask_for_steps(&mut self, cycles: u32) -> Ticket {
+        self.set_going(|station| station.steps.ask(cycles))
+    }
+
+    /// Time that stood is not made up for when it goes on.
+    fn set_going<T>(&mut self, what: impl FnOnce(&mut Station) -> T) -> T {
+        let stood = self.stands();
+        let done = what(self);
+        if stood && !self.stands() {
+            self.host.set_clock(self.clock());
+        }
+        done
     }
 
     /// Everything is on the medium: the station ends.

@@ -116,6 +116,8 @@ impl Past {
 
     /// Goes to a moment of this way or of a branch; the machine stands there. The lesson of that way comes with it.
     ///
+    /// What went wrong on the way there, if anything, in words.
+    ///
     /// # Errors
     /// When there is no such branch, or its beginning is forgotten; everything stays as it is then.
     pub fn go_to(
@@ -124,7 +126,7 @@ impl Past {
         lesson: &mut Option<LessonRun>,
         time_us: u64,
         branch: Option<u32>,
-    ) -> Result<(), String> {
+    ) -> Result<Option<String>, String> {
         let place = match branch {
             None => None,
             Some(number) => {
@@ -160,7 +162,7 @@ impl Past {
             None => present,
         };
         self.enter(host, lesson, way);
-        gone.map_err(|error| error.to_string())
+        Ok(gone.err().map(|error| error.to_string()))
     }
 
     /// The machine is on this way now.

@@ -5,10 +5,13 @@ use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
-use bahn_panel::{Input, InputText, Refusal, Station, language_code, language_of_code, texts_around};
+use bahn_panel::{
+    Input, InputText, Refusal, Station, Stepped, language_code, language_of_code, texts_around,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::pictures::{PIXELS, SIDE};
 use crate::shared::Shared;
 
 /// `GET /api/station`.
@@ -83,9 +86,6 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    /// Longest side that is drawn (inferred).
-    const MOST: u32 = 3840;
-
     fn width() -> u32 {
         800
     }
@@ -93,28 +93,38 @@ impl Size {
     fn height() -> u32 {
         600
     }
+
+    fn is_drawn(&self) -> bool {
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        self.width.max(self.height) <= SIDE && pixels <= PIXELS
+    }
 }
 
 /// `GET /api/graphics.png`: what the graphics show.
 pub(crate) async fn graphics(State(shared): State<Shared>, Query(size): Query<Size>) -> Response {
-    let (width, height) = (size.width.min(Size::MOST), size.height.min(Size::MOST));
-    let drawn = tokio::task::spawn_blocking(move || {
-        let picture = shared.link.with(Station::picture)?;
-        Ok::<_, Refusal>(picture.map(|picture| picture.png(width, height)))
+    if !size.is_drawn() {
+        let why = format!("a picture has {PIXELS} pixels at most, and {SIDE} along a side");
+        return (StatusCode::BAD_REQUEST, why).into_response();
+    }
+    let link = shared.link.clone();
+    let drawn = shared.pictures.draw(move || {
+        let picture = link.with(Station::picture)?;
+        Ok::<_, Refusal>(picture.map(|picture| picture.png(size.width, size.height)))
     });
     match drawn.await {
-        Ok(Ok(Some(Ok(Some(png))))) => {
+        Some(Ok(Some(Ok(Some(png))))) => {
             ([(CONTENT_TYPE, "image/png"), (CACHE_CONTROL, "no-store")], png).into_response()
         }
-        Ok(Ok(Some(Err(error)))) => (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
+        Some(Ok(Some(Err(error)))) => (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
         // There is nothing to be seen, which is no fault of who asks.
-        Ok(Ok(None | Some(Ok(None)))) => StatusCode::NO_CONTENT.into_response(),
-        Ok(Err(refusal)) => refused(&refusal),
-        Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
+        Some(Ok(None | Some(Ok(None)))) => StatusCode::NO_CONTENT.into_response(),
+        Some(Err(refusal)) => refused(&refusal),
+        None => (StatusCode::TOO_MANY_REQUESTS, "too many wait for pictures").into_response(),
     }
 }
 
-/// `POST /api/key` and `POST /api/command`: an input; the answer has the screen behind it.
+/// `POST /api/key` and `POST /api/command`: an input; the answer has the screen behind it, and what became of contour
+/// cycles that were asked for.
 pub(crate) async fn input(State(shared): State<Shared>, body: String) -> Response {
     let input = serde_json::from_str::<InputText>(&body)
         .map_err(|error| Refusal(error.to_string()))
@@ -130,11 +140,31 @@ pub(crate) async fn input(State(shared): State<Shared>, body: String) -> Respons
         }
     };
     let link = shared.link.clone();
-    match tokio::task::spawn_blocking(move || link.input(input)).await {
-        Ok(Ok(())) => Json(json!({"ok": true, "serial": shared.link.screen().serial})).into_response(),
+    let done = tokio::task::spawn_blocking(move || match input {
+        Input::Cycles(cycles) => link.steps(cycles).map(Some),
+        other => link.input(other).map(|()| None),
+    });
+    match done.await {
+        Ok(Ok(stepped)) => Json(Done {
+            ok: true,
+            serial: shared.link.screen().serial,
+            stepped,
+        })
+        .into_response(),
         Ok(Err(refusal)) => refused(&refusal),
         Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
     }
+}
+
+/// An input was taken.
+#[derive(Serialize)]
+struct Done {
+    ok: bool,
+    /// Number of the screen.
+    serial: u64,
+    /// What has become of cycles that were asked for.
+    #[serde(flatten)]
+    stepped: Option<Stepped>,
 }
 
 fn refused(refusal: &Refusal) -> Response {

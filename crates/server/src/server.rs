@@ -5,26 +5,24 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::DefaultBodyLimit;
 use axum::middleware;
 use axum::routing::{any, get, post};
-use axum::serve::ListenerExt as _;
 use bahn_panel::{Link, Live, Refusal};
 use tokio::net::{TcpListener, TcpSocket};
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
 
 use crate::about::About;
-use crate::access::Access;
+use crate::access::{Access, Tokens};
 use crate::part::PartFeed;
 use crate::regions::Regions;
 use crate::shared::Shared;
-use crate::{api, assets, gate, socket};
+use crate::{api, assets, door, gate, socket};
 
-/// Largest body of a request, bytes.
-const BODY: usize = 64 << 10;
 /// Viewers at most.
 const VIEWERS: usize = 32;
+/// Those of them who may only look: the other places are kept for who operates.
+const LOOKERS: usize = 24;
 /// What is under way to a viewer who reads slowly, bytes: what is newer than that he gets at once when he has it, instead of
 /// megabytes of what was.
 const UNDERWAY: u32 = 256 << 10;
@@ -37,17 +35,20 @@ const QUIET: Duration = Duration::from_secs(1);
 pub struct ServerOptions {
     /// The address; port 0 takes a free one.
     pub listen: SocketAddr,
-    /// What others than this computer must know; needed for any address but loopback.
-    pub token: Option<String>,
+    /// What others than this computer must know; one is needed for any address but loopback.
+    pub tokens: Tokens,
 }
 
 impl ServerOptions {
     /// Whether the address may be listened on.
     ///
     /// # Errors
-    /// [`ServerError::NoToken`].
+    /// [`ServerError::NoToken`], [`ServerError::OneToken`].
     pub fn check(&self) -> Result<(), ServerError> {
-        match self.listen.ip().is_loopback() || self.token.is_some() {
+        if self.tokens.any() && self.tokens.operate == self.tokens.look {
+            return Err(ServerError::OneToken);
+        }
+        match self.listen.ip().is_loopback() || self.tokens.any() {
             true => Ok(()),
             false => Err(ServerError::NoToken(self.listen)),
         }
@@ -60,6 +61,9 @@ pub enum ServerError {
     /// Others can reach the address, and there is no token.
     #[error("{0} can be reached by others: it needs a token")]
     NoToken(SocketAddr),
+    /// Who looks would operate.
+    #[error("the token for looking is the one for operating")]
+    OneToken,
     /// The address cannot be listened on.
     #[error("cannot listen on {0}: {1}")]
     Address(SocketAddr, std::io::Error),
@@ -105,15 +109,13 @@ impl Server {
             about,
             crew: Arc::default(),
             viewers: Arc::new(Semaphore::new(VIEWERS)),
-            access: Arc::new(Access::new(address, options.token)),
+            lookers: Arc::new(Semaphore::new(LOOKERS)),
+            pictures: Arc::default(),
+            access: Arc::new(Access::new(address, options.tokens)),
         };
         let router = router(shared);
-        // A screen behind the number of its key would wait until the viewer has acknowledged that, 40 ms.
-        let listener = listener.tap_io(|stream| drop(stream.set_nodelay(true)));
-        runtime.spawn(async move {
-            // It ends with the runtime.
-            let _ = axum::serve(listener, router).await;
-        });
+        // It ends with the runtime.
+        runtime.spawn(door::serve(listener, router));
         Ok(Server {
             live,
             address,
@@ -170,7 +172,6 @@ fn router(shared: Shared) -> Router {
         .route("/api/key", post(api::input))
         .route("/api/command", post(api::input))
         .route("/ws", any(socket::open))
-        .layer(DefaultBodyLimit::max(BODY))
         .layer(middleware::from_fn_with_state(shared.clone(), gate::guard))
         .with_state(shared)
 }

@@ -9,6 +9,7 @@ use crate::about::About;
 use crate::access::Access;
 use crate::crew::Crew;
 use crate::part::PartFeed;
+use crate::pictures::Pictures;
 use crate::regions::Regions;
 
 /// What all requests share.
@@ -20,5 +21,8 @@ pub(crate) struct Shared {
     pub part: PartFeed,
     pub crew: Arc<Mutex<Crew>>,
     pub viewers: Arc<Semaphore>,
+    /// Places of viewers who may only look.
+    pub lookers: Arc<Semaphore>,
+    pub pictures: Arc<Pictures>,
     pub access: Arc<Access>,
 }

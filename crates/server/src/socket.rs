@@ -6,17 +6,20 @@
 //! `{"hand_over":true}`, and `{"part":true}` to look at the part that is being cut. What a viewer is too slow for is left
 //! out: he gets what is newest when he has taken what was sent before.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
-use axum::extract::{Query, State};
+use axum::extract::{Extension, Query, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use bahn_panel::{Input, InputText};
 use serde::{Deserialize, Serialize};
 
-use crate::crew::{Crew, Taking};
+use crate::access::Role;
+use crate::crew::{Crew, Id, Taking};
+use crate::gate::LOOKS;
 use crate::part::Looking;
 use crate::regions::{message, region};
 use crate::shared::Shared;
@@ -27,13 +30,35 @@ const MESSAGE: usize = 16 << 10;
 const RATE: u32 = 400;
 /// A viewer that asks for the part again is sent all of it behind this time (inferred).
 const AGAIN: Duration = Duration::from_millis(500);
-/// Length of a name.
+/// Length of a name, and of a key.
 const NAME: usize = 64;
+/// Length of a key at least.
+const KEY: usize = 16;
 
 #[derive(Deserialize)]
 pub(crate) struct Who {
     #[serde(default)]
     name: String,
+    /// Who knows it is whoever came with it before.
+    key: Option<String>,
+}
+
+impl Who {
+    /// What is wrong with it.
+    fn fault(&self) -> Option<&'static str> {
+        let fits = |text: &str, others: &str| {
+            text.len() <= NAME
+                && text
+                    .chars()
+                    .all(|character| character.is_ascii_alphanumeric() || others.contains(character))
+        };
+        let is_key = |key: &String| key.len() >= KEY && fits(key, "-_");
+        if self.name.is_empty() || !fits(&self.name, "-_ ") {
+            return Some("a viewer has a name of letters and digits");
+        }
+        let wrong = self.key.as_ref().is_some_and(|key| !is_key(key));
+        wrong.then_some("a key has 16 to 64 letters and digits")
+    }
 }
 
 /// What a viewer sends.
@@ -51,64 +76,77 @@ struct Sent {
 
 /// Who operates, as one viewer sees it.
 #[derive(Serialize)]
-struct Role<'a> {
+struct Told<'a> {
+    may_operate: bool,
     operates: bool,
     operator: Option<&'a str>,
     asks: Option<&'a str>,
 }
 
-/// `GET /ws?name=...`.
+/// `GET /ws?name=...&key=...`.
 pub(crate) async fn open(
     State(shared): State<Shared>,
+    Extension(role): Extension<Role>,
     Query(who): Query<Who>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    let Ok(permit) = shared.viewers.clone().try_acquire_owned() else {
+    if let Some(fault) = who.fault() {
+        return (StatusCode::BAD_REQUEST, fault).into_response();
+    }
+    let looks = match role {
+        Role::Look => shared.lookers.clone().try_acquire_owned().map(Some),
+        Role::Operate => Ok(None),
+    };
+    let (Ok(viewer), Ok(looks)) = (shared.viewers.clone().try_acquire_owned(), looks) else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many viewers").into_response();
     };
-    let fits = !who.name.is_empty() && who.name.len() <= NAME;
-    if !fits
-        || !who
-            .name
-            .chars()
-            .all(|character| character.is_ascii_alphanumeric() || "-_ ".contains(character))
-    {
-        return (
-            StatusCode::BAD_REQUEST,
-            "a viewer has a name of letters and digits",
-        )
-            .into_response();
-    }
     upgrade
         .max_message_size(MESSAGE)
         .max_frame_size(MESSAGE)
         .on_upgrade(move |socket| async move {
-            let _permit = permit;
-            let taken = lock(&shared.crew).come(&who.name);
-            let mut viewer = Viewer {
-                taken,
-                name: who.name,
-                shared,
-                seen: 0,
-                role: Vec::new(),
-                looked: Instant::now(),
-                looking: None,
-                rate: Rate::default(),
-            };
-            viewer.follow(socket).await;
-            lock(&viewer.shared.crew).go(&viewer.name);
+            let _places = (viewer, looks);
+            attend(shared, role, who, socket).await;
         })
 }
 
+/// Attends to a viewer until he goes.
+async fn attend(shared: Shared, role: Role, who: Who, socket: WebSocket) {
+    static ALONE: AtomicU64 = AtomicU64::new(0);
+    // Without a key he is somebody else each time; no key has such a sign.
+    let comes_again = who.key.is_some();
+    let id = who
+        .key
+        .unwrap_or_else(|| format!("#{}", ALONE.fetch_add(1, Ordering::Relaxed)));
+    let taken = lock(&shared.crew).come(&id, &who.name, role);
+    let mut viewer = Viewer {
+        taken,
+        id,
+        role,
+        shared,
+        seen: 0,
+        told: Vec::new(),
+        looked: Instant::now(),
+        looking: None,
+        rate: Rate::default(),
+    };
+    viewer.follow(socket).await;
+    let mut crew = lock(&viewer.shared.crew);
+    crew.go(&viewer.id);
+    if !comes_again {
+        crew.forget(&viewer.id);
+    }
+}
+
 struct Viewer {
-    name: String,
+    id: Id,
+    role: Role,
     shared: Shared,
     /// Serial of the last screen that was sent.
     seen: u64,
     /// Number of the last input that was taken.
     taken: u64,
-    /// The role that was sent.
-    role: Vec<u8>,
+    /// What was sent of the crew.
+    told: Vec<u8>,
     /// When he last asked for the part.
     looked: Instant,
     /// He looks at the part that is being cut.
@@ -179,22 +217,26 @@ impl Viewer {
             }
             return self.taken_message();
         }
+        if self.role < Role::Operate && (sent.operate.is_some() || sent.hand_over.is_some()) {
+            return refused(LOOKS);
+        }
         match (sent.operate, sent.hand_over) {
-            (Some(_), _) => lock(&self.shared.crew).ask(&self.name),
-            (_, Some(yes)) => lock(&self.shared.crew).answer(&self.name, yes),
+            (Some(_), _) => lock(&self.shared.crew).ask(&self.id),
+            (_, Some(yes)) => lock(&self.shared.crew).answer(&self.id, yes),
             (None, None) => return self.input(sent).await,
         }
         self.taken_message()
     }
 
     async fn input(&mut self, sent: Sent) -> Message {
-        let order = lock(&self.shared.crew).order(&self.name);
+        let order = lock(&self.shared.crew).order(&self.id);
         let _turn = order.lock().await;
-        let taking = lock(&self.shared.crew).takes(&self.name, sent.n);
+        let taking = lock(&self.shared.crew).takes(&self.id, sent.n);
         self.taken = self.taken.max(sent.n);
         match taking {
             Taking::Twice => return self.taken_message(),
             Taking::NotOperator => return refused("somebody else operates"),
+            Taking::Looks => return refused(LOOKS),
             Taking::New => {}
         }
         let input = serde_json::from_value::<InputText>(sent.input.into())
@@ -224,15 +266,16 @@ impl Viewer {
 
     fn news_of_the_crew(&mut self) -> Option<Message> {
         let crew = lock(&self.shared.crew);
-        let (operator, asks) = crew.roles();
-        let role = Role {
-            operates: operator == Some(&self.name),
+        let (operator, asks) = crew.names();
+        let told = Told {
+            may_operate: self.role >= Role::Operate,
+            operates: crew.is_operator(&self.id),
             operator,
             asks,
         };
-        let encoded = alone("crew", &role);
-        (encoded != self.role).then(|| {
-            self.role.clone_from(&encoded);
+        let encoded = alone("crew", &told);
+        (encoded != self.told).then(|| {
+            self.told.clone_from(&encoded);
             Message::Binary(encoded.into())
         })
     }

@@ -12,6 +12,9 @@ export class Connection {
     this.state = state;
     this.name = sessionStorage.getItem("bahn-name") ?? `viewer-${crypto.getRandomValues(new Uint32Array(1))[0]}`;
     sessionStorage.setItem("bahn-name", this.name);
+    // Who knows the key is this viewer: it is told to nobody but the station.
+    this.key = sessionStorage.getItem("bahn-key") ?? [...crypto.getRandomValues(new Uint32Array(4))].map((word) => word.toString(16).padStart(8, "0")).join("");
+    sessionStorage.setItem("bahn-key", this.key);
     this.waiting = JSON.parse(sessionStorage.getItem("bahn-waiting") ?? "[]");
     this.number = Number(sessionStorage.getItem("bahn-number") ?? 0);
     this.tries = 0;
@@ -20,7 +23,7 @@ export class Connection {
 
   open() {
     const protocol = location.protocol === "https:" ? "wss" : "ws";
-    this.socket = new WebSocket(`${protocol}://${location.host}/ws?name=${encodeURIComponent(this.name)}`);
+    this.socket = new WebSocket(`${protocol}://${location.host}/ws?name=${encodeURIComponent(this.name)}&key=${this.key}`);
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = () => {
       this.tries = 0;

@@ -122,10 +122,11 @@ function line(text) {
 }
 
 // One operates, the others look on: who wants the keys asks for them.
-function crew({ operates, asks }) {
+function crew({ may_operate, operates, asks }) {
   document.body.classList.toggle("looks-on", !operates);
   const node = document.querySelector(".tabs .line");
   if (operates && !asks) return line("");
+  if (!may_operate) return line(words("You look on."));
   const buttons = operates
     ? [["Hand over", { hand_over: true }], ["No", { hand_over: false }]]
     : [["Operate", { operate: true }]];

@@ -31,7 +31,8 @@ pub(super) fn command(options: &ExplainOptions) -> Result<Outcome, UsageError> {
             let style = Style::of_output();
             let parameters = parameters.iter().map(|row| parameter(row, style));
             let types = types.iter().map(|row| synch(row, style));
-            console::print(&parameters.chain(types).collect::<Vec<_>>().join("\n"))?;
+            let text = parameters.chain(types).collect::<Vec<_>>().join("\n");
+            console::print_bytes(text.as_bytes())?;
         }
     }
     Ok(Outcome::Fine)

@@ -344,7 +344,7 @@ fn target_program(job: &Job, ending: &str, text: &str) -> Program {
 
 fn write(job: &Job, text: &str) -> Result<(), UsageError> {
     let Some(path) = &job.target else {
-        return console::print(text);
+        return console::print_bytes(text.as_bytes());
     };
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|error| files::cannot("write", folder, &error))?;

@@ -147,7 +147,7 @@ impl From<UsageError> for Failed {
 
 fn say(options: &Lsv2Options, text: &str) -> Result<(), UsageError> {
     match options.format {
-        Format::Json => console::print(&format!("{}\n", json!({ "message": text })))?,
+        Format::Json => console::print_json_line(&json!({ "message": text }))?,
         Format::Text => diagnostics::print_line(&format!("error: {text}")),
     }
     Ok(())

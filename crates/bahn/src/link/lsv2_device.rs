@@ -7,8 +7,8 @@ use bahn_control::{Command, Control, DataLineEvent, HostEvent, Mode, RunState, S
 use bahn_exchange::{Bit, BitArea, Image};
 use bahn_host::{LoadedMachine, PlainTable, TableForm, TextTable, decode, files};
 use bahn_link::lsv2::{
-    Area, Device, ErrorNumber, Event, EventKind, Execution, Identity, Message, PlcMessage, ProgramState, Run,
-    Tool,
+    Area, Device, ErrorNumber, Event, EventKind, Execution, Features, Identity, Message, PlcMessage,
+    ProgramState, Run, Tool,
 };
 use bahn_link::store::{Place, Store, StoreError, TNC, View};
 use bahn_machine::MachineFolder;
@@ -66,11 +66,13 @@ impl MachineDevice {
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
+        let control = identity.map_or_else(|| format!("{OWN} {model}"), str::to_owned);
         Ok(MachineDevice {
             link: OnceLock::new(),
             store: Store::of_machine_with(&programs, &plc, tables(&root, &machine.folder)?)?,
             identity: Identity {
-                control: identity.map_or_else(|| format!("{OWN} {model}"), str::to_owned),
+                features: Features::of(&control),
+                control,
                 nc_software: nc_software(),
                 plc_software: plc_name,
                 id: format!("Bahn {}", env!("CARGO_PKG_VERSION")),

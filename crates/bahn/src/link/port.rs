@@ -1,5 +1,6 @@
 //! Ports of the commands: written as SPEC, opened, set up as machine parameters say.
 
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use bahn_host::LoadedMachine;
@@ -50,7 +51,20 @@ pub(super) fn open(spec: &Spec, settings: &Settings) -> Result<Channel, Refused>
     if place != spec.line.to_string() && !spec.line.to_string().ends_with(&place) {
         diagnostics::print_line(&format!("{} is {place}", spec.line));
     }
+    warn_of_others(&spec.line, &place);
     Ok(channel)
+}
+
+/// Whoever listens beyond this computer is told so: a data interface asks nobody for a password.
+fn warn_of_others(line: &Line, place: &str) {
+    let address = place.parse::<SocketAddr>();
+    if matches!(line, Line::Listen(_))
+        && !address.is_ok_and(|address| address.ip().to_canonical().is_loopback())
+    {
+        diagnostics::print_line(&format!(
+            "warning: {line} can be reached by others: whoever connects reads and writes there without a password"
+        ));
+    }
 }
 
 /// The list of a file, or that of the usual control: for hosts and disks, which have no machine.

@@ -27,7 +27,7 @@ pub(super) fn command(options: &DiffOptions) -> Result<Outcome, UsageError> {
         .collect();
     match options.format {
         Format::Json => console::print_json(&differences)?,
-        Format::Text => console::print(&text(&differences, Style::of_output()))?,
+        Format::Text => console::print_bytes(text(&differences, Style::of_output()).as_bytes())?,
     }
     Ok(if differences.is_empty() {
         Outcome::Fine

@@ -39,7 +39,7 @@ pub(super) fn command(options: &ExplainOptions) -> Result<Outcome, UsageError> {
     };
     match options.values.format {
         Format::Json => console::print_json(&rows)?,
-        Format::Text => console::print(&text(first, &rows, &name, Style::of_output()))?,
+        Format::Text => console::print_bytes(text(first, &rows, &name, Style::of_output()).as_bytes())?,
     }
     Ok(Outcome::Fine)
 }

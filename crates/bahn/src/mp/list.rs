@@ -23,7 +23,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
         .collect();
     match options.values.format {
         Format::Json => console::print_json(&rows)?,
-        Format::Text => console::print(&text(&rows, Style::of_output()))?,
+        Format::Text => console::print_bytes(text(&rows, Style::of_output()).as_bytes())?,
     }
     if rows.is_empty() && !options.wanted.is_empty() {
         return Err(UsageError::new(format!(

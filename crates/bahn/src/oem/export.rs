@@ -48,7 +48,7 @@ pub(super) fn command(options: &ExportOptions) -> Result<Outcome, UsageError> {
         )]));
     }
     match &options.output {
-        None => console::print(&records)?,
+        None => console::print_bytes(records.as_bytes())?,
         Some(path) => {
             let mut file = NewFile::create(path)?;
             let written = file.write_all(records.as_bytes());

@@ -12,7 +12,7 @@ use std::time::Duration;
 use bahn_host::files::NewFile;
 use bahn_host::{HostError, LoadedMachine};
 use bahn_panel::{Input, Live, Replay, Station};
-use bahn_server::{Server, ServerOptions};
+use bahn_server::{Server, ServerOptions, Tokens};
 
 use crate::interrupt::Interrupt;
 use crate::link::{ConnectedPorts, PanelPorts, RunningPorts};
@@ -35,7 +35,10 @@ fn in_use(error: HostError) -> UsageError {
 pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     let served = options.address().map(|listen| ServerOptions {
         listen,
-        token: options.token.clone(),
+        tokens: Tokens {
+            operate: options.token.clone(),
+            look: options.viewer_token.clone(),
+        },
     });
     if let Some(served) = &served {
         served

@@ -13,6 +13,8 @@ Examples:
       Another machine; time passes five times as fast.
   bahn panel --rs232 serial:/dev/ttyUSB0             EXT reads programs in and out there (docs/link.md)
   bahn panel --listen 0.0.0.0:8155 --token SECRET     for others, too; they need the token once
+  bahn panel --listen 0.0.0.0:8155 --token SECRET --viewer-token CLASSROOM
+      Who comes with ?token=CLASSROOM sees everything and does nothing.
   bahn panel --machine machines/mill --record session.jsonl
       Keeps what is done in a file ...
   bahn panel --machine mill --replay session.jsonl    ... and shows it again, on a copy of the folder (docs/sessions.md)
@@ -30,13 +32,16 @@ pub(crate) struct PanelOptions {
     /// Folder of a machine; a copy of machines/mill without it.
     #[arg(long, value_name = "DIR")]
     pub machine: Option<PathBuf>,
-    /// Address to listen on; port 0 takes a free one. Any but loopback needs --token [default: 127.0.0.1:8155, none
+    /// Address to listen on; port 0 takes a free one. Any but loopback needs --token or --viewer-token [default: 127.0.0.1:8155, none
     /// with --terminal].
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
-    /// What others must know; letters and digits.
+    /// What those must know who operate; six or more letters and digits.
     #[arg(long, value_name = "TEXT", value_parser = token)]
     pub token: Option<String>,
+    /// What those must know who only look.
+    #[arg(long, value_name = "TEXT", value_parser = token)]
+    pub viewer_token: Option<String>,
     /// Opens the page in the browser.
     #[arg(long)]
     pub open: bool,

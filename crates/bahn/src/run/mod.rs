@@ -49,7 +49,7 @@ use bahn_workpiece::{Columns, Cutting};
 use executed::Executed;
 use oscilloscope::Scoped;
 use recording::Recording;
-use report::{ChannelReport, ProgramReport, Refusal, RunReport};
+use report::{ChannelReport, ProgramReport, RunReport};
 use session::{Ended, Patience, Session};
 use table::Table;
 
@@ -58,7 +58,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     files::keep_inputs(&options.inputs(), &options.written())?;
     let mut machine = match machine_folder::load_with_tools(&options.machine, options.run.tools.as_deref())? {
         Ok(machine) => machine,
-        Err(faults) => return refused(&faults, options),
+        Err(faults) => return refused(&faults),
     };
     let inputs = machine.inputs();
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
@@ -66,7 +66,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let mut programs = all_programs(options, &machine)?;
     let script = match load_script(options, &machine)? {
         Ok(script) => script,
-        Err(faults) => return refused(&faults, options),
+        Err(faults) => return refused(&faults),
     };
     let mut power_on = power_on(options, &machine)?;
     settings::assign(&mut power_on.parameters, &options.run.mp)?;
@@ -157,11 +157,8 @@ fn table(options: &RunMachineOptions, machine: &LoadedMachine, host: &mut Host) 
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
-fn refused(faults: &[FileFault], options: &RunMachineOptions) -> Result<Outcome, UsageError> {
+fn refused(faults: &[FileFault]) -> Result<Outcome, UsageError> {
     diagnostics::print_faults(faults);
-    if options.format == Format::Json {
-        console::print_json(&Refusal::of(faults))?;
-    }
     Ok(Outcome::ProgramError)
 }
 

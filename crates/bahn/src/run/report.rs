@@ -13,7 +13,6 @@ use super::deviation::Deviation;
 use super::listed::{Confirmed, Said};
 use super::session::Session;
 use super::times::Share;
-use crate::diagnostics::FileFault;
 use crate::report::{End, ErrorReport, Report, tidy};
 use crate::report_text::{self, LABEL, list};
 
@@ -83,38 +82,6 @@ impl TestRunReport {
         };
         let place = self.place.as_ref().map(|place| format!(": {place}"));
         format!("{}: {result}{}", self.program, place.unwrap_or_default())
-    }
-}
-
-/// Faults of files that keep a machine from being switched on, as JSON has them.
-#[derive(Debug, Serialize)]
-pub(super) struct Refusal {
-    completed: bool,
-    faults: Vec<FaultReport>,
-}
-
-#[derive(Debug, Serialize)]
-struct FaultReport {
-    file: String,
-    line: u32,
-    column: Option<u32>,
-    title: String,
-    message: String,
-}
-
-impl Refusal {
-    pub fn of(faults: &[FileFault]) -> Refusal {
-        let report = |fault: &FileFault| FaultReport {
-            file: fault.path.display().to_string(),
-            line: fault.marked.line,
-            column: fault.marked.columns.map(|(column, _)| column),
-            title: fault.title.clone(),
-            message: fault.label.clone(),
-        };
-        Refusal {
-            completed: false,
-            faults: faults.iter().map(report).collect(),
-        }
     }
 }
 

@@ -151,7 +151,7 @@ pub(crate) fn command(options: &TestOptions, equipment: Equipment) -> Result<Out
     let rows: Vec<&Row> = done.iter().map(|done| &done.row).collect();
     match options.format {
         Format::Text => console::print(&table::render(&rows, &Totals::of(&rows), options))?,
-        Format::Json => console::print(&json(&rows, options)?)?,
+        Format::Json => console::print_bytes(json(&rows, options)?.as_bytes())?,
     }
     Ok(if interrupt.is_requested() {
         Outcome::Interrupted

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::options::{ShowFormat, ShowOptions};
 use super::source::{self, Source};
+use crate::diagnostics::printable_lines;
 use crate::{Outcome, UsageError, console};
 
 /// Prints a table.
@@ -39,11 +40,18 @@ pub(super) fn command(options: &ShowOptions) -> Result<Outcome, UsageError> {
     }
     match options.format {
         ShowFormat::Text => console::print(&columns(&table))?,
-        ShowFormat::Csv => console::print(&table.separated(','))?,
-        ShowFormat::Tsv => console::print(&table.separated('\t'))?,
+        ShowFormat::Csv => console::print_bytes(data(&table, ',').as_bytes())?,
+        ShowFormat::Tsv => console::print_bytes(data(&table, '\t').as_bytes())?,
         ShowFormat::Json => console::print_json(&report(&source, &table))?,
     }
     Ok(Outcome::Fine)
+}
+
+/// For other programs, which need the tabs; nothing else in it steers a terminal.
+fn data(table: &PlainTable, separator: char) -> String {
+    let text = table.separated(separator);
+    let parts = text.split('\t').map(printable_lines);
+    parts.collect::<Vec<_>>().join("\t")
 }
 
 /// Numbers to the right, text to the left.

@@ -148,7 +148,9 @@ impl Reading {
     }
 
     fn wrong(&mut self) {
+        // That NAK is sent three times ends it [000:17588].
         if !self.link.refuse() {
+            self.link.send(&[self.link.settings.control.nak]);
             self.abort(Shown::Control(MessageId::TransferredDataIncorrect, Some('M')));
         }
     }

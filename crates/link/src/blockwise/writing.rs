@@ -11,7 +11,8 @@ use crate::files::Files;
 use crate::frame::{Kind, Piece};
 use crate::protocol::{Event, Protocol, Question, Shown};
 use crate::settings::Settings;
-use crate::text::Source;
+use crate::store::StoreError;
+use crate::text::{Source, is_name};
 
 /// So many times its patience the control waits for a DC1 *(inferred)*.
 const HELD: u32 = 10;
@@ -75,9 +76,14 @@ impl Writing {
 
     fn offer(&mut self, name: &str) {
         let settings = self.link.settings;
-        match self.files.open(name) {
+        let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+        let opened = match is_name(stem.as_bytes()) {
+            true => self.files.open(name),
+            // A header has no room for another one [000:17482].
+            false => Err(StoreError::BadName(name.to_owned())),
+        };
+        match opened {
             Ok(file) => {
-                let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
                 let of_type = FileType::of_extension(extension).map_or(b'A', |kind| kind.code() as u8);
                 let mut header = vec![settings.control.output_type.unwrap_or(of_type)];
                 header.extend(stem.to_ascii_uppercase().bytes());

@@ -4,8 +4,7 @@ use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use super::file_commands::Bits;
-use super::{Command, ErrorNumber, Level, TcpReader, Telegram, encode};
+use super::{Command, ErrorNumber, Features, Level, TcpReader, Telegram, encode};
 
 /// The device answers within.
 const ANSWER: Duration = Duration::from_secs(10);
@@ -248,10 +247,10 @@ impl<T: Transport> Client<T> {
             self.order(&request(b"C_DC").string(path))?;
         }
         let control = self.versions.first().map_or("", String::as_str);
-        let bits = Bits::of(control);
+        let features = Features::of(control);
         let mut entries = Vec::new();
         self.ask_all(&request(b"R_DR").byte(0), |answer| {
-            entries.extend(entry(answer, bits));
+            entries.extend(entry(answer, features));
             Ok(())
         })?;
         Ok(entries)
@@ -336,14 +335,14 @@ fn block_of(parameters: &Telegram) -> usize {
 }
 
 /// A file or folder of `S_DR` or `S_FI`.
-fn entry(answer: &Telegram, bits: Bits) -> Option<RemoteEntry> {
+fn entry(answer: &Telegram, features: Features) -> Option<RemoteEntry> {
     let mut fields = answer.fields();
     let (size, time, attributes) = (fields.long()?, fields.long()?, fields.long()?);
     Some(RemoteEntry {
         name: fields.string()?,
         size,
         modified: UNIX_EPOCH + Duration::from_secs(time.into()),
-        is_folder: attributes & bits.folder != 0,
-        protected: attributes & bits.protected != 0,
+        is_folder: features.is_folder(attributes),
+        protected: features.is_protected(attributes),
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::store::Store;
 
-use super::ErrorNumber as Refused;
+use super::{ErrorNumber as Refused, Features};
 
 /// How the machine is operated; numbers are those of telegram `R_RI` 23 (public).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -211,6 +211,8 @@ pub trait Device: Send + Sync {
 pub struct Identity {
     /// The control: `BAHN TNC 415`.
     pub control: String,
+    /// What it does as such a one.
+    pub features: Features,
     /// NC software: six digits and two.
     pub nc_software: String,
     /// PLC program.

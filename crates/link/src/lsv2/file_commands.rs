@@ -2,6 +2,7 @@
 
 use std::time::UNIX_EPOCH;
 
+use super::peer::Features;
 use super::session::{Answer, Session, Task};
 use super::transfer::{BINARY, MERGE, Receiving, Sending};
 use super::{Command, ErrorNumber, Level, Telegram};
@@ -43,55 +44,18 @@ impl Session {
         self.place(&path)
     }
 
-    /// Bits of attributes: an iTNC 530 has others than the controls behind it (public).
-    fn attribute_bits(&self) -> Bits {
-        let control = self.site.device.identity().control;
-        Bits::of(&control)
-    }
-}
-
-/// Bits of attributes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Bits {
-    pub folder: u32,
-    pub protected: u32,
-}
-
-impl Bits {
-    const SHOWN: u32 = 0x01;
-    const CHANGEABLE: u32 = 0x02;
-
-    /// Those of a control by what it says that it is.
-    pub fn of(control: &str) -> Bits {
-        let name = control.replace(' ', "").to_ascii_uppercase();
-        match name.starts_with("ITNC530") {
-            true => Bits {
-                folder: 0x40,
-                protected: 0x20,
-            },
-            false => Bits {
-                folder: 0x20,
-                protected: 0x40,
-            },
-        }
-    }
-
-    fn encode(self, attributes: &Attributes) -> u32 {
-        let bit = |on: bool, bit: u32| if on { bit } else { 0 };
-        Bits::SHOWN
-            | bit(!attributes.protected, Bits::CHANGEABLE)
-            | bit(attributes.protected, self.protected)
-            | bit(attributes.is_folder, self.folder)
+    fn features(&self) -> Features {
+        self.site.device.identity().features
     }
 }
 
 /// A file or folder as `S_FI` and `S_DR` tell it: size, time, attributes, name.
-fn entry(telegram: Telegram, name: &str, attributes: &Attributes, bits: Bits) -> Telegram {
+fn entry(telegram: Telegram, name: &str, attributes: &Attributes, features: Features) -> Telegram {
     let since_1970 = attributes.modified.duration_since(UNIX_EPOCH).unwrap_or_default();
     telegram
         .long(u32::try_from(attributes.size).unwrap_or(u32::MAX))
         .long(u32::try_from(since_1970.as_secs()).unwrap_or(u32::MAX))
-        .long(bits.encode(attributes))
+        .long(features.encode(attributes))
         .string(name)
 }
 
@@ -126,9 +90,13 @@ pub(super) fn make_folder(session: &mut Session, telegram: &Telegram) -> Answer 
     done()
 }
 
-/// `C_DD`: removes an empty folder; a client that is in it is in the one above then.
+/// `C_DD`: removes an empty folder; that in which a client is only where controls do so, who is in the one above then
+/// (public).
 pub(super) fn remove_folder(session: &mut Session, telegram: &Telegram) -> Answer {
     let place = session.place_in(telegram)?;
+    if place.holds(&session.folder) && !session.features().removes_own_folder {
+        return Err(ErrorNumber::FOLDER_NOT_EMPTY);
+    }
     let store = session.site.device.store();
     store
         .remove_folder(&place)
@@ -150,10 +118,10 @@ pub(super) fn list(session: &mut Session, telegram: &Telegram) -> Answer {
         mode @ (0 | 1) => {
             let listed = session.site.device.store().list(&session.folder);
             let entries = listed.map_err(|error| ErrorNumber::from(&error))?;
-            let bits = session.attribute_bits();
+            let features = session.features();
             let telegrams = entries
                 .iter()
-                .map(|one| entry(Telegram::new(answer), &one.name, &one.attributes, bits));
+                .map(|one| entry(Telegram::new(answer), &one.name, &one.attributes, features));
             match mode {
                 0 => telegrams.collect(),
                 _ => many(telegrams, session.block),
@@ -193,7 +161,7 @@ fn drives(session: &Session, answer: Command) -> Telegram {
         telegram
             .long(FREE)
             .long(0)
-            .long(Bits::SHOWN)
+            .long(Features::SHOWN)
             .string(&format!("{drive}:"))
     })
 }
@@ -210,7 +178,7 @@ pub(super) fn file(session: &mut Session, telegram: &Telegram) -> Answer {
     let drive = || format!("{}:", place.drive());
     let name = place.name().map_or_else(drive, str::to_owned);
     let answer = Telegram::new(telegram.command.answer());
-    Ok(entry(answer, &name, &attributes, session.attribute_bits()))
+    Ok(entry(answer, &name, &attributes, session.features()))
 }
 
 /// `R_FL`: sends a file.
@@ -286,7 +254,7 @@ pub(super) fn change_attributes(session: &mut Session, telegram: &Telegram) -> A
     let bits = fields.long().ok_or(ErrorNumber::BAD_FORMAT)?;
     let path = fields.string().ok_or(ErrorNumber::BAD_FORMAT)?;
     let place = session.place(&path)?;
-    let protect = bits & session.attribute_bits().protected != 0;
+    let protect = session.features().is_protected(bits);
     let changed = session.site.device.store().protect(&place, protect);
     changed.map_err(|error| number(&error, ErrorNumber::NO_ATTRIBUTE))?;
     done()

@@ -13,6 +13,7 @@ mod file_commands;
 mod keys;
 mod machine_commands;
 mod memory;
+mod peer;
 mod serial;
 mod serial_server;
 mod server;
@@ -31,6 +32,7 @@ pub use device::{
 };
 pub use error::ErrorNumber;
 pub use keys::name as key_name;
+pub use peer::Features;
 pub use serial::{ANSWER, LineEvent, LineFault, NEXT, SerialLine, Side, check_byte, frame};
 pub use serial_server::SerialServer;
 pub use server::{OpenPort, Server, ServerOptions};

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use super::{
-    Area, Device, ErrorNumber, Event, EventKind, Execution, Identity, Message, PlcMessage, ProgramState, Run,
-    Tool,
+    Area, Device, ErrorNumber, Event, EventKind, Execution, Features, Identity, Message, PlcMessage,
+    ProgramState, Run, Tool,
 };
 use crate::store::{Store, StoreError};
 
@@ -68,6 +68,7 @@ impl StillDevice {
 impl Device for StillDevice {
     fn identity(&self) -> Identity {
         Identity {
+            features: Features::of(&self.control),
             control: self.control.clone(),
             nc_software: "123456 07".to_owned(),
             plc_software: "MAIN.PLC".to_owned(),

@@ -6,6 +6,8 @@ use super::StoreError;
 
 /// Characters of a name at most.
 pub const NAME_MAX: usize = 40;
+/// What stands between folders.
+const SEPARATORS: [char; 2] = ['\\', '/'];
 /// Characters of a path at most, which is more than the 80 of LSV/2.
 const PATH_MAX: usize = 255;
 /// Folders in each other at most.
@@ -50,12 +52,13 @@ impl Place {
         }
         let (mut place, rest) = match path.split_once(':') {
             Some((drive, rest)) if is_drive(drive) => {
-                (Place::root(drive), rest.strip_prefix(['\\', '/']).unwrap_or(rest))
+                (Place::root(drive), rest.strip_prefix(SEPARATORS).unwrap_or(rest))
             }
             Some(_) => return Err(refused()),
             None => (self.clone(), path),
         };
-        let rest = rest.strip_suffix(['\\', '/']).unwrap_or(rest);
+        // Hosts write `\\\\` between folders and behind them, too: it is one.
+        let rest = rest.trim_end_matches(SEPARATORS);
         if rest.is_empty() {
             // A drive alone; nothing at all is no path.
             return if path.contains(':') {
@@ -64,7 +67,10 @@ impl Place {
                 Err(refused())
             };
         }
-        for name in rest.split(['\\', '/']) {
+        if rest.starts_with(SEPARATORS) {
+            return Err(refused());
+        }
+        for name in rest.split(SEPARATORS).filter(|name| !name.is_empty()) {
             if !is_name(name) {
                 return Err(refused());
             }
@@ -74,6 +80,14 @@ impl Place {
             return Err(refused());
         }
         Ok(place)
+    }
+
+    /// It is this place, or a folder that leads there.
+    pub(crate) fn holds(&self, other: &Place) -> bool {
+        let same = |(own, other): (&String, &String)| own.eq_ignore_ascii_case(other);
+        self.drive == other.drive
+            && self.names.len() <= other.names.len()
+            && self.names.iter().zip(&other.names).all(same)
     }
 
     /// The drive, in capitals and without its colon.
@@ -195,6 +209,8 @@ mod tests {
             ("15.H", "TNC:\\PARTS\\15.H"),
             ("A/b.H", "TNC:\\PARTS\\A\\b.H"),
             ("A\\", "TNC:\\PARTS\\A"),
+            ("A\\\\", "TNC:\\PARTS\\A"),
+            ("TNC:\\A\\\\b.H", "TNC:\\A\\b.H"),
             ("tnc:", "TNC:\\"),
             ("TNC:\\", "TNC:\\"),
             ("TNC:/", "TNC:\\"),

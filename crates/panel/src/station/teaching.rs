@@ -9,6 +9,7 @@ use crate::drawer::{self, Breakable};
 use crate::input::{Input, Refusal};
 use crate::lesson::{self, Driven, LessonRun};
 use crate::session::{Head, Recorder};
+use crate::steps::StepsEnd;
 use crate::texts::Language;
 use crate::why::Reason;
 
@@ -22,7 +23,10 @@ impl Driven for Station {
     }
 
     fn cycle(&mut self) -> Result<(), String> {
-        Station::cycle(self).map_err(|error| error.to_string())
+        match self.host.is_broken_off() {
+            true => Err("EMERGENCY STOP was pressed before the lesson could begin".to_owned()),
+            false => Station::cycle(self).map_err(|error| error.to_string()),
+        }
     }
 }
 
@@ -40,7 +44,8 @@ impl Station {
         // A number that is none is the beginning.
         let time_us = (time_s.max(0.0) * 1e6).round() as u64;
         let gone = self.past.go_to(&mut self.host, &mut self.lesson, time_us, branch);
-        gone.map_err(Refusal)?;
+        let remark = gone.map_err(Refusal)?;
+        self.steps.break_off(StepsEnd::Elsewhere);
         self.paused = true;
         self.is_on = !self.host.control().is_off();
         self.console.machine_is_elsewhere(self.host.control().mode());
@@ -53,7 +58,7 @@ impl Station {
         self.waits.forget();
         self.plc.stop();
         self.follow_plc();
-        Ok(())
+        remark.map_or(Ok(()), |words| Err(Refusal(words)))
     }
 
     /// Keeps every input from now on in a file.
@@ -104,6 +109,7 @@ impl Station {
         let Some(name) = name else {
             return Ok(());
         };
+        self.steps.break_off(StepsEnd::Elsewhere);
         self.host.set_clock(Clock::Free);
         let begun = lesson::begin(self, name);
         self.host.set_clock(self.clock());

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use bahn_panel::{Live, Station, load};
-use bahn_server::{Server, ServerOptions};
+use bahn_server::{Server, ServerOptions, Tokens};
 use copy::copy;
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
@@ -39,6 +39,11 @@ impl Panel {
 
     /// That of another of the shipped machines.
     pub fn of(machine: &str, what: impl FnOnce(&Path)) -> Panel {
+        Panel::served(machine, Tokens::default(), what)
+    }
+
+    /// The same where others must know something.
+    pub fn served(machine: &str, tokens: Tokens, what: impl FnOnce(&Path)) -> Panel {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("bahn-server-{}-{number}", std::process::id());
@@ -51,7 +56,7 @@ impl Panel {
         let station = Station::power_on(load(&folder).unwrap()).unwrap();
         let options = ServerOptions {
             listen: "127.0.0.1:0".parse().unwrap(),
-            token: None,
+            tokens,
         };
         let server = Server::start(Live::start(station), options).unwrap();
         Panel {
@@ -205,9 +210,12 @@ impl Panel {
         assert_eq!(self.give(&json!({"speed": 1})), 200);
     }
 
-    /// A viewer of this name.
+    /// A viewer of this name, who has a key of his own.
     pub fn viewer(&self, name: &str) -> Viewer {
-        Viewer::of(&format!("ws://{}/ws?name={name}", self.address))
+        Viewer::of(&format!(
+            "ws://{}/ws?name={name}&key={name}-0123456789abcdef",
+            self.address
+        ))
     }
 }
 

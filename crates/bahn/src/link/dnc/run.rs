@@ -106,10 +106,6 @@ fn print(report: &DncReport, options: &DncRunOptions) -> Result<(), UsageError> 
     match options.format {
         Format::Text => console::print(&report.text()),
         // One line, since lines of others may stand before it.
-        Format::Json => {
-            let line = serde_json::to_string(report);
-            let line = line.map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-            console::print(&(line + "\n"))
-        }
+        Format::Json => console::print_json_line(report),
     }
 }

@@ -116,28 +116,26 @@ impl Teller {
     fn tell(&self, event: &str) {
         let progress = self.spooled.progress();
         let percent = (progress.percent() * 10.0).round() / 10.0;
-        let line = match self.format {
+        // Whoever has closed the output knows.
+        let _ = match self.format {
             Format::Text => {
                 let what = match event {
                     "end" => "has arrived",
                     "broken" => "is broken off",
                     _ => "goes on",
                 };
-                format!(
-                    "{}: {what}, {} blocks are in the machine ({percent} %)",
+                console::print(&format!(
+                    "{}: {what}, {} blocks are in the machine ({percent} %)\n",
                     progress.name, progress.blocks
-                )
+                ))
             }
-            Format::Json => serde_json::to_string(&Told {
+            Format::Json => console::print_json_line(&Told {
                 event,
                 program: &progress.name,
                 blocks: progress.blocks,
                 percent,
-            })
-            .unwrap_or_default(),
+            }),
         };
-        // Whoever has closed the output knows.
-        let _ = console::print(&(line + "\n"));
     }
 }
 
@@ -161,10 +159,9 @@ impl Sender {
     fn done(&self, format: Format) -> Result<(), UsageError> {
         match format {
             Format::Text => Ok(()),
-            Format::Json => console::print(&format!(
-                "{}\n",
-                serde_json::json!({ "event": "done", "blocks": self.blocks, "complete": self.has_sent_all() })
-            )),
+            Format::Json => console::print_json_line(
+                &serde_json::json!({ "event": "done", "blocks": self.blocks, "complete": self.has_sent_all() }),
+            ),
         }
     }
 }

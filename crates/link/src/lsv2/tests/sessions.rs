@@ -306,6 +306,29 @@ fn lines_end_alike_however_blocks_are_cut() {
     );
 }
 
+/// Clients of today expect that an iTNC 530 removes a folder in which they are, and no other control (public); a path may
+/// end in a doubled backslash.
+#[test]
+fn a_folder_in_which_somebody_is_goes_by_what_the_control_is() {
+    for (identity, removed) in [
+        ("iTNC530", b"T_OK".as_slice()),
+        ("BAHN TNC 415 B", b"T_ER\x01\x36"),
+    ] {
+        let desk = Desk::named("own-folder", identity, Passwords::default());
+        let mut session = logged_in(&desk, &[Level::File]);
+        converse(
+            &mut session,
+            &[
+                (b"C_DMTNC:\\PARTS\\\\\0", b"T_OK"),
+                (b"C_DMTNC:\\PARTS\\\\T1\0", b"T_OK"),
+                (b"C_DCTNC:\\parts\\t1\\\0", b"T_OK"),
+                (b"C_DDTNC:\\PARTS\\T1\0", removed),
+                (b"C_DCTNC:\\\0", b"T_OK"),
+            ],
+        );
+    }
+}
+
 #[test]
 fn folders_files_and_attributes() {
     let desk = Desk::named("folders", "iTNC530", Passwords::default());

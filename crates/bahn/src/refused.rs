@@ -1,0 +1,96 @@
+//! What `--format json` says of a command that ends before it has a report: the same as is told in words, on standard
+//! output, so that whoever asks for JSON always gets some.
+
+use std::ffi::OsString;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use serde::Serialize;
+
+use crate::console;
+use crate::diagnostics::{FileFault, PRINTED_MAX, Severity};
+
+/// JSON is wanted, and nothing has been printed.
+static OPEN: AtomicBool = AtomicBool::new(false);
+/// What was told meanwhile.
+static TOLD: Mutex<Told> = Mutex::new(Told {
+    completed: false,
+    error: None,
+    faults: Vec::new(),
+});
+
+#[derive(Debug, Serialize)]
+struct Told {
+    /// A command that is refused completes nothing.
+    completed: bool,
+    /// What is wrong, in words.
+    error: Option<String>,
+    /// Faults of files, 100 at most.
+    faults: Vec<FaultReport>,
+}
+
+/// A fault of a file.
+#[derive(Debug, Serialize)]
+pub(crate) struct FaultReport {
+    file: String,
+    line: u32,
+    column: Option<u32>,
+    title: String,
+    message: String,
+}
+
+impl FaultReport {
+    /// As a report.
+    pub fn of(fault: &FileFault) -> FaultReport {
+        FaultReport {
+            file: fault.path.display().to_string(),
+            line: fault.marked.line,
+            column: fault.marked.columns.map(|(column, _)| column),
+            title: fault.title.clone(),
+            message: fault.label.clone(),
+        }
+    }
+}
+
+/// Notes whether JSON is wanted.
+pub(crate) fn begin(arguments: &[OsString]) {
+    let mut pairs = arguments.iter().zip(arguments.iter().skip(1));
+    let apart = pairs.any(|(option, value)| option == "--format" && value == "json");
+    let wanted = apart || arguments.iter().any(|argument| argument == "--format=json");
+    OPEN.store(wanted, Ordering::Relaxed);
+}
+
+/// Something was printed to standard output: a report, or a part of one.
+pub(crate) fn has_printed() {
+    OPEN.store(false, Ordering::Relaxed);
+}
+
+/// A fault of a file was told.
+pub(crate) fn fault(fault: &FileFault) {
+    if OPEN.load(Ordering::Relaxed) && fault.severity == Severity::Error {
+        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.faults.len() < PRINTED_MAX {
+            told.faults.push(FaultReport::of(fault));
+        }
+    }
+}
+
+/// What is wrong was told; what was told first counts.
+pub(crate) fn error(text: &str) {
+    if OPEN.load(Ordering::Relaxed) {
+        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+        let text = text.strip_prefix("error: ").unwrap_or(text);
+        told.error.get_or_insert_with(|| text.to_owned());
+    }
+}
+
+/// A command has ended without success: what was told goes out as JSON, when that is wanted and nothing else was printed.
+pub(crate) fn end() {
+    if OPEN.swap(false, Ordering::Relaxed) {
+        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+        let first = told.faults.first().map(|fault| fault.title.clone());
+        told.error = told.error.take().or(first);
+        // Whoever has closed the output knows.
+        let _ = console::print_json(&*told);
+    }
+}
