@@ -238,9 +238,9 @@ impl Channel {
         let mut axes = machine.axes.of(self.number);
         reference::count_display_axes(&mut axes);
         let superimposes = self.datums.chain.superimposed.is_on();
-        let nc = machine.memory.of(self.number).nc();
+        let exchange = machine.memory.of_mut(self.number);
         self.desk
-            .count_handwheel(superimposes, &measured.operator.handwheel, &axes, nc);
+            .count_handwheel(superimposes, &measured.operator.handwheel, &axes, exchange);
         let automatic = now.mode.is_automatic();
         let rigid = self.run.taps_rigidly();
         let ready = axes.choose_methods(automatic && !self.desk.runs_reference(), rigid);

@@ -643,9 +643,4 @@ impl Control {
     pub fn selected_program(&self) -> Option<&str> {
         self.kernel.channels.first().run.selection.program.as_deref()
     }
-
-    /// The block at which its next run starts.
-    pub fn start_block(&self) -> u32 {
-        self.kernel.channels.first().run.selection.start_block
-    }
 }

@@ -294,6 +294,25 @@ impl Feeder {
         self.begin_again(machine, chain, limits);
     }
 
+    /// The block to which [`Feeder::return_to`] goes back.
+    pub fn block_at(&self, sequence: u64) -> BlockRef {
+        match sequence <= self.interpreter.blocks_executed() {
+            true => self.interpreter.block_at(sequence),
+            false => self.interpreter.at(),
+        }
+    }
+
+    /// The block to which [`Feeder::retry`] goes back.
+    pub fn block_of_fault(&self) -> BlockRef {
+        match &self.fault {
+            Some(RunFault::Limit { sequence, .. } | RunFault::Absent { sequence, .. }) => {
+                self.block_at(*sequence)
+            }
+            Some(RunFault::Program(error)) => error.block,
+            None => self.interpreter.at(),
+        }
+    }
+
     /// Goes back to the block that could not be executed.
     pub fn retry(&mut self, machine: &Position, chain: &Chain, limits: Box2) {
         match self.fault.take() {

@@ -52,7 +52,11 @@ impl Page for ByHand {
             site.words("INCREMENT"),
             site.words("HANDWHEEL"),
             there(rules.tilting, leans),
-            String::new(),
+            // Until all axes have passed theirs [000:4581].
+            there(
+                site.control().first().misses_marks(),
+                site.words("PASS OVER REFERENCE"),
+            ),
             there(table::has_tools(site), site.words("TOOL TABLE")),
         ]]
     }
@@ -82,6 +86,10 @@ impl Page for ByHand {
                     false => Turn::Refused,
                 }
             }
+            6 => match site.command(Command::Mode(Mode::Reference)) {
+                true => Turn::Done,
+                false => Turn::Refused,
+            },
             _ => table::tools(site),
         }
     }

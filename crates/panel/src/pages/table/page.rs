@@ -7,6 +7,7 @@ use bahn_parameters::MessageId;
 use super::cells::{is_mark, read};
 use super::editor::{CELL_MAX, RENEWED, TableEditor, WIDTH};
 use super::{POCKET_FILE, TOOL_FILE, path_of, pockets, tools};
+use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
 use crate::screen::{Dialogue, Line, Mark, WindowKind};
@@ -50,11 +51,7 @@ impl TableEditor {
     /// The actual position of an axis: into its column, or that of the tool axis into the length [003:1857].
     fn capture(&mut self, site: &Site) -> Turn {
         let letter = match (self.form, self.column_name()) {
-            (TableForm::Tool, "L") => site
-                .control()
-                .first()
-                .in_force()
-                .map(|own| own.tool_axis.letter()),
+            (TableForm::Tool, "L") => site.tool_axis().map(bahn_path::Axis::letter),
             (TableForm::Datum | TableForm::Point, name) => {
                 let snapshot = site.control().snapshot();
                 let place = name
@@ -67,11 +64,9 @@ impl TableEditor {
             }
             _ => None,
         };
-        let snapshot = site.control().snapshot();
-        let axis = snapshot.axes.iter().find(|axis| Some(axis.letter) == letter);
-        match axis {
-            Some(axis) => {
-                self.entry = Some(format!("{:.3}", axis.actual));
+        match letter.and_then(|letter| site.captured(letter)) {
+            Some(value) => {
+                self.entry = Some(Entry::of(value).text());
                 Turn::Done
             }
             None => Turn::Refused,
