@@ -649,14 +649,15 @@ impl Channel {
             }
             Command::Key(code) => self.desk.press_key(code, machine.memory.of_mut(self.number)),
             Command::Test(name) => {
+                let axes = machine.axes.iter().map(|unit| unit.axis).collect();
                 let (run, site, basis) = self.parts(machine);
-                let test = run
-                    .test_feeder(&name, &site, &basis)
-                    .map(|feeder| TestRun::new(&name, feeder));
-                let found = test.is_some();
+                let feeder = run.test_feeder(&name, axes, &site, &basis);
+                let found = feeder.is_some();
+                let test = feeder.map(|feeder| TestRun::new(&name, feeder));
                 self.test = test.or(self.test.take());
                 found
             }
+            Command::TestRun(command) => self.test.as_mut().is_some_and(|test| test.execute(command)),
             Command::EndTest => {
                 self.test = None;
                 true

@@ -203,9 +203,9 @@ impl Feeder {
         self.interpreter.set_machine_zero(machine_zero);
     }
 
-    /// Every axis may come to the channel before a block moves it.
-    pub fn expect_all_axes(&mut self) {
-        self.axes = Axis::ALL.into_iter().collect();
+    /// These axes may come to the channel before a block moves them.
+    pub fn expect_axes(&mut self, axes: AxisSet) {
+        self.axes = axes;
     }
 
     /// Inserts a TOOL CALL of module 9150 before the next block.

@@ -150,3 +150,31 @@ fn repeats_are_counted_down() {
         ["LBL 1 REP 2/2", "LBL 1 REP 2/1", "LBL 1 REP 2/0", "LBL 1 REP 2/2"]
     );
 }
+
+/// No program is resumed at a block with a tangential arc or the transfer of a pole [003:7984-7987].
+#[test]
+fn a_start_at_a_tangential_arc_is_undefined() {
+    for (block, starts) in [
+        ("CT X+40 Y+20 R0 F600", false),
+        ("CC", false),
+        ("CC X+0 Y+0", true),
+        ("L X+40 R0 F600", true),
+    ] {
+        let mut trainee = Trainee::at("mill");
+        program(
+            &trainee,
+            "START",
+            &["L X+0 Y+0 R0 F3000", "L X+20 R0 F3000", block, "L X+60 R0 F600"],
+        );
+        trainee.ready();
+        trainee
+            .press("FULL PGM_NR S T A R T ENT GOTO 3 ENT NC_START")
+            .wait(0.5);
+        let messages = trainee.messages();
+        let undefined = messages
+            .iter()
+            .any(|text| text.starts_with("PROGRAM-START UNDEFINED"));
+        assert_eq!(undefined, !starts, "{block}: {messages:?}");
+        assert_eq!(trainee.screen().status.star == Star::Steady, starts, "{block}");
+    }
+}

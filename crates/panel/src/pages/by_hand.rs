@@ -31,6 +31,8 @@ impl Page for ByHand {
             Key::S | Key::ToolCall => self.soft_key(0, 1, site),
             Key::TouchProbe => probe::menu(),
             Key::ToolDef => table::tools(site),
+            // The tool table, by simply pressing ENT [003:1897].
+            Key::Ent if table::has_tools(site) => table::tools(site),
             _ => Turn::Refused,
         }
     }

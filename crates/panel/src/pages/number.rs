@@ -42,6 +42,12 @@ impl Number {
         })
     }
 
+    /// The same with its first digit.
+    pub fn beginning(mut self: Box<Self>, digit: Key) -> Box<Number> {
+        self.entry.key(digit);
+        self
+    }
+
     /// The same with a position that CAPTURE enters.
     pub fn capturing(
         mut self: Box<Self>,

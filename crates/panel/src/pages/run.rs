@@ -224,7 +224,7 @@ fn counted(text: &str, left: u32) -> Option<String> {
 }
 
 /// The block of the number that was entered: in DIN/ISO that which it is programmed with.
-fn block_of(program: Option<&Program>, value: f64) -> Option<u32> {
+pub(crate) fn block_of(program: Option<&Program>, value: f64) -> Option<u32> {
     let number = (value >= 0.0 && value.fract() == 0.0).then_some(value as u32)?;
     match program {
         Some(program) => program.block_of(number),

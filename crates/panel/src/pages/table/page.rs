@@ -90,7 +90,11 @@ impl TableEditor {
             (TableForm::Tool, "RT") => site.words("ALTERNATE TOOL?"),
             (TableForm::Tool, "TIME1" | "TIME2") => site.words("MAXIMUM TOOL AGE?"),
             (TableForm::Tool, "CUR.TIME") => site.words("CURRENT TOOL AGE?"),
-            (TableForm::Tool | TableForm::Pocket, "ST") => site.words("SPECIAL TOOL? YES=ENT/NO=NOENT"),
+            // The TNC 360 has blanks in it [003:1908].
+            (TableForm::Tool | TableForm::Pocket, "ST") => match site.control().model().has_windows() {
+                true => site.words("SPECIAL TOOL? YES=ENT/NO=NOENT"),
+                false => site.words("SPECIAL TOOL? YES = ENT / NO = NO ENT"),
+            },
             (TableForm::Tool, "P") => site.words("POCKET NUMBER?"),
             (TableForm::Pocket, "T") => site.words("TOOL NUMBER?"),
             (TableForm::Pocket, "F") => site.words("FIXED POCKET? YES=ENT/NO=NOENT"),
