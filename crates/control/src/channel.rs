@@ -652,10 +652,9 @@ impl Channel {
                 let axes = machine.axes.iter().map(|unit| unit.axis).collect();
                 let (run, site, basis) = self.parts(machine);
                 let feeder = run.test_feeder(&name, axes, &site, &basis);
-                let found = feeder.is_some();
-                let test = feeder.map(|feeder| TestRun::new(&name, feeder));
-                self.test = test.or(self.test.take());
-                found
+                feeder
+                    .map(|feeder| self.test = Some(TestRun::new(&name, feeder)))
+                    .is_some()
             }
             Command::TestRun(command) => self.test.as_mut().is_some_and(|test| test.execute(command)),
             Command::EndTest => {
