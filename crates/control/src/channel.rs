@@ -240,9 +240,9 @@ impl Channel {
         let mut axes = machine.axes.of(self.number);
         reference::count_display_axes(&mut axes);
         let superimposes = self.datums.chain.superimposed.is_on();
-        let nc = machine.memory.of(self.number).nc();
+        let exchange = machine.memory.of_mut(self.number);
         self.desk
-            .count_handwheel(superimposes, &measured.operator.handwheel, &axes, nc);
+            .count_handwheel(superimposes, &measured.operator.handwheel, &axes, exchange);
         let automatic = now.mode.is_automatic();
         let rigid = self.run.taps_rigidly();
         let ready = axes.choose_methods(automatic && !self.desk.runs_reference(), rigid);
@@ -648,14 +648,14 @@ impl Channel {
             }
             Command::Key(code) => self.desk.press_key(code, machine.memory.of_mut(self.number)),
             Command::Test(name) => {
+                let axes = machine.axes.iter().map(|unit| unit.axis).collect();
                 let (run, site, basis) = self.parts(machine);
-                let test = run
-                    .test_feeder(&name, &site, &basis)
-                    .map(|feeder| TestRun::new(&name, feeder));
-                let found = test.is_some();
-                self.test = test.or(self.test.take());
-                found
+                let feeder = run.test_feeder(&name, axes, &site, &basis);
+                feeder
+                    .map(|feeder| self.test = Some(TestRun::new(&name, feeder)))
+                    .is_some()
             }
+            Command::TestRun(command) => self.test.as_mut().is_some_and(|test| test.execute(command)),
             Command::EndTest => {
                 self.test = None;
                 true

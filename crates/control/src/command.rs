@@ -10,6 +10,7 @@ use bahn_plc::TableKind;
 use crate::data_line::DataLineEvent;
 use crate::drip_feed::Dnc;
 use crate::probe_command::ProbeCommand;
+use crate::test_command::TestCommand;
 
 /// The machine operating modes, as W272 codes them [000:4680-4687].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -143,6 +144,8 @@ pub enum Command {
     Key(u16),
     /// `test NAME`: TEST RUN of a program beside what the machine does [003:1514-1535].
     Test(String),
+    /// `test-run ..`: interrupts the test run, lets it go on, or changes a Q parameter of it.
+    TestRun(TestCommand),
     /// `end-test`: breaks the test run off.
     EndTest,
     /// `offset adjust`, `offset off`: answers to code number 75 368 [000:5014-5020].
@@ -232,6 +235,9 @@ impl FromStr for Command {
             "manual-operation" => nothing(Command::ManualOperation),
             "restore-position" => nothing(Command::RestorePosition),
             "end-test" => nothing(Command::EndTest),
+            "test-run" => TestCommand::parse(rest)
+                .map(Command::TestRun)
+                .map_err(CommandError::Wrong),
             "test" if !rest.is_empty() => Ok(Command::Test(rest.to_owned())),
             "select" if !rest.is_empty() => Ok(Command::Select(rest.to_owned())),
             "mdi" if !rest.is_empty() => Ok(Command::Mdi(rest.replace("\\n", "\n"))),
@@ -449,6 +455,7 @@ impl fmt::Display for Command {
             Command::Code(code) => write!(f, "code {code}"),
             Command::Key(code) => write!(f, "key {code}"),
             Command::Test(name) => write!(f, "test {name}"),
+            Command::TestRun(command) => write!(f, "test-run {command}"),
             Command::EndTest => write!(f, "end-test"),
             Command::OffsetAdjustment(adjust) => {
                 write!(f, "offset {}", if *adjust { "adjust" } else { "off" })

@@ -372,6 +372,12 @@ impl Control {
         self.kernel.channels.first().test().map(TestRun::report)
     }
 
+    /// A Q parameter of the test run; 0 without one.
+    pub fn tested_q(&self, number: u16) -> f64 {
+        let test = self.kernel.channels.first().test();
+        test.map_or(0.0, |test| test.q_value(number))
+    }
+
     /// The program of the test run as it stands there, to be gone on with beside: for the graphics. Long computations are
     /// left to whoever drives it when they are here.
     pub fn tested(&self) -> Option<Interpreter> {
@@ -653,10 +659,5 @@ impl Control {
     /// The program that is selected for single block and full sequence.
     pub fn selected_program(&self) -> Option<&str> {
         self.kernel.channels.first().run.selection.program.as_deref()
-    }
-
-    /// The block at which its next run starts.
-    pub fn start_block(&self) -> u32 {
-        self.kernel.channels.first().run.selection.start_block
     }
 }

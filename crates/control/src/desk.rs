@@ -325,17 +325,22 @@ impl Desk {
         self.key.take()
     }
 
-    /// What is turned at the handwheel in another mode moves nothing later, but what M118 superimposes on a path.
+    /// What is turned at the handwheel in another mode moves nothing later, but what M118 superimposes on a path. Its key
+    /// for actual position capture is one of the keyboard.
     pub fn count_handwheel(
         &mut self,
         superimposes: bool,
         inputs: &HandwheelInputs,
         axes: &OwnAxes,
-        nc: &Image,
+        exchange: &mut Exchange,
     ) {
+        if self.manual.handwheel.take_capture() {
+            // A code of the keyboard is always taken.
+            let _ = self.press_key(KeyCode::CAPTURE, exchange);
+        }
         let handwheel = &mut self.manual.handwheel;
         if superimposes && self.mode.is_automatic() {
-            handwheel.superimpose(inputs, &self.rules.handwheel, axes, nc);
+            handwheel.superimpose(inputs, &self.rules.handwheel, axes, exchange.nc());
         } else if self.mode != Mode::Handwheel {
             handwheel.forget_turns(inputs);
         }

@@ -203,9 +203,9 @@ impl Feeder {
         self.interpreter.set_machine_zero(machine_zero);
     }
 
-    /// Every axis may come to the channel before a block moves it.
-    pub fn expect_all_axes(&mut self) {
-        self.axes = Axis::ALL.into_iter().collect();
+    /// These axes may come to the channel before a block moves them.
+    pub fn expect_axes(&mut self, axes: AxisSet) {
+        self.axes = axes;
     }
 
     /// Inserts a TOOL CALL of module 9150 before the next block.
@@ -292,6 +292,25 @@ impl Feeder {
                 .go_back(|checkpoint| checkpoint.sequence() <= sequence);
         }
         self.begin_again(machine, chain, limits);
+    }
+
+    /// The block to which [`Feeder::return_to`] goes back.
+    pub fn block_at(&self, sequence: u64) -> BlockRef {
+        match sequence <= self.interpreter.blocks_executed() {
+            true => self.interpreter.block_at(sequence),
+            false => self.interpreter.at(),
+        }
+    }
+
+    /// The block to which [`Feeder::retry`] goes back.
+    pub fn block_of_fault(&self) -> BlockRef {
+        match &self.fault {
+            Some(RunFault::Limit { sequence, .. } | RunFault::Absent { sequence, .. }) => {
+                self.block_at(*sequence)
+            }
+            Some(RunFault::Program(error)) => error.block,
+            None => self.interpreter.at(),
+        }
     }
 
     /// Goes back to the block that could not be executed.

@@ -49,6 +49,8 @@ pub(crate) struct Handwheel {
     missing: bool,
     /// What was turned for M118 in this cycle, by axis index, mm.
     travels: PerPlcAxis<f64>,
+    /// The key for actual position capture was pressed.
+    captures: bool,
 }
 
 /// One wheel.
@@ -70,6 +72,7 @@ impl Default for Handwheel {
             keys: HandwheelKeys::default(),
             missing: false,
             travels: PerPlcAxis::splat(0.0),
+            captures: false,
         }
     }
 }
@@ -176,7 +179,7 @@ impl Handwheel {
         self.take_keys(inputs, rules, reach.axes);
     }
 
-    /// The keys that choose an axis or a speed.
+    /// The keys that choose an axis or a speed, or capture.
     fn take_keys(&mut self, inputs: &HandwheelInputs, rules: &HandwheelParameters, axes: &OwnAxes) {
         let before = std::mem::replace(&mut self.keys, inputs.keys);
         let pressed = |key: &HandwheelKey| inputs.keys.has(*key) && !before.has(*key);
@@ -191,6 +194,15 @@ impl Handwheel {
         {
             self.speed = speed;
         }
+        if is_hr410_of_the_nc(rules) {
+            self.captures |= pressed(&HandwheelKey::Capture);
+        }
+    }
+
+    /// Whether the key for actual position capture was pressed since this was asked: that of an HR 410 which the NC
+    /// evaluates [000:8257-8269].
+    pub fn take_capture(&mut self) -> bool {
+        std::mem::take(&mut self.captures)
     }
 
     /// The direction key that moves an axis: with the HR 330 and the HR 410, where the NC has them [000:8124-8151] [000:8292-8304]. Both at once move nothing.

@@ -23,6 +23,9 @@ pub enum KeyCode {
 }
 
 impl KeyCode {
+    /// Actual position capture [000:7511].
+    pub(crate) const CAPTURE: u16 = 100;
+
     /// What a code calls; `None` for one that calls nothing, or that the manual's lost tables had.
     ///
     /// ```

@@ -132,6 +132,7 @@ mod strobe_form;
 mod strobes;
 mod superimposing;
 mod tables;
+mod test_command;
 mod test_run;
 mod thread;
 mod tool;
@@ -177,6 +178,7 @@ pub use setup::{
 pub use signal::{AxisSignal, ProbeSignal, Signal, SignalError, split_channel};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::{SpindleState, SpindleWiring};
+pub use test_command::TestCommand;
 pub use test_run::{TestReport, TestState};
 pub use tool::{Edges, MovedTool, Tool, ToolLife};
 pub use view::{ChannelView, InForce};

@@ -259,7 +259,7 @@ pub(crate) fn count_display_axes(axes: &mut OwnAxes) {
 }
 
 /// An axis that must pass its reference mark by itself.
-fn waits(unit: &AxisUnit) -> bool {
+pub(crate) fn waits(unit: &AxisUnit) -> bool {
     !unit.referenced && unit.parameters.controlled && unit.is_free()
 }
 

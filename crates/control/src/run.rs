@@ -5,7 +5,7 @@ use bahn_interpreter::{Interpreter, Status};
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
-use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
+use bahn_path::{AxisSet, Barrier, BlockRef, LiveData, PathElement};
 use bahn_servo::Measured;
 
 use crate::axis::{AxisUnit, Mover};
@@ -674,13 +674,13 @@ impl ProgramRun {
     }
 
     /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
-    pub fn test_feeder(&self, name: &str, site: &Site, basis: &Basis) -> Option<Feeder> {
+    /// The axes are those of the machine: nobody hands one over meanwhile.
+    pub fn test_feeder(&self, name: &str, axes: AxisSet, site: &Site, basis: &Basis) -> Option<Feeder> {
         let Ok(Some(program)) = self.source.reading.programs.open(name, "") else {
             return None;
         };
         let mut feeder = self.source.feeder_from(program, Status::default(), site, basis);
-        // Nobody hands an axis over meanwhile.
-        feeder.expect_all_axes();
+        feeder.expect_axes(axes);
         Some(feeder)
     }
 

@@ -7,7 +7,7 @@ use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
-use bahn_path::{Frame, PerAxis, Position};
+use bahn_path::{BlockRef, Frame, PerAxis, Position};
 use bahn_program::Program;
 use bahn_servo::Rotation;
 
@@ -216,6 +216,22 @@ impl Source {
     /// Where the next start goes on; `None` for at the start block.
     pub fn resume_at(&mut self, resume: Option<Resume>) {
         self.resume_from = resume;
+    }
+
+    /// The block with which the next start goes on or begins; `None` while the program is lent.
+    pub fn next_start(&self, begin: u32) -> Option<BlockRef> {
+        let begin = BlockRef {
+            program: 0,
+            block: begin,
+        };
+        let Some(resume) = self.resume_from else {
+            return Some(begin);
+        };
+        let feeder = self.feeder.as_ref()?;
+        Some(match resume {
+            Resume::Block(sequence) => feeder.block_at(sequence),
+            Resume::Fault => feeder.block_of_fault(),
+        })
     }
 
     /// The next run begins anew.

@@ -9,6 +9,7 @@ use crate::axis::{AxisId, AxisUnit};
 use crate::feeder::{self, Feeder, RunFault};
 use crate::message::Message;
 use crate::spindle::SpindleUnit;
+use crate::test_command::TestCommand;
 
 /// Elements that one call of prepare tests at most: the machine comes first.
 const BUDGET: usize = 500;
@@ -20,6 +21,8 @@ pub(crate) struct TestRun {
     feeder: Box<Feeder>,
     state: TestState,
     block: BlockRef,
+    /// The block of the main program at which it is to be interrupted.
+    interrupt_at: Option<u32>,
 }
 
 /// The spindle speed that a function asks for, rpm.
@@ -37,6 +40,8 @@ pub enum TestState {
     /// It goes on.
     #[default]
     Running,
+    /// By the operator, or by a programmed stop: it goes on when he says so [003:1531-1535] [003:2234].
+    Interrupted,
     /// The program came to its end without an error.
     Finished,
     /// The program is wrong.
@@ -64,7 +69,44 @@ impl TestRun {
             feeder: Box::new(feeder),
             state: TestState::Running,
             block: BlockRef::default(),
+            interrupt_at: None,
         }
+    }
+
+    /// What the operator asks for; `false` where it is not possible.
+    pub fn execute(&mut self, command: TestCommand) -> bool {
+        let (running, interrupted) = match self.state {
+            TestState::Running => (true, false),
+            TestState::Interrupted => (false, true),
+            _ => (false, false),
+        };
+        match command {
+            TestCommand::Interrupt if running => self.state = TestState::Interrupted,
+            TestCommand::InterruptAt(block) if running || interrupted => self.interrupt_at = Some(block),
+            TestCommand::GoOn if interrupted => self.state = TestState::Running,
+            TestCommand::Q(number, value) if interrupted && self.has_q(number) => {
+                self.feeder.interpreter_mut().set_q(number, value);
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn has_q(&self, number: u16) -> bool {
+        let values = self.feeder.interpreter().q_values();
+        values.get(usize::from(number)).is_some()
+    }
+
+    /// A Q parameter as the test has it now.
+    pub fn q_value(&self, number: u16) -> f64 {
+        self.feeder.interpreter().q_value(number)
+    }
+
+    /// A block was tested: whether the test is to be interrupted at it.
+    fn reached(&mut self, block: BlockRef) -> bool {
+        self.block = block;
+        let there = |at: &mut u32| block.program == 0 && block.block >= *at;
+        self.interrupt_at.take_if(there).is_some()
     }
 
     pub fn feeder(&mut self) -> &mut Feeder {
@@ -99,7 +141,7 @@ impl TestRun {
         for _ in 0..BUDGET {
             match self.feeder.next() {
                 Step::Element(element) => {
-                    self.block = element.block;
+                    let reached = self.reached(element.block);
                     self.feeder.forget_before(element.sequence);
                     let mut speeds = element
                         .functions()
@@ -109,6 +151,17 @@ impl TestRun {
                         self.state = TestState::Failed(Message::Plain(MessageId::WrongRpm));
                         return;
                     }
+                    if reached {
+                        self.state = TestState::Interrupted;
+                        return;
+                    }
+                }
+                // STOP and M0 interrupt a test, too [003:2234].
+                Step::Barrier(Barrier::Stop { block }) => {
+                    self.reached(block);
+                    self.feeder.resume(LiveData::default());
+                    self.state = TestState::Interrupted;
+                    return;
                 }
                 // Every probing touches where the block says it will.
                 Step::Barrier(Barrier::Probe { to, .. }) => self.feeder.resume(LiveData {

@@ -68,6 +68,14 @@ impl<'a> ChannelView<'a> {
         keys.filter(|(_, key)| key.is_some()).map(|(index, _)| index)
     }
 
+    /// An axis has not passed its reference mark: PASS OVER REFERENCE MARKS can be chosen [000:4581].
+    pub fn misses_marks(&self) -> bool {
+        self.machine
+            .axes
+            .owned(self.channel.number())
+            .any(reference::waits)
+    }
+
     /// State of the run.
     pub fn run_state(&self) -> RunState {
         self.channel.run.progress().state()
@@ -96,6 +104,13 @@ impl<'a> ChannelView<'a> {
     /// The element of the path that is executed, or was last.
     pub fn element(&self) -> Option<&'a PathElement> {
         self.channel.run.track.path.element()
+    }
+
+    /// The block with which NC start begins, or goes on where a run was broken off [003:1630-1640]; `None` while the program
+    /// is read on another thread.
+    pub fn next_start(&self) -> Option<BlockRef> {
+        let run = &self.channel.run;
+        run.source.next_start(run.selection.start_block)
     }
 
     /// Path length to the end of that element, mm.

@@ -368,9 +368,8 @@ fn actual_positions_are_captured() {
         desk.press("L X CAPTURE"),
         Reaction::Position(Wanted::Axis(Axis::X))
     );
-    assert_eq!(desk.editor.capture(Axis::X, -12.3456), Reaction::Shown);
-    desk.refuses("ENT", EntryValueIncorrect);
-    assert_eq!(desk.editor.capture(Axis::X, -12.345), Reaction::Shown);
+    // In input steps of 0.001 mm [003:7825].
+    assert_eq!(desk.editor.capture(Axis::X, -12.345_26), Reaction::Shown);
     desk.refuses("ENT CAPTURE", KeyNonFunctional);
     desk.enter("END TOOL_DEF 3 ENT");
     assert_eq!(desk.press("CAPTURE"), Reaction::Position(Wanted::ToolAxis));

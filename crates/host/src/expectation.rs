@@ -67,14 +67,17 @@ const RUNS: [(&str, Run); 6] = [
 pub enum Tested {
     /// It goes on.
     Running,
+    /// It waits for the operator.
+    Interrupted,
     /// It has come to its end.
     Finished,
     /// An error has ended it.
     Failed,
 }
 
-const TESTS: [(&str, Tested); 3] = [
+const TESTS: [(&str, Tested); 4] = [
     ("running", Tested::Running),
+    ("interrupted", Tested::Interrupted),
     ("finished", Tested::Finished),
     ("failed", Tested::Failed),
 ];
@@ -83,6 +86,7 @@ impl Tested {
     fn of(state: &TestState) -> Tested {
         match state {
             TestState::Running => Tested::Running,
+            TestState::Interrupted => Tested::Interrupted,
             TestState::Finished => Tested::Finished,
             TestState::Failed(_) => Tested::Failed,
         }
@@ -112,7 +116,7 @@ expect mode full                    manual, handwheel, mdi, single, full, refere
 expect run stopped                  idle, running, interrupted, stopped, block-end, ended
 expect tool=3                       the tool in the spindle
 expect M2045=1, W260=3              several: all must be so
-expect test finished                the test run beside: running, finished, failed
+expect test finished                the test run beside: running, interrupted, finished, failed
 expect lamp NC_START=1              a lamp of the panel
 expect 2:X.actual=100               of the second channel; also 2: message, 2: mode, 2: run, 2: tool
 ";

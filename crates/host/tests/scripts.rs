@@ -176,7 +176,7 @@ fn parameters_change_on_the_running_control() {
 #[test]
 fn every_command_is_played() {
     let script = "25: mode manual\n+0.1: m 8\n+0.1: s 500\n+0.1: jog 0.5\n+0.1: handwheel X 3\n+0.1: datum X 12.5\n\
-        +0.1: tool-life 1 2.5\n+0.1: code 123\n+0.1: key 107\n+0.1: test 1.H\n+0.1: end-test\n+0.1: offset off\n\
+        +0.1: tool-life 1 2.5\n+0.1: code 123\n+0.1: key 107\n+0.1: test 1.H\n+0: test-run stop 2\n+0.1: end-test\n+0.1: offset off\n\
         +0.1: mode mdi\n+0.1: mdi L X+50 R0 F2000\n+0.1: key NC_START tap\n+10: expect run ended\n\
         +0.1: mode full\n+0.1: select 1.H\n+0.1: goto 1\n+0.1: key NC_START tap\n+3: key NC_STOP tap\n\
         +0.5: expect run interrupted\n+0: manual-operation\n+0.2: restore-position\n+0.2: stop\n+0.5: expect run idle\n\
@@ -211,6 +211,7 @@ fn every_command_is_played() {
         "code",
         "key",
         "test",
+        "test-run",
         "end-test",
         "offset",
         "M900=1",

@@ -116,20 +116,35 @@ impl Interpreter {
 
     /// A Q parameter before the block of a sequence, as far as states are kept; 0 for one that the model does not have.
     pub fn q_value_at(&self, number: u16, sequence: u64) -> f64 {
-        let kept = self.kept.as_ref();
-        let before = kept.and_then(|kept| kept.states.iter().rfind(|state| state.sequence() <= sequence));
-        let before = before.map(|state| state.run.numbers.q.get(number).unwrap_or(0.0));
+        let before = self
+            .state_before(sequence)
+            .map(|state| state.run.numbers.q.get(number).unwrap_or(0.0));
         before.unwrap_or_else(|| self.q_value(number))
     }
 
     /// The transformations before the block of a sequence, as far as states are kept, else behind the last block that was
     /// read.
     pub fn frame_at(&self, sequence: Option<u64>) -> Frame {
-        let before = self.kept.as_ref().zip(sequence).and_then(|(kept, sequence)| {
-            let mut states = kept.states.iter();
-            states.rfind(|state| state.sequence() <= sequence)
-        });
+        let before = sequence.and_then(|sequence| self.state_before(sequence));
         before.map_or(self.run.modal.frame, |state| state.run.modal.frame)
+    }
+
+    /// The block with which a run goes on from a sequence, as [`Interpreter::go_back`] finds it.
+    pub fn block_at(&self, sequence: u64) -> BlockRef {
+        self.state_before(sequence)
+            .map_or_else(|| self.at(), Checkpoint::at)
+    }
+
+    /// Program section repeats that are under way before the block of a sequence: the CALL LBL block, and how many are
+    /// left [003:3762].
+    pub fn repeats_at(&self, sequence: u64) -> impl Iterator<Item = (BlockRef, u32)> + '_ {
+        let run = self.state_before(sequence).map_or(&self.run, |state| &*state.run);
+        run.at.repeats()
+    }
+
+    fn state_before(&self, sequence: u64) -> Option<&Checkpoint> {
+        let mut states = self.kept.as_ref()?.states.iter();
+        states.rfind(|state| state.sequence() <= sequence)
     }
 
     /// States that are kept, to be seen that they do not pile up.

@@ -88,6 +88,17 @@ impl Position {
         }
     }
 
+    /// Program section repeats that are under way: their CALL LBL block, and how many are left.
+    pub fn repeats(&self) -> impl Iterator<Item = (BlockRef, u32)> + '_ {
+        self.repeats.iter().map(|repeat| {
+            let call = BlockRef {
+                program: repeat.program,
+                block: repeat.block,
+            };
+            (call, repeat.remaining)
+        })
+    }
+
     /// Whether a called program is running.
     pub fn in_called_program(&self) -> bool {
         self.frames.iter().any(|frame| frame.label.is_none())

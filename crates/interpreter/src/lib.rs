@@ -325,6 +325,7 @@ impl Interpreter {
     /// open are left.
     pub fn goto(&mut self, block: u32) {
         self.run.at = flow::Position::at(0, block);
+        self.run.modal.begins_inside = block > 0;
         self.pending = Pending::None;
         self.ended = None;
         self.enter_unit();

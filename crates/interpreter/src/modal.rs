@@ -55,6 +55,8 @@ pub(crate) struct Modal {
     pub plunge_factor: Option<f64>,
     /// Last movement in programmed coordinates, for tangential arcs.
     pub last_move: Option<LastMove>,
+    /// The run began at a block behind the beginning of its program, and has not moved since.
+    pub begins_inside: bool,
     /// Cycle definition being read or ready for the call.
     pub cycle: CycleData,
     /// M89: call the cycle after every positioning block.
@@ -148,6 +150,7 @@ impl Modal {
             takes_larger_tools: false,
             plunge_factor: None,
             last_move: None,
+            begins_inside: false,
             cycle: CycleData::default(),
             cycle_after_each_block: false,
             orientation_deg: None,

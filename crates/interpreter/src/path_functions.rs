@@ -101,6 +101,11 @@ pub(crate) fn circle_centre(
     let here = modal.frame.to_programmed(&modal.nominal);
     let axes: Vec<Axis> = coordinates.axes().iter().collect();
     let plane = match axes[..] {
+        // Nor at one that takes the last position over as pole [003:7984-7987].
+        [] if modal.begins_inside => {
+            let detail = "no movement before gives a position";
+            return Err(Fault::new(MessageId::ProgramStartUndefined, detail));
+        }
         [] => modal.plane,
         [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined))?,
         _ => {
@@ -229,12 +234,12 @@ fn circle_radius(
 
 /// CT, CTP: arc that starts in the direction of the movement before [003:2957-2995].
 fn tangential(modal: &Modal, plane: Plane, p: &Programmed) -> Result<Curve, Fault> {
-    let no_tangent = || {
-        Fault::new(
-            MessageId::RoundingOffNotDefined,
-            "no movement before gives a tangent",
-        )
+    // No program is resumed at a block with a tangential arc [003:7984-7987].
+    let message = match modal.begins_inside {
+        true => MessageId::ProgramStartUndefined,
+        false => MessageId::RoundingOffNotDefined,
     };
+    let no_tangent = || Fault::new(message, "no movement before gives a tangent");
     let last = modal.last_move.as_ref().ok_or_else(no_tangent)?;
     let direction = last.curve.tangent(&last.start, &last.end, 1.0);
     let tangent = [direction[plane.first], direction[plane.second]];

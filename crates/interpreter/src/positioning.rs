@@ -344,6 +344,7 @@ fn emit_movement(
     feed: FeedRate,
     functions: BlockFunctions,
 ) -> Result<Flow, Fault> {
+    c.modal.begins_inside = false;
     let start = c.modal.actual;
     let mut end = start;
     for axis in axes.iter() {

@@ -156,6 +156,18 @@ impl Console {
             site.command(Command::Ce);
             return;
         }
+        // CAPTURE by hand is for the program that is written beside.
+        let turn = match (turn, &mut self.programming) {
+            (Turn::Refused, Some((_, beside)))
+                if key == Key::Capture
+                    && self.front == Side::Machine
+                    && self.machine.opened.is_empty()
+                    && matches!(self.mode, Mode::Manual | Mode::Handwheel) =>
+            {
+                beside.top().capture(site)
+            }
+            (turn, _) => turn,
+        };
         // MOD and HELP are there wherever the page itself does not take them.
         let turn = match turn {
             Turn::Refused => {
@@ -240,9 +252,14 @@ impl Console {
                 (Side::Programming, Some((_, stack))) => stack,
                 (Side::Programming, None) => continue,
             };
+            // The mode below what was opened shows what goes on, too, and says it.
+            let below = (!stack.opened.is_empty()).then(|| stack.base.tick(site));
             let turn = stack.top().tick(site);
             if !matches!(turn, Turn::Done) {
                 self.went(turn, site);
+            }
+            if let Some(Turn::Say(text)) = below {
+                self.say(text);
             }
         }
         self.front = front;

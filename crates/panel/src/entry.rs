@@ -13,6 +13,16 @@ pub(crate) struct Entry {
 const DIGITS: usize = 12;
 
 impl Entry {
+    /// A number as if it had been typed, without zeros that say nothing.
+    pub fn of(value: f64) -> Entry {
+        let text = format!("{:.4}", value.abs());
+        let text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
+        Entry {
+            negative: value < 0.0 && text != "0",
+            text,
+        }
+    }
+
     /// Takes a digit, the point, the sign or CE, which clears it; `false` for any other key and what does not fit.
     pub fn key(&mut self, key: Key) -> bool {
         match key {
@@ -75,6 +85,11 @@ mod tests {
         assert_eq!(typed(&["7", "0"]).whole(), Some(70));
         assert_eq!(typed(&["7", "CE", "1"]).value(), Some(1.0));
         assert_eq!(Entry::default().value(), None);
+        let shown = |value| Entry::of(value).text();
+        assert_eq!(
+            [shown(-12.5), shown(200.0), shown(-0.000_01)],
+            ["-12.5", "200", "0"]
+        );
         assert!(!Entry::default().key(Key::Ce));
         let mut two_points = typed(&["1", "POINT"]);
         assert!(!two_points.key(Key::Point));

@@ -76,6 +76,11 @@ pub(crate) trait Page: Send {
         Turn::Done
     }
 
+    /// CAPTURE in MANUAL OPERATION or ELECTRONIC HANDWHEEL, for what is programmed beside it [003:2287-2316].
+    fn capture(&mut self, _site: &mut Site) -> Turn {
+        Turn::Refused
+    }
+
     /// Something that was pasted or typed as a whole line; most pages take none.
     fn text(&mut self, _text: &str, _site: &mut Site) -> Turn {
         Turn::Refused

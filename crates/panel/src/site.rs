@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bahn_control::{Command, Control, Mode, Shown};
+use bahn_control::{AxisState, Command, Control, Mode, Shown};
 use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
@@ -11,6 +11,7 @@ use crate::graphics::Graphics;
 use crate::plc_mode::PlcMode;
 use crate::programs::ProgramMemory;
 use crate::settings::Settings;
+use crate::status;
 use crate::texts::{self, Language};
 use crate::transfer::Transfers;
 
@@ -92,6 +93,27 @@ impl Site<'_> {
     /// A message of the control that is shown, as it stands on the screen.
     pub fn translated(&self, shown: &Shown) -> String {
         texts::translate(self.language(), &self.control().shown_text(shown))
+    }
+
+    /// The actual position of an axis as the display shows it, mm or degrees: what is captured [003:2260-2321].
+    pub fn captured(&self, letter: char) -> Option<f64> {
+        self.position_of(letter, |axis| axis.actual)
+    }
+
+    /// The same in coordinates of the scale datum.
+    pub fn captured_reference(&self, letter: char) -> Option<f64> {
+        self.position_of(letter, |axis| axis.machine)
+    }
+
+    /// The axis of the tool that was called.
+    pub fn tool_axis(&self) -> Option<Axis> {
+        self.control().first().in_force().map(|own| own.tool_axis)
+    }
+
+    fn position_of(&self, letter: char, value: impl Fn(&AxisState) -> f64) -> Option<f64> {
+        let snapshot = self.control().snapshot();
+        let axis = snapshot.axes.iter().find(|axis| axis.letter == letter)?;
+        Some(status::shown(value(axis), axis, self.parameters(), self.settings))
     }
 
     /// The axis of a channel's key `X`, `Y`, `Z`, `IV` or `V`, by its place from 0.

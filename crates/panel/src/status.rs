@@ -39,6 +39,15 @@ impl Notation {
         self.sign(format!("{value:+.decimals$}"), decimals)
     }
 
+    /// What [`Notation::position`] shows, in mm or degrees.
+    pub fn shown(self, value: f64, step_mm: f64, degrees: bool) -> f64 {
+        let step = match self.inch && !degrees {
+            true => INCH_MM / 10f64.powi(INCH_DECIMALS as i32),
+            false => step_mm,
+        };
+        (value / step).round() * step
+    }
+
     /// A number without a step of its own.
     pub fn number(self, value: f64, decimals: usize) -> String {
         self.sign(format!("{value:.decimals$}"), decimals)
@@ -134,13 +143,26 @@ fn of_program(in_force: &InForce, tool: u32) -> (Option<String>, Vec<String>) {
     (axis, flags.into_iter().flatten().collect())
 }
 
+/// Whether an axis turns, and the step of its display.
+fn step_of(axis: &AxisState, parameters: &ParameterList) -> (bool, f64) {
+    let degrees = Axis::from_letter(axis.letter as u8).is_some_and(Axis::is_rotary);
+    let index = u8::try_from(axis.index).unwrap_or_default();
+    (degrees, parameters.axis_parameters(index).travel.display_step_mm)
+}
+
+/// A position of an axis as the display shows it, mm or degrees.
+pub(crate) fn shown(value: f64, axis: &AxisState, parameters: &ParameterList, settings: &Settings) -> f64 {
+    let (degrees, step) = step_of(axis, parameters);
+    Notation::of(settings, parameters).shown(value, step, degrees)
+}
+
 fn axis_line(
     axis: &AxisState,
     parameters: &ParameterList,
     position_type: PositionType,
     notation: Notation,
 ) -> AxisLine {
-    let degrees = Axis::from_letter(axis.letter as u8).is_some_and(Axis::is_rotary);
+    let (degrees, step) = step_of(axis, parameters);
     let value = match position_type {
         PositionType::Actl => axis.actual,
         PositionType::Noml => axis.nominal,
@@ -148,8 +170,6 @@ fn axis_line(
         PositionType::Dist => axis.distance_to_go,
         PositionType::Ref => axis.machine,
     };
-    let index = u8::try_from(axis.index).unwrap_or_default();
-    let step = parameters.axis_parameters(index).travel.display_step_mm;
     AxisLine {
         letter: axis.letter,
         value: notation.position(value, step, degrees),

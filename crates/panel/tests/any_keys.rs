@@ -4,7 +4,8 @@
 
 mod support;
 
-use bahn_panel::{Key, Screen};
+use bahn_control::RunState;
+use bahn_panel::{Key, Screen, Star};
 use support::Trainee;
 
 /// Random numbers that are the same on every run.
@@ -90,6 +91,68 @@ fn any_keys_in_the_parameter_editor() {
     for seed in 31..=33 {
         hammer("PROGRAM MOD ENT 9 5 1 4 8 ENT", seed, 1000);
     }
+}
+
+/// The number of the block that the window shows as the current one.
+fn current_block(screen: &Screen) -> Option<u32> {
+    let line = screen.program.lines.iter().find(|line| line.current)?;
+    line.text.split_whitespace().next()?.parse().ok()
+}
+
+/// The screen says with which block NC START begins or goes on, whatever was pressed before: of a program without jumps,
+/// each of whose blocks moves, the first one that is executed is the one that was shown, or the one behind BEGIN.
+#[test]
+fn the_screen_shows_with_which_block_the_run_goes_on() {
+    const KEYS: [&str; 12] = [
+        "NC_START",
+        "NC_START",
+        "NC_START",
+        "NC_STOP",
+        "NC_STOP",
+        "STOP",
+        "STOP",
+        "UP",
+        "DOWN",
+        "SINGLE",
+        "FULL",
+        "GOTO 3 ENT",
+    ];
+    let mut starts = 0;
+    for seed in 51..=54 {
+        let mut trainee = Trainee::at("mill");
+        let blocks = (1..=12).map(|number| format!("L IX{:+} R0 F600\n", number % 2 * 10 - 5));
+        let blocks: String = blocks.collect();
+        trainee.write(
+            "programs/LAW.H",
+            &format!("BEGIN PGM LAW MM\n{blocks}END PGM LAW MM\n"),
+        );
+        trainee.ready();
+        trainee.press("FULL PGM_NR L A W ENT");
+        let mut dice = Dice(seed);
+        for _ in 0..150 {
+            let keys = KEYS[dice.next(KEYS.len())];
+            if keys == "NC_START" {
+                // NC stop is no longer pressed.
+                trainee.wait(0.3);
+            }
+            let rested = trainee.station.control().run_state() == RunState::Idle;
+            let shown = current_block(trainee.station.screen());
+            trainee.press(keys);
+            if keys == "NC_START" && rested {
+                trainee.until(3.0, |screen| screen.status.star != Star::Off);
+                let element = trainee.station.control().element().unwrap();
+                assert_eq!(
+                    Some(element.block.block),
+                    shown.map(|block| block.max(1)),
+                    "seed {seed}"
+                );
+                starts += 1;
+            }
+            trainee.wait(0.1 * dice.next(6) as f64);
+            is_whole(trainee.station.screen());
+        }
+    }
+    assert!(starts > 20, "{starts}");
 }
 
 /// Blocks of DIN/ISO are typed, changed and thrown away: 10,000 keys.

@@ -92,3 +92,32 @@ fn without_a_program_the_screen_says_how_to_select_one() {
     trainee.press("PROGRAM PGM_NR 7 ENT ENT").wait(0.1);
     assert_eq!(trainee.screen().program.title, "7.H");
 }
+
+/// Who leaves PASS OVER REFERENCE MARKS too early gets back to it by a soft key, until all marks are passed [000:4581].
+#[test]
+fn the_reference_run_is_offered_until_all_marks_are_passed() {
+    for (machine, mode) in [("mill", "MANUAL"), ("mill-tnc360", "HANDWHEEL")] {
+        let mut trainee = Trainee::at(machine);
+        trainee.until(5.0, |screen| !screen.messages.is_empty());
+        trainee.press("CE");
+        trainee.until(10.0, |screen| {
+            screen.mode == "PASS OVER REFERENCE MARKS" && screen.messages.is_empty()
+        });
+        trainee.wait(1.0).press(mode);
+        assert_ne!(trainee.screen().mode, "PASS OVER REFERENCE MARKS");
+        trainee.soft("PASS OVER REFERENCE");
+        assert_eq!(trainee.screen().mode, "PASS OVER REFERENCE MARKS");
+        // In the middle of it, too.
+        trainee
+            .wait(0.5)
+            .press("NC_START")
+            .wait(1.0)
+            .press(mode)
+            .wait(2.0);
+        trainee.soft("PASS OVER REFERENCE");
+        trainee.press("NC_START");
+        trainee.until(120.0, |screen| screen.mode == "MANUAL OPERATION");
+        let keys = trainee.screen().soft_keys.keys;
+        assert!(!keys.iter().any(|key| key == "PASS OVER REFERENCE"), "{keys:?}");
+    }
+}

@@ -144,6 +144,13 @@ fn stop_ends_a_test_and_what_was_cut_stays() {
     trainee.give(r#"{"key":"START"}"#);
     assert!(trainee.screen().graphics.unwrap().running);
     trainee.station.cycle().unwrap();
+    // STOP interrupts it, once more it ends.
+    trainee.give(r#"{"key":"STOP"}"#);
+    let interrupted = trainee.screen().graphics.unwrap();
+    trainee.wait(0.5);
+    let later = trainee.screen().graphics.unwrap();
+    assert!(later.running);
+    assert_eq!(later.machining_time_s, interrupted.machining_time_s);
     trainee.give(r#"{"key":"STOP"}"#);
     let stopped = trainee.screen().graphics.unwrap();
     assert!(!stopped.running && stopped.progress < 1.0, "{stopped:?}");

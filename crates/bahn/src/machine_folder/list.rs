@@ -46,6 +46,9 @@ restore-at N                        block scan to block N
 code N                              a code number
 key CODE                            a key of the keyboard by its code, 58 to 127, or as W516 has it
 test PROGRAM                        TEST RUN beside what the machine does
+test-run stop, test-run stop N      interrupts it, at once or at block N
+test-run go-on                      it goes on, as behind STOP and M0
+test-run q N VALUE                  a Q parameter of an interrupted test
 end-test                            breaks it off
 offset adjust|off                   answers to code number 75368
 rs232 ready on|off                  the other side of a data interface is there; so `rs422`

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use bahn_control::{Mode, RunState};
 use bahn_host::{ExecutedPath, Host};
-use bahn_path::PathElement;
+use bahn_path::{BlockRef, PathElement};
 
 use super::stock::{Heard, Stock};
 
@@ -23,8 +23,8 @@ pub(super) struct Follower {
     program: String,
     elements: u64,
     last: RunState,
-    /// The block at which the next run starts, as of the last cycle.
-    start_block: u32,
+    /// The next run goes on, or begins at a block, as of the last cycle.
+    goes_on: bool,
 }
 
 impl Follower {
@@ -38,7 +38,8 @@ impl Follower {
             self.begin(program, beside);
         }
         self.last = now;
-        self.start_block = control.start_block();
+        let next = control.first().next_start();
+        self.goes_on = next.map_or(self.goes_on, |next| next != BlockRef::default());
         self.path.follow(host);
         if self.stock.is_none() {
             self.path.clear();
@@ -48,11 +49,12 @@ impl Follower {
         }
     }
 
-    /// A run from the beginning has the whole blank, one from another block goes on with the part as it is (inferred).
+    /// A run from the beginning has the whole blank, one from another block or that was broken off goes on with the part as
+    /// it is (inferred).
     fn begin(&mut self, program: String, beside: bool) {
         self.path.clear();
         self.program = program;
-        if self.start_block > 0 && self.stock.is_some() {
+        if self.goes_on && self.stock.is_some() {
             return;
         }
         let stock = Arc::new(Stock::default());

@@ -145,6 +145,11 @@ impl Graphics {
         self.serial += 1;
     }
 
+    /// The test that is cut, as long as it is not through.
+    pub fn tested(&mut self) -> Option<&mut Trial> {
+        self.trial.as_mut().filter(|trial| !trial.progress().ended)
+    }
+
     /// Breaks the test off; what was cut stays to be seen.
     pub fn stop(&mut self) {
         if let Some(trial) = &mut self.trial {
@@ -211,6 +216,11 @@ impl Graphics {
         }
         let Some(view) = self.view else { return false };
         let taken = match (key, view) {
+            // Magnified it shows the workpiece in its programmed size again [003:943].
+            (Key::BlkForm, _) if self.sight.magn != 1 => {
+                self.sight.magn = 1;
+                true
+            }
             (Key::BlkForm, _) => self.restore(subject),
             (Key::Magn, _) => self.magnify(),
             (Key::Left, PartView::Solid) => self.turn(-1),

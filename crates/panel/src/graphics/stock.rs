@@ -31,7 +31,7 @@ pub(crate) struct Stock {
 
 /// Whether something could not be shown: PGM SECTION CANNOT BE SHOWN [003:7967-7971].
 #[derive(Default)]
-pub(super) struct Heard(pub bool);
+pub(crate) struct Heard(pub bool);
 
 impl Hears for Heard {
     fn hear(&mut self, _block: BlockRef, remark: Remark, _count: u64) {

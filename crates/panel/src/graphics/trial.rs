@@ -1,12 +1,13 @@
 //! TEST RUN with graphics: a program is executed as the control's own test does it, planned and cut.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use bahn_control::Control;
 use bahn_interpreter::Interpreter;
 use bahn_motion::{AuxiliaryTimes, PlannedStep, Planner};
-use bahn_path::{Barrier, LiveData, PathElement};
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
 
 use super::stock::{Heard, Stock};
 
@@ -15,9 +16,25 @@ const BUDGET: u32 = 500;
 /// Elements after which a thread says how far it has come.
 const NEWS: u32 = 200;
 
+/// A thread whose test is interrupted looks so often whether it goes on.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// What the operator wants of a test.
+#[derive(Debug, Default)]
+struct Wishes {
+    /// He has interrupted it.
+    interrupted: bool,
+    /// Stops of the program behind which he let it go on.
+    passed: u32,
+    /// The block of the main program at which it is to be interrupted.
+    interrupt_at: Option<u32>,
+    /// Q parameters that he has changed.
+    q: Vec<(u16, f64)>,
+}
+
 /// How far a test has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Progress {
+pub(crate) struct Progress {
     /// Elements that were cut.
     pub elements: u64,
     /// Part of the blocks of the main program that lie behind it, 0 to 1.
@@ -25,16 +42,19 @@ pub(super) struct Progress {
     pub machining_time_s: f64,
     /// Something could not be shown.
     not_shown: bool,
+    /// Stops of the program that were reached, and blocks at which it was to be interrupted.
+    stops: u32,
     /// It is through, wrong or broken off.
     pub ended: bool,
 }
 
 /// A program that is tested.
-pub(super) struct Trial {
+pub(crate) struct Trial {
     program: String,
     stock: Arc<Stock>,
     progress: Arc<Mutex<Progress>>,
     stop: Arc<AtomicBool>,
+    wishes: Arc<Mutex<Wishes>>,
     /// `None` while a thread has it.
     run: Option<Box<Run>>,
     said: bool,
@@ -48,17 +68,20 @@ impl Trial {
         interpreter.set_interrupt(Arc::clone(&stop));
         let blocks = interpreter.program(0).map_or(0, |program| program.block_count());
         let stock = Arc::new(Stock::default());
+        let wishes = Arc::default();
         let run = Box::new(Run {
             planner: Planner::new(interpreter, &control.path_limits(), &AuxiliaryTimes::default()),
             stock: Arc::clone(&stock),
             blocks,
             progress: Progress::default(),
+            wishes: Arc::clone(&wishes),
         });
         let mut trial = Trial {
             program: report.program,
             stock,
             progress: Arc::default(),
             stop,
+            wishes,
             run: Some(run),
             said: false,
         };
@@ -74,7 +97,10 @@ impl Trial {
         let (told, stop) = (Arc::clone(&self.progress), Arc::clone(&self.stop));
         std::thread::spawn(move || {
             while !run.progress.ended && !stop.load(Ordering::Relaxed) {
-                run.advance(NEWS);
+                match run.waits() {
+                    true => std::thread::sleep(LOOK),
+                    false => run.advance(NEWS),
+                }
                 tell(&told, run.progress);
             }
             run.progress.ended = true;
@@ -84,13 +110,44 @@ impl Trial {
 
     /// Goes on, by the free clock.
     pub fn cycle(&mut self) {
-        if let Some(run) = &mut self.run {
+        if let Some(run) = &mut self.run
+            && !run.waits()
+        {
             run.advance(BUDGET);
             tell(&self.progress, run.progress);
             if run.progress.ended {
                 self.run = None;
             }
         }
+    }
+
+    /// Interrupts it, at once or at a block of its main program.
+    pub fn interrupt(&mut self, at: Option<u32>) {
+        let mut wishes = lock(&self.wishes);
+        match at {
+            None => wishes.interrupted = true,
+            at => wishes.interrupt_at = at,
+        }
+    }
+
+    /// Lets it go on.
+    pub fn go_on(&mut self) {
+        let mut wishes = lock(&self.wishes);
+        match std::mem::take(&mut wishes.interrupted) {
+            true => {}
+            false => wishes.passed += 1,
+        }
+    }
+
+    /// Changes a Q parameter, for the blocks that are read from now on.
+    pub fn set_q(&mut self, number: u16, value: f64) {
+        lock(&self.wishes).q.push((number, value));
+    }
+
+    /// It waits for the operator.
+    pub fn is_interrupted(&self) -> bool {
+        let progress = self.progress();
+        !progress.ended && lock(&self.wishes).holds(progress)
     }
 
     /// Ends it where it is.
@@ -135,6 +192,16 @@ fn tell(told: &Mutex<Progress>, progress: Progress) {
     *told.lock().unwrap_or_else(PoisonError::into_inner) = progress;
 }
 
+impl Wishes {
+    fn holds(&self, progress: Progress) -> bool {
+        self.interrupted || progress.stops > self.passed
+    }
+}
+
+fn lock(wishes: &Mutex<Wishes>) -> MutexGuard<'_, Wishes> {
+    wishes.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// A program on its way.
 struct Run {
     planner: Planner<Interpreter>,
@@ -142,9 +209,29 @@ struct Run {
     /// Blocks of the main program.
     blocks: u32,
     progress: Progress,
+    wishes: Arc<Mutex<Wishes>>,
 }
 
 impl Run {
+    /// It is interrupted; otherwise what the operator has changed counts.
+    fn waits(&mut self) -> bool {
+        let mut wishes = lock(&self.wishes);
+        if wishes.holds(self.progress) {
+            return true;
+        }
+        for (number, value) in wishes.q.drain(..) {
+            self.planner.source_mut().set_q(number, value);
+        }
+        false
+    }
+
+    /// A block was reached at which the operator wanted it to be interrupted.
+    fn reached(&mut self, block: BlockRef) {
+        let there = |at: &mut u32| block.program == 0 && block.block >= *at;
+        let reached = lock(&self.wishes).interrupt_at.take_if(there);
+        self.progress.stops += u32::from(reached.is_some());
+    }
+
     /// Goes on by so many steps at most.
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
@@ -152,6 +239,12 @@ impl Run {
                 PlannedStep::Element(planned) => {
                     self.progress.machining_time_s += planned.duration_s();
                     self.element(&planned.element);
+                    self.reached(planned.element.block);
+                }
+                // STOP and M0 interrupt a test, too [003:2234].
+                PlannedStep::Barrier(Barrier::Stop { .. }) => {
+                    self.planner.resume(LiveData::default());
+                    self.progress.stops += 1;
                 }
                 PlannedStep::Barrier(barrier) => {
                     let live = self.live_data(&barrier);
@@ -170,6 +263,9 @@ impl Run {
                     self.progress.ended = true;
                 }
                 PlannedStep::Error(_) => self.progress.ended = true,
+            }
+            if !self.progress.ended && lock(&self.wishes).holds(self.progress) {
+                return;
             }
             if self.progress.ended {
                 let mut heard = Heard::default();

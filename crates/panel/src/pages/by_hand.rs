@@ -31,6 +31,8 @@ impl Page for ByHand {
             Key::S | Key::ToolCall => self.soft_key(0, 1, site),
             Key::TouchProbe => probe::menu(),
             Key::ToolDef => table::tools(site),
+            // The tool table, by simply pressing ENT [003:1897].
+            Key::Ent if table::has_tools(site) => table::tools(site),
             _ => Turn::Refused,
         }
     }
@@ -52,7 +54,11 @@ impl Page for ByHand {
             site.words("INCREMENT"),
             site.words("HANDWHEEL"),
             there(rules.tilting, leans),
-            String::new(),
+            // Until all axes have passed theirs [000:4581].
+            there(
+                site.control().first().misses_marks(),
+                site.words("PASS OVER REFERENCE"),
+            ),
             there(table::has_tools(site), site.words("TOOL TABLE")),
         ]]
     }
@@ -82,6 +88,10 @@ impl Page for ByHand {
                     false => Turn::Refused,
                 }
             }
+            6 => match site.command(Command::Mode(Mode::Reference)) {
+                true => Turn::Done,
+                false => Turn::Refused,
+            },
             _ => table::tools(site),
         }
     }

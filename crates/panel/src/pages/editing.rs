@@ -1,6 +1,5 @@
 //! What an editor of the dialogue shows, as a page's window.
 
-use bahn_control::AxisState;
 use bahn_dialogue::{Editor, Key, Reaction, Row, ShownWord, Wanted};
 use bahn_path::Axis;
 use bahn_program::Program;
@@ -42,28 +41,42 @@ fn went(editor: &mut Editor, reaction: Reaction, site: &mut Site) -> (Turn, bool
     }
 }
 
-/// Actual position capture [003:2260-2321]: workpiece coordinates, with the tool length in the tool axis.
+/// Actual position capture [003:2260-2321]: workpiece coordinates as the display shows them, with the tool length in the
+/// tool axis.
 fn capture(editor: &mut Editor, wanted: Wanted, site: &Site) -> Reaction {
-    let snapshot = site.control().snapshot();
-    let axis_of = |state: &AxisState| Axis::from_letter(u8::try_from(state.letter).ok()?);
-    let actual = |axis: Axis| {
-        let state = snapshot.axes.iter().find(|state| axis_of(state) == Some(axis));
-        state.map(|state| state.actual)
-    };
+    let of = |axis: Axis| Some((axis, site.captured(axis.letter())?));
     match wanted {
-        Wanted::Axis(axis) => actual(axis).map(|value| editor.capture(axis, value)),
-        Wanted::ToolAxis => actual(Axis::Z).map(|value| editor.capture(Axis::Z, value)),
+        Wanted::Axis(axis) => of(axis).map(|(axis, value)| editor.capture(axis, value)),
+        Wanted::ToolAxis => {
+            let tool_axis = site.tool_axis().and_then(of);
+            tool_axis.map(|(axis, value)| editor.capture(axis, value))
+        }
         Wanted::Block => {
             let chosen = match site.settings.captured_axes.as_str() {
                 "" => CAPTURED,
                 chosen => chosen,
             };
-            let axes = chosen.bytes().filter_map(Axis::from_letter);
-            let position: Vec<_> = axes.filter_map(|axis| Some((axis, actual(axis)?))).collect();
+            // In the order of the machine, in whatever order they were chosen.
+            let letters = site.control().axis_letters();
+            let axes = letters.filter(|letter| chosen.contains(*letter));
+            let axes = axes.filter_map(|letter| Axis::from_letter(u8::try_from(letter).ok()?));
+            let position: Vec<_> = axes.filter_map(of).collect();
             Some(editor.capture_block(&position))
         }
     }
     .unwrap_or(Reaction::Passed)
+}
+
+/// CAPTURE while another operating mode has the keys: a new block behind the one that is selected. While a block is open
+/// none is selected *(inferred)*.
+pub(crate) fn capture_block(editor: &mut Editor, site: &mut Site) -> (Turn, bool) {
+    match editor.is_open() {
+        true => (Turn::Refused, false),
+        false => {
+            let reaction = capture(editor, Wanted::Block, site);
+            went(editor, reaction, site)
+        }
+    }
 }
 
 /// What an editor shows in so many lines.

@@ -319,7 +319,14 @@ impl Page for Directory {
             return Turn::Done;
         }
         match key {
-            Key::Ent => return self.choose(site),
+            Key::Ent => {
+                let turn = self.choose(site);
+                // The number of the next one to be erased begins anew.
+                if self.purpose == Purpose::Erase {
+                    self.typed.clear();
+                }
+                return turn;
+            }
             Key::ClPgm if self.purpose == Purpose::Edit => {
                 return self.name(site).map_or(Turn::Refused, |name| erase(name, site));
             }

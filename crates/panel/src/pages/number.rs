@@ -7,6 +7,8 @@ use crate::page::{Page, Turn, View};
 use crate::screen::Dialogue;
 use crate::site::Site;
 
+/// The position that CAPTURE enters.
+type Captured = Box<dyn Fn(&Site) -> Option<f64> + Send>;
 /// What comes of the number.
 type Answer = Box<dyn FnMut(f64, &mut Site) -> Turn + Send>;
 
@@ -15,6 +17,7 @@ pub(crate) struct Number {
     prompt: String,
     entry: Entry,
     answer: Answer,
+    captured: Option<Captured>,
 }
 
 impl Number {
@@ -35,7 +38,23 @@ impl Number {
             prompt,
             entry: Entry::default(),
             answer: Box::new(answer),
+            captured: None,
         })
+    }
+
+    /// The same with its first digit.
+    pub fn beginning(mut self: Box<Self>, digit: Key) -> Box<Number> {
+        self.entry.key(digit);
+        self
+    }
+
+    /// The same with a position that CAPTURE enters.
+    pub fn capturing(
+        mut self: Box<Self>,
+        captured: impl Fn(&Site) -> Option<f64> + Send + 'static,
+    ) -> Box<Number> {
+        self.captured = Some(Box::new(captured));
+        self
     }
 }
 
@@ -47,6 +66,13 @@ impl Page for Number {
                 None => Turn::Refused,
             },
             Key::End | Key::Del | Key::NoEnt => Turn::Close,
+            Key::Capture => match self.captured.as_ref().and_then(|captured| captured(site)) {
+                Some(value) => {
+                    self.entry = Entry::of(value);
+                    Turn::Done
+                }
+                None => Turn::Refused,
+            },
             key if self.entry.key(key) => Turn::Done,
             _ => Turn::Refused,
         }

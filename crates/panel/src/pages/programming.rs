@@ -265,6 +265,10 @@ impl Page for Programming {
         self.with(site, |editor, site| editing::text(editor, text, site))
     }
 
+    fn capture(&mut self, site: &mut Site) -> Turn {
+        self.with(site, editing::capture_block)
+    }
+
     fn own_soft_keys(&self) -> Option<SoftKeys> {
         let editor = &self.open.as_ref()?.editor;
         let mut keys = editing::soft_keys(editor);

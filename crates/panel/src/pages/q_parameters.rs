@@ -1,6 +1,6 @@
-//! Q parameters between runs, and while one is interrupted: shown and changed [003:4337-4344].
+//! Q parameters between runs, and while a run or a test is interrupted: shown and changed [003:4337-4344].
 
-use bahn_control::Command;
+use bahn_control::{Command, TestCommand};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
@@ -20,9 +20,30 @@ pub(crate) struct QParameters {
     current: u16,
     entry: Entry,
     goto: Later,
+    /// They are those of an interrupted test run.
+    tested: bool,
 }
 
 impl QParameters {
+    /// Those of an interrupted test run [003:4342].
+    pub fn of_test() -> QParameters {
+        QParameters {
+            tested: true,
+            ..QParameters::default()
+        }
+    }
+
+    fn set(&self, value: f64, site: &mut Site) -> bool {
+        if !self.tested {
+            return site.command(Command::Q(self.current, value));
+        }
+        let done = site.command(Command::TestRun(TestCommand::Q(self.current, value)));
+        if let Some(trial) = site.graphics.tested().filter(|_| done) {
+            trial.set_q(self.current, value);
+        }
+        done
+    }
+
     fn count(site: &Site) -> u16 {
         site.control().model().limits().q_max + 1
     }
@@ -38,7 +59,7 @@ impl QParameters {
         let Some(value) = self.entry.value() else {
             return self.go(1, site);
         };
-        match site.command(Command::Q(self.current, value)) {
+        match self.set(value, site) {
             true => self.go(1, site),
             false => Turn::Say(site.message(MessageId::EntryValueIncorrect)),
         }
@@ -70,14 +91,18 @@ impl Page for QParameters {
 
     fn show(&self, site: &Site, lines: usize) -> View {
         let total = usize::from(QParameters::count(site));
-        let channel = site.control().first();
+        let control = site.control();
+        let value_of = |number| match self.tested {
+            true => control.tested_q(number),
+            false => control.first().q_value(number),
+        };
         let line = |place: usize| {
             let number = u16::try_from(place).unwrap_or_default();
             let name = format!("Q{number:<4}= ");
             let current = number == self.current;
             let value = match current && !self.entry.is_empty() {
                 true => self.entry.text(),
-                false => format!("{:+.4}", channel.q_value(number)),
+                false => format!("{:+.4}", value_of(number)),
             };
             let mark = if self.entry.is_empty() {
                 Mark::Cursor

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use bahn_control::{Command, Programs, RunState};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_path::BlockRef;
 use bahn_program::{Program, WordKind};
 
 use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::editing::numbered;
-use crate::pages::files::{Directory, Purpose};
+use crate::pages::files::{Directory, Purpose, selection};
 use crate::pages::list;
 use crate::pages::number::Number;
 use crate::pages::q_parameters::QParameters;
@@ -22,8 +23,12 @@ use crate::site::Site;
 #[derive(Default)]
 pub(crate) struct ProgramRun {
     shown: Option<(String, Arc<Program>)>,
-    /// The block the operator looks at while nothing runs.
-    cursor: u32,
+    /// The block that is executed, or with which NC START begins or goes on.
+    cursor: BlockRef,
+    /// The program that was called and has it.
+    called: Option<Arc<Program>>,
+    /// CALL LBL blocks of repeats that are under way, and how many are left.
+    repeats: Vec<(BlockRef, u32)>,
 }
 
 impl ProgramRun {
@@ -32,20 +37,69 @@ impl ProgramRun {
         self.shown.as_ref().map(|(_, program)| Arc::clone(program))
     }
 
+    /// Finds the block that is executed or comes next; a program that was called is shown while it is the one
+    /// [003:586] [003:3876].
+    fn look(&mut self, site: &Site) {
+        let run = site.control().first();
+        let element = run.element();
+        let rests = run.run_state() == RunState::Idle || run.is_broken();
+        let at = match rests {
+            true => run.next_start(),
+            false => element.map(|element| element.block),
+        };
+        // While the program is read on another thread what was shown stays.
+        let (Some(at), Some(interpreter)) = (at, run.interpreter()) else {
+            self.called = self.called.take().filter(|_| at.is_none_or(|at| at.program != 0));
+            self.cursor = at.filter(|at| at.program == 0).unwrap_or(self.cursor);
+            return;
+        };
+        self.cursor = at;
+        self.called = match at.program {
+            0 => None,
+            program => interpreter.program(program).cloned(),
+        };
+        self.repeats.clear();
+        if let Some(element) = element.filter(|_| run.is_active()) {
+            self.repeats.extend(interpreter.repeats_at(element.sequence));
+        }
+    }
+
+    /// REP n/m in CALL LBL: the number behind the slash is how many repeats are left [003:3762].
+    fn count_down(&self, window: &mut Window) {
+        for (place, line) in window.lines.iter_mut().enumerate() {
+            let block = BlockRef {
+                program: self.cursor.program,
+                block: u32::try_from(window.first + place).unwrap_or(u32::MAX),
+            };
+            let left = self.repeats.iter().rfind(|(call, _)| *call == block);
+            let Some((_, left)) = left else { continue };
+            if let Some(text) = counted(&line.text, *left) {
+                line.text = text;
+            }
+        }
+    }
+
     fn move_cursor(&mut self, down: bool, site: &mut Site) -> Turn {
         let last = self
             .shown
             .as_ref()
             .map_or(0, |(_, program)| program.block_count().saturating_sub(1));
-        let next = match down {
-            true => self.cursor.saturating_add(1).min(last),
-            false => self.cursor.saturating_sub(1),
-        };
-        if site.control().run_state() == RunState::Idle && site.command(Command::Goto(next)) {
-            self.cursor = next;
-            return Turn::Done;
+        // GOTO counts in the main program: out of one that was called there is GOTO alone (inferred).
+        if self.cursor.program != 0 || site.control().run_state() != RunState::Idle {
+            return Turn::Refused;
         }
-        Turn::Refused
+        let block = self.cursor.block;
+        let next = match down {
+            true => block.saturating_add(1).min(last),
+            false => block.saturating_sub(1),
+        };
+        match site.command(Command::Goto(next)) {
+            true => {
+                self.look(site);
+                Turn::Done
+            }
+            false => Turn::Refused,
+        }
     }
 }
 
@@ -121,7 +175,15 @@ impl Page for ProgramRun {
 
     fn show(&self, site: &Site, lines: usize) -> View {
         match &self.shown {
-            Some((name, program)) => View::of(listing(name, program, self.cursor, lines)),
+            Some((name, program)) => {
+                let (name, program) = match &self.called {
+                    Some(called) => (own_name(called), called),
+                    None => (name.as_str(), program),
+                };
+                let mut window = listing(name, program, self.cursor.block, lines);
+                self.count_down(&mut window);
+                View::of(window)
+            }
             None => super::no_program(site),
         }
     }
@@ -138,18 +200,31 @@ impl Page for ProgramRun {
                 let program = site.programs.open(name, "").ok().flatten()?;
                 Some((name.to_owned(), program))
             });
-            self.cursor = 0;
+            self.cursor = BlockRef::default();
+            self.called = None;
             self.shown = program;
         }
-        if let Some(block) = running_block(site) {
-            self.cursor = block;
-        }
+        self.look(site);
         Turn::Done
     }
 }
 
+/// The name of a program as it was selected: without its folder and type.
+fn own_name(program: &Program) -> &str {
+    let name = program.name();
+    selection(name.rsplit_once('/').map_or(name, |(_, name)| name))
+}
+
+/// A CALL LBL block with the number of repeats that are left behind its slash.
+fn counted(text: &str, left: u32) -> Option<String> {
+    let (before, count) = text.split_once("REP ")?;
+    let (total, rest) = count.split_once('/')?;
+    let behind = rest.trim_start_matches(|character: char| character.is_ascii_digit());
+    Some(format!("{before}REP {total}/{left}{behind}"))
+}
+
 /// The block of the number that was entered: in DIN/ISO that which it is programmed with.
-fn block_of(program: Option<&Program>, value: f64) -> Option<u32> {
+pub(crate) fn block_of(program: Option<&Program>, value: f64) -> Option<u32> {
     let number = (value >= 0.0 && value.fract() == 0.0).then_some(value as u32)?;
     match program {
         Some(program) => program.block_of(number),
@@ -182,16 +257,6 @@ fn q_parameters(site: &Site) -> Turn {
         RunState::Running => Turn::Refused,
         _ => Turn::Open(Box::new(QParameters::default())),
     }
-}
-
-/// The block of the main program that is executed, or at which the next run starts.
-fn running_block(site: &Site) -> Option<u32> {
-    let control = site.control();
-    if control.run_state() == RunState::Idle {
-        return Some(control.start_block());
-    }
-    let block = control.element()?.block;
-    (block.program == 0).then_some(block.block)
 }
 
 /// A block as it stands in the file, without the number that it has there.

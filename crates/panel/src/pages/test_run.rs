@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bahn_control::{Command, TestState};
+use bahn_control::{Command, TestCommand, TestState};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
@@ -10,7 +10,9 @@ use bahn_program::Program;
 use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose, selection};
-use crate::pages::run::listing;
+use crate::pages::number::Number;
+use crate::pages::q_parameters::QParameters;
+use crate::pages::run::{block_of, listing};
 use crate::site::Site;
 
 /// A program is tested.
@@ -19,6 +21,8 @@ pub(crate) struct TestRun {
     /// What the test came to was said.
     said: bool,
     block: u32,
+    /// It waits for the operator.
+    interrupted: bool,
 }
 
 impl TestRun {
@@ -30,6 +34,7 @@ impl TestRun {
             open,
             said: true,
             block: 0,
+            interrupted: false,
         }
     }
 
@@ -48,14 +53,67 @@ impl TestRun {
         }
     }
 
-    /// STOP: neither the test nor its graphics go on.
+    /// STOP AT N: the test begins, or goes on, and is interrupted at a block [003:1524].
+    fn ask_where_to_stop(&mut self, site: &mut Site) -> Turn {
+        let Some((name, program)) = self.open.clone() else {
+            return Turn::Refused;
+        };
+        self.said = false;
+        Turn::Open(Number::ask(site.words("STOP AT: N ="), move |value, site| {
+            let Some(block) = block_of(Some(&program), value) else {
+                return false;
+            };
+            if !is_interrupted(site) {
+                if !site.command(Command::Test(selection(&name).to_owned())) {
+                    return false;
+                }
+                site.graphics.test(site.host.control());
+            }
+            let there = interrupt(Some(block), site);
+            go_on(site);
+            there
+        }))
+    }
+
+    /// STOP interrupts the test and its graphics [003:1534]; what is interrupted ends (inferred).
     fn stop(&mut self, site: &mut Site) -> Turn {
+        let interrupted = is_interrupted(site);
+        if !interrupted && interrupt(None, site) {
+            return Turn::Done;
+        }
         site.graphics.stop();
         match site.command(Command::EndTest) {
             true => Turn::Done,
             false => Turn::Refused,
         }
     }
+}
+
+/// The test waits for the operator.
+fn is_interrupted(site: &mut Site) -> bool {
+    let report = site.control().test_report();
+    report.is_some_and(|report| report.state == TestState::Interrupted)
+        || site.graphics.tested().is_some_and(|trial| trial.is_interrupted())
+}
+
+/// The test and its graphics are interrupted, at once or at a block; `false` where neither goes on.
+fn interrupt(at: Option<u32>, site: &mut Site) -> bool {
+    let command = at.map_or(TestCommand::Interrupt, TestCommand::InterruptAt);
+    let tested = site.command(Command::TestRun(command));
+    let trial = site.graphics.tested().map(|trial| trial.interrupt(at));
+    tested || trial.is_some()
+}
+
+/// NO ENT: what is interrupted goes on [003:1535].
+fn go_on(site: &mut Site) -> Turn {
+    if !is_interrupted(site) {
+        return Turn::Refused;
+    }
+    site.command(Command::TestRun(TestCommand::GoOn));
+    if let Some(trial) = site.graphics.tested() {
+        trial.go_on();
+    }
+    Turn::Done
 }
 
 /// The soft keys.
@@ -70,6 +128,8 @@ impl Page for TestRun {
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Test, site))),
             Key::Start => self.start(site),
             Key::Stop => self.stop(site),
+            Key::NoEnt => go_on(site),
+            Key::Q if is_interrupted(site) => Turn::Open(Box::new(QParameters::of_test())),
             _ => Turn::Refused,
         }
     }
@@ -81,10 +141,14 @@ impl Page for TestRun {
             site.words("GRAPHICS"),
             site.words("BLK FORM"),
             site.words("MAGN"),
+            site.words("STOP AT N"),
         ]]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        if place == KEYS.len() {
+            return self.ask_where_to_stop(site);
+        }
         match KEYS.get(place) {
             Some(key) => self.key(*key, site),
             None => Turn::Refused,
@@ -93,7 +157,13 @@ impl Page for TestRun {
 
     fn show(&self, site: &Site, lines: usize) -> View {
         match &self.open {
-            Some((name, program)) => View::of(listing(name, program, self.block, lines)),
+            Some((name, program)) => {
+                let mut view = View::of(listing(name, program, self.block, lines));
+                if self.interrupted {
+                    view.dialogue.prompt = site.words("INTERRUPTED: CONTINUE = NO ENT / END = STOP");
+                }
+                view
+            }
             None => super::no_program(site),
         }
     }
@@ -107,6 +177,7 @@ impl Page for TestRun {
         if open != site.settings.edited.as_deref() {
             *self = TestRun::new(site);
         }
+        self.interrupted = is_interrupted(site);
         if site.graphics.cannot_be_shown() {
             return Turn::Say(site.message(MessageId::PgmSectionCannotBeShown));
         }

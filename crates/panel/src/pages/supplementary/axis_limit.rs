@@ -75,19 +75,16 @@ impl Items for AxisLimits {
         let range = self.range;
         let sign = if side == 0 { '-' } else { '+' };
         let prompt = format!("{} {}{sign} =", site.words("AXIS LIMIT"), axis.letter());
-        Turn::Open(Number::ask(prompt, move |value, site| {
-            set(axis, range, side, value, site)
-        }))
+        let ask = Number::ask(prompt, move |value, site| set(axis, range, side, value, site));
+        Turn::Open(ask.capturing(move |site| site.captured_reference(axis.letter())))
     }
 
-    /// CAPTURE takes the position over where the axis stands, in coordinates of REF.
+    /// CAPTURE takes the position over where the axis stands, in coordinates of REF [003:7157].
     fn key(&mut self, place: usize, key: Key, site: &mut Site) -> Turn {
         let Some((axis, side)) = AxisLimits::line(place, site).filter(|_| key == Key::Capture) else {
             return Turn::Refused;
         };
-        let snapshot = site.control().snapshot();
-        let own = snapshot.axes.iter().find(|own| own.letter == axis.letter());
-        let value = own.map(|own| (own.machine * 1000.0).round() / 1000.0);
+        let value = site.captured_reference(axis.letter());
         match value.is_some_and(|value| set(axis, self.range, side, value, site)) {
             true => Turn::Done,
             false => Turn::Say(site.message(bahn_parameters::MessageId::EntryValueIncorrect)),

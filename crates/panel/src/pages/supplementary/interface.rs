@@ -8,6 +8,7 @@ use bahn_parameters::MessageId;
 
 use crate::page::{Page, Turn};
 use crate::pages::menu::{Item, Items, Menu};
+use crate::pages::number::Number;
 use crate::settings::{BAUD_RATES, Interface, InterfaceMode, TransferOf};
 use crate::site::Site;
 use crate::transfer::{TransferDeed, TransferOrder};
@@ -166,9 +167,32 @@ impl Items for Interfaces {
         match key {
             Key::Right => change(place, true, site),
             Key::Left => change(place, false, site),
+            key if key.digit().is_some() => enter_baud(place, key, site),
             _ => Turn::Refused,
         }
     }
+}
+
+/// A baud rate is entered with the numerical keys [003:7048].
+fn enter_baud(place: usize, digit: Key, site: &mut Site) -> Turn {
+    let Some(Row::Baud(port)) = rows(site).get(place).copied() else {
+        return Turn::Refused;
+    };
+    let own = site.settings.interfaces.get(port).copied().unwrap_or_default();
+    if is_inhibited(port, site) || own.mode == InterfaceMode::Me {
+        return Turn::Refused;
+    }
+    let ask = Number::turning(format!("{} =", site.words("BAUD RATE")), move |value, site| {
+        let mut rates = BAUD_RATES.into_iter();
+        let Some(baud) = rates.find(|rate| f64::from(*rate) == value) else {
+            return Turn::Say(site.message(MessageId::EntryValueIncorrect));
+        };
+        match take(port, Interface { baud, ..own }, site) {
+            Turn::Done => Turn::Close,
+            turn => turn,
+        }
+    });
+    Turn::Open(ask.beginning(digit))
 }
 
 /// Goes to the next setting of a line, or the one before.

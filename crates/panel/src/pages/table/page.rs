@@ -7,6 +7,7 @@ use bahn_parameters::MessageId;
 use super::cells::{is_mark, read};
 use super::editor::{CELL_MAX, RENEWED, TableEditor, WIDTH};
 use super::{POCKET_FILE, TOOL_FILE, path_of, pockets, tools};
+use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
 use crate::screen::{Dialogue, Line, Mark, WindowKind};
@@ -50,11 +51,7 @@ impl TableEditor {
     /// The actual position of an axis: into its column, or that of the tool axis into the length [003:1857].
     fn capture(&mut self, site: &Site) -> Turn {
         let letter = match (self.form, self.column_name()) {
-            (TableForm::Tool, "L") => site
-                .control()
-                .first()
-                .in_force()
-                .map(|own| own.tool_axis.letter()),
+            (TableForm::Tool, "L") => site.tool_axis().map(bahn_path::Axis::letter),
             (TableForm::Datum | TableForm::Point, name) => {
                 let snapshot = site.control().snapshot();
                 let place = name
@@ -67,11 +64,9 @@ impl TableEditor {
             }
             _ => None,
         };
-        let snapshot = site.control().snapshot();
-        let axis = snapshot.axes.iter().find(|axis| Some(axis.letter) == letter);
-        match axis {
-            Some(axis) => {
-                self.entry = Some(format!("{:.3}", axis.actual));
+        match letter.and_then(|letter| site.captured(letter)) {
+            Some(value) => {
+                self.entry = Some(Entry::of(value).text());
                 Turn::Done
             }
             None => Turn::Refused,
@@ -95,7 +90,11 @@ impl TableEditor {
             (TableForm::Tool, "RT") => site.words("ALTERNATE TOOL?"),
             (TableForm::Tool, "TIME1" | "TIME2") => site.words("MAXIMUM TOOL AGE?"),
             (TableForm::Tool, "CUR.TIME") => site.words("CURRENT TOOL AGE?"),
-            (TableForm::Tool | TableForm::Pocket, "ST") => site.words("SPECIAL TOOL? YES=ENT/NO=NOENT"),
+            // The TNC 360 has blanks in it [003:1908].
+            (TableForm::Tool | TableForm::Pocket, "ST") => match site.control().model().has_windows() {
+                true => site.words("SPECIAL TOOL? YES=ENT/NO=NOENT"),
+                false => site.words("SPECIAL TOOL? YES = ENT / NO = NO ENT"),
+            },
             (TableForm::Tool, "P") => site.words("POCKET NUMBER?"),
             (TableForm::Pocket, "T") => site.words("TOOL NUMBER?"),
             (TableForm::Pocket, "F") => site.words("FIXED POCKET? YES=ENT/NO=NOENT"),
