@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bahn_control::{Message, Programs};
 use bahn_machine::Machine;
+use bahn_program::Program;
 
 use super::contour::Contour;
 use crate::feed::Next;
@@ -128,13 +129,34 @@ impl Bench {
     }
 }
 
+/// The programs of a folder, to which nothing is added: what a trial digitizes is of no use to the next one.
+struct ReadOnly(FolderPrograms);
+
+impl Programs for ReadOnly {
+    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.0.open(name, caller)
+    }
+
+    fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.0.open_in_eprom(name, caller)
+    }
+
+    fn name_here(&self, name: &str) -> String {
+        self.0.name_here(name)
+    }
+
+    fn store(&self, _name: &str, _pieces: &[Arc<[u8]>]) -> Result<(), String> {
+        Ok(())
+    }
+}
+
 /// A machine that is switched on for a program, with an operator who stands by.
 fn host(machine: &LoadedMachine, program: &str) -> Host {
     let mut power_on = PowerOn::fresh(machine);
     for (number, channel) in (1..).zip(&mut power_on.channels) {
-        channel.programs = Arc::new(FolderPrograms::of_folder(&machine.programs(number)));
+        channel.programs = Arc::new(ReadOnly(FolderPrograms::of_folder(&machine.programs(number))));
     }
-    let programs: Arc<dyn Programs> = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
+    let programs: Arc<dyn Programs> = Arc::new(ReadOnly(FolderPrograms::of_folder(&machine.programs(0))));
     let operator = Operator::new(
         Attendance::Full,
         machine.folder.operator.clone(),
