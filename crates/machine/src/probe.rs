@@ -218,8 +218,9 @@ impl Probe {
     /// A tool is in the spindle at an angle, degrees: the probe comes and goes as the tool whose number it has.
     pub fn is_held(&mut self, tool: u32, spindle_deg: f64) {
         let before = std::mem::replace(&mut self.held, tool);
-        if before != tool && self.as_tool.is_some() {
-            self.insert(self.as_tool == Some(tool), spindle_deg);
+        let is_probe = |tool| self.as_tool == Some(tool);
+        if before != tool && (is_probe(before) || is_probe(tool)) {
+            self.insert(is_probe(tool), spindle_deg);
         }
     }
 
