@@ -124,6 +124,13 @@ impl Axes {
         gantry::command(&mut self.units);
     }
 
+    /// A contour cycle in which the loops are open: nothing is commanded, what is measured goes on.
+    pub fn pass(&mut self) {
+        for unit in &mut self.units {
+            unit.servo.command(f64::NAN);
+        }
+    }
+
     /// The control voltage has come: all are held where they are.
     pub fn close_loops(&mut self) {
         for unit in self.units.iter_mut().filter(|unit| unit.parameters.controlled) {

@@ -176,7 +176,8 @@ impl Channel {
     /// The loops are opened: nothing moves on.
     pub fn loops_opened(&mut self, machine: &mut MachineSide) {
         self.run.part_thread();
-        machine.spindles.of_mut(self.number).open();
+        let exchange = machine.memory.of_mut(self.number);
+        machine.spindles.of_mut(self.number).open(exchange);
         self.desk.let_go();
         self.positioning.stop();
         self.run.track.halt();
@@ -203,7 +204,8 @@ impl Channel {
         loops::follow(&mut machine.axes.of(self.number), nc, permission);
         if nc.bit(signal::NC_STOP_AND_OPEN_LOOPS) {
             self.run.part_thread();
-            machine.spindles.of_mut(self.number).open();
+            let exchange = machine.memory.of_mut(self.number);
+            machine.spindles.of_mut(self.number).open(exchange);
             self.stop();
         }
     }
@@ -496,11 +498,8 @@ impl Channel {
 
     /// What modules asked for in a scan of the channel, which they take for the only one.
     pub fn take_module_requests(&mut self, machine: &mut MachineSide) {
-        let exchange = machine.memory.of_mut(self.number);
-        let spindle = machine.spindles.of_mut(self.number);
         let requests = &mut machine.link.requests;
         self.positioning.take_requests(requests);
-        spindle.take_requests(requests, exchange);
         if let Some(call) = requests.tool_call.take() {
             self.tools.inserted_call = Some(call);
         }

@@ -233,6 +233,9 @@ impl Kernel {
         }
         let block = self.channels.first().run.running_block();
         machine.messages.follow_plc(machine.memory.first(), block);
+        let first = self.channels.first().number();
+        let spindle = machine.spindles.of_mut(first);
+        spindle.take_requests(&mut machine.link.requests);
         for channel in self.channels.iter_mut() {
             channel.take_strobes(machine);
         }
@@ -274,6 +277,7 @@ impl Kernel {
                 channel.settle(&mut machine.axes);
             }
         } else {
+            machine.axes.pass();
             for channel in self.channels.iter_mut() {
                 channel.forget_start();
             }

@@ -5,7 +5,6 @@ use bahn_interpreter::{BasicRotation, Rules};
 use bahn_parameters::machining::{ProbeSettings, ProbeTurn};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, PerAxis, Plane, Position};
-use bahn_plc::{OrientationDirection, SpindleOrientation};
 use bahn_servo::Measured;
 
 use crate::axes::OwnAxes;
@@ -222,7 +221,7 @@ impl ManualProbing {
         let centre = touched::circle(job.contacts(), 0.0).map(|circle| circle.centre);
         match centre {
             Some(centre) if matches!(job.function, ProbeFunction::Radius(_)) && job.before_turn.is_none() => {
-                if !turn_by_180(turn, site) {
+                if !turn_by_180(turn, false, site) {
                     return Answer::Refused;
                 }
                 job.before_turn = Some(centre);
@@ -397,7 +396,7 @@ impl ManualProbing {
                         let (one, two) = (before[k] - *offset, circle.centre[k] - *offset);
                         *offset = (two - one) / 2.0;
                     }
-                    turn_by_180(settings.turn, site);
+                    turn_by_180(settings.turn, true, site);
                 } else if settings.turns_itself && settings.turn != ProbeTurn::Off {
                     job.turn_by_itself(circle.centre, settings.turn, site);
                 }
@@ -508,7 +507,7 @@ impl Job {
     /// A measuring probe is turned as soon as the ring is probed [000:7654]; a spindle that cannot be turned is said, and
     /// leaves the offset as it was (inferred).
     fn turn_by_itself(&mut self, centre: touched::Point, turn: ProbeTurn, site: &mut Site) {
-        if turn_by_180(turn, site) {
+        if turn_by_180(turn, false, site) {
             self.before_turn = Some(centre);
             self.count = 0;
             self.again = true;
@@ -555,22 +554,14 @@ fn plane_of(tool_axis: Axis) -> Plane {
     Plane::of_tool_axis(tool_axis).unwrap_or(Plane::XY)
 }
 
-/// Turns the probe by 180° (MP6160). `false` when it cannot be turned.
-fn turn_by_180(turn: ProbeTurn, site: &mut Site) -> bool {
+/// Turns the probe by 180° (MP6160), there or back, so that a cable does not wind up. It does so from where the spindle
+/// stands, which need not have turned before. `false` when it cannot be turned.
+fn turn_by_180(turn: ProbeTurn, back: bool, site: &mut Site) -> bool {
     match turn {
         ProbeTurn::Off => false,
         ProbeTurn::ByControl => {
-            let Some(angle) = site.spindle.angle_deg() else {
-                return false;
-            };
-            let orientation = SpindleOrientation {
-                angle: (angle + 180.0).rem_euclid(360.0),
-                added_to_cycle: false,
-                speed: 0.0,
-                direction: OrientationDirection::Shortest,
-            };
-            site.spindle.orient(orientation, site.exchange);
-            true
+            let way_deg = if back { -180.0 } else { 180.0 };
+            site.spindle.turn_by(way_deg, site.exchange)
         }
         ProbeTurn::ByPlc(code) => {
             site.handshakes.push(Transfer::M(code));

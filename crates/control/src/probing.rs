@@ -328,10 +328,7 @@ impl Probe {
     /// Moves the axes of a tool measuring for a cycle.
     fn measures(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
         match (self.tool.moves(running, site, measured), self.block) {
-            (Measuring::Over(values), _) => Probed::Found(LiveData {
-                q_values: values.into_iter().flatten().collect(),
-                ..LiveData::default()
-            }),
+            (Measuring::Over(live), _) => Probed::Found(live),
             (Measuring::Refused(message), block @ Some(_)) => Probed::Refused(message, block),
             _ => Probed::Moves,
         }

@@ -33,9 +33,8 @@ impl QTransfer {
     /// What the program reads from now on.
     pub fn answer(&mut self) -> LiveData {
         LiveData {
-            scan: None,
-            touch: None,
             q_values: take(&mut self.transferred).collect(),
+            ..LiveData::default()
         }
     }
 

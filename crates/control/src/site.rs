@@ -126,8 +126,8 @@ impl Site<'_> {
         let Some(inserted) = self.tools.inserted_call.take() else {
             return;
         };
-        let axis = self.chain.offsets.tool_axis;
-        let Some(call) = self.tools.tool_call(&inserted, axis, self.magazine) else {
+        let modal = (self.chain.offsets.tool_axis, self.spindle.state().programmed_rpm);
+        let Some(call) = self.tools.tool_call(&inserted, modal, self.magazine) else {
             return;
         };
         let called = inserted.tool.is_some() && call.tool != 0;

@@ -81,6 +81,8 @@ pub(crate) struct SpindleUnit {
     jogging: bool,
     turning: bool,
     orienting: bool,
+    /// What module 9171 asked for.
+    asked: Option<SpindleOrientation>,
     /// The orientation was ordered by M2527: its strobe and complement are as at rest at the end.
     by_markers: bool,
     /// M2527 was set in the last scan.
@@ -111,6 +113,7 @@ impl SpindleUnit {
             jogging: false,
             turning: false,
             orienting: false,
+            asked: None,
             by_markers: false,
             ordered: false,
             led: false,
@@ -281,8 +284,8 @@ impl SpindleUnit {
         exchange.nc_set(signal::CYCLE_13_EXECUTED, true);
     }
 
-    /// Module 9171.
-    pub fn orient(&mut self, orientation: SpindleOrientation, exchange: &mut Exchange) {
+    /// Module 9171, which has set M2712.
+    fn orient(&mut self, orientation: SpindleOrientation) {
         let added = if orientation.added_to_cycle {
             self.cycle_deg
         } else {
@@ -296,22 +299,25 @@ impl SpindleUnit {
         self.servo
             .orient(orientation.angle + added, orientation.speed, way);
         self.orienting = true;
-        exchange.nc_set(signal::ORIENT_SPINDLE, true);
     }
 
-    /// What modules ask of it.
-    pub fn take_requests(&mut self, requests: &mut Requests, exchange: &mut Exchange) {
-        if let Some(orientation) = requests.orientation.take() {
-            self.orient(orientation, exchange);
-        }
+    /// What modules ask of it, before its markers are taken: an orientation with its own parameters comes before that of
+    /// M2712, which it sets [000:16126].
+    pub fn take_requests(&mut self, requests: &mut Requests) {
+        self.asked = requests.orientation.take().or(self.asked.take());
         if let Some(volts) = requests.spindle_volts.take() {
             self.set_plc_volts(volts);
         }
     }
 
-    /// Opens the loop and takes the voltage away: EMERGENCY STOP, M2830.
-    pub fn open(&mut self) {
+    /// Opens the loop and takes the voltage away: EMERGENCY STOP, M2830. An orientation ends as what the PLC positions does
+    /// [000:4013-4019]: the spindle does not go on with it by itself when the voltage is back (inferred).
+    pub fn open(&mut self, exchange: &mut Exchange) {
         self.led = false;
+        self.asked = None;
+        if std::mem::take(&mut self.orienting) {
+            self.end_orientation(exchange);
+        }
         self.servo.rotate(Rotation::M5);
         self.servo.set_enabled(false);
         self.by_program.switch_off();
@@ -335,6 +341,16 @@ impl SpindleUnit {
     /// Orients for a thread or the tool probe: from standstill by the shorter way [000:623].
     pub fn orient_shortest(&mut self, angle_deg: f64) {
         self.servo.orient(angle_deg, 0.0, Way::Shortest);
+    }
+
+    /// Turns it by a way from where it stands, degrees: M2712 until it is there. `false` when it cannot be.
+    pub fn turn_by(&mut self, way_deg: f64, exchange: &mut Exchange) -> bool {
+        let turns = self.can_be_led() && self.servo.turn_by(way_deg);
+        if turns {
+            self.orienting = true;
+            exchange.nc_set(signal::ORIENT_SPINDLE, true);
+        }
+        turns
     }
 
     /// Leads it for a contour cycle along a thread; `None` when the thread is over: it stays where it is.
@@ -390,7 +406,8 @@ impl SpindleUnit {
     }
 
     /// After a PLC scan: direction, jog, orientation, gear and speed by the PLC. The code of the fault when
-    /// more than one direction is set [000:5492-5518].
+    /// more than one direction is set [000:5492-5518]. A tool in a thread is not left to turn by itself, whatever is
+    /// asked: it waits for the end of the thread (inferred).
     pub fn take_markers(&mut self, exchange: &mut Exchange, numbers: &PlcParameters) -> Option<PlcFaultCode> {
         let nc = exchange.nc();
         let shown = [signal::M03_SHOWN, signal::M04_SHOWN, signal::M05_SHOWN].map(|marker| nc.bit(marker));
@@ -401,7 +418,6 @@ impl SpindleUnit {
         for ((now, before), rotation) in shown.iter().zip(self.shown).zip(rotations) {
             if *now && !before {
                 self.rotation = rotation;
-                // A tool in a thread is not left to turn by itself (inferred).
                 if !self.led {
                     self.servo.rotate(rotation);
                     self.orienting = false;
@@ -414,10 +430,21 @@ impl SpindleUnit {
         self.servo
             .set_enabled(closed && !nc.bit(signal::SPINDLE_DISPLAY_INVERSE));
         self.servo.set_opens(nc.bit(signal::OPEN_SPINDLE_LOOP));
+        if self.led {
+            return None;
+        }
         self.take_jog(
             nc.bit(signal::SPINDLE_JOG_LEFT),
             nc.bit(signal::SPINDLE_JOG_RIGHT),
         );
+        self.take_turn(nc);
+        let ordered = self.take_orientation(exchange, numbers);
+        self.take_gear(exchange);
+        ordered.err()
+    }
+
+    /// M2501: the spindle turns while it is set [000:5888-5895].
+    fn take_turn(&mut self, nc: &Image) {
         let turn = nc.bit(signal::RUN_SPINDLE_AT_MP3520);
         if turn != self.turning {
             self.turning = turn;
@@ -428,9 +455,6 @@ impl SpindleUnit {
             };
             self.servo.turn(if turn { direction } else { Rotation::M5 });
         }
-        let ordered = self.take_orientation(exchange, numbers);
-        self.take_gear(exchange);
-        ordered.err()
     }
 
     /// M2490 and M2491: the spindle moves to and fro while the gear changes [000:5636-5641].
@@ -457,6 +481,9 @@ impl SpindleUnit {
         if exchange.nc().bit(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN) {
             self.servo.forget_mark();
             exchange.nc_set(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN, false);
+        }
+        if let Some(orientation) = self.asked.take() {
+            self.orient(orientation);
         }
         let form = Form::of(exchange.nc());
         if form == Form::Markers {
@@ -516,10 +543,15 @@ impl SpindleUnit {
         self.servo.set_override(override_percent);
         if self.orienting && self.servo.in_position() {
             self.orienting = false;
-            exchange.nc_set(signal::ORIENT_SPINDLE, false);
-            if std::mem::take(&mut self.by_markers) {
-                ORIENTATION.end(exchange);
-            }
+            self.end_orientation(exchange);
+        }
+    }
+
+    /// M2712 falls, or the strobe of the markers.
+    fn end_orientation(&mut self, exchange: &mut Exchange) {
+        exchange.nc_set(signal::ORIENT_SPINDLE, false);
+        if std::mem::take(&mut self.by_markers) {
+            ORIENTATION.end(exchange);
         }
     }
 
@@ -572,7 +604,7 @@ impl SpindleUnit {
 
     /// An orientation is on its way.
     pub fn is_orienting(&self) -> bool {
-        self.orienting
+        self.orienting || self.asked.is_some()
     }
 
     pub fn state(&self) -> SpindleState {

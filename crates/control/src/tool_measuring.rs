@@ -5,7 +5,7 @@ use bahn_exchange::{Exchange, signal};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
-use bahn_path::{Axis, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
+use bahn_path::{Axis, LiveData, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
 use crate::axis::{AxisUnit, Mover};
@@ -26,8 +26,8 @@ const STOP: u8 = 5;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Measuring {
     Moves,
-    /// Q parameters with their values: differences of length and radius, and what was found.
-    Over([Option<(u16, f64)>; 2]),
+    /// What the program goes on with: the differences of length and radius, in Q115 and Q116, too, and what was found.
+    Over(LiveData),
     Refused(Message),
 }
 
@@ -200,14 +200,19 @@ impl ToolMeasurement {
             return Measuring::Moves;
         };
         ended(site.exchange);
-        let q = match run.order.part {
-            MeasuredPart::Length => Q_LENGTH,
-            MeasuredPart::Radius => Q_RADIUS,
-            MeasuredPart::Probe => return Measuring::Over([None; 2]),
+        let [longest, _] = run.contacts.found();
+        let (q, tool_differences_mm) = match run.order.part {
+            MeasuredPart::Length => (Q_LENGTH, [longest, 0.0]),
+            MeasuredPart::Radius => (Q_RADIUS, [0.0, longest]),
+            MeasuredPart::Probe => return Measuring::Over(LiveData::default()),
         };
         let state = f64::from(run.state(site) as u8);
-        let [longest, _] = run.contacts.found();
-        Measuring::Over([Some((q, longest)), run.order.result.map(|number| (number, state))])
+        let result = run.order.result.map(|number| (number, state));
+        Measuring::Over(LiveData {
+            q_values: [Some((q, longest)), result].into_iter().flatten().collect(),
+            tool_differences_mm,
+            ..LiveData::default()
+        })
     }
 
     /// Nothing is measured any more: a tool that was turned stops, with the speed that was programmed, so that nobody

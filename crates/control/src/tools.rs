@@ -162,8 +162,14 @@ impl Tools {
         }
     }
 
-    /// The TOOL CALL of module 9150; `None` when it is none that can be executed. What is not given stays.
-    pub fn tool_call(&self, block: &ToolCallBlock, axis: Axis, magazine: &Magazine) -> Option<ToolCall> {
+    /// The TOOL CALL of module 9150; `None` when it is none that can be executed. What is not given stays: tool, and
+    /// axis and speed in rpm as they are [000:16098-16106].
+    pub fn tool_call(
+        &self,
+        block: &ToolCallBlock,
+        (axis, speed_rpm): (Axis, f64),
+        magazine: &Magazine,
+    ) -> Option<ToolCall> {
         let tool = block
             .tool
             .map_or(Some(self.called), |tool| u32::try_from(tool).ok())?;
@@ -176,7 +182,7 @@ impl Tools {
         Some(ToolCall {
             tool,
             axis,
-            speed_rpm: block.speed.unwrap_or(0.0),
+            speed_rpm: block.speed.unwrap_or(speed_rpm),
             shape,
             at_end_of_life: false,
         })

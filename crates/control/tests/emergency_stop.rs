@@ -141,6 +141,48 @@ fn emergency_stop_while_moving() {
     assert!(rig.bit("M2000"));
 }
 
+/// The speed of an axis is that which is, also when its loop is open: while it runs out, when it stands, and when the
+/// loop closes again.
+#[test]
+fn the_speed_of_an_axis_without_loop() {
+    // A drive that friction stops.
+    let friction = "time_constant_ms = 2\nreset_ms = 25\nmass = 500\nfriction = 600\nforce = 6000";
+    let mut rig = bench("").with("").plant("time_constant_ms = 2", friction).ready();
+    let observe = |rig: &Rig, signal: &str| rig.control.observe(&signal.parse().unwrap());
+    rig.event("key RAPID press");
+    rig.event("key X- press");
+    rig.seconds(0.5);
+    rig.event("emergency press");
+    rig.event("key X- release");
+    let mut before = observe(&rig, "X.actual");
+    let (mut ran_out, mut stood) = (false, 0);
+    for cycle in 0..600 {
+        if cycle == 400 {
+            rig.event("emergency release");
+        }
+        if cycle == 450 {
+            rig.command("ce");
+        }
+        let at_start = before;
+        rig.cycle();
+        before = observe(&rig, "X.actual");
+        let speed = observe(&rig, "X.speed");
+        // The cycle before this one, as its first servo step saw it: at most what the drive brakes within a cycle beside it.
+        let now = (before - at_start) / 0.003 * 60.0;
+        assert!(
+            (speed - now).abs() < 700.0,
+            "cycle {cycle}: {speed} mm/min, {now}"
+        );
+        ran_out |= !rig.axis('X').closed && now < -10.0;
+        if cycle > 200 {
+            assert!(speed.abs() < 1.0, "cycle {cycle}: {speed} mm/min while it stands");
+            stood += 1;
+        }
+        assert_eq!(observe(&rig, "path.speed"), 0.0);
+    }
+    assert!(ran_out && stood > 300);
+}
+
 /// A program run is interrupted; after CE the axes go back to where the path left them, and NC start goes on
 /// to the end.
 #[test]

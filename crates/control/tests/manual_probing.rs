@@ -368,6 +368,11 @@ fn the_datum_is_set_at_the_centre_of_a_stud() {
 /// A probe whose ball stands 0.3 and -0.2 mm beside the spindle, near the middle of the ring of 25 mm; the spindle knows its
 /// angle.
 fn in_the_ring(parameters: &[&str]) -> Rig {
+    in_the_ring_after(true, parameters)
+}
+
+/// The same, with a spindle that has turned since power-on, or has not.
+fn in_the_ring_after(turned: bool, parameters: &[&str]) -> Rig {
     let mut build = bench_on(RING, [0.0; 2]).plant("radius = 2\n", "radius = 2\noffset = [0.3, -0.2]\n");
     let spindle = [
         "3510.0=1500",
@@ -390,14 +395,15 @@ fn in_the_ring(parameters: &[&str]) -> Rig {
     go(&mut rig, "L X+91");
     go(&mut rig, "L Y+60.5");
     go(&mut rig, "L Z+80");
-    // The spindle finds its reference mark.
-    rig.command("s 500");
-    rig.command("m 3");
-    rig.start();
-    rig.seconds(2.0);
-    rig.command("m 5");
-    rig.start();
-    rig.seconds(2.0);
+    if turned {
+        // The spindle finds its reference mark.
+        for (m, seconds) in [(3, 2.0), (5, 2.0)] {
+            rig.command("s 500");
+            rig.command(&format!("m {m}"));
+            rig.start();
+            rig.seconds(seconds);
+        }
+    }
     rig.event("probe remove");
     rig.event("probe insert");
     rig
@@ -450,11 +456,12 @@ fn a_measuring_probe_finds_its_centre_offset_by_itself() {
 }
 
 /// In the ring of 25 mm the ball is found to have 2 mm, and with the probe turned by 180° to stand 0.3 and -0.2 mm
-/// beside the spindle; afterwards it stands as before. Without MP6160 it is not turned.
+/// beside the spindle; afterwards it stands as before. Without MP6160 it is not turned. The spindle need not have turned
+/// before: a turn of 180° has no use for the reference mark.
 #[test]
 fn radius_and_centre_offset_are_calibrated() {
-    for parameter in ["6160=-1", "6160=0"] {
-        let mut rig = in_the_ring(&[parameter]);
+    for (parameter, has_turned) in [("6160=-1", true), ("6160=-1", false), ("6160=0", true)] {
+        let mut rig = in_the_ring_after(has_turned, &[parameter]);
         rig.command("probe radius 25");
         probe(&mut rig, 4.0);
         let calibration = |rig: &Rig| rig.control.remember().probe.calibration.unwrap();

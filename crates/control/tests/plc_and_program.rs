@@ -262,6 +262,48 @@ LBL INSERT
     near(rig.machine_position('Z'), z + 95.0);
 }
 
+/// Without a program module 9150 calls tool 2 without a speed, bit 2 = 0: the speed stays as it is, 800 rpm and the
+/// spindle that turns; with bit 2 = 1 it is that of the block, 450 rpm [000:16098-16106].
+#[test]
+fn an_inserted_call_without_speed_leaves_the_speed() {
+    for (bits, rpm) in [(0b001, 800.0), (0b101, 450.0)] {
+        let plc = format!(
+            "{ACKNOWLEDGE}
+       L     I20
+       AN    M0
+       = M1
+       L     I20
+       = M0
+       L     M1
+       CMT   INSERT
+       EM
+LBL INSERT
+       L     K+{bits}
+       = B200
+       L     K+2
+       = W202
+       L     K+450000
+       = D204
+       PS    K+0
+       PS    K+200
+       CM    9150
+       PL    B204
+"
+        );
+        let mut build = bench(&plc).program("1.H", "TOOL CALL 0 Z S800");
+        for parameter in ["3510.0=1500", "3210.0=9", "3515.0=1500"] {
+            build = build.mp(parameter);
+        }
+        build.tools = Some([(2, Tool::default())].into());
+        let mut rig = ready(build);
+        run(&mut rig, 5.0);
+        rig.event("key A press");
+        rig.seconds(0.5);
+        let spindle = rig.control.snapshot().spindle;
+        assert_eq!((rig.control.tool(), spindle.programmed_rpm), (2, rpm), "{bits:b}");
+    }
+}
+
 /// Without a program module 9150 calls a tool at once, but none that is locked, nor one that the table lacks; there is
 /// no message [000:16063-16075].
 #[test]

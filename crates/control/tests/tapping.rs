@@ -4,6 +4,9 @@
 mod support;
 
 use bahn_control::{RunState, Signal};
+use bahn_exchange::Bit;
+use bahn_machine::Machine;
+use bahn_servo::{Commands, Measured, Plant, Step};
 use support::*;
 
 const PITCH: f64 = 1.5;
@@ -155,6 +158,163 @@ fn the_tool_axis_follows_the_spindle() {
         rig.bit("M2487") && !rig.bit("M2485"),
         "the spindle stands after the cycle"
     );
+}
+
+/// The machine, and what passed its connectors in each servo step.
+struct Recorder<'a> {
+    machine: &'a mut Machine,
+    steps: Vec<ServoStep>,
+}
+
+/// Voltage of output S, turns of the spindle, place of Z, mm.
+#[derive(Clone, Copy)]
+struct ServoStep {
+    volts: f64,
+    turns: f64,
+    z: f64,
+}
+
+impl ServoStep {
+    fn seen(&self) -> Seen {
+        Seen {
+            angle: self.turns * 360.0,
+            z: self.z,
+            rpm: 0.0,
+        }
+    }
+}
+
+/// The greatest change of the voltage from one servo step to the next, V.
+fn greatest_step(steps: &[ServoStep]) -> f64 {
+    let volts = steps.windows(2).map(|pair| pair[1].volts - pair[0].volts);
+    volts.fold(0.0, |greatest, volts| f64::max(greatest, volts.abs()))
+}
+
+impl Plant for Recorder<'_> {
+    fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
+        self.machine.exchange(step, commands, measured);
+        if step.length_us > 0 {
+            self.steps.push(ServoStep {
+                volts: commands.axes[5].volts,
+                // 1024 lines, 1024 steps of each; 20 µm, 1024 steps of each.
+                turns: measured.encoders[5].count as f64 / 1024.0 / 1024.0,
+                z: measured.encoders[2].count as f64 * 0.02 / 1024.0,
+            });
+        }
+    }
+}
+
+/// In each servo step from the first on the voltage is on the ramp MP3410.3, and Z is where the turn of the spindle
+/// says: in cycle 17 and cycle 18, one after the other, and in a thread behind M03; with the drive of the mill and
+/// with one that follows its voltage at once.
+///
+/// 0.01 V/ms are 0.006 V in a step of 0.6 ms. kv 2 is 33/s: the loop adds its part of a change of the lag, which is,
+/// with the time constant of 60 ms, no more than the ramp itself for 60 ms: 33/s · 60 ms = 2 of it.
+#[test]
+fn the_voltage_is_on_its_ramp_in_every_servo_step_of_a_thread() {
+    let thread = |cycle: u32, set_up: &str| {
+        format!(
+            "CYCL DEF {cycle}.0 THREAD
+{set_up}CYCL DEF {cycle}.{} DEPTH -{DEPTH}
+CYCL DEF {cycle}.{} PITCH +{PITCH}
+L Z+5 FMAX
+L Z+3 FMAX
+CYCL CALL
+",
+            if cycle == 17 { 2 } else { 1 },
+            if cycle == 17 { 3 } else { 2 },
+        )
+    };
+    let [tap, cut] = [thread(17, "CYCL DEF 17.1 SET UP -3\n"), thread(18, "")];
+    let program = format!(
+        "TOOL CALL 3 Z S300\nL X+20 Y+20 R0 FMAX\n{tap}{cut}L X+25 FMAX\nL Z+3 FMAX M3\nL X+30 FMAX\n{tap}{cut}L X+40 FMAX"
+    );
+    for (milliseconds, reserve) in [("60", 3.0), ("0", 1.1)] {
+        let mill = Build::mill().plant(
+            "time_constant_ms = 60        # [0] of the drive",
+            &format!("time_constant_ms = {milliseconds}"),
+        );
+        let mut rig = ready(mill.program("1.H", &program));
+        rig.start();
+        let rigid: Bit = "M2095".parse().unwrap();
+        let mut threads = 0;
+        while threads < 4 {
+            rig.until(60.0, "M2095", |rig| rig.control.exchange().nc().bit(rigid));
+            assert_eq!(observe(&rig, "path.speed"), 0.0);
+            let mut recorder = Recorder {
+                machine: &mut rig.machine,
+                steps: Vec::new(),
+            };
+            let end = rig.control.time_us() + 60_000_000;
+            // The servo steps with which the path begins and ends to follow the spindle.
+            let (mut coupled, mut free) = (None, 0);
+            while rig.control.exchange().nc().bit(rigid) {
+                assert!(rig.control.time_us() < end, "{:?}", rig.control.snapshot());
+                free = recorder.steps.len();
+                rig.control.prepare();
+                rig.control.cycle(&mut recorder);
+                if coupled.is_none() && rig.control.observe(&"path.speed".parse().unwrap()) > 0.0 {
+                    coupled = Some(free);
+                }
+            }
+            let steps = &recorder.steps[coupled.unwrap()..free];
+            let greatest = greatest_step(steps);
+            let name = format!("thread {threads}, {milliseconds} ms");
+            assert!(
+                greatest <= 0.006 * reserve,
+                "{name}: {greatest} V in a servo step"
+            );
+            let seen: Vec<Seen> = steps.iter().map(ServoStep::seen).collect();
+            let off = self::greatest(&deviations(&seen));
+            assert!(off < TOLERANCE, "{name}: {off} mm off the thread");
+            threads += 1;
+        }
+        assert_eq!(rig.messages(), [""; 0]);
+    }
+}
+
+/// In a thread nothing but the thread moves the spindle: what the PLC asks of it meanwhile, to jog (M2490, M2491), to turn
+/// (M2501), to be oriented (M2712), M04, does nothing, and the tool stays in the thread (inferred).
+#[test]
+fn the_plc_does_not_turn_a_spindle_in_a_thread() {
+    for marker in ["M2490", "M2491", "M2501", "M2712", "M2486"] {
+        let mut build = rigid("");
+        let others = if marker == "M2486" {
+            "       L     M1999\n       R     M2485\n       R     M2487\n"
+        } else {
+            ""
+        };
+        build.plc = build.plc.replace(
+            "       CM    PANEL\n",
+            &format!(
+                "       CM    PANEL\n       L     I134\n       AN    M1999\n       S     M1999\n{others}       L     M1999\n       S     {marker}\n"
+            ),
+        );
+        let mut rig = ready(build);
+        rig.start();
+        rig.until(60.0, "M2095", |rig| rig.bit("M2095"));
+        rig.until(30.0, "in the thread", |rig| observe(rig, "S.rpm") > 0.9 * RPM);
+        rig.event("key Y+ press");
+        let mut recorder = Recorder {
+            machine: &mut rig.machine,
+            steps: Vec::new(),
+        };
+        for _ in 0..2000 {
+            rig.control.prepare();
+            rig.control.cycle(&mut recorder);
+        }
+        let steps = std::mem::take(&mut recorder.steps);
+        assert!(rig.bit("M1999") && !rig.bit("M2095"), "{marker}");
+        let out = steps.iter().position(|s| s.volts < -3.5).unwrap();
+        assert!(
+            greatest_step(&steps[..out]) <= 0.006 * 3.0,
+            "{marker}: {}",
+            greatest_step(&steps[..out])
+        );
+        let seen: Vec<Seen> = steps[..out].iter().map(ServoStep::seen).collect();
+        let off = greatest(&deviations(&seen));
+        assert!(off < TOLERANCE, "{marker}: {off} mm off the thread");
+    }
 }
 
 /// Cycle 18 cuts from where the tool stands to the depth and stays there, with M2095 and without M2048. The next cut

@@ -113,6 +113,42 @@ fn length_and_radius_are_measured() {
     close_to(rig.control.remember().tool_length, 95.0 + DIFFERENCES[0]);
 }
 
+/// What was measured acts at once, length and radius, without another TOOL CALL: Q108 is the radius, Q114 the length; a path
+/// with radius compensation runs with the new radius, a position in machine coordinates (M91) with the new length. A
+/// check, whose difference becomes DL and DR, too.
+#[test]
+fn what_was_measured_acts_at_once() {
+    for check in ["0", "1"] {
+        let blocks = cycle(31, check)
+            + &cycle(32, check)
+            + "Q10 = Q108\nQ11 = Q114\nL Z+100 R0 FMAX M91\nQ12 = 1\nL X+100 Y+60 R0 FMAX\nL X+100 Y+100 RR F2000\n\
+               L X+100 Y+130 F2000\nSTOP";
+        let mut rig = mill(Edges::default(), &blocks);
+        rig.command("mode full");
+        rig.command("select 1.H");
+        rig.start();
+        rig.until(200.0, "it has measured", |rig| q(rig, 12) == 1.0);
+        rig.until(60.0, "it stops", |rig| {
+            rig.control.snapshot().run == bahn_control::RunState::Stopped
+        });
+        assert_eq!(rig.messages(), [""; 0]);
+        let [length, radius] = [95.0 + DIFFERENCES[0], 10.0 + DIFFERENCES[1]];
+        close_to(q(&rig, 10), radius);
+        close_to(q(&rig, 11), length);
+        // Right of a contour in the direction of Y+ is X+.
+        let shown = |letter: char| {
+            rig.control
+                .observe(&format!("{letter}.displayed").parse().unwrap())
+        };
+        assert!((shown('X') - 100.0 - radius).abs() < 0.002, "{}", shown('X'));
+        assert!(
+            (rig.machine_position('Z') - 100.0).abs() < 0.002,
+            "{}",
+            rig.machine_position('Z')
+        );
+    }
+}
+
 /// A check: the difference becomes DR; beyond RTOL the tool is worn and locked, M2392; Q5 is 1.
 #[test]
 fn a_worn_tool_is_locked() {

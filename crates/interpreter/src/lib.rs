@@ -672,6 +672,7 @@ impl ElementSource for Interpreter {
         let (block, over) = match barrier {
             Barrier::Probe { block, .. } => (block, self.run.finish_probing(&live, &self.settings)),
             Barrier::Scan { block, .. } => (block, self.run.finish_scan(live.scan, &self.settings)),
+            Barrier::MeasureTool(_) => return self.run.take_measured(live.tool_differences_mm),
             _ => return,
         };
         if let Err(fault) = over {

@@ -191,4 +191,18 @@ impl Run {
         };
         probe::finish_probing(&mut self.context(settings), &probing, live)
     }
+
+    /// The tool in the spindle was measured: its length and radius count at once, in Q108 and Q114, too
+    /// [000:8025] (inferred: as with TOOL CALL).
+    pub fn take_measured(&mut self, [longer, greater]: [f64; 2]) {
+        let Some(tool) = &mut self.modal.tool else {
+            return;
+        };
+        tool.shape.length += longer;
+        tool.shape.radius += greater;
+        tool.radius += greater;
+        // Where the axes stand the driver has said already.
+        self.modal.length_mm = Some(tool.shape.length);
+        self.numbers.preassign_tool(tool.shape.length, tool.radius);
+    }
 }

@@ -108,6 +108,9 @@ pub struct LiveData {
     pub scan: Option<Scanned>,
     /// Q parameters that were written meanwhile (by the PLC: Q100-Q107): number, value.
     pub q_values: Vec<(u16, f64)>,
+    /// How much longer the tool in the spindle is, and how much greater its radius, than was known before it was
+    /// measured, mm: it counts so from here on.
+    pub tool_differences_mm: [f64; 2],
 }
 
 impl LiveData {

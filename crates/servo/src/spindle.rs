@@ -233,12 +233,37 @@ impl Spindle {
         }
     }
 
-    /// What turns the spindle: positive as M03. The voltage by which a loop holds it in its place does not.
+    /// Turns a spindle that stands by a way in degrees from where it is held, at MP3520.1; the reference mark need not
+    /// be known. `false` for one that turns.
+    pub fn turn_by(&mut self, way_deg: f64) -> bool {
+        if self.turning() != 0.0 || !way_deg.is_finite() {
+            return false;
+        }
+        let target_deg = self.held_deg() + way_deg;
+        self.go_over(Mode::Orientation(Orientation {
+            angle_deg: target_deg,
+            rpm: self.parameters.orientation.speed_rpm,
+            direction: way_deg.signum(),
+            phase: Phase::Controlled { target_deg },
+            reached: false,
+            steps: 0,
+        }));
+        true
+    }
+
+    /// How it turns, degrees/min, positive as M03; 0 for a spindle that stands. What a loop does to hold it in its place
+    /// is no turning, nor is a speed with which a loop still comes to a standstill within the window (inferred).
     fn turning(&self) -> f64 {
+        let parameters = &self.parameters.orientation;
+        let slow = self
+            .dynamics(parameters.speed_rpm)
+            .velocity(parameters.window_deg);
         match self.mode {
             Mode::Lead => self.lead.profile_deg_min(),
             Mode::Orientation(orientation) if orientation.reached => 0.0,
-            _ => self.physical_sign() * self.ramp_volts,
+            _ => Some(self.encoder.rpm() * 360.0)
+                .filter(|speed| speed.abs() > slow)
+                .unwrap_or(0.0),
         }
     }
 

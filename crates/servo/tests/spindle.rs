@@ -505,6 +505,23 @@ fn a_led_spindle_that_stands_goes_the_shorter_way_to_its_orientation() {
     }
 }
 
+/// A spindle that has never turned, and does not know its reference mark, turns by 180 degrees and back [000:7654]; one that
+/// turns does not.
+#[test]
+fn a_standing_spindle_turns_by_a_way() {
+    let mut bench = Bench::new(DIAGRAM);
+    bench.mark_turns = 0.9;
+    bench.run(0.1);
+    for (way, turned) in [(180.0, 180.0), (-180.0, 0.0)] {
+        assert!(bench.spindle.turn_by(way) && bench.spindle.orienting());
+        bench.run(2.0);
+        assert!(bench.spindle.in_position() && bench.spindle.angle_deg().is_none());
+        assert!((bench.turns * 360.0 - turned).abs() < 0.05, "{}", bench.turns);
+    }
+    bench.turning(100.0, Rotation::M3);
+    assert!(!bench.spindle.turn_by(180.0));
+}
+
 /// Led through 3 turns there and back at 600 rpm, ramps of 0.1 s: an ideal drive follows the velocity, the loop
 /// what is left; it stands where it was led to.
 #[test]

@@ -60,13 +60,16 @@ fn tool_call(call: &Call<'_>, address: i32) -> Option<ToolCallBlock> {
     })
 }
 
-/// 9171: orients the spindle. Without word processing it is an error (inferred).
+/// 9171: orients the spindle. Without word processing, or a spindle that is controlled, it is an error (inferred).
 pub(super) fn orient(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    /// MP3010 from this on means a controlled spindle [000:5444-5472].
+    const CONTROLLED: f64 = 6.0;
     let [angle, speed, direction] = call.arguments()?;
     let Some((direction, from_cycle)) = direction_of(direction) else {
         return Ok(Outcome::Failed);
     };
-    let allowed = !call.from_submit && call.image.bit(signal::WORD_PROCESSING);
+    let controlled = call.parameter(3010, 0) >= CONTROLLED;
+    let allowed = controlled && !call.from_submit && call.image.bit(signal::WORD_PROCESSING);
     if !allowed || speed < 0 || call.nc.spindle_orienting() {
         return Ok(Outcome::Failed);
     }

@@ -60,7 +60,7 @@ fn m9150_inserts_a_tool_call() {
 #[test]
 fn m9171_orients_the_spindle() {
     let mut desk = Desk::new();
-    desk.set("M2719", 1).parameter("3520.1=25.5");
+    desk.set("M2719", 1).parameter("3010=6").parameter("3520.1=25.5");
     assert_eq!(desk.cyclic(9171, &[900_000, 10_000, -1], 0), done());
     assert_eq!(desk.get("M2712"), 1);
     let expected = SpindleOrientation {
@@ -102,6 +102,7 @@ fn m9171_orients_the_spindle() {
 #[test]
 fn m9171_errors() {
     let mut desk = Desk::new();
+    desk.parameter("3010=8");
     assert_eq!(desk.cyclic(9171, &[0, 0, 0], 0), failed(), "M2719 = 0");
     desk.set("M2719", 1);
     assert_eq!(desk.submit(9171, &[0, 0, 0], 0), failed());
@@ -111,5 +112,8 @@ fn m9171_errors() {
     }
     desk.nc.orienting = true;
     assert_eq!(desk.cyclic(9171, &[0, 0, 0], 0), failed());
+    desk.nc.orienting = false;
+    desk.parameter("3010=5");
+    assert_eq!(desk.cyclic(9171, &[0, 0, 0], 0), failed(), "not controlled");
     assert_eq!((desk.nc.orientation, desk.get("M2712")), (None, 0));
 }
