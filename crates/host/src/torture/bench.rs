@@ -7,6 +7,7 @@ use bahn_machine::Machine;
 use bahn_program::Program;
 
 use super::contour::Contour;
+use super::led::Led;
 use crate::feed::Next;
 use crate::machine_folder::{FolderPrograms, LoadedMachine};
 use crate::notice::{Notice, Stamped};
@@ -28,6 +29,8 @@ pub(super) struct Bench {
     pub moments: Vec<Saved<Machine>>,
     /// The contour of each channel.
     pub contours: Vec<Contour>,
+    /// What leads each of them.
+    pub led: Vec<Led>,
     /// What the undisturbed run says.
     pub usual: Vec<Message>,
     /// The program of each channel, where it has one.
@@ -46,6 +49,7 @@ impl Bench {
             contours: (0..host.control().channels())
                 .map(|_| Contour::default())
                 .collect(),
+            led: vec![Led::default(); host.control().channels()],
             host,
             moments: Vec::new(),
             usual: Vec::new(),
@@ -84,6 +88,7 @@ impl Bench {
             }
             bench.host.step()?;
             bench.take_path();
+            bench.learn();
             for next in notices.by_ref() {
                 if let Next::Item(Stamped {
                     notice: Notice::Shown(shown),
@@ -104,6 +109,14 @@ impl Bench {
         for (channel, contour) in self.contours.iter_mut().enumerate() {
             for element in self.host.take_path(channel) {
                 contour.add(element);
+            }
+        }
+    }
+
+    fn learn(&mut self) {
+        for (number, led) in self.led.iter_mut().enumerate() {
+            if let Some(channel) = self.host.control().channel(number) {
+                led.learn(&channel);
             }
         }
     }
