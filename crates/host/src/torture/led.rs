@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use bahn_control::{ChannelView, Signal};
+use bahn_control::{AxisWatch, ChannelView, Signal};
 use bahn_path::{Axis, BlockRef, PerAxis, Position};
 
 use super::axes::Moment;
@@ -17,12 +17,16 @@ const NUMBERS: u16 = 120;
 const STOP_CYCLES: f64 = 3.0;
 /// Contour cycles that a thread is behind its spindle at most: in one its angle is measured, in the next one it is led.
 const THREAD_CYCLES: f64 = 2.0;
+/// Steps of the spindle's encoder, mm of a thread.
+const ROUNDING_MM: f64 = 1e-3;
 
 /// Where a block was led undisturbed, and what the numbers of the program were behind it.
 #[derive(Clone, Debug)]
 struct Stretch {
     least: Position,
     greatest: Position,
+    /// How fast each axis was, mm/s.
+    fastest: PerAxis<f64>,
     numbers: Vec<f64>,
 }
 
@@ -30,20 +34,28 @@ struct Stretch {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Led {
     stretches: HashMap<BlockRef, Stretch>,
+    /// How fast the axes of a thread are at most, mm/s.
+    threads: HashMap<BlockRef, PerAxis<f64>>,
     open: Option<BlockRef>,
 }
 
 impl Led {
     /// A cycle of the undisturbed run.
     pub fn learn(&mut self, channel: &ChannelView) {
-        let Some(block) = channel.element().map(|element| element.block) else {
+        let Some(element) = channel.element() else {
             return;
         };
+        let block = element.block;
+        if element.thread().is_some() {
+            let fastest = self.threads.entry(block);
+            grow(fastest.or_insert_with(|| PerAxis::splat(0.0)), channel);
+        }
         if channel.is_led_by_probe() {
             let place = channel.commanded();
             let new = || Stretch {
                 least: place,
                 greatest: place,
+                fastest: PerAxis::splat(0.0),
                 numbers: Vec::new(),
             };
             let stretch = self.stretches.entry(block).or_insert_with(new);
@@ -51,6 +63,7 @@ impl Led {
                 stretch.least[axis] = stretch.least[axis].min(place[axis]);
                 stretch.greatest[axis] = stretch.greatest[axis].max(place[axis]);
             }
+            grow(&mut stretch.fastest, channel);
             self.open = Some(block);
         } else if let Some(led) = self.open.filter(|led| *led != block) {
             if let Some(stretch) = self.stretches.get_mut(&led) {
@@ -58,6 +71,13 @@ impl Led {
             }
             self.open = None;
         }
+    }
+
+    /// How fast the axes are in a block that is led, mm/s.
+    fn fastest(&self, block: BlockRef) -> PerAxis<f64> {
+        let probed = self.stretches.get(&block).map(|stretch| stretch.fastest);
+        let threaded = self.threads.get(&block).copied();
+        probed.or(threaded).unwrap_or(PerAxis::splat(0.0))
     }
 
     /// A place is where the block was led, or no farther beside that than it reaches.
@@ -69,6 +89,18 @@ impl Led {
                 beside.is_nan() || beside <= reach[axis] + tolerance
             })
         })
+    }
+}
+
+fn length(of: &PerAxis<f64>) -> f64 {
+    let squares = [Axis::X, Axis::Y, Axis::Z].map(|axis| of[axis] * of[axis]);
+    squares.iter().sum::<f64>().sqrt()
+}
+
+/// The greatest speeds of the axes, mm/s.
+fn grow(fastest: &mut PerAxis<f64>, channel: &ChannelView) {
+    for watch in channel.watch().filter(|watch| !watch.slave) {
+        fastest[watch.axis] = fastest[watch.axis].max(watch.speed_mm_s.abs());
     }
 }
 
@@ -110,7 +142,6 @@ struct Thread {
     sequence: u64,
     from: Position,
     turned_deg: f64,
-    fastest_mm_s: f64,
 }
 
 impl Leading {
@@ -120,7 +151,7 @@ impl Leading {
             return;
         };
         if self.block.replace(block) != Some(block) {
-            self.fastest = PerAxis::splat(0.0);
+            self.fastest = undisturbed.fastest(block);
             if let Some(stretch) = self.led.take().and_then(|led| undisturbed.stretches.get(&led)) {
                 let now = numbers(channel);
                 let differences = stretch
@@ -134,9 +165,9 @@ impl Leading {
         if channel.is_led_by_probe() {
             self.led = Some(block);
         }
+        grow(&mut self.fastest, channel);
         for watch in channel.watch().filter(|watch| !watch.slave) {
-            let fastest = self.fastest[watch.axis].max(watch.speed_mm_s.abs());
-            self.fastest[watch.axis] = fastest;
+            let fastest = self.fastest[watch.axis];
             self.reach[watch.axis] = fastest * fastest / (2.0 * watch.acceleration_mm_s2)
                 + STOP_CYCLES * fastest * moment.cycle_s
                 + watch.lag.abs();
@@ -150,33 +181,29 @@ impl Leading {
 
     /// So far a thread may go on beyond its ends, mm: until its spindle stands.
     pub fn reach_mm(&self) -> f64 {
-        let axes = [Axis::X, Axis::Y, Axis::Z];
-        axes.map(|axis| self.reach[axis].powi(2))
-            .iter()
-            .sum::<f64>()
-            .sqrt()
+        length(&self.reach)
     }
 
     /// In a thread the tool has gone the pitch for each turn of the spindle; how far it is from that, and how far it may be.
     pub fn out_of_step(&mut self, channel: &ChannelView, moment: &Moment) -> Option<(f64, f64)> {
         let place = channel.commanded();
         let turned_deg = channel.observe(&Signal::SpindleAngle);
-        let coupled = channel.is_in_thread() && channel.watch().all(|watch| watch.closed && !watch.halted);
+        // What brings tool and spindle apart couples them anew as they are then.
+        let follows =
+            |watch: AxisWatch| watch.closed && !watch.halted && watch.beside == 0.0 && watch.fault.is_none();
+        let coupled = channel.is_in_thread() && channel.watch().all(follows);
         let element = channel.element().filter(|_| coupled);
         let Some((element, thread)) = element.and_then(|element| Some((element, element.thread()?))) else {
             self.thread = None;
             return None;
         };
-        let speed = channel.observe(&Signal::PathSpeed).abs() / 60.0;
         let new = Thread {
             sequence: element.sequence,
             from: place,
             turned_deg,
-            fastest_mm_s: speed,
         };
         let begun = self.thread.filter(|thread| thread.sequence == element.sequence);
         let begun = self.thread.insert(begun.unwrap_or(new));
-        begun.fastest_mm_s = begun.fastest_mm_s.max(speed);
         let ways = [Axis::X, Axis::Y, Axis::Z].map(|axis| place[axis] - begun.from[axis]);
         let way = ways
             .iter()
@@ -186,6 +213,9 @@ impl Leading {
             .sqrt();
         let turned = (turned_deg - begun.turned_deg).abs() / 360.0;
         let off = (way - thread.pitch_mm * turned).abs();
-        Some((off, THREAD_CYCLES * begun.fastest_mm_s * moment.cycle_s + 1e-3))
+        Some((
+            off,
+            THREAD_CYCLES * length(&self.fastest) * moment.cycle_s + ROUNDING_MM,
+        ))
     }
 }
