@@ -34,7 +34,8 @@ pub const FOLDER: &str = include_str!("FOLDER.md");
 pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "pockets.tsv", "plc/MAIN.PLC",
     "plc/MAIN.ER1", "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "plc355/MAIN.PLC",
-    "programs/BRACKET.H", "programs/CIRCLE.H", "programs/INDEX.H", "programs/SADDLE.H",
+    "plc/DIALOG.TXT", "programs/BRACKET.H", "programs/CIRCLE.H", "programs/DATUM.H", "programs/FLANGE.H",
+    "programs/INDEX.H", "programs/KNOB.H", "programs/MEASURE.H", "programs/SADDLE.H", "programs/eprom/99999968.H",
     "lessons/01-power-on.lesson", "lessons/02-datum.lesson", "lessons/03-limit.lesson",
     "lessons/04-door.lesson", "lessons/05-lag.lesson", "lessons/06-drive.lesson",
     "lessons/07-tool-change.lesson", "lessons/08-lubricant.lesson",
@@ -44,13 +45,13 @@ pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407":
 /// A small mill of three axes; its control is a TNC 360.
 pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360", "tnc151", "tnc155":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "plc/run.txt", "programs/COVER.H",
+    "plc/run.txt", "programs/COVER.H", "programs/PLATE.H",
 );
 
 /// A mill with digital drives, whose speed loops the control closes; it is a TNC 425.
 pub const DIG425: ShippedMachine = machine!("dig425" for "tnc425":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "plc/run.txt", "programs/CIRCLE.H", "programs/COVER.H", "programs/PALLETS.H", "pallets.txt",
+    "plc/run.txt", "programs/CIRCLE.H", "programs/COVER.H", "programs/MODEL.H", "programs/PALLETS.H", "pallets.txt",
 );
 
 /// A portal mill with two channels; its control is a TNC 415 B. It is a start where it is asked for by its name.
@@ -63,7 +64,7 @@ pub const TWIN: ShippedMachine = machine!("twin" for "tnc415b":
 /// asked for by its name.
 pub const GANTRY: ShippedMachine = machine!("gantry" for "tnc415b":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "plc/start.txt", "programs/ROOF.H", "programs/NOSE.H",
+    "plc/start.txt", "programs/ROOF.H", "programs/THREADS.H", "programs/NOSE.H",
 );
 
 /// All of them; the first one that has a model is the start for it.

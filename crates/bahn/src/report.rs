@@ -59,6 +59,8 @@ pub(crate) enum Notice {
     BlankRedefined,
     /// TCH PROBE without a part.
     NothingToProbe,
+    /// A tool is to be measured: a test run has no tool probe.
+    NoToolProbe,
     /// Digitized points that no folder takes.
     Digitized { points: u64 },
     /// The drawing of the path has too many elements.
@@ -285,6 +287,7 @@ impl Notice {
             Notice::NothingToProbe => {
                 "there is no part to touch: the program needs a BLK FORM, and graphics".into()
             }
+            Notice::NoToolProbe => "a test run has no tool probe: the tool is that of the tool table".into(),
         }
     }
 }

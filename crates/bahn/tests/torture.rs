@@ -52,7 +52,7 @@ fn a_seed_is_a_script() {
     let mill = machines().join("mill-tnc360");
     let mill = mill.display();
     let run = folder.bahn(&format!(
-        "torture --machine {mill} --seeds 31..32 --jobs 1 --format json --record seed.txt"
+        "torture --machine {mill} --program COVER.H --seeds 31..32 --jobs 1 --format json --record seed.txt"
     ));
     assert_eq!(run.code(), 0, "{} {}", run.out(), run.err());
     let report = run.json();
@@ -68,7 +68,7 @@ fn a_seed_is_a_script() {
     let seen = report["machines"][0]["messages"].as_u64().unwrap();
     assert!(messages as u64 >= seen, "{messages} {seen}");
     let same = folder.bahn(&format!(
-        "torture --machine {mill} --seeds 31..32 --jobs 1 --format json --record seed.txt"
+        "torture --machine {mill} --program COVER.H --seeds 31..32 --jobs 1 --format json --record seed.txt"
     ));
     assert_eq!((same.out(), folder.read("seed.txt")), (run.out(), script));
 }

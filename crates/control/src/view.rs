@@ -215,6 +215,11 @@ impl<'a> ChannelView<'a> {
         self.channel.run.probe.seeks_surface()
     }
 
+    /// A probe leads the path, and no element of it: a probing, a scan, or the measuring of a tool.
+    pub fn is_led_by_probe(&self) -> bool {
+        self.channel.run.probe.is_on()
+    }
+
     /// Handshake that the run waits for.
     pub fn waiting(&self) -> Option<Waiting> {
         let nc = self.machine.memory.of(self.number()).nc();

@@ -310,6 +310,10 @@ impl Machine {
     /// Contacts, relays and things: once in a millisecond.
     fn tick(&mut self) {
         self.panel.advance();
+        let (tool, angle) = (self.tool_in_spindle(), self.spindle_deg());
+        if let Some(probe) = &mut self.probe {
+            probe.is_held(tool, angle);
+        }
         let limits_clear = !self.chain.watches_limits() || self.limit_switches_clear();
         let key = self.voltage_key.is_some_and(|place| self.panel.pressed(place));
         let switches = self.chain.advance(limits_clear, key);

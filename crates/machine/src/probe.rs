@@ -140,6 +140,9 @@ pub(crate) struct Probe {
     /// counts the other way.
     mounting: Option<[f64; 3]>,
     pub inserted: bool,
+    /// The tool number as which it is put into the spindle, and the tool that was there last.
+    as_tool: Option<u32>,
+    held: u32,
     pub ready: bool,
     pub battery_low: bool,
     /// It says that it is deflected whatever it touches.
@@ -196,6 +199,8 @@ impl Probe {
             inserted_at_deg: 0.0,
             offset: section.numbers("offset").unwrap_or_default(),
             inserted: section.flag("inserted").unwrap_or(false),
+            as_tool: section.number("tool", 1.0..=32_767.0).map(|number| number as u32),
+            held: 0,
             ready: true,
             battery_low: false,
             early: false,
@@ -214,6 +219,17 @@ impl Probe {
     pub fn turned_deg(&self, spindle_deg: f64) -> Option<f64> {
         self.inserted
             .then(|| (spindle_deg - self.inserted_at_deg).rem_euclid(360.0))
+    }
+
+    /// A tool is in the spindle at an angle, degrees: the probe comes and goes as the tool whose number it has.
+    pub fn is_held(&mut self, tool: u32, spindle_deg: f64) {
+        let before = std::mem::replace(&mut self.held, tool);
+        let is_probe = |tool| self.as_tool == Some(tool);
+        let changes = before != tool && (is_probe(before) || is_probe(tool));
+        // One that is there already, as behind power-off, stays as it was put in.
+        if changes && is_probe(tool) != self.inserted {
+            self.insert(is_probe(tool), spindle_deg);
+        }
     }
 
     /// How far the ball stands beside the axis of the spindle, which turns it.

@@ -282,8 +282,7 @@ impl TestRun {
     /// What is found at a barrier. Everything before it has been executed and cut.
     fn live_data(&mut self, barrier: &Barrier) -> LiveData {
         if let Barrier::MeasureTool(measuring) = barrier {
-            // There is no tool probe here.
-            self.record.warn(measuring.block, Notice::NothingToProbe, 1);
+            self.record.warn(measuring.block, Notice::NoToolProbe, 1);
         }
         let Barrier::Probe {
             block,

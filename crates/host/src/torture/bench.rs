@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use bahn_control::{Message, Programs};
 use bahn_machine::Machine;
+use bahn_program::Program;
 
 use super::contour::Contour;
+use super::led::Led;
 use crate::feed::Next;
 use crate::machine_folder::{FolderPrograms, LoadedMachine};
 use crate::notice::{Notice, Stamped};
@@ -27,6 +29,8 @@ pub(super) struct Bench {
     pub moments: Vec<Saved<Machine>>,
     /// The contour of each channel.
     pub contours: Vec<Contour>,
+    /// What leads each of them.
+    pub led: Vec<Led>,
     /// What the undisturbed run says.
     pub usual: Vec<Message>,
     /// The program of each channel, where it has one.
@@ -45,6 +49,7 @@ impl Bench {
             contours: (0..host.control().channels())
                 .map(|_| Contour::default())
                 .collect(),
+            led: vec![Led::default(); host.control().channels()],
             host,
             moments: Vec::new(),
             usual: Vec::new(),
@@ -83,6 +88,7 @@ impl Bench {
             }
             bench.host.step()?;
             bench.take_path();
+            bench.learn();
             for next in notices.by_ref() {
                 if let Next::Item(Stamped {
                     notice: Notice::Shown(shown),
@@ -103,6 +109,14 @@ impl Bench {
         for (channel, contour) in self.contours.iter_mut().enumerate() {
             for element in self.host.take_path(channel) {
                 contour.add(element);
+            }
+        }
+    }
+
+    fn learn(&mut self) {
+        for (number, led) in self.led.iter_mut().enumerate() {
+            if let Some(channel) = self.host.control().channel(number) {
+                led.learn(&channel);
             }
         }
     }
@@ -128,13 +142,34 @@ impl Bench {
     }
 }
 
+/// The programs of a folder, to which nothing is added: what a trial digitizes is of no use to the next one.
+struct ReadOnly(FolderPrograms);
+
+impl Programs for ReadOnly {
+    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.0.open(name, caller)
+    }
+
+    fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.0.open_in_eprom(name, caller)
+    }
+
+    fn name_here(&self, name: &str) -> String {
+        self.0.name_here(name)
+    }
+
+    fn store(&self, _name: &str, _pieces: &[Arc<[u8]>]) -> Result<(), String> {
+        Ok(())
+    }
+}
+
 /// A machine that is switched on for a program, with an operator who stands by.
 fn host(machine: &LoadedMachine, program: &str) -> Host {
     let mut power_on = PowerOn::fresh(machine);
     for (number, channel) in (1..).zip(&mut power_on.channels) {
-        channel.programs = Arc::new(FolderPrograms::of_folder(&machine.programs(number)));
+        channel.programs = Arc::new(ReadOnly(FolderPrograms::of_folder(&machine.programs(number))));
     }
-    let programs: Arc<dyn Programs> = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
+    let programs: Arc<dyn Programs> = Arc::new(ReadOnly(FolderPrograms::of_folder(&machine.programs(0))));
     let operator = Operator::new(
         Attendance::Full,
         machine.folder.operator.clone(),

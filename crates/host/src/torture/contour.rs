@@ -26,14 +26,22 @@ impl Contour {
     }
 
     /// How far a place is from the curves of a block, mm or degrees, as far as `tolerance`; the nearest one first is the
-    /// `hint` for the next place.
-    pub fn distance(&self, place: &Position, block: BlockRef, tolerance: f64, hint: &mut usize) -> f64 {
+    /// `hint` for the next place. A thread goes on beyond its ends by `reach`.
+    pub fn distance(
+        &self,
+        place: &Position,
+        block: BlockRef,
+        tolerance: f64,
+        reach: f64,
+        hint: &mut usize,
+    ) -> f64 {
         let mut nearest = f64::INFINITY;
         let mut look = |index: usize, hint: &mut usize| {
             let Some(element) = self.elements.get(index) else {
                 return false;
             };
-            let distance = from_element(place, element);
+            let beyond = element.thread().map_or(0.0, |_| reach);
+            let distance = from_element(place, element, beyond);
             if distance < nearest {
                 nearest = distance;
                 *hint = index;
@@ -56,8 +64,8 @@ impl Contour {
     }
 }
 
-/// The distance of a place from an element.
-fn from_element(place: &Position, element: &PathElement) -> f64 {
+/// The distance of a place from an element, whose line goes on `beyond` its ends, mm.
+fn from_element(place: &Position, element: &PathElement, beyond: f64) -> f64 {
     let (start, end) = (&element.start, &element.end);
     match &element.curve {
         Curve::Hold => apart(place, end),
@@ -72,7 +80,8 @@ fn from_element(place: &Position, element: &PathElement) -> f64 {
                 }
             }
             let t = if square > 0.0 {
-                (along / square).clamp(0.0, 1.0)
+                let beyond = beyond / square.sqrt();
+                (along / square).clamp(-beyond, 1.0 + beyond)
             } else {
                 1.0
             };
@@ -132,16 +141,19 @@ mod tests {
     #[test]
     fn the_distance_is_that_of_the_nearest_point() {
         let line = element(Curve::Line, at(0.0, 0.0), at(10.0, 0.0));
-        assert_eq!(from_element(&at(4.0, 0.25), &line), 0.25);
-        assert_eq!(from_element(&at(13.0, 4.0), &line), 5.0);
+        assert_eq!(from_element(&at(4.0, 0.25), &line, 0.0), 0.25);
+        assert_eq!(from_element(&at(13.0, 4.0), &line, 0.0), 5.0);
+        // A thread may go on by 1 mm, to 11 and -1.
+        assert_eq!(from_element(&at(14.0, 4.0), &line, 1.0), 5.0);
+        assert_eq!(from_element(&at(-0.5, 0.25), &line, 1.0), 0.25);
         let arc = Arc {
             plane: Plane::XY,
             centre: [0.0, 0.0],
             sweep_deg: 180.0,
         };
         let half = element(Curve::Arc(arc), at(5.0, 0.0), at(-5.0, 0.0));
-        assert!((from_element(&at(0.0, 4.0), &half) - 1.0).abs() < 1e-12);
-        assert!((from_element(&at(5.0, -3.0), &half) - 3.0).abs() < 1e-12);
+        assert!((from_element(&at(0.0, 4.0), &half, 0.0) - 1.0).abs() < 1e-12);
+        assert!((from_element(&at(5.0, -3.0), &half, 0.0) - 3.0).abs() < 1e-12);
         // A quarter of radius 5 about (0, 0), touching x = 5 and y = 5.
         let corner = bahn_path::CornerArc {
             corner: [5.0, 5.0, 0.0],
@@ -151,9 +163,9 @@ mod tests {
             place
         };
         let quarter = element(Curve::Corner(corner), level(at(5.0, 0.0)), level(at(0.0, 5.0)));
-        assert!((from_element(&level(at(3.0, 4.0)), &quarter)).abs() < 1e-12);
-        assert!((from_element(&level(at(6.0, 8.0)), &quarter) - 5.0).abs() < 1e-12);
-        assert!((from_element(&level(at(8.0, -4.0)), &quarter) - 5.0).abs() < 1e-12);
+        assert!((from_element(&level(at(3.0, 4.0)), &quarter, 0.0)).abs() < 1e-12);
+        assert!((from_element(&level(at(6.0, 8.0)), &quarter, 0.0) - 5.0).abs() < 1e-12);
+        assert!((from_element(&level(at(8.0, -4.0)), &quarter, 0.0) - 5.0).abs() < 1e-12);
     }
 
     fn element(curve: Curve, start: Position, end: Position) -> PathElement {

@@ -10,6 +10,7 @@ mod bench;
 mod catalogue;
 mod contour;
 mod dice;
+mod led;
 mod medium;
 mod messages;
 mod plan;

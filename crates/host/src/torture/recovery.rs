@@ -265,7 +265,7 @@ impl Course<'_> {
         let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
         channels.any(|channel| {
             channel.has_ended() && !self.anew
-                || channel.observe(&Signal::PathSpeed) != 0.0 && !channel.restores()
+                || (channel.observe(&Signal::PathSpeed) != 0.0 || is_led(&channel)) && !channel.restores()
         })
     }
 
@@ -275,6 +275,11 @@ impl Course<'_> {
         let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
         channels.any(|channel| channel.restores() && channel.watch().any(|axis| axis.speed_mm_s != 0.0))
     }
+}
+
+/// A probe leads its axes.
+fn is_led(channel: &bahn_control::ChannelView) -> bool {
+    channel.is_led_by_probe() && channel.watch().any(|axis| axis.on_path && axis.speed_mm_s != 0.0)
 }
 
 /// A command to a channel begins so.

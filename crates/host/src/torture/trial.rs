@@ -8,6 +8,7 @@ use bahn_servo::OUTPUTS;
 use super::axes::{Axes, Moment};
 use super::bench::Bench;
 use super::catalogue::{Catalogue, Kind};
+use super::led::Leading;
 use super::medium::Medium;
 use super::messages::{Messages, is_fatal};
 use super::plan::{Happening, Plan};
@@ -58,6 +59,8 @@ pub(super) struct Course<'a> {
     cycles: u32,
     /// The contour of each channel is that of the undisturbed run, and where it was last.
     contours: Vec<(bool, usize)>,
+    /// What leads each of them.
+    leading: Vec<Leading>,
     owners: usize,
 }
 
@@ -87,6 +90,7 @@ pub(super) fn run(bench: &mut Bench, catalogue: &Catalogue, plan: &Plan, happeni
         unusual: 0,
         cycles: 0,
         contours: vec![(true, 0); control.channels()],
+        leading: vec![Leading::default(); control.channels()],
         owners: count_axes(control),
         catalogue,
         bench,
@@ -218,7 +222,7 @@ impl Course<'_> {
             self.axes.restart();
             self.ways.restart();
         }
-        self.follow_contours()?;
+        self.follow_contours(&moment)?;
         if self.cycles.is_multiple_of(OUTPUTS_EVERY) {
             self.look_at_writers()?;
         }
@@ -262,13 +266,22 @@ impl Course<'_> {
     }
 
     /// As long as the run of the undisturbed program goes on, its path is on that program's contour.
-    fn follow_contours(&mut self) -> Result<(), Violation> {
+    fn follow_contours(&mut self, moment: &Moment) -> Result<(), Violation> {
         let control = self.bench.host.control();
-        let channels = self.bench.contours.iter().zip(&mut self.contours).enumerate();
-        for (number, (contour, (same, hint))) in channels {
+        let undisturbed = self.bench.contours.iter().zip(&self.bench.led);
+        let own = self.contours.iter_mut().zip(&mut self.leading);
+        for (number, ((contour, led), ((same, hint), leading))) in undisturbed.zip(own).enumerate() {
             let Some(channel) = control.channel(number) else {
                 continue;
             };
+            leading.cycle(&channel, led, moment);
+            if let Some((off, most)) = leading
+                .out_of_step(&channel, moment)
+                .filter(|(off, most)| off > most)
+            {
+                let values = format!("the thread is {off:.4} mm from its spindle, at most {most:.4}");
+                return Err(Violation::new(Rule::Contour, control.time_us(), values));
+            }
             let state = channel.run_state();
             // What is begun anew begins from elsewhere.
             *same &= state != RunState::Idle && !channel.is_broken();
@@ -284,8 +297,9 @@ impl Course<'_> {
             for slave in channel.watch().filter(|axis| axis.slave) {
                 place[slave.axis] = f64::NAN;
             }
-            let away = contour.distance(&place, element.block, CONTOUR, hint);
-            if away > CONTOUR {
+            let tolerance = CONTOUR + leading.moved;
+            let away = contour.distance(&place, element.block, tolerance, leading.reach_mm(), hint);
+            if away > tolerance && !leading.holds(led, element.block, &place, tolerance) {
                 let values = format!(
                     "channel {}: {away:.6} from the contour in block {}, at {place:?}",
                     number + 1,

@@ -1,0 +1,221 @@
+//! Where the machine leads the path, and no curve says how far: a probe goes to what it touches, and a thread as far as
+//! its spindle turns.
+//!
+//! What is led stays where it was undisturbed, and beyond that no farther than it takes to stop there. What a probe has felt
+//! elsewhere than undisturbed moves what the program does behind it by as much: no shipped program makes more of a touch.
+
+use std::collections::HashMap;
+
+use bahn_control::{AxisWatch, ChannelView, Signal};
+use bahn_path::{Axis, BlockRef, PerAxis, Position};
+
+use super::axes::Moment;
+
+/// Q parameters that a program computes with.
+const NUMBERS: u16 = 120;
+/// Contour cycles at full speed that a stop takes beside its ramp.
+const STOP_CYCLES: f64 = 3.0;
+/// Contour cycles that a thread is behind its spindle at most: in one its angle is measured, in the next one it is led.
+const THREAD_CYCLES: f64 = 2.0;
+/// Steps of the spindle's encoder, mm of a thread.
+const ROUNDING_MM: f64 = 1e-3;
+
+/// Where a block was led undisturbed, and what the numbers of the program were behind it.
+#[derive(Clone, Debug)]
+struct Stretch {
+    least: Position,
+    greatest: Position,
+    /// How fast each axis was, mm/s.
+    fastest: PerAxis<f64>,
+    numbers: Vec<f64>,
+}
+
+/// What leads the path of a channel in its undisturbed run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Led {
+    stretches: HashMap<BlockRef, Stretch>,
+    /// How fast the axes of a thread are at most, mm/s.
+    threads: HashMap<BlockRef, PerAxis<f64>>,
+    open: Option<BlockRef>,
+}
+
+impl Led {
+    /// A cycle of the undisturbed run.
+    pub fn learn(&mut self, channel: &ChannelView) {
+        let Some(element) = channel.element() else {
+            return;
+        };
+        let block = element.block;
+        if element.thread().is_some() {
+            let fastest = self.threads.entry(block);
+            grow(fastest.or_insert_with(|| PerAxis::splat(0.0)), channel);
+        }
+        if channel.is_led_by_probe() {
+            let place = channel.commanded();
+            let new = || Stretch {
+                least: place,
+                greatest: place,
+                fastest: PerAxis::splat(0.0),
+                numbers: Vec::new(),
+            };
+            let stretch = self.stretches.entry(block).or_insert_with(new);
+            for axis in Axis::ALL {
+                stretch.least[axis] = stretch.least[axis].min(place[axis]);
+                stretch.greatest[axis] = stretch.greatest[axis].max(place[axis]);
+            }
+            grow(&mut stretch.fastest, channel);
+            self.open = Some(block);
+        } else if let Some(led) = self.open.filter(|led| *led != block) {
+            if let Some(stretch) = self.stretches.get_mut(&led) {
+                stretch.numbers = numbers(channel);
+            }
+            self.open = None;
+        }
+    }
+
+    /// How fast the axes are in a block that is led, mm/s.
+    fn fastest(&self, block: BlockRef) -> PerAxis<f64> {
+        let probed = self.stretches.get(&block).map(|stretch| stretch.fastest);
+        let threaded = self.threads.get(&block).copied();
+        probed.or(threaded).unwrap_or(PerAxis::splat(0.0))
+    }
+
+    /// A place is where the block was led, or no farther beside that than it reaches.
+    fn holds(&self, block: BlockRef, place: &Position, reach: &PerAxis<f64>, tolerance: f64) -> bool {
+        self.stretches.get(&block).is_some_and(|stretch| {
+            Axis::ALL.into_iter().all(|axis| {
+                let beside = (stretch.least[axis] - place[axis]).max(place[axis] - stretch.greatest[axis]);
+                // What was never programmed is NaN.
+                beside.is_nan() || beside <= reach[axis] + tolerance
+            })
+        })
+    }
+}
+
+fn length(of: &PerAxis<f64>) -> f64 {
+    let squares = [Axis::X, Axis::Y, Axis::Z].map(|axis| of[axis] * of[axis]);
+    squares.iter().sum::<f64>().sqrt()
+}
+
+/// The greatest speeds of the axes, mm/s.
+fn grow(fastest: &mut PerAxis<f64>, channel: &ChannelView) {
+    for watch in channel.watch().filter(|watch| !watch.slave) {
+        fastest[watch.axis] = fastest[watch.axis].max(watch.speed_mm_s.abs());
+    }
+}
+
+fn numbers(channel: &ChannelView) -> Vec<f64> {
+    (0..NUMBERS).map(|number| channel.q_value(number)).collect()
+}
+
+/// How a disturbed run is led.
+#[derive(Clone, Debug)]
+pub(super) struct Leading {
+    block: Option<BlockRef>,
+    /// The last block that a probe has led.
+    led: Option<BlockRef>,
+    /// How fast each axis was in this block at most, mm/s.
+    fastest: PerAxis<f64>,
+    /// How far an axis may be beside where it was led, mm or degrees.
+    reach: PerAxis<f64>,
+    /// What its touches move the program by, mm.
+    pub moved: f64,
+    thread: Option<Thread>,
+}
+
+impl Default for Leading {
+    fn default() -> Leading {
+        Leading {
+            block: None,
+            led: None,
+            fastest: PerAxis::splat(0.0),
+            reach: PerAxis::splat(0.0),
+            moved: 0.0,
+            thread: None,
+        }
+    }
+}
+
+/// A thread that is being cut: where its tool and its spindle were when they were coupled.
+#[derive(Clone, Copy, Debug)]
+struct Thread {
+    sequence: u64,
+    from: Position,
+    turned_deg: f64,
+}
+
+impl Leading {
+    /// A cycle of the disturbed run.
+    pub fn cycle(&mut self, channel: &ChannelView, undisturbed: &Led, moment: &Moment) {
+        let Some(block) = channel.element().map(|element| element.block) else {
+            return;
+        };
+        if self.block.replace(block) != Some(block) {
+            self.fastest = undisturbed.fastest(block);
+            if let Some(stretch) = self.led.take().and_then(|led| undisturbed.stretches.get(&led)) {
+                let now = numbers(channel);
+                let differences = stretch
+                    .numbers
+                    .iter()
+                    .zip(now)
+                    .map(|(one, other)| (one - other).abs());
+                self.moved = differences.fold(self.moved, f64::max);
+            }
+        }
+        if channel.is_led_by_probe() {
+            self.led = Some(block);
+        }
+        grow(&mut self.fastest, channel);
+        for watch in channel.watch().filter(|watch| !watch.slave) {
+            let fastest = self.fastest[watch.axis];
+            self.reach[watch.axis] = fastest * fastest / (2.0 * watch.acceleration_mm_s2)
+                + STOP_CYCLES * fastest * moment.cycle_s
+                + watch.lag.abs();
+        }
+    }
+
+    /// A place where no curve is, is one to which the probe was led.
+    pub fn holds(&self, undisturbed: &Led, block: BlockRef, place: &Position, tolerance: f64) -> bool {
+        undisturbed.holds(block, place, &self.reach, tolerance)
+    }
+
+    /// So far a thread may go on beyond its ends, mm: until its spindle stands.
+    pub fn reach_mm(&self) -> f64 {
+        length(&self.reach)
+    }
+
+    /// In a thread the tool has gone the pitch for each turn of the spindle; how far it is from that, and how far it may be.
+    pub fn out_of_step(&mut self, channel: &ChannelView, moment: &Moment) -> Option<(f64, f64)> {
+        let place = channel.commanded();
+        let turned_deg = channel.observe(&Signal::SpindleAngle);
+        // What brings tool and spindle apart couples them anew as they are then.
+        let follows =
+            |watch: AxisWatch| watch.closed && !watch.halted && watch.beside == 0.0 && watch.fault.is_none();
+        let coupled = channel.is_in_thread() && channel.watch().all(follows);
+        let element = channel.element().filter(|_| coupled);
+        let Some((element, thread)) = element.and_then(|element| Some((element, element.thread()?))) else {
+            self.thread = None;
+            return None;
+        };
+        let new = Thread {
+            sequence: element.sequence,
+            from: place,
+            turned_deg,
+        };
+        let begun = self.thread.filter(|thread| thread.sequence == element.sequence);
+        let begun = self.thread.insert(begun.unwrap_or(new));
+        let ways = [Axis::X, Axis::Y, Axis::Z].map(|axis| place[axis] - begun.from[axis]);
+        let way = ways
+            .iter()
+            .filter(|way| way.is_finite())
+            .map(|way| way * way)
+            .sum::<f64>()
+            .sqrt();
+        let turned = (turned_deg - begun.turned_deg).abs() / 360.0;
+        let off = (way - thread.pitch_mm * turned).abs();
+        Some((
+            off,
+            THREAD_CYCLES * length(&self.fastest) * moment.cycle_s + ROUNDING_MM,
+        ))
+    }
+}
