@@ -222,14 +222,7 @@ impl FromStr for Command {
             }
         };
         match name {
-            "mode" => Mode::ALL
-                .into_iter()
-                .find(|mode| mode.name() == rest)
-                .map(Command::Mode)
-                .ok_or_else(|| {
-                    let names = Mode::ALL.map(Mode::name).join(", ");
-                    CommandError::Wrong(format!("there is no mode `{rest}`; modes are {names}"))
-                }),
+            "mode" => mode(rest).map(Command::Mode),
             "ce" => nothing(Command::Ce),
             "stop" => nothing(Command::InternalStop),
             "manual-operation" => nothing(Command::ManualOperation),
@@ -292,6 +285,14 @@ impl FromStr for Command {
             _ => Err(CommandError::Unknown(name.to_owned())),
         }
     }
+}
+
+fn mode(name: &str) -> Result<Mode, CommandError> {
+    let named = Mode::ALL.into_iter().find(|mode| mode.name() == name);
+    named.ok_or_else(|| {
+        let names = Mode::ALL.map(Mode::name).join(", ");
+        CommandError::Wrong(format!("there is no mode `{name}`; modes are {names}"))
+    })
 }
 
 /// What a word switches on, or `off`.

@@ -80,11 +80,9 @@ impl Host {
         operator: Operator,
     ) -> Host {
         let mut plant = machine.plant.clone();
-        if !power_on
-            .mechanics
-            .as_ref()
-            .is_some_and(|place| plant.stand_at(place).is_ok())
-        {
+        let kept = power_on.mechanics.as_ref();
+        let stands = kept.is_some_and(|place| plant.stand_at(place).is_ok());
+        if !stands {
             load_magazine(&mut plant, machine, &power_on.remembered);
         }
         Host::with_plant(machine, plant, power_on, programs, operator)
