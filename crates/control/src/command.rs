@@ -248,12 +248,7 @@ impl FromStr for Command {
             "key" => number(name, rest, 58, 0xFF50).map(Command::Key),
             "s" => value(name, rest, 0.0, 99_999.999).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
-            "oscilloscope" => match rest {
-                "start" | "stop" => Ok(Command::Oscilloscope(rest == "start")),
-                _ => Err(CommandError::Wrong(
-                    "`oscilloscope` takes `start` or `stop`".into(),
-                )),
-            },
+            "oscilloscope" => oscilloscope(rest),
             "output" if rest == "ramp" => Ok(Command::Output(None)),
             "output" => {
                 let feed = rest.strip_prefix("step ").map(str::trim);
@@ -291,6 +286,16 @@ impl FromStr for Command {
             }
             _ => Err(CommandError::Unknown(name.to_owned())),
         }
+    }
+}
+
+/// Recording by hand.
+fn oscilloscope(rest: &str) -> Result<Command, CommandError> {
+    match rest {
+        "start" | "stop" => Ok(Command::Oscilloscope(rest == "start")),
+        _ => Err(CommandError::Wrong(
+            "`oscilloscope` takes `start` or `stop`".into(),
+        )),
     }
 }
 
