@@ -222,7 +222,14 @@ impl FromStr for Command {
             }
         };
         match name {
-            "mode" => mode(rest).map(Command::Mode),
+            "mode" => Mode::ALL
+                .into_iter()
+                .find(|mode| mode.name() == rest)
+                .map(Command::Mode)
+                .ok_or_else(|| {
+                    let names = Mode::ALL.map(Mode::name).join(", ");
+                    CommandError::Wrong(format!("there is no mode `{rest}`; modes are {names}"))
+                }),
             "ce" => nothing(Command::Ce),
             "stop" => nothing(Command::InternalStop),
             "manual-operation" => nothing(Command::ManualOperation),
@@ -241,12 +248,7 @@ impl FromStr for Command {
             "key" => number(name, rest, 58, 0xFF50).map(Command::Key),
             "s" => value(name, rest, 0.0, 99_999.999).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
-            "oscilloscope" => match rest {
-                "start" | "stop" => Ok(Command::Oscilloscope(rest == "start")),
-                _ => Err(CommandError::Wrong(
-                    "`oscilloscope` takes `start` or `stop`".into(),
-                )),
-            },
+            "oscilloscope" => oscilloscope(rest),
             "output" if rest == "ramp" => Ok(Command::Output(None)),
             "output" => {
                 let feed = rest.strip_prefix("step ").map(str::trim);
@@ -287,12 +289,14 @@ impl FromStr for Command {
     }
 }
 
-fn mode(name: &str) -> Result<Mode, CommandError> {
-    let named = Mode::ALL.into_iter().find(|mode| mode.name() == name);
-    named.ok_or_else(|| {
-        let names = Mode::ALL.map(Mode::name).join(", ");
-        CommandError::Wrong(format!("there is no mode `{name}`; modes are {names}"))
-    })
+/// Recording by hand.
+fn oscilloscope(rest: &str) -> Result<Command, CommandError> {
+    match rest {
+        "start" | "stop" => Ok(Command::Oscilloscope(rest == "start")),
+        _ => Err(CommandError::Wrong(
+            "`oscilloscope` takes `start` or `stop`".into(),
+        )),
+    }
 }
 
 /// What a word switches on, or `off`.

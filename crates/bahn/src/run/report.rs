@@ -62,7 +62,7 @@ impl TestRunReport {
     fn of(session: &Session, report: TestReport) -> TestRunReport {
         let message = match &report.state {
             TestState::Failed(message) => Some(message),
-            TestState::Running | TestState::Finished => None,
+            TestState::Running | TestState::Interrupted | TestState::Finished => None,
         };
         TestRunReport {
             program: report.program,
