@@ -145,7 +145,8 @@ fn the_tool_axis_follows_the_spindle() {
     );
     let deepest = seen.iter().map(|s| s.z).fold(f64::MAX, f64::min);
     let depth = seen[0].z - deepest;
-    assert!((depth - DEPTH - 3.0).abs() < 0.1, "{depth}");
+    // The spindle does not turn beyond the depth [000:6128]: 0.02 mm are 4.8 degrees.
+    assert!((depth - DEPTH - 3.0).abs() < 0.02, "{depth}");
     // 23 mm at 15 mm/s; the ramp 0.01 V/ms, 1500 rpm at 9 V, is 1667 rpm/s: 0.36 s up and down. What the run-in
     // needs until the spindle stands within MP7150 comes to it.
     let planned = 2.0 * (23.0 / 15.0 + RPM / (0.01 * 1000.0 * 1500.0 / 9.0));

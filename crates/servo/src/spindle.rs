@@ -274,8 +274,14 @@ impl Spindle {
         if self.mode != Mode::Lead {
             // What holds it is asked of the mode that ends.
             let held_deg = self.held_deg();
+            let gear = self.gear();
+            let held_rpm = if gear.rated_volts > 0.0 {
+                self.physical_sign() * self.ramp_volts / gear.rated_volts * gear.rated_rpm
+            } else {
+                0.0
+            };
             self.go_over(Mode::Lead);
-            self.lead.begin(held_deg);
+            self.lead.begin(held_deg, held_rpm * 360.0);
         }
         if angle_deg.is_finite() {
             self.lead.command(angle_deg);
@@ -320,8 +326,10 @@ impl Spindle {
             self.advance(orientation);
         }
         if self.mode == Mode::Lead {
-            let lag_slope = self.slope();
-            self.lead.step(self.encoder.turned_deg(), lag_slope, &self.timing);
+            let slope = self.slope();
+            let encoder = &self.encoder;
+            self.lead
+                .step(encoder.turned_deg(), encoder.rpm(), slope, &self.timing);
         }
         self.goal_volts = self.goal();
         let ramps = &self.parameters.ramps;
