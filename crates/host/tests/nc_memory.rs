@@ -133,7 +133,7 @@ fn no_file_of_the_folder_keeps_the_machine_off() {
             symlink(folder.join("nothing there"), folder.join(name)).unwrap();
         }
         fs::write(folder.join("SECRET.H"), "BEGIN PGM 1 MM\nEND PGM 1 MM\n").unwrap();
-        fs::set_permissions(folder.join("SECRET.H"), fs::Permissions::from_mode(0)).unwrap();
+        fs::set_permissions(folder.join("SECRET.H"), fs::Permissions::from_mode(0o000)).unwrap();
     }
     fs::write(
         folder.join("GOOD.H"),

@@ -211,7 +211,7 @@ fn killed_at_any_moment_of_a_change() {
                     host.control().time_us() >= moment
                 });
                 let step = number(&host, "W112");
-                if next(&mut random) % 2 == 0 {
+                if next(&mut random).is_multiple_of(2) {
                     host.store().unwrap();
                     medium.look();
                 }

@@ -76,7 +76,7 @@ fn a_line_of_the_datum_table_is_g53() {
         "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #3\nL X+1 Y+2 FMAX\nQ5 = 3\nCYCL DEF 7.0 DATUM SHIFT\n\
          CYCL DEF 7.1 #Q5\nL X+2 Y+2 FMAX",
         "G53 P01 3\nX+1 Y+2\nQ5 = 3\nG53 P01 Q5\nX+2 Y+2",
-        |job| job.with(|settings| settings.datum_table = Some(table.clone())),
+        |job| job.with(|settings| settings.datum_table = Ok(table.clone())),
     );
     assert_eq!(run.position[Axis::X], 42.0);
 }

@@ -274,7 +274,7 @@ fn a_line_of_the_datum_table_shifts() {
         let run = Job::new(program(&blocks))
             .with(|settings| {
                 settings.model = bahn_parameters::ControlModel::Tnc415b;
-                settings.datum_table = Some(std::sync::Arc::new(datum_table()));
+                settings.datum_table = Ok(std::sync::Arc::new(datum_table()));
                 settings.rules.datums_from_machine = from_machine;
                 settings.rules.machine_zero = PerAxis::splat(-200.0).into();
             })
@@ -298,7 +298,7 @@ fn a_datum_that_is_missing_is_an_error() {
         Job::new(program(&blocks))
             .with(|settings| {
                 settings.model = bahn_parameters::ControlModel::Tnc415b;
-                settings.datum_table = Some(std::sync::Arc::new(datum_table()));
+                settings.datum_table = Ok(std::sync::Arc::new(datum_table()));
                 change(settings);
             })
             .run()
@@ -316,11 +316,13 @@ fn a_datum_that_is_missing_is_an_error() {
         settings.rules.machine_zero = Position::UNKNOWN;
     });
     assert_eq!(unknown.message(), wrong);
-    let none = with("#3", &|settings| settings.datum_table = None);
+    let none = with("#3", &|settings| {
+        settings.datum_table = Err("no table".to_owned())
+    });
     assert_eq!(none.message(), wrong);
     // Passed over where that is wanted: the rest of the program runs where it is.
     let passed = with("#3", &|settings| {
-        settings.datum_table = None;
+        settings.datum_table = Err("no table".to_owned());
         settings.skip_unknown = true;
     });
     passed.assert_completed();

@@ -515,7 +515,7 @@ mod tests {
             (4210, 0.0006, 0.001),
             (4210, -0.0004, 0.0),
             // As a list of a TNC 415 B has it where there is no limit.
-            (910, 99_999.9999, 99_999.999),
+            (910, 99_999.999_9, 99_999.999),
             (1030, 0.0001, 0.001),
         ] {
             assert_eq!(stored(Tnc407, number, entered), Some(coarse), "MP{number}");
