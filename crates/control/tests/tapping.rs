@@ -305,7 +305,7 @@ L X+30 FMAX"
         // The list of the mill without the parameters that the model does not have.
         let list = build.list.take().unwrap();
         let errors = ParameterList::reference(model).read(list.as_bytes());
-        let known = |line: &(usize, &str)| errors.iter().all(|error| error.line as usize != line.0 + 1);
+        let known = |line: &(usize, &str)| errors.iter().all(|error| error.line != line.0 + 1);
         let lines = list.lines().enumerate().filter(known);
         build.list = Some(lines.map(|(_, text)| format!("{text}\n")).collect());
         let mut rig = ready(build);
