@@ -1,13 +1,10 @@
 //! The spindle through the kernel: gears, diagram, S codes, orientation [000:5438-6043].
 
-#[path = "support/gears.rs"]
-mod gears;
 #[path = "support/stand.rs"]
 mod stand;
 mod support;
 
 use bahn_control::RunState;
-use gears::*;
 use stand::*;
 use support::Rig;
 
@@ -391,6 +388,112 @@ LBL TO_AND_FRO
             orient(&mut rig);
         }
     }
+}
+
+/// Module 9171 orients to 30 degrees by the shorter way at 50 rpm; M2712 is 1 meanwhile [000:16120-16160].
+/// With M2499 = 1 the loop opens as soon as the window is reached [000:5875].
+#[test]
+fn orientation_by_module() {
+    let plc = format!(
+        "{}
+       L     I20
+       AN    M0
+       = M1
+       L     I20
+       = M0
+       L     I21
+       = M2499
+       L     M1
+       CMT   ORIENT
+       EM
+LBL ORIENT
+       PS    K+300000
+       PS    K+50000
+       PS    K+0
+       CM    9171
+",
+        with_gear()
+    );
+    for opens in [false, true] {
+        let build = diagram(&plc).mp("3440.0=5").mp("3520.1=60").mp("3410.1=0.05");
+        let mut rig = ready(build.program("1.H", "TOOL CALL 0 Z S1000"));
+        run(&mut rig, 2.0);
+        if opens {
+            rig.event("key B press");
+        }
+        rig.event("key A press");
+        assert_eq!(
+            edges(&mut rig, "M2712 M2127 M2007", 5.0),
+            "M2712+ M2127+ M2712- M2127- M2007+"
+        );
+        let angle = rig.machine.spindle().unwrap().angle_deg.rem_euclid(360.0);
+        assert!((angle - 30.0).abs() < 1.0, "{angle}");
+        assert!(rig.control.snapshot().spindle.volts.abs() < 0.01);
+    }
+}
+
+/// Module 9042 on the running control, in 1/1000 degree: D100 actual angle, D104 nominal angle, D108 actual angle in
+/// the reference system, D112 trailing error, D116 distance to go. The spindle is oriented to 30 degrees by module
+/// 9171; with open loop the nominal angle is the actual one and nothing is to go.
+#[test]
+fn the_plc_reads_the_spindle() {
+    let plc = format!(
+        "{}
+       PS    K+100
+       CM    9042
+       L     I20
+       AN    M0
+       = M1
+       L     I20
+       = M0
+       L     M1
+       CMT   ORIENT
+       EM
+LBL ORIENT
+       PS    K+300000
+       PS    K+5000
+       PS    K+1
+       CM    9171
+",
+        with_gear()
+    );
+    let build = diagram(&plc).mp("3440.0=5").mp("3520.1=60").mp("3410.1=0.05");
+    let mut rig = ready(build.program("1.H", "TOOL CALL 0 Z S100\nM3"));
+    run(&mut rig, 2.0);
+    let values = |rig: &support::Rig| [100, 104, 108, 112, 116].map(|at| rig.number(&format!("D{at}")));
+    let turn = |thousandths: i32| thousandths.rem_euclid(360_000);
+    rig.seconds(0.5);
+    let open = values(&rig);
+    assert_eq!([open[1], open[2], open[3], open[4]], [open[0], open[0], 0, 0]);
+    // From one PLC cycle to the next, 20 ms that begin within a servo step of 0.6 ms.
+    rig.seconds(0.02);
+    let way = f64::from(turn(values(&rig)[0] - open[0])) / 1000.0;
+    let rpm = rig.machine.spindle().unwrap().rpm;
+    assert!((way - 6.0 * rpm * 0.02).abs() < 6.0 * rpm * 0.0006, "{way} {rpm}");
+    rig.event("key A press");
+    let mut left = Vec::new();
+    rig.until(5.0, "the orientation", |rig| rig.bit("M2127"));
+    while rig.bit("M2127") {
+        rig.seconds(0.02);
+        let [actual, nominal, _, lag, way] = values(&rig);
+        if lag != 0 {
+            // Rounded one by one.
+            assert!(turn(nominal - actual - lag + 2) <= 4, "{actual} {nominal} {lag}");
+            assert!(turn(nominal + way - 30_000 + 2) <= 4, "{nominal} {way}");
+            left.push(way);
+        }
+    }
+    assert!(left.len() > 3 && left.is_sorted_by(|a, b| a >= b), "{left:?}");
+    assert!(left[0] > 1000, "{left:?}");
+    rig.seconds(1.0);
+    let [actual, nominal, reference, lag, way] = values(&rig);
+    let angle = rig.machine.spindle().unwrap().angle_deg.rem_euclid(360.0);
+    assert!(
+        (f64::from(actual) / 1000.0 - angle).abs() < 0.1,
+        "{actual} {angle}"
+    );
+    assert!((nominal - 30_000).abs() <= 1 && way == 0, "{nominal} {way}");
+    assert!((nominal - actual - lag).abs() <= 1 && reference == actual);
 }
 
 /// A program that finds the spindle turning knows it, whoever has switched it on: Q110 is 1 with M4 by hand
