@@ -17,7 +17,7 @@ use crate::panel::Direction;
 use crate::scanning::{Digitized, DigitizedNews, ScanCycle, Scanning};
 use crate::site::Site;
 use crate::tool_measuring::{Measuring, ToolMeasurement};
-use crate::track::{are_in_position, limit_message};
+use crate::track::{has_arrived, limit_message};
 
 /// What M2502 makes of the stylus.
 #[derive(Clone, Copy, Debug, Default)]
@@ -309,12 +309,11 @@ impl Probe {
         for unit in site.axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && unit.is_free() {
-                unit.mover = Mover::Path;
-                unit.follow(value, time);
+                unit.follow_probe(value, time);
             }
         }
         match (answer, probing.limit) {
-            (Some(touched), limit) if stands && are_in_position(&site.axes) => match (touched, limit) {
+            (Some(touched), limit) if stands && has_arrived(&site.axes) => match (touched, limit) {
                 (None, Some((axis, direction))) => {
                     let message = limit_message(&mut site.axes, axis, direction);
                     Probed::Refused(message, probing.block)

@@ -10,7 +10,7 @@ use crate::axis::{AxisUnit, Mover};
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::site::Site;
-use crate::track::are_in_position;
+use crate::track::has_arrived;
 
 /// The axes of a scan.
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
@@ -170,7 +170,7 @@ impl Scanning {
                 news.tell(Digitized::Point(point));
                 ScanCycle::Moves
             }
-            ScanStep::Over(scanned) if are_in_position(&site.axes) => {
+            ScanStep::Over(scanned) if has_arrived(&site.axes) => {
                 news.tell(match scanned.fault {
                     None => Digitized::Complete,
                     Some(_) => Digitized::BrokenOff,
@@ -275,8 +275,7 @@ impl Scanning {
             let value = nominal[unit.axis];
             let leads = AXES.contains(&unit.axis) && value.is_finite() && !unit.is_plc_axis();
             if leads && matches!(unit.mover, Mover::None | Mover::Path) {
-                unit.mover = Mover::Path;
-                unit.follow(value, time);
+                unit.follow_probe(value, time);
             }
         }
     }

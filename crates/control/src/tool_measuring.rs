@@ -16,7 +16,7 @@ use crate::probing_speed::{feed_mm_min, speed_rpm};
 use crate::site::Site;
 use crate::tool::{MeasuredTool, ToolCondition};
 use crate::tool_contacts::{Contact, Contacts};
-use crate::track::are_in_position;
+use crate::track::has_arrived;
 
 /// Turn against the cutting direction: M4 for a tool that cuts with M3, and stop (inferred: the edges do not cut).
 const BACKWARDS: [u8; 2] = [4, 3];
@@ -312,7 +312,7 @@ impl Sequence {
         if by_nc && site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP) {
             return;
         }
-        if !self.asked {
+        if !self.asked || by_nc && !site.spindle.holds_orientation() {
             (self.asked, self.turned) = (true, true);
             match self.parameters.orientation {
                 ProbeOrientation::Plc(code) => {
@@ -388,15 +388,14 @@ impl Sequence {
         for unit in site.axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && unit.is_free() {
-                unit.mover = Mover::Path;
-                unit.follow(value, time);
+                unit.follow_probe(value, time);
             }
         }
         let arrived = match self.phase {
             Phase::Brake => self.way.speed_mm_s() == 0.0,
             _ => self.length == 0.0 || self.way.is_at(self.length),
         };
-        if !arrived || !are_in_position(&site.axes) {
+        if !arrived || !has_arrived(&site.axes) {
             return Measuring::Moves;
         }
         match self.phase {
