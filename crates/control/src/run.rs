@@ -41,7 +41,7 @@ pub(crate) struct ProgramRun {
     pub probe: Probe,
     /// Block scan and return to the contour.
     restoration: Restoration,
-    tapping: Tapping,
+    pub tapping: Tapping,
     /// Q100 to Q107 as the PLC wrote them.
     q_transfer: QTransfer,
     /// The source goes on with this at the next preparation.

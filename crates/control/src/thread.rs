@@ -155,6 +155,11 @@ impl Tapping {
         self.held
     }
 
+    /// The axis goes where the spindle turns.
+    pub fn follows_spindle(&self, track: &Track) -> bool {
+        track.path.is_coupled() && !self.held && !self.apart
+    }
+
     /// Couples them as they stand, once they can move again. The tool axis does not go back to where the path
     /// has left it.
     pub fn couple(&mut self, track: &mut Track, site: &mut Site) {

@@ -17,7 +17,10 @@ fn until(host: &mut Host, what: &str, holds: impl Fn(&Control) -> bool) {
     let end_us = host.control().time_us() + 120_000_000;
     while !holds(host.control()) {
         let shown = host.control().shown();
-        assert!(host.control().time_us() < end_us, "{what} does not come: {shown:?}");
+        assert!(
+            host.control().time_us() < end_us,
+            "{what} does not come: {shown:?}"
+        );
         host.step().unwrap();
     }
 }
