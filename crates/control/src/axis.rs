@@ -290,6 +290,11 @@ impl AxisUnit {
         self.speed == 0.0
     }
 
+    /// It has feed enable, is where it shall be, and its loop is closed unless it stands.
+    pub fn may_be_led(&self) -> bool {
+        self.enabled && self.way_back.is_over() && (self.servo.closed() || self.stands())
+    }
+
     /// Whether it is held at its place, or not held at all.
     pub fn is_at_rest(&self) -> bool {
         !self.servo.closed() || self.stands() && self.servo.in_position()

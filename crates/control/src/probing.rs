@@ -142,6 +142,23 @@ impl Probe {
         self.probing.is_some() || self.tool.is_on() || self.scanning.is_some()
     }
 
+    /// An axis of the way cannot move: the way stands at once, as a path does [000:5352]. A scan goes on from where the axes
+    /// are then.
+    pub fn is_held(&mut self, axes: &OwnAxes) -> bool {
+        let scans = self.scanning.as_ref().is_some_and(Scanning::touches);
+        let led = |axis: Axis| Scanning::leads(axis) && scans;
+        let moves = |probing: &Probing, axis: Axis| probing.to[axis] != probing.from[axis];
+        let probing = self.probing.as_ref().filter(|_| !scans);
+        let held = axes.iter().any(|unit| {
+            let own = led(unit.axis) || probing.is_some_and(|probing| moves(probing, unit.axis));
+            own && !unit.may_be_led()
+        });
+        if let Some(probing) = self.probing.as_mut().filter(|_| held) {
+            probing.way = PointToPoint::new(probing.way.position());
+        }
+        self.tool.is_held(axes) || held
+    }
+
     /// The stylus is on its way to a surface, or is about to be. Measuring of tools is something else.
     pub fn seeks_surface(&self) -> bool {
         self.probing.is_some() || self.scanning.is_some()

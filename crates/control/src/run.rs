@@ -444,7 +444,7 @@ impl ProgramRun {
         if !self.progress.is_on_its_way() || self.restoration.is_on() {
             return;
         }
-        if self.tapping.holds(&self.track, site) {
+        if self.probe.is_held(&site.axes) || self.tapping.holds(&self.track, site) {
             // Without feed enable the axes stand at once [000:5352].
             self.track.halt();
             self.track.hold(&mut site.axes, site.now.time_s);

@@ -264,6 +264,11 @@ impl Scanning {
         measuring.along_axes(&measured.probe.deflection_mm)
     }
 
+    /// It leads an axis.
+    pub fn leads(axis: Axis) -> bool {
+        AXES.contains(&axis)
+    }
+
     /// The axes follow the scan.
     fn lead(&self, site: &mut Site) {
         let (tip, mut position) = (self.scan.position(), site.here());

@@ -8,6 +8,7 @@ use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
 use bahn_path::{Axis, LiveData, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
+use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
 use crate::handshake::Transfer;
 use crate::kinematics::Chain;
@@ -85,6 +86,17 @@ struct Sequence {
 impl ToolMeasurement {
     pub fn is_on(&self) -> bool {
         self.0.is_some()
+    }
+
+    /// An axis of its way cannot move: the way stands at once.
+    pub fn is_held(&mut self, axes: &OwnAxes) -> bool {
+        let Some(run) = &mut self.0 else { return false };
+        let moves = |axis: Axis| run.to[axis] != run.from[axis];
+        let held = axes.iter().any(|unit| moves(unit.axis) && !unit.may_be_led());
+        if held {
+            run.way = PointToPoint::new(run.way.position());
+        }
+        held
     }
 
     /// The path came to a cycle that measures.
@@ -179,6 +191,8 @@ impl ToolMeasurement {
                 Measuring::Moves
             }
             Phase::Enable => Measuring::Moves,
+            // The spindle is asked for nothing before NC start.
+            Phase::Spin | Phase::Stop | Phase::Orient if !running => Measuring::Moves,
             Phase::Spin | Phase::Stop => {
                 run.turn(site);
                 Measuring::Moves

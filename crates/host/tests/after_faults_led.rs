@@ -129,3 +129,34 @@ fn a_tool_axis_does_not_jump_after_a_spindle_that_ran_out() {
         assert_eq!(z.fault, None);
     }
 }
+
+/// The door withdraws the feed enable for 100 ms while a tool is measured in rapid traverse: what leads its axes stands, too, and no
+/// axis goes after it with more than MP1060 when the enable is back.
+#[test]
+fn a_measuring_axis_does_not_jump_behind_the_feed_enable() {
+    let mut host = shipped("mill", "MEASURE.H");
+    until(&mut host, "the way to the tool probe", |control| {
+        probes(control, Axis::X) && axis(control, Axis::X).speed_mm_s.abs() > 30.0
+    });
+    give(&mut host, "switch door open");
+    until(&mut host, "the halt", |control| axis(control, Axis::X).halted);
+    seconds(&mut host, 0.1);
+    give(&mut host, "switch door closed");
+    let mut before = axis(host.control(), Axis::X);
+    let cycle_s = f64::from(host.control().cycle_us()) * 1e-6;
+    for _ in 0..500 {
+        host.step().unwrap();
+        let now = axis(host.control(), Axis::X);
+        let most = now.acceleration_mm_s2 * std::f64::consts::SQRT_2 * cycle_s * 1.001;
+        let step = (now.speed_mm_s - before.speed_mm_s).abs();
+        assert!(
+            now.halted || before.halted || step <= most,
+            "{step} mm/s in a cycle, at most {most}"
+        );
+        before = now;
+    }
+    give(&mut host, "key NC_START tap");
+    until(&mut host, "the next block", |control| {
+        control.element().is_some_and(|element| element.block.block >= 16)
+    });
+}
