@@ -193,6 +193,19 @@ impl AxisUnit {
         self.ptp = PointToPoint::moving(position, self.speed);
     }
 
+    /// Takes the nominal position of a probing movement. An axis that CE has taken over from where it stood stays there,
+    /// and goes back with NC start to where the movement has left it.
+    pub fn follow_probe(&mut self, position: f64, time_s: f64) {
+        self.mover = Mover::Path;
+        match &mut self.left_at {
+            Some(left_at) => {
+                *left_at = position;
+                self.follow(self.nominal, time_s);
+            }
+            None => self.follow(position, time_s),
+        }
+    }
+
     /// Puts out a step of speed in place of a movement, mm/min; `false` without digital speed controller.
     pub fn step(&mut self, speed_mm_min: f64) -> bool {
         let steps = self.servo.set_speed_step(Some(speed_mm_min));
@@ -275,6 +288,11 @@ impl AxisUnit {
     /// Whether nothing is commanded to move.
     pub fn stands(&self) -> bool {
         self.speed == 0.0
+    }
+
+    /// It has feed enable, is where it shall be, and its loop is closed unless it stands.
+    pub fn may_be_led(&self) -> bool {
+        self.enabled && self.way_back.is_over() && (self.servo.closed() || self.stands())
     }
 
     /// Whether it is held at its place, or not held at all.

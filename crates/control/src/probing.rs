@@ -17,7 +17,7 @@ use crate::panel::Direction;
 use crate::scanning::{Digitized, DigitizedNews, ScanCycle, Scanning};
 use crate::site::Site;
 use crate::tool_measuring::{Measuring, ToolMeasurement};
-use crate::track::{are_in_position, limit_message};
+use crate::track::{has_arrived, limit_message};
 
 /// What M2502 makes of the stylus.
 #[derive(Clone, Copy, Debug, Default)]
@@ -140,6 +140,23 @@ impl Probe {
     /// A probing movement is on its way.
     pub fn is_on(&self) -> bool {
         self.probing.is_some() || self.tool.is_on() || self.scanning.is_some()
+    }
+
+    /// An axis of the way cannot move: the way stands at once, as a path does [000:5352]. A scan goes on from where the axes
+    /// are then.
+    pub fn is_held(&mut self, axes: &OwnAxes) -> bool {
+        let scans = self.scanning.as_ref().is_some_and(Scanning::touches);
+        let led = |axis: Axis| Scanning::leads(axis) && scans;
+        let moves = |probing: &Probing, axis: Axis| probing.to[axis] != probing.from[axis];
+        let probing = self.probing.as_ref().filter(|_| !scans);
+        let held = axes.iter().any(|unit| {
+            let own = led(unit.axis) || probing.is_some_and(|probing| moves(probing, unit.axis));
+            own && !unit.may_be_led()
+        });
+        if let Some(probing) = self.probing.as_mut().filter(|_| held) {
+            probing.way = PointToPoint::new(probing.way.position());
+        }
+        self.tool.is_held(axes) || held
     }
 
     /// The stylus is on its way to a surface, or is about to be. Measuring of tools is something else.
@@ -309,12 +326,11 @@ impl Probe {
         for unit in site.axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && unit.is_free() {
-                unit.mover = Mover::Path;
-                unit.follow(value, time);
+                unit.follow_probe(value, time);
             }
         }
         match (answer, probing.limit) {
-            (Some(touched), limit) if stands && are_in_position(&site.axes) => match (touched, limit) {
+            (Some(touched), limit) if stands && has_arrived(&site.axes) => match (touched, limit) {
                 (None, Some((axis, direction))) => {
                     let message = limit_message(&mut site.axes, axis, direction);
                     Probed::Refused(message, probing.block)

@@ -41,7 +41,7 @@ pub(crate) struct ProgramRun {
     pub probe: Probe,
     /// Block scan and return to the contour.
     restoration: Restoration,
-    tapping: Tapping,
+    pub tapping: Tapping,
     /// Q100 to Q107 as the PLC wrote them.
     q_transfer: QTransfer,
     /// The source goes on with this at the next preparation.
@@ -444,7 +444,7 @@ impl ProgramRun {
         if !self.progress.is_on_its_way() || self.restoration.is_on() {
             return;
         }
-        if !self.track.is_able(&site.axes) {
+        if self.probe.is_held(&site.axes) || self.tapping.holds(&self.track, site) {
             // Without feed enable the axes stand at once [000:5352].
             self.track.halt();
             self.track.hold(&mut site.axes, site.now.time_s);

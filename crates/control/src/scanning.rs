@@ -10,7 +10,7 @@ use crate::axis::{AxisUnit, Mover};
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::site::Site;
-use crate::track::are_in_position;
+use crate::track::has_arrived;
 
 /// The axes of a scan.
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
@@ -170,7 +170,7 @@ impl Scanning {
                 news.tell(Digitized::Point(point));
                 ScanCycle::Moves
             }
-            ScanStep::Over(scanned) if are_in_position(&site.axes) => {
+            ScanStep::Over(scanned) if has_arrived(&site.axes) => {
                 news.tell(match scanned.fault {
                     None => Digitized::Complete,
                     Some(_) => Digitized::BrokenOff,
@@ -264,6 +264,11 @@ impl Scanning {
         measuring.along_axes(&measured.probe.deflection_mm)
     }
 
+    /// It leads an axis.
+    pub fn leads(axis: Axis) -> bool {
+        AXES.contains(&axis)
+    }
+
     /// The axes follow the scan.
     fn lead(&self, site: &mut Site) {
         let (tip, mut position) = (self.scan.position(), site.here());
@@ -275,8 +280,7 @@ impl Scanning {
             let value = nominal[unit.axis];
             let leads = AXES.contains(&unit.axis) && value.is_finite() && !unit.is_plc_axis();
             if leads && matches!(unit.mover, Mover::None | Mover::Path) {
-                unit.mover = Mover::Path;
-                unit.follow(value, time);
+                unit.follow_probe(value, time);
             }
         }
     }

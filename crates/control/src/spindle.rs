@@ -343,6 +343,11 @@ impl SpindleUnit {
         self.servo.orient(angle_deg, 0.0, Way::Shortest);
     }
 
+    /// An orientation is on its way, or holds the spindle: nothing has ended it since it was asked for.
+    pub fn holds_orientation(&self) -> bool {
+        self.servo.orienting() || self.servo.in_position()
+    }
+
     /// Turns it by a way from where it stands, degrees: M2712 until it is there. `false` when it cannot be.
     pub fn turn_by(&mut self, way_deg: f64, exchange: &mut Exchange) -> bool {
         let turns = self.can_be_led() && self.servo.turn_by(way_deg);

@@ -14,7 +14,7 @@
 
 use bahn_exchange::signal;
 use bahn_motion::{Lead, Master};
-use bahn_path::{At, OverrideLaw, PathElement};
+use bahn_path::{At, OverrideLaw, PathElement, Thread};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
@@ -38,6 +38,8 @@ pub(crate) struct Tapping {
     ready: bool,
     /// Spindle and axis came apart in the thread.
     apart: bool,
+    /// The axis stands without feed enable in the thread.
+    held: bool,
     /// The spindle was taken away while cycle 2 tapped.
     lost: bool,
 }
@@ -103,7 +105,9 @@ impl Tapping {
         if site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP) {
             return Preparation::Waits;
         }
-        if let Some(angle) = thread.orientation_deg.filter(|_| !self.oriented) {
+        // What EMERGENCY STOP has ended begins anew with NC start.
+        let asked = self.oriented && site.spindle.holds_orientation();
+        if let Some(angle) = thread.orientation_deg.filter(|_| !asked) {
             site.spindle.orient_shortest(angle);
             self.oriented = true;
             return Preparation::Waits;
@@ -132,6 +136,28 @@ impl Tapping {
     /// The spindle that cycle 2 needs was taken away: its feed does not go on.
     pub fn has_lost_spindle(&self) -> bool {
         self.lost
+    }
+
+    /// The axes cannot move along the path; or they can again, and in a thread wait for their spindle to stand, too. One that
+    /// stands where the path has led it goes on; one that ran out without its drive has come apart from the axis
+    /// (inferred): to go after it would be a jump.
+    pub fn holds(&mut self, track: &Track, site: &Site) -> bool {
+        if !track.is_able(&site.axes) {
+            self.held = track.path.is_coupled();
+            return true;
+        }
+        let thread = track.path.element().and_then(PathElement::thread);
+        let Some(thread) = thread.filter(|_| self.held) else {
+            return false;
+        };
+        self.held = site.spindle.state().actual_rpm.abs() >= STANDS_RPM;
+        self.apart |= !self.held && missing_mm(thread, site) > window_mm(site);
+        self.held
+    }
+
+    /// The axis goes where the spindle turns.
+    pub fn follows_spindle(&self, track: &Track) -> bool {
+        track.path.is_coupled() && !self.held && !self.apart
     }
 
     /// Couples them as they stand, once they can move again. The tool axis does not go back to where the path
@@ -222,12 +248,17 @@ pub(crate) fn is_in_position(track: &Track, site: &Site) -> bool {
     let Some(thread) = track.path.element().and_then(PathElement::thread) else {
         return true;
     };
-    let [held, now] = site.spindle.angles_deg(0.0);
-    let missing = (held - now).abs() / 360.0 * thread.pitch_mm;
+    let missing = missing_mm(thread, site);
     let window = window_mm(site);
     let mut axes = site.axes.iter().filter(|unit| unit.mover == Mover::Path);
     missing <= window
         && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
+}
+
+/// How far the spindle is from where it is held, in mm of the thread.
+fn missing_mm(thread: &Thread, site: &Site) -> f64 {
+    let [held, now] = site.spindle.angles_deg(0.0);
+    (held - now).abs() / 360.0 * thread.pitch_mm
 }
 
 /// The axes of the thread have come to a standstill as far as they can: what stands or cannot follow.

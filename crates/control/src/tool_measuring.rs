@@ -8,6 +8,7 @@ use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
 use bahn_path::{Axis, LiveData, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
+use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
 use crate::handshake::Transfer;
 use crate::kinematics::Chain;
@@ -16,7 +17,7 @@ use crate::probing_speed::{feed_mm_min, speed_rpm};
 use crate::site::Site;
 use crate::tool::{MeasuredTool, ToolCondition};
 use crate::tool_contacts::{Contact, Contacts};
-use crate::track::are_in_position;
+use crate::track::has_arrived;
 
 /// Turn against the cutting direction: M4 for a tool that cuts with M3, and stop (inferred: the edges do not cut).
 const BACKWARDS: [u8; 2] = [4, 3];
@@ -85,6 +86,17 @@ struct Sequence {
 impl ToolMeasurement {
     pub fn is_on(&self) -> bool {
         self.0.is_some()
+    }
+
+    /// An axis of its way cannot move: the way stands at once.
+    pub fn is_held(&mut self, axes: &OwnAxes) -> bool {
+        let Some(run) = &mut self.0 else { return false };
+        let moves = |axis: Axis| run.to[axis] != run.from[axis];
+        let held = axes.iter().any(|unit| moves(unit.axis) && !unit.may_be_led());
+        if held {
+            run.way = PointToPoint::new(run.way.position());
+        }
+        held
     }
 
     /// The path came to a cycle that measures.
@@ -179,6 +191,8 @@ impl ToolMeasurement {
                 Measuring::Moves
             }
             Phase::Enable => Measuring::Moves,
+            // The spindle is asked for nothing before NC start.
+            Phase::Spin | Phase::Stop | Phase::Orient if !running => Measuring::Moves,
             Phase::Spin | Phase::Stop => {
                 run.turn(site);
                 Measuring::Moves
@@ -312,7 +326,7 @@ impl Sequence {
         if by_nc && site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP) {
             return;
         }
-        if !self.asked {
+        if !self.asked || by_nc && !site.spindle.holds_orientation() {
             (self.asked, self.turned) = (true, true);
             match self.parameters.orientation {
                 ProbeOrientation::Plc(code) => {
@@ -388,15 +402,14 @@ impl Sequence {
         for unit in site.axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && unit.is_free() {
-                unit.mover = Mover::Path;
-                unit.follow(value, time);
+                unit.follow_probe(value, time);
             }
         }
         let arrived = match self.phase {
             Phase::Brake => self.way.speed_mm_s() == 0.0,
             _ => self.length == 0.0 || self.way.is_at(self.length),
         };
-        if !arrived || !are_in_position(&site.axes) {
+        if !arrived || !has_arrived(&site.axes) {
             return Measuring::Moves;
         }
         match self.phase {

@@ -297,6 +297,11 @@ pub(crate) fn are_in_position(axes: &OwnAxes) -> bool {
         .all(|unit| unit.stands() && unit.servo.in_position())
 }
 
+/// The axes of a probing movement stand where it has led them: none was taken over from somewhere else.
+pub(crate) fn has_arrived(axes: &OwnAxes) -> bool {
+    are_in_position(axes) && !axes.are_away()
+}
+
 /// The message of an axis that a block would lead beyond its limit.
 pub(crate) fn limit_message(axes: &mut OwnAxes, axis: Axis, direction: Direction) -> Message {
     let id = axes.iter_mut().find(|unit| unit.axis == axis).map(|unit| {

@@ -265,6 +265,11 @@ impl<'a> ChannelView<'a> {
         self.channel.run.track.path.is_coupled()
     }
 
+    /// The axis of a thread goes where its spindle turns: neither is it held, nor have they come apart.
+    pub fn follows_spindle(&self) -> bool {
+        self.channel.run.tapping.follows_spindle(&self.channel.run.track)
+    }
+
     /// Axes are being brought back to the contour, or are to be.
     pub fn restores(&self) -> bool {
         self.channel.run.restores()
