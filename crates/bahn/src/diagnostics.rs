@@ -15,9 +15,22 @@ const MAX_COLUMNS: usize = 200;
 
 /// Prints a fault as rustc does, with an empty line behind it.
 pub(crate) fn print_fault(fault: &FileFault) {
-    refused::fault(fault);
+    if fault.severity == Severity::Error {
+        refused::fault(|| reported(fault), PRINTED_MAX);
+    }
     print_styled(&render(fault, is_styled()));
     print_line("");
+}
+
+/// A fault as JSON says it.
+fn reported(fault: &FileFault) -> refused::FaultReport {
+    refused::FaultReport {
+        file: fault.path.display().to_string(),
+        line: fault.marked.line,
+        column: fault.marked.columns.map(|(column, _)| column),
+        title: fault.title.clone(),
+        message: fault.label.clone(),
+    }
 }
 
 /// Prints the first [`PRINTED_MAX`] faults, and how many there are besides.

@@ -121,8 +121,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         diagnostics::print_usage_error(&error.to_string());
         Outcome::WrongUse
     });
-    if outcome != Outcome::Fine {
-        refused::end();
+    if outcome != Outcome::Fine
+        && let Some(told) = refused::end()
+    {
+        // Whoever has closed the output knows.
+        let _ = console::print_json(&told);
     }
     outcome.into()
 }

@@ -7,9 +7,6 @@ use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
 
-use crate::console;
-use crate::diagnostics::{FileFault, PRINTED_MAX, Severity};
-
 /// JSON is wanted, and nothing has been printed.
 static OPEN: AtomicBool = AtomicBool::new(false);
 /// What was told meanwhile.
@@ -32,24 +29,11 @@ struct Told {
 /// A fault of a file.
 #[derive(Debug, Serialize)]
 pub(crate) struct FaultReport {
-    file: String,
-    line: u32,
-    column: Option<u32>,
-    title: String,
-    message: String,
-}
-
-impl FaultReport {
-    /// As a report.
-    pub fn of(fault: &FileFault) -> FaultReport {
-        FaultReport {
-            file: fault.path.display().to_string(),
-            line: fault.marked.line,
-            column: fault.marked.columns.map(|(column, _)| column),
-            title: fault.title.clone(),
-            message: fault.label.clone(),
-        }
-    }
+    pub file: String,
+    pub line: u32,
+    pub column: Option<u32>,
+    pub title: String,
+    pub message: String,
 }
 
 /// Notes whether JSON is wanted.
@@ -65,12 +49,12 @@ pub(crate) fn has_printed() {
     OPEN.store(false, Ordering::Relaxed);
 }
 
-/// A fault of a file was told.
-pub(crate) fn fault(fault: &FileFault) {
-    if OPEN.load(Ordering::Relaxed) && fault.severity == Severity::Error {
+/// A fault of a file was told; so many are kept at most.
+pub(crate) fn fault(fault: impl FnOnce() -> FaultReport, most: usize) {
+    if OPEN.load(Ordering::Relaxed) {
         let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.faults.len() < PRINTED_MAX {
-            told.faults.push(FaultReport::of(fault));
+        if told.faults.len() < most {
+            told.faults.push(fault());
         }
     }
 }
@@ -84,13 +68,15 @@ pub(crate) fn error(text: &str) {
     }
 }
 
-/// A command has ended without success: what was told goes out as JSON, when that is wanted and nothing else was printed.
-pub(crate) fn end() {
-    if OPEN.swap(false, Ordering::Relaxed) {
+/// A command has ended without success: what was told, to go out as JSON when that is wanted and nothing else was printed.
+pub(crate) fn end() -> Option<impl Serialize> {
+    OPEN.swap(false, Ordering::Relaxed).then(|| {
         let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
         let first = told.faults.first().map(|fault| fault.title.clone());
-        told.error = told.error.take().or(first);
-        // Whoever has closed the output knows.
-        let _ = console::print_json(&*told);
-    }
+        Told {
+            completed: false,
+            error: told.error.take().or(first),
+            faults: std::mem::take(&mut told.faults),
+        }
+    })
 }

@@ -114,6 +114,7 @@ fn same(one: &Path, other: &Path) {
         let mut files: Vec<_> = fs::read_dir(folder)
             .unwrap()
             .map(|entry| entry.unwrap())
+            .filter(|entry| entry.path().is_file())
             .map(|entry| (entry.file_name(), fs::read(entry.path()).unwrap()))
             .collect();
         files.sort();
@@ -126,9 +127,8 @@ fn same(one: &Path, other: &Path) {
 fn files_go_to_a_disk_and_come_back() {
     let folder = desk();
     copy(&machines().join("mill"), &folder.path("empty"));
-    for entry in fs::read_dir(folder.path("empty/programs")).unwrap() {
-        fs::remove_file(entry.unwrap().path()).unwrap();
-    }
+    fs::remove_dir_all(folder.path("empty/programs")).unwrap();
+    fs::create_dir(folder.path("empty/programs")).unwrap();
     let disk = Running::start(&folder, "link disk disk --port tcp:127.0.0.1:0,mode=fe2").ready();
     let port = format!("--port connect:{},mode=fe2", disk.place);
     let sent = folder.bahn(&format!("link send --machine mill {port} --all"));

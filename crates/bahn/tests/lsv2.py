@@ -71,7 +71,7 @@ def folders():
         deep = host.get_file_list(DriveName.TNC + "\\")
         assert "TNC:\\HOST\\T1\\DEEP.H" in deep and "TNC:\\HOST\\T1\\DEEP.H" not in flat
         is_equal(host.get_file_list(DriveName.TNC + "\\", pattern=r"[CD].*\.H$"),
-                 ["TNC:\\CIRCLE.H", "TNC:\\HOST\\T1\\DEEP.H"])
+                 ["TNC:\\CIRCLE.H", "TNC:\\DATUM.H", "TNC:\\HOST\\T1\\DEEP.H"])
         assert host.delete_file("TNC:/HOST/T1/DEEP.H")
         assert host.delete_empty_directory("TNC:/HOST/T1")
         assert host.delete_empty_directory("TNC:/HOST")

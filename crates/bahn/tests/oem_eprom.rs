@@ -12,14 +12,16 @@ fn machine() -> Folder {
     let folder = Folder::new();
     assert_eq!(folder.bahn("machine new m --model tnc415b").code(), 0);
     let toml = std::fs::read_to_string(folder.path("m/machine.toml")).unwrap();
-    let toml = toml.replacen("plc = ", "plc_dialogues = \"plc/MAIN.DI1\"\nplc = ", 1);
+    let toml = toml.replacen("\"plc/DIALOG.TXT\"", "\"plc/MAIN.DI1\"", 1);
     folder.write("m/machine.toml", &toml);
     folder.write(
         "m/plc/MAIN.DI1",
         "BOLT HOLE CIRCLE\nNUMBER OF HOLES?\nRADIUS?\nX COORDINATE CC?\nY COORDINATE CC?\nSAFETY CLEARANCE?\n\
          TOTAL HOLE DEPTH?\nFEED RATE?\nSHIFT\nA TEXT OF MORE THAN THIRTY-FOUR CHARACTERS\n",
     );
-    std::fs::create_dir_all(folder.path("m/programs/eprom")).unwrap();
+    // The mill has a cycle 68 of its own in the EPROM.
+    std::fs::remove_dir_all(folder.path("m/programs/eprom")).unwrap();
+    std::fs::create_dir(folder.path("m/programs/eprom")).unwrap();
     let cycle = |number: u32, blocks: &str| {
         let name = 99_999_900 + number;
         format!("BEGIN PGM {name} MM\n{blocks}\nEND PGM {name} MM\n")

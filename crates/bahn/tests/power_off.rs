@@ -589,7 +589,9 @@ fn a_state_that_may_not_be_read_is_kept() {
         // Who is root may read everything.
         if fs::metadata(&file).unwrap().uid() == 0 {
             chown(folder.path("m/state"), Some(NOBODY), None).unwrap();
-            for other in ["control.toml", "plc.mem", "lock"].map(|other| folder.path("m/state").join(other)) {
+            for other in ["control.toml", "plc.mem", "lock", "mechanics.toml"]
+                .map(|other| folder.path("m/state").join(other))
+            {
                 chown(&other, (other != file).then_some(NOBODY), None).unwrap();
             }
             command.uid(NOBODY);
@@ -605,7 +607,7 @@ fn a_state_that_may_not_be_read_is_kept() {
             .map(|entry| entry.unwrap().file_name())
             .collect();
         names.sort();
-        assert_eq!(names, ["control.toml", "lock", "plc.mem"]);
+        assert_eq!(names, ["control.toml", "lock", "mechanics.toml", "plc.mem"]);
     }
 }
 

@@ -280,7 +280,8 @@ impl Scanning {
             let value = nominal[unit.axis];
             let leads = AXES.contains(&unit.axis) && value.is_finite() && !unit.is_plc_axis();
             if leads && matches!(unit.mover, Mover::None | Mover::Path) {
-                unit.follow_probe(value, time);
+                unit.mover = Mover::Path;
+                unit.follow(value, time);
             }
         }
     }

@@ -236,6 +236,10 @@ impl Editor {
         let last = read.words.last()?.span.start;
         let before = text.get(..last).unwrap_or_default().chars().count() as u32;
         let stays = |fault: &&BlockError| {
+            // An end point that is missing may still come.
+            if fault.message == MessageId::AngleReferenceMissing {
+                return false;
+            }
             fault.column + fault.length <= before + 1
                 || (fault.column > before && matches!(fault.message, BlockNotKnown | AxisDoubleProgrammed))
         };

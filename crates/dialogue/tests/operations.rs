@@ -322,7 +322,9 @@ fn open_and_close(file: &Path, program: &Program, numbered: &NumberedBlock) {
     );
     desk.enter("RIGHT");
     let refused = matches!(desk.press("K"), Reaction::Refused(_));
-    assert_eq!(refused, readable, "{place}: {words:?}");
+    // The blocks of a dialogue have their words only in a program of the machine builder.
+    let dialog = matches!(before.operation, Operation::Dialog(_));
+    assert!(refused == readable || dialog, "{place}: {words:?}");
 }
 
 #[test]

@@ -4,8 +4,10 @@ use bahn_dialogue::Key;
 use bahn_machine::KeyAction;
 use serde::{Deserialize, Serialize};
 
-use crate::station::EMERGENCY_STOP;
 use crate::transfer::TransferNews;
+
+/// Name of the EMERGENCY STOP button among the keys of the machine operating panel.
+pub const EMERGENCY_STOP: &str = "EMERGENCY_STOP";
 
 /// Something that the operator does.
 #[derive(Clone, Debug, PartialEq)]

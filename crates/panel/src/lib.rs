@@ -70,7 +70,7 @@ pub use bahn_dialogue::{Key, KeyGroup};
 pub use bahn_machine::KeyAction;
 pub use drawer::{Breakable, Breaking};
 pub use graphics::{BeingCut, Picture, PictureError};
-pub use input::{Input, InputText, Refusal};
+pub use input::{EMERGENCY_STOP, Input, InputText, Refusal};
 pub use lesson::{Lesson, LessonRun, check_lesson};
 pub use live::{Link, Live, Seen};
 pub use replay::{Ending, Replay, check_session};
@@ -82,7 +82,7 @@ pub use screen::{
 pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
-pub use station::{EMERGENCY_STOP, Station, load};
+pub use station::{Station, load};
 pub use steps::{Stepped, StepsEnd};
 pub use texts::{Language, around, filled, language_code, language_of_code, texts_around};
 pub use transfer::{TransferDeed, TransferNews, TransferOrder};

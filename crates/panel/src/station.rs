@@ -19,7 +19,7 @@ use bahn_plc::PlcWindow;
 use crate::console::Console;
 use crate::graphics::{BeingCut, Graphics, Picture};
 use crate::inhibit::{self, Simulated};
-use crate::input::{Input, Refusal};
+use crate::input::{EMERGENCY_STOP, Input, Refusal};
 use crate::lesson::LessonRun;
 use crate::plc_mode::PlcMode;
 use crate::programs::ProgramMemory;
@@ -625,9 +625,6 @@ impl Station {
         self.stored = self.settings.clone();
     }
 }
-
-/// Name of the EMERGENCY STOP button among the keys of the machine operating panel.
-pub const EMERGENCY_STOP: &str = "EMERGENCY_STOP";
 
 /// Loads the machine of a folder, with its faults in words.
 ///

@@ -84,7 +84,7 @@ impl Steps {
     pub fn outcome(&self, ticket: &Ticket) -> Option<Stepped> {
         let (taken, ended) = match self.broken {
             Some(broken) if ticket.breaks < self.breaks => broken,
-            _ if self.taken < ticket.to => return None,
+            _ if self.taken < ticket.to && ticket.from < ticket.to => return None,
             _ if ticket.cut => (ticket.to, StepsEnd::Limit),
             _ => (ticket.to, StepsEnd::Complete),
         };

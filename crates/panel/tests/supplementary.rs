@@ -299,7 +299,7 @@ fn user_parameters_have_their_dialogues() {
     let description = trainee.file("machine.toml");
     trainee.write(
         "machine.toml",
-        &format!("plc_dialogues = \"DIALOGUES.TXT\"\n{description}"),
+        &description.replace("\"plc/DIALOG.TXT\"", "\"DIALOGUES.TXT\""),
     );
     trainee.write("DIALOGUES.TXT", "OVERLAP OF POCKETS\nFEED OF Y BY HAND\n");
     let mut trainee = trainee.killed();

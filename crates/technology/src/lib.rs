@@ -52,6 +52,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bounds;
 mod channel;
 pub mod list;
 mod nc;
@@ -61,13 +62,14 @@ mod run;
 mod settings;
 mod synch;
 
+pub use bounds::Bounds;
 pub use list::{ChannelList, ListFault};
 pub use nc::NcPrograms;
 pub use plc::{PlcMemory, Script, ScriptError, WINDOW_BYTES};
 pub use report::{
     Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, Skipped, ToGo, Value, Wait, Warning,
 };
-pub use run::{Blocks, Bounds, Programs, Run};
+pub use run::{Blocks, Programs, Run};
 pub use settings::{
     ChannelSettings, EdgeBanding, FUNCTIONS, FunctionSettings, FunctionTable, INTERNAL_M, MicroJoint,
     PreOutput, SPINDLES, SpindleFunction, SpindleSettings,

@@ -4,28 +4,10 @@ use bahn_din::{Unit, Variables};
 use bahn_motion::Limits;
 use bahn_path::Position;
 
+use crate::bounds::Bounds;
 use crate::plc::{PlcMemory, Script};
 use crate::report::{Fault, Report};
 use crate::settings::ChannelSettings;
-
-/// How far a run goes at most: what is longer ends with the fault `endless` at the block where it was.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// Time of the run, s.
-    pub time_s: f64,
-    /// Blocks that are executed.
-    pub blocks: u64,
-}
-
-impl Default for Bounds {
-    /// A day, and far more blocks than anybody waits for.
-    fn default() -> Bounds {
-        Bounds {
-            time_s: 86_400.0,
-            blocks: 50_000_000,
-        }
-    }
-}
 
 /// Programs in turn on one channel.
 ///

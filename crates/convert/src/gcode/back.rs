@@ -6,7 +6,7 @@
 
 use bahn_path::{Axis, Curve, FeedRate, Position};
 
-use super::said::Said;
+use super::line::Said;
 
 /// Where the machine stands in the proof when it may stand anywhere, mm or degrees: for each axis somewhere else, and nowhere
 /// that a program goes. An axis that no line has brought anywhere stays unknown.

@@ -5,6 +5,7 @@
 //! words mean is public: the G and M code reference of LinuxCNC.
 
 mod back;
+mod line;
 mod options;
 mod read;
 mod said;
@@ -18,9 +19,10 @@ use bahn_interpreter::Interpreter;
 
 use crate::Listed;
 use crate::proof::{At, Difference, Proof};
+use line::Said;
 pub use options::Options;
 use read::Reader;
-use said::{Said, Sayer};
+use said::Sayer;
 
 /// A program for LinuxCNC.
 #[derive(Clone, Debug)]

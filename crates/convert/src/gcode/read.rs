@@ -3,7 +3,7 @@
 use bahn_path::{Arc, Axis, Curve, FeedRate, Plane, Position, SpindleOrder};
 
 use super::back::elsewhere;
-use super::said::Said;
+use super::line::Said;
 use super::text::{turns, turns_only};
 
 /// Reads a text line by line.

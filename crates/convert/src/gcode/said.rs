@@ -13,6 +13,7 @@ use bahn_path::{
 };
 
 use super::back::Stand;
+use super::line::Said;
 use super::options::Options;
 use super::text::bare;
 use crate::Listed;
@@ -20,55 +21,6 @@ use crate::proof::{self, Event, next_event};
 
 /// Steps of the text to a unit.
 pub(super) const STEPS: f64 = 1e6;
-
-/// One thing that a line says.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Said {
-    /// A line or an arc.
-    Move {
-        curve: Curve,
-        start: Position,
-        end: Position,
-        feed: FeedRate,
-    },
-    /// A way along the spindle's turning; a tap comes back.
-    Thread {
-        start: Position,
-        end: Position,
-        pitch_mm: f64,
-        returns: bool,
-    },
-    Dwell(f64),
-    /// The tool that comes next.
-    Next(u32),
-    /// The tool is changed.
-    Change,
-    Speed(f64),
-    Spindle(SpindleOrder),
-    Coolant(bool),
-    Orient(f64),
-    /// Whether the overrides act.
-    Overrides(bool),
-    Stop {
-        optional: bool,
-    },
-    Print(String),
-    /// A function of LinuxCNC's user, M100 to M199.
-    User(u16),
-    /// What cannot be said: the program stops there.
-    Refused(String),
-    End,
-}
-
-impl Said {
-    /// Whether the machine may stand elsewhere behind it: at its tool changer, or where somebody has moved it.
-    pub fn may_move_the_machine(&self) -> bool {
-        matches!(
-            self,
-            Said::Change | Said::Stop { .. } | Said::User(_) | Said::Refused(_)
-        )
-    }
-}
 
 /// Runs a program and says what it does.
 pub(super) struct Sayer {

@@ -6,8 +6,9 @@ use bahn_path::{Arc, Axis, Curve, FeedRate, Position, SpindleOrder};
 use bahn_program::Unit;
 
 use super::back::elsewhere;
+use super::line::Said;
 use super::options::Options;
-use super::said::{STEPS, Said, Sayer, plane_word};
+use super::said::{STEPS, Sayer, plane_word};
 use super::text::{bare, turns, turns_only};
 
 /// Most characters of a source block in a comment: a line of LinuxCNC has 255.

@@ -85,7 +85,12 @@ fn from_element(place: &Position, element: &PathElement, beyond: f64) -> f64 {
             } else {
                 1.0
             };
-            apart(place, &element.curve.position(start, end, t))
+            // Beyond its ends, too: a curve has no positions there.
+            let mut nearest = *end;
+            for axis in Axis::ALL {
+                nearest[axis] = start[axis] + t * (end[axis] - start[axis]);
+            }
+            apart(place, &nearest)
         }
         Curve::Arc(arc) => {
             let angle = |point: [f64; 2]| {

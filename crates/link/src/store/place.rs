@@ -166,7 +166,6 @@ mod tests {
             "\\1.H",
             "/etc/passwd",
             "C:1.H:2",
-            "A\\\\1.H",
             "1.H\0",
             "1.H\0.TXT",
             "\\\\server\\share",

@@ -3,11 +3,8 @@
 //! A time ahead of a place where the path waits is planned with an end velocity of 0 there; when the acknowledgement comes in
 //! time the path does not stop, and is there sooner [004:87]. M functions that nobody waits for keep their lead (inferred).
 
-use std::collections::{BTreeSet, VecDeque};
-use std::sync::Arc;
-
 use super::Channel;
-use super::leads::{Ahead, Held, SAME};
+use super::leads::{Ahead, Held, Promise, SAME};
 use super::order::Lead;
 use crate::report::Warning;
 
@@ -15,30 +12,6 @@ use crate::report::Warning;
 const ROUNDING_S: f64 = 1e-6;
 /// ms in a second.
 const PER_S: f64 = 1e3;
-
-/// A function that was output ahead of its place.
-#[derive(Clone, Copy, Debug)]
-struct Promise {
-    ahead: Ahead,
-    /// When it was output, s, and how long the path was to take to its place then, s.
-    output_s: f64,
-    planned_s: f64,
-}
-
-/// Functions that were output ahead, until the path passes their places.
-#[derive(Debug, Default)]
-pub(super) struct Watched {
-    promises: VecDeque<Promise>,
-    /// What was told: a block that comes again is told once.
-    told: BTreeSet<(String, Arc<str>, u32)>,
-}
-
-impl Watched {
-    /// The path turns: it passes their places otherwise.
-    pub(super) fn clear(&mut self) {
-        self.promises.clear();
-    }
-}
 
 impl Channel<'_> {
     /// A function was output ahead at a time, s; so long the path was to take to its place then, s.

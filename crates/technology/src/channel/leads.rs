@@ -1,8 +1,8 @@
 //! Functions that are output ahead of the place where they are synchronised, MEP_* and MET_* [004:81-90].
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
 
-use super::kept::Watched;
 use super::order::{Lead, OrderId};
 
 /// Places nearer together than this are one, mm.
@@ -42,6 +42,30 @@ impl Ahead {
             Lead::None => self.point,
             Lead::Time(_) => self.earliest,
         }
+    }
+}
+
+/// A function that was output ahead of its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Promise {
+    pub(super) ahead: Ahead,
+    /// When it was output, s, and how long the path was to take to its place then, s.
+    pub(super) output_s: f64,
+    pub(super) planned_s: f64,
+}
+
+/// Functions that were output ahead, until the path passes their places.
+#[derive(Debug, Default)]
+pub(super) struct Watched {
+    pub(super) promises: VecDeque<Promise>,
+    /// What was told: a block that comes again is told once.
+    pub(super) told: BTreeSet<(String, Arc<str>, u32)>,
+}
+
+impl Watched {
+    /// The path turns: it passes their places otherwise.
+    pub(super) fn clear(&mut self) {
+        self.promises.clear();
     }
 }
 

@@ -25,9 +25,9 @@ mod window;
 use bahn_motion::{Interpolator, Limits, PointToPoint};
 use bahn_path::Position;
 
+use crate::bounds::Bounds;
 use crate::plc::{Plc, PlcMemory, Script};
 use crate::report::{Fault, Skipped};
-use crate::run::Bounds;
 use crate::settings::ChannelSettings;
 use backward::Backward;
 use drive::LOOK_AHEAD;

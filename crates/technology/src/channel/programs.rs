@@ -10,9 +10,10 @@ use super::in_force::InForce;
 use super::record::{self, EVENTS};
 use super::skipped::Begun;
 use super::track::{Deed, Track};
+use crate::bounds::Bounds;
 use crate::plc::{PlcMemory, cycle_at};
 use crate::report::{Coordinates, Fault, ProgramEnd, Report};
-use crate::run::{Blocks, Bounds, Run};
+use crate::run::{Blocks, Run};
 
 /// Elements of the path that are decoded ahead of it at most.
 const AHEAD: u64 = 300;
