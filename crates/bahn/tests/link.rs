@@ -129,6 +129,8 @@ fn files_go_to_a_disk_and_come_back() {
     copy(&machines().join("mill"), &folder.path("empty"));
     fs::remove_dir_all(folder.path("empty/programs")).unwrap();
     fs::create_dir(folder.path("empty/programs")).unwrap();
+    // A disk has no folders.
+    fs::remove_dir_all(folder.path("mill/programs/eprom")).unwrap();
     let disk = Running::start(&folder, "link disk disk --port tcp:127.0.0.1:0,mode=fe2").ready();
     let port = format!("--port connect:{},mode=fe2", disk.place);
     let sent = folder.bahn(&format!("link send --machine mill {port} --all"));
@@ -138,11 +140,14 @@ fn files_go_to_a_disk_and_come_back() {
         "link receive --machine empty {port} --all --format json"
     ));
     assert_eq!(received.code(), 0, "{}", received.err());
-    assert_eq!(received.json()["received"].as_array().unwrap().len(), 4);
+    assert_eq!(received.json()["received"].as_array().unwrap().len(), 8);
     same(&folder.path("mill/programs"), &folder.path("empty/programs"));
     // The directory, by both ways.
     let listed = folder.bahn(&format!("link list --machine mill {port}"));
-    assert_eq!(listed.out(), "BRACKET.H\nCIRCLE.H\nINDEX.H\nSADDLE.H\n");
+    assert_eq!(
+        listed.out(),
+        "BRACKET.H\nCIRCLE.H\nDATUM.H\nFLANGE.H\nINDEX.H\nKNOB.H\nMEASURE.H\nSADDLE.H\n"
+    );
     let listed = folder.bahn(&format!(
         "link list --machine mill --port connect:{},mode=fe1 --format json",
         disk.place

@@ -353,7 +353,7 @@ fn what_survives_power_off_is_kept_in_the_folder() {
     assert_eq!(second.code(), 0, "{}", second.err());
     assert_eq!(time_for(&second.json(), "tool change"), 0.0);
     // Another datum stays.
-    folder.write("d.txt", "20: datum X 90\n+0.1: end\n");
+    folder.write("d.txt", "40: datum X 90\n+0.1: end\n");
     let datum = folder.bahn("run --machine mill --script d.txt");
     assert_eq!(datum.code(), 0, "{}", datum.err());
     assert!(

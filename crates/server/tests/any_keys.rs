@@ -30,6 +30,8 @@ impl Dice {
 fn headings(mode: &str) -> &'static [&'static str] {
     match mode {
         "manual" => &["MANUAL OPERATION", "PASS OVER REFERENCE MARKS", "TOUCH PROBE"],
+        // By a soft key, as long as marks are to be passed [000:4581].
+        "reference" => &["PASS OVER REFERENCE MARKS"],
         "handwheel" => &["ELECTRONIC HANDWHEEL"],
         "mdi" => &["POSITIONING WITH MANUAL DATA INPUT"],
         "single" => &["PROGRAM RUN, SINGLE BLOCK"],
