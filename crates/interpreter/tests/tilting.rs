@@ -77,7 +77,9 @@ fn swivel_axes_stand_where_cycle_19_says() {
     let on_datum =
         |b: &str| on_datum(SWIVEL_HEAD, datum, &format!("{plane}L B{b} R0 FMAX\nL X+1 FMAX")).message();
     assert_eq!(on_datum("+20"), None);
-    assert_eq!(on_datum("+30"), Some((PlaneWronglyDefined, 6)));
+    // In a test run it may lie at the datum of the machine as well, since nobody may have said where.
+    assert_eq!(on_datum("+30"), None);
+    assert_eq!(on_datum("+40"), Some((PlaneWronglyDefined, 6)));
     // Behind the plane they go where they are told.
     assert_eq!(
         behind("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL X+2 B+40 FMAX"),
