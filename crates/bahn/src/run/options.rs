@@ -19,8 +19,8 @@ Examples:
       draws it. On axes with digital speed controller `output step 300` in a script lets direction keys put out a step.
   bahn run part.h --machine mill --script stop.txt
       What happens at which time, and what is expected, stands in a script.
-  bahn run part.h --machine mill --log run.log
-  bahn run part.h --machine mill --replay run.log
+  bahn run part.h --machine mill --fresh --log run.log
+  bahn run part.h --machine mill --fresh --replay run.log
       The second run repeats the first one, bit by bit, when both have --fresh and the same --mp.
   bahn run --machine mill --script jog.txt
       Without a program: power-up, reference run, then the script.
