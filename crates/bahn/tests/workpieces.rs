@@ -8,7 +8,7 @@ use serde_json::Value;
 use support::{Folder, copy, machines, number, rows};
 
 /// A spindle overshoots where it is to stand, and with it the tap, mm: the lists leave less than a fifth of a pitch of 1.25.
-const OVERSHOOT_MM: f64 = 0.2;
+const OVERSHOOT_MM: f64 = 0.02;
 
 /// What a workpiece did.
 struct Done {
