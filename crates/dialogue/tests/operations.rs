@@ -316,15 +316,10 @@ fn open_and_close(file: &Path, program: &Program, numbered: &NumberedBlock) {
     desk.enter("END");
     assert_eq!(desk.editor.program().decode(0).blocks[1], before, "{place}");
     // What can be read is opened word by word: letters go on only with a line of text.
-    let readable = !matches!(
-        before.operation,
-        Operation::Invalid(_) | Operation::Comment(_) | Operation::Dialog(_)
-    );
+    let readable = !matches!(before.operation, Operation::Invalid(_) | Operation::Comment(_));
     desk.enter("RIGHT");
     let refused = matches!(desk.press("K"), Reaction::Refused(_));
-    // The blocks of a dialogue have their words only in a program of the machine builder.
-    let dialog = matches!(before.operation, Operation::Dialog(_));
-    assert!(refused == readable || dialog, "{place}: {words:?}");
+    assert_eq!(refused, readable, "{place}: {words:?}");
 }
 
 #[test]
