@@ -82,8 +82,18 @@ fn machine() -> Folder {
         "m/programs/CHANGES.H",
         format!("BEGIN PGM CHANGES MM\nLBL 1\n{calls}CALL LBL 1 REP 40\nEND PGM CHANGES MM\n"),
     );
+    folder.write(
+        "m/programs/NOTHING.H",
+        "BEGIN PGM NOTHING MM\nEND PGM NOTHING MM\n",
+    );
     folder.write("COUNT.PLC", "EM\n");
     folder
+}
+
+/// Switches the machine on, which finishes what a kill has left half written, and off again.
+fn power_on(folder: &Folder) {
+    let run = folder.bahn("run NOTHING.H --machine m --no-graphics");
+    assert_eq!(run.code(), 0, "{}", run.err());
 }
 
 fn start(folder: &Folder, arguments: &str) -> Child {
@@ -155,8 +165,7 @@ impl Magazine {
 }
 
 /// The process is killed at any time: every tool is in the pocket that the PLC has seen it go to, or the
-/// change after it is done, whose strobe had not fallen yet; or the file of the control is still that of the change before,
-/// and is finished at power-on by that of the mechanics.
+/// change after it is done, whose strobe had not fallen yet. What counts is the machine that was switched on again.
 #[test]
 fn killed_at_any_time_the_right_tool_is_in_the_right_pocket() {
     let folder = machine();
@@ -186,12 +195,11 @@ fn killed_at_any_time_the_right_tool_is_in_the_right_pocket() {
         std::thread::sleep(whole_time.mul_f64(part));
         child.kill().unwrap();
         child.wait().unwrap();
+        power_on(&folder);
         let done = strobes(&folder) - counted;
         let after = Magazine::of(&folder);
         assert!(
-            [done - 1, done, done + 1]
-                .iter()
-                .any(|done| before.after(*done) == after),
+            [done, done + 1].iter().any(|done| before.after(*done) == after),
             "kill {kill}: {done} strobes fell\n{before:?}\n{after:?}"
         );
         in_the_midst += i32::from((1..changes).contains(&done));

@@ -252,6 +252,14 @@ fn a_change_is_no_run_that_hangs() {
 }
 
 /// With a script nobody confirms M0; without movement the run hangs and says why.
+/// A program without a block begins and ends within one cycle: it is a run that ended, none that hangs.
+#[test]
+fn a_program_without_a_block_runs_to_its_end() {
+    let folder = Folder::with_program("; nothing but this");
+    let (code, report) = report(&folder, "");
+    assert_eq!((code, &report["completed"]), (0, &json!(true)), "{report}");
+}
+
 #[test]
 fn a_run_that_hangs_says_what_it_waits_for() {
     let folder = Folder::with_program(CORNER);

@@ -236,8 +236,9 @@ impl Session {
     fn watch(&mut self) -> Result<(), UsageError> {
         self.follow_notices()?;
         let running = !is_idle(self.host.control().first());
-        let any = !self.is_idle();
         let phase = self.host.operator().phase();
+        // A program without a block begins and ends within one cycle.
+        let any = !self.is_idle() || phase == Phase::Program && self.all_ended();
         if any && self.start_us.is_none() && phase != Phase::PowerUp {
             // What the script gives from the start on counts from here.
             let now = self.host.control().time_us();
