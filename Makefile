@@ -6,7 +6,7 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures conformance faults torture trails tools browser terminal axe pylsv2 clean
+.PHONY: run test check deps bench doc pictures conformance faults torture trails tools browser terminal axe pylsv2 clean
 
 # Built for the first look: without the screens in the terminal, and with the profile for it.
 BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
@@ -32,7 +32,7 @@ run:
 
 # Everything that must hold: format, lints, documentation, tests. Of the fuzz targets nothing is linked here: they
 # compile without libFuzzer.
-test: tools browser terminal axe pylsv2
+test: deps
 	$(CARGO) fmt --all --check
 	$(CARGO) metadata --manifest-path fuzz/Cargo.toml --locked --format-version 1 >/dev/null
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
@@ -46,6 +46,19 @@ test: tools browser terminal axe pylsv2
 	BAHN_TRAIL=$(CURDIR)/$(OUT)/debug.trail $(CARGO) test -p bahn-control --locked --quiet --test reproducible twice
 	BAHN_TRAIL=$(CURDIR)/$(OUT)/release.trail $(CARGO) test -p bahn-control --locked --quiet --release --test reproducible twice
 	cmp $(OUT)/debug.trail $(OUT)/release.trail
+
+# What a change is looked at with before everything is tried: format, lints, the order of the house, the tests of the
+# rooms with files that are not committed yet.
+check: tools
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
+	$(CARGO) test -p bahn --locked --quiet --test tidy --test documents
+	@for room in $$(git status --porcelain -- crates | cut -c4- | cut -d/ -f2 | sort -u | grep -v '^bahn$$'); do \
+		$(CARGO) test -p bahn-$$room --locked --quiet || exit 1; \
+	done
+
+# What the tests need and a fresh machine lacks. Nothing is done where it is there.
+deps: tools browser terminal axe pylsv2
 
 bench:
 	$(CARGO) bench --workspace --locked

@@ -17,7 +17,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("interpreter", &["path", "parameters", "program"]),
     ("motion", &["path"]),
     ("din", &["path"]),
-    ("technology", &["path", "parameters", "motion", "din"]),
+    ("technology", &["path", "motion", "din"]),
     ("workpiece", &["path", "picture"]),
     ("viewer", &["path", "workpiece"]),
     ("exchange", &[]),
@@ -94,7 +94,6 @@ const ROOMS: &[(&str, &[&str])] = &[
             "host",
             "picture",
             "workpiece",
-            "picture",
             "viewer",
             "interpreter",
             "motion",
@@ -184,17 +183,43 @@ fn arrows_point_down() {
         let (_, allowed) = ROOMS.iter().find(|(name, _)| *name == room).unwrap_or_else(|| {
             panic!("the room {room} is not in the plan of the house: add it to ROOMS and ARCHITECTURE.md")
         });
-        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
-        let dependencies = manifest.split("[dependencies]").nth(1).unwrap_or_default();
-        let dependencies = dependencies.split("\n[").next().unwrap_or_default();
-        for line in dependencies.lines() {
-            let Some(used) = line.strip_prefix("bahn-") else {
-                continue;
-            };
-            let used = used.split(['.', ' ', '=']).next().unwrap_or_default();
-            assert!(allowed.contains(&used), "{room} must not use {used}");
+        let used = dependencies(&folder);
+        let rooms: Vec<&str> = used.iter().filter_map(|used| used.strip_prefix("bahn-")).collect();
+        for room_used in &rooms {
+            assert!(allowed.contains(room_used), "{room} must not use {room_used}");
         }
+        let stale: Vec<_> = allowed.iter().filter(|room| !rooms.contains(room)).collect();
+        assert!(stale.is_empty(), "{room} may use {stale:?}, and does not");
+        let code: String = source_files(&folder.join("src"))
+            .iter()
+            .map(|file| fs::read_to_string(file).unwrap())
+            .collect();
+        let unused: Vec<_> = used
+            .iter()
+            .filter(|used| !has_word(&code, &used.replace('-', "_")))
+            .collect();
+        assert!(unused.is_empty(), "{room} depends on {unused:?}, and does not use it");
     }
+}
+
+/// What a crate depends on, without what only its tests do.
+fn dependencies(folder: &Path) -> Vec<String> {
+    let manifest: toml::Table = fs::read_to_string(folder.join("Cargo.toml"))
+        .unwrap()
+        .parse()
+        .unwrap();
+    let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table);
+    dependencies
+        .map(|table| table.keys().cloned().collect())
+        .unwrap_or_default()
+}
+
+/// Whether a name stands in the code, and not as part of a longer one.
+fn has_word(code: &str, name: &str) -> bool {
+    let part = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices(name).any(|(at, _)| {
+        !code[..at].ends_with(part) && !code[at + name.len()..].starts_with(part)
+    })
 }
 
 #[test]
