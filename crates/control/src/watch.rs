@@ -36,6 +36,8 @@ pub struct AxisWatch {
     pub on_path: bool,
     /// It follows a master: no path names it.
     pub slave: bool,
+    /// It is moved for itself: neither by its master nor by the PLC (MP60).
+    pub free: bool,
     /// With a digital speed controller: so long its torque goes on when the loop is opened, MP1980, s; without feed enable
     /// it is held by torque.
     pub torque_s: Option<f64>,
@@ -74,6 +76,7 @@ impl AxisWatch {
             halted: unit.halted,
             on_path: unit.mover == Mover::Path,
             slave: unit.coupling.is_some(),
+            free: unit.is_free(),
             torque_s: parameters.digital.map(|digital| digital.emergency_stop_s),
             limits: unit.limited(),
             fault: unit.servo.fault().map(bahn_servo::Fault::id),

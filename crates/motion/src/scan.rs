@@ -19,6 +19,8 @@ use way::{Felt, Wish};
 const POINTS_MAX: u64 = 10_000_000;
 /// How far the surface may lie below the range, mm: the stylus overshoots (inferred).
 const BELOW_MM: f64 = 0.1;
+/// What rounding leaves of the way to an end, mm.
+const ROUNDING_MM: f64 = 1e-9;
 
 /// What the stylus feels in a cycle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -112,6 +114,7 @@ impl Scan {
     pub fn cycle(&mut self, time_s: f64, sense: &Sense, feed: f64) -> ScanStep {
         let felt = Felt {
             at: sense.at,
+            nominal: self.position,
             deflected: sense.deflected,
             touch: sense.touch,
             deflection: sense.deflection,
@@ -192,20 +195,20 @@ impl Scan {
         })
     }
 
-    /// The speed goes over to the one that is wanted as fast as the axes can.
+    /// The speed goes over to the one that is wanted as fast as the axes can; what brakes for the end of a line or for a
+    /// level does so first.
     fn slew(&mut self, wish: &Wish, time_s: f64, feed: f64) {
         let mut wanted = wish.velocity.map(|part| part * feed);
+        let mut possible = self.acceleration_mm_s2 * time_s;
         if let Some((axis, sign, end)) = wish.end {
-            // No faster than it can be braked before the end.
-            let way = ((end - self.position[axis]) * sign).max(0.0);
-            let able = (2.0 * self.acceleration_mm_s2 * way)
-                .sqrt()
-                .max(self.acceleration_mm_s2 * time_s);
-            wanted[axis] = wanted[axis].clamp(-able, able);
+            let able = landing_speed((end - self.position[axis]) * sign, possible, time_s);
+            wanted[axis] = sign * (wanted[axis] * sign).min(able);
+            let braked = (self.velocity[axis] * sign - able).clamp(0.0, possible);
+            self.velocity[axis] -= braked * sign;
+            possible = (possible * possible - braked * braked).sqrt();
         }
         let missing: ScanPoint = std::array::from_fn(|k| wanted[k] - self.velocity[k]);
         let length = missing.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let possible = self.acceleration_mm_s2 * time_s;
         let part = if length > possible { possible / length } else { 1.0 };
         for k in 0..3 {
             self.velocity[k] += missing[k] * part;
@@ -213,14 +216,23 @@ impl Scan {
                 self.velocity[k] = wanted[k];
             }
             self.position[k] += self.velocity[k] * time_s;
-            // It neither runs over the end of a line nor over a level.
-            if let Some((axis, sign, end)) = wish.end
-                && axis == k
-                && (self.position[k] - end) * sign > 0.0
-            {
-                self.position[k] = end;
-                self.velocity[k] = 0.0;
-            }
+        }
+        if let Some((axis, _, end)) = wish.end
+            && (self.position[axis] - end).abs() < ROUNDING_MM
+        {
+            self.position[axis] = end;
         }
     }
+}
+
+/// The greatest speed of a cycle, mm/s, from which an axis that loses `step` mm/s in each of the next ones stands behind
+/// `way` mm: n cycles of v, v - step, v - 2 step and so on, the last of them no faster than a step.
+fn landing_speed(way: f64, step: f64, time_s: f64) -> f64 {
+    if way <= 0.0 {
+        return 0.0;
+    }
+    // n (n - 1) / 2 < way / (step time) <= n (n + 1) / 2
+    let steps = way / (step * time_s);
+    let n = (((8.0 * steps + 1.0).sqrt() - 1.0) / 2.0).ceil().max(1.0);
+    step * (steps / n + (n - 1.0) / 2.0)
 }

@@ -7,6 +7,8 @@ use bahn_path::{
 };
 
 const CYCLE_S: f64 = 3e-3;
+/// MP1060
+const ACCELERATION_M_S2: f64 = 1.0;
 
 /// A stylus 0.5 mm deep at 600 mm/min.
 fn job() -> ScanJob {
@@ -43,11 +45,12 @@ fn job() -> ScanJob {
 /// Points, the end, its time and the deepest deflection.
 type Scanning = (Vec<ScanPoint>, Scanned, f64, f64);
 
-/// Scans a surface that pushes the tip out of it by this.
+/// Scans a surface that pushes the tip out of it by this, and holds it to the acceleration of the axes.
 fn scan(job: ScanJob, pushes: impl Fn(ScanPoint) -> ScanPoint) -> Scanning {
-    let mut scan = Scan::new(job, 1.0);
+    let mut scan = Scan::new(job, ACCELERATION_M_S2);
     let (mut points, mut sense, mut deepest) = (Vec::new(), Sense::default(), 0.0_f64);
     sense.at = scan.position();
+    let mut before = [0.0; 3];
     for cycle in 1..10_000_000 {
         match scan.cycle(CYCLE_S, &sense, 1.0) {
             ScanStep::Moves => {}
@@ -55,6 +58,14 @@ fn scan(job: ScanJob, pushes: impl Fn(ScanPoint) -> ScanPoint) -> Scanning {
             ScanStep::Over(scanned) => return (points, scanned, f64::from(cycle) * CYCLE_S, deepest),
         }
         let at = scan.position();
+        let velocity: ScanPoint = std::array::from_fn(|k| (at[k] - sense.at[k]) / CYCLE_S);
+        let change = (0..3)
+            .map(|k| (velocity[k] - before[k]).powi(2))
+            .sum::<f64>()
+            .sqrt();
+        let possible = ACCELERATION_M_S2 * 1e3 * CYCLE_S;
+        assert!(change <= possible + 1e-6, "{before:?} {velocity:?} at {at:?}");
+        before = velocity;
         let deflection = pushes(at);
         let depth = deflection.iter().map(|part| part * part).sum::<f64>().sqrt();
         deepest = deepest.max(depth);

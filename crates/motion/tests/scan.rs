@@ -5,6 +5,8 @@ use bahn_motion::{Scan, ScanStep, Sense};
 use bahn_path::{Axis, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint, ScanRules, Scanned};
 
 const CYCLE_S: f64 = 3e-3;
+/// MP1060
+const ACCELERATION_M_S2: f64 = 1.0;
 
 /// The example of the manual [000:7842-7855] on a range of 20 by 4 mm: X, TRAVEL 0.5, L.SPAC 1, P.P.INT 1.
 fn job() -> ScanJob {
@@ -26,11 +28,13 @@ fn job() -> ScanJob {
     }
 }
 
-/// Scans a surface that the tip touches where its height is not greater than this.
+/// Scans a surface that the tip touches where its height is not greater than this, and holds the stylus to the acceleration of
+/// the axes, which no cycle exceeds.
 fn scan(job: ScanJob, height: impl Fn(f64, f64) -> f64) -> (Vec<ScanPoint>, Scanned, f64) {
-    let mut scan = Scan::new(job, 1.0);
+    let mut scan = Scan::new(job, ACCELERATION_M_S2);
     let (mut points, mut sense) = (Vec::new(), Sense::default());
     sense.at = scan.position();
+    let mut before = [0.0; 3];
     for cycle in 1..10_000_000 {
         match scan.cycle(CYCLE_S, &sense, 1.0) {
             ScanStep::Moves => {}
@@ -44,6 +48,16 @@ fn scan(job: ScanJob, height: impl Fn(f64, f64) -> f64) -> (Vec<ScanPoint>, Scan
             .sqrt()
             * 60.0;
         assert!(speed <= job.rules.rapid_mm_min * 1.5, "{speed} mm/min");
+        let velocity: ScanPoint = std::array::from_fn(|k| (at[k] - sense.at[k]) / CYCLE_S);
+        let change = (0..3)
+            .map(|k| (velocity[k] - before[k]).powi(2))
+            .sum::<f64>()
+            .sqrt();
+        assert!(
+            change <= ACCELERATION_M_S2 * 1e3 * CYCLE_S + 1e-6,
+            "{before:?} {velocity:?} at {at:?}"
+        );
+        before = velocity;
         let deflected = at[2] <= height(at[0], at[1]);
         sense = Sense {
             touch: (deflected && !sense.deflected).then_some(at),
@@ -59,7 +73,7 @@ fn scan(job: ScanJob, height: impl Fn(f64, f64) -> f64) -> (Vec<ScanPoint>, Scan
 /// each of the five lines begins and ends at the range.
 fn assert_scanned(points: &[ScanPoint], scanned: &Scanned, tolerance: f64, height: impl Fn(f64, f64) -> f64) {
     assert_eq!(scanned.fault, None);
-    assert!((scanned.at[2] - 25.0).abs() < 2e-3, "{:?}", scanned.at);
+    assert_eq!(scanned.at[2], 25.0);
     for point in points {
         let around = [-tolerance, 0.0, tolerance].map(|by| height(point[0] + by, point[1]));
         let low = around.iter().copied().fold(f64::INFINITY, f64::min) - tolerance;
@@ -141,4 +155,37 @@ fn the_override_slows_the_stylus() {
         assert_eq!(held.cycle(CYCLE_S, &sense, 0.0), ScanStep::Moves);
     }
     assert_eq!(held.position(), job().begin());
+}
+
+/// Contour lines around a round boss of radius 4 [003:6716-6766]: plunge, approach, orbits, levels and the way home keep
+/// the acceleration, and the scan ends at the starting point to the bit.
+#[test]
+fn levels_of_a_boss_end_at_the_starting_point() {
+    let levels = ScanJob {
+        min: [0.0, 0.0, -3.0],
+        max: [20.0, 20.0, -1.0],
+        pattern: ScanPattern::ContourLines {
+            start: [10.0, 1.0, 0.0],
+            approach: (Axis::Y, 1.0),
+            direction: (Axis::X, 1.0),
+            time_limit_s: 0.0,
+        },
+        ..job()
+    };
+    let boss = |x: f64, y: f64| {
+        if (x - 10.0).hypot(y - 10.0) <= 4.0 {
+            0.0
+        } else {
+            -20.0
+        }
+    };
+    let (points, scanned, _) = scan(levels, boss);
+    assert_eq!(
+        scanned,
+        Scanned {
+            at: levels.begin(),
+            fault: None
+        }
+    );
+    assert!(points.len() > 3 * 20, "{}", points.len());
 }

@@ -51,7 +51,7 @@ impl Led {
             grow(fastest.or_insert_with(|| PerAxis::splat(0.0)), channel);
         }
         if channel.is_led_by_probe() {
-            let place = channel.commanded();
+            let place = place(channel);
             let new = || Stretch {
                 least: place,
                 greatest: place,
@@ -92,6 +92,15 @@ impl Led {
     }
 }
 
+/// Where the axes are commanded that a path may move; what the PLC or a master moves is of no path.
+pub(super) fn place(channel: &ChannelView) -> Position {
+    let mut place = channel.commanded();
+    for watch in channel.watch().filter(|watch| !watch.free) {
+        place[watch.axis] = f64::NAN;
+    }
+    place
+}
+
 fn length(of: &PerAxis<f64>) -> f64 {
     let squares = [Axis::X, Axis::Y, Axis::Z].map(|axis| of[axis] * of[axis]);
     squares.iter().sum::<f64>().sqrt()
@@ -99,7 +108,7 @@ fn length(of: &PerAxis<f64>) -> f64 {
 
 /// The greatest speeds of the axes, mm/s.
 fn grow(fastest: &mut PerAxis<f64>, channel: &ChannelView) {
-    for watch in channel.watch().filter(|watch| !watch.slave) {
+    for watch in channel.watch().filter(|watch| watch.free) {
         fastest[watch.axis] = fastest[watch.axis].max(watch.speed_mm_s.abs());
     }
 }
@@ -166,7 +175,7 @@ impl Leading {
             self.led = Some(block);
         }
         grow(&mut self.fastest, channel);
-        for watch in channel.watch().filter(|watch| !watch.slave) {
+        for watch in channel.watch().filter(|watch| watch.free) {
             let fastest = self.fastest[watch.axis];
             self.reach[watch.axis] = fastest * fastest / (2.0 * watch.acceleration_mm_s2)
                 + STOP_CYCLES * fastest * moment.cycle_s

@@ -8,7 +8,7 @@ use bahn_servo::OUTPUTS;
 use super::axes::{Axes, Moment};
 use super::bench::Bench;
 use super::catalogue::{Catalogue, Kind};
-use super::led::Leading;
+use super::led::{self, Leading};
 use super::medium::Medium;
 use super::messages::{Messages, is_fatal};
 use super::plan::{Happening, Plan};
@@ -270,11 +270,11 @@ impl Course<'_> {
         let control = self.bench.host.control();
         let undisturbed = self.bench.contours.iter().zip(&self.bench.led);
         let own = self.contours.iter_mut().zip(&mut self.leading);
-        for (number, ((contour, led), ((same, hint), leading))) in undisturbed.zip(own).enumerate() {
+        for (number, ((contour, undisturbed), ((same, hint), leading))) in undisturbed.zip(own).enumerate() {
             let Some(channel) = control.channel(number) else {
                 continue;
             };
-            leading.cycle(&channel, led, moment);
+            leading.cycle(&channel, undisturbed, moment);
             if let Some((off, most)) = leading
                 .out_of_step(&channel, moment)
                 .filter(|(off, most)| off > most)
@@ -293,13 +293,10 @@ impl Course<'_> {
             if !channel.watch().any(|axis| axis.on_path && axis.speed_mm_s != 0.0) {
                 continue;
             }
-            let mut place = channel.commanded();
-            for slave in channel.watch().filter(|axis| axis.slave) {
-                place[slave.axis] = f64::NAN;
-            }
+            let place = led::place(&channel);
             let tolerance = CONTOUR + leading.moved;
             let away = contour.distance(&place, element.block, tolerance, leading.reach_mm(), hint);
-            if away > tolerance && !leading.holds(led, element.block, &place, tolerance) {
+            if away > tolerance && !leading.holds(undisturbed, element.block, &place, tolerance) {
                 let values = format!(
                     "channel {}: {away:.6} from the contour in block {}, at {place:?}",
                     number + 1,

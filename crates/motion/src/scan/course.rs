@@ -176,11 +176,13 @@ impl Course {
             ScanPattern::Meander { .. } => [up, up, up],
             ScanPattern::ContourLines { .. } => [approach, 3 - up - approach, up],
         };
-        let missing = order
-            .into_iter()
-            .find(|axis| (begin[*axis] - felt.at[*axis]).abs() > HOME_MM);
+        // The program goes on from the nominal position.
+        let is_missing = |axis: &usize| {
+            felt.nominal[*axis] != begin[*axis] || (begin[*axis] - felt.at[*axis]).abs() > HOME_MM
+        };
+        let missing = order.into_iter().find(is_missing);
         let Some(axis) = missing else { return Err(None) };
-        let sign = (begin[axis] - felt.at[axis]).signum();
+        let sign = (begin[axis] - felt.nominal[axis]).signum();
         let mut wish = Wish::along(unit(axis, sign), job.rules.rapid_mm_min / 60.0);
         wish.end = Some((axis, sign, begin[axis]));
         Ok((wish, None))
