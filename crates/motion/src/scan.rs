@@ -112,6 +112,7 @@ impl Scan {
     pub fn cycle(&mut self, time_s: f64, sense: &Sense, feed: f64) -> ScanStep {
         let felt = Felt {
             at: sense.at,
+            nominal: self.position,
             deflected: sense.deflected,
             touch: sense.touch,
             deflection: sense.deflection,
@@ -156,7 +157,8 @@ impl Scan {
             self.break_off(ScanFault::DeflectionExceedsMax);
         } else if self.has_left_range(&tip) {
             self.break_off(ScanFault::RangeExceeded);
-        } else if at < low - BELOW_MM {
+        } else if at < low - BELOW_MM && (!felt.deflected || felt.touch.is_some()) {
+            // A deflected stylus is pressed on: its ball is on the surface, above.
             self.break_off(match self.points {
                 0 => ScanFault::Inaccessible,
                 _ => ScanFault::RangeExceeded,
