@@ -159,7 +159,8 @@ impl Scan {
             self.break_off(ScanFault::DeflectionExceedsMax);
         } else if self.has_left_range(&tip) {
             self.break_off(ScanFault::RangeExceeded);
-        } else if at < low - BELOW_MM {
+        } else if at < low - BELOW_MM && (!felt.deflected || felt.touch.is_some()) {
+            // A deflected stylus is pressed on: its ball is on the surface, above.
             self.break_off(match self.points {
                 0 => ScanFault::Inaccessible,
                 _ => ScanFault::RangeExceeded,

@@ -189,3 +189,107 @@ fn levels_of_a_boss_end_at_the_starting_point() {
     );
     assert!(points.len() > 3 * 20, "{}", points.len());
 }
+
+/// P.P.INT is the greatest distance of two points [003:6655-6671], on walls up and down, upright or nearly so, too; a pocket
+/// whose floor lies within the range is scanned to its end [003:6596-6599]: the stylus that is pressed on leaves no range.
+#[test]
+fn points_on_walls_are_no_farther_than_the_interval() {
+    let (at, wide) = (7.0..=13.0, 0.5);
+    for top in [3.0, 8.0, -8.0] {
+        for slanting in [false, true] {
+            let surface = |x: f64, _: f64| match at.contains(&x) {
+                true if slanting => top * ((x - 7.0).min(13.0 - x) / wide).min(1.0),
+                true => top,
+                false => 0.0,
+            };
+            for (interval_mm, travel_mm) in [
+                (0.2, 0.1),
+                (0.5, 0.5),
+                (1.0, 0.5),
+                (3.0, 0.5),
+                (3.0, 1.0),
+                (3.0, 3.0),
+                (5.0, 0.5),
+                (5.0, 1.0),
+                (5.0, 3.0),
+                (5.0, 5.0),
+            ] {
+                let case =
+                    format!("{top} mm, slanting {slanting}, P.P.INT {interval_mm}, TRAVEL {travel_mm}");
+                let job = ScanJob {
+                    interval_mm,
+                    travel_mm,
+                    ..job()
+                };
+                let (points, scanned, _) = scan(job, surface);
+                assert_eq!(scanned.fault, None, "{case}");
+                for pair in points.windows(2) {
+                    let [a, b] = pair else { panic!() };
+                    let way = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+                    assert!(way <= interval_mm * 1.001, "{case}: {way} mm, {pair:?}");
+                    // The stylus goes no more than 25 mm/s * 3 ms in a cycle.
+                    let beside = [-0.1, 0.0, 0.1].map(|by| surface(b[0] + by, b[1]));
+                    let low = beside.iter().copied().fold(f64::INFINITY, f64::min) - 0.1;
+                    let high = beside.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.1;
+                    assert!(low <= b[2] && b[2] <= high, "{case}: {b:?}");
+                    assert!((-0.001..=20.001).contains(&b[0]), "{case}: {b:?}");
+                }
+                // Top and foot of the walls are there, to P.P.INT.
+                for line in 0..5 {
+                    let on = points
+                        .iter()
+                        .filter(|point| (point[1] - f64::from(line)).abs() < 0.02);
+                    let inside = on
+                        .clone()
+                        .filter(|point| (point[2] - top).abs() < 0.1 && at.contains(&point[0]));
+                    assert!(inside.count() > 0, "{case}: line {line} has no point at {top}");
+                    for end in [0.0, 20.0] {
+                        let there = |point: &ScanPoint| (point[0] - end).abs() < 0.02;
+                        assert!(on.clone().any(there), "{case}: line {line} does not reach {end}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Stairs of any heights, no narrower than P.P.INT: every line comes to its end, every point lies on them,
+/// none is farther than P.P.INT from the one before.
+#[test]
+fn any_stairs() {
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for round in 0..200 {
+        let interval_mm = 0.3 + random() * 4.7;
+        let travel_mm = 0.1 + random() * 3.0;
+        let mut stairs = vec![(0.0, random() * 18.0 - 9.0)];
+        while let Some((at, _)) = stairs.last().copied().filter(|(at, _)| *at < 20.0) {
+            stairs.push((at + interval_mm + random() * 6.0, random() * 18.0 - 9.0));
+        }
+        // A wall at the very end of a line is touched at its end or not.
+        stairs.retain(|(at, _)| (at - 20.0).abs() > 0.1);
+        let surface = |x: f64, _: f64| {
+            let on = stairs.iter().rev().find(|(at, _)| x >= *at);
+            on.unwrap_or(&stairs[0]).1
+        };
+        let job = ScanJob {
+            interval_mm,
+            travel_mm,
+            max: [20.0, 1.0, 10.0],
+            ..job()
+        };
+        let case = format!("{round}: P.P.INT {interval_mm:.2}, TRAVEL {travel_mm:.2}, {stairs:.2?}");
+        let (points, scanned, _) = scan(job, surface);
+        assert_eq!(scanned.fault, None, "{case}");
+        for pair in points.windows(2) {
+            let [a, b] = pair else { panic!() };
+            let way = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+            assert!(way <= interval_mm * 1.001, "{case}: {way} mm, {pair:?}");
+        }
+    }
+}

@@ -258,18 +258,25 @@ impl Course {
     }
 
     fn follow(&mut self, follower: &mut Follower, job: &ScanJob, felt: &Felt) -> Step {
+        let (axis, sign, end) = self.line;
+        let is_at_end = |at: &ScanPoint| (at[axis] - end) * sign >= -THERE_MM;
+        let meander = matches!(job.pattern, ScanPattern::Meander { .. });
+        follower.bar(meander && is_at_end(&felt.nominal));
         let followed = follower.cycle(felt);
         match (job.pattern, followed) {
             (_, Followed::Stuck) => Err(Some(ScanFault::CannotRetract)),
             (ScanPattern::Meander { .. }, followed) => {
-                let (axis, sign, end) = self.line;
-                if (felt.at[axis] - end) * sign >= -THERE_MM {
+                // A triggering probe touches at the end of the line: what is within a point interval of it is scanned, too.
+                let touches = matches!(followed, Followed::Touched(..)) || job.rules.measuring.is_some();
+                if is_at_end(&felt.at) && touches {
                     self.stage = Stage::Rise;
                     self.ended += u32::from(!self.shifts);
                     // A stylus that is deflected touches beside the end of the line.
                     let tip = std::array::from_fn(|k| felt.at[k] + felt.deflection[k]);
                     let point = (job.rules.measuring.is_some() && felt.deflected).then_some(tip);
-                    return Ok((Wish::stand(), point));
+                    let mut wish = Wish::stand();
+                    wish.end = Some((axis, sign, end));
+                    return Ok((wish, point));
                 }
                 Ok(match followed {
                     Followed::Moves(mut wish) => {

@@ -1,4 +1,7 @@
 //! How the stylus follows a surface in a plane: it taps, and at corners it turns [000:7807-7825].
+//!
+//! P.P.INT is the greatest distance of two points [003:6668], on walls, too: a stylus that is nine tenths of it along goes
+//! straight to the surface, as far as TRAVEL and what is left of P.P.INT let it, and so turns by enough to find a wall again.
 
 use bahn_path::{ScanJob, ScanPoint};
 
@@ -8,10 +11,20 @@ use super::way::{Felt, Followed, Tracking, Wish};
 /// Part of an oscillation that the stylus leaves the surface (inferred): two fifths, so that points lie nearer than the
 /// interval also where the surface falls away.
 const AWAY: f64 = 0.4;
+/// Part of the interval that the stylus goes along, and across at most (inferred): together no more than the interval.
+const ALONG: f64 = 0.9;
+const ACROSS: f64 = 0.43;
+/// It slows down before it has gone as far, 1/s (inferred).
+const SLOWS: f64 = 40.0;
+/// While it is deflected it goes no faster along than so many times as fast as across: the resultant leads off the surface
+/// by more than a touch is inexact (inferred).
+const RESULTANT: f64 = 4.0;
 /// Two points that are nearer give no new direction, mm (inferred).
 const NEAR_MM: f64 = 1e-3;
 /// Touches without getting farther after which the stylus is stuck (inferred).
 const STUCK: u32 = 20_000;
+/// Turns without a touch after which the surface is lost (inferred).
+const TURNS: u32 = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -22,9 +35,9 @@ enum Phase {
     /// Outside corner: back against the scan direction until it touches.
     Back,
     /// Inside corner: back against the scan direction until free.
-    Clear { from: ScanPoint },
+    Clear,
     /// Inside corner, free: on again until it touches.
-    Forth { from: ScanPoint },
+    Forth,
     /// It does not become free: the axis of the probe retracts.
     Lift,
 }
@@ -43,6 +56,10 @@ pub(super) struct Follower {
     /// The farthest point along, and touches since.
     farthest: f64,
     stuck: u32,
+    /// How often it has turned back since the last point.
+    turns: u32,
+    /// It is at the end of a line.
+    barred: bool,
     /// Feed along and across, mm/s.
     along_mm_s: f64,
     across_mm_s: f64,
@@ -77,6 +94,8 @@ impl Follower {
             cap_mm: job.interval_mm,
             farthest: f64::NEG_INFINITY,
             stuck: 0,
+            turns: 0,
+            barred: false,
             along_mm_s: job.feed_mm_min() / 60.0,
             across_mm_s: job.rules.normal_mm_min / 60.0,
             period_s: 1.0 / job.rules.oscillations_hz,
@@ -102,6 +121,7 @@ impl Follower {
         self.cap_mm = self.interval_mm;
         self.farthest = f64::NEG_INFINITY;
         self.stuck = 0;
+        self.turns = 0;
         if let Some(glide) = &mut self.glide {
             glide.begin();
         }
@@ -131,6 +151,20 @@ impl Follower {
         Followed::Moves(Wish { velocity, end: None })
     }
 
+    /// Whether it may go no farther along: then straight off the surface, and straight to it.
+    pub fn bar(&mut self, barred: bool) {
+        self.barred = barred;
+        if barred
+            && self.glide.is_none()
+            && matches!(self.phase, Phase::Rise { .. } | Phase::Fall | Phase::Forth)
+        {
+            self.direction = [1.0, 0.0];
+            if self.phase == Phase::Forth {
+                self.phase = Phase::Fall;
+            }
+        }
+    }
+
     /// Follows the surface for a cycle.
     pub fn cycle(&mut self, felt: &Felt) -> Followed {
         if let Some(glide) = &mut self.glide {
@@ -145,66 +179,102 @@ impl Follower {
         }
         let way = minus(felt.at, self.last);
         let (along, height) = (dot(way, self.direction()), dot(way, self.normal()));
-        let advance = f64::from(u8::from(along < self.cap_mm));
+        let advance = self.advance(felt);
         match self.phase {
             Phase::Rise { for_s } => {
                 let for_s = for_s + felt.time_s;
                 self.phase = Phase::Rise { for_s };
+                // The stylus takes no more than MP6240.
+                let pressed = !self.barred && along >= self.reach().min(self.deflection_mm) - NEAR_MM;
                 if !felt.deflected && for_s >= AWAY * self.period_s {
                     self.phase = Phase::Fall;
-                } else if felt.deflected && (height >= self.travel_mm || along >= self.interval_mm) {
-                    self.phase = Phase::Clear { from: felt.at };
+                } else if felt.deflected && (height >= self.stroke() || pressed) {
+                    self.phase = Phase::Clear;
                 }
                 self.wish(advance, 1.0)
             }
             // Deflected without a touch of its own: it came from somewhere else.
-            Phase::Fall if felt.deflected => self.touched(felt.at),
+            Phase::Fall | Phase::Back | Phase::Forth if felt.deflected => self.touched(felt.at),
             Phase::Fall => {
-                if height <= -self.travel_mm || along >= self.interval_mm && height < 0.0 {
+                if height <= -self.stroke() {
                     self.phase = Phase::Back;
                 }
                 self.wish(advance, -1.0)
             }
-            Phase::Back if felt.deflected => self.touched(felt.at),
             Phase::Back => {
-                // Nothing there either: down again from here.
-                if along < -self.interval_mm {
-                    self.last = felt.at;
-                    self.direction = [1.0, 0.0];
-                    self.phase = Phase::Fall;
+                if along < -self.reach() {
+                    return self.turn_round();
                 }
                 self.wish(-1.0, 0.0)
             }
-            Phase::Clear { from } => {
+            Phase::Clear => {
                 if !felt.deflected {
-                    self.phase = Phase::Forth { from: felt.at };
-                } else if dot(minus(from, felt.at), self.direction()) >= self.deflection_mm {
+                    self.phase = Phase::Forth;
+                } else if along <= -self.deflection_mm {
                     self.phase = Phase::Lift;
                 }
                 self.wish(-1.0, 0.0)
             }
-            Phase::Forth { from } => {
-                if felt.deflected {
-                    return self.touched(felt.at);
-                }
-                if dot(minus(felt.at, from), self.direction()) > self.deflection_mm + self.interval_mm {
+            Phase::Forth => {
+                if along >= self.reach() - NEAR_MM {
                     self.phase = Phase::Fall;
                 }
-                self.wish(1.0, 0.0)
+                self.wish(advance, 0.0)
             }
             Phase::Lift => {
                 if !felt.deflected {
-                    self.last = felt.at;
                     self.direction = [1.0, 0.0];
-                    self.phase = Phase::Fall;
+                    // Where it becomes free is the surface.
+                    return self.touched(felt.at);
                 }
                 Followed::Moves(Wish::along(self.up, self.along_mm_s))
             }
         }
     }
 
+    /// How far it goes along from point to point, mm.
+    fn reach(&self) -> f64 {
+        self.cap_mm.min(ALONG * self.interval_mm)
+    }
+
+    /// How far it goes across, mm.
+    fn stroke(&self) -> f64 {
+        self.travel_mm.min(ACROSS * self.interval_mm)
+    }
+
+    /// Part of the feed along: none any more where the interval is used up, by the nominal position, which leads.
+    fn advance(&self, felt: &Felt) -> f64 {
+        let way = minus(felt.nominal, self.last);
+        let left = self.reach() - dot(way, self.direction());
+        let greatest = match felt.deflected {
+            true => self.along_mm_s.min(RESULTANT * self.across_mm_s),
+            false => self.along_mm_s,
+        };
+        (left * SLOWS).clamp(0.0, greatest) / self.along_mm_s
+    }
+
+    /// Nothing behind the last point either: it was the tip of something thin, and its other side is scanned.
+    fn turn_round(&mut self) -> Followed {
+        self.turns += 1;
+        if self.turns > TURNS {
+            return Followed::Stuck;
+        }
+        self.direction = self.direction.map(|part| -part);
+        self.keep_on();
+        self.phase = Phase::Fall;
+        self.wish(0.0, 0.0)
+    }
+
+    /// A line of the meander never goes back: seen from the probe a surface has one height at each place.
+    fn keep_on(&mut self) {
+        let [along, off] = self.direction;
+        if self.tracking.off == self.up && along < 0.0 {
+            self.direction = [0.0, off.signum()];
+        }
+    }
+
     fn waits_for_touch(&self) -> bool {
-        matches!(self.phase, Phase::Fall | Phase::Back | Phase::Forth { .. })
+        matches!(self.phase, Phase::Fall | Phase::Back | Phase::Forth)
     }
 
     /// A new point: the direction of the scan is that from the last one to it.
@@ -214,8 +284,10 @@ impl Follower {
         let length = plane[0].hypot(plane[1]);
         if length > NEAR_MM {
             self.direction = plane.map(|part| part / length);
+            self.keep_on();
         }
         self.last = touch;
+        self.turns = 0;
         self.phase = Phase::Rise { for_s: 0.0 };
         let reached = dot(touch, self.tracking.along);
         if reached > self.farthest + NEAR_MM {

@@ -6,7 +6,7 @@ use bahn_path::ScanPoint;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Felt {
     pub at: ScanPoint,
-    /// Where it is to be.
+    /// Where it is to be: it leads by the lag of the axes.
     pub nominal: ScanPoint,
     pub deflected: bool,
     pub touch: Option<ScanPoint>,
