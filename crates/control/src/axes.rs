@@ -244,6 +244,15 @@ impl OwnAxes<'_> {
         machine_position(self.iter().filter(|unit| unit.is_free()))
     }
 
+    /// The same of an interrupted path: axes that were taken over from somewhere else count where it has left them.
+    pub fn left_position(&self) -> Position {
+        let mut at = self.programmed_position();
+        for unit in self.iter().filter(|unit| unit.is_free()) {
+            at[unit.axis] = unit.left_at.unwrap_or(at[unit.axis]);
+        }
+        at
+    }
+
     /// The axes that programs move: neither slaves [000:4519] nor those of the PLC [000:4094-4116].
     pub fn programmable(&self) -> AxisSet {
         self.iter()

@@ -216,8 +216,9 @@ impl Scanning {
         }
     }
 
-    /// After an EMERGENCY STOP, or without feed enable, the axes may stand elsewhere: it goes on from there, and the
-    /// stylus leaves the surface first, so that no point is taken where axes ran on (inferred).
+    /// Without feed enable the axes may stand elsewhere: it goes on from there. Axes that CE took over from where they are
+    /// go back with NC start to where it has left them. The stylus leaves the surface first, so that no point is taken where
+    /// axes ran on (inferred).
     fn regain(&mut self, site: &Site) {
         let passed_us = site.now.us.saturating_sub(self.moved_us);
         self.moved_us = site.now.us;
@@ -225,7 +226,7 @@ impl Scanning {
         if passed_us as f64 * 1e-6 < 1.5 * site.now.time_s {
             return;
         }
-        let here = self.tip_at(&site.here());
+        let here = self.tip_at(&site.chain.to_path(&site.axes.left_position()));
         let nominal = self.scan.position();
         self.touch = None;
         let away = (0..3).any(|k| (here[k] - nominal[k]).abs() > ELSEWHERE_MM);
@@ -280,8 +281,7 @@ impl Scanning {
             let value = nominal[unit.axis];
             let leads = AXES.contains(&unit.axis) && value.is_finite() && !unit.is_plc_axis();
             if leads && matches!(unit.mover, Mover::None | Mover::Path) {
-                unit.mover = Mover::Path;
-                unit.follow(value, time);
+                unit.follow_probe(value, time);
             }
         }
     }

@@ -412,6 +412,58 @@ fn emergency_stop_in_the_middle() {
     kept.covers_the_face();
 }
 
+/// The drive of X fails on a line: POSITIONING ERROR. CE takes X over where it stands, and it waits there for NC start, which
+/// leads it back to where the scan has left it; then the scan goes on, and no point lies elsewhere.
+#[test]
+fn positioning_error_in_the_middle() {
+    // Without movement monitoring the lag grows beyond MP1710 or MP1720, and CE clears it [000:5194-5198].
+    let unwatched = [
+        "1140.0=10",
+        "1110.0=30",
+        "1710.0=3",
+        "1720.0=20",
+        "1410.0=3",
+        "1420.0=20",
+    ];
+    let build = unwatched.iter().fold(bench(&plc()), |build, mp| build.mp(mp));
+    let mut rig = rig_of_bench(build, FACE);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |rig, kept| {
+        kept.points.len() == 3 && rig.control.observe(&"X.speed".parse().expect("a signal")).abs() > 100.0
+    });
+    rig.event("fault drive X dead");
+    kept.until(&mut rig, 10.0, |rig, _| {
+        rig.messages().contains(&"POSITIONING ERROR X".to_owned())
+    });
+    rig.event("repair all");
+    rig.seconds(0.5);
+    rig.command("ce");
+    rig.cycle();
+    let stood = ['X', 'Y', 'Z'].map(|letter| nominal(&rig, letter));
+    for _ in 0..300 {
+        rig.cycle();
+        kept.look(&rig);
+        for (letter, stood) in ['X', 'Y', 'Z'].into_iter().zip(stood) {
+            let now = nominal(&rig, letter);
+            assert!(
+                (now - stood).abs() < 1e-9,
+                "{letter} goes from {stood} to {now} with CE"
+            );
+        }
+    }
+    assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
+    rig.start();
+    kept.until_the_end(&mut rig);
+    assert_eq!(kept.complete, 1);
+    // Where X ran on without its drive there are none.
+    for [x, _, z] in &kept.points {
+        assert!((84.99..=95.01).contains(x) && z.abs() < 0.005, "{x} {z}");
+    }
+    let last = kept.points.iter().filter(|point| (point[1] - 22.0).abs() < 0.01);
+    assert!(last.count() > 10, "{:?}", kept.points);
+}
+
 /// A TM 110 on the bench: it stays deflected by MP6310 and scans with MP6360 along the face.
 fn measuring(mounting: &str, parameters: &[&str]) -> Rig {
     measuring_with(bench(&plc()), FACE, mounting, parameters)
