@@ -267,6 +267,29 @@ fn a_tool_call_before_its_m06_brings_the_tip_to_where_the_path_goes_on() {
     assert_eq!(behind.collect::<Vec<_>>(), expected, "{}", made.text);
 }
 
+/// The axes stand at X0 Y0 before the start: a line says nothing of them until an arc counts its centre from there.
+#[test]
+fn an_arc_begins_where_the_text_has_brought_its_axes() {
+    let source = program(
+        "BEGIN PGM A MM\nCC X+20 Y+0\nL X+0 Y+0 R0 F100\nCP IPA+90 DR+ F100\nEND PGM A MM\n",
+        Language::Plain,
+    );
+    let mut settings = settings(ControlModel::Tnc415b);
+    settings.start[Axis::X] = 0.0;
+    settings.start[Axis::Y] = 0.0;
+    let (made, proof) = gcode(&source, &settings, &root());
+    assert!(proof.holds(), "{proof:?}\n{}", made.text);
+    let bare = |line: &str| line.split(';').next().unwrap_or_default().trim().to_owned();
+    let lines: Vec<_> = made.text.lines().skip(4).map(bare).collect();
+    // A quarter turn about X20 Y0 from its left side goes down.
+    assert_eq!(
+        lines,
+        ["G0 X0 Y0", "G17 G3 X20 Y-20 I20 J0 F100", "M2"],
+        "{}",
+        made.text
+    );
+}
+
 /// A line that leaves an axis out behind a tool change is found: the machine stands elsewhere there.
 #[test]
 fn the_proof_finds_an_axis_that_is_left_out_behind_a_tool_change() {

@@ -140,6 +140,7 @@ fn machine_blocks() -> impl Strategy<Value = String> {
         1 => (-60_i32..60).prop_map(|z| format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 Z{z:+}\nCYCL DEF 7.2 X+5")),
         1 => (0_i32..90).prop_map(|angle| format!("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT{angle:+}")),
         1 => Just("CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X".to_owned()),
+        1 => Just("CC X+20 Y+0\nL X+0 Y+0 R0 F100\nCP IPA+90 DR+ F100".to_owned()),
         1 => Just("CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -9\nCYCL DEF 1.3 PECKG -4\n\
                    CYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F80\nL Z+2 FMAX M99".to_owned()),
     ]
@@ -154,16 +155,23 @@ fn machine_settings() -> impl Strategy<Value = Settings> {
         ControlModel::Tnc415b,
     ]);
     let place = |z: f64| prop::sample::select(vec![f64::NAN, 0.0, z]);
-    (models, place(-300.0), place(-80.0), place(200.0), place(40.0)).prop_map(
-        |(model, zero_z, zero_x, change_z, start_z)| {
+    (
+        models,
+        place(-300.0),
+        place(-80.0),
+        place(200.0),
+        place(40.0),
+        place(15.0),
+    )
+        .prop_map(|(model, zero_z, zero_x, change_z, start_z, start_y)| {
             let mut settings = settings(model);
             settings.rules.machine_zero[Axis::X] = zero_x;
             settings.rules.machine_zero[Axis::Z] = zero_z;
             settings.tool_change[Axis::Z] = change_z;
             settings.start[Axis::Z] = start_z;
+            settings.start[Axis::Y] = start_y;
             settings
-        },
-    )
+        })
 }
 
 proptest! {

@@ -4,7 +4,7 @@
 //! on behind a stop or a function M100 to M199 may have moved it. What the control's path leaves out there, since the axis
 //! stands still, the text has to say.
 
-use bahn_path::{Axis, Curve, FeedRate, Position};
+use bahn_path::{Axis, AxisSet, Curve, FeedRate, Position};
 
 use super::line::Said;
 use crate::TOLERANCE_MM;
@@ -63,7 +63,9 @@ impl Stand {
     pub fn back(&mut self, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, Position) {
         let [start, end] = way;
         let mut lines = Vec::new();
-        if !std::mem::take(&mut self.away) && !self.is_left_behind(start) {
+        let known = self.at.known();
+        let counted = self.counted_from(start, curve);
+        if !std::mem::take(&mut self.away) && counted == known && !self.is_left_behind(start) {
             return (lines, *start);
         }
         let tool = self.tool_axis;
@@ -71,8 +73,8 @@ impl Stand {
         let alone = Axis::ALL.into_iter().filter(moves).all(|axis| axis == tool);
         let retracts =
             matches!(curve, Curve::Line) && end[tool] > start[tool] && (alone || feed == FeedRate::Rapid);
-        let others = |axis: &Axis| *axis != tool;
-        let only = |axis: &Axis| *axis == tool;
+        let others = |axis: &Axis| counted.contains(*axis) && *axis != tool;
+        let only = |axis: &Axis| counted.contains(*axis) && *axis == tool;
         match retracts {
             true => {
                 self.line(end, &only, feed, &mut lines);
@@ -90,6 +92,18 @@ impl Stand {
         (lines, begins)
     }
 
+    /// The axes that the text must have brought to the begin of a way: those that it has brought anywhere, and those that an arc
+    /// counts its centre from.
+    fn counted_from(&self, start: &Position, curve: &Curve) -> AxisSet {
+        let mut counted = self.at.known();
+        if let Curve::Arc(arc) = curve {
+            let plane = [arc.plane.first, arc.plane.second];
+            let stands = plane.into_iter().filter(|axis| start[*axis].is_finite());
+            stands.for_each(|axis| counted.insert(axis));
+        }
+        counted
+    }
+
     /// Whether the path goes on elsewhere than where the text stands: a tool call puts the tip of another tool there, and the
     /// text may change the tool only later, at an M6.
     fn is_left_behind(&self, start: &Position) -> bool {
@@ -97,13 +111,11 @@ impl Stand {
         self.at.known().iter().any(apart)
     }
 
-    /// A line of some axes, among those that stand somewhere.
+    /// A line of some axes.
     fn line(&mut self, to: &Position, of: &dyn Fn(&Axis) -> bool, feed: FeedRate, lines: &mut Vec<Said>) {
         let start = self.at;
-        for axis in self.at.known().iter().filter(of) {
-            if to[axis].is_finite() {
-                self.at[axis] = to[axis];
-            }
+        for axis in to.known().iter().filter(of) {
+            self.at[axis] = to[axis];
         }
         if self.at.known().iter().any(|axis| start[axis] != self.at[axis]) {
             lines.push(Said::Move {
