@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use bahn_convert::{Language, gcode as linuxcnc};
 use bahn_parameters::ControlModel;
-use bahn_path::Position;
+use bahn_path::{Axis, Position};
 use support::*;
 
 /// The lines of the text without comments, behind its first four, and the reasons of what is refused.
@@ -246,6 +246,48 @@ fn every_axis_is_brought_back_behind_what_may_move_the_machine() {
     // Up by feed is up by feed: behind a stop the tool may stand where it was.
     let behind = lines_behind("M0", "STOP\nL Z+50 F300");
     assert_eq!(behind, ["Z50 F300", "G0 X10 Y20", "M2"]);
+}
+
+/// A tool that is called before its M06 does not move the machine, but its tip is lifted out of the blank in a test run
+/// (Z-310, where M91 has led, is below the top Z+0). The text brings the axis there before the path goes on.
+#[test]
+fn a_tool_call_before_its_m06_brings_the_tip_to_where_the_path_goes_on() {
+    let source = program(
+        "BEGIN PGM A MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+100 Z+0\nTOOL CALL 1 Z S1000\n\
+         L Z-10 R0 FMAX M91\nM6\nTOOL CALL 2 Z S500\nL Z-10 R0 FMAX M91\nM6\nL X+5 Z+50 R0 FMAX\nEND PGM A MM\n",
+        Language::Plain,
+    );
+    let mut settings = settings(ControlModel::Tnc415b);
+    settings.rules.machine_zero[Axis::Z] = -300.0;
+    let (made, proof) = gcode(&source, &settings, &root());
+    assert!(proof.holds(), "{proof:?}\n{}", made.text);
+    let bare = |line: &str| line.split(';').next().unwrap_or_default().trim().to_owned();
+    let behind = made.text.lines().map(bare).skip_while(|line| line != "T2");
+    let expected = ["T2", "S500", "Z0", "Z-310", "M6", "G43", "Z50", "X5", "M2"];
+    assert_eq!(behind.collect::<Vec<_>>(), expected, "{}", made.text);
+}
+
+/// The axes stand at X0 Y0 before the start: a line says nothing of them until an arc counts its centre from there.
+#[test]
+fn an_arc_begins_where_the_text_has_brought_its_axes() {
+    let source = program(
+        "BEGIN PGM A MM\nCC X+20 Y+0\nL X+0 Y+0 R0 F100\nCP IPA+90 DR+ F100\nEND PGM A MM\n",
+        Language::Plain,
+    );
+    let mut settings = settings(ControlModel::Tnc415b);
+    settings.start[Axis::X] = 0.0;
+    settings.start[Axis::Y] = 0.0;
+    let (made, proof) = gcode(&source, &settings, &root());
+    assert!(proof.holds(), "{proof:?}\n{}", made.text);
+    let bare = |line: &str| line.split(';').next().unwrap_or_default().trim().to_owned();
+    let lines: Vec<_> = made.text.lines().skip(4).map(bare).collect();
+    // A quarter turn about X20 Y0 from its left side goes down.
+    assert_eq!(
+        lines,
+        ["G0 X0 Y0", "G17 G3 X20 Y-20 I20 J0 F100", "M2"],
+        "{}",
+        made.text
+    );
 }
 
 /// A line that leaves an axis out behind a tool change is found: the machine stands elsewhere there.

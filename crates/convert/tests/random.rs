@@ -3,7 +3,9 @@
 mod support;
 
 use bahn_convert::Language;
+use bahn_interpreter::Settings;
 use bahn_parameters::ControlModel;
+use bahn_path::Axis;
 use bahn_program::{CycleWord, Operation, Program};
 use proptest::prelude::*;
 use support::*;
@@ -124,6 +126,54 @@ fn operations(program: &Program) -> Vec<Operation> {
         .collect()
 }
 
+/// Blocks that go to places of the machine, and what stands between those: tools, datum shifts, stops.
+fn machine_blocks() -> impl Strategy<Value = String> {
+    let axis = || prop::sample::select(vec!["X", "Y", "Z", "IX", "IZ", "C"]);
+    let place = || prop::sample::select(vec!["M91", "M92"]);
+    prop_oneof![
+        3 => place().prop_map(|place| format!("L Z-10 R0 FMAX {place}")),
+        3 => (axis(), -200_i32..200, place()).prop_map(|(axis, to, place)| format!("L {axis}{to:+} R0 FMAX {place}")),
+        3 => (axis(), -50_i32..100).prop_map(|(axis, to)| format!("L {axis}{to:+} R0 F300")),
+        2 => (1_u32..4, prop::sample::select(vec!["Z", "Z", "Z", "X"]), 0_u32..2)
+            .prop_map(|(tool, axis, speed)| format!("TOOL CALL {tool} {axis} S{}", 500 * speed)),
+        1 => prop::sample::select(vec!["M6", "STOP", "M0", "M1", "L Z+100 R0 FMAX M6"]).prop_map(str::to_owned),
+        1 => (-60_i32..60).prop_map(|z| format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 Z{z:+}\nCYCL DEF 7.2 X+5")),
+        1 => (0_i32..90).prop_map(|angle| format!("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT{angle:+}")),
+        1 => Just("CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X".to_owned()),
+        1 => Just("CC X+20 Y+0\nL X+0 Y+0 R0 F100\nCP IPA+90 DR+ F100".to_owned()),
+        1 => Just("CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -9\nCYCL DEF 1.3 PECKG -4\n\
+                   CYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F80\nL Z+2 FMAX M99".to_owned()),
+    ]
+}
+
+/// Where the workpiece lies, where the tip stands behind a tool change, and where the axes stand before the start.
+fn machine_settings() -> impl Strategy<Value = Settings> {
+    let models = prop::sample::select(vec![
+        ControlModel::Tnc155,
+        ControlModel::Tnc360,
+        ControlModel::Tnc407,
+        ControlModel::Tnc415b,
+    ]);
+    let place = |z: f64| prop::sample::select(vec![f64::NAN, 0.0, z]);
+    (
+        models,
+        place(-300.0),
+        place(-80.0),
+        place(200.0),
+        place(40.0),
+        place(15.0),
+    )
+        .prop_map(|(model, zero_z, zero_x, change_z, start_z, start_y)| {
+            let mut settings = settings(model);
+            settings.rules.machine_zero[Axis::X] = zero_x;
+            settings.rules.machine_zero[Axis::Z] = zero_z;
+            settings.tool_change[Axis::Z] = change_z;
+            settings.start[Axis::Z] = start_z;
+            settings.start[Axis::Y] = start_y;
+            settings
+        })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
@@ -159,5 +209,26 @@ proptest! {
         let source = program(&format!("{HEAD}{}\n{TAIL}", parts.join("\n")), Language::Plain);
         let (made, proof) = gcode(&source, &settings(ControlModel::Tnc415b), &root());
         prop_assert!(proof.holds(), "{:?}\n{}", proof, made.text);
+    }
+
+    /// Places of the machine, tools with and without M06, shifts and lengths: in DIN/ISO, and as G-code.
+    #[test]
+    fn places_of_the_machine_stay_where_they_are(
+        parts in prop::collection::vec(machine_blocks(), 1..16),
+        settings in machine_settings(),
+        blank in any::<bool>(),
+        inches in any::<bool>(),
+    ) {
+        let unit = if inches { "INCH" } else { "MM" };
+        let blank = if blank { "BLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+100 Z+0\n" } else { "" };
+        let tools = "TOOL DEF 1 L+42 R+5\nTOOL DEF 2 L+6.5 R+3\nTOOL DEF 3 L+0 R+1\n";
+        let text = format!("BEGIN PGM A {unit}\n{blank}{tools}{}\nEND PGM A {unit}\n", parts.join("\n"));
+        let source = program(&text, Language::Plain);
+        let (made, found) = gcode(&source, &settings, &root());
+        prop_assert!(found.holds(), "{:?}\n{}\n{}", found, text, made.text);
+        let (made, iso) = converted(&source, Language::Iso);
+        prop_assert!(made.refused.is_empty(), "{:?}", made.refused);
+        let found = proof(&source, &iso, &settings, &root());
+        prop_assert!(found.holds(), "{:?}\n{}\n{}", found, text, made.text);
     }
 }

@@ -43,19 +43,26 @@ impl Program {
         let mut least: Option<FeedDoubt> = None;
         let mut greatest = None;
         for numbered in self.blocks() {
-            each_feed(&numbered.block.operation, &mut |feed| {
-                let feed_mm_min = feed * Unit::Inch.feed_mm_min(reading);
-                let found = Some(FeedDoubt {
-                    block: numbered.number,
-                    feed_mm_min,
-                });
-                if feed_mm_min > 0.0 && least.is_none_or(|least| feed_mm_min < least.feed_mm_min) {
-                    least = found;
-                }
-                let slower = |greatest: &FeedDoubt| feed_mm_min <= greatest.feed_mm_min;
-                if feed_mm_min > 0.0 && feed_mm_min < RAPID_MM_MIN && !greatest.as_ref().is_some_and(slower) {
-                    greatest = found;
-                }
+            // A block of DIN/ISO is a whole cycle, and may be more.
+            let parts = numbered.block.operation.parts().iter();
+            parts.for_each(|part| {
+                each_feed(part, &mut |feed| {
+                    let feed_mm_min = feed * Unit::Inch.feed_mm_min(reading);
+                    let found = Some(FeedDoubt {
+                        block: numbered.number,
+                        feed_mm_min,
+                    });
+                    if feed_mm_min > 0.0 && least.is_none_or(|least| feed_mm_min < least.feed_mm_min) {
+                        least = found;
+                    }
+                    let slower = |greatest: &FeedDoubt| feed_mm_min <= greatest.feed_mm_min;
+                    if feed_mm_min > 0.0
+                        && feed_mm_min < RAPID_MM_MIN
+                        && !greatest.as_ref().is_some_and(slower)
+                    {
+                        greatest = found;
+                    }
+                })
             });
         }
         match reading {
@@ -114,6 +121,14 @@ mod tests {
         assert_eq!((doubt(usual, Tenths), doubt(usual, Whole)), (None, None));
         let without = "L X+1 FMAX\nL X+2 FQ1";
         assert_eq!((doubt(without, Tenths), doubt(without, Whole)), (None, None));
+    }
+
+    /// P05 of G83 is the feed of its plunging, F4 of block 1.5: 10.16 mm/min in tenths, slower than 2500 in whole inches.
+    #[test]
+    fn feeds_of_cycles_in_din_iso_count() {
+        let text = "%A G70 *\nN10 G83 P01 -.1 P02 -1 P03 -.5 P04 0 P05 4 *\nN20 G01 G40 G90 X+1 F400 *\nN99 %A G70 *\n";
+        let program = Program::from_bytes("1.I", text.as_bytes().to_vec());
+        assert_eq!(program.feed_doubt(InchFeed::Whole), None);
     }
 
     #[test]

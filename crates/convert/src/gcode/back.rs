@@ -4,9 +4,10 @@
 //! on behind a stop or a function M100 to M199 may have moved it. What the control's path leaves out there, since the axis
 //! stands still, the text has to say.
 
-use bahn_path::{Axis, Curve, FeedRate, Position};
+use bahn_path::{Axis, AxisSet, Curve, FeedRate, Position};
 
 use super::line::Said;
+use crate::TOLERANCE_MM;
 
 /// Where the machine stands in the proof when it may stand anywhere, mm or degrees: for each axis somewhere else, and nowhere
 /// that a program goes. An axis that no line has brought anywhere stays unknown.
@@ -55,23 +56,25 @@ impl Stand {
         }
     }
 
-    /// The lines that bring every axis back for a way, and whether they are the way already.
+    /// The lines that bring every axis to where a way begins, where the text stands elsewhere, and where the way begins then.
     ///
     /// The tool axis comes last, down to where the way begins. A way that retracts it begins with that: the tool does not go
     /// back to where it was in the workpiece first.
-    pub fn back(&mut self, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, bool) {
-        if !std::mem::take(&mut self.away) {
-            return (Vec::new(), false);
-        }
+    pub fn back(&mut self, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, Position) {
         let [start, end] = way;
+        let mut lines = Vec::new();
+        let known = self.at.known();
+        let counted = self.counted_from(start, curve);
+        if !std::mem::take(&mut self.away) && counted == known && !self.is_left_behind(start) {
+            return (lines, *start);
+        }
         let tool = self.tool_axis;
         let moves = |axis: &Axis| end[*axis].is_finite() && start[*axis] != end[*axis];
         let alone = Axis::ALL.into_iter().filter(moves).all(|axis| axis == tool);
         let retracts =
             matches!(curve, Curve::Line) && end[tool] > start[tool] && (alone || feed == FeedRate::Rapid);
-        let others = |axis: &Axis| *axis != tool;
-        let only = |axis: &Axis| *axis == tool;
-        let mut lines = Vec::new();
+        let others = |axis: &Axis| counted.contains(*axis) && *axis != tool;
+        let only = |axis: &Axis| counted.contains(*axis) && *axis == tool;
         match retracts {
             true => {
                 self.line(end, &only, feed, &mut lines);
@@ -82,21 +85,37 @@ impl Stand {
                 self.line(start, &only, FeedRate::Rapid, &mut lines);
             }
         }
-        // An axis that the way brings to its first position is not brought back.
-        let whole = end
-            .known()
-            .iter()
-            .all(|axis| self.at[axis] == end[axis] || !moves(&axis));
-        (lines, retracts && whole)
+        let mut begins = *start;
+        for axis in self.at.known().iter().filter(|axis| start[*axis].is_finite()) {
+            begins[axis] = self.at[axis];
+        }
+        (lines, begins)
     }
 
-    /// A line of some axes, among those that stand somewhere.
+    /// The axes that the text must have brought to the begin of a way: those that it has brought anywhere, and those that an arc
+    /// counts its centre from.
+    fn counted_from(&self, start: &Position, curve: &Curve) -> AxisSet {
+        let mut counted = self.at.known();
+        if let Curve::Arc(arc) = curve {
+            let plane = [arc.plane.first, arc.plane.second];
+            let stands = plane.into_iter().filter(|axis| start[*axis].is_finite());
+            stands.for_each(|axis| counted.insert(axis));
+        }
+        counted
+    }
+
+    /// Whether the path goes on elsewhere than where the text stands: a tool call puts the tip of another tool there, and the
+    /// text may change the tool only later, at an M6.
+    fn is_left_behind(&self, start: &Position) -> bool {
+        let apart = |axis: Axis| (self.at[axis] - start[axis]).abs() > TOLERANCE_MM;
+        self.at.known().iter().any(apart)
+    }
+
+    /// A line of some axes.
     fn line(&mut self, to: &Position, of: &dyn Fn(&Axis) -> bool, feed: FeedRate, lines: &mut Vec<Said>) {
         let start = self.at;
-        for axis in self.at.known().iter().filter(of) {
-            if to[axis].is_finite() {
-                self.at[axis] = to[axis];
-            }
+        for axis in to.known().iter().filter(of) {
+            self.at[axis] = to[axis];
         }
         if self.at.known().iter().any(|axis| start[axis] != self.at[axis]) {
             lines.push(Said::Move {

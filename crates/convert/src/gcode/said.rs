@@ -244,13 +244,11 @@ impl Sayer {
                 feed = FeedRate::Programmed(self.rapid_mm_min);
             }
         }
-        let moves = Axis::ALL
-            .into_iter()
-            .any(|axis| end[axis].is_finite() && start[axis] != end[axis]);
-        if moves || matches!(curve, Curve::Arc(_)) {
-            if self.brought_back(element.block, [&start, &end], &curve, feed) {
-                return;
-            }
+        if !moves(&start, &end) && !matches!(curve, Curve::Arc(_)) {
+            return;
+        }
+        let start = self.brought_back(element.block, [&start, &end], &curve, feed);
+        if moves(&start, &end) || matches!(curve, Curve::Arc(_)) {
             let said = Said::Move {
                 curve,
                 start,
@@ -261,12 +259,18 @@ impl Sayer {
         }
     }
 
-    /// Brings the axes back for a way where they may stand elsewhere; whether that was the way already.
-    fn brought_back(&mut self, block: BlockRef, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> bool {
-        let (lines, whole) = self.stand.back(way, curve, feed);
+    /// Brings the axes back for a way where they stand elsewhere, and says where it begins then.
+    fn brought_back(
+        &mut self,
+        block: BlockRef,
+        way: [&Position; 2],
+        curve: &Curve,
+        feed: FeedRate,
+    ) -> Position {
+        let (lines, begins) = self.stand.back(way, curve, feed);
         lines.into_iter().for_each(|line| self.say(block, line));
         self.stand.goes(way[0], way[1]);
-        whole
+        begins
     }
 
     /// Both ways of a tap are one line; the spindle turns by the cycle alone.
@@ -302,11 +306,10 @@ impl Sayer {
                 returns: true,
             };
         }
-        // Both ways of a tap end where it began.
-        let ends = if thread.retracts { start } else { end };
         let begins = if thread.retracts { end } else { start };
         self.brought_back(element.block, [&begins, &begins], &Curve::Line, FeedRate::Rapid);
-        self.stand.goes(&begins, &ends);
+        // Both ways of a tap end where it began.
+        self.stand.goes(&begins, &end);
         self.say(element.block, Said::Spindle(order));
         self.say(element.block, said);
         self.say(element.block, Said::Spindle(SpindleOrder::Stop));
@@ -397,6 +400,13 @@ impl Sayer {
             ),
         }
     }
+}
+
+/// Whether an axis moves on a way.
+fn moves(start: &Position, end: &Position) -> bool {
+    Axis::ALL
+        .into_iter()
+        .any(|axis| end[axis].is_finite() && start[axis] != end[axis])
 }
 
 /// Why a movement to a place of the machine has no line.

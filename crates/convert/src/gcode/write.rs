@@ -151,7 +151,6 @@ impl Writer {
     }
 
     fn movement(&mut self, curve: &Curve, way: [&Position; 2], feed: FeedRate) -> String {
-        let end = way[1];
         let mut text = String::new();
         let arc = match curve {
             Curve::Arc(arc) => Some(arc),
@@ -180,7 +179,7 @@ impl Writer {
             self.centre(&mut text, arc);
         }
         if let FeedRate::Programmed(feed) = feed {
-            let unit = if turns_only(&self.at, end) {
+            let unit = if turns_only(&self.at, &self.behind(way)) {
                 1.0
             } else {
                 self.unit_mm
@@ -235,9 +234,16 @@ impl Writer {
     }
 
     fn goes_to(&mut self, way: [&Position; 2]) {
+        self.at = self.behind(way);
+    }
+
+    /// Where the text stands behind a way.
+    fn behind(&self, way: [&Position; 2]) -> Position {
+        let mut behind = self.at;
         for axis in self.written(way) {
-            self.at[axis] = way[1][axis];
+            behind[axis] = way[1][axis];
         }
+        behind
     }
 }
 
