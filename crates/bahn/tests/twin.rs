@@ -185,3 +185,22 @@ fn a_machine_of_two_channels_is_made_anew() {
         2
     );
 }
+
+/// The scripts of the twin hold wherever its axes stand at the start: the machine keeps its place when it is switched off,
+/// also in the middle of a program. What takes the drives away in rapid traverse is a matter of [000:6157], and of no script.
+#[test]
+fn the_scripts_hold_wherever_the_axes_stand() {
+    let folder = Folder::new();
+    support::copy(&twin(), &folder.path("twin"));
+    let run = |script: &str| folder.bahn(&format!("run --no-graphics --machine twin --script {script}"));
+    for left_at in ["6", "8.5", "11", "17"] {
+        for script in ["twin/scripts/emergency.txt", "twin/scripts/stop.txt"] {
+            folder.write("left.txt", format!("{left_at}: end\n"));
+            assert_eq!(run("left.txt").code(), 1, "the run is left at {left_at} s");
+            let done = run(script);
+            assert_eq!(done.code(), 0, "{script} behind {left_at} s: {}", done.err());
+            let again = run(script);
+            assert_eq!(again.code(), 0, "{script} again: {}", again.err());
+        }
+    }
+}
