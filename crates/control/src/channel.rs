@@ -460,8 +460,9 @@ impl Channel {
             return;
         }
         let mut axes = machine.axes.of(self.number);
-        let may = !self.run.progress().is_running() || self.handshakes.strobe_is_set();
+        let at_strobe = self.handshakes.lets_plc_move(self.desk.rules().axes_wait_at_m);
         let keys = now.axis_keys.iter().any(Option::is_some);
+        let may = !self.run.progress().is_running() || at_strobe;
         let free = may && !keys && !now.stop;
         let most = usize::from(machine.model.limits().plc_positioning_axes_max);
         let (nc, numbers) = (exchange.nc(), &machine.plc_parameters);
@@ -631,9 +632,7 @@ impl Channel {
                 let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
                 self.desk.switch_plane(on, list, &axes, chain)
             }
-            Command::MFunction(_) | Command::Speed(_) | Command::JogIncrement(_) | Command::Handwheel(..) => {
-                self.desk.enter(&command, &machine.axes.of(self.number))
-            }
+            ref entered if entered.is_by_hand() => self.desk.enter(&command, &machine.axes.of(self.number)),
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
             Command::AxisLimit(axis, range, limits) if !self.run.is_active() => {
                 let done = self

@@ -131,6 +131,9 @@ pub enum Command {
     WorkingPlane(bool),
     /// `handwheel AXIS FACTOR`: axis of the handwheel and its interpolation factor 0 to 10.
     Handwheel(Axis, u8),
+    /// `axis-key AXIS`: an axis key of the keyboard: the axis is highlighted (M2096 ff.), and with MP7640 = 2 it is that of
+    /// the handwheel, too [000:6425] [000:8139-8151].
+    AxisKey(Axis),
     /// `manual-operation`: axes may be moved while a run is interrupted (M2018).
     ManualOperation,
     /// `restore-position`: return to the contour with NC start (M2019).
@@ -195,6 +198,18 @@ impl Command {
                 | Command::Dnc(Dnc::Begin(_))
                 | Command::RestoreAt(_)
                 | Command::Q(..)
+        )
+    }
+
+    /// It is entered for moving by hand.
+    pub(crate) fn is_by_hand(&self) -> bool {
+        matches!(
+            self,
+            Command::MFunction(_)
+                | Command::Speed(_)
+                | Command::JogIncrement(_)
+                | Command::Handwheel(..)
+                | Command::AxisKey(_)
         )
     }
 
@@ -277,6 +292,10 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 number(name, rest, 0, 10).map(|factor| Command::Handwheel(axis, factor))
             }
+            "axis-key" => match axis(name, rest)? {
+                (axis, "") => Ok(Command::AxisKey(axis)),
+                _ => Err(CommandError::Wrong(format!("`{name}` takes an axis"))),
+            },
             "3d-rot" => switch(name, rest, "on").map(Command::WorkingPlane),
             "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
             "power" => switch(name, rest, "on").map(Command::Power),
@@ -453,6 +472,7 @@ impl fmt::Display for Command {
             Command::Output(None) => write!(f, "output ramp"),
             Command::WorkingPlane(on) => write!(f, "3d-rot {}", if *on { "on" } else { "off" }),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
+            Command::AxisKey(axis) => write!(f, "axis-key {axis}"),
             Command::Dnc(dnc) => write!(f, "dnc {dnc}"),
             Command::ManualOperation => write!(f, "manual-operation"),
             Command::RestorePosition => write!(f, "restore-position"),

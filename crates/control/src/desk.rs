@@ -211,6 +211,7 @@ impl Desk {
             Command::Speed(rpm) if by_hand => self.manual.enter(None, Some(*rpm)),
             Command::JogIncrement(mm) => self.manual.increment = *mm,
             Command::Handwheel(axis, factor) => return self.choose_handwheel(*axis, *factor, axes),
+            Command::AxisKey(axis) if by_hand => return self.highlight(*axis, axes),
             _ => return false,
         }
         true
@@ -258,6 +259,15 @@ impl Desk {
         let (handwheel, rules) = (&mut self.manual.handwheel, &self.rules.handwheel);
         axes.at(axis)
             .is_some_and(|unit| handwheel.choose(unit.index, factor, rules))
+    }
+
+    /// An axis key of the keyboard highlights its axis.
+    fn highlight(&mut self, axis: Axis, axes: &OwnAxes) -> bool {
+        let index = axes.at(axis).map(|unit| unit.index);
+        index.is_some_and(|index| {
+            self.manual.highlight(index, &self.rules.handwheel);
+            true
+        })
     }
 
     /// Switches 3D ROT on or off.
@@ -315,6 +325,9 @@ impl Desk {
             marker_codes::INHIBITED_KEY.put(code.into(), exchange);
             exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);
         } else {
+            if let Some(index) = key.axis().filter(|_| self.is_by_hand()) {
+                self.manual.highlight(index, &self.rules.handwheel);
+            }
             self.key = Some(key);
         }
         true

@@ -223,9 +223,16 @@ impl Handshakes {
         self.active.is_none() && self.queue.is_empty()
     }
 
-    /// A strobe of M, S, T, G or Q is set: the PLC may position axes and write Q parameters.
+    /// A strobe of M, S, T, G or Q is set: the PLC may write Q parameters.
     pub fn strobe_is_set(&self) -> bool {
         self.active.is_some()
+    }
+
+    /// A strobe of M, S, T, G or Q is set: the PLC may position axes and correct the datum, but not during an M function at
+    /// which the axes may go on, those that do not wait [000:7255].
+    pub fn lets_plc_move(&self, axes_wait_at_m: bool) -> bool {
+        self.active
+            .is_some_and(|transfer| axes_wait_at_m || !matches!(transfer, Transfer::M(_)))
     }
 
     /// Goes on by one control cycle; the transfer that was acknowledged in it. Its strobe is reset only

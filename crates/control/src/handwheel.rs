@@ -51,6 +51,8 @@ pub(crate) struct Handwheel {
     travels: PerPlcAxis<f64>,
     /// The key for actual position capture was pressed.
     captures: bool,
+    /// An axis key that highlights its axis was pressed.
+    highlight: Option<usize>,
 }
 
 /// One wheel.
@@ -73,6 +75,7 @@ impl Default for Handwheel {
             missing: false,
             travels: PerPlcAxis::splat(0.0),
             captures: false,
+            highlight: None,
         }
     }
 }
@@ -149,7 +152,20 @@ impl Handwheel {
             return false;
         }
         (*own, self.axis) = (factor, index);
+        self.highlight = Some(index).filter(|_| shares_highlight(rules));
         true
+    }
+
+    /// The highlight goes to an axis: with MP7640 = 2 the handwheel, too [000:8139-8151].
+    pub fn go_with_highlight(&mut self, index: usize, rules: &HandwheelParameters) {
+        if shares_highlight(rules) {
+            self.axis = index;
+        }
+    }
+
+    /// The axis that the highlight follows the handwheel to: MP7640 = 2 and an axis key of it was pressed.
+    pub fn take_highlight(&mut self) -> Option<usize> {
+        self.highlight.take()
     }
 
     /// Module 9036: factors and axis.
@@ -188,6 +204,7 @@ impl Handwheel {
             && axes.with_index(index).is_some()
         {
             self.axis = index;
+            self.highlight = Some(index).filter(|_| shares_highlight(rules));
         }
         if is_hr410_of_the_nc(rules)
             && let Some(speed) = SPEED_KEYS.iter().position(pressed)
@@ -357,6 +374,12 @@ fn axis_keys_are_of_the_nc(rules: &HandwheelParameters) -> bool {
         Kind::Hr332 | Kind::Hr410 => rules.initialization[0] == 0,
         _ => false,
     }
+}
+
+/// Axis keys of the keyboard and of the handwheel move highlight and symbol together: HR 130, or HR 330 with MP7640 = 2
+/// [000:8139-8151].
+fn shares_highlight(rules: &HandwheelParameters) -> bool {
+    rules.kind == Kind::Hr130
 }
 
 fn is_hr410_of_the_nc(rules: &HandwheelParameters) -> bool {

@@ -45,6 +45,12 @@ impl KeyCode {
         (kind == ALPHABETIC && character.is_ascii_graphic()).then_some(KeyCode::Character(character))
     }
 
+    /// Index of the axis whose key of the keyboard it is: X, Y and Z; those of IV and V are in the lost tables [000:7446-7535].
+    pub(crate) fn axis(self) -> Option<usize> {
+        const X_Y_Z: [u16; 3] = [109, 108, 107];
+        X_Y_Z.iter().position(|code| self == KeyCode::Key(*code))
+    }
+
     /// Its code; that of an unknown soft key is 0.
     pub fn code(self) -> u16 {
         match self {

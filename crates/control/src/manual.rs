@@ -2,6 +2,7 @@
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
+use bahn_parameters::operation::HandwheelParameters;
 use bahn_parameters::technology::Technology;
 use bahn_parameters::{ControlModel, PerPlcAxis};
 use bahn_plc::JogLimit;
@@ -73,6 +74,13 @@ impl Manual {
         self.handwheel.stop();
     }
 
+    /// An axis key of the keyboard highlights its axis. With a handwheel that shares the highlight its symbol goes with it
+    /// [000:8139-8151].
+    pub fn highlight(&mut self, index: usize, rules: &HandwheelParameters) {
+        self.last_key = index;
+        self.handwheel.go_with_highlight(index, rules);
+    }
+
     /// Index of the axis key that was pressed last.
     pub fn last_key(&self) -> usize {
         self.last_key
@@ -138,6 +146,7 @@ impl Manual {
             self.stop();
         }
         self.handwheel.look(handwheel, reach);
+        self.last_key = self.handwheel.take_highlight().unwrap_or(self.last_key);
         let keys = self.keys(reach, now);
         let leans = self.leans && !now.mode.is_automatic();
         if leans {

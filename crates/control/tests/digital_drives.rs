@@ -154,3 +154,32 @@ fn direction_keys_put_out_a_step() {
         "the mill has no such axis"
     );
 }
+
+/// MP1050 is inactive for axes with digital speed control [000:18360-18362]: with another one they move as before, to the bit.
+#[test]
+fn mp1050_is_inactive() {
+    let positions = |volts: f64| {
+        let mut build = dig425().program("1.H", "TOOL CALL 1 Z S800\nL X+40 Y+20 R0 FMAX\nL X+0 F3000");
+        for axis in 0..3 {
+            build = build.mp(&format!("1050.{axis}={volts}"));
+        }
+        let mut rig = build.rig();
+        rig.power_on();
+        for axis in ["X", "Y", "Z"] {
+            rig.command(&format!("datum {axis} 0"));
+        }
+        rig.command("mode full");
+        rig.command("select 1.H");
+        rig.start();
+        let mut positions = Vec::new();
+        for _ in 0..1000 {
+            rig.cycle();
+            positions.push(['X', 'Y', 'Z'].map(|letter| rig.table(letter)));
+        }
+        positions
+    };
+    let (nine, other) = (positions(9.0), positions(1.5));
+    assert_ne!(nine.first(), nine.last(), "the axes move");
+    let differs = nine.iter().zip(&other).position(|(a, b)| a != b);
+    assert_eq!(differs.map(|cycle| (cycle, nine[cycle], other[cycle])), None);
+}

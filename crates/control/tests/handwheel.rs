@@ -143,6 +143,43 @@ fn kind(parameters: &str) -> Rig {
     rig
 }
 
+/// The highlighted axis, M2096 ff., and the one that the wheel leads.
+fn highlight_and_symbol(rig: &mut Rig) -> [usize; 2] {
+    rig.scan();
+    let last = ["M2096", "M2097", "M2098"].map(|marker| rig.bit(marker));
+    assert_eq!(last.iter().filter(|on| **on).count(), 1, "{last:?}");
+    let highlight = last.iter().position(|on| *on).unwrap();
+    [highlight, rig.control.first().handwheel().0]
+}
+
+/// Axis keys of the keyboard move the highlight (M2096 ff.), those of the handwheel its symbol; with MP7640 = 2 either moves
+/// both [000:6425] [000:6459-6464] [000:8139-8157]. Key 108 is Y, 107 Z [000:7500-7535].
+#[test]
+fn axis_keys_of_keyboard_and_handwheel() {
+    for (kind_of, by_keyboard, by_wheel) in [(1, [1, 0], [1, 2]), (2, [1, 1], [2, 2]), (3, [1, 0], [1, 2])] {
+        let mut rig = kind(&format!("7640={kind_of}"));
+        assert_eq!(highlight_and_symbol(&mut rig), [0, 0]);
+        rig.command("key 108");
+        assert_eq!(highlight_and_symbol(&mut rig), by_keyboard, "MP7640 = {kind_of}");
+        rig.event("handwheel key Z tap");
+        rig.seconds(0.1);
+        assert_eq!(highlight_and_symbol(&mut rig), by_wheel, "MP7640 = {kind_of}");
+        rig.command("axis-key X");
+        assert_eq!(highlight_and_symbol(&mut rig)[0], 0);
+    }
+    // In a program run it highlights nothing.
+    let mut rig = kind("7640=2");
+    rig.command("mode full");
+    rig.command("key 107");
+    assert_eq!(highlight_and_symbol(&mut rig), [0, 0]);
+    // An inhibited key only tells the PLC.
+    rig.command("mode manual");
+    rig.command("M2904=1");
+    rig.command("key 108");
+    assert_eq!(highlight_and_symbol(&mut rig), [0, 0]);
+    assert!(rig.bit("M2182"));
+}
+
 /// MP7640 and MP7645.0 say which keys are inputs of the PLC [000:8153-8186] [000:8257-8302].
 #[test]
 fn keys_go_where_mp7640_says() {

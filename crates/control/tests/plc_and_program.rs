@@ -200,6 +200,54 @@ fn datum_correction() {
     }
 }
 
+/// MP7440 bit 2: the axes do not wait for an M function, so that the PLC may neither correct the datum nor position an axis
+/// while it is output [000:7255]. The path goes on as it is programmed, without GROSS POSITIONING ERROR C; the corrections come
+/// to nothing, and the position is taken when the program has ended.
+#[test]
+fn nothing_moves_beside_a_path_that_does_not_wait() {
+    let plc = m_functions(
+        "
+       L     M2045
+       AN    M0
+       = M1
+       L     M2045
+       = M0
+       L     M1
+       IFT
+         L     K+200000
+         = D528
+         L     K+0
+         = D532
+         = D536
+       ENDI
+       L     M1
+       S     M2716
+       L     M2045
+       AN    M2716
+       = M2482
+",
+    );
+    let program = "L X+60 R0 F6000 M20\nL X+100 M21\nL X+50 Y+70";
+    let mut rig = ready(bench(&plc).mp("7440=%00111").program("1.H", program));
+    rig.start();
+    rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+    near(display(&rig, 'X'), 50.0);
+    near(display(&rig, 'Y'), 70.0);
+    assert_eq!(rig.messages(), [""; 0]);
+
+    let moves = plc_moves_z();
+    let program = "L X+60 R0 F6000 M70\nL X+70\nL Z+40";
+    let mut rig = ready(bench(&moves).mp("7440=%00111").program("1.H", program));
+    let z = rig.machine_position('Z');
+    rig.start();
+    rig.until(3.0, "M70", |rig| rig.bit("M2706"));
+    rig.until(3.0, "X+60", |rig| {
+        near(rig.machine_position('Z'), z);
+        nominal(rig, 'X') >= 60.0
+    });
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
 /// An M function lets the PLC take Z to a position from the machine datum (D536, W564); after it the program goes on
 /// from there without a jump, and axes that it does not name stay [000:4005-4088].
 #[test]

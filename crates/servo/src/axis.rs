@@ -388,12 +388,8 @@ impl Axis {
     /// Whether the actual position is within the window; with pre-control only when the axis itself is slower than
     /// MP1525 [000:813] [000:5304-5318].
     fn is_in_window(&self) -> bool {
-        let slow = self.actual_mm_min.abs()
-            < self
-                .parameters
-                .precontrol
-                .window_mm_min
-                .max(self.fixed.standing_mm_min);
+        let standing = self.fixed.standing_mm_min;
+        let slow = self.actual_mm_min.abs() < self.parameters.precontrol.window_mm_min.max(standing);
         let window = self.window_mm.unwrap_or(self.parameters.monitoring.window_mm);
         (slow || self.method == Method::Lag) && self.lag_mm().abs() <= window
     }
@@ -490,15 +486,18 @@ impl Axis {
             ),
             Method::Precontrol => Characteristic::straight(choose(precontrol.kv, precontrol.kv_m105)),
         };
-        let (volts, rapid) = (
-            self.parameters.output.rapid_volts,
-            self.parameters.motion.rapid_mm_min,
-        );
+        let rapid = self.parameters.motion.rapid_mm_min;
+        let volts = self.parameters.output.rapid_volts;
         let seen = self.measuring.step_mm().abs() / self.timing.contour_min();
+        // A digital drive is not told a voltage: MP1050 is inactive [000:18360-18362].
+        let resolved = match self.parameters.digital {
+            Some(_) => 0.0,
+            None => self.timing.resolution_volts() * (rapid / volts),
+        };
         self.fixed = Fixed {
             volts_per_mm_min: volts / rapid,
             decay: (1.0 - self.characteristic.slope() * self.timing.step_min()).max(0.0),
-            standing_mm_min: STANDING_STEPS * seen.max(self.timing.resolution_volts() * (rapid / volts)),
+            standing_mm_min: STANDING_STEPS * seen.max(resolved),
         };
         self.changed = true;
     }

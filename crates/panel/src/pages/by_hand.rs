@@ -16,17 +16,25 @@ const JOG_MAX: f64 = 50.0;
 /// Axes are moved by hand.
 pub(crate) struct ByHand;
 
+/// An axis key highlights its axis, which the PLC sees [000:6425], and asks for its datum.
+fn axis(place: usize, site: &mut Site) -> Turn {
+    if let Some(axis) = site.axis_of_key(place) {
+        site.command(Command::AxisKey(axis));
+    }
+    datum::ask(place, site)
+}
+
 impl Page for ByHand {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if site.mode() == Mode::Reference {
             return Turn::Refused;
         }
         match key {
-            Key::X => datum::ask(0, site),
-            Key::Y => datum::ask(1, site),
-            Key::Z => datum::ask(2, site),
-            Key::Iv => datum::ask(3, site),
-            Key::V => datum::ask(4, site),
+            Key::X => axis(0, site),
+            Key::Y => axis(1, site),
+            Key::Z => axis(2, site),
+            Key::Iv => axis(3, site),
+            Key::V => axis(4, site),
             Key::M => self.soft_key(0, 0, site),
             Key::S | Key::ToolCall => self.soft_key(0, 1, site),
             Key::TouchProbe => probe::menu(),
