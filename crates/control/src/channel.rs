@@ -233,6 +233,15 @@ impl Channel {
         self.run.probe.watch(measured, axes(), &self.datums.chain);
     }
 
+    /// The loops are open: neither NC start nor what is turned at the handwheel moves anything when they close.
+    pub fn forget_input(&mut self, measured: &Measured) {
+        self.desk.forget_start();
+        self.desk
+            .manual
+            .handwheel
+            .forget_turns(&measured.operator.handwheel);
+    }
+
     /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the
     /// operating mode waits for axes to come to a standstill.
     pub fn move_axes(&mut self, machine: &mut MachineSide, measured: &Measured) {
@@ -359,11 +368,6 @@ impl Channel {
             self.positioning.move_plc_axes(&mut axes, statuses, now);
         }
         self.positioning.move_rotation(&mut axes, exchange.nc(), now);
-    }
-
-    /// The loops are closed, but nothing is moved: NC start is not kept.
-    pub fn forget_start(&mut self) {
-        self.desk.forget_start();
     }
 
     /// Without a run axes that stand count within one turn, and nothing is left to go back to.

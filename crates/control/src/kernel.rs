@@ -282,7 +282,7 @@ impl Kernel {
         } else {
             machine.axes.pass();
             for channel in self.channels.iter_mut() {
-                channel.forget_start();
+                channel.forget_input(&self.seam.measured);
             }
         }
         for channel in self.channels.iter_mut() {

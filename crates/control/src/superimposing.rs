@@ -45,6 +45,11 @@ impl Superimposed {
         self.ramps[axis].position()
     }
 
+    /// How far it may be led to either side of the path, mm or degrees.
+    pub fn range(&self, axis: Axis) -> f64 {
+        self.range[axis]
+    }
+
     /// By how much that changed in this cycle.
     pub fn way(&self, axis: Axis) -> f64 {
         self.ways[axis]
@@ -71,8 +76,9 @@ impl Superimposed {
         PerAxis::from_fn(|axis| axes[axis] + sign * self.of(axis)).into()
     }
 
-    /// Follows the wheels for a cycle, unless the path `holds` it. An axis without loop or feed enable stands at once,
-    /// and what is turned meanwhile moves nothing later; none is led out of its traverse range.
+    /// Follows the wheels for a cycle, unless the path `holds` it. An axis without loop or feed enable stands at once, one that
+    /// was taken over beside its path goes back to that first, and what is turned meanwhile moves nothing later; none is led
+    /// out of its traverse range.
     pub fn follow<'a>(&mut self, axes: impl Iterator<Item = &'a AxisUnit>, now: &Now, holds: bool) {
         if !self.on {
             return;
@@ -82,7 +88,7 @@ impl Superimposed {
         for unit in axes.filter(|unit| unit.is_free()) {
             let axis = unit.axis;
             let ramp = &mut self.ramps[axis];
-            if !(unit.enabled && unit.servo.closed()) {
+            if !(unit.enabled && unit.servo.closed() && unit.left_at.is_none()) {
                 *ramp = PointToPoint::new(ramp.position());
                 self.target[axis] = ramp.position();
                 on |= ramp.position() != 0.0;

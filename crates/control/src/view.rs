@@ -4,7 +4,7 @@ use bahn_interpreter::Interpreter;
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Frame, PathElement, Position};
 
-use crate::axes::path_positions;
+use crate::axes::machine_position;
 use crate::channel::Channel;
 use crate::command::Mode;
 use crate::drip_feed::{DripFeed, DripFeedState};
@@ -251,13 +251,15 @@ impl<'a> ChannelView<'a> {
 
     /// The axes that it has now, as the kernel moves them.
     pub fn watch(&self) -> impl Iterator<Item = AxisWatch> + use<'a> {
-        self.machine.axes.owned(self.channel.number()).map(AxisWatch::of)
+        let superimposed = &self.channel.chain().superimposed;
+        let axes = self.machine.axes.owned(self.channel.number());
+        axes.map(|unit| AxisWatch::of(unit, superimposed))
     }
 
-    /// Where its axes are commanded to be, in the coordinates of its path.
+    /// Where its axes are commanded to be, in the coordinates of its path: without what the handwheel adds to it (M118).
     pub fn commanded(&self) -> Position {
-        let [_, commanded] = path_positions(self.machine.axes.owned(self.number()), self.channel.chain());
-        commanded
+        let axes = machine_position(self.machine.axes.owned(self.number()));
+        self.channel.chain().to_path(&axes)
     }
 
     /// The spindle leads the path: a thread is being cut.

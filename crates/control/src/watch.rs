@@ -4,6 +4,7 @@ use bahn_parameters::fault::FaultId;
 use bahn_path::Axis;
 
 use crate::axis::{AxisId, AxisUnit, Mover};
+use crate::superimposing::Superimposed;
 
 /// An axis as the kernel moves it; positions in machine coordinates, mm or degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +27,10 @@ pub struct AxisWatch {
     pub lag: f64,
     /// Nominal value, V.
     pub volts: f64,
+    /// What the handwheel adds to its path (M118), and how far it may to either side, mm or degrees.
+    pub superimposed: f64,
+    /// See `superimposed`.
+    pub superimposable: f64,
     /// The loop is closed.
     pub closed: bool,
     /// The feed is enabled.
@@ -58,7 +63,7 @@ pub struct AxisWatch {
 }
 
 impl AxisWatch {
-    pub(crate) fn of(unit: &AxisUnit) -> AxisWatch {
+    pub(crate) fn of(unit: &AxisUnit, superimposed: &Superimposed) -> AxisWatch {
         let parameters = &unit.parameters;
         let (lag, precontrol) = (&parameters.lag, &parameters.precontrol);
         AxisWatch {
@@ -71,6 +76,8 @@ impl AxisWatch {
             actual: unit.servo.actual_mm(),
             lag: unit.servo.lag_mm(),
             volts: unit.servo.volts(),
+            superimposed: superimposed.of(unit.axis),
+            superimposable: superimposed.range(unit.axis),
             closed: unit.servo.closed(),
             enabled: unit.enabled,
             halted: unit.halted,

@@ -123,6 +123,24 @@ fn the_wheel_without_feed_enable() {
     close(turn(&mut rig, 'X', 0.0), 0.0, 0.001);
 }
 
+/// What is turned while the loops are open moves nothing when they close.
+#[test]
+fn the_wheel_in_an_emergency_stop() {
+    let mut rig = wheel("");
+    rig.event("emergency press");
+    rig.seconds(0.5);
+    let from = rig.table('X');
+    rig.event(&format!("handwheel {HANDWHEEL_STEPS}"));
+    rig.seconds(0.5);
+    rig.event("emergency release");
+    rig.seconds(0.3);
+    rig.command("ce");
+    rig.until(2.0, "the loops are closed", |rig| rig.bit("M2000"));
+    rig.seconds(1.0);
+    close(rig.table('X') - from, 0.0, 0.01);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
 /// The inputs I160 to I175 that are set, by their numbers.
 fn inputs(rig: &mut Rig) -> Vec<u16> {
     rig.seconds(0.1);

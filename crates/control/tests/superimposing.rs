@@ -228,3 +228,33 @@ fn measuring_under_m118_is_refused() {
     assert_eq!(messages, [""; 0]);
     assert_eq!(state, RunState::Running);
 }
+
+/// EMERGENCY STOP while the wheel leads Z by 1 mm: what is turned while the loops are open, and until NC start has led the axes
+/// back, adds nothing; then the wheel leads on from 1 mm, and the path ends where it is to.
+#[test]
+fn the_wheel_in_an_emergency_stop_moves_nothing_later() {
+    let mut rig = wheel("L IX+20 R0 F600 M118 Z2\nL IX+20");
+    let [x, z] = ['X', 'Z'].map(|axis| rig.axis(axis).nominal);
+    rig.start();
+    rig.seconds(0.3);
+    turn(&mut rig, 1.0, 0.5);
+    rig.event("emergency press");
+    rig.seconds(0.5);
+    turn(&mut rig, 0.5, 0.3);
+    rig.event("emergency release");
+    rig.seconds(0.3);
+    rig.command("ce");
+    rig.until(2.0, "the loops are closed", |rig| rig.bit("M2000"));
+    rig.seconds(0.3);
+    turn(&mut rig, -0.7, 0.5);
+    close(rig.table('Z') - z, 1.0, 0.01);
+    rig.start();
+    rig.seconds(1.0);
+    close(rig.axis('Z').nominal - z, 1.0, 1e-9);
+    turn(&mut rig, 0.5, 0.5);
+    close(rig.axis('Z').nominal - z, 1.5, 1e-9);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    close(rig.axis('X').nominal - x, 40.0, 1e-9);
+    close(rig.axis('Z').nominal - z, 1.5, 1e-9);
+    assert_eq!(rig.messages(), [""; 0]);
+}

@@ -230,6 +230,26 @@ fn a_seed_without_events_keeps_every_rule() {
     }
 }
 
+/// The operator turns the handwheel where a program lets him lead an axis beside its path (M118), and nowhere else: neither path nor
+/// wheel accelerates more than alone, and no limit is passed.
+#[test]
+fn the_handwheel_turns_under_m118() {
+    let turns = |plan: &Plan| {
+        let mut happenings = plan.happenings.iter();
+        happenings.any(|happening| happening.what.starts_with("handwheel"))
+    };
+    let campaign = of_programs(support::machine("mill"), &["CIRCLE.H", "KNOB.H"]);
+    let mut worker = campaign.worker().unwrap();
+    let knob = campaign.programs().iter().position(|name| name == "KNOB.H");
+    let plans: Vec<Plan> = (0..500).map(|seed| worker.plan(seed)).filter(turns).collect();
+    assert!(plans.iter().all(|plan| Some(plan.program) == knob));
+    assert!(plans.len() > 50, "{}", plans.len());
+    for plan in plans {
+        let violation = worker.run(&plan).violation;
+        assert_eq!(violation, None, "seed {}: {plan:#?}", plan.seed);
+    }
+}
+
 /// The voltage goes while the pallet shuttle passes its marks at power-on, and the shuttle is elsewhere than undisturbed when
 /// the model is digitized. An axis of the PLC is none that a probe leads.
 #[test]

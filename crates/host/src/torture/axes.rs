@@ -25,6 +25,8 @@ struct Before {
     beyond: bool,
     /// Its loop has been open for so long, s.
     open_s: f64,
+    /// Speed that the handwheel adds to its path (M118), mm/s.
+    wheel_mm_s: f64,
     /// Speed on the way back behind a feed enable, mm/s; not known in its first cycle.
     back_mm_s: Option<f64>,
 }
@@ -96,15 +98,17 @@ impl Axes {
         let place = self.before.iter().position(|before| before.watch.id == watch.id);
         let before = place.and_then(|place| self.before.get(place)).copied();
         let corner = self.corners.get(channel).copied().unwrap_or(true);
+        let led = |before: &Before| (watch.superimposed - before.watch.superimposed) / moment.cycle_s;
         let judge = Judge {
             watch: &watch,
+            wheel_mm_s: before.as_ref().map_or(0.0, led),
             moment,
         };
         judge.numbers()?;
         judge.speed()?;
         if let Some(before) = before.filter(|before| before.channel == channel) {
             judge.travel(&before.watch)?;
-            judge.acceleration(&before.watch, corner)?;
+            judge.acceleration(&before, corner)?;
             judge.reaction(&before.watch)?;
             judge.way_back(&before)?;
             judge.enable(&before)?;
@@ -113,6 +117,7 @@ impl Axes {
         let now = Before {
             watch,
             channel,
+            wheel_mm_s: judge.wheel_mm_s,
             back_mm_s: before
                 .filter(|before| before.watch.beside != 0.0 && watch.beside != 0.0)
                 .filter(|before| !before.watch.halted && !watch.halted)
@@ -190,6 +195,8 @@ impl Braking {
 /// An axis in a cycle.
 struct Judge<'a> {
     watch: &'a AxisWatch,
+    /// Speed that the handwheel adds to its path (M118), mm/s.
+    wheel_mm_s: f64,
     moment: &'a Moment,
 }
 
@@ -252,8 +259,8 @@ impl Judge<'_> {
         Ok(())
     }
 
-    fn acceleration(&self, before: &AxisWatch, corner: bool) -> Result<(), Violation> {
-        let (watch, cycle_s) = (self.watch, self.moment.cycle_s);
+    fn acceleration(&self, last: &Before, corner: bool) -> Result<(), Violation> {
+        let (watch, before, cycle_s) = (self.watch, &last.watch, self.moment.cycle_s);
         // It stands at once without enable or loop, where it was taken over from its actual position, and where
         // another one moves it.
         let held = watch.closed && before.closed && !watch.halted && !before.halted;
@@ -263,15 +270,25 @@ impl Judge<'_> {
         }
         // MP1070 is no greater than MP1060.
         let bound = watch.acceleration_mm_s2 * std::f64::consts::SQRT_2;
-        let step = (watch.speed_mm_s - before.speed_mm_s).abs();
+        let now = watch.speed_mm_s - self.wheel_mm_s;
+        let was = before.speed_mm_s - last.wheel_mm_s;
+        let step = (now - was).abs();
         let most = bound * if corner { cycle_s + CORNER_S } else { cycle_s };
         if step > most * (1.0 + 1e-3) + 1e-4 {
             let values = format!(
-                "{:.4} mm/s behind {:.4}: {:.1} mm/s², at most {:.1}",
-                watch.speed_mm_s,
-                before.speed_mm_s,
+                "{now:.4} mm/s behind {was:.4}: {:.1} mm/s², at most {:.1}",
                 step / cycle_s,
                 most / cycle_s
+            );
+            return self.breaks(Rule::Acceleration, values);
+        }
+        // The handwheel has a ramp of its own, whose mean speeds in two cycles differ by no more than that of their ends.
+        let step = (self.wheel_mm_s - last.wheel_mm_s).abs();
+        let most = watch.acceleration_mm_s2 * cycle_s;
+        if step > most * (1.0 + 1e-3) + 1e-4 {
+            let values = format!(
+                "led by the handwheel at {:.4} mm/s behind {:.4}, at most {most:.4} more",
+                self.wheel_mm_s, last.wheel_mm_s
             );
             return self.breaks(Rule::Acceleration, values);
         }

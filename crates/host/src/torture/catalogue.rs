@@ -1,6 +1,8 @@
 //! What can happen to a machine: everything that it has, from its description.
 
+use bahn_control::HANDWHEEL_STEPS;
 use bahn_machine::Machine;
+use bahn_path::Axis;
 
 use super::dice::Dice;
 use crate::LoadedMachine;
@@ -43,6 +45,26 @@ pub(super) struct Mishap {
     pub kind: Kind,
     pub what: String,
     pub undone_by: Option<String>,
+}
+
+/// What the handwheel does beside the path of a program that lets it lead these axes so far, mm or degrees (M118): some steps, as
+/// far as it may be led, and much farther.
+pub(super) fn turns(wheels: impl Iterator<Item = (Axis, f64)>) -> Vec<Mishap> {
+    let mut turns = Vec::new();
+    for (axis, range) in wheels {
+        for ways in [0.1, 1.0, 5.0] {
+            // With factor 0 a turn is 20 mm.
+            let steps = (range * ways / 20.0 * HANDWHEEL_STEPS).round();
+            for (turned, back) in [(steps, -steps), (-steps, steps)] {
+                turns.push(Mishap {
+                    kind: Kind::Use,
+                    what: format!("handwheel {} 0, handwheel {turned:+}", axis.letter()),
+                    undone_by: Some(format!("handwheel {back:+}")),
+                });
+            }
+        }
+    }
+    turns
 }
 
 /// Everything that can happen to a machine.

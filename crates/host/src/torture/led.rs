@@ -31,12 +31,25 @@ struct Stretch {
 }
 
 /// What leads the path of a channel in its undisturbed run.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Led {
     stretches: HashMap<BlockRef, Stretch>,
     /// How fast the axes of a thread are at most, mm/s.
     threads: HashMap<BlockRef, PerAxis<f64>>,
     open: Option<BlockRef>,
+    /// Axes that the handwheel may lead beside the path (M118), and how far, mm or degrees.
+    wheels: PerAxis<f64>,
+}
+
+impl Default for Led {
+    fn default() -> Led {
+        Led {
+            stretches: HashMap::new(),
+            threads: HashMap::new(),
+            open: None,
+            wheels: PerAxis::splat(0.0),
+        }
+    }
 }
 
 impl Led {
@@ -45,6 +58,9 @@ impl Led {
         let Some(element) = channel.element() else {
             return;
         };
+        for watch in channel.watch() {
+            self.wheels[watch.axis] = self.wheels[watch.axis].max(watch.superimposable);
+        }
         let block = element.block;
         if element.thread().is_some() {
             let fastest = self.threads.entry(block);
@@ -71,6 +87,12 @@ impl Led {
             }
             self.open = None;
         }
+    }
+
+    /// Axes that the handwheel may lead beside the path, and how far, mm or degrees.
+    pub fn wheels(&self) -> impl Iterator<Item = (Axis, f64)> + use<'_> {
+        let all = Axis::ALL.into_iter().map(|axis| (axis, self.wheels[axis]));
+        all.filter(|(_, range)| *range > 0.0)
     }
 
     /// How fast the axes are in a block that is led, mm/s.

@@ -33,7 +33,7 @@ use crate::machine_folder::LoadedMachine;
 use crate::{FileFault, HostError};
 use bench::Bench;
 use catalogue::Catalogue;
-use plan::Choice;
+use plan::{Choice, Scene};
 
 /// A machine that is tried, and its programs.
 pub struct Campaign {
@@ -104,10 +104,9 @@ impl Campaign {
             .iter()
             .map(|program| Bench::new(&self.machine, program));
         let benches: Vec<Bench> = benches.collect::<Result<_, _>>()?;
-        let times = |bench: &Bench| bench.moments.iter().map(|moment| moment.time_us()).collect();
         Ok(Worker {
             campaign: self,
-            moments: benches.iter().map(times).collect(),
+            scenes: benches.iter().map(Scene::of).collect(),
             benches,
         })
     }
@@ -140,7 +139,7 @@ impl Campaign {
 pub struct Worker<'a> {
     campaign: &'a Campaign,
     benches: Vec<Bench>,
-    moments: Vec<Vec<u64>>,
+    scenes: Vec<Scene>,
 }
 
 impl Worker<'_> {
@@ -148,7 +147,7 @@ impl Worker<'_> {
     pub fn plan(&self, seed: u64) -> Plan {
         let choice = Choice {
             catalogue: &self.campaign.catalogue,
-            moments: &self.moments,
+            scenes: &self.scenes,
         };
         choice.plan(seed)
     }

@@ -1,6 +1,7 @@
 //! What a seed says: which program, from which moment of it on, and what happens when.
 
-use super::catalogue::{Catalogue, Kind};
+use super::bench::Bench;
+use super::catalogue::{Catalogue, Kind, Mishap, turns};
 use super::dice::Dice;
 
 /// Something that happens at a time of the machine.
@@ -32,19 +33,42 @@ pub struct Plan {
 /// The shortest and the longest window, µs.
 const WINDOW_US: [usize; 2] = [600_000, 2_600_000];
 
+/// Part of what the operator does that is a turn of the handwheel, where a program lets him, percent.
+const TURNS: usize = 50;
+
+/// What the seeds choose from in a program.
+#[derive(Clone, Debug)]
+pub(super) struct Scene {
+    /// The kept moments, µs since power-on.
+    moments: Vec<u64>,
+    /// What the handwheel may do beside its path.
+    turns: Vec<Mishap>,
+}
+
+impl Scene {
+    pub fn of(bench: &Bench) -> Scene {
+        Scene {
+            moments: bench.moments.iter().map(|moment| moment.time_us()).collect(),
+            turns: bench.led.iter().flat_map(|led| turns(led.wheels())).collect(),
+        }
+    }
+}
+
 /// What the seeds of a campaign choose from.
 pub(super) struct Choice<'a> {
     pub catalogue: &'a Catalogue,
-    /// The kept moments of each program, µs since power-on.
-    pub moments: &'a [Vec<u64>],
+    /// Of each program.
+    pub scenes: &'a [Scene],
 }
 
 impl Choice<'_> {
     /// The plan of a seed: a function of the seed alone.
     pub fn plan(&self, seed: u64) -> Plan {
         let mut dice = Dice::new(seed);
-        let program = dice.below(self.moments.len());
-        let moments = self.moments.get(program).map_or(&[][..], Vec::as_slice);
+        let program = dice.below(self.scenes.len());
+        let scene = self.scenes.get(program);
+        let moments = scene.map_or(&[][..], |scene| &scene.moments);
+        let turns = scene.map_or(&[][..], |scene| &scene.turns);
         let moment = dice.below(moments.len());
         let from_us = moments.get(moment).copied().unwrap_or_default();
         let window = WINDOW_US[0] + dice.below(WINDOW_US[1] - WINDOW_US[0]);
@@ -53,7 +77,12 @@ impl Choice<'_> {
         let mut happenings = Vec::new();
         for _ in 0..1 + dice.below(4) {
             let kind = kind(&mut dice, faults);
-            let Some(mishap) = self.catalogue.pick(kind, &mut dice) else {
+            let turned = kind == Kind::Use && !turns.is_empty() && dice.percent(TURNS);
+            let mishap = match turned {
+                true => dice.pick(turns).cloned(),
+                false => self.catalogue.pick(kind, &mut dice),
+            };
+            let Some(mishap) = mishap else {
                 continue;
             };
             let at = dice.below(window);
