@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use bahn_parameters::MessageId::{
-    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, EntryValueIncorrect,
-    JumpToLabelZeroNotPermitted, LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
+    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted,
+    LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
 
 use crate::lines::lines;
 use crate::program::Places;
 use crate::sequence::{Sequence, SequenceFault};
-use crate::text::{character_count, trim_continuation};
+use crate::text::trim_continuation;
 use crate::{BlockError, CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
 
 /// Most diagnostics of one program; with more it is not a program at all.
