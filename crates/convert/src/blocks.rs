@@ -7,7 +7,7 @@ use bahn_program::{
     Program, format_block,
 };
 
-use crate::canonical::{canonical, decorated};
+use crate::canonical::{canonical, decorated, spread};
 use crate::flow::{Flow, States};
 use crate::lower::{State, lower};
 use crate::reason::reason;
@@ -95,7 +95,7 @@ fn to_plain(program: &Program, writer: &mut Writer<'_>) {
                 continue;
             }
         };
-        let operations: Vec<Operation> = operations.into_iter().map(decorated).collect();
+        let operations: Vec<Operation> = operations.into_iter().flat_map(spread).map(decorated).collect();
         writer.blocks(&[numbered], &operations, &|operation| vec![operation.clone()]);
     }
 }

@@ -17,8 +17,53 @@ pub(crate) fn canonical(operations: &[Operation]) -> Vec<Operation> {
     if bare.len() > 1 && bare.iter().all(shift) {
         bare = one_shift(&bare);
     }
-    bare
+    assigned(&bare).map_or(bare, |block| vec![Operation::Cycle(Box::new(block))])
 }
+
+/// Parameters that stand in one block of a cycle definition in listings of plain language [000:17958-17962].
+const ASSIGNMENTS_PER_BLOCK: usize = 3;
+
+/// The blocks of a cycle whose words are values of Q parameters, as one: DIN/ISO has them in one block, plain language in
+/// several.
+fn assigned(blocks: &[Operation]) -> Option<CycleBlock> {
+    let mut all: Option<CycleBlock> = None;
+    for operation in blocks {
+        let Operation::Cycle(block) = operation else {
+            return None;
+        };
+        let all = all.get_or_insert_with(|| CycleBlock {
+            number: block.number,
+            sub: 0,
+            words: Vec::new(),
+        });
+        let assigns = |word: &CycleWord| matches!(word, CycleWord::Assignment(..));
+        if block.number != all.number || !block.words.iter().all(assigns) {
+            return None;
+        }
+        all.words.extend(block.words.iter().cloned());
+    }
+    all.filter(|all| !all.words.is_empty())
+}
+
+/// The blocks of plain language for one of DIN/ISO with values of Q parameters; other operations are themselves.
+pub(crate) fn spread(operation: Operation) -> Vec<Operation> {
+    let one = std::slice::from_ref(&operation);
+    let Some(all) = assigned(one).filter(|all| all.number < ONE_BLOCK_FROM) else {
+        return vec![operation];
+    };
+    let block = |(words, sub): (&[CycleWord], u16)| {
+        Operation::Cycle(Box::new(CycleBlock {
+            number: all.number,
+            sub,
+            words: words.to_vec(),
+        }))
+    };
+    let values = all.words.chunks(ASSIGNMENTS_PER_BLOCK).zip(1..);
+    std::iter::once((&[][..], 0)).chain(values).map(block).collect()
+}
+
+/// Cycles from here on have their parameters in block 0 in plain language, too (public: later controls).
+const ONE_BLOCK_FROM: u16 = 200;
 
 /// Without the names beside the words of a cycle.
 pub(crate) fn without_names(operation: &Operation) -> Operation {

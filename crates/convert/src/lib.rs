@@ -22,6 +22,7 @@
 
 mod blocks;
 mod canonical;
+mod floating_tap;
 mod flow;
 pub mod gcode;
 mod listed;

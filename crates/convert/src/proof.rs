@@ -191,7 +191,7 @@ pub fn prove(
 
 /// What two runs warned of: they need not do so at the same element, since either may look ahead.
 #[derive(Default)]
-struct Warned {
+pub(crate) struct Warned {
     /// How often each side said a thing, and where it did first.
     said: HashMap<WarningKind, [(u64, BlockRef); 2]>,
 }
@@ -200,7 +200,7 @@ struct Warned {
 const WARNINGS_MAX: usize = 10_000;
 
 impl Warned {
-    fn take(&mut self, source: &mut Interpreter, target: &mut Interpreter) {
+    pub fn take(&mut self, source: &mut Interpreter, target: &mut Interpreter) {
         for (side, run) in [source, target].into_iter().enumerate() {
             for warning in run.take_warnings() {
                 if self.said.len() >= WARNINGS_MAX && !self.said.contains_key(&warning.kind) {
@@ -217,14 +217,23 @@ impl Warned {
         }
     }
 
-    fn both(&self) -> u64 {
+    /// How many both sides have.
+    pub fn both(&self) -> u64 {
         let least = |[(one, _), (other, _)]: &[(u64, BlockRef); 2]| *one.min(other);
         self.said.values().map(least).sum()
     }
 
-    /// The first warning, by its place, that one of both has more often.
-    fn difference(self, source: &Interpreter, target: &Interpreter) -> Option<Difference> {
-        let unlike = self.said.into_iter().filter(|(_, [one, other])| one.0 != other.0);
+    /// The first warning, by its place, whose counts in source and target differ by this rule.
+    pub fn difference(
+        self,
+        differ: fn(u64, u64) -> bool,
+        source: &Interpreter,
+        target: &Interpreter,
+    ) -> Option<Difference> {
+        let unlike = self
+            .said
+            .into_iter()
+            .filter(|(_, [one, other])| differ(one.0, other.0));
         let first = unlike.min_by_key(|(kind, [one, other])| {
             let at = if one.0 > 0 { one.1 } else { other.1 };
             (at.program, at.block, kind.to_string())
@@ -283,7 +292,7 @@ impl Proof {
         self.completed = true;
         self.message = message;
         self.warnings = warned.both();
-        self.first_difference = warned.difference(source, target);
+        self.first_difference = warned.difference(|one, other| one != other, source, target);
     }
 
     /// Counts two elements that are the same, or says what differs.

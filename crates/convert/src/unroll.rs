@@ -1,8 +1,8 @@
 //! A run as a program in plain language: each movement a block of its own, in millimetres and with R0.
 //!
 //! It is for programs with blocks that DIN/ISO cannot say: what those do to the path is in it. What a block says beyond the path
-//! must be sayable in a block again. A tap that follows the spindle becomes a cycle from where the tool stands; one with a floating
-//! holder, swivel axes and what a probe finds are not said.
+//! must be sayable in a block again. A tap becomes a cycle from where the tool stands; arcs in corners (M112), swivel axes and what
+//! a probe finds are not said.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -15,12 +15,14 @@ use bahn_path::{
     ToolCall,
 };
 use bahn_program::{
-    Block, Compensation, Coordinates, CycleBlock, CycleWord, Direction, Feed, FormatOptions, Header,
-    MFunctions, Motion, MotionKind, Operation, Unit, Value, Word, format_block,
+    Block, Compensation, Coordinates, CycleBlock, CycleFunction, CycleWord, Direction, Feed, FormatOptions,
+    Header, MFunctions, Motion, MotionKind, Operation, Quantity, Unit, Value, Word, cycle_parameters,
+    format_block,
 };
 
+use crate::floating_tap::{FloatingTaps, Part, Tap};
 use crate::lower::bare;
-use crate::proof::{self, Difference, Event, Proof, next_event};
+use crate::proof::{self, Difference, Event, Proof, Warned, next_event};
 
 /// Steps to a millimetre and to a degree.
 const STEPS: f64 = 1e4;
@@ -50,6 +52,7 @@ pub fn unroll(
         define_tools,
         defined: BTreeSet::new(),
         tap: None,
+        floating: FloatingTaps::default(),
     };
     writer.block(Operation::Begin(Box::new(header.clone())));
     loop {
@@ -73,7 +76,8 @@ pub fn unroll(
 }
 
 /// Compares a run with that of its path as [`unroll`] writes it: movements, dwells and functions in their order, however they
-/// are spread over blocks. Corners are passed by their geometry.
+/// are spread over blocks. Corners are passed by their geometry. Where cycles and words of a block are gone nobody is warned of
+/// them; what only the target warns of is a difference.
 pub fn prove_unrolled(
     source: Interpreter,
     target: Interpreter,
@@ -83,14 +87,20 @@ pub fn prove_unrolled(
     let mut source = Flat::new(source, model, stop);
     let mut target = Flat::new(target, model, stop);
     let mut proof = Proof::new();
+    let mut warned = Warned::default();
     loop {
         if stop.load(Ordering::Relaxed) {
             return proof;
         }
-        let what = match (source.next(), target.next()) {
+        let deeds = (source.next(), target.next());
+        warned.take(&mut source.run, &mut target.run);
+        let what = match deeds {
             (Deed::Over(one), Deed::Over(other)) if one == other => {
                 proof.completed = true;
                 proof.message = one;
+                proof.warnings = warned.both();
+                let gained = |source, target| source == 0 && target > 0;
+                proof.first_difference = warned.difference(gained, &source.run, &target.run);
                 return proof;
             }
             (Deed::Move(one), Deed::Move(other)) => {
@@ -148,9 +158,7 @@ impl Flat {
             if let Some(deed) = self.queue.pop_front() {
                 return deed;
             }
-            let event = next_event(&mut self.run, self.model);
-            self.run.take_warnings();
-            match event {
+            match next_event(&mut self.run, self.model) {
                 Event::Element(element) => self.element(*element),
                 Event::Stop(_) | Event::Asked(_) => {}
                 Event::Message(_, text) => return Deed::Over(Some(text)),
@@ -225,6 +233,7 @@ struct Writer {
     defined: BTreeSet<(u32, u64, u64)>,
     /// The way into a thread whose way out comes next.
     tap: Option<PathElement>,
+    floating: FloatingTaps,
 }
 
 impl Writer {
@@ -242,6 +251,11 @@ impl Writer {
         let is_way_out = matches!(element.thread(), Some(thread) if thread.retracts);
         if self.tap.is_some() && !is_way_out {
             return Err("a movement between both ways of a tap".to_owned());
+        }
+        match self.floating.take(element)? {
+            Part::None => {}
+            Part::Inside => return Ok(()),
+            Part::Whole(tap) => return self.floating_tap(&tap),
         }
         let mut m = MFunctions::default();
         let mut stops = false;
@@ -349,11 +363,6 @@ impl Writer {
     ) -> Result<(), String> {
         match element.override_law {
             OverrideLaw::Free => {}
-            OverrideLaw::Tapping { .. } => {
-                return Err(
-                    "tapping with a floating holder (cycle 2) turns the spindle back on the way".to_owned(),
-                );
-            }
             _ => return Err("a movement on which overrides do not act".to_owned()),
         }
         if element.placement.is_some() {
@@ -431,11 +440,7 @@ impl Writer {
             (true, Some(_)) => return Err("the way out of a thread is not the way into it".to_owned()),
             (false, _) => element.clone(),
         };
-        let mut moved = moved(&way_in.start, &way_in.end).axes().iter();
-        let (Some(axis), None) = (moved.next(), moved.next()) else {
-            return Err("a thread that lies not along one axis".to_owned());
-        };
-        let travel = way_in.end[axis] - way_in.start[axis];
+        let travel = along_one_axis(&way_in)?;
         let clockwise = way_in.thread().is_some_and(|thread| thread.clockwise);
         if thread.retracts {
             let pitch = if clockwise {
@@ -458,6 +463,14 @@ impl Writer {
         Ok(())
     }
 
+    /// A tap with a floating holder from where the tool stands: cycle 2.
+    fn floating_tap(&mut self, tap: &Tap) -> Result<(), String> {
+        let travel = along_one_axis(&tap.way_in)?;
+        self.cycle_of(2, &[0.0, travel, tap.dwell_s, tap.feed_mm_min]);
+        self.block(Operation::CycleCall(MFunctions::default()));
+        Ok(())
+    }
+
     fn dwell(&mut self, seconds: f64) {
         self.cycle(9, seconds);
     }
@@ -472,10 +485,30 @@ impl Writer {
         let block =
             |sub: u16, words: Vec<CycleWord>| Operation::Cycle(Box::new(CycleBlock { number, sub, words }));
         let numbered = (1..).zip(values);
-        let values = numbered.map(|(sub, value)| block(sub, vec![CycleWord::Number(self::number(*value))]));
+        let values = numbered.map(|(sub, value)| {
+            let value = self::number(*value);
+            let parameters = cycle_parameters(CycleFunction::Definition, number, sub);
+            let is_feed = parameters.iter().any(|of| of.quantity == Quantity::Feed);
+            block(
+                sub,
+                vec![match is_feed {
+                    true => CycleWord::Feed(Feed::Value(value)),
+                    false => CycleWord::Number(value),
+                }],
+            )
+        });
         for operation in [block(0, Vec::new())].into_iter().chain(values) {
             self.block(crate::canonical::decorated(operation));
         }
+    }
+}
+
+/// The way of a thread, mm, with its sign.
+fn along_one_axis(way: &PathElement) -> Result<f64, String> {
+    let mut moved = moved(&way.start, &way.end).axes().iter();
+    match (moved.next(), moved.next()) {
+        (Some(axis), None) => Ok(way.end[axis] - way.start[axis]),
+        _ => Err("a thread that lies not along one axis".to_owned()),
     }
 }
 

@@ -67,9 +67,8 @@ fn what_no_path_says_is_refused() {
         ),
         ("FN14: ERROR = 12\n", "ERROR 12"),
         (
-            "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP -2\nCYCL DEF 2.2 DEPTH -10\nCYCL DEF 2.3 DWELL 0\n\
-             CYCL DEF 2.4 F500\nCYCL CALL\n",
-            "floating holder (cycle 2)",
+            "L X+0 Y+0 F200 M112 T0.1\nL X+10 Z+4\nL Y+10 Z+6\nL X+0\n",
+            "M112",
         ),
     ] {
         let refused = unrolled(blocks).unwrap_err();
@@ -125,4 +124,46 @@ fn taps_that_follow_the_spindle_become_cycles_of_their_way() {
             assert_eq!(elements, 6, "{text}");
         }
     }
+}
+
+/// A tap with a floating holder is the same from where the tool stands: the way in, the spindle back, the dwell and the way out,
+/// whichever way the spindle turns, scaled or not.
+#[test]
+fn taps_with_a_floating_holder_become_cycles_of_their_way() {
+    for (turn, depth, dwell) in [("M3", "-10", "0.5"), ("M4", "-10", "0"), ("M3", "+10", "0")] {
+        for scaled in ["", "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.5 Z0.5\n"] {
+            let setup = depth.replace("10", "2");
+            let (text, elements) = unrolled(&format!(
+                "{scaled}CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP {setup}\nCYCL DEF 2.2 DEPTH {depth}\n\
+                 CYCL DEF 2.3 DWELL {dwell}\nCYCL DEF 2.4 F500\nL X+10 Y+10 FMAX {turn}\nCYCL CALL\nL X+20 FMAX M99\n\
+                 L Z+20 FMAX\n"
+            ))
+            .unwrap();
+            let pause = format!("P03 {dwell} P04 500");
+            assert!(text.contains("G84 P01 ") && text.contains(&pause), "{text}");
+            // To the first place and over both holes, in and out of each, and away.
+            assert_eq!(elements, 8, "{text}");
+        }
+    }
+}
+
+/// What is unrolled may lose a warning of words that are gone; one that only the target gives is a difference.
+#[test]
+fn a_warning_of_the_target_alone_is_a_difference() {
+    let source = program(&format!("{HEAD}L X+10 F200\nEND PGM A MM\n"), Language::Plain);
+    let blank = "BLK FORM 0.1 Z X+0 Y+0 Z-20\nEND PGM A MM\n";
+    let other = program(&format!("{HEAD}L X+10 F200\n{blank}"), Language::Plain);
+    let settings = settings(ControlModel::Tnc415b);
+    let stop = Arc::new(AtomicBool::new(false));
+    let prove = |one: &Program, other: &Program| {
+        let (one, other) = (run(one, &settings, &root()), run(other, &settings, &root()));
+        prove_unrolled(one, other, settings.model, &stop)
+    };
+    let loses = prove(&other, &source);
+    assert!(loses.holds() && loses.warnings == 0, "{loses:?}");
+    let both = prove(&other, &other);
+    assert!(both.holds() && both.warnings == 1, "{both:?}");
+    let gains = prove(&source, &other);
+    let difference = gains.first_difference.unwrap().what;
+    assert!(difference.contains("BLK FORM 0.2 is missing"), "{difference}");
 }

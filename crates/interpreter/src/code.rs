@@ -227,7 +227,8 @@ impl Code {
         }
         if let Some(loaded) = self.programs.get_mut(usize::from(program)) {
             let steps = InputSteps::of(self.model, loaded.program.unit());
-            let decoded = Arc::new(Decoded::new(loaded.program.decode(chunk as u32), steps));
+            let chunk_read = loaded.program.decode_for(chunk as u32, self.model.limits());
+            let decoded = Arc::new(Decoded::new(chunk_read, steps));
             if let Some(slot) = loaded.chunks.get_mut(chunk) {
                 *slot = Some(decoded);
                 self.kept.push_back((program, chunk));

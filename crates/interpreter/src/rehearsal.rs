@@ -316,6 +316,13 @@ impl Rehearser {
             if matches!(warning.kind, WarningKind::ToolNotDefined { .. }) {
                 self.doubts = self.doubts.and(Doubts::TOOL_DATA);
             }
+            // Its corners stand there, the other way round.
+            let mut errors = self.found.errors.iter();
+            if warning.kind == WarningKind::BlankIncomplete
+                && errors.any(|error| error.cause == Cause::NoBlankMin)
+            {
+                continue;
+            }
             let new = self.found.warnings.len() < FOUND_MAX
                 && self.warned.insert((warning.block, warning.kind.clone()));
             if new {

@@ -532,3 +532,22 @@ fn a_probe_measures() {
     assert_eq!(told(&found), told(&expected));
     assert_eq!(found.q[10], expected.q[10]);
 }
+
+/// A block of DIN/ISO has 150 characters at most [000:615], 64 on the TNC 151/155 [001:1174-1183]; a longer one ends the run as
+/// `check` says.
+#[test]
+fn a_block_that_is_too_long_ends_the_run() {
+    use bahn_parameters::{ControlModel, MessageId};
+    for (model, max) in [(ControlModel::Tnc155, 64), (ControlModel::Tnc415b, 150)] {
+        for (length, message) in [(max, None), (max + 1, Some(MessageId::EntryValueIncorrect))] {
+            let block = format!("N10 G00 G40 G90 X+5 ;{}", "x".repeat(length - 21));
+            let text = format!("%7 G71 *\n{block}\nN99999 %7 G71 *\n");
+            let run = Job::iso(text).with(|settings| settings.model = model).run();
+            let found = run
+                .error
+                .as_ref()
+                .map(|error| (error.block.block, error.message.text(model)));
+            assert_eq!(found, message.map(|message| (1, message.text(model))), "{length}");
+        }
+    }
+}

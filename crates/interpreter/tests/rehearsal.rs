@@ -102,6 +102,21 @@ fn consequences_are_not_reported() {
     assert_eq!(errors(&arcs), [error(5, CircleEndPosIncorrect)]);
 }
 
+/// BLK FORM 0.2 before 0.1 is one error; the blank that is missing then is no second one.
+#[test]
+fn a_blank_the_other_way_round_is_one_fault() {
+    let found = rehearsed(program("BLK FORM 0.2 X+9 Y+9 Z+0\nBLK FORM 0.1 Z X+0 Y+0 Z-9"));
+    let blocks: Vec<u32> = found.errors.iter().map(|error| error.block.block).collect();
+    assert_eq!(
+        (blocks, found.warnings.len()),
+        (vec![1], 0),
+        "{:?}",
+        found.warnings
+    );
+    let alone = rehearsed(program("BLK FORM 0.1 Z X+0 Y+0 Z-9"));
+    assert_eq!((alone.errors.len(), alone.warnings.len()), (0, 1));
+}
+
 /// Values that the program does not set itself may come from its caller.
 #[test]
 fn unknown_parameters_cause_no_errors() {

@@ -69,10 +69,10 @@ pub fn check_limits<'a>(
         limits,
         inch_feed,
     };
-    operation
-        .parts()
-        .iter()
-        .find_map(|part| check.parameters(part).or_else(|| check.operation(part)))
+    operation.parts().iter().find_map(|part| {
+        let unknown = check.unknown_cycle(part).or_else(|| check.parameters(part));
+        unknown.or_else(|| check.operation(part))
+    })
 }
 
 struct Check<'a> {
@@ -141,14 +141,19 @@ impl Check<'_> {
             .or_else(|| self.feed(motion.feed))
     }
 
-    fn cycle(&self, block: &CycleBlock) -> Option<LimitFault> {
-        if !self.limits.has_cycle(u32::from(block.number)) && !OEM_CYCLES.contains(&block.number) {
-            return fault(
-                BlockNotKnown,
-                "DEF",
-                format!("the control has no cycle {}", block.number),
-            );
+    /// A cycle that the control does not know; what its parameters may be nobody knows then.
+    fn unknown_cycle(&self, operation: &Operation) -> Option<LimitFault> {
+        let Operation::Cycle(block) = operation else {
+            return None;
+        };
+        if self.limits.has_cycle(u32::from(block.number)) || OEM_CYCLES.contains(&block.number) {
+            return None;
         }
+        let detail = format!("the control has no cycle {}", block.number);
+        fault(BlockNotKnown, "DEF", detail)
+    }
+
+    fn cycle(&self, block: &CycleBlock) -> Option<LimitFault> {
         let cycle = cycle(CycleFunction::Definition, block.number);
         // Parameters of machining cycles are judged at their call.
         let acting = cycle.filter(|cycle| cycle.acts_at_definition);

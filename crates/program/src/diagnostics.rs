@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use bahn_parameters::MessageId::{
-    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, EntryValueIncorrect,
-    JumpToLabelZeroNotPermitted, LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
+    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted,
+    LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
 
 use crate::lines::lines;
 use crate::program::Places;
 use crate::sequence::{Sequence, SequenceFault};
-use crate::text::{character_count, trim_continuation};
+use crate::text::trim_continuation;
 use crate::{BlockError, CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
 
 /// Most diagnostics of one program; with more it is not a program at all.
@@ -213,33 +213,25 @@ impl Pass<'_> {
             .reading
             .and_then(|reading| language.characters_max(reading.limits));
         let Some(max) = max else { return };
-        let length = self.length_of(number);
-        if length > max && !self.is_full(Severity::Error) {
-            self.found.push(Diagnostic {
-                message: EntryValueIncorrect,
-                severity: Severity::Error,
-                block: number,
-                line,
-                column: max + 1,
-                length: length - max,
-                detail: format!("a block has at most {max} characters").into(),
-                help: EntryValueIncorrect.remedy(),
-            });
-        }
-    }
-
-    /// The characters of a block.
-    fn length_of(&mut self, number: u32) -> u32 {
         let places = match self.places.take() {
             Some(places) if places.of(number).is_some() => Some(places),
             _ => self.program.places_of(number),
         };
+        let fault = places.as_ref().and_then(|places| places.too_long(number, max));
         self.places = places;
-        let here = self.places.as_ref();
-        let Some((places, raw)) = here.and_then(|places| Some((places, places.of(number)?))) else {
-            return 0;
+        let Some(error) = fault.filter(|_| !self.is_full(Severity::Error)) else {
+            return;
         };
-        character_count(raw.text(places.piece.text()).bytes)
+        self.found.push(Diagnostic {
+            message: error.message,
+            severity: Severity::Error,
+            block: number,
+            line: line.saturating_add(error.line),
+            column: error.column,
+            length: error.length,
+            detail: error.detail,
+            help: error.message.remedy(),
+        });
     }
 
     /// The labels that a block sets, calls or lists.

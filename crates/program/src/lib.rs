@@ -33,6 +33,7 @@
 //! Reading never fails: a block that cannot be read is [`Operation::Invalid`], an error when it is executed.
 
 mod assigned;
+mod block_length;
 mod bulk;
 mod check;
 mod cycles;

@@ -4,6 +4,7 @@ use crate::format::number::push_integer;
 use crate::format::{FormatOptions, write_block};
 use crate::language::{Landmark, Language, WordSpan};
 use crate::lines::{BlockText, Lines, RawBlock, stands_alone};
+use crate::parse::cursor::code_length;
 use crate::parse::{block_words, faults, frames_or_labels, is_din_iso, read_block, renumber, whole_program};
 use crate::text::{is_blank, trim, trim_continuation};
 use crate::{Block, BlockError, Operation};
@@ -42,13 +43,13 @@ impl Language for PlainLanguage {
             } else if bytes.get(last) == Some(&b'~') {
                 // At the end of the text there is nothing to join.
                 end = start + trim_continuation(bytes).len();
-                while let Some((next_start, next_end)) = lines.line() {
+                let mut before = bytes;
+                while goes_on(before, lines)
+                    && let Some((next_start, next_end)) = lines.line()
+                {
                     joined = true;
                     end = next_end;
-                    let next = lines.bytes(next_start, next_end);
-                    if next.iter().rfind(|&&b| !is_blank(b)) != Some(&b'~') {
-                        break;
-                    }
+                    before = lines.bytes(next_start, next_end);
                 }
             }
             return Some(RawBlock {
@@ -117,19 +118,44 @@ fn text_line(lines: &mut Lines<'_>) -> Option<usize> {
     let before = *lines;
     let (start, end) = lines.line()?;
     let text = trim(lines.bytes(start, end));
-    let starts = |word: &str| {
-        text.get(..word.len())
-            .is_some_and(|front| front.eq_ignore_ascii_case(word.as_bytes()))
-    };
-    let numbered = matches!(
-        text,
-        [b'0'..=b'9' | b'/' | b';' | b'*', ..] | [b'N' | b'n', b'0'..=b'9', ..]
-    );
-    if text.is_empty() || numbered || starts("BEGIN") || starts("END") {
+    let own_comment = matches!(text, [b';' | b'*', ..]);
+    if text.is_empty() || own_comment || is_numbered(text) || frames(text) {
         *lines = before;
         return None;
     }
     Some(end)
+}
+
+/// Whether a line of a block is joined with the next one: it ends with `~`. Behind a comment that may be part of the comment,
+/// as in [`continues`]; a line with a block number is then a block of its own.
+#[inline]
+fn goes_on(line: &[u8], lines: &Lines<'_>) -> bool {
+    if line.iter().rfind(|&&b| !is_blank(b)) != Some(&b'~') {
+        return false;
+    }
+    code_length(line) == line.len() || continues(line) && !next_is_numbered(*lines)
+}
+
+/// Whether the next line begins with a block number, or frames the program.
+#[cold]
+fn next_is_numbered(mut lines: Lines<'_>) -> bool {
+    let Some((start, end)) = lines.line() else {
+        return false;
+    };
+    let text = trim(lines.bytes(start, end));
+    is_numbered(text) || frames(text)
+}
+
+fn is_numbered(text: &[u8]) -> bool {
+    matches!(text, [b'0'..=b'9' | b'/', ..] | [b'N' | b'n', b'0'..=b'9', ..])
+}
+
+fn frames(text: &[u8]) -> bool {
+    let starts = |word: &str| {
+        text.get(..word.len())
+            .is_some_and(|front| front.eq_ignore_ascii_case(word.as_bytes()))
+    };
+    starts("BEGIN") || starts("END")
 }
 
 /// Whether a comment goes on in the next line: one `~` ends it; a rule of several joins nothing.
@@ -184,6 +210,16 @@ mod tests {
             let text = format!("12 ; a ~\n{own}");
             assert_eq!(blocks(text.as_bytes()).len(), 2, "{own}");
         }
+        assert_eq!(
+            blocks(b"12 L X+1 ; a ~\n13 L Y+1"),
+            [(&b"12 L X+1 ; a"[..], 1, false), (b"13 L Y+1", 2, false)]
+        );
+        assert_eq!(blocks(b"L X+1 ; a ~~\nL Y+1").len(), 2);
+        assert_eq!(blocks(b"12 L X+1 ; a ~\n Y+1 ; b ~\n13 L Y+1").len(), 2);
+        assert_eq!(
+            blocks(b"12 CYCL DEF 200 ~\n Q200=2 ; A ~\n ; b ~\n Q201=3").len(),
+            1
+        );
         assert_eq!(
             blocks(b"12 ; ~~~\nB"),
             [(&b"12 ; ~~~"[..], 1, false), (b"B", 2, false)]

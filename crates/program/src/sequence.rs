@@ -14,6 +14,8 @@ pub(crate) struct SequenceFault {
 #[derive(Debug, Default)]
 pub(crate) struct Sequence {
     open: Option<Open>,
+    /// A block that cannot be read stands before: it may be the one that a next block misses.
+    in_doubt: bool,
 }
 
 #[derive(Debug)]
@@ -36,9 +38,13 @@ impl Sequence {
             // What cannot be read may well be the missing block.
             Operation::Invalid(_) => {
                 self.open = None;
+                self.in_doubt = true;
                 None
             }
-            _ => self.close(),
+            _ => {
+                self.in_doubt = false;
+                self.close()
+            }
         }
     }
 
@@ -49,6 +55,7 @@ impl Sequence {
         block: &CycleBlock,
     ) -> Option<SequenceFault> {
         if block.sub == 0 {
+            self.in_doubt = false;
             let fault = self.close();
             self.open = Some(Open {
                 function,
@@ -57,6 +64,9 @@ impl Sequence {
                 next: Some(1),
             });
             return fault;
+        }
+        if self.in_doubt {
+            return value_missing(number, function, block);
         }
         let expected = match &mut self.open {
             Some(open) if open.function == function && open.number == block.number => match &mut open.next {

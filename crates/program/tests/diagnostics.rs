@@ -50,6 +50,29 @@ fn a_good_program_has_none() {
     assert_eq!(faults(text), []);
 }
 
+/// A block of a cycle that cannot be read is one fault; the blocks behind it miss nothing else.
+#[test]
+fn a_block_of_a_cycle_that_cannot_be_read_has_no_echo() {
+    let all = faults(
+        "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 Xa\nCYCL DEF 7.2 Y+5\nCYCL DEF 7.3 Z+5\nL X+5 R0 F9\n\
+                      CYCL DEF 7.2 Y+5",
+    );
+    let expected = [
+        found(EntryValueIncorrect, 2, "Xa"),
+        found(CyclIncomplete, 6, "CYCL DEF 7.2 Y+5"),
+    ];
+    assert_eq!(all, expected);
+}
+
+/// A cycle of later controls is named itself, not a parameter of it that no control here has.
+#[test]
+fn a_cycle_that_the_control_does_not_have_is_named() {
+    let program = program("BEGIN PGM 1 MM\nCYCL DEF 247 DATUM SETTING ~\n  Q339=+1 ; NUMBER\nEND PGM 1 MM\n");
+    let all = program.diagnostics(Some(Tnc415b.limits().into()));
+    assert_eq!(all.len(), 1, "{all:?}");
+    assert_eq!(underlined(&program, &all[0]), found(BlockNotKnown, 1, "247"));
+}
+
 #[test]
 fn all_faults_in_one_pass_in_the_order_of_blocks() {
     let all = faults("L Xnan\nCALL LBL 9\nL X+5 X+6 ; twice\nAPPR LT X+5\nERROR = X\n  L Z+1.2.3 R0");
