@@ -15,7 +15,8 @@ use crate::diagnostics::{self, FileFault, Marked};
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Interrupt;
 use crate::options::{CheckOptions, Format};
-use crate::{Outcome, UsageError, console};
+use crate::reports::Reports;
+use crate::{Outcome, UsageError};
 
 /// How programs are checked.
 pub(crate) struct Check {
@@ -36,31 +37,18 @@ pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         },
         format: options.format,
     };
-    let mut outcome = Outcome::Fine;
-    let mut reports = Vec::new();
+    let mut reports = Reports::new();
     for path in &options.files {
-        match check(path, &how, &interrupt) {
-            Ok(report) => {
-                if report.errors > 0 && outcome == Outcome::Fine {
-                    outcome = Outcome::ProgramError;
-                }
-                reports.push(report);
-            }
-            // The other files are checked all the same.
-            Err(error) => {
-                diagnostics::print_usage_error(&error.to_string());
-                outcome = Outcome::WrongUse;
-            }
-        }
+        reports.add(path, check(path, &how, &interrupt));
         if interrupt.is_requested() {
-            outcome = Outcome::Interrupted;
             break;
         }
     }
-    if options.format == Format::Json {
-        console::print_json(&reports)?;
-    }
-    Ok(outcome)
+    let outcome = reports.end(options.format, |report| report.errors > 0)?;
+    Ok(match interrupt.is_requested() {
+        true => Outcome::Interrupted,
+        false => outcome,
+    })
 }
 
 /// What is wrong with one file.

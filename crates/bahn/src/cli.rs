@@ -4,7 +4,6 @@ use std::ffi::OsString;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::Outcome;
 use crate::channel::ChannelOptions;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
@@ -28,6 +27,7 @@ use crate::technology::TechnologyOptions;
 use crate::test_run::TestOptions;
 use crate::torture::TortureOptions;
 use crate::tune::TuneOptions;
+use crate::{Outcome, refused};
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
 /// shows every tool movement, the machining time and the finished part.
@@ -119,11 +119,13 @@ pub(crate) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Com
         Err(error) => {
             // Nobody reads it when the output is closed.
             let _ = error.print();
-            Err(if error.use_stderr() {
-                Outcome::WrongUse
-            } else {
-                Outcome::Fine
-            })
+            if !error.use_stderr() {
+                return Err(Outcome::Fine);
+            }
+            // What is wrong stands before tips and usage.
+            let text = error.to_string();
+            refused::error(text.split("\n\n").next().unwrap_or_default());
+            Err(Outcome::WrongUse)
         }
     }
 }

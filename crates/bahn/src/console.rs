@@ -2,13 +2,23 @@
 
 use std::io::{self, Write};
 
-use crate::diagnostics::printable_lines;
+use crate::diagnostics::{self, printable_lines};
 use crate::{UsageError, refused};
 
 /// Prints text for people to standard output. Names and texts in it may come from anywhere: nothing in it steers the
 /// terminal.
 pub(crate) fn print(text: &str) -> Result<(), UsageError> {
     print_bytes(printable_lines(text).as_bytes())
+}
+
+/// Prints what the control says, for people: to standard output, beside JSON to standard error.
+pub(crate) fn print_line(line: &str) -> Result<(), UsageError> {
+    refused::message(line);
+    if refused::json_is_wanted() {
+        diagnostics::print_line(line);
+        return Ok(());
+    }
+    print(&format!("{line}\n"))
 }
 
 /// Prints bytes to standard output: files, JSON, and what has colours of ours. A reader that has gone away is no error; a full disk is one.

@@ -58,6 +58,7 @@ mod progress;
 mod refused;
 mod report;
 mod report_text;
+mod reports;
 mod run;
 mod scope;
 mod settings;
@@ -87,10 +88,18 @@ use bahn_host::HostError;
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     refused::begin(&arguments);
-    let command = match cli::parse(arguments) {
-        Ok(command) => command,
-        Err(code) => return code.into(),
-    };
+    let outcome = cli::parse(arguments).map_or_else(|outcome| outcome, execute);
+    if outcome != Outcome::Fine
+        && let Some(told) = refused::end()
+    {
+        // Whoever has closed the output knows.
+        let _ = console::print_json(&told);
+    }
+    outcome.into()
+}
+
+/// Executes a command, and tells why it cannot be.
+fn execute(command: cli::Command) -> Outcome {
     let result = match command {
         cli::Command::Test(options) => test_run::command(*options, shelf::command),
         cli::Command::Run(options) => run::command(&options),
@@ -117,17 +126,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Completions(options) => manual::completions(&options, cli::whole_command()),
         cli::Command::Man(options) => manual::man(&options, cli::whole_command()),
     };
-    let outcome = result.unwrap_or_else(|error| {
+    result.unwrap_or_else(|error| {
         diagnostics::print_usage_error(&error.to_string());
         Outcome::WrongUse
-    });
-    if outcome != Outcome::Fine
-        && let Some(told) = refused::end()
-    {
-        // Whoever has closed the output knows.
-        let _ = console::print_json(&told);
-    }
-    outcome.into()
+    })
 }
 
 /// How a command ended.

@@ -7,12 +7,15 @@ use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
 
-/// JSON is wanted, and nothing has been printed.
+/// JSON is wanted.
+static WANTED: AtomicBool = AtomicBool::new(false);
+/// It is, and nothing has been printed.
 static OPEN: AtomicBool = AtomicBool::new(false);
 /// What was told meanwhile.
 static TOLD: Mutex<Told> = Mutex::new(Told {
     completed: false,
     error: None,
+    message: None,
     faults: Vec::new(),
 });
 
@@ -22,6 +25,9 @@ struct Told {
     completed: bool,
     /// What is wrong, in words.
     error: Option<String>,
+    /// What the control says, when nobody has told more.
+    #[serde(skip)]
+    message: Option<String>,
     /// Faults of files, 100 at most.
     faults: Vec<FaultReport>,
 }
@@ -41,7 +47,13 @@ pub(crate) fn begin(arguments: &[OsString]) {
     let mut pairs = arguments.iter().zip(arguments.iter().skip(1));
     let apart = pairs.any(|(option, value)| option == "--format" && value == "json");
     let wanted = apart || arguments.iter().any(|argument| argument == "--format=json");
+    WANTED.store(wanted, Ordering::Relaxed);
     OPEN.store(wanted, Ordering::Relaxed);
+}
+
+/// Whether standard output is to hold JSON and nothing else.
+pub(crate) fn json_is_wanted() -> bool {
+    WANTED.load(Ordering::Relaxed)
 }
 
 /// Something was printed to standard output: a report, or a part of one.
@@ -68,6 +80,14 @@ pub(crate) fn error(text: &str) {
     }
 }
 
+/// The control has said something.
+pub(crate) fn message(text: &str) {
+    if OPEN.load(Ordering::Relaxed) {
+        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+        told.message.get_or_insert_with(|| text.to_owned());
+    }
+}
+
 /// A command has ended without success: what was told, to go out as JSON when that is wanted and nothing else was printed.
 pub(crate) fn end() -> Option<impl Serialize> {
     OPEN.swap(false, Ordering::Relaxed).then(|| {
@@ -75,7 +95,8 @@ pub(crate) fn end() -> Option<impl Serialize> {
         let first = told.faults.first().map(|fault| fault.title.clone());
         Told {
             completed: false,
-            error: told.error.take().or(first),
+            error: told.error.take().or(first).or(told.message.take()),
+            message: None,
             faults: std::mem::take(&mut told.faults),
         }
     })

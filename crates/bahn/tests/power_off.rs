@@ -399,16 +399,37 @@ fn another_list_of_machine_parameters() {
     // With MP7480.0 = 0 no tool call comes to the PLC.
     let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
     assert_eq!((run.code(), run.err().as_str()), (0, ""));
-    fs::remove_file(folder.path("m/OTHER.MP")).unwrap();
-    let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
-    assert!(
-        run.code() == 2
-            && run
-                .err()
-                .contains("OTHER.MP, which module 9033 selected, is missing"),
-        "{}",
-        run.err()
-    );
+    // Missing or faulty, it keeps no machine off: that is said once with its name, and the usual list counts.
+    let other = folder.read("m/OTHER.MP");
+    folder.write("m/programs/STILL.H", support::program("L Z+50 R0 FMAX"));
+    for what in ["missing", "faulty"] {
+        assert!(
+            folder.read("m/state/control.toml").contains("\"OTHER.MP\""),
+            "{what}"
+        );
+        match what {
+            "missing" => fs::remove_file(folder.path("m/OTHER.MP")).unwrap(),
+            _ => drop(folder.write("m/OTHER.MP", "MP7480.0 : 99\n")),
+        }
+        let run = folder.bahn("run STILL.H --machine m --no-graphics");
+        let says = format!("warning: OTHER.MP, which module 9033 selected, is {what}");
+        assert!(
+            run.code() == 0 && run.err().contains(&says) && run.err().contains("parameters.mp counts"),
+            "{what}: {} {}",
+            run.code(),
+            run.err()
+        );
+        assert!(
+            !folder.read("m/state/control.toml").contains("OTHER.MP"),
+            "{what}"
+        );
+        let run = folder.bahn("run STILL.H --machine m --no-graphics");
+        assert_eq!((run.code(), run.err().as_str()), (0, ""), "{what}: said once");
+        // There again, it is selected as the first time.
+        folder.write("m/OTHER.MP", &other);
+        let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
+        assert_eq!(run.code(), 1, "{what}: {}", run.err());
+    }
 }
 
 /// A process that runs in real time until it is killed.

@@ -78,7 +78,7 @@ impl PowerOn {
     /// A machine that finds what it kept, in the folder of its state.
     ///
     /// # Errors
-    /// When it is switched on already, what was kept cannot be read, or what was selected is missing.
+    /// When it is switched on already, or what was kept cannot be read.
     pub fn kept(machine: &LoadedMachine) -> Result<PowerOn, HostError> {
         let found = State::open(
             &machine.root.join(&machine.folder.state),
@@ -106,13 +106,8 @@ impl PowerOn {
                     .to_owned(),
             );
         }
-        if let Some(name) = &remembered.parameter_list {
-            power_on.parameters = selected_list(&machine.files, name).ok_or_else(|| {
-                HostError::new(format!(
-                    "{name}, which module 9033 selected, is missing or faulty in {}",
-                    machine.root.display()
-                ))
-            })?;
+        if let Some(name) = remembered.parameter_list.take() {
+            power_on.select(machine, name, &mut remembered);
         }
         if let Some(name) = &remembered.datum_table
             && !machine.files.datum_tables.contains_key(name)
@@ -126,6 +121,27 @@ impl PowerOn {
         power_on.remembered = remembered;
         power_on.put_up(machine, found.mechanics);
         Ok(power_on)
+    }
+
+    /// The list of machine parameters that module 9033 has selected [000:14884-14896]. Without it the machine begins with its
+    /// usual one, in which everything can be entered again, and the selection is forgotten, so that what is edited, shown
+    /// and asked for by hosts is what counts (inferred).
+    fn select(&mut self, machine: &LoadedMachine, name: String, remembered: &mut Remembered) {
+        match selected_list(&machine.files, &name) {
+            Some(list) => {
+                self.parameters = list;
+                remembered.parameter_list = Some(name);
+            }
+            None => self.warnings.push(format!(
+                "{name}, which module 9033 selected, is {} in {}: {} counts until the PLC selects another list",
+                match machine.files.parameter_lists.contains_key(&name) {
+                    true => "faulty",
+                    false => "missing",
+                },
+                machine.root.display(),
+                machine.folder.parameters
+            )),
+        }
     }
 
     /// Where the mechanics stand, if they are those of this machine; what does not agree with control and PLC is said.

@@ -4,7 +4,7 @@
 
 mod support;
 
-use bahn_panel::{LessonState, Refusal};
+use bahn_panel::{Input, LessonState, Refusal};
 use support::Trainee;
 
 /// A trainee whose task has begun.
@@ -284,6 +284,65 @@ fn all_lessons_are_listed_and_complete_in_both_languages() {
         let checks = text.lines().filter(|line| line.contains("=>"));
         assert!(checks.clone().all(|line| line.contains(" | ")), "{name}");
     }
+}
+
+/// A lesson that cannot be read hides itself alone: it is listed with its faults, each with file and line, and refused; the
+/// others are there and begin.
+#[test]
+fn a_faulty_lesson_hides_itself_alone() {
+    let good = "title: Good\ntask: T\nbegin: here\n[checks]\nOff => screen \"not there\"\n";
+    let mut trainee = Trainee::with("mill", |folder| {
+        let lessons = folder.join("lessons");
+        let write = |name: &str, text: &[u8]| std::fs::write(lessons.join(name), text).unwrap();
+        write("11-good.lesson", good.as_bytes());
+        // Without a task, with a key that does not exist, with a condition of nothing, of bytes that are no text, empty.
+        write("00-task.lesson", good.replace("task: T\n", "").as_bytes());
+        write(
+            "03b-key.lesson",
+            good.replace("begin: here", "begins: here").as_bytes(),
+        );
+        write("05b-check.lesson", good.replace("screen", "nothing").as_bytes());
+        write("07b-bytes.lesson", &[0xff, 0xfe, 0x00, 0x80, b'\n']);
+        write("12-empty.lesson", b"");
+        std::fs::create_dir(lessons.join("13-folder.lesson")).unwrap();
+    });
+    let lessons = trainee.station.lessons();
+    let faulty = [
+        "00-task",
+        "03b-key",
+        "05b-check",
+        "07b-bytes",
+        "12-empty",
+        "13-folder",
+    ];
+    assert_eq!(lessons.len(), 10 + 1 + faulty.len(), "{lessons:#?}");
+    trainee.give(r#"{"lesson":"11-good"}"#);
+    for (name, title) in &lessons {
+        let is_faulty = faulty.contains(&name.as_str());
+        assert_eq!(
+            title.contains(&format!("{name}.lesson")),
+            is_faulty,
+            "{name}: {title}"
+        );
+        if is_faulty {
+            let input = Input::Lesson(Some(name.clone()));
+            assert_eq!(
+                trainee.station.input(&input),
+                Err(Refusal(title.clone())),
+                "{name}"
+            );
+            // The one that goes on is not ended by it.
+            assert_eq!(state(&trainee), LessonState::Running, "{name}");
+        }
+    }
+    let title = |name: &str| &lessons.iter().find(|lesson| lesson.0 == name).unwrap().1;
+    assert_eq!(title("11-good"), "Good");
+    // Its third line.
+    assert!(
+        title("03b-key").contains("03b-key.lesson:3: "),
+        "{}",
+        title("03b-key")
+    );
 }
 
 /// A lesson goes back with the machine: what was done later is to be done again.

@@ -3,36 +3,52 @@
 use std::path::Path;
 
 use bahn_technology::ChannelList;
+use serde::{Serialize, Serializer};
 
 use super::faults::{Report, faults};
 use super::options::CheckOptions;
 use crate::options::Format;
+use crate::reports::Reports;
 use crate::{Outcome, UsageError, console, diagnostics, files};
 
 /// Checks lists and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
-    let mut outcome = Outcome::Fine;
-    let mut lists: Vec<(&Path, ChannelList)> = Vec::new();
+    // One list is one object; several are an array of them.
+    if let ([path], Format::Json) = (options.files.as_slice(), options.format) {
+        let list = read(path)?;
+        console::print_json(&Report::new(&list))?;
+        return Ok(match list.errors().is_empty() {
+            true => Outcome::Fine,
+            false => Outcome::ProgramError,
+        });
+    }
+    let mut lists = Reports::new();
     for path in &options.files {
-        match files::read_table(path) {
-            Ok(bytes) => lists.push((path, ChannelList::from_bytes(&bytes))),
-            // The other files are checked all the same.
-            Err(error) => {
-                diagnostics::print_usage_error(&error.to_string());
-                outcome = Outcome::WrongUse;
-            }
-        }
+        lists.add(path, read(path).map(|list| Named { path, list }));
     }
-    match options.format {
-        Format::Text => lists.iter().for_each(|(path, list)| print(path, list)),
-        Format::Json => print_json(options, &lists)?,
+    if options.format == Format::Text {
+        lists
+            .readable()
+            .for_each(|Named { path, list }| print(path, list));
     }
-    let has_errors = lists.iter().any(|(_, list)| !list.errors().is_empty());
-    Ok(if outcome == Outcome::Fine && has_errors {
-        Outcome::ProgramError
-    } else {
-        outcome
-    })
+    lists.end(options.format, |named| !named.list.errors().is_empty())
+}
+
+fn read(path: &Path) -> Result<ChannelList, UsageError> {
+    Ok(ChannelList::from_bytes(&files::read_table(path)?))
+}
+
+/// One of several lists.
+struct Named<'a> {
+    path: &'a Path,
+    list: ChannelList,
+}
+
+impl Serialize for Named<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let name = self.path.display().to_string();
+        Report::new(&self.list).of_file(name).serialize(serializer)
+    }
 }
 
 fn print(path: &Path, list: &ChannelList) {
@@ -48,19 +64,4 @@ fn print(path: &Path, list: &ChannelList) {
         count(list.errors().len(), "error"),
         count(list.warnings().len(), "warning"),
     ));
-}
-
-/// One list is one object; several are an array of them.
-fn print_json(options: &CheckOptions, lists: &[(&Path, ChannelList)]) -> Result<(), UsageError> {
-    if let ([_], [(_, list)]) = (options.files.as_slice(), lists) {
-        return console::print_json(&Report::new(list));
-    }
-    let named = lists
-        .iter()
-        .map(|(path, list)| Report::new(list).of_file(path.display().to_string()));
-    let reports: Vec<Report> = named.collect();
-    if !reports.is_empty() {
-        console::print_json(&reports)?;
-    }
-    Ok(())
 }

@@ -43,7 +43,7 @@ pub(super) fn open(spec: &Spec, settings: &Settings) -> Result<Channel, Refused>
         };
         if let Some(message) = message {
             // Whoever has closed the output knows.
-            let _ = crate::console::print(&format!("{}\n", message.text(settings.model)));
+            let _ = crate::console::print_line(message.text(settings.model));
         }
         Refused::because(&error.to_string())
     })?;

@@ -65,7 +65,7 @@ pub(super) fn open(specs: &[(usize, Spec)], list: &ParameterList) -> Result<Vec<
     if NOT_TOGETHER.iter().all(|baud| bauds.contains(&Some(*baud))) {
         let message = MessageId::BaudRateNotPossible.text(list.model());
         // Whoever has closed the output knows.
-        let _ = crate::console::print(&format!("{message}\n"));
+        let _ = crate::console::print_line(message);
         return Err(Refused);
     }
     let inhibited = list.interface_parameters().inhibited;

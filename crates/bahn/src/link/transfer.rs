@@ -323,10 +323,7 @@ pub(super) fn talk(
     };
     if !channel.is_ready() {
         // DSR is off [000:16782-16800].
-        console::print(&format!(
-            "{}\n",
-            MessageId::ExtInOutputNotReady.text(settings.model)
-        ))?;
+        console::print_line(MessageId::ExtInOutputNotReady.text(settings.model))?;
         return Ok(Outcome::ProgramError);
     }
     for mut protocol in protocols {

@@ -15,7 +15,8 @@ use crate::check::{self, Check, CheckReport};
 use crate::diagnostics::{self, FileFault, Severity};
 use crate::interrupt::Interrupt;
 use crate::options::Format;
-use crate::{Outcome, UsageError, console};
+use crate::reports::{OfFile, Reports};
+use crate::{Outcome, UsageError};
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -25,7 +26,7 @@ struct Report {
     ok: bool,
     faults: Vec<Entry>,
     /// The part programs, as `bahn check` reports them.
-    programs: Vec<CheckReport>,
+    programs: Vec<OfFile<CheckReport>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -41,27 +42,11 @@ struct Entry {
 /// Checks folders and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     let interrupt = Interrupt::on_ctrl_c();
-    let mut outcome = Outcome::Fine;
-    let mut reports = Vec::new();
+    let mut reports = Reports::new();
     for folder in &options.folders {
-        match check(folder, options.format, &interrupt) {
-            Ok(report) => {
-                if !report.ok && outcome == Outcome::Fine {
-                    outcome = Outcome::ProgramError;
-                }
-                reports.push(report);
-            }
-            // The other folders are checked all the same.
-            Err(error) => {
-                diagnostics::print_usage_error(&error.to_string());
-                outcome = Outcome::WrongUse;
-            }
-        }
+        reports.add(folder, check(folder, options.format, &interrupt));
     }
-    if options.format == Format::Json {
-        console::print_json(&reports)?;
-    }
-    Ok(outcome)
+    reports.end(options.format, |report| !report.ok)
 }
 
 fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report, UsageError> {
@@ -93,14 +78,14 @@ fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report,
         ));
     }
     let programs = match &loaded {
-        Some(machine) => check_programs(machine, format, interrupt)?,
+        Some(machine) => check_programs(machine, format, interrupt),
         None => Vec::new(),
     };
     Ok(Report {
         folder: folder.display().to_string(),
         name: loaded.as_ref().map(|machine| machine.folder.name.clone()),
         model: loaded.as_ref().map(|machine| machine.parameters.model().id()),
-        ok: loaded.is_some() && errors == 0 && programs.iter().all(|program| program.errors == 0),
+        ok: loaded.is_some() && errors == 0 && programs.iter().all(is_fine),
         faults: faults.iter().map(Entry::new).collect(),
         programs,
     })
@@ -111,7 +96,7 @@ fn check_programs(
     machine: &LoadedMachine,
     format: Format,
     interrupt: &Interrupt,
-) -> Result<Vec<CheckReport>, UsageError> {
+) -> Vec<OfFile<CheckReport>> {
     let mut reports = Vec::new();
     let mut folders = Vec::new();
     for (channel, list) in lists(machine).enumerate() {
@@ -122,14 +107,19 @@ fn check_programs(
         }
         let how = how(machine, list, format);
         for path in programs(&folder) {
-            reports.push(check::check(&path, &how, interrupt)?);
+            reports.push(OfFile::told(&path, check::check(&path, &how, interrupt)));
             if interrupt.is_requested() {
-                return Ok(reports);
+                return reports;
             }
         }
         folders.push(folder);
     }
-    Ok(reports)
+    reports
+}
+
+/// Whether a program could be read, and has no error.
+fn is_fine(program: &OfFile<CheckReport>) -> bool {
+    program.report().is_some_and(|report| report.errors == 0)
 }
 
 /// The machine parameters of all channels.

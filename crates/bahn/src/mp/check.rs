@@ -11,33 +11,21 @@ use super::options::CheckOptions;
 use super::{count, source};
 use crate::diagnostics::{self, FileFault};
 use crate::options::Format;
-use crate::{Outcome, UsageError, console, files};
+use crate::reports::Reports;
+use crate::{Outcome, UsageError, files};
 
 /// Checks lists and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
-    let mut outcome = Outcome::Fine;
-    let mut reports = Vec::new();
+    let mut reports = Reports::new();
     for path in &options.files {
-        let lists = lists(path);
-        let checked = lists.and_then(|paths| paths.iter().map(|path| check(path, options)).collect());
-        match checked {
-            Ok::<Vec<Report>, UsageError>(found) => reports.extend(found),
-            // The other files are checked all the same.
-            Err(error) => {
-                diagnostics::print_usage_error(&error.to_string());
-                outcome = Outcome::WrongUse;
-            }
+        match lists(path) {
+            Ok(lists) => lists
+                .iter()
+                .for_each(|list| reports.add(list, check(list, options))),
+            Err(error) => reports.add(path, Err(error)),
         }
     }
-    if options.format == Format::Json {
-        console::print_json(&reports)?;
-    }
-    let has_errors = reports.iter().any(|report| !report.errors.is_empty());
-    Ok(if outcome == Outcome::Fine && has_errors {
-        Outcome::ProgramError
-    } else {
-        outcome
-    })
+    reports.end(options.format, |report| !report.errors.is_empty())
 }
 
 /// The list, or those of a folder in the order of their names.

@@ -21,16 +21,16 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
         .filter(|row| !options.changed || row.value != row.standard)
         .filter(|row| !options.without_effect || row.effect != "acts")
         .collect();
-    match options.values.format {
-        Format::Json => console::print_json(&rows)?,
-        Format::Text => console::print_bytes(text(&rows, Style::of_output()).as_bytes())?,
-    }
     if rows.is_empty() && !options.wanted.is_empty() {
         return Err(UsageError::new(format!(
             "no machine parameter of the {} fits `{}`",
             list.model(),
             options.wanted.join(" ")
         )));
+    }
+    match options.values.format {
+        Format::Json => console::print_json(&rows)?,
+        Format::Text => console::print_bytes(text(&rows, Style::of_output()).as_bytes())?,
     }
     Ok(Outcome::Fine)
 }

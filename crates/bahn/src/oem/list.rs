@@ -37,11 +37,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     let cycles = oem_cycles::find(&machine.programs(0), &machine.plc_dialogues, &machine.parameters)?;
     let items: Vec<Item> = cycles.iter().map(item).collect();
     match options.format {
-        Format::Json => {
-            let text = serde_json::to_string_pretty(&items);
-            let text = text.map_err(|error| UsageError::new(format!("cannot write the list: {error}")))?;
-            console::print(&(text + "\n"))?;
-        }
+        Format::Json => console::print_json(&items)?,
         Format::Text if items.is_empty() => console::print("no cycles of the machine builder\n")?,
         Format::Text => console::print(&items.iter().map(text).collect::<String>())?,
     }

@@ -8,41 +8,27 @@ use serde::Serialize;
 use super::options::CheckOptions;
 use super::source;
 use crate::options::Format;
+use crate::reports::Reports;
 use crate::{Outcome, UsageError, console, diagnostics};
 
 /// Checks tables and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
-    let mut outcome = Outcome::Fine;
-    let mut reports = Vec::new();
+    let mut reports = Reports::new();
     for path in &options.tables {
         let checked = if path.is_dir() {
             of_machine(path, options)
         } else {
             of_file(path, options)
         };
-        match checked {
-            Ok(report) => reports.push(report),
-            // The other tables are checked all the same.
-            Err(error) => {
-                diagnostics::print_usage_error(&error.to_string());
-                outcome = Outcome::WrongUse;
-            }
+        reports.add(path, checked);
+    }
+    if options.format == Format::Text {
+        for report in reports.readable().filter(|report| report.faults.is_empty()) {
+            let (file, kind, rows) = (&report.file, report.kind, report.rows);
+            console::print(&format!("{file}: {kind}, {rows} lines, no fault\n"))?;
         }
     }
-    let faulty = reports.iter().any(|report| !report.faults.is_empty());
-    match options.format {
-        Format::Json => console::print_json(&reports)?,
-        Format::Text => {
-            for report in reports.iter().filter(|report| report.faults.is_empty()) {
-                let (file, kind, rows) = (&report.file, report.kind, report.rows);
-                console::print(&format!("{file}: {kind}, {rows} lines, no fault\n"))?;
-            }
-        }
-    }
-    Ok(match outcome {
-        Outcome::Fine if faulty => Outcome::ProgramError,
-        other => other,
-    })
+    reports.end(options.format, |report: &Report| !report.faults.is_empty())
 }
 
 #[derive(Debug, Serialize)]

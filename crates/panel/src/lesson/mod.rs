@@ -68,13 +68,11 @@ pub(crate) trait Driven {
     fn cycle(&mut self) -> Result<(), String>;
 }
 
-/// Begins a lesson of the machine's folder, whose task begins when the machine is prepared for it: that takes time of
-/// the machine.
+/// Begins a lesson, whose task begins when the machine is prepared for it: that takes time of the machine.
 ///
 /// # Errors
-/// In words, when there is none of this name or it cannot begin.
-pub(crate) fn begin(station: &mut dyn Driven, name: &str) -> Result<LessonRun, String> {
-    let lesson = load(station.machine(), name)?;
+/// In words, when it cannot begin.
+pub(crate) fn begin(station: &mut dyn Driven, lesson: Lesson) -> Result<LessonRun, String> {
     begin::begin(station, &lesson)?;
     let begun_us = station.host().control().time_us();
     let now = Progress {
@@ -109,7 +107,11 @@ pub(crate) fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, 
     paths.iter().map(titled).collect()
 }
 
-fn load(machine: &LoadedMachine, name: &str) -> Result<Lesson, String> {
+/// Reads a lesson of the machine's folder.
+///
+/// # Errors
+/// In words, each fault with its file and line, when there is none of this name or it has faults.
+pub(crate) fn load(machine: &LoadedMachine, name: &str) -> Result<Lesson, String> {
     if !crate::programs::is_name(name) {
         return Err(format!("`{name}` is no name of a lesson"));
     }

@@ -103,15 +103,18 @@ impl Station {
         self.lesson.as_ref()
     }
 
-    /// Begins a lesson, as fast as the machine gets ready for it, or ends the one that goes on.
+    /// Begins a lesson, as fast as the machine gets ready for it, or ends the one that goes on. One that cannot be read
+    /// changes nothing.
     pub(super) fn begin_lesson(&mut self, name: Option<&str>) -> Result<(), Refusal> {
+        let lesson = name.map(|name| lesson::load(&self.machine, name)).transpose();
+        let lesson = lesson.map_err(Refusal)?;
         self.lesson = None;
-        let Some(name) = name else {
+        let Some(lesson) = lesson else {
             return Ok(());
         };
         self.steps.break_off(StepsEnd::Elsewhere);
         self.host.set_clock(Clock::Free);
-        let begun = lesson::begin(self, name);
+        let begun = lesson::begin(self, lesson);
         self.host.set_clock(self.clock());
         self.lesson = Some(begun.map_err(Refusal)?);
         Ok(())
