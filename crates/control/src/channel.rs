@@ -632,7 +632,8 @@ impl Channel {
                 self.desk.switch_plane(on, list, &axes, chain)
             }
             Command::MFunction(_) | Command::Speed(_) | Command::JogIncrement(_) | Command::Handwheel(..) => {
-                self.desk.enter(&command, &machine.axes.of(self.number))
+                self.desk
+                    .enter(&command, machine.model, &machine.axes.of(self.number))
             }
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
             Command::AxisLimit(axis, range, limits) if !self.run.is_active() => {

@@ -1,12 +1,14 @@
 //! MANUAL OPERATION, ELECTRONIC HANDWHEEL, and the reference run before them [003:1031-1145].
 
-use bahn_control::{Command, Mode};
+use bahn_control::{Command, Message, Mode};
 use bahn_dialogue::Key;
+use bahn_exchange::signal;
+use bahn_parameters::MessageId;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::handwheel::Handwheel;
 use crate::pages::number::Number;
-use crate::pages::{datum, handwheel, probe, table};
+use crate::pages::{datum, handwheel, probe, supplementary, table};
 use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
@@ -22,11 +24,12 @@ impl Page for ByHand {
             return Turn::Refused;
         }
         match key {
-            Key::X => datum::ask(0, site),
-            Key::Y => datum::ask(1, site),
-            Key::Z => datum::ask(2, site),
-            Key::Iv => datum::ask(3, site),
-            Key::V => datum::ask(4, site),
+            // With MP7296 = 1 the soft key alone does it [000:6277-6285].
+            Key::X | Key::Y | Key::Z | Key::Iv | Key::V
+                if !site.parameters().operation_parameters().datums.soft_key_only =>
+            {
+                datum::of_key(key, site)
+            }
             Key::M => self.soft_key(0, 0, site),
             Key::S | Key::ToolCall => self.soft_key(0, 1, site),
             Key::TouchProbe => probe::menu(),
@@ -47,11 +50,14 @@ impl Page for ByHand {
             true => site.words("3D ROT OFF"),
             false => site.words("3D ROT ON"),
         };
-        vec![vec![
+        // "Jog increment" is asked in ELECTRONIC HANDWHEEL, where the PLC enables it [000:8496-8499].
+        let jogs =
+            site.mode() == Mode::Handwheel && site.control().memory().bit(signal::ENABLE_JOG_INCREMENT);
+        let first = vec![
             "M".to_owned(),
             "S".to_owned(),
             site.words("TOUCH PROBE"),
-            site.words("INCREMENT"),
+            there(jogs, site.words("INCREMENT")),
             site.words("HANDWHEEL"),
             there(rules.tilting, leans),
             // Until all axes have passed theirs [000:4581].
@@ -60,11 +66,13 @@ impl Page for ByHand {
                 site.words("PASS OVER REFERENCE"),
             ),
             there(table::has_tools(site), site.words("TOOL TABLE")),
-        ]]
+        ];
+        vec![first, vec![site.words("DATUM SET")]]
     }
 
-    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+    fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
         match place {
+            0 if row == 1 => datum::page(),
             0 => Turn::Open(Number::ask(
                 site.words("MISCELLANEOUS FUNCTION M ="),
                 |value, site| {
@@ -97,6 +105,9 @@ impl Page for ByHand {
     }
 
     fn show(&self, site: &Site, _lines: usize) -> View {
+        if has_just_come_on(site) {
+            return View::of(software_numbers(site));
+        }
         let asked = match site.mode() {
             Mode::Reference => missing_references(site),
             Mode::Handwheel => factor(site),
@@ -113,6 +124,33 @@ impl Page for ByHand {
                 ..Dialogue::default()
             },
         }
+    }
+}
+
+/// POWER INTERRUPTED still stands there.
+fn has_just_come_on(site: &Site) -> bool {
+    let mut shown = site.control().shown().iter();
+    shown.any(|shown| shown.message == Message::Plain(MessageId::PowerInterrupted))
+}
+
+/// Behind switch-on the numbers of the NC and PLC software are displayed [000:327].
+fn software_numbers(site: &Site) -> Window {
+    let numbers = [
+        (site.words("NC SOFTWARE NUMBER"), supplementary::nc_number()),
+        (site.words("PLC SOFTWARE NUMBER"), supplementary::plc_number(site)),
+    ];
+    let lines: Vec<Line> = numbers
+        .into_iter()
+        .map(|(name, number)| Line {
+            text: format!("{name}: {number}"),
+            ..Line::default()
+        })
+        .collect();
+    Window {
+        kind: WindowKind::Text,
+        total: lines.len(),
+        lines,
+        ..Window::default()
     }
 }
 
