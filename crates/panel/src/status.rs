@@ -1,7 +1,7 @@
 //! The status display, made of what the control shows [003:949-971].
 
 use bahn_control::{AxisState, Control, InForce, Mode, RunState, Snapshot};
-use bahn_exchange::{Bit, BitArea, signal};
+use bahn_exchange::signal;
 use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::machining::Decimal;
 use bahn_parameters::{ControlModel, ParameterList};
@@ -13,8 +13,6 @@ use crate::settings::{PositionType, Settings};
 
 /// Millimetres of an inch.
 const INCH_MM: f64 = 25.4;
-/// M2610: the T of the tool is shown inverse [000:10831].
-const TOOL_INVERSE: Option<Bit> = Bit::new(BitArea::M, 2610);
 /// MP40 shows the spindle [000:3420-3432].
 const SPINDLE_SHOWN: u32 = 1 << 5;
 /// Step of the angle of the spindle, degrees (inferred).
@@ -125,7 +123,7 @@ pub(crate) fn of(
         inch: settings.inch,
         axes: axes.collect(),
         tool: snapshot.tool,
-        t_inverse: TOOL_INVERSE.is_some_and(|marker| control.memory().bit(marker)),
+        t_inverse: control.memory().bit(signal::TOOL_DISPLAY_INVERSE),
         tool_axis,
         s: snapshot.spindle.programmed_rpm,
         gear: snapshot.spindle.gear,

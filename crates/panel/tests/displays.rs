@@ -55,12 +55,11 @@ fn mp40_chooses_the_axes_of_the_display() {
 fn mp7285_leaves_the_tool_length_out_of_the_display() {
     let shown = |value: &str| {
         let mut trainee = with("mill", &[("MP7285", value)]);
-        trainee.write(
-            "programs/LONG.H",
-            "BEGIN PGM LONG MM\nTOOL CALL 1 Z S1000\nL X+10 Y+10 R0 FMAX\nEND PGM LONG MM\n",
-        );
         trainee.ready();
-        trainee.press("FULL PGM_NR L O N G ENT NC_START");
+        trainee
+            .press("MDI")
+            .give(r#"{"text":"TOOL CALL 2 Z S1000"}"#)
+            .press("NC_START");
         trainee.until(5.0, |screen| screen.status.star == Star::Steady);
         trainee.until(120.0, |screen| screen.status.star == Star::Off);
         trainee.press("MANUAL").wait(0.3);

@@ -105,6 +105,9 @@ fn the_prompt_of_a_special_tool() {
     ] {
         let mut trainee = Trainee::at(machine);
         trainee.ready();
+        if machine == "mill-tnc360" {
+            trainee.write("tools.tsv", "T\tL\tR\tST\n1\t60\t10\t\n");
+        }
         trainee.press("ENT");
         if machine == "mill" {
             trainee.soft("POCKET TABLE");
@@ -142,7 +145,7 @@ fn mod_beside_an_interrupted_program() {
 #[test]
 fn a_test_run_cannot_show_the_first_rotary_block() {
     let mut trainee = Trainee::at("mill");
-    let blocks = "L X+10 R0 FMAX\nL C+90\nSTOP\nL X+20\n";
+    let blocks = "L X+10 R0 FMAX\nL C+90 F1000\nSTOP\nL X+20\n";
     trainee.write(
         "programs/82.H",
         &format!(

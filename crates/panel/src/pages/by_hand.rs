@@ -4,6 +4,7 @@ use bahn_control::{Command, Message, Mode};
 use bahn_dialogue::Key;
 use bahn_exchange::signal;
 use bahn_parameters::MessageId;
+use bahn_parameters::technology::Technology;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::handwheel::Handwheel;
@@ -12,6 +13,8 @@ use crate::pages::{datum, handwheel, probe, supplementary, table};
 use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
+/// Greatest spindle speed that is entered, rpm [003:2180].
+const SPEED_MAX: f64 = 99_999.999;
 /// Largest jog increment, mm [000:8494-8520].
 const JOG_MAX: f64 = 50.0;
 
@@ -78,11 +81,13 @@ impl Page for ByHand {
                 |value, site| {
                     let whole =
                         (value.fract() == 0.0 && (0.0..=999.0).contains(&value)).then_some(value as u16);
-                    whole.is_some_and(|m| site.command(Command::MFunction(m)))
+                    let model = site.control().model();
+                    let known = whole.filter(|m| Technology::of_m(model, *m).is_some());
+                    known.is_some_and(|m| site.command(Command::MFunction(m)))
                 },
             )),
             1 => Turn::Open(Number::ask(site.words("SPINDLE SPEED S ="), |value, site| {
-                site.command(Command::Speed(value))
+                (0.0..=SPEED_MAX).contains(&value) && site.command(Command::Speed(value))
             })),
             2 => probe::menu(),
             3 => Turn::Open(Number::ask(site.words("JOG-INCREMENT ="), |value, site| {
