@@ -38,6 +38,11 @@ impl Axes {
         self.units.iter().filter(move |unit| unit.channel == channel)
     }
 
+    /// The axis that a slave follows.
+    pub fn master(&self, slave: &AxisUnit) -> Option<&AxisUnit> {
+        self.units.get(slave.coupling.as_ref()?.master)
+    }
+
     pub fn iter(&self) -> std::slice::Iter<'_, AxisUnit> {
         self.units.iter()
     }

@@ -636,7 +636,10 @@ impl Channel {
                 let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
                 self.desk.switch_plane(on, list, &axes, chain)
             }
-            ref entered if entered.is_by_hand() => self.desk.enter(&command, &machine.axes.of(self.number)),
+            ref entered if entered.is_by_hand() => {
+                self.desk
+                    .enter(&command, machine.model, &machine.axes.of(self.number))
+            }
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
             Command::AxisLimit(axis, range, limits) if !self.run.is_active() => {
                 let done = self

@@ -167,6 +167,8 @@ pub enum Command {
 
 /// Where CUR.TIME of a tool ends, minutes (inferred).
 pub(crate) const CURRENT_MAX_MIN: f64 = 9999.0;
+/// Greatest spindle speed that is entered, rpm [003:2180].
+pub(crate) const SPEED_MAX: f64 = 99_999.999;
 /// Greatest feed of a step, mm/min: that of MP1010.
 const FEED_MAX: f64 = 300_000.0;
 /// Greatest Q parameter [003:4290-4300].
@@ -261,7 +263,7 @@ impl FromStr for Command {
             "code" => number(name, rest, 0, u32::MAX).map(Command::Code),
             "m" => number(name, rest, 0, 999).map(Command::MFunction),
             "key" => number(name, rest, 58, 0xFF50).map(Command::Key),
-            "s" => value(name, rest, 0.0, 99_999.999).map(Command::Speed),
+            "s" => value(name, rest, 0.0, SPEED_MAX).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
             "oscilloscope" => oscilloscope(rest),
             "output" if rest == "ramp" => Ok(Command::Output(None)),

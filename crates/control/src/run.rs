@@ -660,6 +660,7 @@ impl ProgramRun {
     /// The next start begins anew, not with the block of an interruption.
     fn begin_at(&mut self, block: u32) {
         self.selection.start_block = block;
+        self.track.forget_feed();
         self.source.forget();
         self.progress.leave_fault();
     }

@@ -7,7 +7,6 @@ use crate::axis::AxisUnit;
 use crate::channel::Channel;
 use crate::command::Mode;
 use crate::handshake::Waiting;
-use crate::kinematics::Chain;
 use crate::machine::MachineSide;
 use crate::message::Shown;
 use crate::progress::RunState;
@@ -25,6 +24,8 @@ pub struct AxisState {
     pub actual: f64,
     /// Nominal position from the workpiece datum, mm or degrees.
     pub nominal: f64,
+    /// Length of the tool in `actual` and `nominal`, mm; 0 beside the tool axis.
+    pub tool_length_mm: f64,
     /// Actual position from the machine datum (REF), mm or degrees.
     pub machine: f64,
     /// Servo lag, mm or degrees.
@@ -62,7 +63,7 @@ pub struct Snapshot {
     pub axes: Vec<AxisState>,
     /// Path speed, mm/min.
     pub feed_mm_min: f64,
-    /// Programmed feed, mm/min; `None` for rapid traverse.
+    /// Programmed feed, mm/min, between blocks that which was programmed last; `None` while a block moves in rapid traverse.
     pub programmed_feed_mm_min: Option<f64>,
     /// Feed override in force, %.
     pub feed_override_percent: f64,
@@ -81,18 +82,31 @@ pub struct Snapshot {
 }
 
 impl AxisState {
-    /// The state of an axis of a channel whose path is at an actual and a nominal position.
-    fn of(unit: &AxisUnit, at: &[Position; 2], run: &ProgramRun, chain: &Chain) -> AxisState {
+    /// The state of an axis of a channel whose path is at an actual and a nominal position. The nominal value of a slave is
+    /// that of its master [000:4523].
+    fn of(
+        unit: &AxisUnit,
+        at: &[Position; 2],
+        run: &ProgramRun,
+        channel: &Channel,
+        machine: &MachineSide,
+    ) -> AxisState {
         let [actual, nominal] = at;
+        let leads = machine.axes.master(unit).unwrap_or(unit);
+        let offsets = &channel.chain().offsets;
         AxisState {
             letter: unit.axis.letter(),
             index: unit.index,
             actual: unit.shown(actual[unit.axis]),
-            nominal: unit.shown(nominal[unit.axis]),
+            nominal: unit.shown(nominal[leads.axis]),
+            tool_length_mm: match offsets.tool_axis == unit.axis {
+                true => offsets.tool_length,
+                false => 0.0,
+            },
             machine: unit.shown(unit.servo.actual_mm()),
             lag: unit.lag_mm(),
             max_lag: unit.max_lag,
-            distance_to_go: run.distance_to_go(unit, chain),
+            distance_to_go: run.distance_to_go(unit, channel.chain()),
             referenced: unit.referenced,
             closed: unit.servo.closed(),
             enabled: unit.enabled,
@@ -113,7 +127,7 @@ impl Snapshot {
         axes.clear();
         let units = machine.axes.owned(channel.number());
         let at = path_positions(units.clone(), channel.chain());
-        axes.extend(units.map(|unit| AxisState::of(unit, &at, run, channel.chain())));
+        axes.extend(units.map(|unit| AxisState::of(unit, &at, run, channel, machine)));
         if messages != machine.messages.shown() {
             messages = machine.messages.shown().to_vec();
         }

@@ -41,6 +41,8 @@ pub struct SpindleState {
     pub gear: u8,
     /// M03, M04 or M05 as shown.
     pub rotation: Rotation,
+    /// Its angle, degrees, once its reference mark was crossed.
+    pub angle_deg: Option<f64>,
 }
 
 /// Where a spindle is connected.
@@ -620,6 +622,7 @@ impl SpindleUnit {
             volts: self.servo.volts(),
             gear: self.servo.gear_range() + 1,
             rotation: self.rotation,
+            angle_deg: self.angle_deg(),
         }
     }
 }

@@ -35,6 +35,8 @@ pub(crate) struct Track {
     last: Option<Position>,
     /// The path speed, mm/s.
     speed: f64,
+    /// The feed that was programmed last, mm/min.
+    feed: f64,
     /// The PLC chose another traverse range: the blocks that are on their way are to be looked at anew.
     pub range_changed: bool,
     /// The limits of the path have changed; they take effect when no program runs.
@@ -48,6 +50,7 @@ impl Track {
             waiting: VecDeque::new(),
             last: None,
             speed: 0.0,
+            feed: 0.0,
             range_changed: false,
             limits_changed: false,
         }
@@ -168,6 +171,9 @@ impl Track {
         let element = self.path.element();
         if let Some(element) = element {
             chain.place(element.placement.as_ref());
+            if let (FeedRate::Programmed(feed), false) = (element.feed, element.curve == Curve::Hold) {
+                self.feed = feed;
+            }
         }
         let nominal = chain.to_axes(position);
         let superimposed = &chain.superimposed;
@@ -264,12 +270,20 @@ impl Track {
         }
     }
 
-    /// Programmed feed of the element that is executed, mm/min; `None` for rapid traverse.
+    /// The feed of the element that is on its way, mm/min, `None` for rapid traverse. Where none is, that which was
+    /// programmed last: it holds until another one comes, rapid traverse in its block only [003:2164].
     pub fn programmed_feed(&self) -> Option<f64> {
-        match self.path.element()?.feed {
-            FeedRate::Programmed(feed) => Some(feed),
-            FeedRate::Rapid => None,
+        let on_its_way = self.path.element().filter(|_| self.path.part() < 1.0);
+        match on_its_way.map(|element| element.feed) {
+            Some(FeedRate::Programmed(feed)) => Some(feed),
+            Some(FeedRate::Rapid) => None,
+            None => Some(self.feed),
         }
+    }
+
+    /// Another program has its own feed.
+    pub fn forget_feed(&mut self) {
+        self.feed = 0.0;
     }
 }
 

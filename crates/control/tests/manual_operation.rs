@@ -3,6 +3,7 @@
 
 mod support;
 
+use bahn_control::Command;
 use support::bench::*;
 
 /// The axis runs as long as its key is pressed, with MP1020 = 1200 mm/min; two axes at once [003:1031-1041].
@@ -299,6 +300,22 @@ fn m_and_s_with_nc_start() {
     let edges = rig.edges(0.4, &["M2045", "M2043", "M2480"]);
     assert_eq!(edges, ["M2043=1", "M2480=1", "M2043=0", "M2480=0"]);
     assert_eq!((rig.number("W256"), rig.number("D356")), (1, 2_000_000));
+}
+
+/// S is 0 to 99 999 rpm [003:2180], and there is no M100: both are refused when they are entered.
+#[test]
+fn m_and_s_that_are_none_are_refused_when_they_are_entered() {
+    let mut rig = bench("").ready();
+    for refused in [
+        Command::Speed(100_000.0),
+        Command::Speed(-1.0),
+        Command::MFunction(100),
+    ] {
+        assert!(!rig.control.command(refused.clone()), "{refused}");
+    }
+    for taken in [Command::Speed(99_999.0), Command::MFunction(99)] {
+        assert!(rig.control.command(taken.clone()), "{taken}");
+    }
 }
 
 /// Leaving the mode while an axis runs: it goes down its ramp.

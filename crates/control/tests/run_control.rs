@@ -132,6 +132,27 @@ fn feed_override() {
     }
 }
 
+/// A numerical feed remains in effect until a block with another one: rapid traverse counts in its block only, and at a
+/// stop the feed is still there [003:2164]. Another program has its own.
+#[test]
+fn the_feed_stays_at_a_stop() {
+    let mut rig = bench_with(ACKNOWLEDGE, "L X+150 R0 F2000\nL X+100 FMAX\nSTOP\nL X+50 F500");
+    let feed = |rig: &Rig| rig.control.snapshot().programmed_feed_mm_min;
+    rig.start();
+    rig.until(20.0, "rapid traverse", |rig| feed(rig).is_none());
+    rig.until(20.0, "the stop", |rig| {
+        rig.control.run_state() == RunState::Stopped
+    });
+    rig.settle();
+    assert_eq!(feed(&rig), Some(2000.0));
+    rig.start();
+    rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+    rig.settle();
+    assert_eq!(feed(&rig), Some(500.0));
+    rig.command("goto 0");
+    assert_eq!(feed(&rig), Some(0.0));
+}
+
 /// Rapid traverse never exceeds MP1010, and falls with the override; D596 limits it for the PLC
 /// [000:4812-4814].
 #[test]

@@ -45,6 +45,22 @@ fn the_slave_follows() {
     assert_eq!(rig.messages(), [""; 0]);
 }
 
+/// The nominal value displayed for the slave axis indicates the nominal value of the master axis [000:4523], wherever the
+/// datum of the slave lies.
+#[test]
+fn the_nominal_value_of_the_slave_is_that_of_its_master() {
+    let mut rig = gantry("").ready();
+    for datum in ["datum X 30", "datum V 500"] {
+        rig.control.command(datum.parse().unwrap());
+    }
+    rig.event("key RAPID press");
+    rig.event("key X- press");
+    rig.seconds(0.4);
+    let [master, slave] = ['X', 'V'].map(|letter| rig.axis(letter).nominal);
+    assert!(master < 30.0, "{master}");
+    assert_eq!(slave, master);
+}
+
 /// The slave cannot be moved independently [000:4519], by a program neither; nor can an axis of the PLC (MP60).
 #[test]
 fn no_program_moves_the_slave() {

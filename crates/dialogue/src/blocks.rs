@@ -251,9 +251,9 @@ pub(crate) static BLOCKS: &[BlockRow] = &[
     row("BLK FORM", Some(Key::BlkForm), "", false, &[
         line("BLK FORM 0.1", &[
             slot(" ", "", Ask::Axes(1), "tool_axis", Required),
-            slot(" ", "", coordinates(Most::Count(3), false), "blank_min", Required),
+            slot(" ", "", coordinates(Most::Corner, false), "blank_min", Required),
         ]),
-        line("BLK FORM 0.2", &[slot(" ", "", coordinates(Most::Count(3), true), "blank_max", Required)]),
+        line("BLK FORM 0.2", &[slot(" ", "", coordinates(Most::Corner, true), "blank_max", Required)]),
     ]),
     row("FN 0", None, "", false, &[line("FN0:", &one(" = "))]),
     row("FN 1", None, "", false, &[line("FN1:", &two(" + "))]),

@@ -1,9 +1,10 @@
 //! What the control says of an entry before it becomes a block.
 
 use bahn_parameters::MessageId::{
-    self, EntryValueIncorrect, JumpToLabelZeroNotPermitted, LabelNumberAllocated, WrongSignProgrammed,
+    self, EntryValueIncorrect, JumpToLabelZeroNotPermitted, LabelNumberAllocated, WrongAxisProgrammed,
+    WrongSignProgrammed,
 };
-use bahn_program::{CycleWord, InputSteps, Operation, Program, check_limits};
+use bahn_program::{CycleWord, InputSteps, Operation, Program, Value, check_limits};
 
 use crate::Setting;
 use crate::field::Field;
@@ -34,8 +35,22 @@ impl Context<'_> {
         }
         let mut operation = read.block.operation;
         self.check_operation(&mut operation, line.is_complete())?;
-        let signs = std::iter::once(line).chain(others);
-        let mut signs = signs.flat_map(Line::fields).filter_map(working_sign);
+        let others: Vec<&Line> = others.into_iter().collect();
+        let all = || {
+            std::iter::once(line)
+                .chain(others.iter().copied())
+                .flat_map(Line::fields)
+        };
+        if line.fields().iter().any(is_wrongly_negative) {
+            return Err(EntryValueIncorrect);
+        }
+        let sides: Vec<&str> = all().filter_map(side).collect();
+        if let [first, second] = sides.as_slice()
+            && first == second
+        {
+            return Err(WrongAxisProgrammed);
+        }
+        let mut signs = all().filter_map(working_sign);
         let first = signs.next();
         match signs.any(|sign| Some(sign) != first) {
             true => Err(WrongSignProgrammed),
@@ -53,7 +68,10 @@ impl Context<'_> {
             return Err(EntryValueIncorrect);
         }
         let mut parts = operation.parts().iter();
-        parts.try_for_each(|part| self.labels(part, complete))
+        parts.try_for_each(|part| {
+            zero_tool(part)?;
+            self.labels(part, complete)
+        })
     }
 
     /// A label is set once [003:7881-7883], and label 0 is only an end [003:7885-7887].
@@ -80,6 +98,44 @@ impl Context<'_> {
             _ => Ok(()),
         }
     }
+}
+
+/// Tool 0 has length and radius 0 [003:1816].
+fn zero_tool(operation: &Operation) -> Result<(), MessageId> {
+    let is_other = |value: &Option<Value>| matches!(value, Some(Value::Number(number)) if *number != 0.0);
+    match operation {
+        Operation::ToolDefinition {
+            tool: Value::Number(0.0),
+            length,
+            radius,
+        } if is_other(length) || is_other(radius) => Err(EntryValueIncorrect),
+        _ => Ok(()),
+    }
+}
+
+/// Words of cycles that the manual wants positive: the sides of a pocket [003:5250], the finishing allowance [003:5510], radii;
+/// and a time limit, for which 0 is none [003:6723-6725].
+const NOT_NEGATIVE: [&str; 6] = [
+    "cycle 4.4 side",
+    "cycle 4.5 side",
+    "cycle 4.6 RADIUS",
+    "cycle RADIUS",
+    "cycle ALLOW",
+    "probe TIME:",
+];
+
+fn is_wrongly_negative(field: &Field) -> bool {
+    let is_negative = |value: &str| value.parse().is_ok_and(|number: f64| number < 0.0);
+    NOT_NEGATIVE.contains(&field.slot.prompt) && field.words.iter().any(|word| is_negative(&word.value))
+}
+
+/// The axis of a side of a slot or pocket: both lie in the working plane, on one axis each [003:5110-5250].
+fn side(field: &Field) -> Option<&str> {
+    let word = field
+        .words
+        .first()
+        .filter(|_| field.slot.prompt.ends_with(" side"))?;
+    Some(&word.address)
 }
 
 /// Whether a value that shows the working direction is negative; that of a Q parameter or of 0 is not known.

@@ -34,6 +34,8 @@ const CENTRE: Ask = Ask::Coordinates {
     most: Most::Count(3),
     table: false,
 };
+/// The probe function whose coordinates are corners [003:6577-6611].
+const RANGE: u16 = 5;
 /// Assignments in a block, as the example of the manual has them [000:17953-17964].
 const ASSIGNMENTS: usize = 3;
 
@@ -198,7 +200,11 @@ impl Place {
         let name = parameter.name;
         let one = |ask, what: &str| vec![Field::new(slot(ask, id(what), need))];
         match parameter.quantity {
-            Quantity::Coordinates => one(coordinates(Most::Count(3), true), "coordinates"),
+            Quantity::Coordinates => {
+                let ranges = self.function == CycleFunction::Probe && self.number == RANGE;
+                let most = if ranges { Most::Corner } else { Most::Count(3) };
+                one(coordinates(most, true), "coordinates")
+            }
             Quantity::Side => one(coordinates(Most::Count(1), false), "side"),
             Quantity::Shift => one(SHIFT, "shift"),
             Quantity::Axes => {

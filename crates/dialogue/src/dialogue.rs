@@ -278,6 +278,11 @@ impl Dialogue {
                 _ => {}
             }
         }
+        if typing.in_turn && field.in_turn().is_some() {
+            typing.settle(field);
+            *typing = Typing::default();
+            return Ok(Step::Stay);
+        }
         let list = field.slot.ask.is_list() && typing.word.is_some();
         let more = list && field.words.len() < field.slot.ask.most(context.setting.model.limits());
         if let Err(message) = self.confirm(context) {

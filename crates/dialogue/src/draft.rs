@@ -218,6 +218,7 @@ impl Draft {
     fn set_typing(&mut self, typing: Typing) {
         self.typing = typing.word.map(|word| {
             let fresh = match typing.fresh {
+                Fresh::No if typing.in_turn => 3,
                 Fresh::No => 0,
                 Fresh::Yes => 1,
                 Fresh::Negative => 2,
@@ -231,11 +232,12 @@ impl Draft {
         Typing {
             word: self.typing.map(|(word, _)| word),
             fresh: match self.typing {
-                None | Some((_, 0)) => Fresh::No,
+                None | Some((_, 0 | 3)) => Fresh::No,
                 Some((_, 2)) => Fresh::Negative,
                 Some(_) => Fresh::Yes,
             },
             incremental: self.incremental,
+            in_turn: matches!(self.typing, Some((_, 3))),
         }
     }
 }

@@ -9,6 +9,8 @@ use crate::{Key, Wanted};
 
 /// Stands before the line of a datum table.
 pub(crate) const TABLE_LINE: &str = "#";
+/// Axes of a corner, in their sequence.
+const CORNER: [&str; 3] = ["X", "Y", "Z"];
 /// Most dialogue texts of a cycle: its name and 14 parameters [000:17742].
 const DIALOG_TEXTS_MAX: usize = 15;
 
@@ -43,6 +45,8 @@ pub(crate) enum Most {
     Circle,
     /// So many.
     Count(u8),
+    /// X, Y and Z of a corner: numbers without axis keys are for them in this sequence [003:6611].
+    Corner,
 }
 
 impl Most {
@@ -51,6 +55,7 @@ impl Most {
             Most::Line => limits.line_axes_max,
             Most::Circle => limits.circle_axes_max.max(limits.helix_axes_max),
             Most::Count(count) => count,
+            Most::Corner => CORNER.len() as u8,
         })
     }
 }
@@ -437,6 +442,18 @@ impl Field {
             "" => self.glue.trim(),
             address => address,
         }
+    }
+
+    /// The axis that a number without one is for, where a corner is asked for.
+    pub(crate) fn in_turn(&self) -> Option<&'static str> {
+        let Ask::Coordinates {
+            most: Most::Corner, ..
+        } = self.slot.ask
+        else {
+            return None;
+        };
+        let is_free = |letter: &&str| self.words.iter().all(|word| word.address != *letter);
+        CORNER.into_iter().find(is_free)
     }
 
     /// What stands between its words.

@@ -38,6 +38,8 @@ pub(crate) struct Typing {
     pub(crate) fresh: Fresh,
     /// `I` was pressed before the axis.
     pub(crate) incremental: bool,
+    /// The word has the axis whose turn it was: ENT goes on to the next one.
+    pub(crate) in_turn: bool,
 }
 
 impl Typing {
@@ -46,7 +48,7 @@ impl Typing {
         Typing {
             word: Some(word),
             fresh: Fresh::Yes,
-            incremental: false,
+            ..Typing::default()
         }
     }
 
@@ -178,6 +180,15 @@ impl Typing {
         let count = field.words.len();
         let index = match self.word.filter(|word| *word < count) {
             Some(word) => word,
+            None if let Some(letter) = field.in_turn() => {
+                field.words.push(Word {
+                    incremental: std::mem::take(&mut self.incremental),
+                    address: letter.to_owned(),
+                    value: String::new(),
+                });
+                (self.fresh, self.in_turn) = (Fresh::No, true);
+                count
+            }
             None if !field.slot.ask.begins_with_value() => return Err(KeyNonFunctional),
             None if field.slot.ask.is_list() || count == 0 => {
                 let incremental = std::mem::take(&mut self.incremental);
@@ -263,6 +274,7 @@ impl Typing {
     /// An axis key: its word is entered next.
     fn axis(&mut self, field: &mut Field, letter: char, setting: &Setting) -> Result<(), MessageId> {
         let most = field.slot.ask.most(setting.model.limits());
+        self.in_turn = false;
         let mut word = Word {
             incremental: std::mem::take(&mut self.incremental),
             address: letter.to_string(),

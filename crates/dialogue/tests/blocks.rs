@@ -2,7 +2,8 @@
 
 mod desk;
 
-use bahn_parameters::ControlModel;
+use bahn_dialogue::{Key, Reaction};
+use bahn_parameters::{ControlModel, MessageId};
 use desk::Desk;
 
 /// The block that keys give on a control.
@@ -231,6 +232,11 @@ fn probe_functions() {
             "5 ENT 5007 ENT Z ENT X 0 Y 0 Z 0 ENT X 10 Y 10 Z 20 ENT 100 ENT",
             "5.0 RANGE|5.1 PGM NAME: 5007|5.2 Z X+0 Y+0 Z+0|5.3 X+10 Y+10 Z+20|5.4 HEIGHT: +100",
         ),
+        // X, Y and Z of both corners in sequence, without their keys [003:6609-6624].
+        (
+            "5 ENT 5007 ENT Z ENT 0 ENT 0 ENT 0 ENT 10 ENT 10 ENT 20 ENT 100 ENT",
+            "5.0 RANGE|5.1 PGM NAME: 5007|5.2 Z X+0 Y+0 Z+0|5.3 X+10 Y+10 Z+20|5.4 HEIGHT: +100",
+        ),
         (
             "6 ENT X ENT .5 ENT .2 ENT .8 ENT",
             "6.0 MEANDER|6.1 DIRECTN: X|6.2 TRAVEL: 0.5 L.SPAC: 0.2 P.P. INT: 0.8",
@@ -242,6 +248,18 @@ fn probe_functions() {
     ] {
         let wanted: Vec<String> = text.split('|').map(|line| format!("TCH PROBE {line}")).collect();
         assert_eq!(block(&format!("TOUCH_PROBE {keys}")), wanted.join("\n"), "{keys}");
+    }
+}
+
+/// The corners of a blank are asked like those of a range; a key of an axis goes before the sequence.
+#[test]
+fn corners_of_a_blank_are_entered_in_sequence() {
+    let wanted = "BLK FORM 0.1 Z X+0 Y+5 Z-40\nBLK FORM 0.2 X+100 Y+100 IZ+40";
+    for corners in [
+        "0 ENT 5 ENT -40 ENT 100 ENT 100 ENT I 40 ENT",
+        "X 0 Y 5 Z -40 ENT X 100 Y 100 I Z 40 ENT",
+    ] {
+        assert_eq!(block(&format!("BLK_FORM Z ENT {corners}")), wanted, "{corners}");
     }
 }
 
@@ -288,4 +306,37 @@ fn a_line_of_text_is_a_block() {
         desk.blocks(),
         ["L X+5 Y-3.5 R0 FMAX M3", "BLK FORM 0.1 Z X+0 Y+0 Z-5"]
     );
+}
+
+/// What cannot be meant is refused when it is entered: tool 0 has no length and radius [003:1816], the sides of a pocket lie on
+/// two axes and are positive [003:5242-5250], the allowance is positive [003:5510], a time limit is 0 or more [003:6723].
+#[test]
+fn what_a_cycle_cannot_mean_is_refused_when_it_is_entered() {
+    let incorrect = MessageId::EntryValueIncorrect;
+    let pocket = "CYCL_DEF 4 ENT -2 ENT -10 ENT -4 ENT 80 ENT";
+    for (keys, wrong, message, right) in [
+        ("TOOL_DEF 0 ENT 0 ENT".to_owned(), "5", incorrect, "CE 0"),
+        (pocket.to_owned(), "X SIGN 80", incorrect, "X 80"),
+        (
+            format!("{pocket} X 80 ENT"),
+            "X 40",
+            MessageId::WrongAxisProgrammed,
+            "CE CE Y 40",
+        ),
+        ("TOUCH_PROBE 7 ENT".to_owned(), "SIGN 200", incorrect, "SIGN"),
+    ] {
+        let mut desk = Desk::new();
+        desk.enter(&keys);
+        for key in wrong.split(' ') {
+            desk.enter(key);
+        }
+        assert_eq!(
+            desk.editor.key(Key::Ent),
+            Reaction::Refused(message),
+            "{keys} {wrong}"
+        );
+        desk.enter(right);
+        let reaction = desk.editor.key(Key::Ent);
+        assert!(!matches!(reaction, Reaction::Refused(_)), "{keys} {right}");
+    }
 }

@@ -42,6 +42,8 @@ pub struct MachineFolder {
     pub pockets: Option<String>,
     /// Folder of the part programs, and of the tables that belong to them.
     pub programs: String,
+    /// Files that the memory of the control holds, instead of as many as the control model has room for; 0 is any number.
+    pub files_max: Option<usize>,
     /// The pallet file (.P) with M status, in the folder of the part programs [000:15332-15334].
     pub pallets: Option<String>,
     /// The datum table (.D) with M status until module 9090 selects another one, in the same folder.
@@ -186,6 +188,9 @@ impl MachineFolder {
             tools: optional("tools"),
             pockets: optional("pockets"),
             programs: optional("programs").unwrap_or_else(|| "programs".to_owned()),
+            files_max: root
+                .number("files_max", 0.0..=100_000.0)
+                .map(|number| number as usize),
             pallets: optional("pallets"),
             datum_table: optional("datum_table"),
             state: optional("state").unwrap_or_else(|| "state".to_owned()),

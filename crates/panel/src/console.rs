@@ -3,7 +3,7 @@
 
 use bahn_control::{Command, Mode};
 use bahn_dialogue::Key;
-use bahn_parameters::MessageId;
+use bahn_parameters::{ControlModel, MessageId};
 
 use crate::graphics::Subject;
 use crate::page::{Page, Side, Turn, View};
@@ -101,11 +101,11 @@ pub(crate) struct Console {
 
 impl Console {
     /// The console at power-on.
-    pub fn new(mode: Mode) -> Console {
+    pub fn new(mode: Mode, model: ControlModel) -> Console {
         Console {
             front: Side::Machine,
             mode,
-            machine: Stack::new(pages::of_mode(mode)),
+            machine: Stack::new(pages::of_mode(mode, model)),
             programming: None,
             split: false,
             notes: Vec::new(),
@@ -239,10 +239,11 @@ impl Console {
             let said: Vec<String> = shown.map(|own| site.translated(own)).collect();
             self.notes.retain(|note| !said.contains(note));
         }
+        pages::follow_help(site);
         // The PLC, an error or power-off may have chosen another mode.
         if site.mode() != self.mode {
             self.mode = site.mode();
-            self.machine = Stack::new(pages::of_mode(self.mode));
+            self.machine = Stack::new(pages::of_mode(self.mode, site.control().model()));
         }
         let front = self.front;
         for side in [Side::Machine, Side::Programming] {
@@ -274,9 +275,9 @@ impl Console {
 
     /// The machine was brought to another moment: its mode has a page as it is then. What is programmed beside it is of
     /// now.
-    pub fn machine_is_elsewhere(&mut self, mode: Mode) {
+    pub fn machine_is_elsewhere(&mut self, mode: Mode, model: ControlModel) {
         self.mode = mode;
-        self.machine = Stack::new(pages::of_mode(mode));
+        self.machine = Stack::new(pages::of_mode(mode, model));
         self.notes.clear();
     }
 

@@ -14,6 +14,8 @@ pub const EMERGENCY_STOP: &str = "EMERGENCY_STOP";
 pub enum Input {
     /// A key of the keyboard.
     Key(Key),
+    /// A key of the keyboard goes down and stays down, or comes up.
+    Held(Key, bool),
     /// A key of the machine operating panel, or `EMERGENCY_STOP`.
     Machine(String, KeyAction),
     /// A line of text at once: what was pasted, or typed on a real keyboard.
@@ -65,7 +67,7 @@ pub struct InputText {
     /// A key of the keyboard or of the machine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub key: Option<String>,
-    /// The key of the machine is pressed, or released; without it, tapped.
+    /// The key is pressed and held, or released; without it, tapped.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub down: Option<bool>,
     /// A line of text.
@@ -155,7 +157,8 @@ impl TryFrom<InputText> for Input {
 /// Keys that the machine does not have are refused where they are pressed.
 fn key(name: String, down: Option<bool>) -> Input {
     match (Key::from_name(&name), down) {
-        (Some(key), _) => Input::Key(key),
+        (Some(key), None) => Input::Key(key),
+        (Some(key), Some(down)) => Input::Held(key, down),
         (None, Some(true)) => Input::Machine(name, KeyAction::Press),
         (None, Some(false)) => Input::Machine(name, KeyAction::Release),
         (None, None) => Input::Machine(name, KeyAction::Tap),
@@ -167,6 +170,10 @@ impl From<&Input> for InputText {
         let mut text = InputText::default();
         match input {
             Input::Key(key) => text.key = Some(key.name().to_owned()),
+            Input::Held(key, down) => {
+                text.key = Some(key.name().to_owned());
+                text.down = Some(*down);
+            }
             Input::Machine(name, action) => {
                 text.key = Some(name.clone());
                 text.down = match action {
@@ -208,6 +215,7 @@ mod tests {
     fn inputs_read_as_they_are_written() {
         for text in [
             r#"{"key":"ENT"}"#,
+            r#"{"key":"END","down":true}"#,
             r#"{"key":"NC_START"}"#,
             r#"{"key":"X+","down":true}"#,
             r#"{"text":"L X+10 R0 F200"}"#,

@@ -1,6 +1,6 @@
 //! What the PLC mode keeps while other pages are shown: the diagram that is recorded, the scan that is traced.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use bahn_control::{Control, ServoSampler};
 use bahn_exchange::{Content, Operand};
@@ -20,6 +20,9 @@ pub(crate) type DiagramRow = (Operand, Option<bool>);
 pub(crate) struct PlcMode {
     /// The code number was entered since power-on.
     pub entered: bool,
+    /// The help file that lies open, and whether the PLC knows its line.
+    pub help: Weak<()>,
+    pub help_told: bool,
     /// The file that was edited last.
     pub edited: Option<String>,
     /// The program that was compiled, for the next power-on.

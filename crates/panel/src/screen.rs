@@ -177,10 +177,12 @@ pub struct Status {
     pub position_type: String,
     /// Positions are in inches.
     pub inch: bool,
-    /// The axes.
+    /// The axes that MP40 shows, and `S` with the angle of a spindle that stands.
     pub axes: Vec<AxisLine>,
     /// Tool in the spindle.
     pub tool: u32,
+    /// The T before it is shown inverse (M2610) [000:10831].
+    pub t_inverse: bool,
     /// The tool axis, when one was called.
     pub tool_axis: Option<String>,
     /// Programmed spindle speed, rpm.
@@ -193,6 +195,8 @@ pub struct Status {
     pub f: String,
     /// Path speed, mm/min.
     pub feed_mm_min: f64,
+    /// F is highlighted: an axis has no feed enable [000:5352].
+    pub f_inverse: bool,
     /// Programmed feed, mm/min, of which the bar graph shows the part; 0 in rapid traverse.
     pub programmed_feed_mm_min: f64,
     /// M functions as shown: `M5/9`.
@@ -237,6 +241,8 @@ pub struct AxisLine {
     pub referenced: bool,
     /// Degrees instead of mm.
     pub degrees: bool,
+    /// The electronic handwheel moves it [003:1051-1062].
+    pub handwheel: bool,
 }
 
 /// The soft-key row below the screen.

@@ -2,6 +2,7 @@
 
 mod teaching;
 mod transfers;
+mod warm_start;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ use crate::timeline::Past;
 use crate::transfer::Transfers;
 use crate::why::Waits;
 use crate::{colours, numbers, status, texts, why};
+use warm_start::WarmStart;
 
 /// Lines of the large window, and of one beside it.
 const LINES: usize = 16;
@@ -57,6 +59,7 @@ pub struct Station {
     paused: bool,
     steps: Steps,
     is_on: bool,
+    warm_start: WarmStart,
     /// Less than a minute of each machine time, µs.
     timers_us: [u64; 3],
     recorder: Option<Recorder>,
@@ -90,13 +93,14 @@ impl Station {
         let state_folder = machine.root.join(&machine.folder.state);
         let (settings, unread) = Settings::read(&state_folder);
         let mut station = Station {
-            console: Console::new(host.control().mode()),
+            console: Console::new(host.control().mode(), host.control().model()),
             stored: settings.clone(),
             speed: 1.0,
             by_the_wall: false,
             paused: false,
             steps: Steps::default(),
             is_on: true,
+            warm_start: WarmStart::default(),
             timers_us: [0; 3],
             recorder: None,
             graphics: Graphics::new(&mut host),
@@ -176,6 +180,7 @@ impl Station {
     fn take(&mut self, input: &Input) -> Result<(), Refusal> {
         match input {
             Input::Key(key) => self.key(*key)?,
+            Input::Held(key, down) => self.hold(*key, *down)?,
             Input::Machine(name, action) => return self.machine_key(name, *action),
             Input::Text(text) => {
                 let (console, mut site) = self.parts();
@@ -208,6 +213,7 @@ impl Station {
     /// When what survives power-off cannot be written; the machine goes on all the same.
     pub fn cycle(&mut self) -> Result<(), HostError> {
         self.steps.pass();
+        self.start_warm();
         let keys = self.host.control().oscilloscope();
         let sampler = self.graphics.scope.sampler(keys);
         let cycled = self.plc.cycle(&mut self.host, sampler);

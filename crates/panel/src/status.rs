@@ -1,9 +1,10 @@
 //! The status display, made of what the control shows [003:949-971].
 
-use bahn_control::{AxisState, Control, InForce, RunState, Snapshot};
+use bahn_control::{AxisState, Control, InForce, Mode, RunState, Snapshot};
 use bahn_exchange::signal;
-use bahn_parameters::ParameterList;
+use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::machining::Decimal;
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::Axis;
 use bahn_servo::Rotation;
 
@@ -12,6 +13,10 @@ use crate::settings::{PositionType, Settings};
 
 /// Millimetres of an inch.
 const INCH_MM: f64 = 25.4;
+/// MP40 shows the spindle [000:3420-3432].
+const SPINDLE_SHOWN: u32 = 1 << 5;
+/// Step of the angle of the spindle, degrees (inferred).
+const SPINDLE_STEP_DEG: f64 = 0.001;
 /// Decimals of an inch display [003:7093-7102].
 const INCH_DECIMALS: usize = 4;
 
@@ -95,10 +100,19 @@ pub(crate) fn of(
     earlier: &Status,
 ) -> Status {
     let notation = Notation::of(settings, parameters);
+    let wheel = match snapshot.mode {
+        Mode::Handwheel => Some(control.first().handwheel().0),
+        _ => None,
+    };
     let axes = snapshot
         .axes
         .iter()
-        .map(|axis| axis_line(axis, parameters, settings.position_type, notation));
+        .filter(|axis| of_axis(axis, parameters).shown);
+    let axes = axes.map(|axis| AxisLine {
+        handwheel: wheel == Some(axis.index),
+        ..axis_line(axis, parameters, settings.position_type, notation)
+    });
+    let axes = axes.chain(spindle_line(snapshot, parameters, notation));
     // While the program is read on another thread what was shown stays.
     let (tool_axis, flags) = match control.first().in_force() {
         Some(in_force) => of_program(&in_force, snapshot.tool),
@@ -109,11 +123,16 @@ pub(crate) fn of(
         inch: settings.inch,
         axes: axes.collect(),
         tool: snapshot.tool,
+        t_inverse: control.memory().bit(signal::TOOL_DISPLAY_INVERSE),
         tool_axis,
         s: snapshot.spindle.programmed_rpm,
         gear: snapshot.spindle.gear,
         spindle_rpm: snapshot.spindle.actual_rpm,
         f: feed(snapshot, control, parameters, notation),
+        f_inverse: snapshot.axes.iter().any(|axis| {
+            let own = of_axis(axis, parameters);
+            !axis.enabled && own.controlled && !own.plc_axis
+        }),
         feed_mm_min: snapshot.feed_mm_min,
         programmed_feed_mm_min: snapshot.programmed_feed_mm_min.unwrap_or_default(),
         m: functions(snapshot, control),
@@ -143,11 +162,40 @@ fn of_program(in_force: &InForce, tool: u32) -> (Option<String>, Vec<String>) {
     (axis, flags.into_iter().flatten().collect())
 }
 
+/// The machine parameters of an axis.
+fn of_axis(axis: &AxisState, parameters: &ParameterList) -> AxisParameters {
+    parameters.axis_parameters(u8::try_from(axis.index).unwrap_or_default())
+}
+
 /// Whether an axis turns, and the step of its display.
 fn step_of(axis: &AxisState, parameters: &ParameterList) -> (bool, f64) {
     let degrees = Axis::from_letter(axis.letter as u8).is_some_and(Axis::is_rotary);
-    let index = u8::try_from(axis.index).unwrap_or_default();
-    (degrees, parameters.axis_parameters(index).travel.display_step_mm)
+    (degrees, of_axis(axis, parameters).travel.display_step_mm)
+}
+
+/// Length of the tool that is not in the display of its axis, mm: MP7285 = 0 [000:6428-6434]. The display shows how far
+/// the nose of the spindle is from the datum then, so that DATUM SET with a preset tool is its length [003:1172].
+pub(crate) fn hidden_length_mm(axis: &AxisState, parameters: &ParameterList) -> f64 {
+    match parameters.operation_parameters().tool_length_shown {
+        true => 0.0,
+        false => axis.tool_length_mm,
+    }
+}
+
+/// The angle of the spindle, as long as neither M03 nor M04 is active: MP40 bit 5 [000:3418-3432] [000:5883].
+fn spindle_line(snapshot: &Snapshot, parameters: &ParameterList, notation: Notation) -> Option<AxisLine> {
+    // The MP40 of a TNC 151/155 is another one.
+    let own = (parameters.model() >= ControlModel::Tnc360).then(|| parameters.get(40, 0))?;
+    let shown = own.unwrap_or_default() as u32 & SPINDLE_SHOWN != 0;
+    let stands = snapshot.spindle.rotation == Rotation::M5;
+    let angle_deg = snapshot.spindle.angle_deg.filter(|_| shown && stands)?;
+    Some(AxisLine {
+        letter: 'S',
+        value: notation.position(angle_deg.rem_euclid(360.0), SPINDLE_STEP_DEG, true),
+        referenced: true,
+        degrees: true,
+        ..AxisLine::default()
+    })
 }
 
 /// A position of an axis as the display shows it, mm or degrees.
@@ -163,9 +211,10 @@ fn axis_line(
     notation: Notation,
 ) -> AxisLine {
     let (degrees, step) = step_of(axis, parameters);
+    let length_mm = hidden_length_mm(axis, parameters);
     let value = match position_type {
-        PositionType::Actl => axis.actual,
-        PositionType::Noml => axis.nominal,
+        PositionType::Actl => axis.actual + length_mm,
+        PositionType::Noml => axis.nominal + length_mm,
         PositionType::Lag => axis.lag,
         PositionType::Dist => axis.distance_to_go,
         PositionType::Ref => axis.machine,
@@ -176,31 +225,34 @@ fn axis_line(
         locked: !axis.closed,
         referenced: axis.referenced,
         degrees,
+        handwheel: false,
     }
 }
 
-/// The programmed feed in program run, `MAX` in rapid traverse. By hand that of the axis whose key is pressed, blank for
-/// two of them, or with MP7270 the least of all; at 100 % everywhere [000:6521-6561]. With no key nothing moves *(inferred)*.
+/// The programmed feed in program run, as the potentiometer varies it, `MAX` in rapid traverse. By hand that of the axis whose
+/// key is pressed, blank for two of them, or with MP7270 the least of all [000:6521-6561]; a TNC 360 shows it with MP7270
+/// alone [003:7307]. With no key nothing moves *(inferred)*.
 fn feed(snapshot: &Snapshot, control: &Control, parameters: &ParameterList, notation: Notation) -> String {
     let manual = |index: usize| {
         let axis = parameters.axis_parameters(u8::try_from(index).unwrap_or_default());
         axis.motion.manual_mm_min
     };
-    match (snapshot.mode.is_automatic(), snapshot.programmed_feed_mm_min) {
-        (true, None) if snapshot.run != RunState::Idle => "MAX".to_owned(),
-        (true, feed) => notation.feed(feed.unwrap_or_default()),
-        (false, _) if parameters.operation_parameters().manual_feed_shown => {
-            let feeds = snapshot.axes.iter().map(|axis| manual(axis.index));
-            notation.feed(feeds.reduce(f64::min).unwrap_or_default())
-        }
-        (false, _) => {
-            let mut pressed = control.first().pressed_axes();
-            match (pressed.next(), pressed.next()) {
-                (Some(index), None) => notation.feed(manual(index)),
-                (None, _) => notation.feed(0.0),
-                _ => String::new(),
-            }
-        }
+    let shown = |mm_min: f64| notation.feed(mm_min * snapshot.feed_override_percent / 100.0);
+    if snapshot.mode.is_automatic() {
+        return snapshot.programmed_feed_mm_min.map_or("MAX".to_owned(), shown);
+    }
+    if parameters.operation_parameters().manual_feed_shown {
+        let feeds = snapshot.axes.iter().map(|axis| manual(axis.index));
+        return shown(feeds.reduce(f64::min).unwrap_or_default());
+    }
+    if parameters.model() == ControlModel::Tnc360 {
+        return String::new();
+    }
+    let mut pressed = control.first().pressed_axes();
+    match (pressed.next(), pressed.next()) {
+        (Some(index), None) => shown(manual(index)),
+        (None, _) => shown(0.0),
+        _ => String::new(),
     }
 }
 

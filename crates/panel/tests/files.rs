@@ -294,3 +294,143 @@ fn cycles_of_the_machine_builder_that_cannot_be_read_are_said() {
     trainee.press("CE PGM_NR 7 ENT ENT").wait(0.2);
     assert_eq!(trainee.screen().program.title, "7.H");
 }
+
+/// Program names of a TNC 360 have up to eight characters [003:979]; MP7222 allows 8, 12 or 16 later [000:6847-6852].
+#[test]
+fn names_are_as_long_as_mp7222_says() {
+    for (machine, value, longest) in [
+        ("mill-tnc360", "0", 8),
+        ("mill", "0", 8),
+        ("mill", "1", 12),
+        ("mill", "2", 16),
+    ] {
+        let mut trainee = Trainee::with(machine, |folder| {
+            let path = folder.join("parameters.mp");
+            let list = std::fs::read_to_string(&path).unwrap();
+            let old = list.lines().find(|line| line.starts_with("MP7222 ")).unwrap();
+            std::fs::write(&path, list.replace(old, &format!("MP7222 : {value}"))).unwrap();
+        });
+        trainee.ready();
+        let names = [longest, longest + 1].map(|length| "1234567890123456789"[..length].to_owned());
+        trainee
+            .press("PROGRAM PGM_NR")
+            .give(&format!("{{\"text\":\"{}\"}}", names[0]));
+        trainee.press("ENT ENT");
+        assert!(
+            trainee.has(&format!("programs/{}.H", names[0])),
+            "{machine} {value}"
+        );
+        if names[1].len() <= 16 {
+            trainee
+                .press("PGM_NR")
+                .give(&format!("{{\"text\":\"{}\"}}", names[1]));
+            trainee.press("ENT");
+            assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"], "{machine} {value}");
+        }
+    }
+}
+
+/// A TNC 360 stores up to 32 programs [003:977]; `files_max` of the machine lifts it.
+#[test]
+fn a_tnc_360_stores_32_programs() {
+    for lifted in [false, true] {
+        let mut trainee = Trainee::with("mill-tnc360", |folder| {
+            let there = std::fs::read_dir(folder.join("programs")).unwrap().flatten();
+            let there = there.filter(|file| file.path().extension().is_some_and(|ending| ending == "H"));
+            for number in there.count()..31 {
+                let text = format!("BEGIN PGM {number} MM\nEND PGM {number} MM\n");
+                std::fs::write(folder.join(format!("programs/{number}.H")), text).unwrap();
+            }
+            if lifted {
+                let path = folder.join("machine.toml");
+                let text = std::fs::read_to_string(&path).unwrap();
+                std::fs::write(&path, format!("files_max = 0\n{text}")).unwrap();
+            }
+        });
+        trainee.ready();
+        trainee.press("PROGRAM PGM_NR 9 0 1 ENT ENT");
+        assert!(trainee.has("programs/901.H"), "the 32nd");
+        trainee.press("PGM_NR 9 0 2 ENT");
+        let full = trainee.messages() == ["FURTHER PROGRAM ENTRY IMPOSSIBLE"];
+        assert_eq!(full, !lifted, "{:?}", trainee.messages());
+    }
+}
+
+/// In the directory of a TNC 360 programs in DIN/ISO are indicated with "ISO" [003:977].
+#[test]
+fn iso_programs_are_indicated() {
+    let mut trainee = Trainee::at("mill-tnc360");
+    trainee.write("programs/12.H", "BEGIN PGM 12 MM\nEND PGM 12 MM\n");
+    trainee.write("programs/13.I", "%13 G71\nN9999 %13 G71\n");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR");
+    let words = |trainee: &mut Trainee, name: &str| {
+        let line = line_of(trainee, name).unwrap();
+        line.split_whitespace().nth(1).unwrap().to_owned()
+    };
+    assert_eq!(words(&mut trainee, "13 "), "ISO");
+    assert!(words(&mut trainee, "12 ").parse::<u32>().is_ok(), "its size");
+}
+
+/// RESET POCKET TABLE empties the pockets, EDIT OFF protects the cells, NEXT LINE goes to the beginning of the line below
+/// [000:9058-9073].
+#[test]
+fn the_soft_keys_of_the_pocket_table() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("SK8");
+    trainee.soft("POCKET TABLE");
+    let tools = |trainee: &mut Trainee| {
+        let lines = trainee.screen().program.lines;
+        let cells = lines
+            .iter()
+            .skip(1)
+            .map(|line| line.text.split_whitespace().nth(1).map(str::to_owned));
+        cells
+            .flatten()
+            .filter(|cell| cell.parse::<u32>().is_ok_and(|tool| tool > 0))
+            .count()
+    };
+    assert!(tools(&mut trainee) > 0);
+    let place = |trainee: &mut Trainee| {
+        let lines = trainee.screen().program.lines;
+        let at = lines.iter().position(|line| line.current).unwrap();
+        (at, lines[at].marks[0].0)
+    };
+    let (first, column) = place(&mut trainee);
+    trainee.press("RIGHT");
+    assert!(place(&mut trainee).1 > column);
+    trainee.soft("NEXT LINE");
+    assert_eq!(place(&mut trainee), (first + 1, column));
+    trainee.soft("EDIT OFF");
+    trainee.press("7");
+    assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
+    trainee.press("CE");
+    trainee.soft("EDIT ON");
+    trainee.soft("RESET POCKET TABLE");
+    trainee.press("NO_ENT");
+    assert!(tools(&mut trainee) > 0, "not confirmed");
+    trainee.soft("RESET POCKET TABLE");
+    trainee.press("ENT").wait(0.3);
+    assert_eq!(trainee.messages(), [""; 0]);
+    assert_eq!(tools(&mut trainee), 0, "{:#?}", trainee.screen().program);
+}
+
+/// Tool tables that MP7224.0 disables stay closed [000:9101].
+#[test]
+fn disabled_tables_stay_closed() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let path = folder.join("parameters.mp");
+        let list = std::fs::read_to_string(&path).unwrap();
+        let old = list.lines().find(|line| line.starts_with("MP7224.0 ")).unwrap();
+        std::fs::write(&path, list.replace(old, "MP7224.0 : %00000100")).unwrap();
+    });
+    trainee.ready();
+    assert!(!trainee.screen().soft_keys.keys.contains(&"TOOL TABLE".to_owned()));
+    trainee.press("ENT");
+    assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
+    trainee.press("CE TOOL_DEF");
+    assert_eq!(trainee.messages(), ["PROGRAM NOT FOUND"]);
+    trainee.press("CE FULL");
+    assert!(!trainee.screen().soft_keys.keys.contains(&"TOOL TABLE".to_owned()));
+}

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 
 use bahn_interpreter::{Interpreter, NoLibrary, Rules, Settings};
 use bahn_panel::{GraphicsView, Star};
+use bahn_parameters::ParameterList;
 use bahn_path::{BlockRef, ElementSource, LiveData, Step};
 use bahn_workpiece::{Columns, Cutting, Hears, Memory, Remark};
 use support::Trainee;
@@ -282,4 +283,71 @@ fn the_part_has_the_colours_of_mp7360_to_7362() {
     // The line above is drawn in a picture of its own, with its title.
     let picture = trainee.station.picture().unwrap();
     assert!(picture.png(800, 600).unwrap().is_some());
+}
+
+/// A TNC 407 has graphics in TEST RUN only, the TNC 415 those of what runs, too [000:6370].
+#[test]
+fn a_tnc_407_has_no_graphics_in_program_run() {
+    for (model, there) in [("tnc407", false), ("tnc415b", true)] {
+        let mut trainee = Trainee::with("mill", |folder| {
+            let path = folder.join("machine.toml");
+            let text = std::fs::read_to_string(&path).unwrap();
+            std::fs::write(
+                &path,
+                text.replace("model = \"tnc415b\"", &format!("model = \"{model}\"")),
+            )
+            .unwrap();
+            // The list without what that control does not have.
+            let of_model = ParameterList::smallest(model.parse().unwrap());
+            let is_there = |line: &&str| {
+                let name = line.split(':').next().unwrap_or_default().trim();
+                let Some((number, index)) = name
+                    .strip_prefix("MP")
+                    .map(|name| name.split_once('.').unwrap_or((name, "0")))
+                else {
+                    return true;
+                };
+                of_model
+                    .get(number.parse().unwrap(), index.parse().unwrap())
+                    .is_some()
+            };
+            let path = folder.join("parameters.mp");
+            let list = std::fs::read_to_string(&path).unwrap();
+            let lines: Vec<&str> = list.lines().filter(is_there).collect();
+            std::fs::write(&path, lines.join("\n")).unwrap();
+        });
+        trainee.write("programs/GROOVE.H", GROOVE);
+        trainee.ready();
+        trainee.press("FULL PGM_NR G R O O V E ENT GRAPHICS");
+        assert_eq!(trainee.screen().graphics.is_some(), there, "{model}");
+        trainee.press("CE TEST PGM_NR G R O O V E ENT");
+        if !there {
+            trainee.press("GRAPHICS");
+        }
+        assert!(trainee.screen().graphics.is_some(), "{model}");
+    }
+}
+
+/// The graphics of a TNC 360 are in the program run modes: START simulates the selected program as often as desired
+/// [003:856-874], and what runs is drawn, too [003:1551].
+#[test]
+fn a_tnc_360_simulates_in_program_run() {
+    let mut trainee = Trainee::at("mill-tnc360");
+    trainee.write("programs/77.H", &GROOVE.replace("GROOVE", "77"));
+    trainee.ready();
+    trainee.press("FULL PGM_NR 7 7 ENT GRAPHICS START");
+    for _ in 0..2 {
+        trainee.until(20.0, |screen| {
+            screen
+                .graphics
+                .as_ref()
+                .is_some_and(|shown| shown.progress == 1.0)
+        });
+        assert_is_groove(removed_mm3(&mut trainee));
+        assert_eq!(trainee.screen().status.star, Star::Off, "nothing moves");
+        trainee.press("START");
+    }
+    trainee.press("NC_START");
+    trainee.until(5.0, |screen| screen.status.star == Star::Steady);
+    assert_eq!(removed_mm3(&mut trainee), 0.0, "the run has a blank of its own");
 }

@@ -126,13 +126,13 @@ fn it_is_tested_and_run_from_the_number_of_a_block() {
     assert!((at - 40.0).abs() < 0.01, "{at}");
 }
 
-/// A message names the block by its number, and RESTORE POS. AT N goes there.
+/// A message names the block by its number, and RESTORE AT N goes there.
 #[test]
 fn messages_and_the_block_scan_know_the_numbers() {
     let mut trainee = mill();
     trainee.ready();
     trainee.press("FULL");
-    trainee.soft("RESTORE POS. AT N");
+    trainee.soft("RESTORE AT N");
     assert_eq!(trainee.messages(), ["PROGRAM NOT FOUND"]);
     trainee.press("CE");
     trainee.write(
@@ -140,7 +140,7 @@ fn messages_and_the_block_scan_know_the_numbers() {
         "%7 G71 *\nN35 G00 G40 G90 X+10 *\nN70 G01 X+20 F3000 *\nN105 FOO *\nN99999 %7 G71 *\n",
     );
     trainee.press("PGM_NR 7 POINT I ENT").wait(0.2);
-    trainee.soft("RESTORE POS. AT N");
+    trainee.soft("RESTORE AT N");
     trainee.press("3 6 ENT");
     assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
     trainee.press("CE CE 7 0 ENT").wait(0.5);

@@ -95,7 +95,7 @@ fn soft_keys_that_are_not_allowed_are_not_shown() {
         let mut trainee = Trainee::with("mill", |folder| parameter(folder, &format!("MP7680   : {bits}")));
         trainee.ready();
         trainee.press("FULL PGM_NR C I R C L E ENT").wait(0.2);
-        let scan = soft_keys(&mut trainee).contains(&"RESTORE POS. AT N".to_owned());
+        let scan = soft_keys(&mut trainee).contains(&"RESTORE AT N".to_owned());
         assert_eq!(scan, at_rest, "{bits}");
         trainee.press("NC_START").wait(3.0).press("NC_STOP").wait(2.0);
         let shown = soft_keys(&mut trainee);
@@ -233,4 +233,24 @@ fn groups_of_keys_are_inhibited() {
     set(&mut trainee, "M2878", 0);
     trainee.press("SK_RIGHT");
     assert_eq!(row(&mut trainee), 1);
+}
+
+/// M2854 to M2923 inhibit single keys: M2856 the key L, whose code 60 stands in W274 then [000:7319-7342].
+#[test]
+fn single_keys_are_inhibited() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR 9 9 ENT ENT");
+    for (marker, key, code) in [("M2856", "L", 60), ("M2905", "X", 109), ("M2915", "END", 119)] {
+        trainee.give(&format!("{{\"deed\":\"{marker}=1\"}}")).wait(0.1);
+        trainee.press(key);
+        assert_eq!(trainee.screen().dialogue.prompt, "", "{key}");
+        let memory = trainee.station.control().memory();
+        assert!(memory.bit("M2182".parse().unwrap()), "{key}");
+        assert_eq!(memory.number("W274".parse().unwrap()), code);
+        trainee.give(&format!("{{\"deed\":\"{marker}=0\"}}"));
+        trainee.give("{\"deed\":\"M2182=0\"}").wait(0.1);
+    }
+    trainee.press("L");
+    assert_eq!(trainee.screen().dialogue.prompt, "COORDINATES?");
 }

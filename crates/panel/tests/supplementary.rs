@@ -268,7 +268,15 @@ fn help_files_tell_the_plc_their_line() {
     );
     trainee.press("DOWN");
     assert_eq!(word(&mut trainee), 12);
-    trainee.press("END");
+    // It lies open beside one mode only [000:7066].
+    trainee.press("PROGRAM HELP");
+    assert_eq!(trainee.messages(), ["BACKGROUND PROGRAMMING NOT POSSIBLE"]);
+    trainee.press("CE MANUAL END");
+    assert_eq!(word(&mut trainee), -1);
+    // Another mode leaves it, too.
+    trainee.press("HELP DOWN");
+    assert_eq!(word(&mut trainee), 12);
+    trainee.press("MDI");
     assert_eq!(word(&mut trainee), -1);
 }
 

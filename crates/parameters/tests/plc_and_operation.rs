@@ -191,3 +191,13 @@ fn user_parameters_have_a_two_digit_index() {
         .collect();
     assert_eq!(found, [("MP5030.1".to_owned(), 17), ("MP7280".to_owned(), 0)]);
 }
+
+/// MP65 of a TNC 151/155: display in steps of 1 um with 0, of 5 um with 1 [001:1612-1614].
+#[test]
+fn the_display_step_of_a_tnc_155() {
+    let step = |value: &str| {
+        let list = with(ControlModel::Tnc155, &[&format!("65={value}")]);
+        list.axis_parameters(0).travel.display_step_mm
+    };
+    assert_eq!((step("0"), step("1")), (0.001, 0.005));
+}

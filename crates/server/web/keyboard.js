@@ -16,7 +16,7 @@ const GROUPS = [
   ["cursor", "Cursor"], ["letter", "Letters"],
 ];
 
-export function build(station, press) {
+export function build(station, press, hold) {
   const node = document.querySelector('[data-region="keyboard"]');
   for (const [group, title] of GROUPS) {
     const keys = station.keys.filter((key) => key.group === group);
@@ -34,11 +34,34 @@ export function build(station, press) {
       // What stands on a key belongs to its name: somebody may say it to press it.
       say(button, () => `${caption()}: ${words(key.label)}`, "aria-label");
       say(button, key.label, "title");
-      button.addEventListener("click", () => press(key.name));
+      if (HELD.includes(key.name)) holds(button, (down) => hold(key.name, down));
+      // What a pointer holds was pressed already.
+      button.addEventListener("click", (event) => {
+        if (event.detail === 0 || !HELD.includes(key.name)) press(key.name);
+      });
       block.append(button);
     }
     node.append(block);
   }
+}
+
+/** Keys that are held: END, for the warm start. */
+const HELD = ["END"];
+
+/** A key goes down and comes up with the pointer. */
+function holds(button, set) {
+  let held = false;
+  const change = (down) => {
+    if (held === down) return;
+    held = down;
+    set(down);
+  };
+  button.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    button.setPointerCapture(event.pointerId);
+    change(true);
+  });
+  for (const end of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) button.addEventListener(end, () => change(false));
 }
 
 /** Keys that only this page has, on real keys that the table leaves free. */

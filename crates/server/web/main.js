@@ -67,9 +67,9 @@ const part = new PartWindow(document.querySelector(".stage"), (looks) => {
 
 async function begin() {
   const [station] = await Promise.all([fetch("/api/station").then((answer) => answer.json()), texts.load()]);
-  keyboard.build(station, press);
-  keyboard.help(station);
   const send = (input) => connection.input(input);
+  keyboard.build(station, press, (key, down) => send({ key, down }));
+  keyboard.help(station);
   keyboard.listen(station, press, (key, down) => send({ key, down }), turn);
   machine.build(station, send);
   timeline.build(send);

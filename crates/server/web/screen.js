@@ -127,7 +127,7 @@ function largePositions(lines, status) {
   axes.forEach((axis, place) => {
     nodes[place].className = axis.referenced ? "axis" : "axis unreferenced";
     const [star, letter, value] = nodes[place].children;
-    setText(star, axis.locked ? "*" : "");
+    setText(star, (axis.handwheel ? "⊙" : "") + (axis.locked ? "*" : ""));
     setText(letter, axis.letter);
     setText(value, axis.value);
   });
@@ -139,7 +139,7 @@ const ITEMS = [
   ["tool", (status) => `T ${status.tool}${status.tool_axis ? ` ${status.tool_axis}` : ""}`],
   ["speed", (status) => `S ${Math.round(status.s)}${status.gear ? `/${status.gear}` : ""}`],
   ["feed", (status) => `F ${status.f}`],
-  ["functions", (status) => status.m],
+  ["functions", () => ""],
   ["flags", (status) => status.flags.join(" ")],
   ["star", (status) => (status.star === "off" ? "" : "*")],
   ["waiting", (status) => status.waiting],
@@ -151,8 +151,11 @@ export function drawStatus(status) {
     place < ITEMS.length ? element("span", ITEMS[place][0]) : bar(place === ITEMS.length ? "F" : "S"));
   ITEMS.forEach(([name, text], place) => {
     if (name === "axes") axes(nodes[place], status.axes);
+    else if (name === "functions") functions(nodes[place], status);
     else setText(nodes[place], text(status));
     nodes[place].hidden = !nodes[place].textContent;
+    if (name === "feed") nodes[place].classList.toggle("inverse", status.f_inverse);
+    if (name === "tool") nodes[place].classList.toggle("inverse", status.t_inverse);
     if (name === "star") nodes[place].classList.toggle("blinking", status.star === "blinking");
   });
   const [feed, speed] = nodes.slice(ITEMS.length);
@@ -163,7 +166,17 @@ export function drawStatus(status) {
 // A line breaks between axes, never within one.
 function axes(node, shown) {
   const nodes = children(node, shown.length, () => element("span", "axis-value"));
-  shown.forEach((axis, place) => setText(nodes[place], `${axis.locked ? "*" : ""}${axis.letter} ${axis.value} `));
+  shown.forEach((axis, place) => setText(nodes[place], `${axis.handwheel ? "⊙" : ""}${axis.locked ? "*" : ""}${axis.letter} ${axis.value} `));
+}
+
+/** `M5/9`: the PLC shows the function of the spindle or that of the coolant inverse. */
+function functions(node, status) {
+  const parts = status.m ? status.m.split("/") : [];
+  const nodes = children(node, parts.length, () => element("span"));
+  parts.forEach((part, place) => {
+    setText(nodes[place], (place ? "/" : "") + part);
+    nodes[place].classList.toggle("inverse", status.m_inverse[place]);
+  });
 }
 
 /** A bar ends at so many per cent of what was programmed. */

@@ -71,7 +71,7 @@ pub(crate) const COMMANDS: &[Command] = &[
     command(
         "hold",
         "NAME",
-        "a key of the machine stays down",
+        "a key stays down: hold X+, hold END",
         Takes::Hold(true),
     ),
     command("release", "NAME", "it comes up", Takes::Hold(false)),
@@ -212,6 +212,9 @@ pub(crate) fn read(line: &str, machine: &Machine, language: Language) -> Result<
     match command.takes {
         Takes::Keys => keys(rest, machine, language),
         Takes::Hold(holds) => {
+            if let Some(key) = Key::from_name(&rest.to_ascii_uppercase()) {
+                return Ok(vec![Order::Give(Input::Held(key, holds))]);
+            }
             let name = machine
                 .key(rest)
                 .ok_or_else(|| filled(around(language, "the machine has no key {1}"), &[rest]))?;

@@ -45,7 +45,7 @@ manual-operation                    axes may be moved while a run is interrupted
 restore-position                    back to the contour with NC start
 restore-at N                        block scan to block N
 code N                              a code number
-key CODE                            a key of the keyboard by its code, 58 to 127, or as W516 has it
+key CODE                            a key by its code: 58 to 127; 256 M, 512 S, 768 TOUCH PROBE; a letter * 256 + 80
 test PROGRAM                        TEST RUN beside what the machine does
 test-run stop, test-run stop N      interrupts it, at once or at block N
 test-run go-on                      it goes on, as behind STOP and M0

@@ -26,13 +26,7 @@ pub(super) fn slot_milling(m: &mut Machining<'_>, definition: &Definition) -> Re
     let (length_axis, length) = definition.coordinate(4)?;
     let (width_axis, width) = definition.coordinate(5)?;
     let feed = definition.feed(6, 0)?;
-    let along = plane_axis(m.modal.plane, length_axis)?;
-    if plane_axis(m.modal.plane, width_axis)? == along {
-        return Err(Fault::new(
-            MessageId::WrongAxisProgrammed,
-            "length and width lie on the same axis",
-        ));
-    }
+    let [along, _] = plane_axes(m.modal.plane, [length_axis, width_axis])?;
     let heights = m.heights(definition, [setup, depth], Some(pecking))?;
     let scale = m.modal.plane_scale()?;
     let radius = m.modal.used_radius()?;
@@ -86,8 +80,8 @@ pub(super) fn pocket_milling(m: &mut Machining<'_>, definition: &Definition) -> 
     let feed = definition.feed(6, 0)?;
     let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * m.modal.plane_scale()?;
     let mut sides = [0.0; 2];
-    for (axis, side) in [(first_axis, first), (second_axis, second)] {
-        let index = plane_axis(m.modal.plane, axis)?;
+    let indices = plane_axes(m.modal.plane, [first_axis, second_axis])?;
+    for (index, side) in indices.into_iter().zip([first, second]) {
         if let Some(slot) = sides.get_mut(index) {
             *slot = side.abs() * m.modal.plane_scale()?;
         }
@@ -181,6 +175,19 @@ fn stepover(modal: &Modal, settings: &Settings) -> Result<f64, Fault> {
         return Err(modal.no_radius("a pocket cannot be cleared"));
     }
     Ok(step)
+}
+
+/// The indices of the two sides in the plane, of which each has an axis of its own.
+fn plane_axes(plane: Plane, sides: [Axis; 2]) -> Result<[usize; 2], Fault> {
+    let [first, second] = sides;
+    let indices = [plane_axis(plane, first)?, plane_axis(plane, second)?];
+    match indices[0] == indices[1] {
+        true => Err(Fault::new(
+            MessageId::WrongAxisProgrammed,
+            "length and width lie on the same axis",
+        )),
+        false => Ok(indices),
+    }
 }
 
 /// Index of an axis in the working plane; other axes are WRONG AXIS PROGRAMMED [003:8022-8025].

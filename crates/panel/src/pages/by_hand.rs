@@ -1,27 +1,37 @@
 //! MANUAL OPERATION, ELECTRONIC HANDWHEEL, and the reference run before them [003:1031-1145].
 
-use bahn_control::{Command, Mode};
+use bahn_control::{Command, Message, Mode};
 use bahn_dialogue::Key;
+use bahn_exchange::signal;
+use bahn_parameters::MessageId;
+use bahn_parameters::technology::Technology;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::handwheel::Handwheel;
 use crate::pages::number::Number;
-use crate::pages::{datum, handwheel, probe, table};
+use crate::pages::{datum, handwheel, probe, supplementary, table};
 use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
+/// Greatest spindle speed that is entered, rpm [003:2180].
+const SPEED_MAX: f64 = 99_999.999;
 /// Largest jog increment, mm [000:8494-8520].
 const JOG_MAX: f64 = 50.0;
 
 /// Axes are moved by hand.
 pub(crate) struct ByHand;
 
-/// An axis key highlights its axis, which the PLC sees [000:6425], and asks for its datum.
-fn axis(place: usize, site: &mut Site) -> Turn {
-    if let Some(axis) = site.axis_of_key(place) {
-        site.command(Command::AxisKey(axis));
+/// An axis key highlights its axis, which the PLC sees [000:6425], and asks for its datum; with MP7296 = 1 the soft key alone
+/// does that [000:6277-6285].
+fn axis(key: Key, site: &mut Site) -> Turn {
+    let Some(axis) = datum::axis_of(key, site) else {
+        return Turn::Refused;
+    };
+    site.command(Command::AxisKey(axis));
+    match site.parameters().operation_parameters().datums.soft_key_only {
+        true => Turn::Done,
+        false => datum::of_key(key, site),
     }
-    datum::ask(place, site)
 }
 
 impl Page for ByHand {
@@ -30,11 +40,7 @@ impl Page for ByHand {
             return Turn::Refused;
         }
         match key {
-            Key::X => axis(0, site),
-            Key::Y => axis(1, site),
-            Key::Z => axis(2, site),
-            Key::Iv => axis(3, site),
-            Key::V => axis(4, site),
+            Key::X | Key::Y | Key::Z | Key::Iv | Key::V => axis(key, site),
             Key::M => self.soft_key(0, 0, site),
             Key::S | Key::ToolCall => self.soft_key(0, 1, site),
             Key::TouchProbe => probe::menu(),
@@ -55,11 +61,14 @@ impl Page for ByHand {
             true => site.words("3D ROT OFF"),
             false => site.words("3D ROT ON"),
         };
-        vec![vec![
+        // "Jog increment" is asked in ELECTRONIC HANDWHEEL, where the PLC enables it [000:8496-8499].
+        let jogs =
+            site.mode() == Mode::Handwheel && site.control().memory().bit(signal::ENABLE_JOG_INCREMENT);
+        let first = vec![
             "M".to_owned(),
             "S".to_owned(),
             site.words("TOUCH PROBE"),
-            site.words("INCREMENT"),
+            there(jogs, site.words("INCREMENT")),
             site.words("HANDWHEEL"),
             there(rules.tilting, leans),
             // Until all axes have passed theirs [000:4581].
@@ -68,21 +77,25 @@ impl Page for ByHand {
                 site.words("PASS OVER REFERENCE"),
             ),
             there(table::has_tools(site), site.words("TOOL TABLE")),
-        ]]
+        ];
+        vec![first, vec![site.words("DATUM SET")]]
     }
 
-    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+    fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
         match place {
+            0 if row == 1 => datum::page(),
             0 => Turn::Open(Number::ask(
                 site.words("MISCELLANEOUS FUNCTION M ="),
                 |value, site| {
                     let whole =
                         (value.fract() == 0.0 && (0.0..=999.0).contains(&value)).then_some(value as u16);
-                    whole.is_some_and(|m| site.command(Command::MFunction(m)))
+                    let model = site.control().model();
+                    let known = whole.filter(|m| Technology::of_m(model, *m).is_some());
+                    known.is_some_and(|m| site.command(Command::MFunction(m)))
                 },
             )),
             1 => Turn::Open(Number::ask(site.words("SPINDLE SPEED S ="), |value, site| {
-                site.command(Command::Speed(value))
+                (0.0..=SPEED_MAX).contains(&value) && site.command(Command::Speed(value))
             })),
             2 => probe::menu(),
             3 => Turn::Open(Number::ask(site.words("JOG-INCREMENT ="), |value, site| {
@@ -105,6 +118,9 @@ impl Page for ByHand {
     }
 
     fn show(&self, site: &Site, _lines: usize) -> View {
+        if has_just_come_on(site) {
+            return View::of(software_numbers(site));
+        }
         let asked = match site.mode() {
             Mode::Reference => missing_references(site),
             Mode::Handwheel => factor(site),
@@ -121,6 +137,33 @@ impl Page for ByHand {
                 ..Dialogue::default()
             },
         }
+    }
+}
+
+/// POWER INTERRUPTED still stands there.
+fn has_just_come_on(site: &Site) -> bool {
+    let mut shown = site.control().shown().iter();
+    shown.any(|shown| shown.message == Message::Plain(MessageId::PowerInterrupted))
+}
+
+/// Behind switch-on the numbers of the NC and PLC software are displayed [000:327].
+fn software_numbers(site: &Site) -> Window {
+    let numbers = [
+        (site.words("NC SOFTWARE NUMBER"), supplementary::nc_number()),
+        (site.words("PLC SOFTWARE NUMBER"), supplementary::plc_number(site)),
+    ];
+    let lines: Vec<Line> = numbers
+        .into_iter()
+        .map(|(name, number)| Line {
+            text: format!("{name}: {number}"),
+            ..Line::default()
+        })
+        .collect();
+    Window {
+        kind: WindowKind::Text,
+        total: lines.len(),
+        lines,
+        ..Window::default()
     }
 }
 

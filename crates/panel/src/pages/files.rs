@@ -3,7 +3,7 @@
 
 use bahn_control::{Command, RunState};
 use bahn_dialogue::Key;
-use bahn_parameters::MessageId;
+use bahn_parameters::{ControlModel, MessageId};
 
 use crate::frames;
 use crate::page::{Page, Turn, View};
@@ -131,7 +131,9 @@ impl Directory {
         };
         let prompt = format!("{} {}", site.words("DESTINATION FILE ="), ending(&old));
         Turn::Open(Name::ask(prompt, NAME_MAX, move |new, site| {
-            done(site.programs.copy(&old, &like(&new, &old)), site)
+            let new = like(&new, &old);
+            let may = may_be_called(&new, site).and_then(|()| has_room(&new, site));
+            done(may.and_then(|()| site.programs.copy(&old, &new)), site)
         }))
     }
 
@@ -147,7 +149,7 @@ impl Directory {
             let new = like(&new, &old);
             let renamed = match table::is_protected(&old, site) {
                 true => Err(Denial::Message(MessageId::ProtectedPgm)),
-                false => site.programs.rename(&old, &new),
+                false => may_be_called(&new, site).and_then(|()| site.programs.rename(&old, &new)),
             };
             if renamed.is_ok() && site.settings.edited.as_ref() == Some(&old) {
                 site.settings.edited = Some(new);
@@ -204,6 +206,17 @@ fn ending(name: &str) -> String {
         .map_or_else(String::new, |(_, ending)| format!(".{ending}"))
 }
 
+/// The type of a file in the directory: programs in DIN/ISO of a TNC 360 are indicated with "ISO", others there have no
+/// type [003:977].
+fn kind_of(name: &str, site: &Site) -> String {
+    let own = ending(name);
+    match site.control().model().has_windows() || !is_program(name) {
+        true => own,
+        false if own.eq_ignore_ascii_case(".I") => "ISO".to_owned(),
+        false => String::new(),
+    }
+}
+
 /// A new name with the type of an old one, when it says none.
 fn like(new: &str, old: &str) -> String {
     match new.contains('.') {
@@ -212,10 +225,52 @@ fn like(new: &str, old: &str) -> String {
     }
 }
 
+/// Characters of a new name without its type: eight on the TNC 360 and before [003:979], later as MP7222 says
+/// [000:6847-6852].
+fn name_max(site: &Site) -> usize {
+    let list = site.parameters();
+    let most = usize::from(list.model().limits().program_name_max);
+    match list.model().has_windows().then(|| list.get(7222, 0)).flatten() {
+        Some(0.0) => 8,
+        Some(1.0) => 12,
+        _ => most,
+    }
+}
+
+/// A new file may have this name.
+fn may_be_called(name: &str, site: &Site) -> Result<(), Denial> {
+    match site.programs.path(name).is_some() && stem(name).len() <= name_max(site) {
+        true => Ok(()),
+        false => Err(Denial::Message(MessageId::EntryValueIncorrect)),
+    }
+}
+
+/// The memory takes one more file: a TNC 360 up to 32 programs [003:977], a TNC 407 and later up to 100 files [000:171],
+/// unless `files_max` of the machine says another number, or 0 for any.
+fn has_room(name: &str, site: &Site) -> Result<(), Denial> {
+    let files = site.programs.list();
+    let model = site.control().model();
+    let of_model = match model {
+        ControlModel::Tnc360 => 32,
+        _ if model.has_windows() => 100,
+        _ => 0,
+    };
+    let most = site.machine.folder.files_max.unwrap_or(of_model);
+    let counted = files
+        .iter()
+        .filter(|file| model.has_windows() || is_program(&file.name));
+    let counts = model.has_windows() || is_program(name);
+    match most == 0 || !counts || counted.count() < most {
+        true => Ok(()),
+        false => Err(Denial::Message(MessageId::FurtherProgramEntryImpossible)),
+    }
+}
+
 /// A new file: programs have a unit [003:2085-2121].
 fn create(name: String, site: &mut Site) -> Turn {
-    if site.programs.path(&name).is_none() || stem(&name).len() > NAME_MAX {
-        return Turn::Say(site.message(MessageId::EntryValueIncorrect));
+    let may = may_be_called(&name, site).and_then(|()| has_room(&name, site));
+    if let Err(denial) = may {
+        return Turn::Say(said(denial, site));
     }
     if !frames::has_unit(&name) {
         return created(&name, false, site);
@@ -393,7 +448,7 @@ impl Page for Directory {
             text: format!(
                 "{:<16} {:<5} {:>10} {}",
                 stem(&entry.name),
-                ending(&entry.name),
+                kind_of(&entry.name, site),
                 entry.size,
                 if entry.protected { "P" } else { "" }
             )

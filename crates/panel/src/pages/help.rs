@@ -1,12 +1,14 @@
 //! HELP: what a message means and what cures it, and the help files of the machine [000:7042-7073].
 
+use std::sync::Arc;
+
 use bahn_control::{Command, Message};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::page::{Page, Turn, View};
-use crate::pages::list;
 use crate::pages::menu::{Item, Items, Menu};
+use crate::pages::{list, table};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 use crate::texts;
@@ -54,13 +56,23 @@ fn id_of(message: &Message) -> Option<MessageId> {
     }
 }
 
+/// The machine has a help file that is not disabled.
+pub(crate) fn is_there(site: &Site) -> bool {
+    !names(site).is_empty()
+}
+
+/// The help files, but those that MP7224.0 disables.
+fn names(site: &Site) -> Vec<String> {
+    let entries = site.programs.list().into_iter();
+    let names = entries.map(|entry| entry.name);
+    names
+        .filter(|name| name.to_ascii_uppercase().ends_with(ENDING) && !table::is_disabled(name, site))
+        .collect()
+}
+
 /// The help files of the machine: one is opened at once, several are chosen from.
 pub(crate) fn files(site: &mut Site) -> Turn {
-    let entries = site.programs.list().into_iter();
-    let names: Vec<String> = entries
-        .map(|entry| entry.name)
-        .filter(|name| name.to_ascii_uppercase().ends_with(ENDING))
-        .collect();
+    let names = names(site);
     match names.as_slice() {
         [] => Turn::Say(site.words("NO HELP FILE")),
         [name] => open(name, site),
@@ -69,6 +81,10 @@ pub(crate) fn files(site: &mut Site) -> Turn {
 }
 
 fn open(name: &str, site: &mut Site) -> Turn {
+    if site.plc.help.upgrade().is_some() {
+        // In the other mode beside this one [000:7066].
+        return Turn::Say(site.words("BACKGROUND PROGRAMMING NOT POSSIBLE"));
+    }
     let Some(text) = site.programs.text(name) else {
         return Turn::Say(site.message(MessageId::ProgramNotFound));
     };
@@ -76,7 +92,9 @@ fn open(name: &str, site: &mut Site) -> Turn {
         name: name.to_owned(),
         lines: text.lines().map(str::to_owned).collect(),
         current: 0,
+        open: Arc::new(()),
     };
+    site.plc.help = Arc::downgrade(&file.open);
     file.go(0, site);
     Turn::Open(Box::new(file))
 }
@@ -110,6 +128,8 @@ struct HelpFile {
     name: String,
     lines: Vec<String>,
     current: usize,
+    /// It lies open as long as this is there, however the page is left.
+    open: Arc<()>,
 }
 
 /// `#1234 text`: a command of the machine, 0 to 9999.
@@ -136,8 +156,16 @@ impl HelpFile {
     }
 }
 
+/// A help file that is no more open, as its mode was left with it, is none for the PLC.
+pub(crate) fn follow(site: &mut Site) {
+    if site.plc.help_told && site.plc.help.upgrade().is_none() {
+        tell(NO_FILE, site);
+    }
+}
+
 /// W270 of the PLC.
 fn tell(number: i32, site: &mut Site) {
+    site.plc.help_told = number != NO_FILE;
     if let Ok(command) = format!("W270={number}").parse::<Command>() {
         site.command(command);
     }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use bahn_control::Command;
 use bahn_dialogue::{Editor, Key, Setting};
-use bahn_program::{Edit, Program};
+use bahn_parameters::{ControlModel, MessageId};
+use bahn_program::{Block, Edit, MotionKind, Operation, Program};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
@@ -37,6 +38,13 @@ impl Mdi {
         };
         let program = editor.program();
         let inner = 1..program.block_count().saturating_sub(1);
+        if site.control().model() == ControlModel::Tnc360
+            && !program.blocks().all(|own| is_of_one_axis(&own.block))
+        {
+            self.editor = None;
+            self.editor(site);
+            return Turn::Say(site.message(MessageId::EntryValueIncorrect));
+        }
         let blocks: Vec<_> = inner.map(|block| program.text_of(block)).collect();
         match site.command(Command::Mdi(blocks.join("\n"))) {
             true => Turn::Done,
@@ -55,6 +63,17 @@ impl Mdi {
             *editor = Editor::new(Arc::new(program), editor.setting().clone());
         }
     }
+}
+
+/// MDI of a TNC 360 positions one axis [003:3566].
+fn is_of_one_axis(block: &Block) -> bool {
+    block.operation.parts().iter().all(|part| match part {
+        Operation::Motion(motion) => {
+            matches!(motion.kind, MotionKind::Line | MotionKind::Paraxial)
+                && motion.coordinates.axes().iter().count() <= 1
+        }
+        _ => true,
+    })
 }
 
 impl Page for Mdi {

@@ -26,19 +26,21 @@ mod transfer;
 
 use bahn_control::Mode;
 use bahn_dialogue::Key;
+use bahn_parameters::ControlModel;
 
 use crate::page::{Page, Side, Turn, View};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 pub(crate) use files::runs;
+pub(crate) use help::follow as follow_help;
 
 /// The page of a machine operating mode.
-pub(crate) fn of_mode(mode: Mode) -> Box<dyn Page> {
+pub(crate) fn of_mode(mode: Mode, model: ControlModel) -> Box<dyn Page> {
     match mode {
         Mode::Manual | Mode::Handwheel | Mode::Reference => Box::new(by_hand::ByHand),
         Mode::Mdi => Box::new(mdi::Mdi::default()),
-        Mode::SingleBlock | Mode::FullSequence => Box::new(run::ProgramRun::default()),
+        Mode::SingleBlock | Mode::FullSequence => Box::new(run::ProgramRun::new(model)),
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_control::{Command, Programs, RunState};
 use bahn_dialogue::Key;
-use bahn_parameters::MessageId;
+use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
 use bahn_program::{Program, WordKind};
 
@@ -29,9 +29,53 @@ pub(crate) struct ProgramRun {
     called: Option<Arc<Program>>,
     /// CALL LBL blocks of repeats that are under way, and how many are left.
     repeats: Vec<(BlockRef, u32)>,
+    graphics: RunGraphics,
+    /// The graphics show the simulation that START has begun, not the run.
+    simulated: bool,
+}
+
+/// What graphics a control has in program run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum RunGraphics {
+    /// None: the simulation of a TNC 407 belongs to TEST RUN [000:6370].
+    #[default]
+    None,
+    /// What runs is drawn meanwhile.
+    Parallel,
+    /// The same, and START simulates the program before it runs [003:856-873].
+    Simulated,
 }
 
 impl ProgramRun {
+    /// The page of a control.
+    pub fn new(model: ControlModel) -> ProgramRun {
+        ProgramRun {
+            graphics: match model {
+                ControlModel::Tnc407 => RunGraphics::None,
+                ControlModel::Tnc415b | ControlModel::Tnc425 => RunGraphics::Parallel,
+                ControlModel::Tnc151 | ControlModel::Tnc155 | ControlModel::Tnc360 => RunGraphics::Simulated,
+            },
+            ..ProgramRun::default()
+        }
+    }
+
+    /// The key START simulates the selected program, as often as desired [003:870-874].
+    fn simulate(&mut self, site: &mut Site) -> Turn {
+        let program = site.control().selected_program().map(str::to_owned);
+        let rests = site.control().run_state() == RunState::Idle;
+        let Some(program) = program.filter(|_| rests) else {
+            return Turn::Refused;
+        };
+        match site.command(Command::Test(program)) {
+            true => {
+                site.graphics.test(site.host.control());
+                self.simulated = true;
+                Turn::Done
+            }
+            false => Turn::Refused,
+        }
+    }
+
     /// The program that is selected.
     fn program(&self) -> Option<Arc<Program>> {
         self.shown.as_ref().map(|(_, program)| Arc::clone(program))
@@ -105,10 +149,13 @@ impl ProgramRun {
 
 impl Page for ProgramRun {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
-        if site.graphics.key(Subject::Run, key) {
+        if let Some(subject) = self.subject()
+            && site.graphics.key(subject, key)
+        {
             return Turn::Done;
         }
         match key {
+            Key::Start if self.graphics == RunGraphics::Simulated => self.simulate(site),
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Run, site))),
             Key::Goto => {
                 let program = self.program();
@@ -135,7 +182,7 @@ impl Page for ProgramRun {
         let by_hand = rules.return_to_contour || site.control().first().is_in_thread();
         let keys = match site.control().run_state() {
             RunState::Idle => vec![
-                there(rules.block_scan, site.words("RESTORE POS. AT N")),
+                there(rules.block_scan, site.words("RESTORE AT N")),
                 String::new(),
                 String::new(),
                 "Q".to_owned(),
@@ -189,7 +236,11 @@ impl Page for ProgramRun {
     }
 
     fn subject(&self) -> Option<Subject> {
-        Some(Subject::Run)
+        match self.graphics {
+            RunGraphics::None => None,
+            _ if self.simulated => Some(Subject::Test),
+            _ => Some(Subject::Run),
+        }
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {
@@ -205,7 +256,13 @@ impl Page for ProgramRun {
             self.shown = program;
         }
         self.look(site);
-        Turn::Done
+        if site.control().run_state() != RunState::Idle {
+            self.simulated = false;
+        }
+        match self.simulated && site.graphics.cannot_be_shown() {
+            true => Turn::Say(site.message(MessageId::PgmSectionCannotBeShown)),
+            false => Turn::Done,
+        }
     }
 }
 

@@ -48,7 +48,8 @@ impl Station {
         self.steps.break_off(StepsEnd::Elsewhere);
         self.paused = true;
         self.is_on = !self.host.control().is_off();
-        self.console.machine_is_elsewhere(self.host.control().mode());
+        let (mode, model) = (self.host.control().mode(), self.host.control().model());
+        self.console.machine_is_elsewhere(mode, model);
         self.graphics.machine_is_elsewhere();
         if self.is_on {
             // The page finds what it shows.

@@ -64,15 +64,16 @@ pub(super) fn draw(frame: &mut Frame, scene: &Scene, area: Rect) {
     frame.render_widget(Paragraph::new(lines).wrap(Wrap { trim: false }), inner);
 }
 
-/// `*X     +12.500`; what has no reference mark yet is dim.
+/// `⊙*X     +12.500`: the handwheel moves it, its loop is open; what has no reference mark yet is dim.
 fn position(scene: &Scene, axis: &AxisLine) -> Line<'static> {
     let star = if axis.locked { '*' } else { ' ' };
     let role = match axis.referenced {
         true => Role::Value,
         false => Role::Quiet,
     };
+    let wheel = if axis.handwheel { '⊙' } else { ' ' };
     Line::from(vec![
-        Span::raw(format!(" {star}{} ", axis.letter)),
+        Span::raw(format!("{wheel}{star}{} ", axis.letter)),
         Span::styled(format!("{:>14}", axis.value), scene.palette.style(role)),
     ])
 }
@@ -83,22 +84,26 @@ fn tool(status: &Status) -> Line<'static> {
         0 => String::new(),
         gear => format!("/{gear}"),
     };
-    Line::raw(format!(" T {:<3}{axis:<3}S {:.0}{gear}", status.tool, status.s))
+    Line::from(vec![
+        Span::raw(" "),
+        Span::styled("T", inverse(status.t_inverse)),
+        Span::raw(format!(" {:<3}{axis:<3}S {:.0}{gear}", status.tool, status.s)),
+    ])
 }
 
-/// F, the M functions, those of spindle and coolant inverse when the PLC says so, and `*`.
+/// F, inverse without feed enable, the M functions, those of spindle and coolant inverse when the PLC says so, and `*`.
 fn feed(scene: &Scene, status: &Status) -> Line<'static> {
-    let mut spans = vec![Span::raw(format!(" F {:<8}", status.f))];
+    let mut spans = vec![
+        Span::raw(" "),
+        Span::styled("F", inverse(status.f_inverse)),
+        Span::raw(format!(" {:<8}", status.f)),
+    ];
     let functions: Vec<&str> = status.m.split('/').collect();
     for (place, function) in functions.iter().enumerate() {
         if place > 0 {
             spans.push(Span::raw("/"));
         }
-        let inverse = status.m_inverse.get(place).copied().unwrap_or(false);
-        let style = match inverse {
-            true => Style::new().add_modifier(Modifier::REVERSED),
-            false => Style::new(),
-        };
+        let style = inverse(status.m_inverse.get(place).copied().unwrap_or(false));
         spans.push(Span::styled((*function).to_owned(), style));
     }
     let star = scene.palette.style(Role::Lit);
@@ -108,6 +113,14 @@ fn feed(scene: &Scene, status: &Status) -> Line<'static> {
         Star::Blinking => spans.push(Span::styled("  *", star.add_modifier(Modifier::SLOW_BLINK))),
     }
     Line::from(spans)
+}
+
+/// What stands out.
+fn inverse(inverse: bool) -> Style {
+    match inverse {
+        true => Style::new().add_modifier(Modifier::REVERSED),
+        false => Style::new(),
+    }
 }
 
 /// What is done of what was programmed, %.

@@ -92,7 +92,16 @@ impl Supplementary {
     fn functions(&self, site: &Site) -> impl Iterator<Item = Function> + use<> {
         let entered = site.plc.entered;
         let all = self.functions.iter().copied();
-        all.filter(move |function| *function != Function::Plc || entered)
+        let ranges = site.parameters().operation_parameters().datums.ranges;
+        let helps = help::is_there(site);
+        all.filter(move |function| match function {
+            Function::Plc => entered,
+            // MP7490: one traverse range or three [000:3499-3508].
+            Function::AxisLimit(range) => *range <= ranges,
+            // Where there is a help file [000:7044].
+            Function::Help => helps,
+            _ => true,
+        })
     }
 }
 
@@ -145,10 +154,7 @@ impl Function {
                 Item::new(site.words("AXES FOR L BLOCK"), settings.captured_axes.clone())
             }
             Function::UserParameters => Item::new(site.words("USER PARAMETERS"), ""),
-            Function::NcNumber => Item::new(
-                site.words("NC SOFTWARE NUMBER"),
-                format!("BAHN {}", env!("CARGO_PKG_VERSION")),
-            ),
+            Function::NcNumber => Item::new(site.words("NC SOFTWARE NUMBER"), nc_number()),
             Function::PlcNumber => Item::new(site.words("PLC SOFTWARE NUMBER"), plc_number(site)),
             Function::Plc => Item::new(site.words("PLC EDIT"), ""),
             Function::Code => Item::new(site.words("CODE NUMBER"), ""),
@@ -234,8 +240,13 @@ fn ask_axes(site: &Site) -> Turn {
     }))
 }
 
+/// Number of the NC software.
+pub(crate) fn nc_number() -> String {
+    format!("BAHN {}", env!("CARGO_PKG_VERSION"))
+}
+
 /// Name of the PLC program and the day on which it was written.
-fn plc_number(site: &Site) -> String {
+pub(crate) fn plc_number(site: &Site) -> String {
     let name = &site.machine.folder.plc;
     let file = name.rsplit('/').next().unwrap_or(name);
     let written = std::fs::metadata(site.machine.root.join(name)).and_then(|file| file.modified());

@@ -37,8 +37,12 @@ pub(super) struct TableEditor {
     pub(super) row: usize,
     pub(super) column: usize,
     pub(super) entry: Option<String>,
+    /// EDIT ON: keys change cells.
+    pub(super) edits: bool,
     /// The line that GOTO asks for.
     pub(super) wanted: Later,
+    /// RESET POCKET TABLE was confirmed.
+    pub(super) reset: Later,
     /// The program memory as the file was read.
     pub(super) version: u64,
     /// Cycles until its lines are looked at again.
@@ -67,7 +71,9 @@ impl TableEditor {
             row: 0,
             column: 1,
             entry: None,
+            edits: true,
             wanted: Later::default(),
+            reset: Later::default(),
             version: site.programs.version(),
             rest: RENEWED,
         };
@@ -110,7 +116,7 @@ impl TableEditor {
 
     /// Takes what was entered into the cell.
     pub(super) fn take(&mut self, value: &str, site: &mut Site) -> Turn {
-        let (Some(line), column) = (self.line(), self.column_name().to_owned()) else {
+        let (Some(line), column) = (self.line().filter(|_| self.edits), self.column_name().to_owned()) else {
             return Turn::Refused;
         };
         match self.set(&line, &column, value, site) {
@@ -193,6 +199,27 @@ impl TableEditor {
         }
     }
 
+    /// RESET POCKET TABLE: no pocket holds a tool; what the pockets are stays (inferred) [000:9058-9073].
+    pub(super) fn reset_pockets(&mut self, site: &mut Site) -> Result<(), String> {
+        let mut text = with_column(&self.text, self.form, "T")?;
+        let lines: Vec<String> = self.lines().collect();
+        for line in &lines {
+            (text, _) = set_line(&text, self.form, line, &[("T", "")])?;
+        }
+        self.store(text, site)?;
+        for line in &lines {
+            self.tell(line, "T", "", site);
+        }
+        self.renew(site)
+    }
+
+    /// The numbers of all lines.
+    fn lines(&self) -> impl Iterator<Item = String> {
+        let key = self.shown.names.iter().position(|name| name == self.form.key());
+        let rows = self.shown.rows.iter();
+        rows.filter_map(move |row| row.get(key?).cloned())
+    }
+
     pub(super) fn insert(&self, site: &Site) -> Turn {
         let prompt = format!("{} {} =", site.words("NEW LINE"), self.form.key());
         let (path, form, name) = (self.path.clone(), self.form, self.name.clone());
@@ -226,7 +253,7 @@ impl TableEditor {
 
     /// A letter or digit of a cell.
     pub(super) fn typed(&mut self, key: Key) -> Turn {
-        let Some(character) = key.character() else {
+        let Some(character) = key.character().filter(|_| self.edits) else {
             return Turn::Refused;
         };
         let is_number = self.form.content(self.column_name()) != CellContent::Text;

@@ -85,9 +85,14 @@ pub(crate) fn tools(site: &mut Site) -> Turn {
     open(TOOL_FILE, site)
 }
 
-/// The machine has a tool table.
+/// The machine has a tool table that is not disabled.
 pub(crate) fn has_tools(site: &Site) -> bool {
-    path_of(TOOL_FILE, site).is_some()
+    is_open_to_all(TOOL_FILE, site)
+}
+
+/// There is such a table, and MP7224.0 does not disable it [000:9101].
+fn is_open_to_all(name: &str, site: &Site) -> bool {
+    path_of(name, site).is_some() && !is_disabled(name, site)
 }
 
 /// The pocket table.
@@ -120,7 +125,8 @@ fn store(name: &str, path: &Path, form: TableForm, text: &str, site: &mut Site) 
 /// Opens the editor of a table.
 pub(crate) fn open(name: &str, site: &mut Site) -> Turn {
     let missing = |site: &Site| Turn::Say(site.message(MessageId::ProgramNotFound));
-    let (Some(path), Some(form)) = (path_of(name, site), form_of(name)) else {
+    let path = path_of(name, site).filter(|_| !is_disabled(name, site));
+    let (Some(path), Some(form)) = (path, form_of(name)) else {
         return missing(site);
     };
     match TableEditor::read(name, path, form, site) {

@@ -6,9 +6,10 @@ use bahn_parameters::MessageId;
 
 use super::cells::{is_mark, read};
 use super::editor::{CELL_MAX, RENEWED, TableEditor, WIDTH};
-use super::{POCKET_FILE, TOOL_FILE, path_of, pockets, tools};
+use super::{POCKET_FILE, TOOL_FILE, is_open_to_all, pockets, tools};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
+use crate::pages::ask::Choice;
 use crate::pages::list;
 use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
@@ -71,6 +72,33 @@ impl TableEditor {
             }
             None => Turn::Refused,
         }
+    }
+
+    fn is_pocket_table(&self) -> bool {
+        self.form == TableForm::Pocket && self.is_of_machine()
+    }
+
+    /// NEXT LINE: the first column of the line below.
+    fn next_line(&mut self, site: &mut Site) -> Turn {
+        let turn = self.leave_cell(1, 0, site);
+        if matches!(turn, Turn::Done) {
+            self.column = 1;
+        }
+        turn
+    }
+
+    /// RESET POCKET TABLE asks before.
+    fn ask_to_reset(&self, site: &Site) -> Turn {
+        if !self.edits {
+            return Turn::Refused;
+        }
+        let words = site.words("RESET POCKET TABLE");
+        let prompt = format!("{words}: {}", site.words("ERASE = ENT / END = NO ENT"));
+        let reset = self.reset.clone();
+        Turn::Open(Choice::confirm(prompt, words, move |_site| {
+            reset.set("");
+            Turn::Close
+        }))
     }
 
     fn goto(&self, site: &Site) -> Turn {
@@ -192,24 +220,44 @@ impl Page for TableEditor {
             },
             Key::Del => Turn::Close,
             Key::Goto => self.goto(site),
-            Key::Capture => self.capture(site),
+            Key::Capture if self.edits => self.capture(site),
             key => self.typed(key),
         }
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
         let other = match self.name.as_str() {
-            TOOL_FILE if path_of(POCKET_FILE, site).is_some() => site.words("POCKET TABLE"),
+            TOOL_FILE if is_open_to_all(POCKET_FILE, site) => site.words("POCKET TABLE"),
             POCKET_FILE => site.words("TOOL TABLE"),
             _ => String::new(),
         };
         let mut keys = list::soft_keys(&SOFT_KEYS, site);
         keys.extend([other, site.words("END")]);
-        vec![keys]
+        let reset = match self.is_pocket_table() {
+            true => site.words("RESET POCKET TABLE"),
+            false => String::new(),
+        };
+        let edit = match self.edits {
+            true => site.words("EDIT OFF"),
+            false => site.words("EDIT ON"),
+        };
+        vec![keys, vec![reset, edit, site.words("NEXT LINE")]]
     }
 
-    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+    fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
+        if row == 1 {
+            return match place {
+                0 => self.ask_to_reset(site),
+                1 => {
+                    self.edits = !self.edits;
+                    self.entry = None;
+                    Turn::Done
+                }
+                _ => self.next_line(site),
+            };
+        }
         match list::name_at(&SOFT_KEYS, place) {
+            "INSERT LINE" | "DELETE LINE" if !self.edits => Turn::Refused,
             "INSERT LINE" => self.insert(site),
             "DELETE LINE" => self.delete(site),
             _ if place == SOFT_KEYS.len() => {
@@ -263,6 +311,11 @@ impl Page for TableEditor {
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {
+        if self.reset.take().is_some()
+            && let Err(why) = self.reset_pockets(site)
+        {
+            return Turn::Say(why);
+        }
         if let Some(line) = self.wanted.take() {
             let key = self.shown.names.iter().position(|name| name == self.form.key());
             let is_meant = |row: &Vec<String>| key.and_then(|key| row.get(key)) == Some(&line);
