@@ -6,6 +6,7 @@ use bahn_path::{FeedRate, Position};
 
 use super::deviation::Deviation;
 use super::executed::Executed;
+use super::threads::Threads;
 use crate::UsageError;
 use crate::report::Record;
 use crate::test_run::Outputs;
@@ -16,6 +17,7 @@ pub(super) struct Beside {
     pub channel: usize,
     executed: Executed,
     pub deviation: Deviation,
+    pub threads: Threads,
     /// Time of its program, µs.
     program_us: u64,
 }
@@ -31,6 +33,7 @@ impl Beside {
             channel: channel.number(),
             executed: Executed::new(channel.number(), None, Outputs::default()),
             deviation: Deviation::new(channel),
+            threads: Threads::default(),
             program_us: 0,
         }
     }
@@ -46,14 +49,19 @@ impl Beside {
             let feed = channel.element().map(|element| element.feed);
             let contour = matches!(feed, Some(FeedRate::Programmed(_)));
             self.deviation.cycle(channel, contour);
+            self.threads.cycle(channel, host.plant());
         } else {
             self.deviation.restart();
+            self.threads.end(channel);
         }
         self.executed.cycle(host, running)
     }
 
     /// Of a run that was broken off: what was executed to the end counts.
     pub fn finish(&mut self, host: &Host) -> Result<(), UsageError> {
+        if let Some(channel) = host.control().channel(self.channel) {
+            self.threads.end(channel);
+        }
         self.executed.finish(host.control())
     }
 

@@ -106,7 +106,7 @@ impl Listed {
 }
 
 /// Name of the program of a block.
-fn program_name(control: ChannelView, block: BlockRef) -> String {
+pub(super) fn program_name(control: ChannelView, block: BlockRef) -> String {
     control
         .interpreter()
         .and_then(|run| run.program(block.program))

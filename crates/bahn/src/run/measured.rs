@@ -1,15 +1,19 @@
-//! What is measured of a run: where its time goes, how far the axes leave the contour, how busy the PLC is.
+//! What is measured of a run: where its time goes, how far the axes leave the contour, how deep threads are, how busy the
+//! PLC is.
 
 use bahn_control::Control;
 use bahn_host::Phase;
+use bahn_machine::Machine;
 use bahn_path::FeedRate;
 
 use super::deviation::Deviation;
+use super::threads::Threads;
 use super::times::Times;
 
 /// The measurements.
 pub(super) struct Measured {
     pub deviation: Deviation,
+    pub threads: Threads,
     pub times: Times,
     pub power_up_us: u64,
     pub reference_us: u64,
@@ -22,6 +26,7 @@ impl Measured {
     pub fn new(control: &Control) -> Measured {
         Measured {
             deviation: Deviation::new(control.first()),
+            threads: Threads::default(),
             times: Times::default(),
             power_up_us: 0,
             reference_us: 0,
@@ -31,7 +36,7 @@ impl Measured {
     }
 
     /// Takes a contour cycle; `running` says that a run is on its way.
-    pub fn cycle(&mut self, control: &Control, phase: Phase, running: bool) {
+    pub fn cycle(&mut self, control: &Control, plant: &Machine, phase: Phase, running: bool) {
         let cycle_us = u64::from(control.cycle_us());
         let percent = control.plc_percent();
         let (sum, count, longest) = &mut self.plc_percent;
@@ -49,8 +54,10 @@ impl Measured {
             let feed = control.element().map(|element| element.feed);
             let contour = matches!(feed, Some(FeedRate::Programmed(_)));
             self.deviation.cycle(control.first(), contour);
+            self.threads.cycle(control.first(), plant);
         } else {
             self.deviation.restart();
+            self.threads.end(control.first());
         }
     }
 

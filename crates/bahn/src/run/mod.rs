@@ -2,7 +2,7 @@
 //!
 //! - `options`: options and help text;
 //! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it; `standstill`: whether it comes on;
-//! - `beside`: the channels beside the first one; `executed`: what was done of the path; `measured`: `deviation` and `times`; `listed`: messages and keys;
+//! - `beside`: the channels beside the first one; `executed`: what was done of the path; `measured`: `deviation`, `threads` and `times`; `listed`: messages and keys;
 //!   `recording`: signals over time;
 //! - `report`: what is said in the end.
 
@@ -19,6 +19,7 @@ mod report;
 mod session;
 mod standstill;
 mod table;
+mod threads;
 mod times;
 mod turning;
 

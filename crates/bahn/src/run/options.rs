@@ -59,10 +59,12 @@ JSON report (--format json): the fields of `bahn test`; machining_time_s is that
 waits. Without a program, or when its run did not begin, only completed and error. machine, model, power_up_s, reference_s; times (what, count, time_s); axes by letter (max_lag,
 lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm,
 contour_deviation_cause (in words), contour_deviation_block;
+threads (program, block, cycle 2, 17 or 18; depth_mm that is commanded, reached_mm by the plant; off_mm, the largest distance
+of the tool from where the spindle's angle says, in cycle 2 what the floating holder takes), threads_not_listed behind 1000;
 plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
 channels (only where there are several, those beside the first: channel, the fields of `bahn test`, axes,
-contour_deviation_mm, _cause, _block); failed_expectations (line, text, actual); test_run (null, or program, completed, message, place of the last
+contour_deviation_mm, _cause, _block, threads); failed_expectations (line, text, actual); test_run (null, or program, completed, message, place of the last
 TEST RUN of a script); realtime (null, or cycles, late_cycles, worst_lateness_ms,
 late_by, overrun_cycles, longest_ms).
 

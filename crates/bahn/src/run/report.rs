@@ -12,6 +12,7 @@ use super::beside::Beside;
 use super::deviation::Deviation;
 use super::listed::{Confirmed, Said};
 use super::session::Session;
+use super::threads::{Thread, Threads};
 use super::times::Share;
 use crate::report::{End, ErrorReport, Report, tidy};
 use crate::report_text::{self, LABEL, list};
@@ -113,6 +114,8 @@ pub(super) struct RunReport {
     /// Why it arose, in words.
     contour_deviation_cause: Option<String>,
     contour_deviation_block: Option<u32>,
+    threads: Vec<Thread>,
+    threads_not_listed: u64,
     plc: PlcReport,
     messages: Vec<Said>,
     confirmed: Vec<Confirmed>,
@@ -140,6 +143,8 @@ impl RunReport {
             contour_deviation_mm: tidy(session.measured.deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
+            threads: session.measured.threads.done.clone(),
+            threads_not_listed: session.measured.threads.not_listed,
             plc: PlcReport {
                 max_percent: tidy(longest),
                 mean_percent: tidy(sum / count.max(1) as f64),
@@ -201,6 +206,7 @@ impl RunReport {
                 ),
             );
         }
+        threads(&mut row, &self.threads, self.threads_not_listed);
         row(
             "PLC",
             &format!(
@@ -260,6 +266,8 @@ pub(super) struct ChannelReport {
     contour_deviation_mm: f64,
     contour_deviation_cause: Option<String>,
     contour_deviation_block: Option<u32>,
+    threads: Vec<Thread>,
+    threads_not_listed: u64,
 }
 
 impl ChannelReport {
@@ -281,6 +289,7 @@ impl ChannelReport {
         let program = beside.take_record().report(run, end, None, model);
         let deviation = &beside.deviation;
         let cause = deviation.cause;
+        let Threads { done, not_listed, .. } = &beside.threads;
         Some(ChannelReport {
             channel: beside.channel + 1,
             program: ProgramReport::Ran(Box::new(program)),
@@ -288,6 +297,8 @@ impl ChannelReport {
             contour_deviation_mm: tidy(deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
+            threads: done.clone(),
+            threads_not_listed: *not_listed,
         })
     }
 
@@ -304,9 +315,18 @@ impl ChannelReport {
             let (microns, block) = (self.contour_deviation_mm * 1e3, at(self.contour_deviation_block));
             row("", &format!("off the contour {microns:.1} µm{block}: {cause}"));
         }
+        threads(row, &self.threads, self.threads_not_listed);
         for warning in &report.warnings {
             row("", &format!("block {}: {}", warning.block, warning.message));
         }
+    }
+}
+
+/// The threads of a channel.
+fn threads(row: &mut impl FnMut(&str, &str), threads: &[Thread], not_listed: u64) {
+    list(row, "Threads", threads, Thread::text);
+    if not_listed > 0 {
+        row("", &format!("{not_listed} more threads are not listed"));
     }
 }
 

@@ -121,6 +121,7 @@ impl Session {
             self.host.begin()?;
             self.follow_notices()?;
             if let Some(ended) = self.ended.take() {
+                self.measured.threads.end(self.host.control().first());
                 self.executed.finish(self.host.control())?;
                 for channel in &mut self.beside {
                     channel.finish(&self.host)?;
@@ -245,7 +246,8 @@ impl Session {
             self.start_us = Some(now);
             self.play.start(now);
         }
-        self.measured.cycle(self.host.control(), phase, running);
+        let (control, plant) = (self.host.control(), self.host.plant());
+        self.measured.cycle(control, plant, phase, running);
         self.executed.cycle(&mut self.host, running)?;
         self.table.cycle(&mut self.host, self.executed.cutting.as_mut());
         for channel in &mut self.beside {
