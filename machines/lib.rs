@@ -57,7 +57,7 @@ pub const DIG425: ShippedMachine = machine!("dig425" for "tnc425":
 /// A portal mill with two channels; its control is a TNC 415 B. It is a start where it is asked for by its name.
 pub const TWIN: ShippedMachine = machine!("twin" for "tnc415b":
     "README.md", "machine.toml", "left.mp", "right.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "plc/together.txt", "programs/LEFT.H", "programs/RIGHT.H", "scripts/emergency.txt", "scripts/stop.txt",
+    "plc/together.txt", "programs/LEFT.H", "programs/RIGHT.H", "programs/TAPS.H", "scripts/emergency.txt", "scripts/stop.txt",
 );
 
 /// A portal mill with synchronized axes and a spindle that swivels; its control is a TNC 415 B. It is a start where it is

@@ -90,7 +90,7 @@ fn a_measuring_axis_does_not_jump_behind_an_emergency_stop() {
     seconds(&mut host, 0.1);
     stop_and_go_on(&mut host);
     until(&mut host, "the next block", |control| {
-        control.element().is_some_and(|element| element.block.block >= 16)
+        control.element().is_some_and(|element| element.block.block >= 9)
     });
 }
 
@@ -157,6 +157,6 @@ fn a_measuring_axis_does_not_jump_behind_the_feed_enable() {
     }
     give(&mut host, "key NC_START tap");
     until(&mut host, "the next block", |control| {
-        control.element().is_some_and(|element| element.block.block >= 16)
+        control.element().is_some_and(|element| element.block.block >= 9)
     });
 }

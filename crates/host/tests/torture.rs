@@ -16,9 +16,9 @@ fn as_found(machine: &str) -> Campaign {
         "mill-tnc360" => &["COVER.H"],
         "dig425" => &["CIRCLE.H", "COVER.H", "PALLETS.H"],
         "gantry" => &["NOSE.H", "ROOF.H"],
-        _ => &[],
+        _ => &["LEFT.H"],
     };
-    if !["mill-tnc360", "dig425"].contains(&machine) {
+    if !["mill-tnc360", "dig425", "twin"].contains(&machine) {
         return of_programs(support::machine(machine), programs);
     }
     let mut loaded = support::machine(machine);

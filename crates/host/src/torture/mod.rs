@@ -43,16 +43,17 @@ pub struct Campaign {
 }
 
 impl Campaign {
-    /// Takes a machine with all its programs, or with those that are named.
+    /// Takes a machine with all programs of its first channel, or with those that are named. The other channels run their own.
     ///
     /// # Errors
     /// When the folder of its programs cannot be read.
     pub fn new(machine: LoadedMachine, named: &[String]) -> Result<Campaign, HostError> {
-        let programs = match (named, machine.usual_program(0)) {
-            ([], Some(program)) if !machine.channels.is_empty() => vec![program.to_owned()],
-            ([], _) => programs_in(&machine.programs(0))?,
-            (named, _) => named.to_vec(),
-        };
+        let mut programs = named.to_vec();
+        if named.is_empty() {
+            let others = (1..=machine.channels.len()).filter_map(|other| machine.usual_program(other));
+            programs = programs_in(&machine.programs(0))?;
+            programs.retain(|name| !others.clone().any(|other| other == name));
+        }
         Ok(Campaign {
             catalogue: Catalogue::of(&machine),
             machine,
