@@ -30,6 +30,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "parameters",
             "program",
             "dialogue",
+            "technology",
             "interpreter",
             "exchange",
             "plc",

@@ -170,7 +170,7 @@ impl FileLibrary {
 }
 
 /// The folder beside the programs with what is in the EPROM of the PLC.
-const EPROM: &str = "eprom";
+pub const EPROM: &str = "eprom";
 
 impl Library for FileLibrary {
     /// Looks for the name beside the calling program; see `called::find`.

@@ -87,6 +87,33 @@ fn swivel_axes_stand_where_cycle_19_says() {
     );
 }
 
+/// A machine knows where its axes stand: with the datum of B at 10 only B+20 is its 30, and nothing is taken for the datum of the
+/// machine as in a test run.
+#[test]
+fn on_a_machine_swivel_axes_stand_in_it() {
+    let mut list = ParameterList::reference(ControlModel::Tnc415b);
+    for assignment in SWIVEL_HEAD {
+        list.assign(assignment).expect(assignment);
+    }
+    let message = |b: &str| {
+        let text = program(&format!(
+            "{TOOL}CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+30\nL B{b} R0 FMAX\nL X+1 FMAX"
+        ));
+        let job = Job::new(text).with(|settings| {
+            settings.rules = bahn_interpreter::Rules::of(&list);
+            settings.rules.machine_zero = Position::ZERO;
+            settings.rules.machine_zero[Axis::B] = -10.0;
+            settings.start = Position::ZERO;
+            settings.machine = true;
+        });
+        job.run().message()
+    };
+    assert_eq!(message("+20"), None);
+    for b in ["+30", "+10", "+40"] {
+        assert_eq!(message(b), Some((PlaneWronglyDefined, 6)), "B{b}");
+    }
+}
+
 fn at(x: f64, y: f64, z: f64) -> Position {
     let mut position = Position::ZERO;
     (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use bahn_program::Program;
 use lsp_types::Uri;
 
+use crate::channel::ChannelText;
 use crate::din::DinProgram;
 use crate::language::{Analysis, BYTES_MAX, Examined, Kind};
 use crate::list::ParameterText;
@@ -69,10 +71,20 @@ impl Version {
 
 /// Reads a text in the language of its kind.
 fn analyse(kind: Kind, path: &Path, text: Arc<Text>, world: &World) -> Arc<dyn Analysis> {
+    let kind = match kind {
+        Kind::Din if begins_in_plain_language(&text) => Kind::Plain,
+        kind => kind,
+    };
     match kind {
         Kind::Plain | Kind::Iso => Arc::new(PartProgram::new(path, text, world)),
         Kind::Din => Arc::new(DinProgram::new(path, text)),
         Kind::Plc => Arc::new(PlcSource::new(path, text, world)),
         Kind::Parameters => Arc::new(ParameterText::new(path, text, world)),
+        Kind::Channel => Arc::new(ChannelText::new(text)),
     }
+}
+
+/// Shops name programs in plain language `.nc`, too: those begin with BEGIN PGM.
+fn begins_in_plain_language(text: &Text) -> bool {
+    Program::from_bytes("1.H", text.text.as_bytes().to_vec()).begins_with_header()
 }

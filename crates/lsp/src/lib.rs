@@ -30,6 +30,7 @@
 
 mod background;
 mod capabilities;
+mod channel;
 mod din;
 mod document;
 mod language;

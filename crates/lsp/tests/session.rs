@@ -57,6 +57,72 @@ fn parameter_lists() {
     client.end().ended().unwrap();
 }
 
+/// Channel lists: what `bahn technology` says of them, and what a parameter and a synchronisation type mean.
+#[test]
+fn channel_lists() {
+    let (mut client, folder) = session();
+    let text = "# glue\nm_synch[25]  MVS_SVS\nm_synch[1000]  MVS_SVS\n";
+    let mut document = client.open_text(&folder.path().join("glue.lis"), "tf-channel", text);
+    let found = client.diagnostics(&document);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(document.marked(&found[0]["range"]), "1000");
+    let hover = client.hover(&document, "m_synch[25]", 3);
+    assert!(
+        hover.contains("P-CHAN-00041") && hover.contains("*Source:*"),
+        "{hover}"
+    );
+    let hover = client.hover(&document, "MVS_SVS", 2);
+    assert!(
+        hover.contains("0x00000002") && hover.contains("*Output:*"),
+        "{hover}"
+    );
+    let outline = client.request("textDocument/documentSymbol", document.id());
+    assert_eq!(outline[0]["name"], "m_synch[25]");
+    let names = client.completions(&document, "m_synch[1000]", 3);
+    assert!(
+        names.iter().any(|(label, _)| label == "m_prozess_zeit[i]"),
+        "{names:?}"
+    );
+    client.edit(&mut document, "[1000]", "[100]");
+    assert_eq!(client.diagnostics(&document), [] as [Value; 0]);
+    client.end().ended().unwrap();
+}
+
+/// A program in plain language that is named `.nc` is read as one, and so is what is typed into it.
+#[test]
+fn a_program_in_plain_language_may_be_named_nc() {
+    let (mut client, folder) = session();
+    let text = "0 BEGIN PGM 1 MM\n1 CC X+0 Y+0\n2 L X+1..5 R0 FMAX\n3 END PGM 1 MM\n";
+    let mut document = client.open_text(&folder.path().join("shop.nc"), "din-66025", text);
+    let found = client.diagnostics(&document);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(document.marked(&found[0]["range"]), "+1..5");
+    client.edit(&mut document, "X+1..5", "X+1.5");
+    assert_eq!(client.diagnostics(&document), [] as [Value; 0]);
+    let hover = client.hover(&document, "CC", 1);
+    assert!(hover.contains("CC"), "{hover}");
+    client.end().ended().unwrap();
+}
+
+/// P02 of G83 is the depth of cycle 1, in the order in which the dialogue asks; P01 of D68 is Q1 of the cycle
+/// [000:17966-17984].
+#[test]
+fn p_words_of_cycles_are_explained() {
+    let (mut client, folder) = session();
+    let text = "%1 G71 *\nN10 T1 G17 S500 *\nN20 G83 P01 -2 P02 -20 P03 -10 P04 0.5 P05 80 *\nN30 D68 P1+8 *\nN99 %1 G71 *\n";
+    let document = client.open_text(&folder.path().join("p.I"), "tnc-iso", text);
+    for (word, meaning) in [
+        ("P02 -20", "1.2 "),
+        ("P04 0.5", "in s"),
+        ("P05 80", "in mm/min"),
+        ("P1+8", "Q1 of cycle 68"),
+    ] {
+        let hover = client.hover(&document, word, 1);
+        assert!(hover.contains(meaning), "{word}: {hover}");
+    }
+    client.end().ended().unwrap();
+}
+
 #[test]
 fn other_documents_and_requests() {
     let (mut client, folder) = session();

@@ -1,7 +1,7 @@
 //! Blocks that are longer than the control takes: 150 characters in DIN/ISO [000:615], 64 on the TNC 151/155
 //! [001:1174-1183].
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{Limits, MessageId};
 
 use crate::program::{Chunk, Places};
 use crate::text::{character_count, to_text};
@@ -34,16 +34,27 @@ impl Places<'_> {
     }
 }
 
-/// Puts a block that cannot be read in the place of each that is longer than `max` characters.
-pub(crate) fn refuse_long(program: &Program, chunk: &mut Chunk, max: u32) {
-    let mut places: Option<Places<'_>> = None;
-    for (number, block) in (chunk.first_block..).zip(&mut chunk.blocks) {
-        let here = places.take().filter(|places| places.of(number).is_some());
-        places = here.or_else(|| program.places_of(number));
-        let Some(places) = &places else { continue };
-        if let Some(error) = places.too_long(number, max) {
-            let text = places.text(number);
-            block.operation = Operation::Invalid(Box::new(InvalidBlock { text, error }));
+impl Program {
+    /// [`Program::decode`] for a control model: a block that is longer than the model takes cannot be read.
+    pub fn decode_for(&self, chunk: u32, limits: &Limits) -> Chunk {
+        let mut decoded = self.decode(chunk);
+        if let Some(max) = self.language().characters_max(limits) {
+            self.refuse_long(&mut decoded, max);
+        }
+        decoded
+    }
+
+    /// Puts a block that cannot be read in the place of each that is longer than `max` characters.
+    fn refuse_long(&self, chunk: &mut Chunk, max: u32) {
+        let mut places: Option<Places<'_>> = None;
+        for (number, block) in (chunk.first_block..).zip(&mut chunk.blocks) {
+            let here = places.take().filter(|places| places.of(number).is_some());
+            places = here.or_else(|| self.places_of(number));
+            let Some(places) = &places else { continue };
+            if let Some(error) = places.too_long(number, max) {
+                let text = places.text(number);
+                block.operation = Operation::Invalid(Box::new(InvalidBlock { text, error }));
+            }
         }
     }
 }

@@ -2,9 +2,6 @@
 
 use std::sync::{Arc, OnceLock};
 
-use bahn_parameters::Limits;
-
-use crate::block_length::refuse_long;
 use crate::bulk::Bulk;
 use crate::file_types::bulk_language_of;
 use crate::grow::Growth;
@@ -221,15 +218,6 @@ impl Program {
             self.language
                 .read_all(piece.text(), skip as usize, wanted, number == 0, blocks);
         }
-    }
-
-    /// [`Program::decode`] for a control model: a block that is longer than the model takes cannot be read.
-    pub fn decode_for(&self, chunk: u32, limits: &Limits) -> Chunk {
-        let mut decoded = self.decode(chunk);
-        if let Some(max) = self.language.characters_max(limits) {
-            refuse_long(self, &mut decoded, max);
-        }
-        decoded
     }
 
     /// All blocks in order.

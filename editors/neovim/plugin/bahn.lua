@@ -6,6 +6,7 @@ vim.filetype.add({
     nc = 'din_66025',
     PLC = 'tnc_plc', plc = 'tnc_plc',
     MP = 'tnc_parameters', mp = 'tnc_parameters',
+    lis = 'tf_channel',
   },
   -- Small letters are those of C, too: a program begins with BEGIN PGM.
   pattern = {

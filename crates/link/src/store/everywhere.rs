@@ -3,6 +3,8 @@
 use std::collections::HashSet;
 use std::fs;
 
+use bahn_host::files::EPROM;
+
 use super::place::is_name;
 use super::{Entry, Place, Store, StoreError};
 
@@ -39,7 +41,8 @@ impl Store {
         Ok(places.find(|place| self.has(place)).unwrap_or(own))
     }
 
-    /// The folders of the drive: its root, those in it by name, those in them, and so on. A disk has its root only.
+    /// The folders of the drive: its root, those in it by name, those in them, and so on. A disk has its root only. What is in
+    /// the EPROM of the PLC is no file of the drive.
     fn folders(&self) -> Vec<Place> {
         let mut folders = vec![self.root()];
         let mut next = 0;
@@ -52,7 +55,7 @@ impl Store {
             let mut names: Vec<String> = entries
                 .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()))
                 .filter_map(|entry| entry.file_name().into_string().ok())
-                .filter(|name| is_name(name))
+                .filter(|name| is_name(name) && name != EPROM)
                 .collect();
             names.sort_by_cached_key(|name| (name.to_ascii_uppercase(), name.clone()));
             let room = FOLDERS_MAX.saturating_sub(folders.len());

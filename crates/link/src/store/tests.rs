@@ -242,6 +242,20 @@ fn folders_are_made_listed_and_removed() {
     assert!(store.make_folder(&at(&store, "2.H\\A")).is_err());
 }
 
+/// Cycles of the machine builder in the EPROM of the PLC are not in the program memory: an interface without folders neither
+/// sends them with all files nor replaces one.
+#[test]
+fn the_eprom_is_no_folder_of_programs() {
+    let folder = Folder::new("eprom");
+    fs::create_dir_all(folder.0.join("programs/eprom")).unwrap();
+    folder.put("1.H", "one");
+    folder.put("eprom/99999968.H", "cycle");
+    let store = folder.store();
+    let names: Vec<String> = store.everywhere().into_iter().map(|(_, entry)| entry.name).collect();
+    assert_eq!(names, ["1.H"]);
+    assert_eq!(store.whereabouts("99999968.H").unwrap(), at(&store, "99999968.H"));
+}
+
 #[test]
 fn a_name_alone_is_found_in_any_folder() {
     let folder = Folder::new("everywhere");

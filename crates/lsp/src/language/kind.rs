@@ -15,15 +15,18 @@ pub(crate) enum Kind {
     Plc,
     /// A list of machine parameters, `.MP`.
     Parameters,
+    /// A list of channel parameters of a TF5200, `.lis`.
+    Channel,
 }
 
 /// Names that editors give to the languages, and endings of files.
-const NAMES: [(&str, &str, Kind); 5] = [
+const NAMES: [(&str, &str, Kind); 6] = [
     ("tnc-plain", "h", Kind::Plain),
     ("tnc-iso", "i", Kind::Iso),
     ("din-66025", "nc", Kind::Din),
     ("tnc-plc", "plc", Kind::Plc),
     ("tnc-parameters", "mp", Kind::Parameters),
+    ("tf-channel", "lis", Kind::Channel),
 ];
 
 impl Kind {

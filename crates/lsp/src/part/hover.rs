@@ -126,6 +126,9 @@ fn of_word(program: &PartProgram, block: &ReadBlock<'_>, word: &WordSpan) -> Opt
                 false => word.value.start,
             };
             let letters = program.capitals(&(word.span.start..end));
+            if is_iso && let Some(text) = parameter_of(program, block, &letters) {
+                return Some(text);
+            }
             if letters == "M" {
                 return m_function(program, &program.capitals(&word.value));
             }
@@ -263,6 +266,46 @@ fn cycle_of(program: &PartProgram, block: &ReadBlock<'_>, word: &WordSpan) -> Op
         _ => return None,
     };
     Some(cycle_text(program, function, cycle.number, Some(cycle.sub), ""))
+}
+
+/// A P word of a cycle in DIN/ISO: the parameters are counted as the dialogue asks for them, those of a cycle of the machine
+/// builder go to the Q parameters of their numbers [000:17966-17984].
+fn parameter_of(program: &PartProgram, block: &ReadBlock<'_>, letters: &str) -> Option<String> {
+    let index = letters
+        .strip_prefix('P')?
+        .trim_end()
+        .parse::<usize>()
+        .ok()?
+        .checked_sub(1)?;
+    let cycle_block = block.operation.parts().iter().find_map(|part| match part {
+        Operation::Cycle(block) => Some(block),
+        _ => None,
+    })?;
+    let (function, number) = (CycleFunction::Definition, cycle_block.number);
+    let Some(known) = cycle(function, number) else {
+        let text = Markdown::titled(&format!("P{:02}: Q{} of cycle {number}", index + 1, index + 1));
+        return Some(text.source("[000:17966-17984]").text());
+    };
+    let template = cycle_template(function, number);
+    let of_block = |(parts, sub): (&Vec<TemplatePart>, u16)| {
+        let parameters = cycle_parameters(function, number, sub).iter();
+        let asked = asked(program, parts, function, number, sub);
+        let own = parameters
+            .zip(asked)
+            .filter(|(of, _)| of.quantity != bahn_program::Quantity::Turn);
+        own.map(|(_, asked)| asked).collect::<Vec<_>>()
+    };
+    let all: Vec<String> = template.iter().zip(0..).flat_map(of_block).collect();
+    // More labels than blocks ask for: the last one repeats.
+    let asked = all.get(index).or(all.last())?;
+    let entry = registered(program.model, Kind::Cycle, &format!("CYCL DEF {number}"));
+    let text = Markdown::titled(&format!("P{:02}: {asked}", index + 1));
+    let of = format!("CYCL DEF {number} {}", known.name);
+    Some(
+        text.fact("Of", &of)
+            .source(entry.map_or("", |entry| entry.source))
+            .text(),
+    )
 }
 
 /// A cycle with what one of its blocks, or all of them, ask for.
