@@ -407,6 +407,13 @@ fn every_parameter_of_every_cycle_is_entered_by_keys() {
                     let field = line.field_mut(index).unwrap();
                     assert!(field.slot.need != Need::Unasked && !field.slot.prompt.is_empty());
                     field.words = some_word(field);
+                    // The second side lies on another axis than the first.
+                    if field.slot.prompt.ends_with("5 side") {
+                        field
+                            .words
+                            .iter_mut()
+                            .for_each(|word| word.address = "Y".to_owned());
+                    }
                 }
             }
             let texts: Vec<String> = lines.iter().map(Line::text).collect();

@@ -16,6 +16,17 @@ use desk::Desk;
 use proptest::prelude::*;
 use proptest::sample::select;
 
+/// The side of a pocket is positive [003:5250].
+fn side() -> impl Strategy<Value = (String, Value)> {
+    value().prop_map(|(text, value)| match value {
+        Value::Number(number) => (
+            text.trim_start_matches('-').to_owned(),
+            Value::Number(number.abs()),
+        ),
+        parameter => (text, parameter),
+    })
+}
+
 /// A value with the keys that enter it.
 fn value() -> impl Strategy<Value = (String, Value)> {
     prop_oneof![
@@ -249,7 +260,7 @@ proptest! {
     }
 
     #[test]
-    fn pockets_do_what_was_entered(depths in prop::array::uniform3(1_u32..90_000), sides in prop::array::uniform2(value()), feeds in prop::array::uniform2(1..29_999_u32), radius in 0..99_u32) {
+    fn pockets_do_what_was_entered(depths in prop::array::uniform3(1_u32..90_000), sides in prop::array::uniform2(side()), feeds in prop::array::uniform2(1..29_999_u32), radius in 0..99_u32) {
         let depths = depths.map(|depth| -f64::from(depth) / 1000.0);
         let keys = format!(
             "CYCL_DEF 4 ENT {} ENT {} ENT {} ENT {} ENT X {} ENT Y {} ENT {} ENT ENT {radius} ENT",

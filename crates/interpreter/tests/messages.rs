@@ -333,6 +333,12 @@ fn wrong_axis_programmed() {
             9,
             "CYCL DEF 4.0 POCKET\nCYCL DEF 4.1 SET UP -2\nCYCL DEF 4.2 DEPTH -10\nCYCL DEF 4.3 PECKG -5 F80\nCYCL DEF 4.4 X+80\nCYCL DEF 4.5 Z+40\nCYCL DEF 4.6 F100 DR+ RADIUS 0\nL Z+2 FMAX\nCYCL CALL",
         ),
+        (
+            "pocket with both sides on one axis",
+            M,
+            9,
+            "CYCL DEF 4.0 POCKET\nCYCL DEF 4.1 SET UP -2\nCYCL DEF 4.2 DEPTH -10\nCYCL DEF 4.3 PECKG -5 F80\nCYCL DEF 4.4 X+80\nCYCL DEF 4.5 X+40\nCYCL DEF 4.6 F100 DR+ RADIUS 0\nL Z+2 FMAX\nCYCL CALL",
+        ),
         ("mirrored tool axis", M, 2, "CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 Z"),
         (
             "mirrored rotary axis",

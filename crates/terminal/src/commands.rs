@@ -212,8 +212,9 @@ pub(crate) fn read(line: &str, machine: &Machine, language: Language) -> Result<
     match command.takes {
         Takes::Keys => keys(rest, machine, language),
         Takes::Hold(holds) => {
-            if let Some(key) = Key::from_name(&rest.to_ascii_uppercase()) {
-                return Ok(vec![Order::Give(Input::Held(key, holds))]);
+            // The key of the keyboard that is held: END, for the warm start.
+            if rest.eq_ignore_ascii_case(Key::End.name()) {
+                return Ok(vec![Order::Give(Input::Held(Key::End, holds))]);
             }
             let name = machine
                 .key(rest)
@@ -338,6 +339,12 @@ mod tests {
             [Order::Give(Input::Key(Key::Ce))]
         );
         assert_eq!(super::read("X+", &machine(), Language::English).unwrap().len(), 1);
+        for (typed, down) in [("hold end", true), ("release END", false)] {
+            assert_eq!(
+                super::read(typed, &machine(), Language::English).unwrap(),
+                [Order::Give(Input::Held(Key::End, down))]
+            );
+        }
         for wrong in ["key", "nonsense", "key L 1z", "hold Q"] {
             assert!(
                 super::read(wrong, &machine(), Language::English).is_err(),

@@ -1,9 +1,10 @@
 //! Screens of a station, drawn into a buffer and held to those that were looked at: `tests/screens`, written anew when
 //! `BAHN_WRITE_DOCS` is set.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant, UNIX_EPOCH};
 
 use bahn_panel::{
     CheckLine, Input, Key, KeyAction, Language, LessonLine, LessonState, MessageLine, PlcLine, Screen,
@@ -47,6 +48,13 @@ impl Hall {
                 .join(machine),
             &folder,
         );
+        // The day on which the PLC program was written stands on the screen at power-on: 2025-12-31.
+        let plc = File::options()
+            .append(true)
+            .open(folder.join("plc/MAIN.PLC"))
+            .unwrap();
+        plc.set_modified(UNIX_EPOCH + Duration::from_secs(1_767_225_599))
+            .unwrap();
         let mut station = Station::power_on(load(&folder).unwrap()).unwrap();
         Hall {
             desk: Desk::new(Machine::of_station(&mut station)),

@@ -7,7 +7,7 @@ use std::time::Duration;
 use bahn_control::Control;
 use bahn_interpreter::Interpreter;
 use bahn_motion::{AuxiliaryTimes, PlannedStep, Planner};
-use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
+use bahn_path::{Axis, Barrier, BlockRef, LiveData, PathElement};
 
 use super::stock::{Heard, Stock};
 
@@ -202,6 +202,12 @@ fn lock(wishes: &Mutex<Wishes>) -> MutexGuard<'_, Wishes> {
     wishes.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// It moves a rotary axis, or lies in a tilted plane.
+fn turns(element: &PathElement) -> bool {
+    let rotary = [Axis::A, Axis::B, Axis::C];
+    element.placement.is_some() || rotary.into_iter().any(|axis| element.moves_axis(axis))
+}
+
 /// A program on its way.
 struct Run {
     planner: Planner<Interpreter>,
@@ -280,6 +286,10 @@ impl Run {
         let mut heard = Heard::default();
         let end_s = self.progress.machining_time_s;
         self.stock.cut(element, end_s, &mut heard);
+        // What cannot be shown is said with its first block [003:876], other remarks when the tool changes.
+        if !self.progress.not_shown && turns(element) {
+            self.stock.tell(&mut heard);
+        }
         self.progress.not_shown |= heard.0;
         self.progress.elements += 1;
         if element.block.program == 0 && self.blocks > 0 {
