@@ -57,7 +57,8 @@ pub(crate) struct MachineOptions {
     /// 1=118,2=90 (a tool table has the column T-ANGLE).
     #[arg(long, value_name = "TOOL=DEG", value_delimiter = ',', value_parser = point_angle)]
     pub point_angle: Vec<(u32, f64)>,
-    /// List of machine parameters that replaces values of the model's reference list.
+    /// List of machine parameters that replaces values of the model's reference list. With MP10 or MP410 in it, or in
+    /// `--mp`, the program has these axes and no others.
     #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
     pub parameters: Option<PathBuf>,
     /// One machine parameter, as 7420=4 or 1010.0=5000 (repeatable, or several with commas).

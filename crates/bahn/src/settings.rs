@@ -8,7 +8,7 @@ use bahn_host::tool_table;
 use bahn_interpreter::{AbsentAxes, MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
 use bahn_parameters::own_functions::OwnFunctions;
-use bahn_parameters::{ControlModel, ParameterList, conformance};
+use bahn_parameters::{ControlModel, ListText, ParameterId, ParameterList, conformance};
 use bahn_path::{Axis, PerAxis, Position};
 use bahn_plc::MemoryTable;
 
@@ -26,7 +26,8 @@ pub(crate) struct Equipment {
     pub functions: OwnFunctions,
     /// The datum table of the machine with M status.
     pub datum_table: Result<MemoryTable, String>,
-    /// The other channels of the machine, whose axes a program may get; `None` without a machine.
+    /// The other channels of the machine, whose axes a program may get; `None` where nobody says which axes there are,
+    /// neither a machine nor a list with MP10 or MP410.
     pub others: Option<Vec<ParameterList>>,
     /// Where the workpiece lies unless the options say it.
     pub datum: Position,
@@ -47,10 +48,18 @@ impl Equipment {
                 datum: Position::UNKNOWN,
             },
         };
+        let mut named = Vec::new();
         if let Some(path) = &options.parameters {
-            read_list(&mut equipment.list, path)?;
+            let bytes = files::read_table(path)?;
+            read_lines(&mut equipment.list, path, &bytes)?;
+            let text = ListText::from_bytes(model, &bytes);
+            named.extend(text.entries().iter().map(|entry| entry.id));
         }
-        assign(&mut equipment.list, &options.mp)?;
+        named.extend(assign(&mut equipment.list, &options.mp)?);
+        // Who says which axes there are means these and no others.
+        if named.iter().any(|id| id.says_axes(model)) {
+            equipment.others.get_or_insert_default();
+        }
         if let Some(path) = &options.tools {
             equipment.tools = Some(tool_table::load(path, model)?);
         }
@@ -88,14 +97,17 @@ impl Equipment {
     }
 }
 
-/// Sets the single parameters of the command line.
-pub(crate) fn assign(list: &mut ParameterList, assignments: &[String]) -> Result<(), UsageError> {
-    for assignment in assignments {
-        let model = list.model();
+/// Sets the single parameters of the command line; which ones.
+pub(crate) fn assign(
+    list: &mut ParameterList,
+    assignments: &[String],
+) -> Result<Vec<ParameterId>, UsageError> {
+    let model = list.model();
+    let assigned = assignments.iter().map(|assignment| {
         list.assign(assignment)
-            .map_err(|error| UsageError::new(format!("--mp {assignment}: {error} ({model})")))?;
-    }
-    Ok(())
+            .map_err(|error| UsageError::new(format!("--mp {assignment}: {error} ({model})")))
+    });
+    assigned.collect()
 }
 
 /// Says which of the single parameters do nothing here, or only part of what they say.

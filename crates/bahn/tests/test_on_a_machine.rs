@@ -87,6 +87,35 @@ fn parameters_of_the_command_line_say_what_they_do_not() {
     }
 }
 
+/// A list of machine parameters that says which axes there are (MP10) and what they are called (MP410) means these alone
+/// [000:3174-3182, 3350-3370]; without one of both all axes may be programmed.
+#[test]
+fn axes_of_a_list() {
+    let folder = Folder::with_program("L X+0 R0 F500\nL C+90 R0 F500");
+    folder.write("three.mp", "MP10 : %00111\n");
+    folder.write("named.mp", "MP10 : %01111\nMP410.3 : 2\n");
+    folder.write("other.mp", "MP1010.0 : 8000\n");
+    for (options, has_c) in [
+        ("--parameters three.mp", false),
+        ("--parameters named.mp", true),
+        ("--parameters named.mp --mp 410.3=0", false),
+        ("--parameters other.mp", true),
+        ("--mp 10=%00111", false),
+        ("--mp 1010.0=8000", true),
+        ("", true),
+    ] {
+        let run = folder.bahn(&format!(
+            "test main.H --model tnc415b --no-graphics --format json {options}"
+        ));
+        assert_eq!(run.code(), i32::from(!has_c), "{options}: {}", run.err());
+        if !has_c {
+            let error = &run.json()["error"];
+            assert_eq!(error["message"], "WRONG AXIS PROGRAMMED", "{options}");
+            assert_eq!(error["detail"], "there is no axis C here", "{options}");
+        }
+    }
+}
+
 /// A program that moves an axis which the machine lacks, a slave or an axis of the PLC is WRONG AXIS PROGRAMMED in the test run and
 /// for `machine check`, as on the running control; so is one axis too many in a block that also moves others. Without a machine
 /// there is nothing that lacks.

@@ -75,10 +75,39 @@ fn set_up(trainee: &mut Trainee) {
     assert_eq!(current(&trainee.screen()), "D DIFF [mm]");
     trainee.press("DOWN DOWN DOWN DOWN DOWN ENT ENT");
     assert_eq!(current(&trainee.screen()), "TRIGGER CHANNEL 1");
-    trainee.press("DOWN ENT").number("100").press("ENT");
+    // The numerical keys enter it [000:18733-18734].
+    trainee.press("DOWN").number("100").press("ENT");
     assert_eq!(current(&trainee.screen()), "TRIGGER THRESHOLD +100 mm/min");
     trainee.press("DOWN DOWN ENT");
     assert_eq!(current(&trainee.screen()), "PRE-TRIGGER 25 %");
+}
+
+/// Left, it is entered again by MOD and soft key OSZI, with its settings; a TNC that was off wants the code number again
+/// [000:18674-18675].
+#[test]
+fn it_is_entered_again_by_mod_and_oszi() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    let has_key = |trainee: &mut Trainee| trainee.screen().soft_keys.keys.contains(&"OSZI".to_owned());
+    trainee.press("MOD");
+    assert!(!has_key(&mut trainee));
+    trainee.press("END");
+    open(&mut trainee);
+    trainee.press("DOWN").number("1500").press("ENT");
+    assert_eq!(current(&trainee.screen()), "NOML. FEED RATE 1500");
+    // SAMPLE TIME is no number.
+    trainee.press("DOWN 5");
+    assert!(current(&trainee.screen()).starts_with("SAMPLE TIME"));
+    trainee.press("CE END END MOD");
+    soft_key(&mut trainee, "OSZI");
+    assert_eq!(trainee.screen().program.title, "OSCILLOSCOPE");
+    trainee.press("DOWN");
+    assert_eq!(current(&trainee.screen()), "NOML. FEED RATE 1500");
+    trainee.press("END END");
+    trainee.give(r#"{"power":false}"#).wait(0.5);
+    trainee.give(r#"{"power":true}"#).ready();
+    trainee.press("MOD");
+    assert!(!has_key(&mut trainee));
 }
 
 #[test]

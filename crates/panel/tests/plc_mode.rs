@@ -69,6 +69,10 @@ fn the_code_number_opens_the_mode_until_power_off() {
     trainee.down_to("PLC EDIT");
     trainee.press("ENT");
     assert_eq!(title(&mut trainee), "PLC PROGRAMMING");
+    trainee.press("END");
+    // By MOD and the soft key PLC EDIT [000:11195-11197].
+    trainee.soft("PLC EDIT");
+    assert_eq!(title(&mut trainee), "PLC PROGRAMMING");
     trainee.press("END END");
     trainee.give(r#"{"power":false}"#).wait(0.5);
     trainee.give(r#"{"power":true}"#).ready();

@@ -41,7 +41,7 @@ pub(crate) trait Items: Send {
         Turn::Refused
     }
     /// Soft keys of its own; what has no name is not there.
-    fn own_keys(&self) -> [&'static str; 6] {
+    fn own_keys(&self, _site: &Site) -> [&'static str; 6] {
         [""; 6]
     }
     /// A soft key of its own on a line.
@@ -95,12 +95,12 @@ impl<I: Items> Page for Menu<I> {
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
         let [select, end] = SOFT_KEYS.map(|name| site.words(name));
-        let own = list::soft_keys(&self.items.own_keys(), site);
+        let own = list::soft_keys(&self.items.own_keys(site), site);
         vec![[vec![select], own, vec![end]].concat()]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        let own = self.items.own_keys();
+        let own = self.items.own_keys(site);
         match place.checked_sub(1) {
             None => self.items.choose(self.current, site),
             Some(place) => match own.get(place) {

@@ -55,7 +55,7 @@ fn entered(code: u32, site: &mut Site) -> Turn {
         CORRECTION_TABLES => corrections::open(site),
         CANCEL_PROTECTION => Turn::Open(Box::new(Directory::new(Purpose::Unprotect, site))),
         OFFSET_ADJUSTMENT => offsets::open(site),
-        OSCILLOSCOPE => Turn::Open(Box::new(oscilloscope::MainDisplay::default())),
+        OSCILLOSCOPE => oscilloscope::open(),
         PLC_MODE => plc::open(site),
         TIMERS => Turn::Open(Box::new(timers::Timers)),
         _ => Turn::Done,

@@ -40,6 +40,8 @@ enum Function {
     Code,
     /// PLC EDIT: without the code number, once it was entered [000:11195-11197].
     Plc,
+    /// OSZI: the oscilloscope without its code number, once it was entered [000:18674-18675].
+    Oscilloscope,
     Help,
     /// RS-232/RS-422 SETUP [000:17216-17218].
     Interfaces,
@@ -60,6 +62,7 @@ const MACHINE: &[Function] = &[
     Function::Code,
     Function::Help,
     Function::Plc,
+    Function::Oscilloscope,
 ];
 
 /// Functions of PROGRAMMING and TEST RUN.
@@ -73,7 +76,11 @@ const PROGRAMMING: &[Function] = &[
     Function::PlcNumber,
     Function::Help,
     Function::Plc,
+    Function::Oscilloscope,
 ];
+
+/// Those that a soft key opens, too, once their code number was entered.
+const SOFT_KEYS: [Function; 2] = [Function::Plc, Function::Oscilloscope];
 
 /// The menu of a side.
 pub(crate) fn menu(side: Side) -> Box<dyn Page> {
@@ -90,12 +97,13 @@ struct Supplementary {
 
 impl Supplementary {
     fn functions(&self, site: &Site) -> impl Iterator<Item = Function> + use<> {
-        let entered = site.plc.entered;
+        let (plc, oscilloscope) = (site.plc.entered, site.control().oscilloscope().open);
         let all = self.functions.iter().copied();
         let ranges = site.parameters().operation_parameters().datums.ranges;
         let helps = help::is_there(site);
         all.filter(move |function| match function {
-            Function::Plc => entered,
+            Function::Plc => plc,
+            Function::Oscilloscope => oscilloscope,
             // MP7490: one traverse range or three [000:3499-3508].
             Function::AxisLimit(range) => *range <= ranges,
             // Where there is a help file [000:7044].
@@ -117,6 +125,22 @@ impl Items for Supplementary {
 
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
         let function = self.functions(site).nth(place);
+        function.map_or(Turn::Refused, |function| function.choose(true, site))
+    }
+
+    fn own_keys(&self, site: &Site) -> [&'static str; 6] {
+        let offered = |function: Function| match self.functions(site).any(|own| own == function) {
+            true => function.code_name(),
+            false => "",
+        };
+        let [plc, oscilloscope] = SOFT_KEYS.map(offered);
+        [plc, oscilloscope, "", "", "", ""]
+    }
+
+    fn own_key(&mut self, name: &str, _place: usize, site: &mut Site) -> Turn {
+        let function = SOFT_KEYS
+            .into_iter()
+            .find(|function| function.code_name() == name);
         function.map_or(Turn::Refused, |function| function.choose(true, site))
     }
 
@@ -156,10 +180,18 @@ impl Function {
             Function::UserParameters => Item::new(site.words("USER PARAMETERS"), ""),
             Function::NcNumber => Item::new(site.words("NC SOFTWARE NUMBER"), nc_number()),
             Function::PlcNumber => Item::new(site.words("PLC SOFTWARE NUMBER"), plc_number(site)),
-            Function::Plc => Item::new(site.words("PLC EDIT"), ""),
+            Function::Plc | Function::Oscilloscope => Item::new(site.words(self.code_name()), ""),
             Function::Code => Item::new(site.words("CODE NUMBER"), ""),
             Function::Help => Item::new(site.words("HELP"), ""),
             Function::Interfaces => Item::new(site.words("DATA INTERFACES"), ""),
+        }
+    }
+
+    /// The name of a function that its code number has opened.
+    fn code_name(self) -> &'static str {
+        match self {
+            Function::Oscilloscope => "OSZI",
+            _ => "PLC EDIT",
         }
     }
 
@@ -188,6 +220,7 @@ impl Function {
             Function::UserParameters => return parameters::user(site),
             Function::Code => return code::ask(site),
             Function::Plc => return plc::open(site),
+            Function::Oscilloscope => return oscilloscope::open(),
             Function::Help => return help::files(site),
             Function::Interfaces => return Turn::Open(interface::page()),
             Function::NcNumber | Function::PlcNumber => return Turn::Refused,

@@ -57,15 +57,25 @@ const ITEMS: [Item; 15] = [
     PreTrigger,
 ];
 
+/// Opens the main display.
+pub(super) fn open() -> Turn {
+    Turn::Open(Box::new(MainDisplay::default()))
+}
+
 /// The main display.
 #[derive(Default)]
-pub(super) struct MainDisplay {
+struct MainDisplay {
     current: usize,
 }
 
 impl MainDisplay {
     fn item(&self) -> Item {
         ITEMS.get(self.current).copied().unwrap_or(Output)
+    }
+
+    fn begin_number(&self, key: Key, site: &Site) -> Turn {
+        let number = self.item().number(site);
+        number.map_or(Turn::Refused, |number| Turn::Open(number.beginning(key)))
     }
 
     fn go(&mut self, forward: bool) -> Turn {
@@ -76,13 +86,22 @@ impl MainDisplay {
 }
 
 impl Item {
+    /// Digits enter the feed and the threshold, which everything else is not [000:18733-18734].
+    fn number(self, site: &Site) -> Option<Box<Number>> {
+        match self {
+            Feed => Some(ask_feed(site)),
+            Threshold => Some(ask_threshold(site)),
+            _ => None,
+        }
+    }
+
     /// ENT goes to the next value, NO ENT to the one before; numbers are asked for.
     fn change(self, forward: bool, site: &mut Site) -> Turn {
         let setup = &mut site.graphics.scope.setup;
         match self {
             Output => return set_output(!setup.step, setup.feed_mm_min, site),
-            Feed => return ask_feed(site),
-            Threshold => return ask_threshold(site),
+            Feed => return Turn::Open(ask_feed(site)),
+            Threshold => return Turn::Open(ask_threshold(site)),
             SampleTime => {
                 let times = sample_times(site);
                 let setup = &mut site.graphics.scope.setup;
@@ -218,9 +237,9 @@ fn set_output(step: bool, feed_mm_min: f64, site: &mut Site) -> Turn {
     Turn::Done
 }
 
-fn ask_feed(site: &Site) -> Turn {
+fn ask_feed(site: &Site) -> Box<Number> {
     let prompt = format!("{} =", site.words("NOML. FEED RATE"));
-    Turn::Open(Number::ask(prompt, |feed, site| {
+    Number::ask(prompt, |feed, site| {
         let fits = (0.0..=MOST_FEED).contains(&feed);
         if fits && site.graphics.scope.setup.step {
             return matches!(set_output(true, feed, site), Turn::Done);
@@ -229,18 +248,18 @@ fn ask_feed(site: &Site) -> Turn {
             site.graphics.scope.setup.feed_mm_min = feed;
         }
         fits
-    }))
+    })
 }
 
-fn ask_threshold(site: &Site) -> Turn {
+fn ask_threshold(site: &Site) -> Box<Number> {
     let prompt = format!("{} =", site.words("TRIGGER THRESHOLD"));
-    Turn::Open(Number::ask(prompt, |threshold, site| {
+    Number::ask(prompt, |threshold, site| {
         let fits = threshold.abs() <= MOST_THRESHOLD;
         if fits {
             site.graphics.scope.setup.threshold = threshold;
         }
         fits
-    }))
+    })
 }
 
 impl Page for MainDisplay {
@@ -252,6 +271,10 @@ impl Page for MainDisplay {
             Key::NoEnt | Key::Left => self.item().change(false, site),
             Key::Start => Display::open(site),
             Key::End | Key::Del => Turn::Close,
+            Key::Sign | Key::Point => self.begin_number(key, site),
+            key if key.character().is_some_and(|digit| digit.is_ascii_digit()) => {
+                self.begin_number(key, site)
+            }
             _ => Turn::Refused,
         }
     }
