@@ -71,7 +71,7 @@ struct Assistant<'a> {
 /// When the spindle has no position control, or the list does not get it through the trial.
 pub fn tune_spindle(machine: &LoadedMachine, list: &ParameterList) -> Result<TunedSpindle, String> {
     let spindle = list.spindle_parameters();
-    if !spindle.controlled || list.get(3410, 3).is_none() {
+    if !spindle.controlled {
         return Err(
             "the spindle is not position controlled (MP3010): it cuts no threads of cycle 17".to_owned(),
         );
@@ -200,7 +200,7 @@ impl Assistant<'_> {
     fn ramp(&mut self) {
         let [flattest, steepest] = RAMP_RANGE;
         let rounded = |ramp: f64| (ramp.clamp(flattest, steepest) * 1e4).round() / 1e4;
-        let entry = self.list.get(3410, 3).unwrap_or_default();
+        let entry = self.list.spindle_parameters().ramps.rigid_v_ms;
         // 0 is no ramp at all.
         let mut ramp = if entry > 0.0 { entry } else { steepest };
         let mut fails = None;
@@ -232,11 +232,16 @@ impl Assistant<'_> {
         }
     }
 
+    fn kv_of(&self, gear: u8) -> Option<f64> {
+        let gears = self.list.spindle_parameters().gears;
+        gears.get(usize::from(gear)).map(|gear| gear.kv)
+    }
+
     /// MP3440 of a gear range: up, or else down, as long as the spindle is oriented sooner and threads keep their depth.
     fn kv(&mut self, gear: u8) {
         for factor in [KV_FACTOR, 1.0 / KV_FACTOR] {
             let mut climbed = false;
-            while let Some(kv) = self.list.get(3440, gear) {
+            while let Some(kv) = self.kv_of(gear) {
                 let [least, greatest] = KV_RANGE;
                 let next = ((kv * factor).clamp(least, greatest) * 10.0).round() / 10.0;
                 let sooner = |test: &ThreadTest, best: &ThreadTest| {
