@@ -85,6 +85,7 @@ mod script;
 mod table_edit;
 mod table_kind;
 mod text;
+mod threads;
 pub mod tool_table;
 pub mod torture;
 mod trial;
@@ -102,6 +103,7 @@ pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};
 pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode};
+pub use threads::{ThreadCut, Threads};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]
 pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {

@@ -1,12 +1,11 @@
 //! The channels beside the first one: what each of them ran, how long, how far off its contour.
 
 use bahn_control::{ChannelView, RunState};
-use bahn_host::Host;
+use bahn_host::{Host, Threads};
 use bahn_path::{FeedRate, Position};
 
 use super::deviation::Deviation;
 use super::executed::Executed;
-use super::threads::Threads;
 use crate::UsageError;
 use crate::report::Record;
 use crate::test_run::Outputs;
@@ -49,19 +48,18 @@ impl Beside {
             let feed = channel.element().map(|element| element.feed);
             let contour = matches!(feed, Some(FeedRate::Programmed(_)));
             self.deviation.cycle(channel, contour);
-            self.threads.cycle(channel, host.plant());
+            let cycle_s = f64::from(host.control().cycle_us()) * 1e-6;
+            self.threads.cycle(channel, host.plant(), cycle_s);
         } else {
             self.deviation.restart();
-            self.threads.end(channel);
+            self.threads.end();
         }
         self.executed.cycle(host, running)
     }
 
     /// Of a run that was broken off: what was executed to the end counts.
     pub fn finish(&mut self, host: &Host) -> Result<(), UsageError> {
-        if let Some(channel) = host.control().channel(self.channel) {
-            self.threads.end(channel);
-        }
+        self.threads.end();
         self.executed.finish(host.control())
     }
 

@@ -2,12 +2,11 @@
 //! PLC is.
 
 use bahn_control::Control;
-use bahn_host::Phase;
+use bahn_host::{Phase, Threads};
 use bahn_machine::Machine;
 use bahn_path::FeedRate;
 
 use super::deviation::Deviation;
-use super::threads::Threads;
 use super::times::Times;
 
 /// The measurements.
@@ -54,10 +53,11 @@ impl Measured {
             let feed = control.element().map(|element| element.feed);
             let contour = matches!(feed, Some(FeedRate::Programmed(_)));
             self.deviation.cycle(control.first(), contour);
-            self.threads.cycle(control.first(), plant);
+            let cycle_s = f64::from(control.cycle_us()) * 1e-6;
+            self.threads.cycle(control.first(), plant, cycle_s);
         } else {
             self.deviation.restart();
-            self.threads.end(control.first());
+            self.threads.end();
         }
     }
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use bahn_control::{TestReport, TestState};
-use bahn_host::{FailedExpectation, Host, Lateness};
+use bahn_control::{ChannelView, TestReport, TestState};
+use bahn_host::{FailedExpectation, Host, Lateness, Threads};
 use bahn_parameters::ControlModel;
 use bahn_path::Axis;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use super::beside::Beside;
 use super::deviation::Deviation;
 use super::listed::{Confirmed, Said};
 use super::session::Session;
-use super::threads::{Thread, Threads};
+use super::threads::Thread;
 use super::times::Share;
 use crate::report::{End, ErrorReport, Report, tidy};
 use crate::report_text::{self, LABEL, list};
@@ -143,7 +143,7 @@ impl RunReport {
             contour_deviation_mm: tidy(session.measured.deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
-            threads: session.measured.threads.done.clone(),
+            threads: named(&session.measured.threads, session.host.control().first()),
             threads_not_listed: session.measured.threads.not_listed,
             plc: PlcReport {
                 max_percent: tidy(longest),
@@ -289,7 +289,6 @@ impl ChannelReport {
         let program = beside.take_record().report(run, end, None, model);
         let deviation = &beside.deviation;
         let cause = deviation.cause;
-        let Threads { done, not_listed, .. } = &beside.threads;
         Some(ChannelReport {
             channel: beside.channel + 1,
             program: ProgramReport::Ran(Box::new(program)),
@@ -297,8 +296,8 @@ impl ChannelReport {
             contour_deviation_mm: tidy(deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
-            threads: done.clone(),
-            threads_not_listed: *not_listed,
+            threads: named(&beside.threads, channel),
+            threads_not_listed: beside.threads.not_listed,
         })
     }
 
@@ -320,6 +319,11 @@ impl ChannelReport {
             row("", &format!("block {}: {}", warning.block, warning.message));
         }
     }
+}
+
+fn named(threads: &Threads, channel: ChannelView) -> Vec<Thread> {
+    let done = threads.done.iter();
+    done.map(|cut| Thread::of(cut, channel)).collect()
 }
 
 /// The threads of a channel.

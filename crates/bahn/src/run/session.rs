@@ -121,7 +121,7 @@ impl Session {
             self.host.begin()?;
             self.follow_notices()?;
             if let Some(ended) = self.ended.take() {
-                self.measured.threads.end(self.host.control().first());
+                self.measured.threads.end();
                 self.executed.finish(self.host.control())?;
                 for channel in &mut self.beside {
                     channel.finish(&self.host)?;

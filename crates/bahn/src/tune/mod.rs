@@ -1,13 +1,14 @@
 //! `bahn tune`: the commissioning assistant.
 
 mod picture;
+mod spindle;
 
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use bahn_host::tuning::{AxisTest, Circle, Task, Tuned, tune};
-use bahn_parameters::{Definition, ListText};
+use bahn_host::tuning::{AxisTest, Change, Circle, Task, Tuned, tune};
+use bahn_parameters::{Definition, ListText, ParameterList};
 use clap::{Args, ValueHint};
 use serde::Serialize;
 
@@ -28,6 +29,9 @@ Examples:
   bahn tune machines/gantry B --radius 30 --feed 3000
       A rotary axis, or one without a partner, alone: 30 degrees to both sides at 3000 degrees/min, and stops.
   bahn tune mill X --radius 50 --feed 5000 --format json
+  bahn tune machines/mill S
+      The spindle: threads of cycles 17 and 18 in the middle of Z, in each gear range at its rated speed. Proposes the ramp MP3410.3,
+      the steepest with which threads end within 0.01 mm of their depth, and MP3440, kv with which it is oriented soonest.
 
 The machine is switched on for every trial, passes its reference marks and describes a circle in each direction in the
 middle of its travel, or goes to and fro there; then each axis stops from rapid traverse and from the feed. What counts is
@@ -41,6 +45,8 @@ that of the others.
 
 JSON: axes, radius_mm, feed_mm_min, trials, written; before and after (contour_mm, of an axis alone from its nominal value;
 roundness_mm, overshoot_mm, standstill_mm of each axis); changes (parameter, name, from, to); kv_lag, MP1810 of each axis.
+Of the spindle: trials, written, changes; before and after (beyond_mm the depth, off_mm from where the spindle's angle says,
+threads_s, orientation_s before two threads of each gear range).
 Exit codes: 0 fine, also without a proposal; 1 the machine is wrong or does not get through the trial; 2 wrong use.";
 
 /// Options of `bahn tune`.
@@ -50,7 +56,7 @@ pub(crate) struct TuneOptions {
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
     /// The axis, or the two of a circle as X,Y: they are tuned together, since their kv must be equal. X, Y and Z find a
-    /// partner by themselves.
+    /// partner by themselves. S is the spindle.
     #[arg(value_name = "AXIS", value_parser = axes)]
     pub axes: (char, Option<char>),
     /// Radius of the circle, mm; an axis alone goes so far to both sides, mm or degrees.
@@ -161,6 +167,9 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
     };
     let mut list = machine.parameters.clone();
     settings::assign(&mut list, &options.mp)?;
+    if options.axes == ('S', None) {
+        return spindle::command(&machine, &list, options);
+    }
     let circle = Circle {
         radius_mm: options.radius,
         feed_mm_min: options.feed,
@@ -179,7 +188,7 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
         }
     };
     if options.write {
-        write(&machine, &tuned, &options.mp)?;
+        write(&machine, &tuned.changes, &options.mp)?;
     }
     if let Some(path) = &options.picture {
         picture::write(path, &tuned, circle)?;
@@ -193,7 +202,11 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
 }
 
 /// Puts the proposals, and what `--mp` began with, into the list of the folder.
-fn write(machine: &bahn_host::LoadedMachine, tuned: &Tuned, begun_with: &[String]) -> Result<(), UsageError> {
+fn write(
+    machine: &bahn_host::LoadedMachine,
+    changes: &[Change],
+    begun_with: &[String],
+) -> Result<(), UsageError> {
     let path = machine.root.join(&machine.folder.parameters);
     let bytes = files::read_table(&path)?;
     let model = machine.parameters.model();
@@ -205,7 +218,7 @@ fn write(machine: &bahn_host::LoadedMachine, tuned: &Tuned, begun_with: &[String
         let value = list.get(id.number, id.index.unwrap_or(0)).unwrap_or_default();
         text.set(id, value).map_err(wrong)?;
     }
-    for change in &tuned.changes {
+    for change in changes {
         text.set(change.id, change.to).map_err(wrong)?;
     }
     let mut file = NewFile::create(&path)?;
@@ -215,7 +228,6 @@ fn write(machine: &bahn_host::LoadedMachine, tuned: &Tuned, begun_with: &[String
 }
 
 fn report(tuned: &Tuned, circle: Circle, list: &bahn_parameters::ParameterList, written: bool) -> Report {
-    let name = |id| Definition::named(list.model(), id).map_or("", |definition| definition.name);
     Report {
         axes: tuned.axes.iter().collect(),
         radius_mm: circle.radius_mm,
@@ -224,21 +236,44 @@ fn report(tuned: &Tuned, circle: Circle, list: &bahn_parameters::ParameterList, 
         written,
         before: Figures::of(&tuned.before),
         after: Figures::of(&tuned.after),
-        changes: tuned
-            .changes
-            .iter()
-            .map(|change| ChangeRow {
-                parameter: change.id.to_string(),
-                name: name(change.id).to_owned(),
-                from: change.from,
-                to: change.to,
-            })
-            .collect(),
+        changes: change_rows(&tuned.changes, list),
         kv_lag: tuned
             .kv_lag
             .iter()
             .map(|(axis, kv)| Kv { axis: *axis, kv: *kv })
             .collect(),
+    }
+}
+
+/// What is proposed, with the names of the parameters.
+fn change_rows(changes: &[Change], list: &ParameterList) -> Vec<ChangeRow> {
+    let name = |id| Definition::named(list.model(), id).map_or("", |definition| definition.name);
+    let rows = changes.iter().map(|change| ChangeRow {
+        parameter: change.id.to_string(),
+        name: name(change.id).to_owned(),
+        from: change.from,
+        to: change.to,
+    });
+    rows.collect()
+}
+
+/// The same for people, and whether it is in the list.
+fn change_text(changes: &[ChangeRow], written: bool) -> String {
+    let mut text = "\n".to_owned();
+    for change in changes {
+        let ChangeRow {
+            parameter,
+            name,
+            from,
+            to,
+        } = change;
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{parameter:<10}{from:>12} -> {to:<12}{name}");
+    }
+    text + match (changes.is_empty(), written) {
+        (true, _) => "nothing gets better than it is\n",
+        (false, true) => "\nwritten into the list of machine parameters\n",
+        (false, false) => "\nnothing is changed; --write puts it into the list\n",
     }
 }
 
@@ -288,21 +323,7 @@ fn text(report: &Report) -> String {
         let name = format!("{name}, {unit}");
         let _ = writeln!(text, "{name:<34}{:>10.2}{:>10.2}", um(before), um(after));
     }
-    text.push('\n');
-    for change in &report.changes {
-        let ChangeRow {
-            parameter,
-            name,
-            from,
-            to,
-        } = change;
-        let _ = writeln!(text, "{parameter:<10}{from:>12} -> {to:<12}{name}");
-    }
-    text.push_str(match (report.changes.is_empty(), report.written) {
-        (true, _) => "nothing gets better than it is\n",
-        (false, true) => "\nwritten into the list of machine parameters\n",
-        (false, false) => "\nnothing is changed; --write puts it into the list\n",
-    });
+    text.push_str(&change_text(&report.changes, report.written));
     let first = report.kv_lag.first().map_or(0.0, |first| first.kv);
     if report.kv_lag.iter().any(|other| other.kv != first) {
         let each: Vec<String> = report

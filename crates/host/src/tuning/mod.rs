@@ -2,6 +2,7 @@
 //! [000:9549-9817] [000:18523-18607].
 
 mod proof;
+mod spindle;
 
 use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::{Adjustment, Definition, ParameterId, ParameterList, PerPlcAxis};
@@ -10,6 +11,7 @@ use bahn_servo::Characteristic;
 use crate::machine_folder::LoadedMachine;
 use proof::Subject;
 pub use proof::{AxisTest, Circle};
+pub use spindle::{ThreadTest, TunedSpindle, tune_spindle};
 
 /// Overshoot of a stop that is never too much, mm.
 const OVERSHOOT_MM: f64 = 0.005;
