@@ -1,7 +1,7 @@
 #!/bin/sh
-# Makes the parsers of the grammars, runs their tests, and reads every shipped program with them; looks whether the
-# extension of Visual Studio Code can be read. Needs tree-sitter (cargo install tree-sitter-cli --locked), a C compiler and
-# node; says what it skips.
+# Makes the parsers of the grammars, runs their tests, and reads every shipped program and programs of later controls with
+# them; looks whether the extension of Visual Studio Code can be read. Needs tree-sitter (cargo install tree-sitter-cli
+# --locked), a C compiler and node; says what it skips.
 set -e
 cd "$(dirname "$0")"
 if command -v tree-sitter >/dev/null 2>&1; then
@@ -10,13 +10,13 @@ if command -v tree-sitter >/dev/null 2>&1; then
 		tree-sitter generate
 		tree-sitter test
 		case $grammar in
-		plain) files=$(find ../../examples ../../machines -name '*.H') ;;
+		plain) files=$(find ../../examples ../../machines test/programs -name '*.[Hh]') ;;
 		plc) files=$(find ../../examples ../../machines -name '*.plc' -o -name '*.PLC') ;;
 		esac
 		for file in $files; do
 			tree-sitter parse --quiet "$file" >/dev/null 2>&1 || { echo "$file cannot be read by tree-sitter-$grammar"; exit 1; }
 		done
-		echo "tree-sitter-$grammar reads $(echo "$files" | wc -l) shipped files"
+		echo "tree-sitter-$grammar reads $(echo "$files" | wc -l) files"
 		cd ..
 	done
 else

@@ -21,11 +21,13 @@ module.exports = grammar({
     _end: () => /\n/,
 
     block: ($) => choice(
-      seq(optional($.block_number), optional($.skip), $._body, optional($.comment)),
-      seq(optional($.block_number), optional($.skip), $.comment),
+      seq(optional($._place), $._body, optional($.comment)),
+      seq(optional($._place), $.comment),
       $.block_number,
     ),
 
+    // The / stands before or behind the number.
+    _place: ($) => choice($.block_number, $.skip, seq($.block_number, $.skip), seq($.skip, $.block_number)),
     block_number: () => /[nN]?[0-9]+/,
     skip: () => '/',
     comment: () => token(seq(';', /[^\n]*/)),
@@ -33,15 +35,16 @@ module.exports = grammar({
     _body: ($) => choice(
       $.begin, $.end, $.blank, $.tool_definition, $.tool_call, $.label, $.call_label, $.call_program,
       $.cycle_definition, $.cycle_call, $.probe, $.function, $.assignment, $.stop, $.path, $.words_only, $.section,
+      $.later,
     ),
 
     begin: ($) => seq(word('BEGIN PGM'), optional($.name)),
     end: ($) => seq(word('END PGM'), optional($.name)),
-    blank: ($) => seq(word('BLK FORM'), $.number, repeat($._word)),
+    blank: ($) => seq(word('BLK FORM'), repeat($._word)),
     tool_definition: ($) => seq(word('TOOL DEF'), repeat($._word)),
     tool_call: ($) => seq(word('TOOL CALL'), repeat($._word)),
-    label: ($) => seq(word('LBL'), optional(word('SET')), $.label_number),
-    call_label: ($) => seq(word('CALL LBL'), $.label_number, optional($.repetitions)),
+    label: ($) => seq(word('LBL'), optional(word('SET')), $._label),
+    call_label: ($) => seq(word('CALL LBL'), $._label, optional($.repetitions)),
     call_program: ($) => seq(word('CALL PGM'), $.name),
     cycle_definition: ($) => seq(word('CYCL DEF'), $.number, repeat($._word)),
     cycle_call: ($) => seq(word('CYCL CALL'), repeat($._word)),
@@ -50,25 +53,27 @@ module.exports = grammar({
       /[fF][nN][ \t]*[0-9]+[ \t]*:?/,
       repeat(choice($._word, $.goto)),
     ),
-    goto: ($) => seq(word('GOTO'), word('LBL'), $.label_number),
+    goto: ($) => seq(word('GOTO'), word('LBL'), $._label),
     assignment: ($) => seq($.parameter, '=', repeat($._word)),
     stop: ($) => seq(word('STOP'), repeat($._word)),
     path: ($) => seq($.path_function, repeat($._word)),
-    // A paraxial block, or M functions alone.
-    words_only: ($) => seq(choice($.paraxial, $.m_function), repeat($._word)),
+    // A paraxial block, or words without a path function: M functions, R0 FMAX M99.
+    words_only: ($) => seq(choice($.paraxial, $.m_function, $.compensation, $.feed, $.speed), repeat($._word)),
+    // What later controls have begins with a word of its own: PLANE SPATIAL, FUNCTION TCPM, SEL TABLE, FPOL.
+    later: ($) => seq(alias($.text, $.later_function), repeat($._word)),
     paraxial: ($) => seq(alias($._paraxial_axis, $.axis), $._value),
     section: () => token(seq('*', /[^\n]*/)),
 
     path_function: () => choice(
       word('L'), word('C'), word('CR'), word('CT'), word('LP'), word('CP'), word('CTP'), word('LN'), word('CC'),
-      word('RND'), word('CHF'), /[aA][pP][pP][rR][ \t]+[lLcC][nNtT]?/, /[dD][eE][pP][ \t]+[lLcC][nNtT]?/,
+      word('RND'), word('CHF'), /[aA][pP][pP][rR][ \t]+[pP]?[lLcC][cC]?[nNtT]?/, /[dD][eE][pP][ \t]+[pP]?[lLcC][cC]?[nNtT]?/,
     ),
 
     repetitions: ($) => seq(word('REP'), optional(seq($._value, optional(seq('/', $._value))))),
 
     _word: ($) => choice(
       $.coordinate, $.compensation, $.feed, $.speed, $.m_function, $.direction, $.polar, $.length,
-      $._value, $.operator, $.keyword, $.text,
+      $._value, $.string, $.operator, $.keyword, $.text,
     ),
 
     coordinate: ($) => prec.right(seq($.axis, optional($._value))),
@@ -76,16 +81,18 @@ module.exports = grammar({
     _paraxial_axis: () => /[iI]?[xyzuvwabXYZUVWAB]|[iI][cCvV]/,
     compensation: () => /[rR][0lLrR+-]/,
     feed: ($) => prec.right(seq(choice(/[fF][ \t]*[mM][aA][xX]/, /[fF]/), optional($._value))),
-    speed: ($) => seq(/[sS]/, $._value),
+    speed: ($) => prec.right(seq(/[sS]/, optional($._value))),
     m_function: () => /[mM][0-9]+/,
     direction: () => /[dD][rR][+-]/,
     polar: ($) => seq(/[iI]?[pP][rRaA]/, $._value),
-    length: ($) => seq(/[lLrR]|[dD][lLrR]|[nN][xyzXYZ]/, $._value),
+    length: ($) => prec.right(seq(/[lLrR]|[dD][lLrR]|[nNtT][xyzXYZ]/, optional($._value))),
 
     _value: ($) => choice($.number, $.parameter),
     number: () => /[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)/,
-    parameter: () => /[+-]?[qQ][0-9]+/,
+    parameter: () => /[+-]?[qQ][lLrRsS]?[0-9]+/,
+    _label: ($) => choice($.label_number, $.string, $.parameter),
     label_number: () => /[0-9]+/,
+    string: () => /"[^"\n]*"/,
     operator: () => /[-+*\/=()^:#.]/,
     keyword: () => choice(
       word('IF'), word('EQU'), word('NE'), word('GT'), word('LT'), word('DIV'), word('SQRT'), word('SIN'), word('COS'),

@@ -12,7 +12,7 @@ pub(crate) enum Part {
     /// It is in one.
     Inside,
     /// It is the way out.
-    Whole(Tap),
+    Whole(Box<Tap>),
 }
 
 /// A whole tap, along its way.
@@ -93,11 +93,11 @@ impl FloatingTaps {
         match (self.open.take().filter(same), out.feed) {
             (Some(open), FeedRate::Programmed(feed_mm_min)) => {
                 self.orders_behind = ORDERS_BEHIND;
-                Ok(Part::Whole(Tap {
+                Ok(Part::Whole(Box::new(Tap {
                     way_in: open.way_in,
                     dwell_s: open.dwell_s,
                     feed_mm_min,
-                }))
+                })))
             }
             _ => Err("the way out of a tap is not the way into it".to_owned()),
         }

@@ -16,5 +16,7 @@
 (keyword) @keyword.operator
 (operator) @operator
 (text) @string.special
+(string) @string
+(later_function) @keyword
 [(begin) (end) (blank) (tool_definition) (tool_call) (label) (call_label) (call_program) (cycle_definition)
  (cycle_call) (probe) (function) (stop) (goto) (repetitions)] @keyword

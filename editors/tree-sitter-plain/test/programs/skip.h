@@ -1,0 +1,10 @@
+0 BEGIN PGM SKIP MM
+/5 L X+10 R0 FMAX
+6 / L Y+10
+7 * - STRUCTURE BLOCK ; WITH A COMMENT
+8 ; comment alone ~
+9 ;
+10 L X+10 ;comment behind
+11 STOP M6
+12 STOP
+13 END PGM SKIP MM
