@@ -22,7 +22,8 @@
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
 //! - `paragraph`: labelled text in 80 columns, `style`: its colours; `junit`: expectations for build servers;
-//! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
+//! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close;
+//!   `refused` and `reports`: what cannot be done, as JSON.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 

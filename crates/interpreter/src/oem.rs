@@ -235,7 +235,8 @@ pub(crate) fn leave(run: &mut Run, settings: &Settings) {
     }
 }
 
-/// Refuses what a cycle must not have [000:17705-17724]; no manual prints the message (inferred).
+/// Refuses what a cycle must not have [000:17705-17724]; no manual prints the message (inferred). M functions are permitted
+/// "without program-run stop": M00 stops as the block STOP does, M01 does not stop here [000:7080-7081].
 pub(crate) fn permit(
     running: Option<&RunningOem>,
     operation: &Operation,
@@ -244,7 +245,8 @@ pub(crate) fn permit(
     let Some(running) = running else { return Ok(()) };
     let stops = |m: &MFunctions| {
         let m6 = settings.rules.m_functions.m6_stops && m.contains(6);
-        (m.contains(2) || m.contains(30) || m6).then_some("M02, M30 or M06 with program stop")
+        let ends = [0, 2, 30].into_iter().any(|number| m.contains(number));
+        (ends || m6).then_some("M00, M02, M30, or M06 with program stop,")
     };
     let what = match operation {
         Operation::Stop(_) => Some("STOP"),

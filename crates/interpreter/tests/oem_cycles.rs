@@ -187,6 +187,11 @@ fn what_cycles_must_not_have() {
         ("L X+1 FMAX M2", false, false),
         ("M30", false, false),
         ("M6", false, false),
+        // M00 stops the program run as STOP does; M01 goes to the PLC, and the control does not stop for it [000:7080-7081].
+        ("M0", false, false),
+        ("L X+1 FMAX M0", false, false),
+        ("M1", true, true),
+        ("L X+1 FMAX M1", true, true),
         ("CALL PGM 7", false, false),
         ("CYCL DEF 14.0 CONTOUR GEOMETRY", false, false),
         ("LBL 1\nCALL LBL 1 REP 2/2", true, false),

@@ -1,11 +1,12 @@
 //! The part that is being cut, coded once for all viewers that look at it from every side.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bahn_panel::{BeingCut, Link, Station};
 use bahn_viewer::{PartStream, Sent};
 use tokio::sync::watch;
+use tokio::task::JoinHandle;
 
 use crate::regions::region;
 
@@ -15,6 +16,13 @@ const EVERY: Duration = Duration::from_millis(66);
 const SHARE: u32 = 4;
 /// While nobody looks, whether the server has ended is found out so often.
 const IDLE: Duration = Duration::from_secs(1);
+
+/// Processor time of this thread. By the wall a look that waits for a processor among others would count, too, and be paid for by
+/// a rest four times as long, in which nobody sees the part go on.
+fn processor_time() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::try_from(time).unwrap_or_default()
+}
 
 /// The part, for all viewers.
 #[derive(Clone)]
@@ -48,7 +56,7 @@ struct Seen {
 /// Somebody looks, until this is dropped.
 pub(crate) struct Looking {
     shared: Arc<Shared>,
-    pub news: watch::Receiver<u64>,
+    news: watch::Receiver<u64>,
     sent: Sent,
 }
 
@@ -70,7 +78,7 @@ impl PartFeed {
     }
 
     /// Somebody looks.
-    pub fn look(&self) -> Looking {
+    fn look(&self) -> Looking {
         *lock(&self.shared.viewers) += 1;
         self.shared.wanted.notify_all();
         let mut news = self.news.clone();
@@ -96,7 +104,7 @@ impl Shared {
                 continue;
             }
             drop(viewers);
-            let begun = Instant::now();
+            let begun = processor_time();
             let Ok(cut) = link.with(Station::being_cut) else {
                 // The station has ended, or is busy.
                 std::thread::sleep(EVERY);
@@ -105,7 +113,7 @@ impl Shared {
             if lock(&self.state).take(cut) {
                 sender.send_modify(|count| *count += 1);
             }
-            std::thread::sleep(EVERY.max(begun.elapsed() * SHARE));
+            std::thread::sleep(EVERY.max(processor_time().saturating_sub(begun) * SHARE));
         }
     }
 }
@@ -166,17 +174,61 @@ impl State {
     }
 }
 
+/// Whether a viewer looks.
+#[derive(Default)]
+pub(crate) enum Look {
+    #[default]
+    Away,
+    /// He has everything.
+    Waits(Looking),
+    /// What he lacks is being coded. A large part takes a while, for which nothing else waits, neither of the server nor of his:
+    /// he sees screens meanwhile.
+    Coded(JoinHandle<(Looking, Option<Region>)>),
+}
+
+impl Look {
+    /// Somebody looks.
+    pub fn on(feed: &PartFeed) -> Look {
+        Look::Waits(feed.look())
+    }
+
+    /// Whether he looks.
+    pub fn is_on(&self) -> bool {
+        !matches!(self, Look::Away)
+    }
+
+    /// Waits for what he lacks, when that is anything; for ever, when he does not look. Whoever gives up waiting loses nothing.
+    pub async fn news(&mut self) -> Option<Region> {
+        if let Look::Waits(looking) = self {
+            if looking.news.changed().await.is_err() {
+                *self = Look::Away;
+            } else if let Look::Waits(looking) = std::mem::take(self) {
+                *self = Look::Coded(tokio::task::spawn_blocking(|| looking.coded()));
+            }
+        }
+        let Look::Coded(coded) = self else {
+            return std::future::pending().await;
+        };
+        match coded.await {
+            Ok((looking, news)) => {
+                *self = Look::Waits(looking);
+                news
+            }
+            Err(_) => {
+                *self = Look::Away;
+                None
+            }
+        }
+    }
+}
+
 impl Looking {
     /// What he lacks, and how to ask the next time.
-    pub async fn next(mut self) -> Option<(Looking, Option<Region>)> {
-        // A large part takes a while, for which nothing else of the server waits.
-        let coded = tokio::task::spawn_blocking(move || {
-            let mut sent = self.sent;
-            let news = lock(&self.shared.state).news(&mut sent);
-            self.sent = sent;
-            (self, news)
-        });
-        coded.await.ok()
+    fn coded(mut self) -> (Looking, Option<Region>) {
+        let mut sent = self.sent;
+        let news = lock(&self.shared.state).news(&mut sent);
+        self.sent = sent;
+        (self, news)
     }
 }
 
@@ -189,4 +241,44 @@ impl Drop for Looking {
 
 fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// While the part is being coded a viewer waits for other things, too, and still gets it when it is there.
+    #[test]
+    fn screens_come_while_the_part_is_coded() {
+        let shared = Arc::new(Shared {
+            viewers: Mutex::default(),
+            wanted: Condvar::new(),
+            state: Mutex::default(),
+        });
+        let (_sender, news) = watch::channel(0);
+        let feed = PartFeed {
+            shared: Arc::clone(&shared),
+            news,
+        };
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_time()
+            .build()
+            .unwrap();
+        let mut look = Look::on(&feed);
+        assert!(look.is_on() && !Look::Away.is_on());
+        runtime.block_on(async {
+            let moment = Duration::from_millis(20);
+            let held = lock(&shared.state);
+            for _ in 0..3 {
+                let waited = tokio::time::timeout(moment, look.news()).await;
+                assert!(waited.is_err() && matches!(look, Look::Coded(_)));
+            }
+            drop(held);
+            // There is no part, and he was sent none.
+            assert_eq!(look.news().await, None);
+            assert!(matches!(look, Look::Waits(_)) && *lock(&shared.viewers) == 1);
+        });
+        drop(look);
+        assert_eq!(*lock(&shared.viewers), 0);
+    }
 }

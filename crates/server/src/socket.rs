@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::access::Role;
 use crate::crew::{Crew, Id, Taking};
 use crate::gate::LOOKS;
-use crate::part::Looking;
+use crate::part::Look;
 use crate::regions::{message, region};
 use crate::shared::Shared;
 
@@ -126,7 +126,7 @@ async fn attend(shared: Shared, role: Role, who: Who, socket: WebSocket) {
         seen: 0,
         told: Vec::new(),
         looked: Instant::now(),
-        looking: None,
+        look: Look::default(),
         rate: Rate::default(),
     };
     viewer.follow(socket).await;
@@ -150,7 +150,7 @@ struct Viewer {
     /// When he last asked for the part.
     looked: Instant,
     /// He looks at the part that is being cut.
-    looking: Option<Looking>,
+    look: Look,
     rate: Rate,
 }
 
@@ -186,9 +186,9 @@ impl Viewer {
                     Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                     _ => return,
                 },
-                () = part_changes(&mut self.looking) => {
-                    if let Some(news) = self.news_of_the_part().await
-                        && socket.send(news).await.is_err()
+                news = self.look.news() => {
+                    if let Some(news) = news
+                        && socket.send(Message::Binary(message(&[&news]).into())).await.is_err()
                     {
                         return;
                     }
@@ -210,9 +210,12 @@ impl Viewer {
         };
         if let Some(looks) = sent.part {
             // Whoever asks again is sent all of it anew, which takes its time: soon again he has what he gets.
-            let again = looks && self.looking.is_some() && self.looked.elapsed() < AGAIN;
+            let again = looks && self.look.is_on() && self.looked.elapsed() < AGAIN;
             if !again {
-                self.looking = looks.then(|| self.shared.part.look());
+                self.look = match looks {
+                    true => Look::on(&self.shared.part),
+                    false => Look::Away,
+                };
                 self.looked = Instant::now();
             }
             return self.taken_message();
@@ -258,12 +261,6 @@ impl Viewer {
         told("taken", &self.taken)
     }
 
-    async fn news_of_the_part(&mut self) -> Option<Message> {
-        let (looking, news) = self.looking.take()?.next().await?;
-        self.looking = Some(looking);
-        Some(Message::Binary(message(&[&news?]).into()))
-    }
-
     fn news_of_the_crew(&mut self) -> Option<Message> {
         let crew = lock(&self.shared.crew);
         let (operator, asks) = crew.names();
@@ -279,16 +276,6 @@ impl Viewer {
             Message::Binary(encoded.into())
         })
     }
-}
-
-/// Waits for another part; for ever, when he does not look at it.
-async fn part_changes(looking: &mut Option<Looking>) {
-    if let Some(looking) = looking
-        && looking.news.changed().await.is_ok()
-    {
-        return;
-    }
-    std::future::pending().await
 }
 
 fn refused(why: &str) -> Message {

@@ -7,9 +7,9 @@ mod codec;
 mod support;
 
 use std::net::TcpStream;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use codec::Screen;
 use rmpv::Value;
@@ -24,11 +24,14 @@ struct Looker {
     cells: [usize; 2],
     parts: usize,
     bytes: usize,
+    /// Bytes of the longest message.
+    longest: usize,
 }
 
 impl Looker {
     fn take(&mut self, message: &[u8]) {
         self.bytes += message.len();
+        self.longest = self.longest.max(message.len());
         let regions = rmpv::decode::read_value(&mut &message[..]).unwrap();
         for region in regions.as_array().unwrap() {
             if region[0].as_str() != Some("part") || region[1].is_nil() {
@@ -48,6 +51,22 @@ impl Looker {
             if let Some(tiles) = field(&region[1], "tiles") {
                 self.screen.as_mut().unwrap().take(tiles.as_slice().unwrap());
             }
+        }
+    }
+}
+
+impl Looker {
+    /// Whether he sees this part.
+    fn has(&self, part: Option<&Vec<u16>>) -> bool {
+        let seen = self.screen.as_ref().map(|screen| &screen.heights);
+        part.is_some() && seen == part
+    }
+
+    fn read(&mut self, socket: &mut WebSocket<TcpStream>) {
+        match socket.read() {
+            Ok(Message::Binary(bytes)) => self.take(&bytes),
+            Ok(_) => {}
+            Err(error) => panic!("{} parts, {} bytes: {error}", self.parts, self.bytes),
         }
     }
 }
@@ -79,8 +98,8 @@ fn program() -> String {
         "BEGIN PGM LIVE MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+80 Z+0\n\
          TOOL CALL 3 Z S2000\nL Z+50 R0 FMAX M3\nL X-20 Y+5 R0 FMAX\n",
     );
-    for pass in 0..12_000 {
-        let (y, z) = (pass * 7 % 80, 1.0 + 5.0 * f64::from(pass) / 12_000.0);
+    for pass in 0..6_000 {
+        let (y, z) = (pass * 7 % 80, 1.0 + 5.0 * f64::from(pass) / 6_000.0);
         let x = if pass % 2 == 0 { 120 } else { -20 };
         text += &format!("L Y+{y} Z-{z:.3} F900\nL X{x:+}\n");
     }
@@ -96,57 +115,45 @@ fn a_viewer_that_does_not_read_gets_the_newest() {
     panel.choose("LIVE");
     let mut slow = looks(&panel, "slow");
     let mut quick = looks(&panel, "quick");
-    let ends = Arc::new(AtomicBool::new(false));
-    let own = Arc::clone(&ends);
+    // The part as it is in the end, when there is one.
+    let last: Arc<OnceLock<Vec<u16>>> = Arc::default();
+    let along: Arc<AtomicUsize> = Arc::default();
+    let (own, cells) = (Arc::clone(&last), Arc::clone(&along));
     let reads = std::thread::spawn(move || {
         let mut looker = Looker::default();
-        while !own.load(Ordering::Relaxed) {
-            if let Message::Binary(bytes) = quick.read().unwrap() {
-                looker.take(&bytes);
-            }
+        while !looker.has(own.get()) {
+            looker.read(&mut quick);
+            cells.store(looker.cells[0], Ordering::Relaxed);
         }
         looker
     });
     let memory = panel.memory_kib();
     panel.press("START");
     panel.until(|screen| screen["graphics"]["progress"] == 1.0);
-    // The newest is sent within a moment to whoever reads.
-    std::thread::sleep(Duration::from_secs(2));
-    ends.store(true, Ordering::Relaxed);
+    while along.load(Ordering::Relaxed) == 0 {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    last.set(panel.heights(along.load(Ordering::Relaxed))).unwrap();
     let quick = reads.join().unwrap();
     let grown = panel.memory_kib().saturating_sub(memory);
 
     let mut late = Looker::default();
-    let expected = panel.heights(quick.cells[0]);
-    assert!(
-        quick.screen.unwrap().heights == expected,
-        "who reads has the part"
-    );
-    let end = Instant::now() + Duration::from_secs(30);
-    while late
-        .screen
-        .as_ref()
-        .is_none_or(|screen| screen.heights != expected)
-    {
-        assert!(Instant::now() < end, "{} parts, {} bytes", late.parts, late.bytes);
-        if let Message::Binary(bytes) = slow.read().unwrap() {
-            late.take(&bytes);
-        }
+    while !late.has(last.get()) {
+        late.read(&mut slow);
     }
     println!(
         "quick: {} parts, {} bytes; slow: {} parts, {} bytes; {grown} KiB more",
         quick.parts, quick.bytes, late.parts, late.bytes
     );
+    // What was under way is kept for him: what the system holds, twice the bytes that the server asks of it, and the part that was
+    // being sent; then comes the newest. How many parts another one sees meanwhile depends on the processor.
+    let under_way = 2 * (256 << 10) + 2 * (8 << 10);
     assert!(
-        quick.parts >= 4 && late.parts < quick.parts,
-        "{} of {}",
+        late.bytes <= under_way + 2 * late.longest && late.parts <= quick.parts,
+        "{} parts, {} bytes, the longest {}; of {} parts",
         late.parts,
-        quick.parts
-    );
-    assert!(
-        late.bytes * 3 < quick.bytes * 2,
-        "{} of {}",
         late.bytes,
-        quick.bytes
+        late.longest,
+        quick.parts
     );
 }

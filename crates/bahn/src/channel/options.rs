@@ -56,7 +56,7 @@ Examples:
 const NEW_EXAMPLES: &str = "\
 Examples:
   bahn channel new -o my.lis
-  bahn channel new | less
+  bahn channel new                           the list on the screen
 
 All lines are commented out: the list is that of a channel without an entry.";
 

@@ -82,7 +82,7 @@ Exit codes: 0 no difference, 1 differences, 2 wrong use or a list with faults.";
 const NEW_EXAMPLES: &str = "\
 Examples:
   bahn mp new --model tnc360 -o mill.mp      the documented reference list, completed
-  bahn mp new --reference-only | less        without the parameters that have the smallest value
+  bahn mp new --reference-only               without the parameters that have the smallest value
   bahn mp new --smallest                     the list that the control makes by itself
   bahn mp new --from mill.mp -o mill.mp      complete mill.mp; its lines stay as they are";
 

@@ -18,11 +18,10 @@ Examples:
   bahn panel --machine machines/mill --record session.jsonl
       Keeps what is done in a file ...
   bahn panel --machine mill --replay session.jsonl    ... and shows it again, on a copy of the folder (docs/sessions.md)
-  curl -X POST -d '{\"key\":\"CE\"}' http://127.0.0.1:8155/api/key
-      A key from a program; docs/panel-api.md tells everything that can be asked for.
 
 Without --machine a copy of machines/mill runs, in the user's data folder (XDG_DATA_HOME, else ~/.local/share): what is
 programmed and set there is there the next time. Ctrl-C switches the machine off; everything is kept.
+Programs press keys and look at the screen, too: docs/panel-api.md.
 In the terminal NO_COLOR does without colours, and ':' presses any key by its name: ':key NC_START'.
 Exit codes: 0 fine, 1 the machine's folder has a fault, 2 wrong use.";
 

@@ -174,9 +174,9 @@ impl Panel {
         assert_eq!(status, 200, "{key}: {body}");
     }
 
-    /// Waits until a screen is so.
+    /// Waits until a screen is so. What hangs ends, too; what is slow beside other work does not count as such.
     pub fn until(&self, what: impl Fn(&Value) -> bool) -> Value {
-        let end = Instant::now() + Duration::from_secs(60);
+        let end = Instant::now() + Duration::from_secs(300);
         loop {
             let screen = self.screen();
             if what(&screen) {
