@@ -2,9 +2,9 @@
 
 use bahn_control::{AxisState, Control, InForce, Mode, RunState, Snapshot};
 use bahn_exchange::signal;
+use bahn_parameters::ParameterList;
 use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::machining::Decimal;
-use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::Axis;
 use bahn_servo::Rotation;
 
@@ -13,8 +13,6 @@ use crate::settings::{PositionType, Settings};
 
 /// Millimetres of an inch.
 const INCH_MM: f64 = 25.4;
-/// MP40 shows the spindle [000:3420-3432].
-const SPINDLE_SHOWN: u32 = 1 << 5;
 /// Step of the angle of the spindle, degrees (inferred).
 const SPINDLE_STEP_DEG: f64 = 0.001;
 /// Decimals of an inch display [003:7093-7102].
@@ -184,9 +182,7 @@ pub(crate) fn hidden_length_mm(axis: &AxisState, parameters: &ParameterList) -> 
 
 /// The angle of the spindle, as long as neither M03 nor M04 is active: MP40 bit 5 [000:3418-3432] [000:5883].
 fn spindle_line(snapshot: &Snapshot, parameters: &ParameterList, notation: Notation) -> Option<AxisLine> {
-    // The MP40 of a TNC 151/155 is another one.
-    let own = (parameters.model() >= ControlModel::Tnc360).then(|| parameters.get(40, 0))?;
-    let shown = own.unwrap_or_default() as u32 & SPINDLE_SHOWN != 0;
+    let shown = parameters.operation_parameters().spindle_shown;
     let stands = snapshot.spindle.rotation == Rotation::M5;
     let angle_deg = snapshot.spindle.angle_deg.filter(|_| shown && stands)?;
     Some(AxisLine {
@@ -245,7 +241,7 @@ fn feed(snapshot: &Snapshot, control: &Control, parameters: &ParameterList, nota
         let feeds = snapshot.axes.iter().map(|axis| manual(axis.index));
         return shown(feeds.reduce(f64::min).unwrap_or_default());
     }
-    if parameters.model() == ControlModel::Tnc360 {
+    if !parameters.model().shows_feed_of_keys() {
         return String::new();
     }
     let mut pressed = control.first().pressed_axes();

@@ -36,6 +36,8 @@ limits! {
 
     /// Longest program name, characters [001:2142] [003:979] [000:6847].
     program_name_max: u8 = 8, 8, 8, 16, 16, 16;
+    /// Programs of a TNC 360 [003:977], files of a TNC 407 and later [000:171] that the memory holds; 0: no number is given.
+    files_max: u32 = 0, 0, 32, 100, 100, 100;
     /// Highest label number; label 0 ends subprograms [003:3623-3629]; others than TNC 360 (inferred).
     label_max: u32 = 254, 254, 254, 254, 254, 254;
     /// Highest count behind REP [003:3747-3763]; others than TNC 360 (inferred).

@@ -83,6 +83,27 @@ impl ControlModel {
         )
     }
 
+    /// Draws in program run what runs; the graphics of a TNC 407 are those of TEST RUN [000:164-166] [000:6370].
+    pub const fn draws_what_runs(self) -> bool {
+        !matches!(self, ControlModel::Tnc407)
+    }
+
+    /// Simulates the selected program in the program run modes, before it runs [003:856-874].
+    pub const fn simulates_in_program_run(self) -> bool {
+        !self.has_windows()
+    }
+
+    /// Positioning blocks of MDI are those of a single axis [003:3566].
+    pub const fn positions_one_axis_by_mdi(self) -> bool {
+        matches!(self, ControlModel::Tnc360)
+    }
+
+    /// Shows by hand the feed of the axis whose direction key is pressed [000:6529-6540]; a TNC 360 shows a feed with MP7270 + 1
+    /// alone [003:7304-7309].
+    pub const fn shows_feed_of_keys(self) -> bool {
+        !matches!(self, ControlModel::Tnc360)
+    }
+
     /// Has an oscilloscope behind code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
         matches!(

@@ -3,7 +3,7 @@
 
 use bahn_control::{Command, RunState};
 use bahn_dialogue::Key;
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::MessageId;
 
 use crate::frames;
 use crate::page::{Page, Turn, View};
@@ -228,13 +228,7 @@ fn like(new: &str, old: &str) -> String {
 /// Characters of a new name without its type: eight on the TNC 360 and before [003:979], later as MP7222 says
 /// [000:6847-6852].
 fn name_max(site: &Site) -> usize {
-    let list = site.parameters();
-    let most = usize::from(list.model().limits().program_name_max);
-    match list.model().has_windows().then(|| list.get(7222, 0)).flatten() {
-        Some(0.0) => 8,
-        Some(1.0) => 12,
-        _ => most,
-    }
+    usize::from(site.parameters().operation_parameters().file_name_max)
 }
 
 /// A new file may have this name.
@@ -250,11 +244,7 @@ fn may_be_called(name: &str, site: &Site) -> Result<(), Denial> {
 fn has_room(name: &str, site: &Site) -> Result<(), Denial> {
     let files = site.programs.list();
     let model = site.control().model();
-    let of_model = match model {
-        ControlModel::Tnc360 => 32,
-        _ if model.has_windows() => 100,
-        _ => 0,
-    };
+    let of_model = model.limits().files_max as usize;
     let most = site.machine.folder.files_max.unwrap_or(of_model);
     let counted = files
         .iter()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use bahn_control::Command;
 use bahn_dialogue::{Editor, Key, Setting};
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::MessageId;
 use bahn_program::{Block, Edit, MotionKind, Operation, Program};
 
 use crate::page::{Page, Turn, View};
@@ -38,7 +38,7 @@ impl Mdi {
         };
         let program = editor.program();
         let inner = 1..program.block_count().saturating_sub(1);
-        if site.control().model() == ControlModel::Tnc360
+        if site.control().model().positions_one_axis_by_mdi()
             && !program.blocks().all(|own| is_of_one_axis(&own.block))
         {
             self.editor = None;

@@ -50,10 +50,12 @@ impl ProgramRun {
     /// The page of a control.
     pub fn new(model: ControlModel) -> ProgramRun {
         ProgramRun {
-            graphics: match model {
-                ControlModel::Tnc407 => RunGraphics::None,
-                ControlModel::Tnc415b | ControlModel::Tnc425 => RunGraphics::Parallel,
-                ControlModel::Tnc151 | ControlModel::Tnc155 | ControlModel::Tnc360 => RunGraphics::Simulated,
+            graphics: if model.simulates_in_program_run() {
+                RunGraphics::Simulated
+            } else if model.draws_what_runs() {
+                RunGraphics::Parallel
+            } else {
+                RunGraphics::None
             },
             ..ProgramRun::default()
         }

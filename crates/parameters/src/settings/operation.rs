@@ -36,6 +36,10 @@ pub struct OperationParameters {
     /// The length of the tool counts in the display of the tool axis: MP7285 = 1; old: no
     /// [000:6428-6434].
     pub tool_length_shown: bool,
+    /// The angle of the spindle is shown while it stands: MP40 bit 5 [000:3418-3432]; old: no.
+    pub spindle_shown: bool,
+    /// Characters of a file name without its type: MP7222 [000:6847-6852], not more than the model has.
+    pub file_name_max: u8,
     /// The working plane can be tilted: MP7500 = 1, TNC 415/425 only [000:4264-4400].
     pub tilting: bool,
     /// Length for blocks with surface normals includes DR2: MP7680 bit 6 [000:9179-9192].
@@ -254,6 +258,13 @@ impl ParameterList {
             datums: self.datum_parameters(),
             handwheel: self.handwheel_parameters(),
             tool_length_shown: is_one(7285),
+            spindle_shown: bit_of(self.get_new(40, 0).unwrap_or_default(), 5),
+            file_name_max: match self.get_new(7222, 0) {
+                Some(0.0) => 8,
+                Some(1.0) => 12,
+                _ => u8::MAX,
+            }
+            .min(self.model().limits().program_name_max),
             tilting: is_one(7500),
             normal_length_with_dr2: multi(6),
             oem_cycles: OemCycleParameters {
