@@ -376,6 +376,12 @@ fn cycle_calls() {
         )),
         [1.0]
     );
+    // A definition ends it [003:4877-4881]; a cycle that acts at once, as a datum shift, is none that is called [003:4846-4855]:
+    // M89 goes on with the one before (inferred).
+    assert_eq!(
+        drilled("L X+1 FMAX M89\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nL X+4 FMAX"),
+        [1.0, 14.0]
+    );
     // M89 is a free function when MP7440 says so.
     let text = program(&format!("{DRILL}\nL X+0 Y+0 Z+2 FMAX\nL X+1 FMAX M89"));
     let run = Job::new(text)

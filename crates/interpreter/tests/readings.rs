@@ -106,6 +106,66 @@ fn a_rounded_approach_from_nowhere() {
     assert_eq!(rounded.message(), Some((MessageId::ProgramStartUndefined, 3)));
 }
 
+/// "In the preceding and subsequent blocks both coordinates should lie in the plane of the arc" [003:2964, 3032]; the blocks at
+/// a chamfer must [003:2668]. A block that moves the tool axis, too, gives its direction in the plane: the corner is worked at
+/// the depth at which the first block ends, and what is cut off shortens it in the plane alone. CT takes the depth along as
+/// a helix. A block of the tool axis alone has no direction (`messages.rs`).
+#[test]
+fn corners_behind_a_block_that_moves_the_tool_axis() {
+    let corner = |between: &str| {
+        let run = Job::new(program(&format!(
+            "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+5 R0 F500\nL X+20 Z-5\n{between}\nL X+50 Y+30"
+        )))
+        .run();
+        run.assert_completed();
+        let ends: Vec<[f64; 3]> = run.moves().map(|e| xyz(&e.end)).collect();
+        ends[1..].to_vec()
+    };
+    // The corner (20,0) between the directions 0° and 45°: R5 cuts off 5 tan 22.5° of both.
+    let (cut, part) = (5.0 * 22.5_f64.to_radians().tan(), std::f64::consts::FRAC_1_SQRT_2);
+    let arc = [20.0 + cut * part, cut * part, -5.0];
+    close_points(
+        &corner("RND R5"),
+        &[[20.0 - cut, 0.0, -5.0], arc, [50.0, 30.0, -5.0]],
+        1e-9,
+    );
+    let chamfer = [20.0 + 3.0 * part, 3.0 * part, -5.0];
+    close_points(
+        &corner("L 3"),
+        &[[17.0, 0.0, -5.0], chamfer, [50.0, 30.0, -5.0]],
+        1e-9,
+    );
+    // Tangent along X at (20,0): an arc to (50,30) has its centre above, at (20,30).
+    let tangent = Job::new(program(
+        "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+5 R0 F500\nL X+20 Z-5\nCT X+50 Y+30 Z-8",
+    ))
+    .run();
+    tangent.assert_completed();
+    let last = *tangent.moves().collect::<Vec<_>>().last().unwrap();
+    close_points(&[arc_of(last).0], &[[20.0, 30.0]], 1e-9);
+    close_points(&[xyz(&last.end)], &[[50.0, 30.0, -8.0]], 1e-9);
+}
+
+/// A subprogram with LBL 0 must not stand in another one [003:3942]. Where it does the LBL 0 that is reached leads back
+/// [003:3637]; one that is jumped over does nothing.
+#[test]
+fn a_subprogram_in_another_one() {
+    let early = Job::new(program(
+        "L X+0 R0 FMAX\nCALL LBL 1\nL X+30 FMAX M2\nLBL 1\nL X+10 FMAX\nLBL 2\nLBL 0\nL X+20 FMAX\nLBL 0",
+    ))
+    .run();
+    early.assert_completed();
+    let ends: Vec<f64> = early.moves().map(|e| e.end[bahn_path::Axis::X]).collect();
+    assert_eq!(ends, [0.0, 10.0, 30.0]);
+    let run = Job::new(program(
+        "L X+0 R0 FMAX\nCALL LBL 1\nL X+30 FMAX M2\nLBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 2\nLBL 0\nLBL 2\nL X+20 FMAX\nLBL 0",
+    ))
+    .run();
+    run.assert_completed();
+    let ends: Vec<f64> = run.moves().map(|e| e.end[bahn_path::Axis::X]).collect();
+    assert_eq!(ends, [0.0, 20.0, 30.0]);
+}
+
 /// No element has an end or a centre that is no number, but for axes that were never programmed.
 fn assert_sound(run: &Run) {
     let mut known = bahn_path::PerAxis::splat(false);

@@ -160,6 +160,34 @@ fn a_machine_parameter_is_changed() {
     assert!((way - 10.0).abs() < 1.0, "{way}");
 }
 
+/// A comment is added behind the value by a semicolon [000:10017]: with the value, or alone by its soft key.
+#[test]
+fn a_comment_is_added_to_a_machine_parameter() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    code(&mut trainee, "95148");
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT");
+    trainee.give(r#"{"text":"600 ;slow, new guides"}"#).wait(0.1);
+    trainee.press("ENT GOTO 1 0 2 0 POINT 2 ENT");
+    trainee.soft(";");
+    trainee.give(r#"{"text":"as delivered"}"#).wait(0.1);
+    trainee.press("ENT").wait(0.1);
+    trainee.press("END");
+    let list = trainee.file("parameters.mp");
+    let line = |name: &str| list.lines().find(|line| line.starts_with(name)).unwrap();
+    assert!(line("MP1020.1").contains("600"), "{}", line("MP1020.1"));
+    assert!(
+        line("MP1020.1").ends_with("; slow, new guides"),
+        "{}",
+        line("MP1020.1")
+    );
+    assert!(
+        line("MP1020.2").ends_with("; as delivered"),
+        "{}",
+        line("MP1020.2")
+    );
+}
+
 #[test]
 fn a_parameter_that_needs_a_reset_begins_anew() {
     let mut trainee = Trainee::at("mill");

@@ -176,6 +176,40 @@ impl ListText {
         Ok(())
     }
 
+    /// The comment behind a value, without its semicolon; empty where there is none [000:10017].
+    pub fn comment(&self, id: ParameterId) -> String {
+        let behind = self.behind(id).map(|at| {
+            let text = String::from_utf8_lossy(self.bytes.get(at).unwrap_or_default()).into_owned();
+            text.split_once(';')
+                .map_or_else(String::new, |(_, comment)| comment.trim().to_owned())
+        });
+        behind.unwrap_or_default()
+    }
+
+    /// Writes a comment behind the value of a parameter that the text defines; an empty one takes it away.
+    pub fn set_comment(&mut self, id: ParameterId, comment: &str) {
+        let Some(at) = self.behind(id) else { return };
+        let old = self.bytes.get(at.clone()).unwrap_or_default();
+        // The column of the comment stays.
+        let blanks = old.iter().take_while(|byte| **byte == b' ').count().max(1);
+        let one_line: String = comment.chars().filter(|letter| !letter.is_control()).collect();
+        let new = match one_line.trim() {
+            "" => String::new(),
+            words => format!("{}; {words}", " ".repeat(blanks)),
+        };
+        self.bytes.splice(at, new.into_bytes());
+        self.read();
+    }
+
+    /// What stands in the line of a parameter behind its value.
+    fn behind(&self, id: ParameterId) -> Option<Range<usize>> {
+        let entry = self.entries.iter().find(|entry| entry.id == id)?;
+        let start = entry.value_at.end;
+        let rest = self.bytes.get(start..)?;
+        let length = rest.iter().position(|byte| matches!(byte, b'\r' | b'\n'));
+        Some(start..start + length.unwrap_or(rest.len()))
+    }
+
     /// Appends every parameter that is missing with the value of the list that the control makes by itself
     /// [000:10066], after a comment that says so.
     pub fn complete(&mut self) {

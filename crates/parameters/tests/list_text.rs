@@ -287,3 +287,27 @@ fn a_thousand_faults_are_listed() {
     let text = ListText::from_bytes(ControlModel::Tnc415b, b"junk\n");
     assert_eq!((text.faults().len(), text.not_listed()), (1, 0));
 }
+
+/// A comment stands behind a semicolon and the value [000:10017]; another one takes its place and its column.
+#[test]
+fn a_comment_is_written_behind_the_value() {
+    let mut text = ListText::from_bytes(
+        ControlModel::Tnc415b,
+        b"MP7430 : 1.2   ;overlap\r\nMP7420 : %101\r\nMP7440 : 3",
+    );
+    assert_eq!(text.comment(id(7430, None)), "overlap");
+    assert_eq!(text.comment(id(7420, None)), "");
+    text.set_comment(id(7430, None), "overlap of pockets");
+    text.set_comment(id(7420, None), "as in\nthe plan");
+    text.set_comment(id(7440, None), "last");
+    // There is no such line.
+    text.set_comment(id(7410, None), "nothing");
+    assert_eq!(
+        String::from_utf8(text.to_bytes()).unwrap(),
+        "MP7430 : 1.2   ; overlap of pockets\r\nMP7420 : %101 ; as inthe plan\r\nMP7440 : 3 ; last"
+    );
+    assert!(text.faults().is_empty());
+    text.set_comment(id(7430, None), " ");
+    assert!(text.to_bytes().starts_with(b"MP7430 : 1.2\r\n"));
+    assert_eq!(text.entries().len(), 3);
+}

@@ -45,6 +45,27 @@ fn block_numbers_are_those_of_the_listing() {
     assert_eq!(numbers, (0..18).collect::<Vec<_>>());
 }
 
+/// Behind block 65535 of a digitized program the numbers begin again with 0 [003:6853]: all of its blocks are read, and what
+/// is counted goes on.
+#[test]
+fn numbers_that_begin_again() {
+    let mut text = String::from("0 BEGIN PGM DATA MM\n");
+    for block in 1..70_000_u32 {
+        text += &format!("{} L X+{block}\n", block % 65_536);
+    }
+    text += &format!("{} END PGM DATA MM\n", 70_000 % 65_536);
+    let p = program(&text);
+    assert_eq!(p.block_count(), 70_001);
+    assert_eq!(
+        p.blocks()
+            .filter(|block| matches!(block.block.operation, Operation::Motion(_)))
+            .count(),
+        69_999
+    );
+    // As it is written: 65537 is block 1 again.
+    assert_eq!(p.text_of(65_537), "1 L X+65537");
+}
+
 #[test]
 fn nine_spellings_of_one_program_are_the_same_blocks() {
     let expected = blocks(PLAIN);

@@ -3,7 +3,7 @@
 //! What is entered is checked against the list; END writes the file with its comments and lets the control take over what has
 //! changed, with the reset or the reference run that it needs.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use bahn_control::{Command, RunState};
 use bahn_dialogue::Key;
@@ -21,7 +21,9 @@ const VALUE_MAX: usize = 40;
 /// Lines below the list: what the value under the cursor means.
 const MEANING: usize = 4;
 /// Its soft keys.
-const SOFT_KEYS: [&str; 8] = ["%", "$", "PAGE UP", "PAGE DOWN", "FIND", "", "QUIT", "END"];
+const SOFT_KEYS: [&str; 8] = ["%", "$", "PAGE UP", "PAGE DOWN", "FIND", ";", "QUIT", "END"];
+/// Characters of a comment at most (inferred).
+const COMMENT_MAX: usize = 60;
 
 /// A line of the editor.
 struct Row {
@@ -36,8 +38,11 @@ struct Parameters {
     rows: Vec<Row>,
     list: ParameterList,
     changed: BTreeSet<ParameterId>,
+    /// Comments that were entered [000:10017].
+    comments: BTreeMap<ParameterId, String>,
     current: usize,
     entry: Option<String>,
+    comment: Later,
     goto: Later,
     find: Later,
 }
@@ -91,8 +96,10 @@ fn opened(rows: Vec<Row>, site: &Site) -> Turn {
         rows,
         list: site.parameters().clone(),
         changed: BTreeSet::new(),
+        comments: BTreeMap::new(),
         current: 0,
         entry: None,
+        comment: Later::default(),
         goto: Later::default(),
         find: Later::default(),
     }))
@@ -119,7 +126,19 @@ impl Parameters {
             return Turn::Done;
         };
         let id = row.definition.id;
-        match self.list.assign(&format!("{id}={entry}")) {
+        // A comment may stand behind the value, or alone.
+        let (value, comment) = match entry.split_once(';') {
+            Some((value, comment)) => (value.trim(), Some(comment.trim())),
+            None => (entry.as_str(), None),
+        };
+        if let Some(comment) = comment {
+            self.comments.insert(id, comment.to_owned());
+            if value.is_empty() {
+                self.entry = None;
+                return Turn::Done;
+            }
+        }
+        match self.list.assign(&format!("{id}={value}")) {
             Ok(_) => {
                 self.changed.insert(id);
                 self.entry = None;
@@ -143,7 +162,8 @@ impl Parameters {
     /// END: what has changed is checked as a whole, written and taken over.
     fn finish(&mut self, site: &mut Site) -> Turn {
         let turn = self.take(site);
-        if !matches!(turn, Turn::Done) || self.changed.is_empty() {
+        let is_changed = !self.changed.is_empty() || !self.comments.is_empty();
+        if !matches!(turn, Turn::Done) || !is_changed {
             return if matches!(turn, Turn::Done) {
                 Turn::Close
             } else {
@@ -181,6 +201,9 @@ impl Parameters {
                 .get(id.number, id.index.unwrap_or(0))
                 .unwrap_or_default();
             text.set(*id, value).map_err(|error| error.to_string())?;
+        }
+        for (id, comment) in &self.comments {
+            text.set_comment(*id, comment);
         }
         let bytes = text.to_bytes();
         // A list with which the machine could not be switched on again is refused.
@@ -286,8 +309,12 @@ impl Parameters {
             Some(dialogue) => format!("{dialogue:<34}: {shown}"),
             None => row.definition.line(shown),
         };
-        if self.changed.contains(&row.definition.id) {
+        let id = row.definition.id;
+        if self.changed.contains(&id) || self.comments.contains_key(&id) {
             text.push_str(" *");
+        }
+        if let Some(comment) = self.comments.get(&id) {
+            text.push_str(&format!(" ; {comment}"));
         }
         let from = text
             .find(": ")
@@ -355,6 +382,7 @@ impl Page for Parameters {
             "%" => self.radix('%'),
             "$" => self.radix('$'),
             "FIND" => self.find.ask(site.words("FIND ="), 24),
+            ";" => self.comment.ask(";".to_owned(), COMMENT_MAX),
             "QUIT" => Turn::Close,
             name => match list::way_of(name) {
                 Some(rows) => self.go(rows, site),
@@ -365,7 +393,9 @@ impl Page for Parameters {
 
     fn text(&mut self, text: &str, _site: &mut Site) -> Turn {
         let fits = |character: char| character.is_ascii_hexdigit() || "%$-. ".contains(character);
-        if text.len() > VALUE_MAX || !text.chars().all(fits) {
+        let (value, comment) = text.split_once(';').unwrap_or((text, ""));
+        let is_short = value.len() <= VALUE_MAX && comment.chars().count() <= COMMENT_MAX;
+        if !is_short || !value.chars().all(fits) {
             return Turn::Refused;
         }
         self.entry = Some(text.to_owned());
@@ -395,6 +425,9 @@ impl Page for Parameters {
     fn tick(&mut self, site: &mut Site) -> Turn {
         let gone = self.goto.take().is_some_and(|text| !self.goto(&text));
         let lost = self.find.take().is_some_and(|word| !self.find(&word));
+        if let (Some(comment), Some(row)) = (self.comment.take(), self.rows.get(self.current)) {
+            self.comments.insert(row.definition.id, comment);
+        }
         match gone || lost {
             true => Turn::Say(site.message(MessageId::EntryValueIncorrect)),
             false => Turn::Done,
