@@ -294,10 +294,7 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 number(name, rest, 0, 10).map(|factor| Command::Handwheel(axis, factor))
             }
-            "axis-key" => match axis(name, rest)? {
-                (axis, "") => Ok(Command::AxisKey(axis)),
-                _ => Err(CommandError::Wrong(format!("`{name}` takes an axis"))),
-            },
+            "axis-key" => axis_key(name, rest),
             "3d-rot" => switch(name, rest, "on").map(Command::WorkingPlane),
             "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
             "power" => switch(name, rest, "on").map(Command::Power),
@@ -307,6 +304,14 @@ impl FromStr for Command {
             }
             _ => Err(CommandError::Unknown(name.to_owned())),
         }
+    }
+}
+
+/// An axis key of the keyboard.
+fn axis_key(name: &str, rest: &str) -> Result<Command, CommandError> {
+    match axis(name, rest)? {
+        (axis, "") => Ok(Command::AxisKey(axis)),
+        _ => Err(CommandError::Wrong(format!("`{name}` takes an axis"))),
     }
 }
 
