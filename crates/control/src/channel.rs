@@ -235,11 +235,7 @@ impl Channel {
 
     /// The loops are open: neither NC start nor what is turned at the handwheel moves anything when they close.
     pub fn forget_input(&mut self, measured: &Measured) {
-        self.desk.forget_start();
-        self.desk
-            .manual
-            .handwheel
-            .forget_turns(&measured.operator.handwheel);
+        self.desk.forget_input(&measured.operator.handwheel);
     }
 
     /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the

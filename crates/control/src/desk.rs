@@ -166,6 +166,12 @@ impl Desk {
         self.start_pressed = false;
     }
 
+    /// The loops are open: what is done meanwhile moves nothing when they close.
+    pub fn forget_input(&mut self, inputs: &HandwheelInputs) {
+        self.forget_start();
+        self.manual.handwheel.forget_turns(inputs);
+    }
+
     /// Chooses an operating mode, as far as the progress of the run allows it.
     pub fn choose_mode(&mut self, mode: Mode, progress: &Progress, axes: &mut OwnAxes) -> bool {
         let possible = match progress.state() {
