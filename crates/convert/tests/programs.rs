@@ -64,8 +64,17 @@ fn every_program_of_the_repository_goes_there_and_back() {
             continue;
         }
         let folder = file.parent().unwrap();
-        let proofs = ControlModel::ALL.map(|model| there_and_back(&program, &settings(model), folder));
-        let most = proofs.into_iter().max_by_key(|proof| proof.elements);
+        // A model whose blocks are shorter would have refused them [001:1174-1183].
+        let longest = made
+            .text
+            .lines()
+            .map(|line| line.chars().count())
+            .max()
+            .unwrap_or(0);
+        let fits = |model: &ControlModel| longest <= model.limits().iso_characters_max as usize;
+        let proofs = ControlModel::ALL.into_iter().filter(fits);
+        let proofs = proofs.map(|model| there_and_back(&program, &settings(model), folder));
+        let most = proofs.max_by_key(|proof| proof.elements);
         let Some(proof) = most else { continue };
         println!(
             "{}: {} elements, {:?}",
