@@ -320,7 +320,12 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
 
 #[test]
 fn of_the_readmes() {
-    for file in ["README.md", "docs/tour.md", "examples/README.md", "examples/plc/README.md"] {
+    for file in [
+        "README.md",
+        "docs/tour.md",
+        "examples/README.md",
+        "examples/plc/README.md",
+    ] {
         let folder = desk();
         let text = fs::read_to_string(root().join(file)).unwrap();
         run_all(&folder, folder.as_ref(), &commands(&text));

@@ -70,6 +70,9 @@ fn the_index_names_every_document() {
     let known = links(&index);
     for page in texts_in(&root().join("docs")) {
         let name = page.file_name().unwrap().to_str().unwrap();
-        assert!(name == "README.md" || known.contains(&name), "docs/README.md does not name {name}");
+        assert!(
+            name == "README.md" || known.contains(&name),
+            "docs/README.md does not name {name}"
+        );
     }
 }

@@ -185,7 +185,10 @@ fn arrows_point_down() {
             panic!("the room {room} is not in the plan of the house: add it to ROOMS and ARCHITECTURE.md")
         });
         let used = dependencies(&folder);
-        let rooms: Vec<&str> = used.iter().filter_map(|used| used.strip_prefix("bahn-")).collect();
+        let rooms: Vec<&str> = used
+            .iter()
+            .filter_map(|used| used.strip_prefix("bahn-"))
+            .collect();
         for room_used in &rooms {
             assert!(allowed.contains(room_used), "{room} must not use {room_used}");
         }
@@ -199,7 +202,10 @@ fn arrows_point_down() {
             .iter()
             .filter(|used| !has_word(&code, &used.replace('-', "_")))
             .collect();
-        assert!(unused.is_empty(), "{room} depends on {unused:?}, and does not use it");
+        assert!(
+            unused.is_empty(),
+            "{room} depends on {unused:?}, and does not use it"
+        );
     }
 }
 
@@ -218,9 +224,8 @@ fn dependencies(folder: &Path) -> Vec<String> {
 /// Whether a name stands in the code, and not as part of a longer one.
 fn has_word(code: &str, name: &str) -> bool {
     let part = |c: char| c.is_alphanumeric() || c == '_';
-    code.match_indices(name).any(|(at, _)| {
-        !code[..at].ends_with(part) && !code[at + name.len()..].starts_with(part)
-    })
+    code.match_indices(name)
+        .any(|(at, _)| !code[..at].ends_with(part) && !code[at + name.len()..].starts_with(part))
 }
 
 #[test]

@@ -266,18 +266,16 @@ mod tests {
             .unwrap();
         let mut look = Look::on(&feed);
         assert!(look.is_on() && !Look::Away.is_on());
-        runtime.block_on(async {
-            let moment = Duration::from_millis(20);
-            let held = lock(&shared.state);
-            for _ in 0..3 {
-                let waited = tokio::time::timeout(moment, look.news()).await;
-                assert!(waited.is_err() && matches!(look, Look::Coded(_)));
-            }
-            drop(held);
-            // There is no part, and he was sent none.
-            assert_eq!(look.news().await, None);
-            assert!(matches!(look, Look::Waits(_)) && *lock(&shared.viewers) == 1);
-        });
+        let moment = Duration::from_millis(20);
+        let held = lock(&shared.state);
+        for _ in 0..3 {
+            let waited = runtime.block_on(async { tokio::time::timeout(moment, look.news()).await });
+            assert!(waited.is_err() && matches!(look, Look::Coded(_)));
+        }
+        drop(held);
+        // There is no part, and he was sent none.
+        assert_eq!(runtime.block_on(look.news()), None);
+        assert!(matches!(look, Look::Waits(_)) && *lock(&shared.viewers) == 1);
         drop(look);
         assert_eq!(*lock(&shared.viewers), 0);
     }

@@ -251,7 +251,11 @@ fn the_eprom_is_no_folder_of_programs() {
     folder.put("1.H", "one");
     folder.put("eprom/99999968.H", "cycle");
     let store = folder.store();
-    let names: Vec<String> = store.everywhere().into_iter().map(|(_, entry)| entry.name).collect();
+    let names: Vec<String> = store
+        .everywhere()
+        .into_iter()
+        .map(|(_, entry)| entry.name)
+        .collect();
     assert_eq!(names, ["1.H"]);
     assert_eq!(store.whereabouts("99999968.H").unwrap(), at(&store, "99999968.H"));
 }
