@@ -235,16 +235,15 @@ fn without_proof_nothing_is_said_of_it() {
     assert_eq!((code, &report["proof"]["completed"]), (0, &true.into()));
 }
 
-/// A tap with a floating holder beside what DIN/ISO cannot say: the report has both reasons.
+/// A probing beside what DIN/ISO cannot say: the report has both reasons.
 #[test]
 fn why_a_program_is_not_unrolled_is_said() {
     let folder = Folder::new();
     let scaled = "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.5\n";
-    let tap = "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP -2\nCYCL DEF 2.2 DEPTH -10\nCYCL DEF 2.3 DWELL 0\n\
-               CYCL DEF 2.4 F500\nL X+5 R0 FMAX M99\n";
+    let probing = "TCH PROBE 0.0 REF. PLANE Q5 X-\nTCH PROBE 0.1 X+5 Y+0 Z-5\n";
     folder.write(
         "T.H",
-        format!("BEGIN PGM T MM\nTOOL DEF 1 L+0 R+2\nTOOL CALL 1 Z S500\nL Z+2 R0 FMAX M3\n{scaled}{tap}END PGM T MM\n"),
+        format!("BEGIN PGM T MM\nTOOL DEF 1 L+0 R+2\nTOOL CALL 1 Z S500\nL Z+2 R0 FMAX M3\n{scaled}{probing}END PGM T MM\n"),
     );
     let (code, report) = convert(&folder, "T.H --to iso");
     assert_eq!(code, 1);
@@ -256,7 +255,10 @@ fn why_a_program_is_not_unrolled_is_said() {
         "{report}"
     );
     assert!(
-        report["not_unrolled"].as_str().unwrap().contains("cycle 2)"),
+        report["not_unrolled"]
+            .as_str()
+            .unwrap()
+            .contains("what a probe finds"),
         "{report}"
     );
     folder.write("D.nc", "%MAIN\nN10 G01 X1 F100\n");

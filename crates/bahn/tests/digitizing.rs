@@ -301,10 +301,11 @@ fn the_parameters_of_digitizing_act() {
     // Ten a second: about half the time.
     let (faster, _) = digitized("--mp 6210=10");
     assert!(faster < 0.7 * time, "{faster} {time}");
-    // At the end of each of 7 lines 10 mm up at 2000 mm/min and down at 200 mm/min: 0.3 and 3 s.
+    // At the end of each of 7 lines 10 mm up at 2000 mm/min and down at 200 mm/min: 0.3 and 3 s, and the ramps to 33.3 and
+    // 3.3 mm/s and back at 1 m/s²: 0.033 and 0.003 s.
     let (time_200, _) = digitized("--mp 6120=200,6150=2000");
     let (lubricated, _) = digitized("--mp 6120=200,6150=2000,6220=10,6221=0");
-    let expected = 7.0 * 3.3;
+    let expected = 7.0 * (3.3 + 0.0367);
     assert!(
         (lubricated - time_200 - expected).abs() < 0.5,
         "{lubricated} {time_200}"

@@ -33,10 +33,9 @@ fn a_circle_without_an_end_is_a_full_one() {
 /// What DIN/ISO has no function for, by the beginning of the block.
 const WITHOUT_WORD: [&str; 9] = [
     "DLG-",
+    "TCH PROBE 30.",
     "TCH PROBE 31.",
     "TCH PROBE 32.",
-    // A cycle of the machine builder: D68 names its parameters by their numbers.
-    "CYCL DEF 68.",
     "TCH PROBE 5.",
     "TCH PROBE 6.",
     "TCH PROBE 7.",

@@ -200,17 +200,25 @@ impl Scan {
     /// level does so first.
     fn slew(&mut self, wish: &Wish, time_s: f64, feed: f64) {
         let mut wanted = wish.velocity.map(|part| part * feed);
-        let mut possible = self.acceleration_mm_s2 * time_s;
+        let possible = self.acceleration_mm_s2 * time_s;
+        let mut braked = 0.0;
+        let mut along = 0.0;
         if let Some((axis, sign, end)) = wish.end {
             let able = landing_speed((end - self.position[axis]) * sign, possible, time_s);
             wanted[axis] = sign * (wanted[axis] * sign).min(able);
-            let braked = (self.velocity[axis] * sign - able).clamp(0.0, possible);
+            braked = (self.velocity[axis] * sign - able).clamp(0.0, possible);
             self.velocity[axis] -= braked * sign;
-            possible = (possible * possible - braked * braked).sqrt();
+            along = -braked * sign * (wanted[axis] - self.velocity[axis]);
         }
         let missing: ScanPoint = std::array::from_fn(|k| wanted[k] - self.velocity[k]);
-        let length = missing.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let part = if length > possible { possible / length } else { 1.0 };
+        let square = missing.iter().map(|v| v * v).sum::<f64>();
+        // The greatest part with which both together are no more than possible.
+        let left = possible * possible - braked * braked;
+        let part = if square + 2.0 * along > left {
+            ((along * along + square * left).sqrt() - along) / square
+        } else {
+            1.0
+        };
         for k in 0..3 {
             self.velocity[k] += missing[k] * part;
             if part == 1.0 {
