@@ -68,18 +68,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "control",
         ],
     ),
-    (
-        "link",
-        &[
-            "path",
-            "parameters",
-            "program",
-            "exchange",
-            "plc",
-            "control",
-            "host",
-        ],
-    ),
+    ("link", &["parameters", "program", "control", "host"]),
     (
         "panel",
         &[
@@ -98,7 +87,6 @@ const ROOMS: &[(&str, &[&str])] = &[
             "viewer",
             "interpreter",
             "motion",
-            "machines",
         ],
     ),
     ("server", &["panel", "viewer"]),

@@ -633,14 +633,13 @@ impl Channel {
                 self.desk.switch_plane(on, list, &axes, chain)
             }
             ref entered if entered.is_by_hand() => {
-                self.desk
-                    .enter(&command, machine.model, &machine.axes.of(self.number))
+                let axes = &machine.axes.of(self.number);
+                self.desk.enter(&command, machine.model, axes)
             }
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
             Command::AxisLimit(axis, range, limits) if !self.run.is_active() => {
-                let done = self
-                    .datums
-                    .set_limit(axis, range, limits, &mut machine.axes.of(self.number));
+                let axes = &mut machine.axes.of(self.number);
+                let done = self.datums.set_limit(axis, range, limits, axes);
                 machine.unsaved |= done;
                 done
             }
