@@ -53,6 +53,27 @@ fn check_knows_length_and_time() {
     assert_eq!(folder.bahn("plc check NOTHING.PLC").code(), 2);
 }
 
+/// Up to 8000 logic commands are processed within 10 ms, which are 200 % [000:11185, 11245]; the block processing speed is kept
+/// at 100 %, and values above 150 % should not occur [000:12038]. L and = of bits take 0.7 and 0.5 µs, EM 3.8 µs.
+#[test]
+fn a_program_that_is_too_much_is_said() {
+    let load = |pairs: usize| {
+        let folder = folder(&format!("{}EM\n", "L I4\n= O2\n".repeat(pairs)));
+        let run = folder.bahn("plc check MAIN.PLC --model tnc407 --format json");
+        assert_eq!(run.code(), 0, "{}", run.err());
+        run.json()["load"].clone()
+    };
+    let percent = |pairs: usize| (pairs as f64 * 1.2 + 3.8) / 5000.0 * 100.0;
+    assert_eq!(load(3999), json!([]));
+    let commands = "12001 commands: a PLC run has time for 8000 of them";
+    let speed = "above 100 % the control does not keep its block processing speed";
+    let time = format!("nominal cycle time {:.2} %: {speed}", percent(6000));
+    assert_eq!(load(6000), json!([commands, time]));
+    assert!(percent(6500) > 150.0);
+    let said = load(6500).to_string();
+    assert!(said.contains("no reserve is left"), "{said}");
+}
+
 #[test]
 fn linked_files_lie_beside_the_main_file() {
     let folder = folder("USES GEAR.PLC\nEXTERN 10\nCM 10\nEM\n");
