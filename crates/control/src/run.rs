@@ -442,10 +442,12 @@ impl ProgramRun {
     /// Moves the axes along the path for a cycle.
     pub fn moves(&mut self, site: &mut Site, measured: &Measured) {
         if !self.progress.is_on_its_way() || self.restoration.is_on() {
+            site.chain.superimposed.stand();
             return;
         }
         if self.probe.is_held(&site.axes) || self.tapping.holds(&self.track, site) {
             // Without feed enable the axes stand at once [000:5352].
+            site.chain.superimposed.stand();
             self.track.halt();
             self.track.hold(&mut site.axes, site.now.time_s);
             return;

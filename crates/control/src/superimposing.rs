@@ -68,6 +68,19 @@ impl Superimposed {
         }
     }
 
+    /// The axes stand beside the path: what leads them on begins anew, and what was turned before moves nothing later.
+    pub fn stand(&mut self) {
+        if !self.on {
+            return;
+        }
+        self.ways = Position::ZERO;
+        for axis in Axis::ALL {
+            let position = self.of(axis);
+            self.ramps[axis] = PointToPoint::new(position);
+            self.target[axis] = position;
+        }
+    }
+
     /// Axis positions with what is added (`sign` 1), or without it (-1).
     pub fn added(&self, axes: Position, sign: f64) -> Position {
         if !self.on {

@@ -14,7 +14,7 @@
 
 use bahn_exchange::signal;
 use bahn_motion::{Lead, Master};
-use bahn_path::{At, OverrideLaw, PathElement, Thread};
+use bahn_path::{At, AxisSet, OverrideLaw, PathElement, Thread};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
@@ -28,6 +28,9 @@ const STANDS_MM_S: f64 = 0.05;
 
 /// Slower than this the spindle counts as standing before a thread begins, rpm (inferred).
 const STANDS_RPM: f64 = 2.0;
+
+/// An axis no farther off is where the thread is, mm: what rounding leaves.
+const BESIDE_MM: f64 = 1e-6;
 
 /// What tapping remembers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -174,17 +177,23 @@ impl Tapping {
         let Some(element) = track.path.element() else {
             return;
         };
-        for unit in site.axes.iter_mut().filter(|unit| element.moves_axis(unit.axis)) {
-            unit.left_at = None;
-            unit.stand(unit.servo.actual_mm());
-        }
         let mut at = track.path.position();
         let here = site.here();
         for unit in site.axes.iter().filter(|unit| element.moves_axis(unit.axis)) {
             at[unit.axis] = here[unit.axis];
         }
         let [_, now] = site.spindle.angles_deg(0.0);
+        let own = site.axes.iter().map(|unit| unit.axis);
+        let moved: AxisSet = own.filter(|axis| element.moves_axis(*axis)).collect();
         track.path.couple_again(&at, now);
+        // In a tilted plane axes that ran on are beside the thread, too: NC start leads them back to it.
+        let nominal = site.chain.to_axes(&track.path.position());
+        for unit in site.axes.iter_mut().filter(|unit| moved.contains(unit.axis)) {
+            let actual = unit.servo.actual_mm();
+            unit.stand(actual);
+            let beside = (nominal[unit.axis] - actual).abs() > BESIDE_MM;
+            unit.left_at = beside.then_some(nominal[unit.axis]);
+        }
     }
 
     /// Once in each contour cycle: M2048 and M2095, window and ramp [000:6066] [000:6124-6135].
@@ -243,11 +252,15 @@ pub(crate) fn is_in_thread(track: &Track, site: &Site) -> bool {
     track.path.position()[axis] < out - window_mm(site)
 }
 
-/// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128].
+/// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128]. While the loops are
+/// open neither is held anywhere: the end of the thread is not reached.
 pub(crate) fn is_in_position(track: &Track, site: &Site) -> bool {
     let Some(thread) = track.path.element().and_then(PathElement::thread) else {
         return true;
     };
+    if !site.now.loops_closed {
+        return false;
+    }
     let missing = missing_mm(thread, site);
     let window = window_mm(site);
     let mut axes = site.axes.iter().filter(|unit| unit.mover == Mover::Path);

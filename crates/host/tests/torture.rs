@@ -250,6 +250,49 @@ fn the_handwheel_turns_under_m118() {
     }
 }
 
+/// Axes that were led by a spindle or a handwheel when their drives were taken away go on with no jump: from a thread whose end was
+/// reached in nominal values alone, from beside a thread in a tilted plane, from a handwheel that was still being followed.
+#[test]
+fn what_was_led_goes_on_without_a_jump() {
+    for (machine, program, seed, what) in [
+        ("mill", "FLANGE.H", 3_008_073, "voltage off"),
+        ("mill", "KNOB.H", 3_006_369, "switch door open"),
+        ("gantry", "THREADS.H", 3_000_060, "fault brake Z"),
+        ("gantry", "THREADS.H", 3_007_544, "fault drive Z runaway"),
+    ] {
+        let campaign = campaign(machine);
+        let mut worker = campaign.worker().unwrap();
+        let plan = worker.plan(seed);
+        let happens = plan.happenings.iter().any(|happening| happening.what == what);
+        assert!(
+            happens && campaign.programs()[plan.program] == program,
+            "seed {seed} is another one now: {plan:?}"
+        );
+        let violation = worker.run(&plan).violation;
+        let jumps = |rule| matches!(rule, Rule::Speed | Rule::Acceleration | Rule::Travel);
+        assert!(
+            !violation.as_ref().is_some_and(|violation| jumps(violation.rule)),
+            "seed {seed}: {violation:?}"
+        );
+    }
+}
+
+/// What a seed did is a script that a run repeats: each command has a line of its own.
+#[test]
+fn a_script_has_a_line_for_each_command() {
+    let campaign = campaign("mill");
+    let mut worker = campaign.worker().unwrap();
+    let plan = worker.plan(3_006_369);
+    let trial = worker.run(&plan);
+    let script = campaign.script(&plan, &trial, "mill");
+    let mut turned = script.lines().filter(|line| line.contains("handwheel"));
+    let [axis, steps] = [turned.next().unwrap(), turned.next().unwrap()];
+    assert!(
+        axis.ends_with(": handwheel Z 0") && steps.ends_with(": handwheel -500"),
+        "{script}"
+    );
+}
+
 /// The voltage goes while the pallet shuttle passes its marks at power-on, and the shuttle is elsewhere than undisturbed when
 /// the model is digitized. An axis of the PLC is none that a probe leads.
 #[test]

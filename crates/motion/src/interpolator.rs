@@ -619,8 +619,11 @@ impl<E> Interpolator<E> {
             return;
         };
         let (way, place) = coupling.renew(item, position, angle_deg);
-        if self.phase == Phase::Move {
-            self.rest = (item.length - way).clamp(0.0, item.length);
+        let rest = (item.length - way).clamp(0.0, item.length);
+        // The end was reached in nominal values alone, the axis that follows the spindle is before it: it is driven to again.
+        let before_end = self.phase == Phase::Done && rest > 0.0 && item.end == Output::Nothing;
+        if self.phase == Phase::Move || before_end {
+            (self.phase, self.rest) = (Phase::Move, rest);
         }
         (self.speed, self.position) = (0.0, place);
     }

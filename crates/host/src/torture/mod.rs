@@ -130,7 +130,9 @@ impl Campaign {
             );
         }
         for happening in &trial.done {
-            let _ = writeln!(text, "{:.6}: {}", happening.time_us as f64 * 1e-6, happening.what);
+            for part in happening.what.split(", ") {
+                let _ = writeln!(text, "{:.6}: {part}", happening.time_us as f64 * 1e-6);
+            }
         }
         text
     }
