@@ -4,6 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use bahn_exchange::{Assignment, BitArea, Operand};
+use bahn_parameters::ControlModel;
+use bahn_parameters::technology::Technology;
 use bahn_path::Axis;
 use bahn_plc::TableKind;
 
@@ -168,7 +170,7 @@ pub enum Command {
 /// Where CUR.TIME of a tool ends, minutes (inferred).
 pub(crate) const CURRENT_MAX_MIN: f64 = 9999.0;
 /// Greatest spindle speed that is entered, rpm [003:2180].
-pub(crate) const SPEED_MAX: f64 = 99_999.999;
+const SPEED_MAX: f64 = 99_999.999;
 /// Greatest feed of a step, mm/min: that of MP1010.
 const FEED_MAX: f64 = 300_000.0;
 /// Greatest Q parameter [003:4290-4300].
@@ -213,6 +215,16 @@ impl Command {
                 | Command::Handwheel(..)
                 | Command::AxisKey(_)
         )
+    }
+
+    /// Whether what is entered by hand can be: an M function that the control has, a speed that it can have [003:2180]. What
+    /// has a value of neither kind always can.
+    pub fn can_be_entered(&self, model: ControlModel) -> bool {
+        match self {
+            Command::MFunction(m) => Technology::of_m(model, *m).is_some(),
+            Command::Speed(rpm) => (0.0..=SPEED_MAX).contains(rpm),
+            _ => true,
+        }
     }
 
     /// It must wait until a probing by hand is over.

@@ -2,14 +2,13 @@
 
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_parameters::operation::OperationParameters;
-use bahn_parameters::technology::Technology;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, BlockRef, Position};
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
-use crate::command::{Command, Mode, SPEED_MAX};
+use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
 use crate::key_code::KeyCode;
 use crate::kinematics::Chain;
@@ -210,17 +209,14 @@ impl Desk {
         }
     }
 
-    /// What is entered for moving by hand: M and S in Manual and Handwheel, jog increment, handwheel. `false` for an M function
-    /// that the control does not have and a speed beyond the greatest one [003:2180].
+    /// What is entered for moving by hand: M and S in Manual and Handwheel, jog increment, handwheel. `false` for what cannot
+    /// be entered.
     pub fn enter(&mut self, command: &Command, model: ControlModel, axes: &OwnAxes) -> bool {
         let by_hand = self.is_by_hand();
         match command {
-            Command::MFunction(m) if by_hand && Technology::of_m(model, *m).is_some() => {
-                self.manual.enter(Some(*m), None);
-            }
-            Command::Speed(rpm) if by_hand && (0.0..=SPEED_MAX).contains(rpm) => {
-                self.manual.enter(None, Some(*rpm));
-            }
+            command if !command.can_be_entered(model) => return false,
+            Command::MFunction(m) if by_hand => self.manual.enter(Some(*m), None),
+            Command::Speed(rpm) if by_hand => self.manual.enter(None, Some(*rpm)),
             Command::JogIncrement(mm) => self.manual.increment = *mm,
             Command::Handwheel(axis, factor) => return self.choose_handwheel(*axis, *factor, axes),
             Command::AxisKey(axis) if by_hand => return self.highlight(*axis, axes),

@@ -458,6 +458,11 @@ fn positioning_error_in_the_middle() {
     rig.start();
     kept.until_the_end(&mut rig);
     assert_eq!(kept.complete, 1);
+    assert!(
+        kept.points.iter().all(|point| point[2].abs() < 0.005),
+        "{:?}",
+        kept.points
+    );
     for [x, _, z] in kept.points.iter().skip(ran_on) {
         assert!((84.99..=95.01).contains(x) && z.abs() < 0.005, "{x} {z}");
     }

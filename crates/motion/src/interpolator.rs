@@ -6,12 +6,13 @@ mod outputs;
 mod phase;
 mod recall;
 mod stops;
+mod view;
 
 use std::sync::Arc;
 
 use bahn_path::{ElementSource, LiveData, PathElement, Placement, Position, Step, TechnologyFunction};
 
-use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Passed, Place, Prepared, State, Stop};
+use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Place, Prepared, State, Stop};
 use crate::gate::Gate;
 use crate::item::{Item, Output};
 use crate::limits::{Dynamics, Limits};
@@ -56,6 +57,8 @@ pub struct Interpolator<E> {
     coupling: Option<Coupling>,
     /// It is run back.
     backward: bool,
+    /// The functions at its end are output; what is left of it is a way alone.
+    end_is_output: bool,
     /// How far the first element was executed that is taken back and still to be given again.
     recalled: Option<Executed>,
 }
@@ -95,6 +98,7 @@ impl<E> Interpolator<E> {
             ahead: Ahead::default(),
             coupling: None,
             backward: false,
+            end_is_output: false,
             recalled: None,
         }
     }
@@ -263,6 +267,7 @@ impl<E> Interpolator<E> {
                     None
                 }
                 Phase::Finish => {
+                    self.end_is_output = true;
                     self.phase = self.output(Gate::End, Phase::Done);
                     None
                 }
@@ -336,12 +341,14 @@ impl<E> Interpolator<E> {
                 let cap = self.ring.cap();
                 self.speed = if speed * speed > cap { cap.sqrt() } else { speed };
                 (self.position, self.rest, *time) = (end, 0.0, left);
-                self.outputs.pass(sequence, left, self.speed);
-                self.phase = if dwell > 0.0 {
-                    Phase::Dwell(dwell)
-                } else {
-                    Phase::Finish
+                self.phase = match self.end_is_output {
+                    true => Phase::Done,
+                    false if dwell > 0.0 => Phase::Dwell(dwell),
+                    false => Phase::Finish,
                 };
+                if !self.end_is_output {
+                    self.outputs.pass(sequence, left, self.speed);
+                }
                 // The spindle is told the end before the path goes on.
                 self.coupling.map(|_| State::Moving)
             }
@@ -434,6 +441,7 @@ impl<E> Interpolator<E> {
     /// Begins the current element.
     fn enter(&mut self) {
         self.phase = Phase::Begin;
+        self.end_is_output = false;
         self.rest = self.ring.current().map_or(0.0, |item| item.length);
         if let Some(item) = self.ring.current()
             && !Placement::is_same(self.placement.as_ref(), item.element.placement.as_ref())
@@ -491,6 +499,7 @@ impl<E> Interpolator<E> {
     pub fn release(&mut self) {
         match self.phase {
             Phase::Gate(Gate::Start) => self.phase = Phase::Move,
+            Phase::Gate(Gate::End) if self.rest > 0.0 => self.phase = Phase::Move,
             Phase::Gate(Gate::End) => self.phase = Phase::Done,
             _ => self.released = true,
         }
@@ -620,10 +629,13 @@ impl<E> Interpolator<E> {
         };
         let (way, place) = coupling.renew(item, position, angle_deg);
         let rest = (item.length - way).clamp(0.0, item.length);
-        // The end was reached in nominal values alone, the axis that follows the spindle is before it: it is driven to again.
-        let before_end = self.phase == Phase::Done && rest > 0.0 && item.end == Output::Nothing;
-        if self.phase == Phase::Move || before_end {
-            (self.phase, self.rest) = (Phase::Move, rest);
+        match self.phase {
+            // Its end was reached in nominal values alone, the axis that follows the spindle is before it.
+            Phase::Dwell(_) | Phase::Finish | Phase::Done if rest > 0.0 => {
+                (self.phase, self.rest) = (Phase::Move, rest);
+            }
+            Phase::Move | Phase::Gate(Gate::End) => self.rest = rest,
+            _ => {}
         }
         (self.speed, self.position) = (0.0, place);
     }
@@ -631,54 +643,6 @@ impl<E> Interpolator<E> {
     /// Whether the path follows the spindle: it has begun an element that does so, and none behind it.
     pub fn is_coupled(&self) -> bool {
         self.coupling.is_some()
-    }
-
-    /// The ends of elements that the last cycle came to, in their order.
-    pub fn passed(&self) -> &[Passed] {
-        self.outputs.passed()
-    }
-
-    /// Nominal position on the path.
-    pub fn position(&self) -> Position {
-        self.position
-    }
-
-    /// Path speed, mm/s.
-    pub fn speed_mm_s(&self) -> f64 {
-        self.speed
-    }
-
-    /// The element that is executed, or was last.
-    pub fn element(&self) -> Option<&PathElement> {
-        self.ring.current().map(|item| &item.element)
-    }
-
-    /// That element has begun: what it puts out first is output.
-    pub fn has_begun(&self) -> bool {
-        self.phase != Phase::Begin
-    }
-
-    /// The element after it, as far as it is known.
-    pub fn next_element(&self) -> Option<&PathElement> {
-        self.ring.following().map(|item| &item.element)
-    }
-
-    /// Path length to the end of that element, mm.
-    pub fn rest_mm(&self) -> f64 {
-        self.rest
-    }
-
-    /// How much of that element is covered, 0 to 1.
-    pub fn part(&self) -> f64 {
-        match self.ring.current() {
-            Some(item) if item.length > 0.0 => 1.0 - self.rest / item.length,
-            _ => 1.0,
-        }
-    }
-
-    /// Elements that are prepared and not yet executed, the current one included.
-    pub fn ahead(&self) -> usize {
-        self.ring.ahead().len()
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod common;
 
-use bahn_motion::{Cycle, Drive, Interpolator, Limits, Master, SpindleGear, State};
+use bahn_motion::{Cycle, Drive, Gate, Interpolator, Limits, Master, SpindleGear, State};
 use bahn_path::{At, Axis, Curve, Function, OverrideLaw, Position, Step, Synchronisation, Thread};
 use common::{List, Path, function, list, plan, time_s};
 
@@ -265,6 +265,63 @@ fn coupled_again_as_they_stand() {
         cycle.position[Axis::X] > 0.0
     });
     assert!((deepest + DEPTH).abs() < 1e-9, "{deepest}");
+}
+
+/// The path has reached the end of a thread in nominal values, and its function is output, when the drives are taken away from a spindle
+/// that lags behind: what is left of the thread is driven again, from a standstill, and the function is not output again.
+#[test]
+fn a_thread_that_was_not_reached_is_driven_to_its_end() {
+    for synchronisation in [Synchronisation::Mos, Synchronisation::MnsSns] {
+        let mut path = Path::new(FEED);
+        path.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(true, Some(0.0));
+        path.line(&[(Axis::Z, 0.0)]);
+        with_m(&mut path, 9, At::End, synchronisation, law(false, None));
+        path.line(&[(Axis::X, 10.0)]);
+        let mut bench = Bench::new(&path, 40);
+        let waits = match synchronisation {
+            Synchronisation::Mos => State::Settling,
+            _ => State::Gate(Gate::End),
+        };
+        bench.until(|bench, cycle| {
+            cycle.state == waits
+                && bench
+                    .path
+                    .element()
+                    .is_some_and(|element| element.end[Axis::Z] == 0.0)
+        });
+        assert!(bench.path.next_output().is_some());
+        let mut here = bench.path.position();
+        here[Axis::Z] = -2.0;
+        bench.dead = 0;
+        bench.told.push(100.0);
+        bench.path.couple_again(&here, 100.0);
+        bench.path.release();
+        // The acceleration of the spindle in gear 1 is 50 mm/s² of the thread.
+        let (mut before, mut speed, mut outputs) = (-2.0, 0.0, 0);
+        let end = bench.until(|bench, cycle| {
+            if bench.path.is_coupled() {
+                let at = cycle.position[Axis::Z];
+                let now = (at - before) / 0.003;
+                assert!(
+                    f64::abs(now - speed) <= 50.0 * 0.003 + 1e-6,
+                    "{speed} {now} at {at}"
+                );
+                assert!((at - (-2.0 + height(bench.drive.master.actual_deg - 100.0))).abs() < 1e-9);
+                (before, speed) = (at, now);
+            }
+            cycle.position[Axis::X] > 0.0
+        });
+        let reached = end.position[Axis::Z];
+        // The last cycle of the ramp ends in the one in which the path goes on.
+        assert!(
+            reached.abs() < 1e-9 && before.abs() < 50.0 * 0.003 * 0.003,
+            "{synchronisation:?} {reached} {before}"
+        );
+        while bench.path.next_output().is_some() {
+            outputs += 1;
+        }
+        assert_eq!(outputs, 0);
+    }
 }
 
 /// A spindle that is not ready keeps the path before the thread.

@@ -7,14 +7,6 @@ use super::source::Source;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 
-/// Logic commands for which a PLC run has time [000:11185].
-const COMMANDS_MAX: usize = 8000;
-/// Load up to which the control keeps its block processing speed, % [000:12038].
-const KEPT_PERCENT: f64 = 100.0;
-/// Load that should not occur [000:12038], and that which stops the control: 10 ms [000:11245], %.
-const RESERVE_PERCENT: f64 = 150.0;
-const TIME_OUT_PERCENT: f64 = 200.0;
-
 /// Compiles a program and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     let source = Source::compile(&options.program)?;
@@ -26,13 +18,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         not_listed: compilation.not_listed,
         size_bytes: compilation.size_bytes,
         nominal_percent: compilation.nominal_percent(),
-        load: load(
-            compilation
-                .program
-                .as_ref()
-                .map_or(0, |program| program.code.len()),
-            compilation.nominal_percent(),
-        ),
+        load: compilation.load(),
     };
     match options.format {
         Format::Json => console::print_json(&report)?,
@@ -61,26 +47,6 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     } else {
         Outcome::ProgramError
     })
-}
-
-/// What is too much for the control, though it can be compiled.
-fn load(commands: usize, percent: f64) -> Vec<String> {
-    let mut found = Vec::new();
-    if commands > COMMANDS_MAX {
-        found.push(format!(
-            "{commands} commands: a PLC run has time for {COMMANDS_MAX} of them"
-        ));
-    }
-    let means = match percent {
-        _ if percent > TIME_OUT_PERCENT => "more than 10 ms: PLC-program error 53 stops the control",
-        _ if percent > RESERVE_PERCENT => {
-            "above 150 % no reserve is left for data transfer and handwheel: error 53 may come"
-        }
-        _ if percent > KEPT_PERCENT => "above 100 % the control does not keep its block processing speed",
-        _ => return found,
-    };
-    found.push(format!("nominal cycle time {percent:.2} %: {means}"));
-    found
 }
 
 /// How many errors and warnings there are besides.

@@ -4,7 +4,6 @@ use bahn_control::{Command, Message, Mode};
 use bahn_dialogue::Key;
 use bahn_exchange::signal;
 use bahn_parameters::MessageId;
-use bahn_parameters::technology::Technology;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::handwheel::Handwheel;
@@ -13,8 +12,6 @@ use crate::pages::{datum, handwheel, probe, supplementary, table};
 use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
-/// Greatest spindle speed that is entered, rpm [003:2180].
-const SPEED_MAX: f64 = 99_999.999;
 /// Largest jog increment, mm [000:8494-8520].
 const JOG_MAX: f64 = 50.0;
 
@@ -32,6 +29,11 @@ fn axis(key: Key, site: &mut Site) -> Turn {
         true => Turn::Done,
         false => datum::of_key(key, site),
     }
+}
+
+/// Enters an M function or a speed, when it is one.
+fn enter(command: Command, site: &mut Site) -> bool {
+    command.can_be_entered(site.control().model()) && site.command(command)
 }
 
 impl Page for ByHand {
@@ -89,13 +91,11 @@ impl Page for ByHand {
                 |value, site| {
                     let whole =
                         (value.fract() == 0.0 && (0.0..=999.0).contains(&value)).then_some(value as u16);
-                    let model = site.control().model();
-                    let known = whole.filter(|m| Technology::of_m(model, *m).is_some());
-                    known.is_some_and(|m| site.command(Command::MFunction(m)))
+                    whole.is_some_and(|m| enter(Command::MFunction(m), site))
                 },
             )),
             1 => Turn::Open(Number::ask(site.words("SPINDLE SPEED S ="), |value, site| {
-                (0.0..=SPEED_MAX).contains(&value) && site.command(Command::Speed(value))
+                enter(Command::Speed(value), site)
             })),
             2 => probe::menu(),
             3 => Turn::Open(Number::ask(site.words("JOG-INCREMENT ="), |value, site| {

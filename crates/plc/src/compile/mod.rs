@@ -103,7 +103,37 @@ impl Compilation {
     pub fn nominal_percent(&self) -> f64 {
         crate::run::percent(self.nominal_time)
     }
+
+    /// What is too much for the control, though it can be compiled, in words: the number of commands and the nominal time.
+    pub fn load(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let commands = self.program.as_ref().map_or(0, |program| program.code.len());
+        if commands > COMMANDS_MAX {
+            found.push(format!(
+                "{commands} commands: a PLC run has time for {COMMANDS_MAX} of them"
+            ));
+        }
+        let percent = self.nominal_percent();
+        let means = match percent {
+            _ if percent > TIME_OUT_PERCENT => "more than 10 ms: PLC-program error 53 stops the control",
+            _ if percent > RESERVE_PERCENT => {
+                "above 150 % no reserve is left for data transfer and handwheel: error 53 may come"
+            }
+            _ if percent > KEPT_PERCENT => "above 100 % the control does not keep its block processing speed",
+            _ => return found,
+        };
+        found.push(format!("nominal cycle time {percent:.2} %: {means}"));
+        found
+    }
 }
+
+/// Logic commands for which a PLC run has time [000:11185].
+const COMMANDS_MAX: usize = 8000;
+/// Load up to which the control keeps its block processing speed, and that which should not occur [000:12038], %.
+const KEPT_PERCENT: f64 = 100.0;
+const RESERVE_PERCENT: f64 = 150.0;
+/// 10 ms, which stop the control [000:11245], %.
+const TIME_OUT_PERCENT: f64 = 200.0;
 
 /// Errors that are listed at most, and warnings: a file that is no PLC program has one in each of a million
 /// lines.

@@ -1,0 +1,57 @@
+//! Where the path is.
+
+use bahn_path::{PathElement, Position};
+
+use super::Interpolator;
+use super::phase::Phase;
+use crate::drive::Passed;
+
+impl<E> Interpolator<E> {
+    /// The ends of elements that the last cycle came to, in their order.
+    pub fn passed(&self) -> &[Passed] {
+        self.outputs.passed()
+    }
+
+    /// Nominal position on the path.
+    pub fn position(&self) -> Position {
+        self.position
+    }
+
+    /// Path speed, mm/s.
+    pub fn speed_mm_s(&self) -> f64 {
+        self.speed
+    }
+
+    /// The element that is executed, or was last.
+    pub fn element(&self) -> Option<&PathElement> {
+        self.ring.current().map(|item| &item.element)
+    }
+
+    /// That element has begun: what it puts out first is output.
+    pub fn has_begun(&self) -> bool {
+        self.phase != Phase::Begin
+    }
+
+    /// The element after it, as far as it is known.
+    pub fn next_element(&self) -> Option<&PathElement> {
+        self.ring.following().map(|item| &item.element)
+    }
+
+    /// Path length to the end of that element, mm.
+    pub fn rest_mm(&self) -> f64 {
+        self.rest
+    }
+
+    /// How much of that element is covered, 0 to 1.
+    pub fn part(&self) -> f64 {
+        match self.ring.current() {
+            Some(item) if item.length > 0.0 => 1.0 - self.rest / item.length,
+            _ => 1.0,
+        }
+    }
+
+    /// Elements that are prepared and not yet executed, the current one included.
+    pub fn ahead(&self) -> usize {
+        self.ring.ahead().len()
+    }
+}
