@@ -1,6 +1,8 @@
 //! The table of blocks: which key opens which dialogue, and what it asks in which order. What cycles ask comes from the
 //! table of cycles.
 
+use bahn_program::Sign;
+
 use crate::Key;
 use crate::field::{Ask, Choice, Most, Need, Signs, Slot};
 use Need::{Optional, Required, Unasked};
@@ -38,7 +40,7 @@ const fn slot(glue: &'static str, address: &'static str, ask: Ask, prompt: &'sta
         ask,
         prompt,
         need,
-        working: false,
+        sign: Sign::Signed,
         of: "",
     }
 }

@@ -4,7 +4,7 @@ use bahn_parameters::MessageId::{
     self, EntryValueIncorrect, JumpToLabelZeroNotPermitted, LabelNumberAllocated, WrongAxisProgrammed,
     WrongSignProgrammed,
 };
-use bahn_program::{CycleWord, InputSteps, Operation, Program, Value, check_limits};
+use bahn_program::{CycleWord, InputSteps, Operation, Program, Sign, Value, check_limits};
 
 use crate::Setting;
 use crate::field::Field;
@@ -113,20 +113,10 @@ fn zero_tool(operation: &Operation) -> Result<(), MessageId> {
     }
 }
 
-/// Words of cycles that the manual wants positive: the sides of a pocket [003:5250], the finishing allowance [003:5510], radii;
-/// and a time limit, for which 0 is none [003:6723-6725].
-const NOT_NEGATIVE: [&str; 6] = [
-    "cycle 4.4 side",
-    "cycle 4.5 side",
-    "cycle 4.6 RADIUS",
-    "cycle RADIUS",
-    "cycle ALLOW",
-    "probe TIME:",
-];
-
+/// Negative, where the table of cycles has no such numbers.
 fn is_wrongly_negative(field: &Field) -> bool {
     let is_negative = |value: &str| value.parse().is_ok_and(|number: f64| number < 0.0);
-    NOT_NEGATIVE.contains(&field.slot.prompt) && field.words.iter().any(|word| is_negative(&word.value))
+    !field.slot.sign.may_be_negative() && field.words.iter().any(|word| is_negative(&word.value))
 }
 
 /// The axis of a side of a slot or pocket: both lie in the working plane, on one axis each [003:5110-5250].
@@ -140,7 +130,7 @@ fn side(field: &Field) -> Option<&str> {
 
 /// Whether a value that shows the working direction is negative; that of a Q parameter or of 0 is not known.
 fn working_sign(field: &Field) -> Option<bool> {
-    let word = field.words.first().filter(|_| field.slot.working)?;
+    let word = field.words.first().filter(|_| field.slot.sign == Sign::Working)?;
     let number: f64 = word.value.parse().ok()?;
     (number != 0.0).then_some(number < 0.0)
 }

@@ -164,7 +164,7 @@ fn slot(ask: Ask, prompt: &'static str, need: Need) -> Slot {
         ask,
         prompt,
         need,
-        working: false,
+        sign: Sign::Signed,
         of: "",
     }
 }
@@ -205,7 +205,11 @@ impl Place {
                 let most = if ranges { Most::Corner } else { Most::Count(3) };
                 one(coordinates(most, true), "coordinates")
             }
-            Quantity::Side => one(coordinates(Most::Count(1), false), "side"),
+            Quantity::Side => {
+                let mut sides = one(coordinates(Most::Count(1), false), "side");
+                sides.iter_mut().for_each(|side| side.slot.sign = parameter.sign);
+                sides
+            }
             Quantity::Shift => one(SHIFT, "shift"),
             Quantity::Axes => {
                 let most = match self.function {
@@ -272,18 +276,17 @@ impl Place {
     }
 
     fn number(&self, parameter: &CycleParameter, need: Need) -> Field {
-        let ask = match (parameter.sign, self.function) {
-            (Sign::Signed | Sign::Working, _) => SIGNED,
-            // The line spacing of CONTOUR LINES may be negative [003:6745].
-            (Sign::Unsigned, CycleFunction::Probe) => Ask::Number {
+        let ask = match parameter.sign {
+            Sign::Signed | Sign::Working | Sign::Positive => SIGNED,
+            Sign::Minus => Ask::Number {
                 signs: Signs::Minus,
                 incremental: false,
             },
-            (Sign::Unsigned, CycleFunction::Definition) => UNSIGNED,
+            Sign::Unsigned => UNSIGNED,
         };
         let slot = slot(ask, self.prompt(parameter.name), need);
         Field::new(Slot {
-            working: parameter.sign == Sign::Working,
+            sign: parameter.sign,
             ..slot
         })
     }

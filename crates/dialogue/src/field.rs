@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use bahn_parameters::Limits;
 use bahn_path::Axis;
+use bahn_program::Sign;
 
 use crate::{Key, Wanted};
 
@@ -130,8 +131,8 @@ pub(crate) struct Slot {
     /// Id of the prompt.
     pub(crate) prompt: &'static str,
     pub(crate) need: Need,
-    /// Its sign is that of the working direction [003:4902].
-    pub(crate) working: bool,
+    /// That of its numbers.
+    pub(crate) sign: Sign,
     /// Name of the word in the registry of the control models, where not all of them have it.
     pub(crate) of: &'static str,
 }

@@ -1,6 +1,6 @@
 //! One block as the dialogue sees it: a head and fields.
 
-use bahn_program::{Block, FormatOptions, Language};
+use bahn_program::{Block, FormatOptions, Language, Sign};
 
 use crate::blocks::block_row;
 use crate::field::{Ask, Field, Need, Slot, Word};
@@ -24,7 +24,7 @@ const COMMENT: Slot = Slot {
     ask: Ask::Text,
     prompt: "comment",
     need: Need::Unasked,
-    working: false,
+    sign: Sign::Signed,
     of: "",
 };
 

@@ -323,7 +323,6 @@ fn what_a_cycle_cannot_mean_is_refused_when_it_is_entered() {
             MessageId::WrongAxisProgrammed,
             "CE CE Y 40",
         ),
-        ("TOUCH_PROBE 7 ENT".to_owned(), "SIGN 200", incorrect, "SIGN"),
     ] {
         let mut desk = Desk::new();
         desk.enter(&keys);
@@ -338,5 +337,12 @@ fn what_a_cycle_cannot_mean_is_refused_when_it_is_entered() {
         desk.enter(right);
         let reaction = desk.editor.key(Key::Ent);
         assert!(!matches!(reaction, Reaction::Refused(_)), "{keys} {right}");
+    }
+    // What has no sign takes none: the time limit, as a radius.
+    for keys in ["TOUCH_PROBE 7 ENT", "CYCL_DEF 5 ENT -2 ENT -10 ENT -4 ENT 80 ENT"] {
+        let mut desk = Desk::new();
+        desk.enter(keys);
+        let refused = Reaction::Refused(MessageId::KeyNonFunctional);
+        assert_eq!(desk.editor.key(Key::Sign), refused, "{keys}");
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::assigned_parameters;
 use CycleFunction::{Definition, Probe};
-use Sign::{Signed, Unsigned, Working};
+use Sign::{Minus, Positive, Signed, Unsigned, Working};
 
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
@@ -84,8 +84,24 @@ pub enum Sign {
     Signed,
     /// The sign of the working direction, the same for all such parameters of a cycle [003:4902].
     Working,
+    /// None that is negative, and it is always printed.
+    Positive,
     /// None; `+` is not printed.
     Unsigned,
+    /// Any; `+` is not printed.
+    Minus,
+}
+
+impl Sign {
+    /// Whether `+` is printed before a number.
+    pub fn prints_plus(self) -> bool {
+        !matches!(self, Sign::Unsigned | Sign::Minus)
+    }
+
+    /// Whether a number may be negative.
+    pub fn may_be_negative(self) -> bool {
+        !matches!(self, Sign::Positive | Sign::Unsigned)
+    }
 }
 
 /// A parameter of a cycle.
@@ -165,11 +181,15 @@ const PECKG: CycleParameter = parameter("PECKG", Quantity::Length, Working);
 const DWELL: CycleParameter = parameter("DWELL", Quantity::Dwell, Unsigned);
 const FEED: CycleParameter = parameter("F", Quantity::Feed, Unsigned);
 const SIDE: CycleParameter = parameter("", Quantity::Side, Signed);
+/// [003:5250]
+const POCKET_SIDE: CycleParameter = parameter("", Quantity::Side, Positive);
 const TURN: CycleParameter = optional(parameter("DR", Quantity::Turn, Signed));
-const ALLOW: CycleParameter = parameter("ALLOW", Quantity::Length, Signed);
+/// [003:5510]
+const ALLOW: CycleParameter = parameter("ALLOW", Quantity::Length, Positive);
 const RADIUS: CycleParameter = parameter("RADIUS", Quantity::Length, Unsigned);
 const TRAVEL: CycleParameter = parameter("TRAVEL:", Quantity::Length, Unsigned);
-const SPACING: CycleParameter = parameter("L.SPAC:", Quantity::Length, Unsigned);
+/// That of CONTOUR LINES may be negative [003:6745].
+const SPACING: CycleParameter = parameter("L.SPAC:", Quantity::Length, Minus);
 const INTERVAL: CycleParameter = parameter("P.P. INT:", Quantity::Length, Unsigned);
 const HEIGHT: CycleParameter = parameter("HEIGHT:", Quantity::Length, Signed);
 const CHECK: CycleParameter = parameter("CHECK:", Quantity::Choice, Unsigned);
@@ -226,7 +246,8 @@ pub const CYCLES: &[Cycle] = &[
     called(3, "SLOT MILLING", &[&[SET_UP], &[DEPTH], &[PECKG, FEED], &[SIDE], &[SIDE], &[FEED]]),
     // [003:5234-5258] [003:5299-5304]
     called(4, "POCKET MILLING", &[
-        &[SET_UP], &[DEPTH], &[PECKG, FEED], &[SIDE], &[SIDE], &[FEED, TURN, optional(RADIUS)],
+        &[SET_UP], &[DEPTH], &[PECKG, FEED], &[POCKET_SIDE], &[POCKET_SIDE],
+        &[FEED, TURN, optional(RADIUS)],
     ]),
     // [003:5324-5336] [003:5377-5382]
     called(5, "CIRCULAR POCKET", &[&[SET_UP], &[DEPTH], &[PECKG, FEED], &[RADIUS], &[FEED, TURN]]),

@@ -4,14 +4,14 @@ use super::Output;
 use super::path::direction_text;
 use crate::cycles::FIRST_PARAMETER_CYCLE;
 use crate::{
-    CycleBlock, CycleFunction, CycleParameter, CycleWord, Direction, Quantity, Sign, Value, cycle_parameters,
+    CycleBlock, CycleFunction, CycleParameter, CycleWord, Direction, Quantity, Value, cycle_parameters,
 };
 
 /// Whether its numbers are printed without `+` [003:4978] [003:5381] [003:6434].
 fn is_unsigned(parameters: &[CycleParameter]) -> bool {
     parameters
         .iter()
-        .any(|parameter| parameter.quantity.is_number() && parameter.sign == Sign::Unsigned)
+        .any(|parameter| parameter.quantity.is_number() && !parameter.sign.prints_plus())
 }
 
 impl Output {

@@ -4,7 +4,7 @@ use super::cycle::{Form, IsoCycle, of_blocks};
 use super::special::feed_value;
 use super::write::{Distances, Output};
 use crate::format::number::push_integer;
-use crate::{Coordinates, CycleBlock, CycleFunction, CycleWord, Direction, Modality, Quantity, Sign, Value};
+use crate::{Coordinates, CycleBlock, CycleFunction, CycleWord, Direction, Modality, Quantity, Value};
 
 impl Output {
     /// The one block of a cycle from its blocks.
@@ -86,7 +86,7 @@ impl Output {
                     self.text.push(axis.letter());
                     self.signed(word.value);
                 }
-                Some(word) if parameter.sign == Sign::Unsigned || parameter.quantity == Quantity::Feed => {
+                Some(word) if !parameter.sign.prints_plus() || parameter.quantity == Quantity::Feed => {
                     feed_value(word)
                         .into_iter()
                         .for_each(|value| self.unsigned_p(number, value));
