@@ -190,6 +190,15 @@ fn levels_of_a_boss_end_at_the_starting_point() {
     assert!(points.len() > 3 * 20, "{}", points.len());
 }
 
+/// No point is farther from the one before than P.P.INT, mm.
+fn assert_no_farther(points: &[ScanPoint], interval_mm: f64, case: &str) {
+    for pair in points.windows(2) {
+        let [a, b] = pair else { panic!() };
+        let way = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        assert!(way <= interval_mm * 1.001, "{case}: {way} mm, {pair:?}");
+    }
+}
+
 /// P.P.INT is the greatest distance of two points [003:6655-6671], on walls up and down, upright or nearly so, too; a pocket
 /// whose floor lies within the range is scanned to its end [003:6596-6599]: the stylus that is pressed on leaves no range.
 #[test]
@@ -223,10 +232,8 @@ fn points_on_walls_are_no_farther_than_the_interval() {
                 };
                 let (points, scanned, _) = scan(job, surface);
                 assert_eq!(scanned.fault, None, "{case}");
-                for pair in points.windows(2) {
-                    let [a, b] = pair else { panic!() };
-                    let way = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
-                    assert!(way <= interval_mm * 1.001, "{case}: {way} mm, {pair:?}");
+                assert_no_farther(&points, interval_mm, &case);
+                for b in points.iter().skip(1) {
                     // The stylus goes no more than 25 mm/s * 3 ms in a cycle.
                     let beside = [-0.1, 0.0, 0.1].map(|by| surface(b[0] + by, b[1]));
                     let low = beside.iter().copied().fold(f64::INFINITY, f64::min) - 0.1;
@@ -286,10 +293,6 @@ fn any_stairs() {
         let case = format!("{round}: P.P.INT {interval_mm:.2}, TRAVEL {travel_mm:.2}, {stairs:.2?}");
         let (points, scanned, _) = scan(job, surface);
         assert_eq!(scanned.fault, None, "{case}");
-        for pair in points.windows(2) {
-            let [a, b] = pair else { panic!() };
-            let way = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
-            assert!(way <= interval_mm * 1.001, "{case}: {way} mm, {pair:?}");
-        }
+        assert_no_farther(&points, interval_mm, &case);
     }
 }
