@@ -26,7 +26,7 @@
 //! # Ok::<(), bahn_parameters::ParameterError>(())
 //! ```
 //!
-//! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
+//! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits/models.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
 //! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `002` the parameter manual of the System 900, `003` the user's manual
 //! of the TNC 360. Nothing here knows what the values are used for.

@@ -58,58 +58,49 @@ impl ControlModel {
 
     /// Has the PLC mode behind code number 807 667: editor, compiler, trace and tables [000:11187-11241].
     pub const fn has_plc_mode(self) -> bool {
-        matches!(
-            self,
-            ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425
-        )
+        self.limits().plc_mode
     }
 
     /// Has a second data interface, RS-422/V.11, beside RS-232-C/V.24 [000:16712-16722].
     pub const fn has_rs_422(self) -> bool {
-        self.has_plc_mode()
+        self.limits().rs_422
     }
 
     /// Shows a letter behind TRANSFERRED DATA INCORRECT; the TNC 151/155 has none, and calls what it could not send
     /// PROGRAM INCOMPLETE [000:17581-17601] [001:2036-2052].
     pub const fn has_transfer_codes(self) -> bool {
-        !matches!(self, ControlModel::Tnc151 | ControlModel::Tnc155)
+        self.limits().transfer_codes
     }
 
     /// Has the screen of 14 inches: windows side by side, in colours [000:6289-6306] [000:2784-2833].
     pub const fn has_windows(self) -> bool {
-        matches!(
-            self,
-            ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425
-        )
+        self.limits().windows
     }
 
     /// Draws in program run what runs; the graphics of a TNC 407 are those of TEST RUN [000:164-166] [000:6370].
     pub const fn draws_what_runs(self) -> bool {
-        !matches!(self, ControlModel::Tnc407)
+        self.limits().draws_what_runs
     }
 
     /// Simulates the selected program in the program run modes, before it runs [003:856-874].
     pub const fn simulates_in_program_run(self) -> bool {
-        !self.has_windows()
+        self.limits().simulates_in_program_run
     }
 
     /// Positioning blocks of MDI are those of a single axis [003:3566].
     pub const fn positions_one_axis_by_mdi(self) -> bool {
-        matches!(self, ControlModel::Tnc360)
+        self.limits().one_axis_by_mdi
     }
 
     /// Shows by hand the feed of the axis whose direction key is pressed [000:6529-6540]; a TNC 360 shows a feed with MP7270 + 1
     /// alone [003:7304-7309].
     pub const fn shows_feed_of_keys(self) -> bool {
-        !matches!(self, ControlModel::Tnc360)
+        self.limits().shows_feed_of_keys
     }
 
     /// Has an oscilloscope behind code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
-        matches!(
-            self,
-            ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425
-        )
+        self.limits().oscilloscope
     }
 
     /// The model that the comments at the beginning of a list name, as `TNC 415 B` or `tnc415b`; the first of several.
