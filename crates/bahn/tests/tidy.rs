@@ -11,7 +11,8 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("path", &[]),
     ("picture", &[]),
     ("browser", &[]),
-    ("parameters", &["path"]),
+    ("servo", &[]),
+    ("parameters", &["path", "servo"]),
     ("program", &["path", "parameters"]),
     ("dialogue", &["path", "parameters", "program"]),
     ("interpreter", &["path", "parameters", "program"]),
@@ -39,7 +40,6 @@ const ROOMS: &[(&str, &[&str])] = &[
             "convert",
         ],
     ),
-    ("servo", &["parameters"]),
     ("machine", &["servo"]),
     (
         "control",

@@ -3,7 +3,7 @@
 use bahn_motion::Aim;
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, AxisSet, PerAxis, Position};
-use bahn_servo::{Commands, Gantry, Measured, Timing};
+use bahn_servo::{Commands, Measured, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::gantry;
@@ -174,7 +174,7 @@ pub(crate) fn units(
     of: (usize, usize),
     ids: PerPlcAxis<Option<AxisId>>,
 ) -> Vec<AxisUnit> {
-    let timing = Timing::of(parameters.model());
+    let timing = parameters.model().timing();
     let ids = (0u8..).zip(ids);
     ids.filter_map(|(index, id)| AxisUnit::new(id?, of, parameters.axis_parameters(index), timing))
         .collect()
@@ -326,7 +326,7 @@ impl OwnAxes<'_> {
             let mut parameters = list.axis_parameters(index);
             let coupled = unit.coupling.is_some();
             if let Some(master) = unit.parameters.synchronization.master.filter(|_| coupled) {
-                parameters = Gantry::slave_parameters(&parameters, &list.axis_parameters(master));
+                parameters = parameters.as_slave_of(&list.axis_parameters(master));
             }
             unit.set_parameters(parameters);
         }

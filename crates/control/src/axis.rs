@@ -132,7 +132,7 @@ impl AxisUnit {
             connectors,
             index: parameters.index.into(),
             axis,
-            servo: Servo::new(parameters, timing),
+            servo: Servo::new(parameters.settings(), timing),
             referenced: false,
             mover: Mover::None,
             nominal: 0.0,
@@ -392,7 +392,7 @@ impl AxisUnit {
 
     /// Goes over to changed machine parameters, as far as they take effect without a restart.
     pub fn set_parameters(&mut self, parameters: AxisParameters) {
-        self.servo.set_parameters(parameters);
+        self.servo.configure(parameters.settings());
         self.parameters = parameters;
     }
 

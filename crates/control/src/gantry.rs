@@ -24,8 +24,12 @@ pub(crate) fn couple(mut axes: Vec<AxisUnit>, timing: Timing) -> Vec<AxisUnit> {
         if of_master.synchronization.master.is_some() {
             continue;
         }
-        let parameters = Gantry::slave_parameters(&unit.parameters, &of_master);
-        let gantry = Gantry::new(&parameters, &of_master, timing);
+        let parameters = unit.parameters.as_slave_of(&of_master);
+        let gantry = Gantry::new(
+            parameters.synchronization.coupling,
+            of_master.reference.feed_mm_min,
+            timing,
+        );
         unit.set_parameters(parameters);
         unit.coupling = Some(Coupling {
             master,
@@ -114,7 +118,7 @@ pub(crate) fn reference(
         if slave.coupling.as_ref().is_none_or(|of| of.master != master) {
             continue;
         }
-        if !slave.referenced && slave.parameters.synchronization.from_reference_marks {
+        if !slave.referenced && slave.parameters.synchronization.coupling.from_reference_marks {
             let counts = marks_count && !on_cam(slave);
             let mark = slave.servo.take_mark().filter(|_| counts);
             if let Some((count, position_mm)) = mark.and_then(|mark| slave.located(mark)) {
@@ -125,7 +129,8 @@ pub(crate) fn reference(
         }
         synchronize(axes, place);
         if let Some(slave) = axes.get(place) {
-            slaves.found &= slave.referenced || !slave.parameters.synchronization.from_reference_marks;
+            slaves.found &=
+                slave.referenced || !slave.parameters.synchronization.coupling.from_reference_marks;
             let beside = slave.coupling.as_ref().is_none_or(|of| of.gantry.synchronized());
             slaves.synchronous &= beside;
         }
@@ -138,7 +143,7 @@ fn synchronize(axes: &mut [AxisUnit], place: usize) {
     let Some((master, slave)) = pair(axes, place) else {
         return;
     };
-    let from_marks = slave.parameters.synchronization.from_reference_marks;
+    let from_marks = slave.parameters.synchronization.coupling.from_reference_marks;
     if !master.referenced {
         return;
     }

@@ -3,7 +3,7 @@
 
 use bahn_parameters::MessageId;
 use bahn_plc::{Tracer, mirror_parameters};
-use bahn_servo::{Commands, Plant, Step, Timing};
+use bahn_servo::{Commands, Plant, Step};
 
 use crate::axes::{Axes, first_ids, units};
 use crate::axis::AxisUnit;
@@ -88,7 +88,7 @@ impl Kernel {
             mut exchange,
         } = setup;
         let model = parameters.model();
-        let timing = Timing::of(model);
+        let timing = model.timing();
         let mut axes = Axes::new(units, timing);
         take_offsets(&mut axes, 0, &remembered);
         for (channel, other) in (1..).zip(&others) {

@@ -1,7 +1,7 @@
 //! Loops and feed enable: whether an axis may move at all.
 
 use bahn_exchange::{Image, signal};
-use bahn_servo::Fault;
+use bahn_parameters::fault::FaultId;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisId, AxisUnit, Mover};
@@ -43,7 +43,7 @@ pub(crate) fn follow(axes: &mut OwnAxes, nc: &Image, permission: Permission) {
 
 /// Closes the loop of an axis when that is wanted and nothing is wrong with it, or opens it.
 fn hold(unit: &mut AxisUnit, wanted: bool, runs: bool) {
-    let sound = unit.servo.fault().is_none_or(Fault::keeps_loop);
+    let sound = unit.servo.fault().is_none_or(|fault| !fault.opens_loop());
     if wanted && sound && !unit.servo.closed() {
         // A clamped axis goes back to its nominal position. One that was moved meanwhile has lost its place in a program
         // that runs, which the standstill monitoring says: values are transferred by hand only [000:5423-5434]. Else the
@@ -99,9 +99,11 @@ pub(crate) fn show_faults(
     let mut found = false;
     for (id, fault) in of_axes.chain(of_spindle) {
         let Some(fault) = fault else { continue };
-        let message = Message::axis(fault.message(), id, fault.letter());
+        let row = FaultId::from(fault).row();
+        let Some(text) = row.message else { continue };
+        let message = Message::axis(text, id, Some(row.letter).filter(|letter| !letter.is_empty()));
         if !messages.contains(&message) {
-            found |= fault.id().row().reaction.stops();
+            found |= row.reaction.stops();
             messages.show(message, block);
         }
     }

@@ -209,7 +209,7 @@ impl MachineSide {
             .map_or(0.0, |unit| unit.parameters.output.offset_interval_s);
         MachineSide {
             model,
-            timing: Timing::of(model),
+            timing: model.timing(),
             station: operation.station,
             plc_parameters: parameters.plc_parameters(),
             handwheel: operation.handwheel,

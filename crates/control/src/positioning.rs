@@ -5,7 +5,6 @@ use bahn_motion::Aim;
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::plc::PlcParameters;
 use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
-use bahn_servo::Fault;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -304,7 +303,7 @@ impl PlcAxis {
         let rapid = unit.parameters.motion.rapid_mm_min;
         let able = unit.servo.closed() && unit.enabled && now.ready;
         let passes_marks = matches!(self.command, Some(PlcAxisCommand::TraverseReferenceMarks { .. }));
-        let cancels = unit.servo.fault().is_some_and(Fault::cancellable);
+        let cancels = unit.servo.fault().is_some_and(|fault| !fault.opens_loop());
         if able && passes_marks && cancels && self.target.is_none() {
             // A reference run cancels the positioning error [000:15979].
             unit.servo.acknowledge();

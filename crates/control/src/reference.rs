@@ -6,7 +6,7 @@
 
 use bahn_exchange::Image;
 use bahn_motion::Aim;
-use bahn_parameters::axis::ReferenceType;
+use bahn_servo::settings::MarkKind;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -32,7 +32,7 @@ pub(crate) struct ReferenceRun {
 enum Step {
     /// Towards the mark; `reversed` after the cam.
     Seek { reversed: bool },
-    /// Back from the cam, slowly, until it opens [`ReferenceType::RotaryEncoder`].
+    /// Back from the cam, slowly, until it opens [`MarkKind::RotaryEncoder`].
     LeaveCam,
     /// The cam is open; the next pulse counts.
     Pulse,
@@ -111,7 +111,7 @@ impl ReferenceRun {
         if let Some(unit) = axes.get_mut(place) {
             unit.servo.forget_marks();
             let step = match unit.parameters.reference.kind {
-                ReferenceType::RotaryEncoder if cam => Step::LeaveCam,
+                MarkKind::RotaryEncoder if cam => Step::LeaveCam,
                 _ => Step::Seek { reversed: cam },
             };
             self.running = Some((place, step));
@@ -224,17 +224,17 @@ fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, nc: &Image
     let turned = turn_at_cam(unit, step, kind, cam);
     // Marks do not count before the cam has chosen them, nor under the cam with one mark: it must lie
     // outside.
-    let choosing = kind == ReferenceType::RotaryEncoder && turned != Step::Pulse;
+    let choosing = kind == MarkKind::RotaryEncoder && turned != Step::Pulse;
     let counts = turned == step && !choosing;
     let mark = unit.servo.take_mark();
-    let mark = mark.filter(|_| counts && !unit.referenced && !(cam && kind == ReferenceType::OneMark));
+    let mark = mark.filter(|_| counts && !unit.referenced && !(cam && kind == MarkKind::OneMark));
     if let Some((count, position_mm)) = mark.and_then(|mark| unit.located(mark)) {
         unit.referenced = true;
         let shift = unit.set_datum(count, position_mm);
         gantry::shifted(axes.all_mut(), place, shift);
     }
     let slaves = gantry::reference(axes.all_mut(), place, counts, |unit| {
-        kind == ReferenceType::OneMark && cam_of(unit)
+        kind == MarkKind::OneMark && cam_of(unit)
     });
     let found = axes.get(place).is_some_and(|unit| unit.referenced) && slaves.found;
     let step = if found { Step::Stop } else { turned };
@@ -264,16 +264,16 @@ pub(crate) fn waits(unit: &AxisUnit) -> bool {
 }
 
 /// What the cam makes of a step.
-fn turn_at_cam(unit: &mut AxisUnit, step: Step, kind: ReferenceType, cam: bool) -> Step {
+fn turn_at_cam(unit: &mut AxisUnit, step: Step, kind: MarkKind, cam: bool) -> Step {
     match (step, kind) {
         // The cam ends the range; the mark lies before it. With old distance-coded marks it is ignored
         // once the axis runs [000:4605].
-        (Step::Seek { reversed: false }, ReferenceType::OneMark | ReferenceType::DistanceCoded) if cam => {
+        (Step::Seek { reversed: false }, MarkKind::OneMark | MarkKind::DistanceCoded) if cam => {
             unit.servo.forget_marks();
             Step::Seek { reversed: true }
         }
         // The cam selects the pulse: the first one after leaving it (inferred).
-        (Step::Seek { .. }, ReferenceType::RotaryEncoder) if cam => Step::LeaveCam,
+        (Step::Seek { .. }, MarkKind::RotaryEncoder) if cam => Step::LeaveCam,
         (Step::LeaveCam, _) if !cam => Step::Pulse,
         _ => step,
     }

@@ -102,7 +102,7 @@ impl SpindleUnit {
     pub fn new(wiring: SpindleWiring, parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
         SpindleUnit {
             wiring,
-            servo: Spindle::new(parameters, timing),
+            servo: Spindle::new(parameters.settings(), timing),
             parameters,
             rotation: Rotation::M5,
             programmed_rpm: 0.0,
@@ -128,7 +128,7 @@ impl SpindleUnit {
 
     /// Takes changed machine parameters over.
     pub fn set_parameters(&mut self, parameters: SpindleParameters) {
-        self.servo.set_parameters(parameters);
+        self.servo.configure(parameters.settings());
         self.parameters = parameters;
     }
 

@@ -6,7 +6,6 @@ use bahn_exchange::Image;
 use bahn_motion::{FunctionOutput, Interpolator, Limits};
 use bahn_parameters::ParameterList;
 use bahn_path::{Axis, AxisSet, Curve, FeedRate, Function, PathElement, PerAxis, Position};
-use bahn_servo::Timing;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisId, AxisUnit, Mover};
@@ -367,7 +366,7 @@ pub(crate) fn path_limits<'a>(
         radial_acceleration_m_s2: parameters.radial_acceleration_m_s2(),
         corner_angle_deg: parameters.corner_angle_deg(),
         servo_lag: !parameters.feed_precontrol(),
-        cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
+        cycle_s: f64::from(parameters.model().timing().contour_us()) * 1e-6,
         servo_window_s: bahn_motion::SERVO_WINDOW_S,
         spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
         feed_override_percent: 100.0,

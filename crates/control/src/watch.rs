@@ -86,7 +86,7 @@ impl AxisWatch {
             free: unit.is_free(),
             torque_s: parameters.digital.map(|digital| digital.emergency_stop_s),
             limits: unit.limited(),
-            fault: unit.servo.fault().map(bahn_servo::Fault::id),
+            fault: unit.servo.fault().map(FaultId::from),
             lag_max: lag.monitoring_mm.max(precontrol.monitoring_mm),
             lag_gross: lag.emergency_mm.max(precontrol.emergency_mm),
             rapid_mm_s: parameters.motion.rapid_mm_min / 60.0,

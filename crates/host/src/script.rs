@@ -6,7 +6,6 @@ use bahn_control::{Command, split_channel};
 use bahn_exchange::Assignment;
 use bahn_machine::{Event, Machine};
 use bahn_parameters::ParameterList;
-use bahn_servo::Timing;
 
 use crate::deed::{Deed, DeedError};
 use crate::expectation::Expectation;
@@ -38,7 +37,7 @@ impl<'a> Stage<'a> {
         Stage {
             machine: Some(machine),
             parameters,
-            cycle_us: Timing::of(parameters.model()).contour_us(),
+            cycle_us: parameters.model().timing().contour_us(),
         }
     }
 

@@ -4,6 +4,7 @@
 mod common;
 
 use bahn_machine::Machine;
+use bahn_parameters::fault::FaultId;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_servo::{Axis, Commands, Fault, GrossFault, Measured, Method, Plant, Step, Timing};
 use common::BASE;
@@ -67,11 +68,11 @@ impl Loop {
         for entry in ["710.0=0", "720.0=0"].iter().chain(&LIST).chain(changes) {
             list.assign(entry).unwrap();
         }
-        let timing = Timing::of(ControlModel::Tnc425);
+        let timing = ControlModel::Tnc425.timing();
         let text = drive(format!("{BASE}{DRIVE}"));
         let machine = Machine::from_toml(&text).unwrap_or_else(|faults| panic!("{faults:?}"));
         let mut new = Loop {
-            axis: Axis::new(list.axis_parameters(0), timing),
+            axis: Axis::new(list.axis_parameters(0).settings(), timing),
             machine,
             commands: Commands::default(),
             measured: Measured::default(),
@@ -239,7 +240,10 @@ fn wrong_polarity_is_gross_positioning_error_3f() {
         assert_eq!(x.axis.fault(), fault, "{polarity}");
     }
     let fault = Fault::Gross(GrossFault::SpeedController);
-    assert_eq!((fault.letter(), fault.cancellable()), (Some("3F"), false));
+    assert_eq!(
+        (FaultId::from(fault).row().letter, fault.opens_loop()),
+        ("3F", true)
+    );
 }
 
 /// MP1910 = 15 V / (MP1920 · 9.7 µV): 309 278 for 5, 8591 for 180 [000:18558] [000:18601-18607]. A blocked axis whose

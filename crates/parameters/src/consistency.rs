@@ -273,7 +273,7 @@ fn reference_run(axes: &[AxisParameters], report: &mut Reporter) {
     // module 9123.
     let needs_mark = |axis: &&AxisParameters| {
         let slave = axis.synchronization;
-        axis.controlled && !axis.plc_axis && (slave.master.is_none() || slave.from_reference_marks)
+        axis.controlled && !axis.plc_axis && (slave.master.is_none() || slave.coupling.from_reference_marks)
     };
     for axis in axes.iter().filter(needs_mark) {
         let rule = "the axis is not referenced automatically";
@@ -329,7 +329,7 @@ fn synchronized(axes: &[AxisParameters], report: &mut Reporter) {
         let rule = "one of master and slave has a digital speed controller";
         let alike = slave.digital.is_some() == master.digital.is_some();
         report.check(alike, (1900, None, 0), rule, "000:4519-4539", pair);
-        if slave.synchronization.from_reference_marks {
+        if slave.synchronization.coupling.from_reference_marks {
             let rule = "master and slave look for their reference marks in different ways";
             let alike = slave.reference.kind == master.reference.kind;
             report.check(alike, name(1350), rule, "000:4497-4504", pair);

@@ -11,6 +11,8 @@
 //! assert!(FaultId::GrossDeviation.row().flashes());
 //! ```
 
+use bahn_servo::{EncoderFault, Fault as AxisFault, GrossFault};
+
 use crate::MessageId;
 
 /// What the control does about a fault.
@@ -212,6 +214,24 @@ macro_rules! faults {
     };
 }
 
+/// The row of what the loop of an axis has found.
+impl From<AxisFault> for FaultId {
+    fn from(fault: AxisFault) -> FaultId {
+        match fault {
+            AxisFault::Positioning => FaultId::Positioning,
+            AxisFault::Gross(GrossFault::Deviation) => FaultId::GrossDeviation,
+            AxisFault::Gross(GrossFault::Voltage) => FaultId::GrossVoltage,
+            AxisFault::Gross(GrossFault::Movement) => FaultId::GrossMovement,
+            AxisFault::Gross(GrossFault::Standstill) => FaultId::GrossStandstill,
+            AxisFault::Gross(GrossFault::Offset) => FaultId::GrossOffset,
+            AxisFault::Gross(GrossFault::SpeedController) => FaultId::SpeedController,
+            AxisFault::MeasuringSystem(EncoderFault::Amplitude) => FaultId::EncoderAmplitude,
+            AxisFault::MeasuringSystem(EncoderFault::Edges) => FaultId::EncoderEdges,
+            AxisFault::MeasuringSystem(EncoderFault::Position) => FaultId::EncoderMarks,
+        }
+    }
+}
+
 use MessageId as M;
 
 faults! {
@@ -290,6 +310,40 @@ mod tests {
             assert_eq!(row.id, *id);
             assert_eq!(row.flashes(), row.reaction == Reaction::ControlReadyOff, "{id:?}");
             assert!(row.source.contains('[') || row.source == "(inferred)", "{id:?}");
+        }
+    }
+
+    /// What the loops of the axes open for, by themselves, is what the table says: "control is ready" goes off.
+    #[test]
+    fn a_loop_opens_by_itself_where_the_table_says_so() {
+        let gross = [
+            GrossFault::Deviation,
+            GrossFault::Voltage,
+            GrossFault::Movement,
+            GrossFault::Standstill,
+            GrossFault::Offset,
+            GrossFault::SpeedController,
+        ];
+        let encoder = [
+            EncoderFault::Amplitude,
+            EncoderFault::Edges,
+            EncoderFault::Position,
+        ];
+        let faults = std::iter::once(AxisFault::Positioning)
+            .chain(gross.map(AxisFault::Gross))
+            .chain(encoder.map(AxisFault::MeasuringSystem));
+        for fault in faults {
+            let row = FaultId::from(fault).row();
+            assert_eq!(
+                fault.opens_loop(),
+                row.reaction == Reaction::ControlReadyOff,
+                "{fault:?}"
+            );
+            assert_eq!(
+                fault.opens_loop(),
+                row.clearing == Clearing::PowerOff,
+                "{fault:?}"
+            );
         }
     }
 

@@ -74,9 +74,7 @@ pub use text::{Entry, ListText};
 /// Of an axis: [`ParameterList::axis_parameters`](crate::ParameterList::axis_parameters).
 pub mod axis {
     pub use crate::settings::{
-        AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
-        MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
-        ReferenceType, Synchronization, TravelParameters,
+        AxisParameters, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
     };
 }
 
@@ -116,7 +114,6 @@ pub mod plc {
 /// Of the spindle: [`ParameterList::spindle_parameters`](crate::ParameterList::spindle_parameters).
 pub mod spindle {
     pub use crate::settings::{
-        Characteristics, FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput,
-        SpindleParameters, SpindlePolarity, SpindleRamps, Tapping, TappingParameters,
+        Characteristics, FreeOutput, GearSignal, SpindleOutput, SpindleParameters, Tapping, TappingParameters,
     };
 }

@@ -4,6 +4,8 @@
 
 mod models;
 
+use bahn_servo::Timing;
+
 use crate::ControlModel;
 
 /// What a control model can do and between which limits.
@@ -242,6 +244,16 @@ impl ControlModel {
     /// Limits and functions of the model.
     pub const fn limits(self) -> &'static Limits {
         models::limits(self)
+    }
+
+    /// Its contour cycle of 3 or 6 ms, in servo steps of 0.6 ms where it has fine interpolation [000:212-224], and the
+    /// bits of its converter.
+    pub fn timing(self) -> Timing {
+        let limits = self.limits();
+        let steps = limits
+            .fine_cycle_us
+            .map_or(1, |fine_us| limits.contour_cycle_us / fine_us);
+        Timing::new(limits.contour_cycle_us, steps, limits.output_bits)
     }
 }
 

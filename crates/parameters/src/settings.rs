@@ -20,9 +20,7 @@ mod tables;
 mod tool_probe;
 
 pub use axis_parameters::{
-    AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
-    MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
-    ReferenceType, Synchronization, TravelParameters,
+    AxisParameters, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
 };
 pub use characteristics::Characteristics;
 pub use interfaces::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};
@@ -36,10 +34,7 @@ pub use operation::{
 };
 pub use plc_parameters::{MonitoringInput, PlcParameters, StrobeTimes};
 pub use spindle::Tapping;
-pub use spindle_parameters::{
-    FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
-    SpindlePolarity, SpindleRamps, TappingParameters,
-};
+pub use spindle_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters, TappingParameters};
 pub use tables::{FILE_TYPES, FileTypes, POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
 pub use tool_probe::{ProbeOrientation, ToolProbeParameters, ToolProbeTolerance};
 

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
 
-use bahn_parameters::axis::ReferenceType;
 use bahn_parameters::spindle::{GearSignal, SpindleOutput};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::Axis;
+use bahn_servo::settings::MarkKind;
 
 /// The reference list of a model with other values.
 fn with(model: ControlModel, assignments: &[&str]) -> ParameterList {
@@ -100,7 +100,7 @@ fn the_old_list_answers_under_its_own_numbers() {
     assert_eq!((y.reference.feed_mm_min, y.reference.negative), (900.0, true));
     assert_eq!(
         (y.reference.kind, y.reference.mark_spacing_mm),
-        (ReferenceType::DistanceCodedOld, 10.0)
+        (MarkKind::DistanceCodedOld, 10.0)
     );
     assert_eq!(
         (y.encoder.signal_period_um, y.encoder.counts_negative),
@@ -204,7 +204,7 @@ fn what_only_some_axes_and_models_have() {
         [Some(2.5), None]
     );
     let y = list.axis_parameters(1).synchronization;
-    assert_eq!((y.master, y.difference_mm), (Some(0), Some(0.1)));
+    assert_eq!((y.master, y.coupling.difference_mm), (Some(0), Some(0.1)));
     assert_eq!(
         [1, 2].map(|i| list.axis_parameters(i).travel.tool_change_mm),
         [None, Some(50.0)]

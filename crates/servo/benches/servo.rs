@@ -1,7 +1,7 @@
 //! How long a servo step takes.
 
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_servo::{Axis, Encoder, Method, Rotation, Spindle, Timing, Way};
+use bahn_servo::{Axis, Encoder, Method, Rotation, Spindle, Way};
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 fn main() {
@@ -18,8 +18,8 @@ fn axis_step(bencher: Bencher, method: Method) {
     let mut list = ParameterList::reference(model);
     let errors = list.read(b"710.0 : 0\n720.0 : 0");
     assert!(errors.is_empty());
-    let parameters = list.axis_parameters(0);
-    let timing = Timing::of(model);
+    let parameters = list.axis_parameters(0).settings();
+    let timing = model.timing();
     bencher
         .counter(ItemsCount::new(CYCLES * timing.steps()))
         .with_inputs(|| {
@@ -51,8 +51,8 @@ fn axis_step(bencher: Bencher, method: Method) {
 #[divan::bench]
 fn spindle_step(bencher: Bencher) {
     let model = ControlModel::Tnc415b;
-    let parameters = ParameterList::reference(model).spindle_parameters();
-    let timing = Timing::of(model);
+    let parameters = ParameterList::reference(model).spindle_parameters().settings();
+    let timing = model.timing();
     let steps = CYCLES * timing.steps();
     bencher
         .counter(ItemsCount::new(steps))

@@ -2,7 +2,7 @@
 
 mod torque;
 
-use bahn_parameters::axis::AxisParameters;
+use crate::settings::AxisSettings;
 
 use crate::characteristic::Characteristic;
 use crate::fault::{EncoderFault, Fault, GrossFault};
@@ -44,7 +44,7 @@ const STANDING_STEPS: f64 = 1.5;
 /// for good.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    parameters: AxisParameters,
+    settings: AxisSettings,
     timing: Timing,
     measuring: MeasuringSystem,
     interpolation: FineInterpolation,
@@ -109,20 +109,20 @@ struct Fixed {
 
 impl Axis {
     /// An axis with open loop, at position 0.
-    pub fn new(parameters: AxisParameters, timing: Timing) -> Axis {
+    pub fn new(settings: AxisSettings, timing: Timing) -> Axis {
         let mut axis = Axis {
-            parameters,
+            settings,
             timing,
-            measuring: MeasuringSystem::new(&parameters),
+            measuring: MeasuringSystem::new(&settings),
             interpolation: FineInterpolation::new(timing.steps()),
-            transient: Transient::new(timing.steps(), parameters.precontrol.transient_m_min),
+            transient: Transient::new(timing.steps(), settings.precontrol.transient_m_min),
             run_up: RunUp::default(),
             travel: Travel::default(),
             reversal: ReversalPeak::default(),
             characteristic: Characteristic::straight(1.0),
             fixed: Fixed::default(),
             offset: Offset::default(),
-            speed_loop: SpeedLoop::of(&parameters, &timing),
+            speed_loop: SpeedLoop::of(&settings, &timing),
             monitor: Monitor::new(&timing),
             method: Method::Lag,
             second_set: false,
@@ -156,21 +156,21 @@ impl Axis {
         axis
     }
 
-    /// Takes changed parameters over (those that the PLC may change); state and positions stay.
-    pub fn set_parameters(&mut self, parameters: AxisParameters) {
-        self.parameters = parameters;
-        self.measuring.set_parameters(&parameters);
+    /// Takes changed settings over (those that the PLC may change); state and positions stay.
+    pub fn configure(&mut self, settings: AxisSettings) {
+        self.settings = settings;
+        self.measuring.configure(&settings);
         if let Some(speed_loop) = &mut self.speed_loop {
-            speed_loop.set_parameters(&parameters, &self.timing);
+            speed_loop.configure(&settings, &self.timing);
         }
         self.transient
-            .set_entry(self.timing.steps(), parameters.precontrol.transient_m_min);
+            .set_entry(self.timing.steps(), settings.precontrol.transient_m_min);
         self.choose_characteristic();
     }
 
-    /// The parameters of the axis.
-    pub fn parameters(&self) -> &AxisParameters {
-        &self.parameters
+    /// The settings of the axis.
+    pub fn settings(&self) -> &AxisSettings {
+        &self.settings
     }
 
     /// Takes an encoder reading; once in each servo step, before [`Axis::step`].
@@ -180,7 +180,7 @@ impl Axis {
             Some(speed_loop) => speed_loop.position(encoder),
             None => encoder,
         };
-        if let Some(fault) = self.measuring.read(encoder, &self.parameters) {
+        if let Some(fault) = self.measuring.read(encoder, &self.settings) {
             self.raise(Fault::MeasuringSystem(fault));
         }
         self.actual_mm = self.measuring.actual_mm();
@@ -198,7 +198,7 @@ impl Axis {
             self.in_position = false;
         }
         let set = usize::from(self.second_set);
-        let compensation = &self.parameters.compensation;
+        let compensation = &self.settings.compensation;
         let (height, part) = (compensation.reversal_mm[set], compensation.reversal_step_mm[set]);
         let before = self.travel.direction();
         if let Some(direction) = self.travel.advance(nominal_mm) {
@@ -257,7 +257,7 @@ impl Axis {
         self.volts = if by_torque {
             self.torque_volts()
         } else if self.drove {
-            let polarity = if self.parameters.output.polarity_negative {
+            let polarity = if self.settings.output.polarity_negative {
                 -1.0
             } else {
                 1.0
@@ -303,24 +303,23 @@ impl Axis {
             f64::from(self.standing_steps) * self.characteristic.slope() * self.timing.step_min();
         let rest = time_constants >= REST_TIME_CONSTANTS;
         // A digital speed loop has no offset [000:18147].
-        if rest && self.drives() && self.parameters.digital.is_none() {
+        if rest && self.drives() && self.settings.digital.is_none() {
             let loop_volts = self.velocity_mm_min * self.fixed.volts_per_mm_min;
-            self.offset
-                .rest(loop_volts, self.parameters.output.integral_factor);
+            self.offset.rest(loop_volts, self.settings.output.integral_factor);
         }
     }
 
     /// Additional velocity against stiction, mm/min: change of the lag in a cycle / cycle · kv · MP1511
     /// [000:3935-3965]. "Feed" is read as the nominal velocity of the axis (inferred).
     fn stiction(&self, change_mm: f64) -> f64 {
-        let compensation = &self.parameters.compensation;
+        let compensation = &self.settings.compensation;
         if self.method != Method::Precontrol
             || compensation.stiction_us == 0.0
             || self.profile_mm_min.abs() >= compensation.stiction_feed_mm_min
         {
             return 0.0;
         }
-        let encoder = &self.parameters.encoder;
+        let encoder = &self.settings.encoder;
         let grating_mm = encoder.signal_period_um * f64::from(encoder.interpolation.max(1)) * 1e-3;
         let limit = compensation.stiction_limit_steps * grating_mm / STICTION_STEPS;
         let factor = compensation.stiction_us / f64::from(self.timing.contour_us());
@@ -337,7 +336,7 @@ impl Axis {
                 control
             }
             Method::Precontrol => {
-                let damping = self.parameters.precontrol.damping;
+                let damping = self.settings.precontrol.damping;
                 control + self.run_up.advance(self.profile_mm_min, damping) + self.stiction_mm_min
             }
         };
@@ -379,7 +378,7 @@ impl Axis {
         };
         let found = self
             .monitor
-            .check(&sample, self.method, &self.parameters, &self.timing);
+            .check(&sample, self.method, &self.settings, &self.timing);
         if let Some(fault) = found {
             self.raise(fault);
         }
@@ -389,8 +388,8 @@ impl Axis {
     /// MP1525 [000:813] [000:5304-5318].
     fn is_in_window(&self) -> bool {
         let standing = self.fixed.standing_mm_min;
-        let slow = self.actual_mm_min.abs() < self.parameters.precontrol.window_mm_min.max(standing);
-        let window = self.window_mm.unwrap_or(self.parameters.monitoring.window_mm);
+        let slow = self.actual_mm_min.abs() < self.settings.precontrol.window_mm_min.max(standing);
+        let window = self.window_mm.unwrap_or(self.settings.monitoring.window_mm);
         (slow || self.method == Method::Lag) && self.lag_mm().abs() <= window
     }
 
@@ -401,7 +400,7 @@ impl Axis {
 
     #[inline]
     fn is_sound(&self) -> bool {
-        self.fault.is_none_or(Fault::keeps_loop)
+        self.fault.is_none_or(|fault| !fault.opens_loop())
     }
 
     /// Whether the residual voltage after POSITIONING ERROR is switched off.
@@ -476,21 +475,21 @@ impl Axis {
     }
 
     fn choose_characteristic(&mut self) {
-        let (lag, precontrol) = (&self.parameters.lag, &self.parameters.precontrol);
+        let (lag, precontrol) = (&self.settings.lag, &self.settings.precontrol);
         let choose = |first, second| if self.second_set { second } else { first };
         self.characteristic = match self.method {
             Method::Lag => Characteristic::with_kink(
                 choose(lag.kv, lag.kv_m105),
                 lag,
-                self.parameters.motion.rapid_mm_min,
+                self.settings.motion.rapid_mm_min,
             ),
             Method::Precontrol => Characteristic::straight(choose(precontrol.kv, precontrol.kv_m105)),
         };
-        let rapid = self.parameters.motion.rapid_mm_min;
-        let volts = self.parameters.output.rapid_volts;
+        let rapid = self.settings.motion.rapid_mm_min;
+        let volts = self.settings.output.rapid_volts;
         let seen = self.measuring.step_mm().abs() / self.timing.contour_min();
         // A digital drive is not told a voltage: MP1050 is inactive [000:18360-18362].
-        let resolved = match self.parameters.digital {
+        let resolved = match self.settings.digital {
             Some(_) => 0.0,
             None => self.timing.resolution_volts() * (rapid / volts),
         };
@@ -525,7 +524,7 @@ impl Axis {
     /// The marks say a place where the axis cannot be: they are forgotten, and with MP30 the scale is defective (inferred).
     pub fn refuse_marks(&mut self) {
         self.measuring.forget_marks();
-        if self.parameters.encoder.check_distance_code {
+        if self.settings.encoder.check_distance_code {
             self.raise(Fault::MeasuringSystem(EncoderFault::Position));
         }
     }
@@ -603,11 +602,9 @@ impl Axis {
         match self.fault {
             None => {
                 self.fault = Some(fault);
-                self.residual_steps = self
-                    .timing
-                    .steps_of(self.parameters.monitoring.residual_voltage_s);
+                self.residual_steps = self.timing.steps_of(self.settings.monitoring.residual_voltage_s);
             }
-            Some(known) if known.cancellable() && !fault.cancellable() => self.fault = Some(fault),
+            Some(known) if !known.opens_loop() && fault.opens_loop() => self.fault = Some(fault),
             Some(_) => {}
         }
     }
@@ -615,7 +612,7 @@ impl Axis {
     /// The key CE: clears a fault that can be cleared, switches the residual voltage off and makes the
     /// actual position the nominal one [000:5240-5242].
     pub fn acknowledge(&mut self) {
-        if self.fault.is_some_and(Fault::cancellable) {
+        if self.fault.is_some_and(|fault| !fault.opens_loop()) {
             self.fault = None;
             self.transfer();
         }

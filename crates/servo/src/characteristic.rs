@@ -1,6 +1,6 @@
 //! The velocity that a lag asks for.
 
-use bahn_parameters::axis::LagParameters;
+use crate::settings::LagSettings;
 
 /// kv 1 (m/min)/mm as velocity in mm/min for a lag of 1 mm.
 pub(crate) const KV_PER_MIN: f64 = 1000.0;
@@ -19,7 +19,7 @@ pub struct Characteristic {
 impl Characteristic {
     /// With a kink at MP1830 percent of rapid traverse (mm/min), kv in (m/min)/mm: MP1810, after M105
     /// MP1815.
-    pub fn with_kink(kv: f64, lag: &LagParameters, rapid_mm_min: f64) -> Characteristic {
+    pub fn with_kink(kv: f64, lag: &LagSettings, rapid_mm_min: f64) -> Characteristic {
         let slope = kv * KV_PER_MIN;
         Characteristic {
             slope,
@@ -60,15 +60,17 @@ impl Characteristic {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that unwraps nothing fails")]
     use super::*;
-    use bahn_parameters::{ControlModel, ParameterList};
     use proptest::prelude::*;
 
     fn characteristic(kv: f64, rapid: f64, factor: f64, percent: f64) -> Characteristic {
-        let mut lag = ParameterList::reference(ControlModel::Tnc415b)
-            .axis_parameters(0)
-            .lag;
-        lag.kink_factor = factor;
-        lag.kink_percent = percent;
+        let lag = LagSettings {
+            kv,
+            kv_m105: kv,
+            kink_factor: factor,
+            kink_percent: percent,
+            monitoring_mm: 3.0,
+            emergency_mm: 3.5,
+        };
         Characteristic::with_kink(kv, &lag, rapid)
     }
 

@@ -1,8 +1,5 @@
 //! What the monitoring of an axis finds.
 
-use bahn_parameters::MessageId;
-use bahn_parameters::fault::{FaultId, Reaction};
-
 /// A fault of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
@@ -45,43 +42,8 @@ pub enum EncoderFault {
 }
 
 impl Fault {
-    /// Its row in the table of faults.
-    pub fn id(self) -> FaultId {
-        match self {
-            Fault::Positioning => FaultId::Positioning,
-            Fault::Gross(GrossFault::Deviation) => FaultId::GrossDeviation,
-            Fault::Gross(GrossFault::Voltage) => FaultId::GrossVoltage,
-            Fault::Gross(GrossFault::Movement) => FaultId::GrossMovement,
-            Fault::Gross(GrossFault::Standstill) => FaultId::GrossStandstill,
-            Fault::Gross(GrossFault::Offset) => FaultId::GrossOffset,
-            Fault::Gross(GrossFault::SpeedController) => FaultId::SpeedController,
-            Fault::MeasuringSystem(EncoderFault::Amplitude) => FaultId::EncoderAmplitude,
-            Fault::MeasuringSystem(EncoderFault::Edges) => FaultId::EncoderEdges,
-            Fault::MeasuringSystem(EncoderFault::Position) => FaultId::EncoderMarks,
-        }
-    }
-
-    /// The letter behind the message.
-    pub fn letter(self) -> Option<&'static str> {
-        Some(self.id().row().letter).filter(|letter| !letter.is_empty())
-    }
-
-    /// Whether CE clears it; the others need switching off.
-    pub fn cancellable(self) -> bool {
-        !self.id().row().flashes()
-    }
-
-    /// The loop stays closed with it.
-    pub fn keeps_loop(self) -> bool {
-        self.id().row().reaction != Reaction::ControlReadyOff
-    }
-
-    /// The message; the axis and the letter belong to it.
-    pub fn message(self) -> MessageId {
-        match self {
-            Fault::Positioning => MessageId::PositioningError,
-            Fault::Gross(_) => MessageId::GrossPositioningError,
-            Fault::MeasuringSystem(_) => MessageId::MeasuringSystemDefective,
-        }
+    /// The loop opens for good; with the others it stays closed, and they can be acknowledged.
+    pub fn opens_loop(self) -> bool {
+        self != Fault::Positioning
     }
 }

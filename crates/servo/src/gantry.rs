@@ -1,9 +1,8 @@
 //! Synchronized axes: a slave that follows its master [000:4451-4539].
 
-use bahn_parameters::axis::AxisParameters;
-
 use crate::axis::Axis;
 use crate::fault::{Fault, GrossFault};
+use crate::settings::CouplingSettings;
 use crate::timing::Timing;
 
 /// The coupling of a slave axis to its master.
@@ -26,29 +25,19 @@ pub struct Gantry {
 }
 
 impl Gantry {
-    /// The coupling that the slave's parameters ask for (MP855, MP860); the speed at which an offset is
-    /// driven out is the master's for the reference run, MP1330 [000:4498-4502].
-    pub fn new(slave: &AxisParameters, master: &AxisParameters, timing: Timing) -> Gantry {
+    /// A coupling of which an offset is driven out at a speed in mm/min, that of the master's reference run
+    /// [000:4498-4502].
+    pub fn new(settings: CouplingSettings, speed_mm_min: f64, timing: Timing) -> Gantry {
         Gantry {
             offset_mm: 0.0,
             goal_mm: 0.0,
-            part_mm: master.reference.feed_mm_min * timing.contour_min(),
-            limit_mm: slave.synchronization.difference_mm,
-            from_marks: slave.synchronization.from_reference_marks,
+            part_mm: speed_mm_min * timing.contour_min(),
+            limit_mm: settings.difference_mm,
+            from_marks: settings.from_reference_marks,
             referenced: false,
             synchronized: false,
             difference_mm: 0.0,
         }
-    }
-
-    /// The parameters that the slave works with: feeds and acceleration, limits and datums are the master's
-    /// [000:4535].
-    pub fn slave_parameters(slave: &AxisParameters, master: &AxisParameters) -> AxisParameters {
-        let mut parameters = *slave;
-        parameters.motion = master.motion;
-        parameters.travel.ranges_mm = master.travel.ranges_mm;
-        parameters.reference.feed_mm_min = master.reference.feed_mm_min;
-        parameters
     }
 
     /// Takes the present relation of the two as it is, at switch-on. With MP860 = 0 they are synchronous from

@@ -7,18 +7,20 @@
 //! - [`Gantry`] couples a slave axis to its master, [`ErrorTable`] and [`DistanceCode`] know scales and their
 //!   errors, [`Fault`] is what monitoring finds;
 //! - [`Spindle`] is the main spindle: gear, override, ramps, orientation; [`SpeedCode`] its coded output;
-//! - [`Timing`] says in which cycles, and how fine the output is.
+//! - [`Timing`] says in which cycles, and how fine the output is;
+//! - [`settings`] and [`spindle_settings`] are what they are told of their machine, in physical units. Machine parameters
+//!   are made into them where they are known.
 //!
 //! ```
 //! use bahn_parameters::{ControlModel, ParameterList};
-//! use bahn_servo::{Axis, Encoder, Timing};
+//! use bahn_servo::{Axis, Encoder};
 //!
 //! let mut list = ParameterList::reference(ControlModel::Tnc415b);
 //! for entry in ["710.0=0", "720.0=0", "1010.0=5000", "1050.0=9", "1810.0=2"] {
 //!     list.assign(entry)?;
 //! }
-//! let timing = Timing::of(ControlModel::Tnc415b);
-//! let mut axis = Axis::new(list.axis_parameters(0), timing);
+//! let timing = ControlModel::Tnc415b.timing();
+//! let mut axis = Axis::new(list.axis_parameters(0).settings(), timing);
 //! // An ideal machine: 9 V are 5000 mm/min, an encoder counts 51 200 steps for 1 mm.
 //! let mut table_mm = 0.0;
 //! let mut read = |volts: f64| {
@@ -66,6 +68,7 @@ mod plant;
 mod reversal;
 pub mod rounding;
 mod run_up;
+pub mod settings;
 mod speed_loop;
 mod spindle;
 mod timing;
@@ -86,6 +89,7 @@ pub use plant::{
     OperatorInputs, Plant, Probe, Step,
 };
 pub use speed_loop::SpeedState;
+pub use spindle::settings as spindle_settings;
 pub use spindle::{Ramp, Rotation, SpeedCode, Spindle, Way};
 pub use timing::{OUTPUT_VOLTS, Timing};
 

@@ -1,6 +1,6 @@
 //! From the count of an encoder to the position of the axis.
 
-use bahn_parameters::axis::{AxisParameters, ReferenceType};
+use crate::settings::{AxisSettings, MarkKind};
 
 use crate::fault::EncoderFault;
 use crate::marks::DistanceCode;
@@ -41,7 +41,7 @@ pub(crate) struct MeasuringSystem {
 }
 
 impl MeasuringSystem {
-    pub(crate) fn new(parameters: &AxisParameters) -> MeasuringSystem {
+    pub(crate) fn new(settings: &AxisSettings) -> MeasuringSystem {
         let mut new = MeasuringSystem {
             step_mm: 0.0,
             code: None,
@@ -60,26 +60,26 @@ impl MeasuringSystem {
             scale_zero: None,
             referenced_zero: None,
         };
-        new.set_parameters(parameters);
+        new.configure(settings);
         new
     }
 
-    pub(crate) fn set_parameters(&mut self, parameters: &AxisParameters) {
-        let encoder = &parameters.encoder;
+    pub(crate) fn configure(&mut self, settings: &AxisSettings) {
+        let encoder = &settings.encoder;
         let period_um = encoder.signal_period_um;
         let sign = if encoder.counts_negative { -1.0 } else { 1.0 };
         self.step_mm = sign * period_um * 1e-3 / Encoder::STEPS as f64;
         let interpolation = encoder.interpolation.max(1);
         let coded = matches!(
-            parameters.reference.kind,
-            ReferenceType::DistanceCoded | ReferenceType::DistanceCodedOld
+            settings.marks.kind,
+            MarkKind::DistanceCoded | MarkKind::DistanceCodedOld
         );
         let grating_mm = period_um * 1e-3 * f64::from(interpolation);
         self.code = coded.then(|| DistanceCode {
-            interval: (parameters.reference.mark_spacing_mm / grating_mm).round() as i64,
+            interval: (settings.marks.spacing_mm / grating_mm).round() as i64,
             period_steps: Encoder::STEPS * i64::from(interpolation),
         });
-        let compensation = &parameters.compensation;
+        let compensation = &settings.compensation;
         self.linear_factor = if compensation.nonlinear {
             1.0
         } else {
@@ -94,13 +94,13 @@ impl MeasuringSystem {
     }
 
     /// Takes a reading.
-    pub(crate) fn read(&mut self, encoder: Encoder, parameters: &AxisParameters) -> Option<EncoderFault> {
+    pub(crate) fn read(&mut self, encoder: Encoder, settings: &AxisSettings) -> Option<EncoderFault> {
         if !self.measured_once {
             self.measured_once = true;
             self.datum_count = encoder.count;
         }
         self.count = encoder.count;
-        let checks = &parameters.encoder;
+        let checks = &settings.encoder;
         let contradiction = encoder.mark.is_some_and(|mark| self.cross(mark));
         if encoder.amplitude_low && checks.check_amplitude {
             Some(EncoderFault::Amplitude)

@@ -1,6 +1,6 @@
 //! Monitoring of lag, voltage, movement and standstill [000:5160-5300].
 
-use bahn_parameters::axis::AxisParameters;
+use crate::settings::AxisSettings;
 
 use crate::fault::{Fault, GrossFault};
 use crate::method::Method;
@@ -88,14 +88,14 @@ impl Monitor {
         &mut self,
         sample: &Sample,
         method: Method,
-        parameters: &AxisParameters,
+        settings: &AxisSettings,
         timing: &Timing,
     ) -> Option<Fault> {
         if !sample.enabled {
             // With 0 V nothing is pre-controlled: the axis runs on by as much as its drive needs to stop (inferred).
             self.limits = Method::Lag;
         }
-        let deviation = self.deviation(sample, method, parameters);
+        let deviation = self.deviation(sample, method, settings);
         if !sample.enabled {
             self.reset();
             return deviation;
@@ -103,12 +103,9 @@ impl Monitor {
         let voltage = (method == Method::Precontrol && sample.volts.abs() > OUTPUT_VOLTS)
             .then_some(Fault::Gross(GrossFault::Voltage));
         let gross = |fault: bool, gross| fault.then_some(Fault::Gross(gross));
-        let standstill = gross(
-            self.moves_at_standstill(sample, parameters),
-            GrossFault::Standstill,
-        );
+        let standstill = gross(self.moves_at_standstill(sample, settings), GrossFault::Standstill);
         let movement = gross(
-            self.moves_otherwise(sample, parameters, timing),
+            self.moves_otherwise(sample, settings, timing),
             GrossFault::Movement,
         );
         // Of several faults the gross one counts.
@@ -120,8 +117,8 @@ impl Monitor {
 
     /// The lag against the limits of the method. After a change from lag to pre-control, and after the feed enable
     /// was withdrawn, those of the lag hold until it is run down (inferred).
-    fn deviation(&mut self, sample: &Sample, method: Method, parameters: &AxisParameters) -> Option<Fault> {
-        let (lag, precontrol) = (&parameters.lag, &parameters.precontrol);
+    fn deviation(&mut self, sample: &Sample, method: Method, settings: &AxisSettings) -> Option<Fault> {
+        let (lag, precontrol) = (&settings.lag, &settings.precontrol);
         let amount = sample.lag_mm.abs();
         if method == Method::Lag || amount <= precontrol.monitoring_mm {
             self.limits = method;
@@ -138,14 +135,14 @@ impl Monitor {
     }
 
     /// Moves out of its place, over its target or backwards at the start by more than MP1110.
-    fn moves_at_standstill(&mut self, sample: &Sample, parameters: &AxisParameters) -> bool {
-        let limit = parameters.monitoring.standstill_mm;
+    fn moves_at_standstill(&mut self, sample: &Sample, settings: &AxisSettings) -> bool {
+        let limit = settings.monitoring.standstill_mm;
         if sample.standing {
             let side = match self.phase {
                 Phase::Rest => return sample.lag_mm.abs() > limit,
                 Phase::Arrival { side } => side,
                 Phase::Start { direction, .. } | Phase::Travel { direction } => {
-                    if sample.lag_mm.abs() > parameters.monitoring.window_mm {
+                    if sample.lag_mm.abs() > settings.monitoring.window_mm {
                         sample.lag_mm.signum()
                     } else {
                         direction
@@ -186,8 +183,8 @@ impl Monitor {
     }
 
     /// Moves otherwise than the voltage says, while that is at least MP1140.
-    fn moves_otherwise(&mut self, sample: &Sample, parameters: &AxisParameters, timing: &Timing) -> bool {
-        let threshold = parameters.monitoring.movement_volts;
+    fn moves_otherwise(&mut self, sample: &Sample, settings: &AxisSettings, timing: &Timing) -> bool {
+        let threshold = settings.monitoring.movement_volts;
         if threshold >= OUTPUT_VOLTS || sample.volts.abs() < threshold {
             self.steps = 0;
             return false;

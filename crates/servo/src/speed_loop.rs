@@ -1,6 +1,6 @@
 //! The digital speed controller of a TNC 425: nominal speed in, torque out [000:18117-18521].
 
-use bahn_parameters::axis::{AxisParameters, DigitalSpeedParameters};
+use crate::settings::{AxisSettings, SpeedLoopSettings};
 
 use crate::fault::GrossFault;
 use crate::plant::Encoder;
@@ -31,7 +31,7 @@ pub struct SpeedState {
 /// part is a sum of ways, and 1 in it is one counting step that the motor stays behind.
 #[derive(Clone, Debug)]
 pub(crate) struct SpeedLoop {
-    parameters: DigitalSpeedParameters,
+    settings: SpeedLoopSettings,
     step_min: f64,
     /// Way of a counting step of the motor's encoder, mm, in the sense of the axis (MP1040), and the speed of one for
     /// each servo step, mm/min.
@@ -65,10 +65,10 @@ pub(crate) struct SpeedLoop {
 
 impl SpeedLoop {
     /// The loop of an axis with digital speed controller.
-    pub fn of(parameters: &AxisParameters, timing: &Timing) -> Option<SpeedLoop> {
-        let digital = parameters.digital?;
+    pub fn of(settings: &AxisSettings, timing: &Timing) -> Option<SpeedLoop> {
+        let digital = settings.digital?;
         let mut new = SpeedLoop {
-            parameters: digital,
+            settings: digital,
             step_min: timing.step_min(),
             step_mm: 1.0,
             per_step: 1.0,
@@ -88,16 +88,16 @@ impl SpeedLoop {
             step_mm_min: None,
             ends_in: None,
         };
-        new.set_parameters(parameters, timing);
+        new.configure(settings, timing);
         Some(new)
     }
 
     /// Takes changed parameters over; what it has summed up stays.
-    pub fn set_parameters(&mut self, parameters: &AxisParameters, timing: &Timing) {
-        let Some(digital) = parameters.digital else {
+    pub fn configure(&mut self, settings: &AxisSettings, timing: &Timing) {
+        let Some(digital) = settings.digital else {
             return;
         };
-        self.parameters = digital;
+        self.settings = digital;
         let sign = |negative: bool| if negative { -1.0 } else { 1.0 };
         // The grating of the motor's encoder, seen at the table [000:18478-18483].
         let ratio = if digital.encoder_ratio > 0.0 {
@@ -105,8 +105,8 @@ impl SpeedLoop {
         } else {
             1.0
         };
-        let period_mm = parameters.encoder.signal_period_um * 1e-3 / ratio;
-        let motor = sign(parameters.output.polarity_negative);
+        let period_mm = settings.encoder.signal_period_um * 1e-3 / ratio;
+        let motor = sign(settings.output.polarity_negative);
         self.step_mm = motor * period_mm / Encoder::MOTOR_STEPS as f64;
         self.per_step = self.step_mm / self.step_min;
         self.limit_volts = match digital.integral {
@@ -114,7 +114,7 @@ impl SpeedLoop {
             _ => LIMIT_VOLTS,
         };
         let steps = Encoder::STEPS as f64 / Encoder::MOTOR_STEPS as f64 / ratio;
-        self.position_steps = motor * sign(parameters.encoder.counts_negative) * steps;
+        self.position_steps = motor * sign(settings.encoder.counts_negative) * steps;
         // Which limit MP1925 is, no manual says: the sum forgets with this time constant (inferred).
         let step_s = f64::from(timing.step_us()) * 1e-6;
         self.kept = match digital.integral_limit_s {
@@ -142,7 +142,7 @@ impl SpeedLoop {
     /// and with its marks.
     pub fn position(&mut self, scale: Encoder) -> Encoder {
         self.scale_count = scale.count;
-        let Some(motor) = self.count.filter(|_| self.parameters.motor_encoder) else {
+        let Some(motor) = self.count.filter(|_| self.settings.motor_encoder) else {
             return scale;
         };
         let count = round(motor as f64 * self.position_steps) as i64;
@@ -172,7 +172,7 @@ impl SpeedLoop {
 
     /// MP1970: position and speed encoder say the same.
     pub fn check_encoders(&self, scale_step_mm: f64) -> Option<GrossFault> {
-        let limit = self.parameters.difference_mm?;
+        let limit = self.settings.difference_mm?;
         (self.difference_mm(scale_step_mm).abs() > limit).then_some(GrossFault::Movement)
     }
 
@@ -196,7 +196,7 @@ impl SpeedLoop {
         };
         self.sum_steps = self.sum_steps * self.kept + error_steps;
         let acceleration = self.follow_profile(profile_mm_min, circular);
-        let digital = &self.parameters;
+        let digital = &self.settings;
         let digital_volts =
             digital.integral * self.sum_steps + digital.proportional * PROPORTIONAL_WEIGHT * error_steps;
         let volts = digital_volts * VOLTS_PER_STEP
@@ -226,7 +226,7 @@ impl SpeedLoop {
         };
         let before = std::mem::replace(&mut self.profile_mm_min, profile);
         if profile * self.direction < 0.0 && circular {
-            self.sum_steps += profile.signum() * self.parameters.reversal_mm / self.step_mm;
+            self.sum_steps += profile.signum() * self.settings.reversal_mm / self.step_mm;
         }
         if profile != 0.0 {
             self.direction = profile.signum();

@@ -3,10 +3,11 @@
 mod encoder;
 mod lead;
 mod orientation;
+pub mod settings;
 mod speed;
 mod speed_code;
 
-use bahn_parameters::spindle::{Gear, SpindleParameters};
+use settings::{Gear, SpindleSettings};
 
 use crate::characteristic::KV_PER_MIN;
 use crate::fault::Fault;
@@ -86,7 +87,7 @@ enum Mode {
 /// Angles are degrees, positive in the direction of M03. Nothing here allocates.
 #[derive(Clone, Debug)]
 pub struct Spindle {
-    parameters: SpindleParameters,
+    settings: SpindleSettings,
     timing: Timing,
     encoder: SpindleEncoder,
     mode: Mode,
@@ -110,9 +111,9 @@ pub struct Spindle {
 
 impl Spindle {
     /// A spindle that is off, in the lowest gear range.
-    pub fn new(parameters: SpindleParameters, timing: Timing) -> Spindle {
+    pub fn new(settings: SpindleSettings, timing: Timing) -> Spindle {
         Spindle {
-            parameters,
+            settings,
             timing,
             encoder: SpindleEncoder::default(),
             mode: Mode::Speed(Rotation::M5),
@@ -123,7 +124,7 @@ impl Spindle {
             inverted: false,
             enabled: true,
             opens: false,
-            lead: Lead::new(&parameters, &timing),
+            lead: Lead::new(&settings, &timing),
             ramp_volts: 0.0,
             goal_volts: 0.0,
             offset_volts: 0.0,
@@ -134,16 +135,16 @@ impl Spindle {
     }
 
     /// Takes changed parameters over (those that the PLC may change).
-    pub fn set_parameters(&mut self, parameters: SpindleParameters) {
+    pub fn configure(&mut self, settings: SpindleSettings) {
         self.settled = false;
-        self.parameters = parameters;
-        self.lead.set_parameters(&parameters, &self.timing);
+        self.settings = settings;
+        self.lead.configure(&settings, &self.timing);
     }
 
     /// The gear range for a programmed speed in rpm, 0 to 7: the smallest that reaches it. `None` for a speed
     /// that the spindle does not have, also 0 where MP3120 does not permit it: WRONG RPM [000:5653].
     pub fn gear_for(&self, rpm: f64) -> Option<u8> {
-        speed::gear_for(&self.parameters, rpm)
+        speed::gear_for(&self.settings, rpm)
     }
 
     /// Sets programmed speed, rpm, and gear range, 0 to 7.
@@ -220,7 +221,7 @@ impl Spindle {
             rpm: if rpm > 0.0 {
                 rpm
             } else {
-                self.parameters.orientation.speed_rpm
+                self.settings.orientation.speed_rpm
             },
             direction,
             phase: Phase::Approach,
@@ -242,7 +243,7 @@ impl Spindle {
         let target_deg = self.held_deg() + way_deg;
         self.go_over(Mode::Orientation(Orientation {
             angle_deg: target_deg,
-            rpm: self.parameters.orientation.speed_rpm,
+            rpm: self.settings.orientation.speed_rpm,
             direction: way_deg.signum(),
             phase: Phase::Controlled { target_deg },
             reached: false,
@@ -254,10 +255,8 @@ impl Spindle {
     /// How it turns, degrees/min, positive as M03; 0 for a spindle that stands. What a loop does to hold it in its place
     /// is no turning, nor is a speed with which a loop still comes to a standstill within the window (inferred).
     fn turning(&self) -> f64 {
-        let parameters = &self.parameters.orientation;
-        let slow = self
-            .dynamics(parameters.speed_rpm)
-            .velocity(parameters.window_deg);
+        let settings = &self.settings.orientation;
+        let slow = self.dynamics(settings.speed_rpm).velocity(settings.window_deg);
         match self.mode {
             Mode::Lead => self.lead.profile_deg_min(),
             Mode::Orientation(orientation) if orientation.reached => 0.0,
@@ -313,7 +312,7 @@ impl Spindle {
 
     /// Takes an encoder reading; once in each servo step, before [`Spindle::step`].
     pub fn measure(&mut self, encoder: Encoder) {
-        let fault = self.encoder.read(encoder, &self.parameters, &self.timing);
+        let fault = self.encoder.read(encoder, &self.settings, &self.timing);
         self.fault = self.fault.or(fault.map(Fault::MeasuringSystem));
     }
 
@@ -332,7 +331,7 @@ impl Spindle {
                 .step(encoder.turned_deg(), encoder.rpm(), slope, &self.timing);
         }
         self.goal_volts = self.goal();
-        let ramps = &self.parameters.ramps;
+        let ramps = &self.settings.ramps;
         let ramp = match (self.mode, self.ramp) {
             (Mode::Lead, _) => 0.0,
             (Mode::Orientation(_) | Mode::Turn(_), _) => ramps.orientation_v_ms,
@@ -362,16 +361,14 @@ impl Spindle {
 
     /// The voltage that the ramp goes to.
     fn goal(&self) -> f64 {
-        let parameters = &self.parameters;
+        let settings = &self.settings;
         match self.mode {
             Mode::Speed(rotation) => {
-                let volts = speed::volts(parameters, &self.gear(), self.limited_rpm());
-                volts * speed::polarity(parameters, rotation, self.inverted)
+                let volts = speed::volts(settings, &self.gear(), self.limited_rpm());
+                volts * speed::polarity(settings, rotation, self.inverted)
             }
-            Mode::Jog(rotation) => {
-                parameters.jog_volts * speed::polarity(parameters, rotation, self.inverted)
-            }
-            Mode::Turn(rotation) => self.volts_of(parameters.orientation.jog_rpm * 360.0 * rotation.sign()),
+            Mode::Jog(rotation) => settings.jog_volts * speed::polarity(settings, rotation, self.inverted),
+            Mode::Turn(rotation) => self.volts_of(settings.orientation.jog_rpm * 360.0 * rotation.sign()),
             Mode::Lead => self.volts_of(self.lead.velocity_deg_min()),
             Mode::Orientation(orientation) => match orientation.phase {
                 Phase::Approach => self.volts_of(orientation.rpm * 360.0 * orientation.direction),
@@ -398,7 +395,7 @@ impl Spindle {
             }
             Phase::Controlled { target_deg } => {
                 let lag = target_deg - self.encoder.turned_deg();
-                orientation.reached |= lag.abs() <= self.parameters.orientation.window_deg;
+                orientation.reached |= lag.abs() <= self.settings.orientation.window_deg;
                 if orientation.reached {
                     orientation.steps = orientation.steps.saturating_add(1);
                     self.adjust_offset(lag, orientation.steps);
@@ -416,7 +413,7 @@ impl Spindle {
         let dynamics = self.dynamics(orientation.rpm);
         let mut way = dynamics.way_deg(angle, orientation.angle_deg, speed, orientation.direction);
         let shortest = dynamics.way_deg(angle, orientation.angle_deg, 0.0, 0.0);
-        if speed == 0.0 && shortest.abs() <= self.parameters.orientation.window_deg {
+        if speed == 0.0 && shortest.abs() <= self.settings.orientation.window_deg {
             way = shortest;
         }
         orientation.phase = Phase::Controlled {
@@ -437,13 +434,13 @@ impl Spindle {
     }
 
     fn gear(&self) -> Gear {
-        let gear = self.parameters.gears.get(usize::from(self.gear));
+        let gear = self.settings.gears.get(usize::from(self.gear));
         gear.copied().unwrap_or_default()
     }
 
     fn limited_rpm(&self) -> f64 {
         speed::nominal_rpm(
-            &self.parameters,
+            &self.settings,
             &self.gear(),
             self.programmed_rpm,
             self.override_percent,
@@ -457,7 +454,7 @@ impl Spindle {
 
     fn dynamics(&self, rpm: f64) -> Dynamics {
         let gear = self.gear();
-        let ramp_v_min = self.parameters.ramps.orientation_v_ms * 60_000.0;
+        let ramp_v_min = self.settings.ramps.orientation_v_ms * 60_000.0;
         let deceleration = ramp_v_min * gear.rated_rpm * 360.0 / gear.rated_volts;
         Dynamics {
             speed: rpm * 360.0,
@@ -472,7 +469,7 @@ impl Spindle {
 
     /// Sign of the voltage that turns the spindle as M03.
     fn physical_sign(&self) -> f64 {
-        speed::polarity(&self.parameters, Rotation::M3, self.inverted)
+        speed::polarity(&self.settings, Rotation::M3, self.inverted)
     }
 
     /// The voltage of a velocity in degrees/min, in the loop: no least voltage, both polarities.
@@ -545,7 +542,7 @@ impl Spindle {
         match self.mode {
             Mode::Speed(Rotation::M5) => 0.0,
             Mode::Speed(_) => self.limited_rpm(),
-            Mode::Turn(rotation) => self.parameters.orientation.jog_rpm * rotation.sign().abs(),
+            Mode::Turn(rotation) => self.settings.orientation.jog_rpm * rotation.sign().abs(),
             Mode::Lead => (self.lead.profile_deg_min() / 360.0).abs(),
             Mode::Jog(_) | Mode::Orientation(_) => 0.0,
         }
@@ -565,7 +562,7 @@ impl Spindle {
     /// Angle from the zero of the spindle, 0 up to 360 degrees: the reference mark stands at MP3430. `None`
     /// until it was crossed.
     pub fn angle_deg(&self) -> Option<f64> {
-        self.encoder.angle_deg(self.parameters.orientation.reference_deg)
+        self.encoder.angle_deg(self.settings.orientation.reference_deg)
     }
 
     /// Angle since power-on with all turns, degrees: what the tool axis follows in cycles 17 and 18
@@ -585,7 +582,7 @@ impl Spindle {
 
     /// Voltage of the programmed speed, V.
     pub fn programmed_volts(&self) -> f64 {
-        speed::volts(&self.parameters, &self.gear(), self.programmed_rpm)
+        speed::volts(&self.settings, &self.gear(), self.programmed_rpm)
     }
 
     /// Whether an orientation is going on: M2712, M2127.

@@ -1,7 +1,5 @@
 //! What the servo needs to know of the control: its cycles and its output converter.
 
-use bahn_parameters::ControlModel;
-
 use crate::rounding::round;
 
 /// Greatest voltage of a nominal value output, V [000:4863].
@@ -22,17 +20,15 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Those of a control model: the contour cycle of 3 or 6 ms, in steps of 0.6 ms where the model has
-    /// fine interpolation [000:212-224].
-    pub fn of(model: ControlModel) -> Timing {
-        let limits = model.limits();
-        let contour_us = limits.contour_cycle_us;
-        let steps = limits.fine_cycle_us.map_or(1, |fine_us| contour_us / fine_us);
+    /// A contour cycle of so many microseconds in so many servo steps, and a converter of so many
+    /// bits for 10 V of either sign.
+    pub fn new(contour_us: u32, steps: u32, output_bits: u8) -> Timing {
+        let steps = steps.max(1);
         Timing {
             contour_us,
             steps,
             step_us: contour_us / steps,
-            resolution_volts: OUTPUT_VOLTS / f64::from(1u32 << limits.output_bits.min(30)),
+            resolution_volts: OUTPUT_VOLTS / f64::from(1u32 << output_bits.min(30)),
             step_min: f64::from(contour_us / steps) / MINUTE_US,
             contour_min: f64::from(contour_us) / MINUTE_US,
         }
@@ -88,9 +84,9 @@ mod tests {
     #[test]
     fn the_converter_steps_as_the_manual_says() {
         // 10 V / 65 536 = 0.15 mV, 10 V / 16 384 = 0.6 mV [000:4863].
-        let tnc415 = Timing::of(ControlModel::Tnc415b);
+        let tnc415 = Timing::new(3000, 5, 16);
         assert!((tnc415.resolution_volts() * 1e3 - 0.1526).abs() < 1e-4);
-        let tnc407 = Timing::of(ControlModel::Tnc407);
+        let tnc407 = Timing::new(6000, 1, 14);
         assert!((tnc407.resolution_volts() * 1e3 - 0.6104).abs() < 1e-4);
         assert_eq!(tnc407.convert(0.000_3), 0.0);
         assert_eq!(tnc407.convert(-0.000_4), -tnc407.resolution_volts());

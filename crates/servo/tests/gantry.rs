@@ -20,12 +20,13 @@ impl Pair {
         for assignment in ["850.3=1", "410.3=3", "1330.0=600"].iter().chain(assignments) {
             list.assign(assignment).unwrap();
         }
-        let master = Bench::new(Tnc415b, &["1330.0=600"]);
+        let master = Bench::new(Tnc415b, &[]);
         let mut slave = Bench::new(Tnc415b, &[]);
         slave.table_mm = 0.0;
-        let parameters = list.axis_parameters(3);
-        assert_eq!(parameters.synchronization.master, Some(0));
-        let gantry = Gantry::new(&parameters, master.axis.parameters(), master.timing);
+        let slaved = list.axis_parameters(3).synchronization;
+        assert_eq!(slaved.master, Some(0));
+        let speed_mm_min = list.axis_parameters(0).reference.feed_mm_min;
+        let gantry = Gantry::new(slaved.coupling, speed_mm_min, master.timing);
         Pair {
             master,
             slave,

@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
-use bahn_servo::{Method, Timing};
+use bahn_servo::Method;
 use common::Bench;
 use proptest::prelude::*;
 
@@ -86,7 +86,7 @@ proptest! {
         let parameters: Vec<&str> = parameters.iter().map(String::as_str).collect();
         let mut bench = bench(false, &parameters);
         bench.run(feed, 6.0);
-        let lag = &bench.axis.parameters().lag;
+        let lag = &bench.axis.settings().lag;
         let kink = lag.kink_percent / 100.0 * 10_000.0;
         let formula = (feed.min(kink) + (feed - kink).max(0.0) / lag.kink_factor) / (lag.kv * 1000.0);
         prop_assert!((bench.axis.lag_mm() / formula - 1.0).abs() < 0.01, "{} {formula}", bench.axis.lag_mm());
@@ -124,7 +124,7 @@ proptest! {
         let mut bench = Bench::new(model, FREE);
         bench.axis.set_monitored(false);
         bench.axis.set_method(if method { Method::Lag } else { Method::Precontrol });
-        let resolution = Timing::of(model).resolution_volts();
+        let resolution = model.timing().resolution_volts();
         for (count, nominal) in counts.iter().zip(nominal) {
             bench.encoder.count = *count;
             bench.encoder.mark = Some(count.wrapping_mul(3));

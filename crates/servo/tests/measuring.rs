@@ -4,11 +4,11 @@
 mod common;
 
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
-use bahn_servo::{Axis, DistanceCode, Encoder, EncoderFault, Fault, Timing};
+use bahn_servo::{Axis, DistanceCode, Encoder, EncoderFault, Fault};
 use common::{Bench, parameters};
 
 fn axis(assignments: &[&str]) -> Axis {
-    let mut axis = Axis::new(parameters(Tnc415b, assignments), Timing::of(Tnc415b));
+    let mut axis = Axis::new(parameters(Tnc415b, assignments), Tnc415b.timing());
     axis.measure(Encoder::default());
     axis
 }
@@ -139,7 +139,7 @@ fn two_distance_coded_marks_give_the_position() {
 fn external_interpolation_is_taken_out_of_the_code() {
     // 20 µm grating, 5-fold EXE: signal period 4 µm; 501 gratings are 2505 signal periods.
     let parameters = parameters(Tnc407, &["1350.0=3", "330.0=4", "340.0=5"]);
-    let mut axis = Axis::new(parameters, Timing::of(Tnc407));
+    let mut axis = Axis::new(parameters, Tnc407.timing());
     axis.measure(at(0, Some(0)));
     axis.measure(at(2505 * 1024, Some(2505 * 1024)));
     let scale = axis.take_mark().unwrap().scale_mm.unwrap();

@@ -5,6 +5,7 @@ mod common;
 
 use bahn_parameters::ControlModel::Tnc415b;
 use bahn_parameters::MessageId;
+use bahn_parameters::fault::FaultId;
 use bahn_servo::{EncoderFault, Fault, GrossFault, Method};
 use common::Bench;
 
@@ -280,8 +281,11 @@ fn a_gross_fault_cannot_be_cleared() {
     bench.table_mm = -2.0;
     bench.stand(0.003);
     let fault = bench.axis.fault().unwrap();
-    assert_eq!(fault.letter(), Some("A"));
-    assert_eq!(fault.message(), MessageId::GrossPositioningError);
+    let row = FaultId::from(fault).row();
+    assert_eq!(
+        (row.message, row.letter),
+        (Some(MessageId::GrossPositioningError), "A")
+    );
     bench.axis.acknowledge();
     bench.stand(0.003);
     assert_eq!((bench.axis.fault(), bench.axis.volts()), (Some(fault), 0.0));

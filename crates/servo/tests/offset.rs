@@ -138,7 +138,7 @@ fn an_offset_of_100_mv_is_a_fault() {
     assert_eq!(integral.axis.fault(), None);
     integral.offset_volts = -0.101;
     integral.stand(10.0);
-    assert_eq!(integral.axis.fault().and_then(Fault::letter), Some("E"));
+    assert_eq!(integral.axis.fault(), Some(Fault::Gross(GrossFault::Offset)));
 }
 
 #[test]

@@ -7,7 +7,6 @@ use bahn_control::{Control, OscilloscopeKeys, ServoSampler, ServoSignal};
 use bahn_host::oscilloscope::{
     CHANNELS, Curve, Oscilloscope, OscilloscopeRecord, OscilloscopeSetup, Trigger,
 };
-use bahn_servo::Timing;
 use clap::{Args, ValueHint};
 
 use crate::UsageError;
@@ -69,7 +68,7 @@ impl Scoped {
                 control.model()
             )));
         }
-        let step_us = Timing::of(control.model()).step_us();
+        let step_us = control.model().timing().step_us();
         let sample_us = options
             .sample_time
             .map_or(step_us, |ms| (ms * 1000.0).round().clamp(0.0, 1e9) as u32);

@@ -1,6 +1,10 @@
 //! Everything that servo, reference run and monitoring need of one axis.
 
 use bahn_path::Axis;
+use bahn_servo::settings::{
+    AxisSettings, CompensationSettings, CouplingSettings, EncoderSettings, LagSettings, MarkKind,
+    MarkSettings, MonitoringSettings, MotionSettings, OutputSettings, PrecontrolSettings, SpeedLoopSettings,
+};
 
 use super::axis_reader::AxisReader;
 use crate::{ControlModel, ParameterList};
@@ -27,19 +31,19 @@ pub struct AxisParameters {
     /// The axis belongs to the PLC: MP60 [000:4094-4109]; not on the TNC 151/155.
     pub plc_axis: bool,
     /// Measuring system.
-    pub encoder: EncoderParameters,
+    pub encoder: EncoderSettings,
     /// Nominal value output.
-    pub output: OutputParameters,
+    pub output: OutputSettings,
     /// Feed rates and acceleration.
     pub motion: MotionParameters,
     /// Operation with servo lag.
-    pub lag: LagParameters,
+    pub lag: LagSettings,
     /// Operation with feed pre-control.
-    pub precontrol: PrecontrolParameters,
+    pub precontrol: PrecontrolSettings,
     /// Monitoring that both kinds of operation share.
-    pub monitoring: MonitoringParameters,
+    pub monitoring: MonitoringSettings,
     /// Compensation of the mechanics' errors.
-    pub compensation: CompensationParameters,
+    pub compensation: CompensationSettings,
     /// Reference run.
     pub reference: ReferenceParameters,
     /// Limits and datums.
@@ -47,46 +51,7 @@ pub struct AxisParameters {
     /// Master and slave.
     pub synchronization: Synchronization,
     /// Digital speed controller, TNC 425 with MP1900 only.
-    pub digital: Option<DigitalSpeedParameters>,
-}
-
-/// Measuring system of an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EncoderParameters {
-    /// Input of the control, 0 to 5 for X1 to X6: MP110 (old: MP253-257, 0 = own input) [000:3374-3391]
-    /// [001:2434-2454].
-    pub input: u8,
-    /// Signal period, µm or 1/1000 degree: MP330, 0.1 to 1000 (old: 20 or 10 by MP12+, 20-fold or 10-fold
-    /// evaluation to 1 µm) [000:3188-3236] [001:1616-1625].
-    pub signal_period_um: f64,
-    /// Factor of the external interpolation electronics: MP340, TNC 407 only; 1 elsewhere and for 0
-    /// [000:3238-3250].
-    pub interpolation: u8,
-    /// The signals count negative: MP210 (old MP20+) [000:3256-3265].
-    pub counts_negative: bool,
-    /// Check of the absolute position of distance-coded marks, error letter C: MP30 [000:3301-3308].
-    pub check_distance_code: bool,
-    /// Check of the signal amplitude, letter A: MP31 (old: MP76 bits 1 to 4 switch it off)
-    /// [000:3310-3318] [001:1338-1380].
-    pub check_amplitude: bool,
-    /// Check of the edge separation, letter B: MP32 (old: as the amplitude) [000:3320-3328].
-    pub check_edges: bool,
-}
-
-/// Nominal value output of an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutputParameters {
-    /// Output of the control, 0 to 4 for 1 to 5, 5 for S: MP120; old: its own [000:3393-3406].
-    pub output: u8,
-    /// Positive traverse needs a negative voltage: MP1040 (old MP24+) [000:3267-3276].
-    pub polarity_negative: bool,
-    /// Voltage at rapid traverse, V: MP1050, 1 to 9, commissioning 9 (old MP52) [000:4842-4847].
-    pub rapid_volts: f64,
-    /// Integral factor at standstill: MP1080, 0 to 65 535, 0 with backlash (old MP28+) [000:5039-5072].
-    pub integral_factor: f64,
-    /// Interval of the automatic offset adjustment, s, 0 without: MP1220 (old MP252, 20 ms)
-    /// [000:5022-5037] [001:2591-2606].
-    pub offset_interval_s: f64,
+    pub digital: Option<SpeedLoopSettings>,
 }
 
 /// Feed rates and acceleration of an axis.
@@ -104,118 +69,6 @@ pub struct MotionParameters {
     pub plc_mm_min: f64,
 }
 
-/// Operation with servo lag. Lag = feed / kv below the kink, above it the slope is kv times the factor
-/// [000:4799-4809] [000:4898-4925].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LagParameters {
-    /// kv, (m/min)/mm: MP1810, 0.1 to 20, commissioning 1 (old MP177+) [000:4824-4829].
-    pub kv: f64,
-    /// kv after M105, (m/min)/mm: MP1815, old: as `kv` [000:4830-4835].
-    pub kv_m105: f64,
-    /// Factor for kv above the kink: MP1820, 0.001 to 1 (old MP176) [000:4909-4916].
-    pub kink_factor: f64,
-    /// Kink, % of rapid traverse: MP1830, 0 to 100 (old MP181) [000:4918-4925].
-    pub kink_percent: f64,
-    /// Lag at which POSITIONING ERROR comes, mm: MP1710, 0 to 300, recommended 1.2 times the lag at rapid
-    /// traverse (old MP175) [000:5208-5215].
-    pub monitoring_mm: f64,
-    /// Lag at which GROSS POSITIONING ERROR A comes, mm: MP1720, 0 to 300, recommended 1.4 times it (old
-    /// MP174) [000:5217-5224].
-    pub emergency_mm: f64,
-}
-
-/// Operation with feed pre-control.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PrecontrolParameters {
-    /// MDI, single block and full sequence run with pre-control, not with lag: MP1390 = 0 (old MP60 = 0)
-    /// [000:4721-4724] [001:1105-1121].
-    pub in_automatic: bool,
-    /// Manual and Handwheel run with pre-control: MP1391; old: never [000:4726-4733] [001:1105-1121].
-    pub in_manual: bool,
-    /// kv, (m/min)/mm: MP1510, 0.1 to 20, commissioning 1 [000:4984-4991]. Old: from MP32+, output steps of
-    /// 9 V/3686.4 for each µm of lag: kv = factor / 3.6864 * 9 V / MP52 * rapid traverse in m/min (inferred
-    /// from the table [001:1746-1762]).
-    pub kv: f64,
-    /// kv after M105, (m/min)/mm: MP1515; old: as `kv` [000:4993-5000].
-    pub kv_m105: f64,
-    /// Transient response, m/min: MP1520, 0.1 to 10, commissioning 0.5; larger is faster (old MP53, the
-    /// approach speed 1 µm before the position) [000:4981-4982] [001:1735-1736].
-    pub transient_m_min: f64,
-    /// Damping of the transient when accelerating: MP1530, 0.01 to 0.999 (old MP64) [000:4977-4979].
-    pub damping: f64,
-    /// Velocity below which the positioning window is checked, mm/min: MP1525, 0.1 to 10; 0.5 before it
-    /// existed [000:5306-5318]. Infinite on the TNC 151/155, of which no manual says so.
-    pub window_mm_min: f64,
-    /// Deviation at which POSITIONING ERROR comes, mm: MP1410, 0.001 to 30, recommended 0.5 (old MP56)
-    /// [000:5244-5249].
-    pub monitoring_mm: f64,
-    /// Deviation at which GROSS POSITIONING ERROR A comes, mm: MP1420, 0.001 to 30, recommended 10 (old
-    /// MP57) [000:5250-5255].
-    pub emergency_mm: f64,
-}
-
-/// Monitoring that both kinds of operation share.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MonitoringParameters {
-    /// Positioning window, mm: MP1030, 0.0001 to 2, recommended 0.01 (old MP58, IV: MP192)
-    /// [000:5302-5318].
-    pub window_mm: f64,
-    /// Standstill monitoring, letter D, mm: MP1110, 0.001 to 30, recommended 0.2 (old MP169)
-    /// [000:5289-5300].
-    pub standstill_mm: f64,
-    /// Voltage from which movement is monitored, letter C, V: MP1140, 0.03 to 10, recommended 0.5; 10
-    /// switches it off (old MP234) [000:5266-5287].
-    pub movement_volts: f64,
-    /// Time after POSITIONING ERROR in which the residual voltage is switched off, s: MP1150, 0 to 65.535
-    /// (old MP185) [000:5240-5242].
-    pub residual_voltage_s: f64,
-}
-
-/// Compensation of the mechanics' errors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompensationParameters {
-    /// Backlash, mm: MP710, -1 to 1 (old MP36+) [000:3654-3661].
-    pub backlash_mm: f64,
-    /// Linear error, mm/m: MP720, -1 to 1 (old MP40+); 0 for rotary axes, where it does not act
-    /// [000:3736-3749].
-    pub linear_mm_m: f64,
-    /// The error tables act in place of the linear error: MP730 [000:10124]; not on the TNC 151/155.
-    pub nonlinear: bool,
-    /// Height of the reversal peaks on circles, mm: MP711, and MP715 after M105 [000:3693-3732].
-    pub reversal_mm: [f64; 2],
-    /// Their compensation in each cycle of the loop, mm: MP712, and MP716 after M105 [000:3702-3732].
-    pub reversal_step_mm: [f64; 2],
-    /// Stiction: factor, µs: MP1511, 0 without [000:3935-3985].
-    pub stiction_us: f64,
-    /// Stiction: limit, counting steps of signal period / 256: MP1512 [000:3935-3985].
-    pub stiction_limit_steps: f64,
-    /// Stiction: feed up to which it is compensated, mm/min: MP1513 [000:3935-3985].
-    pub stiction_feed_mm_min: f64,
-}
-
-/// How an axis finds its reference mark: MP1350 [000:4656-4667].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReferenceType {
-    /// 0: distance-coded marks, the sequence before 1/92 (old: MP242+ greater than 0).
-    DistanceCodedOld,
-    /// 1: one mark (old: MP242+ = 0).
-    OneMark,
-    /// 2: rotary encoder on a ballscrew, one pulse for each turn; the cam chooses the pulse.
-    RotaryEncoder,
-    /// 3: distance-coded marks.
-    DistanceCoded,
-}
-
-impl ReferenceType {
-    /// Two neighbouring marks tell where they are.
-    pub fn is_coded(self) -> bool {
-        matches!(
-            self,
-            ReferenceType::DistanceCodedOld | ReferenceType::DistanceCoded
-        )
-    }
-}
-
 /// Reference run of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceParameters {
@@ -223,14 +76,14 @@ pub struct ReferenceParameters {
     pub negative: bool,
     /// Feed, mm/min: MP1330, 80 to 300 000 (old MP8+) [000:4637-4642].
     pub feed_mm_min: f64,
-    /// Feed for leaving the cam, [`ReferenceType::RotaryEncoder`] only, mm/min: MP1331, 80 to 500; old: the
+    /// Feed for leaving the cam, [`MarkKind::RotaryEncoder`] only, mm/min: MP1331, 80 to 500; old: the
     /// feed of the run, at most 500 (inferred) [000:4643-4648].
     pub leaving_mm_min: f64,
     /// Place in the automatic sequence, 0 for the first axis: MP1340; `None` for an axis that is not named
     /// (old: MP59, one of 24 sequences) [000:4649-4654] [001:1443-1478].
     pub place: Option<u8>,
     /// Sequence.
-    pub kind: ReferenceType,
+    pub kind: MarkKind,
     /// Spacing of distance-coded marks, mm: old MP242+ times 20 µm [001:977-987] [001:1480]; 20 mm where the
     /// list has no such parameter (inferred: the spacing of the LS scales).
     pub mark_spacing_mm: f64,
@@ -269,37 +122,41 @@ pub struct TravelParameters {
 pub struct Synchronization {
     /// Index of the axis that this one follows: MP850, 0 for none.
     pub master: Option<u8>,
-    /// Greatest difference to the master, mm, `None` without monitoring: MP855.
-    pub difference_mm: Option<f64>,
-    /// The relation is that of the reference marks, not that at switch-on: MP860 = 1.
-    pub from_reference_marks: bool,
+    /// How it follows it.
+    pub coupling: CouplingSettings,
 }
 
-/// Digital speed controller of the TNC 425 [000:10205-10218] [000:18345-18640].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DigitalSpeedParameters {
-    /// Monitoring limit, counting steps: MP1910, 1 to 16 777 215.
-    pub monitoring_steps: f64,
-    /// Integral component: MP1920, 0 to 65 535, recommended 50 to 100.
-    pub integral: f64,
-    /// Limit of the integral component, s: MP1925, 0 to 65.535, recommended 0.1 to 2.
-    pub integral_limit_s: f64,
-    /// Proportional component: MP1940, 0 to 65 535, recommended 50 to 200.
-    pub proportional: f64,
-    /// Acceleration pre-control, V/(m/s²): MP1945, 0 to 9.999.
-    pub acceleration_v_m_s2: f64,
-    /// The torque signal is negative: MP1950.
-    pub polarity_negative: bool,
-    /// The position comes from the motor's encoder: MP1951, for trimming only.
-    pub motor_encoder: bool,
-    /// Grating period of the scale divided by that of the motor's encoder: MP1955, 0.1 to 100.
-    pub encoder_ratio: f64,
-    /// Height of the reversal peaks, mm: MP1960, -1 to 1.
-    pub reversal_mm: f64,
-    /// Difference of position and speed encoder that is an error, mm, `None` without: MP1970.
-    pub difference_mm: Option<f64>,
-    /// Time that the controller stays on in an EMERGENCY STOP, s: MP1980, 0 to 1.9999.
-    pub emergency_stop_s: f64,
+impl AxisParameters {
+    /// What the loop of the axis is told of them.
+    pub fn settings(&self) -> AxisSettings {
+        AxisSettings {
+            encoder: self.encoder,
+            marks: MarkSettings {
+                kind: self.reference.kind,
+                spacing_mm: self.reference.mark_spacing_mm,
+            },
+            output: self.output,
+            motion: MotionSettings {
+                rapid_mm_min: self.motion.rapid_mm_min,
+                acceleration_m_s2: self.motion.acceleration_m_s2,
+            },
+            lag: self.lag,
+            precontrol: self.precontrol,
+            monitoring: self.monitoring,
+            compensation: self.compensation,
+            digital: self.digital,
+        }
+    }
+
+    /// Those that it works with as the slave of a master: feeds and acceleration, limits and datums are the master's
+    /// [000:4535].
+    pub fn as_slave_of(&self, master: &AxisParameters) -> AxisParameters {
+        let mut slave = *self;
+        slave.motion = master.motion;
+        slave.travel.ranges_mm = master.travel.ranges_mm;
+        slave.reference.feed_mm_min = master.reference.feed_mm_min;
+        slave
+    }
 }
 
 impl ParameterList {
@@ -336,10 +193,10 @@ impl ParameterList {
     }
 }
 
-fn encoder(axis: &AxisReader) -> EncoderParameters {
+fn encoder(axis: &AxisReader) -> EncoderSettings {
     // MP76: bit 0 concerns inhibited axes, bits 1 to 4 switch X to IV off.
     let checked = || !axis.list().old_bit(76, u32::from(axis.index()) + 1);
-    EncoderParameters {
+    EncoderSettings {
         input: axis.new_or(110, || f64::from(old_input(axis))) as u8,
         // 20-fold and 10-fold evaluation both make counting steps of 1 µm.
         signal_period_um: axis.new_or(330, || if axis.old(12) == 2.0 { 10.0 } else { 20.0 }),
@@ -358,8 +215,8 @@ fn old_input(axis: &AxisReader) -> u8 {
     (0..5).find(names_axis).unwrap_or(axis.index())
 }
 
-fn output(axis: &AxisReader) -> OutputParameters {
-    OutputParameters {
+fn output(axis: &AxisReader) -> OutputSettings {
+    OutputSettings {
         output: axis.new_or(120, || f64::from(axis.index())) as u8,
         polarity_negative: axis.flag(1040, 24),
         rapid_volts: axis.old_common(1050, 52),
@@ -380,9 +237,9 @@ fn motion(axis: &AxisReader) -> MotionParameters {
     }
 }
 
-fn lag(axis: &AxisReader) -> LagParameters {
+fn lag(axis: &AxisReader) -> LagSettings {
     let kv = axis.value(1810, 177);
-    LagParameters {
+    LagSettings {
         kv,
         kv_m105: axis.new_or(1815, || kv),
         kink_factor: axis.old_common(1820, 176),
@@ -400,13 +257,13 @@ const STEPS_PER_KV: f64 = 3.6864;
 /// The voltage at rapid traverse that the table is made for, V.
 const TABLE_VOLTS: f64 = 9.0;
 
-fn precontrol(axis: &AxisReader) -> PrecontrolParameters {
+fn precontrol(axis: &AxisReader) -> PrecontrolSettings {
     let old_kv = || {
         let rapid_m_min = axis.old(0) / 1000.0;
         axis.old(32) * rapid_m_min / STEPS_PER_KV * TABLE_VOLTS / axis.list().old(52).max(f64::MIN_POSITIVE)
     };
     let kv = axis.new_or(1510, old_kv);
-    PrecontrolParameters {
+    PrecontrolSettings {
         in_automatic: axis.list().feed_precontrol(),
         in_manual: axis.bit_or(1391, || false),
         kv,
@@ -422,9 +279,9 @@ fn precontrol(axis: &AxisReader) -> PrecontrolParameters {
     }
 }
 
-fn monitoring(axis: &AxisReader) -> MonitoringParameters {
+fn monitoring(axis: &AxisReader) -> MonitoringSettings {
     let old_window = || axis.list().old(if axis.index() < 3 { 58 } else { 192 });
-    MonitoringParameters {
+    MonitoringSettings {
         window_mm: axis.new_or(1030, old_window),
         standstill_mm: axis.old_common(1110, 169),
         movement_volts: axis.old_common(1140, 234),
@@ -432,9 +289,9 @@ fn monitoring(axis: &AxisReader) -> MonitoringParameters {
     }
 }
 
-fn compensation(axis: &AxisReader) -> CompensationParameters {
+fn compensation(axis: &AxisReader) -> CompensationSettings {
     let zero = |number| axis.new_or(number, || 0.0);
-    CompensationParameters {
+    CompensationSettings {
         backlash_mm: axis.value(710, 36),
         linear_mm_m: if axis.is_rotary() {
             0.0
@@ -459,10 +316,10 @@ fn reference(axis: &AxisReader) -> ReferenceParameters {
     let feed_mm_min = axis.value(1330, 8);
     let old_spacing = axis.old(242);
     let kind = match axis.new_or(1350, || if old_spacing > 0.0 { 0.0 } else { 1.0 }) as u8 {
-        0 => ReferenceType::DistanceCodedOld,
-        1 => ReferenceType::OneMark,
-        2 => ReferenceType::RotaryEncoder,
-        _ => ReferenceType::DistanceCoded,
+        0 => MarkKind::DistanceCodedOld,
+        1 => MarkKind::OneMark,
+        2 => MarkKind::RotaryEncoder,
+        _ => MarkKind::DistanceCoded,
     };
     ReferenceParameters {
         negative: axis.flag(1320, 16),
@@ -516,14 +373,16 @@ fn synchronization(axis: &AxisReader) -> Synchronization {
     let value = |number| axis.new_or(number, || 0.0);
     Synchronization {
         master: (value(850) as u8).checked_sub(1),
-        difference_mm: Some(value(855)).filter(|difference| *difference > 0.0),
-        from_reference_marks: value(860) == 1.0,
+        coupling: CouplingSettings {
+            difference_mm: Some(value(855)).filter(|difference| *difference > 0.0),
+            from_reference_marks: value(860) == 1.0,
+        },
     }
 }
 
-fn digital(axis: &AxisReader) -> DigitalSpeedParameters {
+fn digital(axis: &AxisReader) -> SpeedLoopSettings {
     let value = |number| axis.new_or(number, || 0.0);
-    DigitalSpeedParameters {
+    SpeedLoopSettings {
         monitoring_steps: value(1910),
         integral: value(1920),
         integral_limit_s: value(1925),

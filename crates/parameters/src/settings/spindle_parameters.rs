@@ -1,12 +1,15 @@
 //! Everything that spindle, gear change, orientation and tapping need.
 
+use bahn_servo::spindle_settings::{
+    GEARS, Gear, LeadSettings, OrientationSettings, SpeedCodes, SpindlePolarity, SpindleRamps,
+    SpindleSettings,
+};
+
 use super::bit_of;
 use crate::ParameterList;
 
 /// Bit of the spindle in MP31 and MP32.
 const ENCODER_BIT: u32 = 5;
-/// Gear ranges of the spindle.
-const GEARS: u8 = 8;
 /// Gear ranges that the TNC 151/155 have beside comparator speeds [001:1514-1536].
 const OLD_GEARS: usize = 4;
 /// One increment of the spindle encoder, degrees: 1024 lines, 4-fold [000:5901-5907].
@@ -42,7 +45,7 @@ pub struct SpindleParameters {
     /// Check of the encoder's edge separation, letter B: MP32 bit 5; old: none [000:3320-3328].
     pub check_edges: bool,
     /// The gear ranges, speeds ascending; those that are not used have rated speed 0 [000:5522-5564].
-    pub gears: [Gear; GEARS as usize],
+    pub gears: [Gear; GEARS],
     /// Speeds that M2504 compares with, rpm; TNC 151/155 only, when MP78 to MP85 do not ascend
     /// [001:1514-1536].
     pub comparator_rpm: Option<[f64; OLD_GEARS]>,
@@ -58,7 +61,7 @@ pub struct SpindleParameters {
     /// Ramps; a ramp of 0 V/ms is none.
     pub ramps: SpindleRamps,
     /// Orientation.
-    pub orientation: OrientationParameters,
+    pub orientation: OrientationSettings,
     /// Tapping with a floating holder and rigid tapping.
     pub tapping: TappingParameters,
 }
@@ -107,72 +110,6 @@ pub enum FreeOutput {
     MFunctions,
 }
 
-/// Polarity of the spindle's voltage: MP3130 (old MP172) [000:5502-5506].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SpindlePolarity {
-    /// 0: M03 positive, M04 negative.
-    M3Positive,
-    /// 1: M03 negative, M04 positive.
-    M3Negative,
-    /// 2: both positive.
-    BothPositive,
-    /// 3: both negative.
-    BothNegative,
-}
-
-/// Limits of the S code: MP3020, five digits `mmMMs` [000:5718-5745].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SpeedCodes {
-    /// Least code, 0 to 99.
-    pub min: u8,
-    /// Greatest code, 0 to 99.
-    pub max: u8,
-    /// Step of the codes, 1 to 9.
-    pub step: u8,
-}
-
-/// A gear range [000:5522-5564].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Gear {
-    /// Speed at override 100 %, rpm: MP3510 (old MP78-85).
-    pub rated_rpm: f64,
-    /// Voltage at that speed, V: MP3210, 0 to 9.999 (old MP86, one for all).
-    pub rated_volts: f64,
-    /// Highest speed, which the override does not pass, rpm: MP3515 (old: the speed at MP87 volts). 0 stands
-    /// for the rated speed (inferred).
-    pub max_rpm: f64,
-    /// kv of the orientation, (1000 degrees/min)/degree: MP3440, 0.1 to 10 (old MP238)
-    /// [000:5913-5931].
-    pub kv: f64,
-}
-
-/// Ramps of the spindle's voltage, V/ms: MP3410, 0 to 1.9999; on the TNC 151/155 all are MP168
-/// [000:5534] [001:1567-1570].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpindleRamps {
-    /// M03, M04, M05: MP3410.0.
-    pub normal_v_ms: f64,
-    /// Orientation: MP3410.1.
-    pub orientation_v_ms: f64,
-    /// Tapping with a floating holder: MP3410.2.
-    pub tapping_v_ms: f64,
-    /// Rigid tapping: MP3410.3.
-    pub rigid_v_ms: f64,
-}
-
-/// Orientation of the spindle [000:5851-5939].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OrientationParameters {
-    /// Positioning window, degrees: MP3420 increments of 360/4096 degree (old MP246).
-    pub window_deg: f64,
-    /// Position of the reference mark, degrees: MP3430, 0 to 360 (old MP240).
-    pub reference_deg: f64,
-    /// Speed while M2501 turns the spindle, rpm: MP3520.0 (old MP258).
-    pub jog_rpm: f64,
-    /// Speed of the orientation, rpm: MP3520.1 (old MP248).
-    pub speed_rpm: f64,
-}
-
 /// Tapping [000:6060-6141] [001:1804-1812].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TappingParameters {
@@ -195,6 +132,28 @@ pub struct TappingParameters {
 }
 
 impl SpindleParameters {
+    /// What the loop of the spindle is told of them.
+    pub fn settings(&self) -> SpindleSettings {
+        SpindleSettings {
+            zero_permitted: self.zero_permitted,
+            polarity: self.polarity,
+            counts_negative: self.counts_negative,
+            check_amplitude: self.check_amplitude,
+            check_edges: self.check_edges,
+            gears: self.gears,
+            min_volts: self.min_volts,
+            max_volts: self.max_volts,
+            jog_volts: self.jog_volts,
+            override_percent: self.override_percent,
+            ramps: self.ramps,
+            orientation: self.orientation,
+            lead: LeadSettings {
+                run_in_deg_min: self.tapping.run_in_deg_min,
+                transient: self.tapping.transient,
+            },
+        }
+    }
+
     /// The gear range for a programmed speed, rpm: the smallest that reaches it.
     fn gear_for(&self, rpm: f64) -> Option<&Gear> {
         self.gears
@@ -204,7 +163,7 @@ impl SpindleParameters {
 
     /// For each gear range its rated speed, rpm, and how fast the spindle changes its speed in rigid tapping,
     /// rpm/s: MP3410.3 in the voltage of the gear; 0 where there is no ramp or no gear.
-    pub fn rigid_ramps(&self) -> [[f64; 2]; GEARS as usize] {
+    pub fn rigid_ramps(&self) -> [[f64; 2]; GEARS] {
         self.gears.map(|gear| {
             let rpm_v = if gear.rated_volts > 0.0 {
                 gear.rated_rpm / gear.rated_volts
@@ -275,7 +234,7 @@ impl ParameterList {
                 tapping_v_ms: self.value((3410, 2), (168, 0)),
                 rigid_v_ms: self.value((3410, 3), (168, 0)),
             },
-            orientation: OrientationParameters {
+            orientation: OrientationSettings {
                 window_deg: self.value((3420, 0), (246, 0)) * INCREMENT_DEG,
                 reference_deg: self.value((3430, 0), (240, 0)),
                 jog_rpm: self.value((3520, 0), (258, 0)),
@@ -285,8 +244,8 @@ impl ParameterList {
         }
     }
 
-    fn gears(&self) -> ([Gear; GEARS as usize], Option<[f64; OLD_GEARS]>) {
-        let mut gears = [Gear::default(); GEARS as usize];
+    fn gears(&self) -> ([Gear; GEARS], Option<[f64; OLD_GEARS]>) {
+        let mut gears = [Gear::default(); GEARS];
         for (index, gear) in (0u8..).zip(&mut gears) {
             *gear = Gear {
                 rated_rpm: self.value((3510, index), (78 + u16::from(index), 0)),

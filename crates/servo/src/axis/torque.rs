@@ -27,7 +27,7 @@ impl Axis {
         let (drives, closed) = (self.drives(), self.closed());
         let profile = (self.method == Method::Precontrol).then_some(self.profile_mm_min);
         let (velocity, circular) = (self.velocity_mm_min, self.circular);
-        let acceleration = self.parameters.motion.acceleration_m_s2;
+        let acceleration = self.settings.motion.acceleration_m_s2;
         let scale_step_mm = self.measuring.step_mm();
         let Some(speed_loop) = &mut self.speed_loop else {
             return 0.0;

@@ -1,6 +1,6 @@
 //! The angle of the spindle.
 
-use bahn_parameters::spindle::SpindleParameters;
+use super::settings::SpindleSettings;
 
 use crate::fault::EncoderFault;
 use crate::plant::Encoder;
@@ -27,10 +27,10 @@ impl SpindleEncoder {
     pub(super) fn read(
         &mut self,
         encoder: Encoder,
-        parameters: &SpindleParameters,
+        settings: &SpindleSettings,
         timing: &Timing,
     ) -> Option<EncoderFault> {
-        let sign = if parameters.counts_negative { -1 } else { 1 };
+        let sign = if settings.counts_negative { -1 } else { 1 };
         self.count = encoder.count.wrapping_mul(sign);
         if !self.read_once {
             self.read_once = true;
@@ -46,9 +46,9 @@ impl SpindleEncoder {
             self.cycle_count = self.count;
             self.steps = 0;
         }
-        if encoder.amplitude_low && parameters.check_amplitude {
+        if encoder.amplitude_low && settings.check_amplitude {
             Some(EncoderFault::Amplitude)
-        } else if encoder.edges_too_close && parameters.check_edges {
+        } else if encoder.edges_too_close && settings.check_edges {
             Some(EncoderFault::Edges)
         } else {
             None

@@ -1,6 +1,6 @@
 //! The spindle led to an angle in every contour cycle: rigid tapping.
 
-use bahn_parameters::spindle::SpindleParameters;
+use super::settings::SpindleSettings;
 
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::timing::Timing;
@@ -29,12 +29,12 @@ pub(super) struct Lead {
 }
 
 impl Lead {
-    pub(super) fn new(parameters: &SpindleParameters, timing: &Timing) -> Lead {
-        let tapping = &parameters.tapping;
+    pub(super) fn new(settings: &SpindleSettings, timing: &Timing) -> Lead {
+        let settings = &settings.lead;
         Lead {
             fine: FineInterpolation::new(timing.steps()),
-            acceleration: Transient::new(timing.steps(), entry(tapping.transient)),
-            run_in: Transient::new(timing.steps(), entry(tapping.run_in_deg_min)),
+            acceleration: Transient::new(timing.steps(), entry(settings.transient)),
+            run_in: Transient::new(timing.steps(), entry(settings.run_in_deg_min)),
             velocity_deg_min: 0.0,
             profile_deg_min: 0.0,
             closed: true,
@@ -42,12 +42,12 @@ impl Lead {
         }
     }
 
-    pub(super) fn set_parameters(&mut self, parameters: &SpindleParameters, timing: &Timing) {
-        let tapping = &parameters.tapping;
+    pub(super) fn configure(&mut self, settings: &SpindleSettings, timing: &Timing) {
+        let settings = &settings.lead;
         self.acceleration
-            .set_entry(timing.steps(), entry(tapping.transient));
+            .set_entry(timing.steps(), entry(settings.transient));
         self.run_in
-            .set_entry(timing.steps(), entry(tapping.run_in_deg_min));
+            .set_entry(timing.steps(), entry(settings.run_in_deg_min));
     }
 
     /// Begins at an angle, standing, with the velocity that the loop before put out to hold it, degrees/min.

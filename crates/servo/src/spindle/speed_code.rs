@@ -1,6 +1,6 @@
 //! Coded spindle speeds of DIN 66025 [000:5718-5849].
 
-use bahn_parameters::spindle::SpeedCodes;
+use super::settings::SpeedCodes;
 
 /// Hundredths of the standard speeds of a decade.
 const DECADE: [u32; 20] = [

@@ -2,20 +2,20 @@
 #![allow(dead_code, reason = "not every test uses every helper")]
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::{ControlModel, ParameterList};
+use bahn_servo::settings::AxisSettings;
 use bahn_servo::{Axis, Encoder, Method, Timing};
 
 /// Mechanics without errors, and a drive without offset.
 const NO_ERRORS: [&str; 5] = ["710.0=0", "711.0=0", "715.0=0", "720.0=0", "1080.0=0"];
 
 /// The X axis of a model's reference list, without errors, with some parameters changed.
-pub fn parameters(model: ControlModel, assignments: &[&str]) -> AxisParameters {
+pub fn parameters(model: ControlModel, assignments: &[&str]) -> AxisSettings {
     let mut list = ParameterList::reference(model);
     for assignment in NO_ERRORS.iter().chain(assignments) {
         list.assign(assignment).unwrap();
     }
-    list.axis_parameters(0)
+    list.axis_parameters(0).settings()
 }
 
 /// An axis on its machine: a drive whose speed is its voltage, and an encoder that counts the way.
@@ -43,7 +43,7 @@ pub struct Bench {
 impl Bench {
     pub fn new(model: ControlModel, assignments: &[&str]) -> Bench {
         let parameters = parameters(model, assignments);
-        let timing = Timing::of(model);
+        let timing = model.timing();
         let polarity = if parameters.output.polarity_negative {
             -1.0
         } else {

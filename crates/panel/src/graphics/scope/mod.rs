@@ -7,7 +7,6 @@ use bahn_control::{Control, OscilloscopeKeys, ServoSampler, ServoSignal};
 use bahn_host::oscilloscope::{
     CHANNELS, Curve, Oscilloscope, OscilloscopeRecord, OscilloscopeSetup, SAMPLE_TIME_US, SAMPLES, Trigger,
 };
-use bahn_servo::Timing;
 
 use crate::screen::{GraphicsLine, GraphicsView};
 pub(crate) use curves::{Curves, Lane, ScopeColours, Sight, name as signal_name};
@@ -95,7 +94,7 @@ impl Scope {
             axis,
             ..Channel::default()
         };
-        let step_us = Timing::of(control.model()).step_us();
+        let step_us = control.model().timing().step_us();
         let sample_us = step_us.max(*SAMPLE_TIME_US.start());
         Scope {
             setup: ScopeSetup {

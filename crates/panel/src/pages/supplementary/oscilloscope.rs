@@ -4,7 +4,6 @@
 use bahn_control::{Command, Mode, ServoSignal};
 use bahn_dialogue::Key;
 use bahn_host::oscilloscope::SAMPLE_TIME_US;
-use bahn_servo::Timing;
 
 use crate::graphics::{Content, Scope, Subject, TriggerOn, signal_name};
 use crate::page::{Page, Turn, View};
@@ -218,7 +217,7 @@ fn next<T: Copy + PartialEq>(values: &[T], value: T, forward: bool) -> T {
 
 /// 0.6 to 6 ms in servo steps of the control [000:18748].
 fn sample_times(site: &Site) -> Vec<u32> {
-    let step_us = Timing::of(site.control().model()).step_us();
+    let step_us = site.control().model().timing().step_us();
     let times = (1..).map(|steps| steps * step_us);
     times
         .take_while(|time| time <= SAMPLE_TIME_US.end())
