@@ -97,3 +97,33 @@ fn decisions_name_files_that_are_there() {
     }
     assert!(count > 250, "{count}");
 }
+
+/// The map stays one that is read at a sitting.
+const MAP_BYTES: usize = 20_000;
+/// Promises of the map that name their test.
+const PROMISES: usize = 20;
+
+/// The map of the code is short, and each of its promises names a test that is there.
+#[test]
+fn the_map_names_the_tests_of_its_promises() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    assert!(text.len() <= MAP_BYTES, "{} bytes", text.len());
+    let rows = text
+        .lines()
+        .filter(|line| line.starts_with("| ") && !line.starts_with("| promise"));
+    let mut count = 0;
+    for row in rows {
+        let named = row.trim_end_matches([' ', '|', '`']).rsplit('`').next().unwrap();
+        let (file, test) = named
+            .split_once("::")
+            .unwrap_or_else(|| panic!("no test is named: {row}"));
+        let source = fs::read_to_string(root().join("crates").join(file))
+            .unwrap_or_else(|_| panic!("{file} is not there: {row}"));
+        assert!(
+            source.contains(&format!("fn {test}(")),
+            "{file} has no test {test}: {row}"
+        );
+        count += 1;
+    }
+    assert!(count >= PROMISES, "{count}");
+}
