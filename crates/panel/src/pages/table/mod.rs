@@ -4,10 +4,11 @@
 mod cells;
 mod editor;
 mod page;
+mod store;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use bahn_host::{TableForm, files};
+use bahn_host::TableForm;
 use bahn_parameters::MessageId;
 
 use crate::page::Turn;
@@ -15,9 +16,7 @@ use crate::programs::Entry;
 use crate::site::Site;
 use editor::TableEditor;
 
-/// Names of the tables of the machine in the directory, as a control has them [000:9002-9008].
-const TOOL_FILE: &str = "TOOL.T";
-const POCKET_FILE: &str = "TOOL_P.TCH";
+use store::{POCKET_FILE, TOOL_FILE, store};
 
 /// Where a table lies.
 fn path_of(name: &str, site: &Site) -> Option<PathBuf> {
@@ -98,28 +97,6 @@ fn is_open_to_all(name: &str, site: &Site) -> bool {
 /// The pocket table.
 pub(crate) fn pockets(site: &mut Site) -> Turn {
     open(POCKET_FILE, site)
-}
-
-/// Puts the new text of a table on the medium, when it has no fault and fits the machine.
-fn store(name: &str, path: &Path, form: TableForm, text: &str, site: &mut Site) -> Result<(), String> {
-    if is_protected(name, site) {
-        return Err(site.message(MessageId::ProtectedPgm));
-    }
-    let checked = form.check(text).map_err(|faults| {
-        let fault = faults.into_iter().next();
-        fault.map_or_else(String::new, |fault| fault.message)
-    });
-    let of_machine = is_of_machine(name, site);
-    let fits = checked.and_then(|()| match of_machine {
-        true => site.machine.fits(form, text, site.parameters()),
-        false => Ok(()),
-    });
-    if let Err(why) = fits {
-        return Err(format!("{}: {why}", site.message(MessageId::EntryValueIncorrect)));
-    }
-    files::write_whole(path, text.as_bytes()).map_err(|error| error.to_string())?;
-    site.programs.was_written();
-    Ok(())
 }
 
 /// Opens the editor of a table.
