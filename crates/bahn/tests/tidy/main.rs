@@ -135,51 +135,16 @@ const LINES_MAX: usize = 700;
 
 /// Files that use each other in a circle. None should; a circle that is opened leaves the list.
 const CIRCLES: &[(&str, &str)] = &[
-    ("bahn", "check check::din"),
-    (
-        "bahn",
-        "machine_folder machine_folder::check machine_folder::list",
-    ),
-    (
-        "bahn",
-        "mp mp::check mp::diff mp::explain mp::list mp::new mp::source",
-    ),
-    ("bahn", "oem oem::export oem::list"),
-    ("bahn", "plc plc::run plc::watch plc::watch::screen"),
-    (
-        "bahn",
-        "shelf shelf::against shelf::crew shelf::html shelf::table",
-    ),
-    ("bahn", "tune tune::spindle"),
-    ("dialogue", "cycles figure lib"),
+    ("bahn", "plc::watch plc::watch::screen"),
     ("interpreter", "checkpoints growing lib oem work"),
-    ("interpreter", "contour::corner_arc contour::movement"),
     ("link", "store store::lookup store::views"),
-    ("panel", "pages::table pages::table::editor pages::table::store"),
     ("panel", "station station::warm_start"),
-    (
-        "parameters",
-        "consistency list settings::axis_parameters settings::axis_reader settings::operation settings::spindle_parameters settings::tool_probe text",
-    ),
-    ("parameters", "definition error"),
-    (
-        "plc",
-        "modules modules::axes modules::call modules::coordinates modules::files modules::host modules::interface modules::memory modules::numbers modules::parameters modules::spindle modules::status modules::strings modules::tables modules::window",
-    ),
-    (
-        "program",
-        "bulk file_types format grow iso iso::read iso::words iso::write language parse parse::faults parse::foreign parse::words plain program survey",
-    ),
     ("program", "modal operation"),
     ("servo", "spindle spindle::speed"),
     (
         "technology",
         "channel channel::backward channel::drive channel::prepare channel::single",
     ),
-    ("technology", "channel::programs channel::skipped run"),
-    ("technology", "list list::checks"),
-    ("technology", "plc::output plc::window"),
-    ("workpiece", "view::page view::scheme"),
 ];
 
 /// Types of many fields with methods in many files, and these files. None should be.

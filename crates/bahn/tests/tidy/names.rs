@@ -63,9 +63,13 @@ impl Text {
                 _ => behind,
             };
         }
+        body.push_str(rest);
+        // A part that is declared is not used.
+        let is_of_part = |line: &&str| line.trim_end().ends_with(';') && has_word(line, "mod");
+        let body = body.lines().filter(|line| !is_of_part(line)).collect::<Vec<_>>();
         Text {
             uses,
-            body: body + rest,
+            body: body.join("\n"),
         }
     }
 }

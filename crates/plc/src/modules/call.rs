@@ -2,7 +2,7 @@
 
 use bahn_exchange::{Image, Number, Size, signal};
 
-use super::{Module, memory};
+use super::address;
 use crate::run::{DataStack, Text};
 use crate::{Nc, PlcError, TextFile};
 
@@ -34,17 +34,6 @@ pub(crate) struct Call<'a> {
 }
 
 impl Call<'_> {
-    /// Runs a module and sets the error status M3171 [000:14739].
-    pub(crate) fn run(&mut self, number: u16) -> Result<(), PlcError> {
-        let module = Module::find(number).ok_or(PlcError::ModuleNotDefined)?;
-        match (module.run)(self)? {
-            Outcome::Done => self.image.set_bit(signal::MODULE_ERROR, false),
-            Outcome::Failed => self.image.set_bit(signal::MODULE_ERROR, true),
-            Outcome::Untouched => {}
-        }
-        Ok(())
-    }
-
     /// Pulls the arguments; they are given in the order of the manual, in which the program pushed them.
     pub(super) fn arguments<const N: usize>(&mut self) -> Result<[i32; N], PlcError> {
         let mut arguments = [0; N];
@@ -131,21 +120,21 @@ impl Call<'_> {
     /// Bytes of the word memory; `None` when they do not lie inside it, the first address does not, or they
     /// are more than a string has characters.
     pub(super) fn bytes(&self, first: i32, length: i32) -> Option<Text> {
-        let inside = first < memory::BYTES && memory::fits(first, length, memory::BYTES);
+        let inside = first < address::BYTES && address::fits(first, length, address::BYTES);
         let few = usize::try_from(length).is_ok_and(|length| length <= bahn_exchange::STRING_LENGTH);
         (inside && few).then_some(())?;
-        let byte = |address| Some(self.image.number(memory::operand(Size::Byte, address)?) as u8);
+        let byte = |address| Some(self.image.number(address::operand(Size::Byte, address)?) as u8);
         (first..first + length).map(byte).collect()
     }
 
     /// Writes bytes into the word memory; false when there is no room, or the first address is outside.
     pub(super) fn set_bytes(&mut self, first: i32, bytes: &[u8]) -> bool {
         let length = i32::try_from(bytes.len()).unwrap_or(i32::MAX);
-        if first >= memory::BYTES || !memory::fits(first, length, memory::BYTES) {
+        if first >= address::BYTES || !address::fits(first, length, address::BYTES) {
             return false;
         }
         for (address, byte) in (first..).zip(bytes) {
-            if let Some(number) = memory::operand(Size::Byte, address) {
+            if let Some(number) = address::operand(Size::Byte, address) {
                 self.image.set_number(number, i32::from(*byte));
             }
         }
@@ -156,7 +145,7 @@ impl Call<'_> {
     /// there is no room for all.
     pub(super) fn set_doubles(&mut self, first: i32, values: &[i32]) -> bool {
         let length = i32::try_from(4 * values.len()).unwrap_or(i32::MAX);
-        let fits = first < memory::BYTES && memory::fits(first, length, memory::BYTES);
+        let fits = first < address::BYTES && address::fits(first, length, address::BYTES);
         if first % 4 != 0 || !fits {
             return false;
         }
@@ -170,7 +159,7 @@ impl Call<'_> {
 
     /// A doubleword by its address.
     pub(super) fn double(&self, address: i32) -> Option<Number> {
-        memory::operand(Size::Double, address)
+        address::operand(Size::Double, address)
     }
 }
 

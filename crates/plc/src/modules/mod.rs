@@ -1,6 +1,7 @@
 //! Internal modules 9000 to 9255: called with CM, arguments and results on the data stack
 //! [000:14733-16160].
 
+mod address;
 mod axes;
 mod call;
 mod coordinates;
@@ -16,8 +17,9 @@ mod strings;
 mod tables;
 mod window;
 
-use crate::PlcError;
+use bahn_exchange::signal;
 
+use crate::PlcError;
 pub(crate) use call::Call;
 use call::{Outcome, string_number};
 
@@ -112,6 +114,19 @@ impl Module {
     /// The module of a number.
     pub fn find(number: u16) -> Option<&'static Module> {
         MODULES.iter().find(|module| module.number == number)
+    }
+}
+
+impl Call<'_> {
+    /// Runs a module and sets the error status M3171 [000:14739].
+    pub(crate) fn run(&mut self, number: u16) -> Result<(), PlcError> {
+        let module = Module::find(number).ok_or(PlcError::ModuleNotDefined)?;
+        match (module.run)(self)? {
+            Outcome::Done => self.image.set_bit(signal::MODULE_ERROR, false),
+            Outcome::Failed => self.image.set_bit(signal::MODULE_ERROR, true),
+            Outcome::Untouched => {}
+        }
+        Ok(())
     }
 }
 
