@@ -69,7 +69,11 @@ impl ChannelList {
             list.read_line(at);
         }
         list.take_entries();
-        checks::check(&mut list, (cycle_s * 1e6).round() as u32);
+        let cycle_us = (cycle_s * 1e6).round() as u32;
+        let (errors, warnings) = checks::check(&list.settings, &list.entries, cycle_us);
+        list.errors.extend(errors);
+        list.warnings.extend(warnings);
+        checks::drop_process_times(&mut list.settings);
         list.errors.sort();
         list.warnings.sort();
         list

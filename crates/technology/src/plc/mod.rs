@@ -11,10 +11,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 pub use error::ScriptError;
+pub(crate) use output::WindowRange;
 pub use script::Script;
 pub(crate) use script::{After, Reply};
 use window::Window;
-pub(crate) use window::WindowRange;
 pub use window::{PlcMemory, WINDOW_BYTES};
 
 use output::Id;

@@ -1,6 +1,7 @@
 //! What goes to the PLC, and what comes back.
 
-use super::window::WindowRange;
+/// Number of the first spindle among the ranges.
+const FIRST_SPINDLE: usize = 64;
 
 /// Number of a function in the channel.
 pub(super) type Id = u64;
@@ -30,4 +31,25 @@ pub(crate) struct Output<'a> {
 pub(crate) enum Answer {
     Fetched,
     Acknowledged,
+}
+
+/// A range by its number in the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum WindowRange {
+    Channel,
+    /// An axis, from 0 on.
+    Axis(usize),
+    /// A spindle, from 0 on.
+    Spindle(usize),
+}
+
+impl WindowRange {
+    pub(super) fn number(self) -> u8 {
+        let number = match self {
+            WindowRange::Channel => 0,
+            WindowRange::Axis(index) => 1 + index,
+            WindowRange::Spindle(index) => FIRST_SPINDLE + index,
+        };
+        u8::try_from(number).unwrap_or(u8::MAX)
+    }
 }

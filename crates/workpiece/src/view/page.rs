@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use bahn_picture::{Anchor, Colour, Image};
 use thiserror::Error;
 
-use super::scheme::Scheme;
+use super::scheme::{Pens, Scheme};
 
 /// The sheet that a view is drawn on: its size and what its title line says.
 #[derive(Clone, Debug)]
@@ -75,6 +75,11 @@ impl Page {
     pub fn in_colours(mut self, scheme: Scheme) -> Page {
         self.scheme = Some(scheme);
         self
+    }
+
+    /// What lines and words are drawn with.
+    pub(super) fn pens(&self) -> Pens {
+        Pens::of(self.scheme)
     }
 
     /// The same page; what is drawn on it is given up, and is no picture, once the flag is set.

@@ -8,11 +8,6 @@ use bahn_parameters::MessageId;
 use super::{is_of_machine, is_protected};
 use crate::site::Site;
 
-/// Names of the tables of the machine in the directory, as a control has them [000:9002-9008].
-pub(super) const TOOL_FILE: &str = "TOOL.T";
-
-pub(super) const POCKET_FILE: &str = "TOOL_P.TCH";
-
 /// Puts the new text of a table on the medium, when it has no fault and fits the machine.
 pub(super) fn store(
     name: &str,
