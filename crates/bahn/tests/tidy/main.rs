@@ -135,11 +135,8 @@ const LINES_MAX: usize = 700;
 
 /// Files that use each other in a circle. None should; a circle that is opened leaves the list.
 const CIRCLES: &[(&str, &str)] = &[
-    ("bahn", "plc::watch plc::watch::screen"),
     ("interpreter", "checkpoints growing lib oem work"),
-    ("link", "store store::lookup store::views"),
     ("panel", "station station::warm_start"),
-    ("program", "modal operation"),
     ("servo", "spindle spindle::speed"),
     (
         "technology",
