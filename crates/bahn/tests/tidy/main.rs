@@ -184,6 +184,18 @@ const NOT_OF_AXES: &[(&str, &str)] = &[
     ("workpiece/benches/tools.rs", "corner radii"),
 ];
 
+/// Tables in which controls are known by their names, and why.
+const NAMES_OF_CONTROLS: &[(&str, &str)] = &[
+    (
+        "exchange/src/signal.rs",
+        "markers that the manual lists for a control that is none of the models",
+    ),
+    (
+        "link/src/lsv2/peer.rs",
+        "what a control at the other end says that it is; features follow",
+    ),
+];
+
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
 
 fn root() -> PathBuf {
@@ -302,6 +314,57 @@ fn models_are_compared_in_one_room() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Nobody else knows a control by its name either: a model is typed, and what it does otherwise is asked of it.
+#[test]
+fn controls_are_known_by_name_in_tables_only() {
+    let mut faults = Vec::new();
+    let mut known: BTreeSet<&str> = NAMES_OF_CONTROLS.iter().map(|(file, _)| *file).collect();
+    for file in source_files(&root().join("crates")) {
+        let path = file.to_string_lossy();
+        if !path.contains("/src/") || path.contains("crates/parameters/") || path.contains("/tests") {
+            continue;
+        }
+        let named: Vec<String> = code_of(&file)
+            .lines()
+            .filter(|line| names_a_control(line))
+            .map(|line| format!("{path}: {}", line.trim()))
+            .collect();
+        let other = NAMES_OF_CONTROLS.iter().find(|(other, _)| path.ends_with(other));
+        match other {
+            Some((other, _)) if !named.is_empty() => drop(known.remove(other)),
+            _ => faults.extend(named),
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(known.is_empty(), "no such names any more: {known:?}");
+}
+
+/// Whether a text of a line begins with the name of a control: letters, and its number.
+fn names_a_control(line: &str) -> bool {
+    line.split('"').skip(1).step_by(2).any(|text| {
+        let name = text.to_ascii_lowercase();
+        let number = name
+            .trim_start_matches('i')
+            .strip_prefix("tnc")
+            .map(str::trim_start);
+        number.is_some_and(|number| number.starts_with(|letter: char| letter.is_ascii_digit()))
+    })
+}
+
+#[test]
+fn names_of_controls_are_told_from_drives() {
+    for name in [
+        "name.starts_with(\"ITNC530\")",
+        "model == \"TNC 151\"",
+        "of(\"tnc415b\")",
+    ] {
+        assert!(names_a_control(name), "{name}");
+    }
+    for other in ["join(\"TNC:1.H\")", "(\"tnc-plain\", \"h\")", "a TNC 415"] {
+        assert!(!names_a_control(other), "{other}");
+    }
 }
 
 /// Machine parameters have typed getters: their numbers stand in the room `parameters`.
