@@ -3,6 +3,7 @@
 //! Every block is read, and the program is rehearsed: executed without geometry, beyond its errors.
 
 pub(crate) mod din;
+mod report;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,6 +18,9 @@ use crate::interrupt::Interrupt;
 use crate::options::{CheckOptions, Format};
 use crate::reports::Reports;
 use crate::{Outcome, UsageError};
+
+pub(crate) use report::CheckReport;
+use report::{Entry, summary};
 
 /// How programs are checked.
 pub(crate) struct Check {
@@ -49,31 +53,6 @@ pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         true => Outcome::Interrupted,
         false => outcome,
     })
-}
-
-/// What is wrong with one file.
-#[derive(Debug, serde::Serialize)]
-pub(crate) struct CheckReport {
-    file: String,
-    blocks: u32,
-    pub errors: usize,
-    warnings: usize,
-    /// The end was reached, whatever the faults on the way.
-    complete: bool,
-    diagnostics: Vec<Entry>,
-}
-
-#[derive(Debug, serde::Serialize)]
-struct Entry {
-    severity: &'static str,
-    message: String,
-    program: String,
-    block: u32,
-    line: u32,
-    column: u32,
-    length: u32,
-    detail: String,
-    help: String,
 }
 
 /// Checks a file and prints what is wrong.
@@ -202,28 +181,4 @@ fn nothing(program: Arc<Program>, message: MessageId, detail: &str) -> Examinati
         complete: Complete::NotBegun,
         q_values: Vec::new(),
     }
-}
-
-fn summary(report: &CheckReport, complete: Complete) {
-    let count = |number: usize, what: &str| match number {
-        1 => format!("1 {what}"),
-        _ => format!("{number} {what}s"),
-    };
-    let all = report.errors + report.warnings;
-    let printed = report.diagnostics.len().min(diagnostics::PRINTED_MAX);
-    let more = match all - printed {
-        0 => String::new(),
-        rest => format!(", {rest} of them not shown"),
-    };
-    let followed = match complete {
-        Complete::No => "; loops were not followed to their end",
-        Complete::Yes | Complete::NotBegun => "",
-    };
-    diagnostics::print_text(&format!(
-        "{}: {} blocks, {}, {}{more}{followed}",
-        report.file,
-        report.blocks,
-        count(report.errors, "error"),
-        count(report.warnings, "warning"),
-    ));
 }

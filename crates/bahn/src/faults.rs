@@ -21,7 +21,7 @@ JSON: a list of id, cause, message, letter, flashes, seen, reaction, travel, cle
 #[derive(Args, Debug)]
 pub(crate) struct FaultsOptions {
     /// Control model whose texts are shown.
-    #[arg(long, value_name = "MODEL", ignore_case = true, value_parser = model_parser(), default_value = "tnc415b")]
+    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
     /// How the table is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]

@@ -50,6 +50,7 @@ mod manual;
 mod mp;
 mod oem;
 mod options;
+mod outcome;
 mod panel;
 mod paragraph;
 mod path_csv;
@@ -78,10 +79,9 @@ pub use bahn_host::{check_nc_tables, check_script, check_state, check_tool_table
 pub use scope::check_recording;
 
 use std::ffi::OsString;
-use std::fmt;
 use std::process::ExitCode;
 
-use bahn_host::HostError;
+use outcome::{Outcome, UsageError};
 
 /// Executes the command line and prints what it has to say.
 ///
@@ -133,61 +133,8 @@ fn execute(command: cli::Command) -> Outcome {
     })
 }
 
-/// How a command ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Outcome {
-    /// No error.
-    Fine,
-    /// A program has an error.
-    ProgramError,
-    /// An option or a file is wrong.
-    WrongUse,
-    /// Ctrl-C.
-    Interrupted,
-}
-
-impl Outcome {
-    /// The exit code.
-    fn code(self) -> u8 {
-        match self {
-            Outcome::Fine => 0,
-            Outcome::ProgramError => 1,
-            Outcome::WrongUse => 2,
-            // As shells count a process ended by SIGINT: 128 + 2.
-            Outcome::Interrupted => 130,
-        }
-    }
-}
-
 impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> ExitCode {
         ExitCode::from(outcome.code())
-    }
-}
-
-/// Wrong use: what is wrong with an option or a file, in words for the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct UsageError(String);
-
-impl UsageError {
-    fn new(text: impl Into<String>) -> UsageError {
-        UsageError(text.into())
-    }
-}
-
-impl From<HostError> for UsageError {
-    fn from(error: HostError) -> UsageError {
-        match error {
-            HostError::SwitchedOn(_) => {
-                UsageError(format!("{error}; --fresh runs beside it without its state"))
-            }
-            other => UsageError(other.to_string()),
-        }
-    }
-}
-
-impl fmt::Display for UsageError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
     }
 }

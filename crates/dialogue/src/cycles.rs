@@ -8,7 +8,10 @@ use crate::blocks::{SIGNED, TURN, UNSIGNED, coordinates};
 use crate::field::{Ask, Field, Most, Need, Signs, Slot};
 use crate::line::Line;
 use crate::prompt::prompt;
-use crate::{BuilderCycle, OEM_CYCLES, Setting};
+use crate::{BuilderCycle, Setting};
+
+/// Cycles of the machine builder [003:4904-4906].
+pub(crate) const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;
 
 /// The prompt of a parameter of a cycle of the machine builder that has no text of its own.
 pub(crate) const PARAMETER: &str = "parameter";

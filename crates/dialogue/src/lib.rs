@@ -69,6 +69,7 @@ mod tests;
 mod typing;
 mod view;
 
+use cycles::OEM_CYCLES;
 pub use draft::{Draft, NoDraft};
 pub use editor::Editor;
 pub use field::Word;
@@ -79,6 +80,3 @@ pub use reaction::{Reaction, Wanted};
 pub use setting::{BuilderCycle, Setting};
 pub use template::{TemplatePart, cycle_template};
 pub use view::{List, Question, Row, ShownWord, View};
-
-/// Cycles of the machine builder [003:4904-4906].
-const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;

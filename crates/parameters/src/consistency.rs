@@ -3,7 +3,7 @@
 //! The control's editor does not look for them; each rule is a sentence of the manual.
 
 use crate::settings::{AxisParameters, SpindleOutput, SpindleParameters, Station};
-use crate::{ControlModel, ParameterId, ParameterList};
+use crate::{ControlModel, ListText, ParameterId, ParameterList};
 
 /// Values that do not go together.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +18,18 @@ pub struct Inconsistency {
     pub source: &'static str,
     /// There is no such machine: the list is faulty, and no control is switched on with it.
     pub impossible: bool,
+}
+
+impl ListText {
+    /// What does not go together in a list that can be read as a whole; nothing where it has no entry.
+    pub fn inconsistencies(&self) -> Vec<Inconsistency> {
+        if self.entries().is_empty() {
+            return Vec::new();
+        }
+        let mut list = ParameterList::smallest(self.model());
+        list.take(self);
+        list.inconsistencies()
+    }
 }
 
 impl ParameterList {

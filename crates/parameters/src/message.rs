@@ -2,21 +2,14 @@
 
 mod codes;
 mod table;
+mod texts;
 
 pub use codes::MessageCode;
 pub use table::MessageId;
 
 use crate::ControlModel;
 
-/// One message of the table.
-struct Message {
-    name: &'static str,
-    text: &'static str,
-    variants: &'static [(&'static [ControlModel], &'static str)],
-    cause: &'static str,
-    remedy: &'static str,
-    source: &'static str,
-}
+use texts::Message;
 
 impl MessageId {
     /// The text that the model shows.

@@ -8,6 +8,7 @@
 mod axes;
 mod axis_parameters;
 mod axis_reader;
+mod bits;
 mod characteristics;
 mod interfaces;
 mod machining;
@@ -40,6 +41,8 @@ pub use tool_probe::{ProbeOrientation, ToolProbeParameters, ToolProbeTolerance};
 
 use crate::{Numbering, ParameterList};
 
+pub(crate) use bits::bit_of;
+
 impl ParameterList {
     /// Whether the list has the numbers of the TNC 151/155.
     pub(crate) fn has_old_numbers(&self) -> bool {
@@ -57,9 +60,4 @@ impl ParameterList {
     fn bit(&self, new: (u16, u8), old: (u16, u8), bit: u32) -> bool {
         bit_of(self.value(new, old), bit)
     }
-}
-
-/// Whether a bit of a value is set.
-pub(crate) fn bit_of(value: f64, bit: u32) -> bool {
-    value as u64 >> bit & 1 == 1
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::definition::{parse_id, parse_number};
-use crate::{ControlModel, Definition, Inconsistency, ListError, ParameterError, ParameterId, ParameterList};
+use crate::{ControlModel, Definition, ListError, ParameterError, ParameterId};
 
 /// The text of a list of machine parameters. Reading it never fails and keeps every byte; a value can be
 /// changed in its place, so that comments and order stay.
@@ -118,16 +118,6 @@ impl ListText {
             error: ParameterError::NotDefined(definition.id),
         }));
         faults
-    }
-
-    /// What does not go together in a list that can be read as a whole; nothing where it has no entry.
-    pub fn inconsistencies(&self) -> Vec<Inconsistency> {
-        if self.entries.is_empty() {
-            return Vec::new();
-        }
-        let mut list = ParameterList::smallest(self.model);
-        list.take(self);
-        list.inconsistencies()
     }
 
     /// The parameters of the model that the text does not define, in ascending order.

@@ -1,5 +1,7 @@
 //! Programs that are still coming: their text is appended, and what was executed may be forgotten [003:1640-1690].
 
+mod growth;
+
 use std::ops::Range;
 
 use crate::language::Landmark;
@@ -9,17 +11,10 @@ use crate::survey::Frame;
 use crate::text::{line_end_of, text_start};
 use crate::{Header, Program};
 
+pub(crate) use growth::Growth;
+
 /// Bytes that may come before BEGIN; with more the program has none *(inferred)*.
 const LEADING_MAX: usize = 1 << 16;
-
-/// What a program that is still coming has besides its known blocks.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Growth {
-    /// Text from the block on that may go on in what comes.
-    pending: Vec<u8>,
-    /// BEGIN has come, or will not.
-    began: bool,
-}
 
 impl Program {
     /// A program in plain language of which nothing has come yet.

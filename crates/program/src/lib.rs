@@ -75,7 +75,7 @@ pub use inch_feed::FeedDoubt;
 pub use iso::IsoLanguage;
 pub use language::{Landmark, Language, ParsedBlock, WordKind, WordSpan};
 pub use lines::{BlockText, Lines, RawBlock};
-pub use modal::{Distance, ModalBlock, Modality, PathFunction};
+pub use modal::{Distance, Modality, PathFunction};
 pub use operation::*;
 pub use parse::m_words;
 pub use plain::PlainLanguage;

@@ -3,7 +3,7 @@
 use bahn_parameters::InchFeed;
 use bahn_path::{Axis, AxisSet, PerAxis};
 
-use crate::{BlockError, ModalBlock, Modality};
+use crate::{BlockError, Modality};
 
 /// One block of a part program.
 #[derive(Clone, Debug, PartialEq)]
@@ -668,4 +668,15 @@ pub enum CycleWord {
     Assignment(u16, Value),
     /// `M` function.
     M(u16),
+}
+
+/// A block that does several things, or one whose words may be incremental by a function in force.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModalBlock {
+    /// The number of the G function that says what it does; `None` for a positioning block with more in it.
+    pub code: Option<u16>,
+    /// What it says of the functions in force; its open words are those of all operations but positioning.
+    pub modality: Modality,
+    /// What it does, in this order.
+    pub operations: Box<[Operation]>,
 }

@@ -5,8 +5,8 @@ use bahn_motion::Limits;
 use bahn_path::Position;
 
 use crate::bounds::Bounds;
-use crate::plc::{PlcMemory, Script};
-use crate::report::{Fault, Report};
+use crate::plc::Script;
+use crate::report::Fault;
 use crate::settings::ChannelSettings;
 
 /// Programs in turn on one channel.
@@ -61,17 +61,4 @@ pub trait Blocks {
 
     /// There is no such block.
     fn not_found(&self, block: &str) -> Fault;
-}
-
-impl Run<'_> {
-    /// Runs them.
-    pub fn execute(self) -> Report {
-        crate::channel::execute(&self, None)
-    }
-
-    /// Runs them with a PLC that reads and answers the functions in a window of bytes. The script says nothing of them: what
-    /// it says of path and spindles holds.
-    pub fn execute_beside(self, plc: &mut dyn PlcMemory) -> Report {
-        crate::channel::execute(&self, Some(plc))
-    }
 }

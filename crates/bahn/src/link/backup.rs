@@ -163,7 +163,7 @@ fn is_off(folder: &Path) -> Result<(), UsageError> {
         true => {
             let state = machine.root.join(&machine.folder.state);
             let error = HostError::SwitchedOn(state.display().to_string());
-            Err(UsageError(format!("{error}; end what runs it")))
+            Err(UsageError::new(format!("{error}; end what runs it")))
         }
         false => Ok(()),
     }

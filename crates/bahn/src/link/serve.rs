@@ -42,7 +42,7 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
         }
     };
     let mut station = Station::power_on(machine).map_err(|error| match error {
-        HostError::SwitchedOn(_) => UsageError(format!("{error}; end what runs it")),
+        HostError::SwitchedOn(_) => UsageError::new(format!("{error}; end what runs it")),
         other => other.into(),
     })?;
     let interrupt = Interrupt::on_ctrl_c();

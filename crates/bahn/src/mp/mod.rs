@@ -5,6 +5,7 @@
 //! - `check`, `list`, `explain`, `diff`, `new`: the subcommands.
 
 mod check;
+mod count;
 mod diff;
 mod explain;
 mod list;
@@ -17,6 +18,8 @@ pub(crate) use options::MpOptions;
 use crate::{Outcome, UsageError};
 use options::MpCommand;
 
+use count::count;
+
 /// Executes a subcommand of `bahn mp`.
 pub(crate) fn command(options: &MpOptions) -> Result<Outcome, UsageError> {
     match &options.command {
@@ -25,13 +28,5 @@ pub(crate) fn command(options: &MpOptions) -> Result<Outcome, UsageError> {
         MpCommand::Explain(options) => explain::command(options),
         MpCommand::Diff(options) => diff::command(options),
         MpCommand::New(options) => new::command(options),
-    }
-}
-
-/// `1 error`, `2 errors`.
-fn count(number: usize, what: &str) -> String {
-    match number {
-        1 => format!("1 {what}"),
-        _ => format!("{number} {what}s"),
     }
 }

@@ -6,14 +6,15 @@
 mod export;
 mod import;
 mod list;
+mod machine;
 mod options;
 
 pub(crate) use options::OemOptions;
 
-use bahn_host::LoadedMachine;
-
-use crate::{Outcome, UsageError, diagnostics};
+use crate::{Outcome, UsageError};
 use options::OemCommand;
+
+use machine::machine;
 
 /// Executes a subcommand of `bahn oem`.
 pub(crate) fn command(options: &OemOptions) -> Result<Outcome, UsageError> {
@@ -21,16 +22,5 @@ pub(crate) fn command(options: &OemOptions) -> Result<Outcome, UsageError> {
         OemCommand::List(options) => list::command(options),
         OemCommand::Export(options) => export::command(options),
         OemCommand::Import(options) => import::command(options),
-    }
-}
-
-/// The machine of a folder; `None` when it has faults, which are printed.
-fn machine(folder: &std::path::Path) -> Result<Option<LoadedMachine>, UsageError> {
-    match LoadedMachine::load(folder)? {
-        Ok(machine) => Ok(Some(machine)),
-        Err(faults) => {
-            diagnostics::print_faults(&faults);
-            Ok(None)
-        }
     }
 }

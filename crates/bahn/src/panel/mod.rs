@@ -24,7 +24,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// A panel goes on with what the machine has kept: only one at a time can.
 fn in_use(error: HostError) -> UsageError {
     match error {
-        HostError::SwitchedOn(_) => UsageError(format!(
+        HostError::SwitchedOn(_) => UsageError::new(format!(
             "{error}; end what runs it, or give another folder with --machine (`bahn machine new` makes one)"
         )),
         other => other.into(),

@@ -24,6 +24,7 @@ mod list;
 mod live;
 mod options;
 mod record;
+mod retained;
 mod run;
 mod signals;
 mod source;
@@ -35,12 +36,10 @@ mod xref;
 
 pub(crate) use options::PlcOptions;
 
-use std::path::Path;
-
-use bahn_host::Retained;
-
-use crate::{Outcome, UsageError, diagnostics};
+use crate::{Outcome, UsageError};
 use options::PlcCommand;
+
+use retained::retained;
 
 /// Executes a subcommand of `bahn plc`.
 pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
@@ -55,13 +54,4 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
         PlcCommand::Xref(options) => xref::command(options),
         PlcCommand::Signals(options) => signals::command(options),
     }
-}
-
-/// Opens the journal of the retained memory; says what is damaged in it.
-fn retained(path: Option<&Path>) -> Result<Option<Retained>, UsageError> {
-    let retained = path.map(Retained::open).transpose()?;
-    if let Some(damage) = retained.as_ref().and_then(Retained::damage) {
-        diagnostics::print_line(&format!("warning: {damage}"));
-    }
-    Ok(retained)
 }

@@ -3,6 +3,7 @@
 mod breakpoint;
 mod entry;
 mod screen;
+mod state;
 #[cfg(test)]
 mod tests;
 mod trend;
@@ -12,7 +13,6 @@ use std::time::{Duration, Instant};
 
 use bahn_exchange::Exchange;
 use bahn_host::Retained;
-use bahn_plc::{TraceStep, Tracer};
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
@@ -25,6 +25,8 @@ use bahn_host::{Assignment, Content, Operand};
 use breakpoint::Breakpoints;
 use entry::Entry;
 use trend::Trend;
+
+use state::{LastInstruction, Watch};
 
 /// Shows the table until the user ends it.
 pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
@@ -75,32 +77,6 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
 /// What is said of keys that a running machine does not have.
 const ON_THE_BENCH: &str =
     "on a machine there are whole scans: lines and a new start are on the bench (bahn plc watch MAIN.PLC)";
-
-/// The view.
-struct Watch {
-    subject: Subject,
-    operands: Vec<Operand>,
-    chosen: usize,
-    running: bool,
-    entry: Option<Entry>,
-    message: String,
-    last: LastInstruction,
-    breakpoints: Breakpoints,
-    /// It was stopped before the first line, so that the next cycle passes it.
-    held: bool,
-    trend: Trend,
-    retained: Option<Retained>,
-}
-
-/// The instruction that was executed last, by its index.
-#[derive(Default)]
-struct LastInstruction(Option<usize>);
-
-impl Tracer for LastInstruction {
-    fn executed(&mut self, step: &TraceStep<'_>) {
-        self.0 = Some(step.at);
-    }
-}
 
 impl Watch {
     fn new(subject: Subject, operands: Vec<Operand>, retained: Option<Retained>) -> Watch {

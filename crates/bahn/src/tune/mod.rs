@@ -1,21 +1,24 @@
 //! `bahn tune`: the commissioning assistant.
 
+mod changes;
+mod options;
 mod picture;
 mod spindle;
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::PathBuf;
 
-use bahn_host::tuning::{AxisTest, Change, Circle, Task, Tuned, tune};
-use bahn_parameters::{Definition, ListText, ParameterList};
-use clap::{Args, ValueHint};
+use bahn_host::tuning::{AxisTest, Circle, Task, Tuned, tune};
+
 use serde::Serialize;
 
-use crate::files::{self, NewFile};
+use crate::files;
 use crate::options::Format;
 use crate::report::tidy;
 use crate::{Outcome, UsageError, console, diagnostics, machine_folder, settings};
+
+pub(crate) use options::TuneOptions;
+
+use changes::{ChangeRow, change_rows, change_text, write};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -49,55 +52,6 @@ Of the spindle: trials, written, changes; before and after (beyond_mm the depth,
 threads_s, orientation_s before two threads of each gear range).
 Exit codes: 0 fine, also without a proposal; 1 the machine is wrong or does not get through the trial; 2 wrong use.";
 
-/// Options of `bahn tune`.
-#[derive(Args, Debug)]
-pub(crate) struct TuneOptions {
-    /// Folder of the machine.
-    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub folder: PathBuf,
-    /// The axis, or the two of a circle as X,Y: they are tuned together, since their kv must be equal. X, Y and Z find a
-    /// partner by themselves. S is the spindle.
-    #[arg(value_name = "AXIS", value_parser = axes)]
-    pub axes: (char, Option<char>),
-    /// Radius of the circle, mm; an axis alone goes so far to both sides, mm or degrees.
-    #[arg(long, value_name = "MM", default_value_t = 20.0)]
-    pub radius: f64,
-    /// Feed on the path, mm/min or degrees/min.
-    #[arg(long, value_name = "MM/MIN", default_value_t = 2000.0)]
-    pub feed: f64,
-    /// Greatest machining feed, above which a kink point lies, mm/min; half of rapid traverse without it.
-    #[arg(long, value_name = "MM/MIN")]
-    pub machining_feed: Option<f64>,
-    /// Put what is proposed into the list of machine parameters, crash-safe and with its comments.
-    #[arg(long)]
-    pub write: bool,
-    /// Draw the circle test and a stop, before and after: .png or .svg.
-    #[arg(long, value_name = "FILE.png|FILE.svg", value_hint = ValueHint::FilePath)]
-    pub picture: Option<PathBuf>,
-    /// One machine parameter to begin with instead of that of the list, as 1510.0=1 (repeatable, or several with commas).
-    #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
-    pub mp: Vec<String>,
-    /// How the report is written.
-    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
-    pub format: Format,
-}
-
-/// A letter, or two with a comma.
-fn axes(text: &str) -> Result<(char, Option<char>), String> {
-    let letters: Vec<char> = text
-        .to_ascii_uppercase()
-        .chars()
-        .filter(|letter| *letter != ',')
-        .collect();
-    match *letters {
-        [axis] if axis.is_ascii_alphabetic() => Ok((axis, None)),
-        [axis, partner] if axis.is_ascii_alphabetic() && partner.is_ascii_alphabetic() => {
-            Ok((axis, Some(partner)))
-        }
-        _ => Err("an axis, or two that describe a circle: X, B or X,Y".to_owned()),
-    }
-}
-
 #[derive(Serialize)]
 struct Report {
     axes: String,
@@ -123,14 +77,6 @@ struct Figures {
     roundness_mm: f64,
     overshoot_mm: f64,
     standstill_mm: Vec<f64>,
-}
-
-#[derive(Serialize)]
-struct ChangeRow {
-    parameter: String,
-    name: String,
-    from: f64,
-    to: f64,
 }
 
 impl Figures {
@@ -201,32 +147,6 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
     Ok(Outcome::Fine)
 }
 
-/// Puts the proposals, and what `--mp` began with, into the list of the folder.
-fn write(
-    machine: &bahn_host::LoadedMachine,
-    changes: &[Change],
-    begun_with: &[String],
-) -> Result<(), UsageError> {
-    let path = machine.root.join(&machine.folder.parameters);
-    let bytes = files::read_table(&path)?;
-    let model = machine.parameters.model();
-    let mut text = ListText::from_bytes(model, &bytes);
-    let wrong = |error: bahn_parameters::ParameterError| UsageError::new(error.to_string());
-    let mut list = machine.parameters.clone();
-    for assignment in begun_with {
-        let id = list.assign(assignment).map_err(wrong)?;
-        let value = list.get(id.number, id.index.unwrap_or(0)).unwrap_or_default();
-        text.set(id, value).map_err(wrong)?;
-    }
-    for change in changes {
-        text.set(change.id, change.to).map_err(wrong)?;
-    }
-    let mut file = NewFile::create(&path)?;
-    file.write_all(&text.to_bytes())
-        .map_err(|error| files::cannot("write", &path, &error))?;
-    Ok(file.finish()?)
-}
-
 fn report(tuned: &Tuned, circle: Circle, list: &bahn_parameters::ParameterList, written: bool) -> Report {
     Report {
         axes: tuned.axes.iter().collect(),
@@ -242,38 +162,6 @@ fn report(tuned: &Tuned, circle: Circle, list: &bahn_parameters::ParameterList, 
             .iter()
             .map(|(axis, kv)| Kv { axis: *axis, kv: *kv })
             .collect(),
-    }
-}
-
-/// What is proposed, with the names of the parameters.
-fn change_rows(changes: &[Change], list: &ParameterList) -> Vec<ChangeRow> {
-    let name = |id| Definition::named(list.model(), id).map_or("", |definition| definition.name);
-    let rows = changes.iter().map(|change| ChangeRow {
-        parameter: change.id.to_string(),
-        name: name(change.id).to_owned(),
-        from: change.from,
-        to: change.to,
-    });
-    rows.collect()
-}
-
-/// The same for people, and whether it is in the list.
-fn change_text(changes: &[ChangeRow], written: bool) -> String {
-    let mut text = "\n".to_owned();
-    for change in changes {
-        let ChangeRow {
-            parameter,
-            name,
-            from,
-            to,
-        } = change;
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{parameter:<10}{from:>12} -> {to:<12}{name}");
-    }
-    text + match (changes.is_empty(), written) {
-        (true, _) => "nothing gets better than it is\n",
-        (false, true) => "\nwritten into the list of machine parameters\n",
-        (false, false) => "\nnothing is changed; --write puts it into the list\n",
     }
 }
 

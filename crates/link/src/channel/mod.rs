@@ -3,6 +3,7 @@
 //! `spec`: how a port is written; `wire`: sockets, `pty` and serial ports; `redial`: a connection
 //! that is made again; `pace`: the speed of a line; `fault`: a bad one.
 
+mod error;
 mod fault;
 mod pace;
 mod poll;
@@ -23,39 +24,15 @@ use pace::Pace;
 use poll::Got;
 use wire::Wire;
 
-/// Baud rate of a serial port when none is said, that of LSV/2 [000:17514-17540].
-const BAUD: u32 = 9600;
+use error::BAUD;
+pub use error::ChannelError;
+
 /// Bytes that are read at once.
 const CHUNK: usize = 4096;
 /// Bytes that wait to be written where nothing paces them.
 const AHEAD: usize = 4096;
 /// Characters that a serial port may hold: what a DC3 cannot stop any more.
 const AHEAD_OF_UART: usize = 8;
-
-/// Why a channel cannot be opened.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{line}: {what}")]
-pub struct ChannelError {
-    /// What was to be opened.
-    pub line: String,
-    /// What the operating system says.
-    pub what: String,
-    /// Somebody else has it.
-    pub is_taken: bool,
-}
-
-impl ChannelError {
-    fn of_system(line: &Line, error: &io::Error) -> ChannelError {
-        ChannelError {
-            line: line.to_string(),
-            what: error.to_string(),
-            is_taken: matches!(
-                error.kind(),
-                io::ErrorKind::AddrInUse | io::ErrorKind::ResourceBusy
-            ),
-        }
-    }
-}
 
 /// What has happened on a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

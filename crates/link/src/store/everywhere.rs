@@ -46,9 +46,9 @@ impl Store {
     fn folders(&self) -> Vec<Place> {
         let mut folders = vec![self.root()];
         let mut next = 0;
-        while let Some(folder) = folders.get(next).filter(|_| self.inner.limit.is_none()).cloned() {
+        while let Some(folder) = folders.get(next).filter(|_| self.medium.limit.is_none()).cloned() {
             next += 1;
-            let Ok(path) = self.find_folder(&folder) else {
+            let Ok(path) = self.medium.find_folder(&folder) else {
                 continue;
             };
             let entries = fs::read_dir(path).into_iter().flatten().flatten();

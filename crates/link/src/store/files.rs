@@ -14,10 +14,14 @@ impl Store {
     /// # Errors
     /// When it is not there.
     pub fn open(&self, place: &Place) -> Result<Reading, StoreError> {
-        let path = match self.find_file(place) {
+        let path = match self.medium.find_file(place) {
             Ok(path) => path,
             Err(error) => {
-                let bytes = self.view(place).and_then(|view| (view.bytes)()).ok_or(error)?;
+                let bytes = self
+                    .medium
+                    .view(place)
+                    .and_then(|view| (view.bytes)())
+                    .ok_or(error)?;
                 return Ok(Reading {
                     length: bytes.len() as u64,
                     source: Source::Bytes(io::Cursor::new(bytes)),
@@ -37,10 +41,10 @@ impl Store {
     /// # Errors
     /// When there is one that stays, is protected or being written, or there is no room.
     pub fn create(&self, place: &Place, existing: Existing) -> Result<Writing, StoreError> {
-        let found = match self.find_file(place) {
+        let found = match self.medium.find_file(place) {
             Ok(_) if existing == Existing::Keep => return Err(StoreError::Exists(place.to_string())),
-            Ok(_) => Some(self.own(place)?),
-            Err(StoreError::NoFile(name)) if self.view(place).is_some() => {
+            Ok(_) => Some(self.medium.own(place)?),
+            Err(StoreError::NoFile(name)) if self.medium.view(place).is_some() => {
                 return Err(StoreError::Protected(name));
             }
             Err(StoreError::NoFile(_)) => None,
@@ -55,12 +59,12 @@ impl Store {
         };
         let (path, superseded) = match found {
             Some(path) if is_same(&path) => (path, None),
-            found => (self.free(place, found.as_deref())?, found),
+            found => (self.medium.free(place, found.as_deref())?, found),
         };
         if superseded.is_none() && !path.exists() {
-            self.has_room(&path)?;
+            self.medium.has_room(&path)?;
         }
-        if !self.busy().insert(path.clone()) {
+        if !self.medium.busy().insert(path.clone()) {
             return Err(StoreError::Busy(place.to_string()));
         }
         let mut writing = Writing {
@@ -149,7 +153,7 @@ impl Writing {
             // If it stays it is behind the new one.
             let _ = fs::remove_file(superseded);
         }
-        self.store.changed();
+        self.store.medium.changed();
         Ok(())
     }
 }
@@ -174,6 +178,6 @@ impl Drop for Writing {
     fn drop(&mut self) {
         // Its half goes before its name is free again.
         self.file = None;
-        self.store.busy().remove(&self.path);
+        self.store.medium.busy().remove(&self.path);
     }
 }

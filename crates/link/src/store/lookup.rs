@@ -5,8 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::medium::Medium;
 use super::place::is_name;
-use super::{Attributes, Entry, Place, Store, StoreError};
+use super::{Attributes, Entry, Place, StoreError};
 use crate::FileType;
 
 /// Folders in each other that are swept.
@@ -29,10 +30,10 @@ fn kind(metadata: &Metadata) -> Option<Kind> {
     }
 }
 
-impl Store {
+impl Medium {
     /// The folder of a drive.
     fn drive(&self, place: &Place) -> Result<&Path, StoreError> {
-        let mut drives = self.inner.drives.iter();
+        let mut drives = self.drives.iter();
         let drive = drives.find(|(name, _)| *name == place.drive());
         let (_, folder) = drive.ok_or_else(|| StoreError::NoFolder(place.to_string()))?;
         Ok(folder)
@@ -41,7 +42,7 @@ impl Store {
     /// The path of a folder that is there.
     pub(super) fn find_folder(&self, place: &Place) -> Result<PathBuf, StoreError> {
         let mut path = self.drive(place)?.to_owned();
-        if self.inner.limit.is_some() && !place.names().is_empty() {
+        if self.limit.is_some() && !place.names().is_empty() {
             return Err(StoreError::NoFolder(place.to_string()));
         }
         for name in place.names() {
@@ -108,7 +109,7 @@ impl Store {
 
     /// A disk has room for one more file.
     pub(super) fn has_room(&self, path: &Path) -> Result<(), StoreError> {
-        let Some(limit) = self.inner.limit else {
+        let Some(limit) = self.limit else {
             return Ok(());
         };
         let folder = path.parent().unwrap_or(Path::new(""));

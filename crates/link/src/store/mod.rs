@@ -3,26 +3,30 @@
 //! Names are compared without regard to case; symbolic links, devices and names that no control knows are not there. What is
 //! being written has no name until it is committed.
 
+mod entry;
 mod error;
 mod everywhere;
 mod files;
 mod lookup;
+mod medium;
 mod place;
 #[cfg(test)]
 mod tests;
 mod views;
 
-use std::collections::HashSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::SystemTime;
+use std::sync::{Arc, Mutex};
 
 pub use error::StoreError;
 pub use files::{Reading, Writing};
 pub use place::{NAME_MAX, Place};
 pub use views::View;
+
+pub use entry::{Attributes, Entry, Existing};
+
+use medium::Medium;
 
 /// Drive of the part programs.
 pub const TNC: &str = "TNC";
@@ -30,37 +34,6 @@ pub const TNC: &str = "TNC";
 pub const PLC: &str = "PLC";
 /// Files on a disk of the FE 401 at most.
 pub const DISK_FILES: usize = 256;
-
-/// A file or folder in a list.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
-    /// Its name; `NAME.<code>NC` is `NAME.EXT`.
-    pub name: String,
-    /// What there is to be said of it.
-    pub attributes: Attributes,
-}
-
-/// What there is to be said of a file or folder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Attributes {
-    /// Bytes; a folder has none.
-    pub size: u64,
-    /// When it was written.
-    pub modified: SystemTime,
-    /// It has no write permission, or its first block protects it.
-    pub protected: bool,
-    /// It is a folder.
-    pub is_folder: bool,
-}
-
-/// What becomes of a file of the same name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
-    /// It stays: the new one is refused.
-    Keep,
-    /// It is replaced when the new one is complete.
-    Replace,
-}
 
 /// The file service. Clones are the same one: what one writes the other knows of.
 ///
@@ -87,20 +60,7 @@ pub enum Existing {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Store {
-    inner: Arc<Inner>,
-}
-
-#[derive(Debug)]
-struct Inner {
-    /// Name of the drive, and its folder without symbolic links.
-    drives: Vec<(&'static str, PathBuf)>,
-    /// Files at most, and no folders: a disk.
-    limit: Option<usize>,
-    /// What is shown beside them.
-    views: Vec<View>,
-    /// What is being written.
-    busy: Mutex<HashSet<PathBuf>>,
-    changes: AtomicU64,
+    medium: Arc<Medium>,
 }
 
 impl Store {
@@ -145,7 +105,7 @@ impl Store {
             drives.push((name, folder));
         }
         Ok(Store {
-            inner: Arc::new(Inner {
+            medium: Arc::new(Medium {
                 drives,
                 views,
                 limit,
@@ -162,20 +122,12 @@ impl Store {
 
     /// Names of the drives, without colon.
     pub fn drives(&self) -> impl Iterator<Item = &'static str> {
-        self.inner.drives.iter().map(|(name, _)| *name)
+        self.medium.drives.iter().map(|(name, _)| *name)
     }
 
     /// Counts what was changed through this service, so that whoever keeps what it has read knows when to read again.
     pub fn changes(&self) -> u64 {
-        self.inner.changes.load(Ordering::Acquire)
-    }
-
-    fn changed(&self) {
-        self.inner.changes.fetch_add(1, Ordering::Release);
-    }
-
-    fn busy(&self) -> MutexGuard<'_, HashSet<PathBuf>> {
-        self.inner.busy.lock().unwrap_or_else(PoisonError::into_inner)
+        self.medium.changes.load(Ordering::Acquire)
     }
 
     /// What is in a folder, by name.
@@ -183,9 +135,9 @@ impl Store {
     /// # Errors
     /// When it is no folder.
     pub fn list(&self, folder: &Place) -> Result<Vec<Entry>, StoreError> {
-        let is_disk = self.inner.limit.is_some();
-        let mut entries = lookup::list(&self.find_folder(folder)?, !is_disk);
-        let views = self.inner.views.iter();
+        let is_disk = self.medium.limit.is_some();
+        let mut entries = lookup::list(&self.medium.find_folder(folder)?, !is_disk);
+        let views = self.medium.views.iter();
         for view in views.filter(|view| view.place.folder().as_ref() == Some(folder)) {
             let name = view.place.name().unwrap_or_default();
             let place = entries.partition_point(|entry| entry.name.to_ascii_uppercase().as_str() < name);
@@ -206,15 +158,19 @@ impl Store {
     /// When it is not there.
     pub fn attributes(&self, place: &Place) -> Result<Attributes, StoreError> {
         let no_file = || StoreError::NoFile(place.to_string());
-        match self.find_any(place) {
+        match self.medium.find_any(place) {
             Ok(path) => lookup::attributes(&path).ok_or_else(no_file),
-            Err(error) => self.view(place).and_then(View::attributes).ok_or(error),
+            Err(error) => self.medium.view(place).and_then(View::attributes).ok_or(error),
         }
     }
 
     /// Whether there is a file of this name.
     pub fn has(&self, place: &Place) -> bool {
-        self.find_file(place).is_ok() || self.view(place).is_some_and(|view| (view.bytes)().is_some())
+        self.medium.find_file(place).is_ok()
+            || self
+                .medium
+                .view(place)
+                .is_some_and(|view| (view.bytes)().is_some())
     }
 
     /// Protects a file, or takes its protection away, as write permission. A program that its first block protects stays
@@ -223,10 +179,10 @@ impl Store {
     /// # Errors
     /// When it is not there, or the medium does not do it.
     pub fn protect(&self, place: &Place, on: bool) -> Result<(), StoreError> {
-        let path = self.find_file(place)?;
+        let path = self.medium.find_file(place)?;
         lookup::set_read_only(&path, on)
             .map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
-        self.changed();
+        self.medium.changed();
         Ok(())
     }
 
@@ -235,7 +191,7 @@ impl Store {
     /// # Errors
     /// When it is not there, protected or being written.
     pub fn delete(&self, place: &Place) -> Result<(), StoreError> {
-        let path = self.own(place)?;
+        let path = self.medium.own(place)?;
         self.done(fs::remove_file(&path), &path, place)
     }
 
@@ -244,10 +200,10 @@ impl Store {
     /// # Errors
     /// When it is not there, protected or being written, or there is a file of the new name.
     pub fn rename(&self, from: &Place, to: &Place) -> Result<(), StoreError> {
-        let old = self.own(from)?;
-        let new = self.free(to, Some(&old))?;
+        let old = self.medium.own(from)?;
+        let new = self.medium.free(to, Some(&old))?;
         if old.parent() != new.parent() {
-            self.has_room(&new)?;
+            self.medium.has_room(&new)?;
         }
         self.done(fs::rename(&old, &new), &new, from)
     }
@@ -269,10 +225,10 @@ impl Store {
     /// # Errors
     /// When there is something of this name, or the store is a disk.
     pub fn make_folder(&self, place: &Place) -> Result<(), StoreError> {
-        if self.inner.limit.is_some() {
+        if self.medium.limit.is_some() {
             return Err(StoreError::BadName(place.to_string()));
         }
-        let path = self.free(place, None)?;
+        let path = self.medium.free(place, None)?;
         self.done(fs::create_dir(&path), &path, place)
     }
 
@@ -284,7 +240,7 @@ impl Store {
         if place.name().is_none() {
             return Err(StoreError::Protected(place.to_string()));
         }
-        let path = self.find_folder(place)?;
+        let path = self.medium.find_folder(place)?;
         self.done(fs::remove_dir(&path), &path, place)
     }
 
@@ -293,14 +249,14 @@ impl Store {
     /// # Errors
     /// When there is none.
     pub fn enter(&self, place: &Place) -> Result<(), StoreError> {
-        self.find_folder(place).map(drop)
+        self.medium.find_folder(place).map(drop)
     }
 
     /// A deed of the medium is on it, and counted.
     fn done(&self, deed: std::io::Result<()>, path: &Path, place: &Place) -> Result<(), StoreError> {
         deed.map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
         bahn_host::files::sync_folder(path);
-        self.changed();
+        self.medium.changed();
         Ok(())
     }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-use super::{Attributes, Place, Store};
+use super::{Attributes, Place};
 
 /// A file that is shown where it does not lie. A file of the same name on the drive itself comes first.
 pub struct View {
@@ -41,12 +41,5 @@ impl View {
         self.place.drive() == place.drive()
             && names.0.len() == names.1.len()
             && names.0.iter().zip(names.1).all(same)
-    }
-}
-
-impl Store {
-    /// The file that is shown at a place.
-    pub(super) fn view(&self, place: &Place) -> Option<&View> {
-        self.inner.views.iter().find(|view| view.is_at(place))
     }
 }

@@ -10,9 +10,7 @@ mod navigation;
 mod rename;
 mod symbols;
 mod tokens;
-
-use std::collections::HashMap;
-use std::sync::Arc;
+mod view;
 
 use lsp_server::{ErrorCode, Request as Message, Response};
 use lsp_types::request::{
@@ -20,62 +18,11 @@ use lsp_types::request::{
     FoldingRangeRequest, Formatting, GotoDefinition, HoverRequest, PrepareRenameRequest, References, Rename,
     Request, SemanticTokensFullRequest,
 };
-use lsp_types::{TextDocumentPositionParams, Uri};
 
 pub(crate) use diagnostics::diagnostics;
 
-use crate::document::Document;
-use crate::language::Analysis;
-use crate::text::Text;
-use crate::world::World;
-
-/// What requests are answered from.
-#[derive(Clone, Copy)]
-pub(crate) struct View<'a> {
-    pub(crate) documents: &'a HashMap<Uri, Document>,
-    pub(crate) world: &'a World,
-}
-
-/// An answer, or that there will be one.
-pub(crate) enum Answer {
-    Ready(Response),
-    /// When the run of this document has ended.
-    Later(Uri),
-}
-
-/// What a request comes to.
-enum Reply<R> {
-    Done(R),
-    /// It cannot be done, for this reason.
-    Refused(String),
-    Later(Uri),
-}
-
-/// A document with its language.
-struct Opened<'a> {
-    document: &'a Document,
-    text: &'a Text,
-    analysis: Arc<dyn Analysis>,
-}
-
-impl View<'_> {
-    /// A document that can be read.
-    fn opened(&self, uri: &Uri) -> Option<Opened<'_>> {
-        let document = self.documents.get(uri)?;
-        Some(Opened {
-            document,
-            text: &document.version.text,
-            analysis: document.version.analysis(self.world)?,
-        })
-    }
-
-    /// A document, and the byte that a place in it means.
-    fn place(&self, params: &TextDocumentPositionParams) -> Option<(Opened<'_>, usize)> {
-        let opened = self.opened(&params.text_document.uri)?;
-        let at = opened.text.offset(params.position);
-        Some((opened, at))
-    }
-}
+use view::Reply;
+pub(crate) use view::{Answer, View};
 
 /// Answers a request.
 pub(crate) fn answer(view: &View<'_>, request: &Message) -> Answer {

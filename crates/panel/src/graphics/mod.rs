@@ -15,6 +15,7 @@ mod contour;
 mod drawing;
 mod figure;
 mod follow;
+mod part_view;
 mod picture;
 mod programmed;
 mod scope;
@@ -43,6 +44,8 @@ use follow::Follower;
 use programmed::Programmed;
 use trial::Trial;
 
+pub(crate) use part_view::PartView;
+
 /// Between two pictures of a part that is being cut, µs (inferred).
 const EVERY_US: u64 = 500_000;
 /// A section moves by this part of the blank with each arrow key (inferred).
@@ -61,14 +64,6 @@ pub(crate) enum Subject {
     Programmed,
     /// The curves of the oscilloscope.
     Oscilloscope,
-}
-
-/// How a part is looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PartView {
-    Plan,
-    ThreePlanes,
-    Solid,
 }
 
 impl From<PartView> for GraphicsView {

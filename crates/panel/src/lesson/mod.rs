@@ -2,6 +2,7 @@
 //! with its time, so that looking back shows how far it was then.
 
 mod begin;
+mod driven;
 mod file;
 mod player;
 
@@ -16,6 +17,8 @@ use crate::screen::{CheckLine, LessonLine, LessonState, Screen, Window};
 use crate::texts::{self, Language};
 use file::{Check, Condition, ENDING};
 use player::Player;
+
+pub(crate) use driven::Driven;
 
 /// Folder of the lessons in that of the machine.
 const FOLDER: &str = "lessons";
@@ -51,21 +54,6 @@ enum Ended {
     Never(usize),
     /// The machine has not what the lesson names.
     Impossible(String),
-}
-
-/// What a lesson drives until its task begins.
-pub(crate) trait Driven {
-    /// The machine's folder.
-    fn machine(&self) -> &LoadedMachine;
-
-    /// The machine that is on.
-    fn host(&mut self) -> &mut Host;
-
-    /// A contour cycle of the whole station.
-    ///
-    /// # Errors
-    /// In words.
-    fn cycle(&mut self) -> Result<(), String>;
 }
 
 /// Begins a lesson, whose task begins when the machine is prepared for it: that takes time of the machine.

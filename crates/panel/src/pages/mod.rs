@@ -12,6 +12,7 @@ mod help;
 mod list;
 mod mdi;
 mod menu;
+mod no_program;
 mod number;
 mod parameters;
 mod plc;
@@ -28,12 +29,13 @@ use bahn_control::Mode;
 use bahn_dialogue::Key;
 use bahn_parameters::ControlModel;
 
-use crate::page::{Page, Side, Turn, View};
-use crate::screen::{Line, Window, WindowKind};
+use crate::page::{Page, Side, Turn};
 use crate::site::Site;
 
 pub(crate) use files::runs;
 pub(crate) use help::follow as follow_help;
+
+use no_program::no_program;
 
 /// The page of a machine operating mode.
 pub(crate) fn of_mode(mode: Mode, model: ControlModel) -> Box<dyn Page> {
@@ -47,20 +49,6 @@ pub(crate) fn of_mode(mode: Mode, model: ControlModel) -> Box<dyn Page> {
 /// PROGRAMMING AND EDITING.
 pub(crate) fn editing(site: &mut Site) -> Box<dyn Page> {
     Box::new(programming::Programming::new(site))
-}
-
-/// Where no program is selected: which key does.
-fn no_program(site: &Site) -> View {
-    let line = Line {
-        text: site.words("SELECT A PROGRAM WITH PGM NR"),
-        ..Line::default()
-    };
-    View::of(Window {
-        kind: WindowKind::Text,
-        lines: vec![line],
-        total: 1,
-        ..Window::default()
-    })
 }
 
 /// What a key opens wherever nothing else takes it; HELP explains the note of the panel before messages of the control.

@@ -1,47 +1,20 @@
 //! Why a machine stands: what each axis, the program and each handshake wait for, in words, with the marker that is
 //! missing, the lines of the PLC program that write it, and what there keeps it from being so.
 
+mod reason;
 mod reasons;
 mod trace;
 
 use bahn_control::{Control, RunState, Waiting};
 use bahn_host::{Host, LoadedMachine};
 use bahn_path::BlockRef;
-use serde::Serialize;
 
 use crate::texts::Language;
 use crate::wiring::{self, Wired};
 use reasons::Situation;
 use trace::Writers;
 
-/// How much a reason matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Urgency {
-    /// Something does not go on, and nothing is done about it.
-    Stands,
-    /// Something waits for the operator or for the PLC.
-    Waits,
-    /// It is so, and nothing waits for it.
-    Told,
-}
-
-/// Why something is as it is.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Reason {
-    /// How much it matters.
-    pub urgency: Urgency,
-    /// What is missing, in words, and who gives it.
-    pub text: String,
-    /// The marker, input or word that is missing, as `M2451`.
-    pub marker: Option<String>,
-    /// The machine parameter that says so, as `MP1340`.
-    pub parameter: Option<String>,
-    /// The lines of the PLC program that write the marker, as `MAIN.PLC:42`.
-    pub lines: Vec<String>,
-    /// What in the PLC program keeps it from being so, in words.
-    pub causes: Vec<String>,
-}
+pub use reason::{Reason, Urgency};
 
 /// A key of the panel counts so long as one that was to start something, µs.
 const PRESSED_US: u64 = 20_000_000;

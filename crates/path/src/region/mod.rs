@@ -49,6 +49,7 @@ mod hatch;
 mod index;
 mod intersect;
 mod offset;
+mod resolution;
 mod segment;
 mod superimpose;
 mod vector;
@@ -60,6 +61,4 @@ pub use hatch::{HatchPattern, Pass};
 pub use segment::Segment;
 pub use superimpose::{Kind, Merge, Outline, PocketArea, SubContour, Superposition, superimpose};
 
-/// Points nearer together than this are one point, mm: a thousandth of the finest input resolution
-/// (0.001 mm), and far more than rounding does to coordinates of 100 m.
-pub const RESOLUTION_MM: f64 = 1e-6;
+pub use resolution::RESOLUTION_MM;

@@ -1,7 +1,8 @@
 //! Modules 9000 to 9022: copying and addressing memory [000:14741-14849].
 
-use bahn_exchange::{Bit, BitArea, Number, Size};
+use bahn_exchange::{Bit, BitArea, Size};
 
+use super::address::{BYTES, fits, operand};
 use super::{Call, Outcome};
 use crate::PlcError;
 
@@ -73,9 +74,6 @@ pub(super) fn write_double(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     write(call, Size::Double)
 }
 
-/// The word memory in bytes.
-pub(super) const BYTES: i32 = 1024;
-
 fn read(call: &mut Call<'_>, size: Size) -> Result<Outcome, PlcError> {
     let [address] = call.arguments()?;
     let number = operand(size, address);
@@ -90,14 +88,4 @@ fn write(call: &mut Call<'_>, size: Size) -> Result<Outcome, PlcError> {
     };
     call.image.set_number(number, value);
     Ok(Outcome::Done)
-}
-
-/// The operand at an address; `None` outside the memory and where no operand of the size begins.
-pub(super) fn operand(size: Size, address: i32) -> Option<Number> {
-    Number::new(size, u16::try_from(address).ok()?)
-}
-
-/// Whether a block lies inside an area that ends before `end`.
-pub(super) fn fits(first: i32, length: i32, end: i32) -> bool {
-    first >= 0 && length >= 0 && i64::from(first) + i64::from(length) <= i64::from(end)
 }

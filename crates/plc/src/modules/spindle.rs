@@ -3,7 +3,7 @@
 
 use bahn_exchange::{Size, signal};
 
-use super::{Call, Outcome, memory};
+use super::{Call, Outcome, address};
 use crate::{OrientationDirection, PlcError, SpindleOrientation, ToolCallBlock};
 
 /// 9130: outputs a voltage where the spindle's analogue output is free.
@@ -46,7 +46,7 @@ pub(super) fn insert_block(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
 /// Reads the parameter block [000:16100-16113].
 fn tool_call(call: &Call<'_>, address: i32) -> Option<ToolCallBlock> {
     let number = |size, offset| {
-        let number = memory::operand(size, address.checked_add(offset)?)?;
+        let number = address::operand(size, address.checked_add(offset)?)?;
         Some(call.image.number(number))
     };
     let active = number(Size::Byte, 0)?;

@@ -2,45 +2,20 @@
 
 mod cycle;
 mod formula;
+mod listing;
 pub(crate) mod number;
+mod options;
 mod path;
 
-use std::fmt::{self, Display};
-
-use crate::lines::lines;
 use crate::parse::rest_of_word;
-use crate::text::{is_blank, text_start, to_text, trim};
 use crate::{
-    Block, Calculation, Condition, Coordinates, Expression, Feed, Header, MFunctions, NumberedBlock,
-    Operation, Program, Unit, Value,
+    Block, Calculation, Condition, Coordinates, Expression, Feed, Header, MFunctions, Operation, Unit, Value,
 };
 use number::{push_integer, push_signed, push_unsigned};
 
-/// How a listing is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FormatOptions {
-    /// Decimal comma instead of the point, as MP7280 chooses it [003:7317-7323].
-    pub decimal_comma: bool,
-    /// Step of the block numbers of ISO programs, MP7220; 0 writes none [000:6885].
-    pub iso_step: u8,
-}
+pub use options::FormatOptions;
 
-/// The normalised listing of a program, to be written anywhere that takes a [`Display`].
-///
-/// Every block is one line behind its number; lines that `~` joined become one. Comments are kept, also the
-/// text before BEGIN PGM and behind END PGM; annotation behind dots is dropped. Blocks that cannot be read
-/// stay as they are. Reading the listing gives the same blocks again.
-///
-/// ```
-/// use bahn_program::{FormatOptions, Program, format_program};
-///
-/// let program = Program::from_bytes("1.H", b"BEGIN PGM 1 MM\nl x5y-10,50r0 f 100m03\nEND PGM 1 MM".to_vec());
-/// let listing = format_program(&program, FormatOptions::default()).to_string();
-/// assert_eq!(listing, "0 BEGIN PGM 1 MM\n1 L X+5 Y-10.5 R0 F100 M3\n2 END PGM 1 MM\n");
-/// ```
-pub fn format_program(program: &Program, options: FormatOptions) -> impl Display {
-    Listing { program, options }
-}
+pub use listing::format_program;
 
 /// A block as the listing shows it in plain language, without number and line end.
 pub fn format_block(block: &Block, options: FormatOptions) -> String {
@@ -71,52 +46,6 @@ pub(crate) fn formula_text(expression: &Expression, decimal_comma: bool) -> Stri
     out.expression(expression);
     out.text
 }
-
-struct Listing<'a> {
-    program: &'a Program,
-    options: FormatOptions,
-}
-
-impl Display for Listing<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (leading, trailing) = self.program.around();
-        verbatim(f, leading.get(text_start(leading)..).unwrap_or_default())?;
-        let language = self.program.language();
-        let mut text = String::new();
-        for NumberedBlock { number, block, .. } in self.program.blocks() {
-            text.clear();
-            language.write_line_number(number, &block, self.options, &mut text);
-            language.write(&block, self.options, &mut text);
-            text.push('\n');
-            f.write_str(&text)?;
-        }
-        let end = trailing
-            .iter()
-            .rposition(|&b| !is_blank(b))
-            .map_or(0, |last| last + 1);
-        verbatim(f, trailing.get(..end).unwrap_or_default())
-    }
-}
-
-/// Writes lines as they are, without blanks at their ends. Empty ones stay: they keep a `~` before them from
-/// joining more.
-fn verbatim(f: &mut fmt::Formatter<'_>, text: &[u8]) -> fmt::Result {
-    let blanks = text.iter().take_while(|b| is_blank(**b)).count();
-    let text = text.get(blanks..).unwrap_or_default();
-    lines(text).map(trim).enumerate().try_for_each(|(index, line)| {
-        let line = to_text(line);
-        // At the front of a file a byte-order mark would be no text.
-        let blank = if index == 0 && line.starts_with(MARK) {
-            " "
-        } else {
-            ""
-        };
-        writeln!(f, "{blank}{line}")
-    })
-}
-
-/// The byte-order mark as a character.
-const MARK: char = '\u{feff}';
 
 /// Text being written. Words other than the first begin with a blank.
 struct Output {

@@ -2,6 +2,7 @@
 //! becomes [`Operation::Invalid`].
 
 mod blank;
+mod block_number;
 pub(crate) mod cursor;
 mod cycle;
 mod decoration;
@@ -20,8 +21,6 @@ mod tool;
 mod unknown;
 mod words;
 
-use std::io::Write;
-
 use bahn_parameters::MessageId;
 
 use crate::lines::{BlockText, lines, stands_alone};
@@ -36,6 +35,8 @@ pub(crate) use m_function::{m_function, rest_of_word};
 pub(crate) use path::empty_motion;
 pub(crate) use q_parameter::formula;
 pub(crate) use words::block_words;
+
+pub(crate) use block_number::{prefix, renumber};
 
 /// Reads a block into a place where one, best [`Block::EMPTY`], stands already, so that the large positioning blocks
 /// are not copied. `BEGIN PGM` is a fault where it is not permitted.
@@ -117,42 +118,6 @@ pub(crate) fn frames_or_labels(line: &[u8]) -> bool {
         b'E' => at(1) == b'N',
         _ => false,
     }
-}
-
-/// Reads optional block number, perhaps behind N, and `/`, in either order, and the blanks behind; whether the block is
-/// optional.
-#[inline]
-pub(crate) fn prefix(c: &mut Cursor) -> bool {
-    c.skip_blanks();
-    let mut skip = false;
-    if c.peek() == b'/' {
-        skip = true;
-        c.advance(1);
-        c.skip_blanks();
-    }
-    if c.peek_upper() == b'N' && c.peek_at(1).is_ascii_digit() {
-        c.advance(1);
-    }
-    while c.peek().is_ascii_digit() {
-        c.advance(1);
-    }
-    c.skip_blanks();
-    if c.peek() == b'/' {
-        skip = true;
-        c.advance(1);
-        c.skip_blanks();
-    }
-    skip
-}
-
-/// Appends a block's text with another number before it.
-pub(crate) fn renumber(text: &[u8], number: u32, new: &mut Vec<u8>) {
-    let mut c = Cursor::new(text);
-    let skip = prefix(&mut c);
-    // Writing to a vector cannot fail.
-    let _ = write!(new, "{number}");
-    new.extend_from_slice(if skip { b" / " } else { b" " });
-    new.extend_from_slice(c.rest());
 }
 
 /// Reads a block that is no function: comment, structuring, or nothing but a block number.

@@ -41,8 +41,6 @@ use single::Single;
 use track::Track;
 use window::Window;
 
-pub(crate) use programs::execute;
-
 /// All of a channel.
 struct Channel<'a> {
     limits: &'a Limits,

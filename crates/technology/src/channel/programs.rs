@@ -34,7 +34,20 @@ enum Ended {
     Stuck,
 }
 
-pub(crate) fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -> Report {
+impl Run<'_> {
+    /// Runs them.
+    pub fn execute(self) -> Report {
+        execute(&self, None)
+    }
+
+    /// Runs them with a PLC that reads and answers the functions in a window of bytes. The script says nothing of them: what
+    /// it says of path and spindles holds.
+    pub fn execute_beside(self, plc: &mut dyn PlcMemory) -> Report {
+        execute(&self, Some(plc))
+    }
+}
+
+fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -> Report {
     let mut channel = Channel::new(run.settings, run.limits, run.script, memory, run.start);
     channel.bounds = run.bounds;
     let mut programs = Vec::new();

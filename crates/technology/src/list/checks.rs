@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use super::{ChannelList, Entry, ListFault, Value};
+use super::{Entry, ListFault, Value};
 use crate::settings::{ChannelSettings, FunctionSettings, SPINDLE_M};
 use crate::synch::SynchType;
 
@@ -13,11 +13,14 @@ const BLOCKS_WITHOUT_BUFFER: u32 = 70;
 /// The gear stages of the main spindle [004:174].
 const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 
-/// Adds what does not go together where a contour cycle takes so long, µs.
-pub(super) fn check(list: &mut ChannelList, cycle_us: u32) {
-    let settings = &list.settings;
+/// What does not go together where a contour cycle takes so long, µs: errors and warnings.
+pub(super) fn check(
+    settings: &ChannelSettings,
+    entries: &[Entry],
+    cycle_us: u32,
+) -> (Vec<ListFault>, Vec<ListFault>) {
     let functions = || {
-        list.entries
+        entries
             .iter()
             .filter_map(|entry| Some((entry, of_function(entry)?)))
     };
@@ -49,14 +52,12 @@ pub(super) fn check(list: &mut ChannelList, cycle_us: u32) {
             _ => {}
         }
     }
-    for entry in &list.entries {
-        warnings.extend(look_ahead(list, entry));
+    for entry in entries {
+        warnings.extend(look_ahead(entries, entry));
         warnings.extend(unknown_functions(entry));
         warnings.extend(spindle_functions(settings, entry));
     }
-    list.errors.extend(errors);
-    list.warnings.extend(warnings);
-    drop_process_times(&mut list.settings);
+    (errors, warnings)
 }
 
 /// Which function a line is about, and what it says of it.
@@ -173,7 +174,7 @@ fn process_time(entry: &Entry, of: &OfFunction, function: &FunctionSettings) -> 
 }
 
 /// The correction of message 20760 (public).
-fn drop_process_times(settings: &mut ChannelSettings) {
+pub(super) fn drop_process_times(settings: &mut ChannelSettings) {
     for table in [&mut settings.m, &mut settings.h] {
         for function in table.iter_mut() {
             if function.synch.is_some_and(|synch| synch.kind == SynchType::Mos) {
@@ -221,14 +222,14 @@ fn spindle_functions(settings: &ChannelSettings, entry: &Entry) -> Option<ListFa
 }
 
 /// More blocks of look-ahead than the interpolator has [004:222].
-fn look_ahead(list: &ChannelList, entry: &Entry) -> Option<ListFault> {
+fn look_ahead(entries: &[Entry], entry: &Entry) -> Option<ListFault> {
     let Value::Number(blocks) = entry.value else {
         return None;
     };
     if entry.place.definition.name != "m_h_pre_outp_nbr_block" || blocks <= BLOCKS_WITHOUT_BUFFER {
         return None;
     }
-    let buffer = list.entries.iter().rev().find_map(|entry| match entry.value {
+    let buffer = entries.iter().rev().find_map(|entry| match entry.value {
         Value::Number(blocks) if entry.place.definition.name == "configuration.interpolator.parameter" => {
             Some(blocks)
         }
@@ -264,6 +265,7 @@ fn unknown_functions(entry: &Entry) -> Option<ListFault> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::list::ChannelList;
 
     fn list(text: &str) -> ChannelList {
         ChannelList::from_bytes(text.as_bytes())

@@ -6,6 +6,7 @@
 
 mod checks;
 mod cure;
+mod entry;
 mod field;
 mod line;
 mod table;
@@ -18,7 +19,9 @@ pub use write::template;
 use std::collections::BTreeMap;
 
 use crate::settings::ChannelSettings;
-use crate::synch::Synch;
+
+pub use entry::ListFault;
+use entry::{Entry, Place, Value};
 
 /// What a list says, and what is wrong with it.
 ///
@@ -37,80 +40,6 @@ pub struct ChannelList {
     entries: Vec<Entry>,
     errors: Vec<ListFault>,
     warnings: Vec<ListFault>,
-}
-
-/// What is wrong or odd in a list, with its place there.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct ListFault {
-    /// The line, from 1 on.
-    pub line: usize,
-    /// The column in characters, from 1 on.
-    pub column: usize,
-    /// How many characters are meant.
-    pub length: usize,
-    /// What it is.
-    pub message: String,
-    /// What to do about it, where that can be guessed.
-    pub help: Option<String>,
-}
-
-/// A parameter with its indices.
-#[derive(Clone, Debug)]
-struct Place {
-    definition: &'static Definition,
-    indices: Vec<u32>,
-    /// In the form of a start-up list, of a channel that is not the first.
-    is_of_other_channel: bool,
-}
-
-impl Place {
-    fn name(&self) -> String {
-        self.definition.name_with(&self.indices)
-    }
-}
-
-/// What stands behind a name.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Value {
-    /// A synchronisation type; `None` is `NOT_VALID`.
-    Synch(Option<Synch>),
-    Number(u32),
-    Flag(bool),
-    Name(String),
-    Functions(Vec<String>),
-}
-
-/// A line that could be read.
-#[derive(Clone, Debug)]
-struct Entry {
-    place: Place,
-    value: Value,
-    line: usize,
-    name: (usize, usize),
-    column: usize,
-    length: usize,
-}
-
-impl Entry {
-    fn at_name(&self, message: String) -> ListFault {
-        ListFault {
-            line: self.line,
-            column: self.name.0,
-            length: self.name.1,
-            message,
-            help: None,
-        }
-    }
-
-    fn at_value(&self, message: String) -> ListFault {
-        ListFault {
-            line: self.line,
-            column: self.column,
-            length: self.length,
-            message,
-            help: None,
-        }
-    }
 }
 
 /// Contour cycle where nobody says which machine the list is for, s: that of a TNC 415 B.
@@ -140,7 +69,11 @@ impl ChannelList {
             list.read_line(at);
         }
         list.take_entries();
-        checks::check(&mut list, (cycle_s * 1e6).round() as u32);
+        let cycle_us = (cycle_s * 1e6).round() as u32;
+        let (errors, warnings) = checks::check(&list.settings, &list.entries, cycle_us);
+        list.errors.extend(errors);
+        list.warnings.extend(warnings);
+        checks::drop_process_times(&mut list.settings);
         list.errors.sort();
         list.warnings.sort();
         list

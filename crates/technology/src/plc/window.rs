@@ -30,8 +30,6 @@ const ANSWER: u16 = 1;
 const FETCHED: u8 = 1;
 const ACKNOWLEDGED: u8 = 2;
 
-/// Number of the first spindle among the ranges.
-const FIRST_SPINDLE: usize = 64;
 /// So many functions are counted.
 const COUNTED: Id = 1 << 15;
 
@@ -97,27 +95,6 @@ impl Standing {
             waits: output.waits,
             fetched: false,
         }
-    }
-}
-
-/// A range by its number in the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum WindowRange {
-    Channel,
-    /// An axis, from 0 on.
-    Axis(usize),
-    /// A spindle, from 0 on.
-    Spindle(usize),
-}
-
-impl WindowRange {
-    fn number(self) -> u8 {
-        let number = match self {
-            WindowRange::Channel => 0,
-            WindowRange::Axis(index) => 1 + index,
-            WindowRange::Spindle(index) => FIRST_SPINDLE + index,
-        };
-        u8::try_from(number).unwrap_or(u8::MAX)
     }
 }
 

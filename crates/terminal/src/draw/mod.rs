@@ -3,20 +3,22 @@
 mod foot;
 mod help;
 mod machine;
+mod scene;
 mod soft_keys;
 mod status;
 mod windows;
 
-use bahn_panel::{Key, Screen, around, filled};
+use bahn_panel::{Key, filled};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
-use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use ratatui::widgets::{Block, BorderType, Paragraph};
+use ratatui::widgets::Paragraph;
 
-use crate::desk::{Desk, Target, Targets};
-use crate::graphics::Mosaic;
-use crate::palette::{Palette, Role};
+use crate::desk::{Target, Targets};
+use crate::palette::Role;
+
+pub(crate) use scene::Scene;
+use scene::{block, rows};
 
 /// Fewer columns or rows are no screen.
 const LEAST: (u16, u16) = (60, 18);
@@ -26,25 +28,6 @@ const ROOMY: u16 = 32;
 const STATUS: u16 = 30;
 /// Share of the rows behind [`ROOMY`] that messages, reasons and lesson may take: a third.
 const SHARE: u16 = 3;
-
-/// What is drawn.
-pub(crate) struct Scene<'a> {
-    /// The screen of the control.
-    pub screen: &'a Screen,
-    /// The desk in front of it.
-    pub desk: &'a Desk,
-    /// The part as the graphics show it, when it was drawn.
-    pub part: Option<&'a Mosaic>,
-    /// Colours.
-    pub palette: Palette,
-}
-
-impl Scene<'_> {
-    /// A text around the screen in the language of the control.
-    pub fn words(&self, english: &'static str) -> &'static str {
-        around(self.screen.look.language, english)
-    }
-}
 
 /// Where something was drawn that others need.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -108,22 +91,6 @@ pub(crate) fn draw(frame: &mut Frame, scene: &Scene) -> Drawn {
         drawn.help_end = help::draw(frame, scene, scrolled);
     }
     drawn
-}
-
-fn rows(count: usize) -> u16 {
-    u16::try_from(count).unwrap_or(u16::MAX)
-}
-
-/// A frame with a title.
-fn block(scene: &Scene, title: &str) -> Block<'static> {
-    let title = match title.is_empty() {
-        true => String::new(),
-        false => format!(" {title} "),
-    };
-    Block::bordered()
-        .border_type(BorderType::Plain)
-        .border_style(scene.palette.style(Role::Frame))
-        .title(Span::styled(title, Style::new().bold()))
 }
 
 /// The headings of both sides; that which has the keys is in reverse video.

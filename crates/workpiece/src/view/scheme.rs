@@ -1,6 +1,5 @@
 //! The colours of a sheet.
 
-use super::Page;
 use bahn_picture::{Colour, mix};
 
 /// The colours of a control's graphics, which its machine parameters name [000:6344-6360]. Without one a sheet is drawn
@@ -43,10 +42,10 @@ const OWN: Pens = Pens {
     behind: [[186, 200, 214], [232, 237, 242]],
 };
 
-impl Page {
-    /// What lines and words are drawn with.
-    pub(super) fn pens(&self) -> Pens {
-        self.scheme.map_or(OWN, |scheme| scheme.pens())
+impl Pens {
+    /// Those of a scheme, or our own.
+    pub fn of(scheme: Option<Scheme>) -> Pens {
+        scheme.map_or(OWN, |scheme| scheme.pens())
     }
 }
 
@@ -68,6 +67,7 @@ impl Scheme {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Page;
     use bahn_picture::Image;
 
     /// MP7362.1 to .3 [000:6356-6360], and what is behind the part and over it.

@@ -2,6 +2,7 @@
 //! what is to be seen of it, drawn by whoever wants it.
 
 mod curves;
+mod recorded;
 
 use bahn_control::{Control, OscilloscopeKeys, ServoSampler, ServoSignal};
 use bahn_host::oscilloscope::{
@@ -11,10 +12,11 @@ use bahn_host::oscilloscope::{
 use crate::screen::{GraphicsLine, GraphicsView};
 pub(crate) use curves::{Curves, Lane, ScopeColours, Sight, name as signal_name};
 
+use recorded::FEWEST;
+pub(crate) use recorded::Recorded;
+
 /// Between two pictures while it records, µs (inferred).
 const EVERY_US: u64 = 200_000;
-/// Fewer samples are never shown [000:18787-18789].
-const FEWEST: usize = 64;
 
 /// What a channel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,13 +37,6 @@ pub(crate) struct Channel {
     pub content: Content,
     /// What was recorded of it last.
     pub curve: Option<Recorded>,
-}
-
-/// A curve that was recorded.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Recorded {
-    pub curve: Curve,
-    pub samples: Vec<f64>,
 }
 
 /// TRIGGER.

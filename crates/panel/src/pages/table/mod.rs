@@ -4,81 +4,20 @@
 mod cells;
 mod editor;
 mod page;
+mod place;
+mod store;
 
-use std::path::{Path, PathBuf};
-
-use bahn_host::{TableForm, files};
 use bahn_parameters::MessageId;
 
 use crate::page::Turn;
-use crate::programs::Entry;
 use crate::site::Site;
 use editor::TableEditor;
 
-/// Names of the tables of the machine in the directory, as a control has them [000:9002-9008].
-const TOOL_FILE: &str = "TOOL.T";
-const POCKET_FILE: &str = "TOOL_P.TCH";
+use place::{POCKET_FILE, TOOL_FILE};
+use store::store;
 
-/// Where a table lies.
-fn path_of(name: &str, site: &Site) -> Option<PathBuf> {
-    let folder = &site.machine.folder;
-    let named = |own: &Option<String>| own.as_ref().map(|own| site.machine.root.join(own));
-    match name {
-        TOOL_FILE => named(&folder.tools),
-        POCKET_FILE if site.parameters().operation_parameters().tools.pockets > 0 => named(&folder.pockets),
-        POCKET_FILE => None,
-        _ => site.programs.path(name).filter(|path| path.is_file()),
-    }
-}
-
-/// The tables of the machine that lie beside the program memory, for the directory.
-pub(crate) fn of_machine(site: &Site) -> Vec<Entry> {
-    let entry = |name: &str| {
-        let size = path_of(name, site)?.metadata().ok()?.len();
-        Some(Entry {
-            name: name.to_owned(),
-            size,
-            protected: is_protected(name, site),
-        })
-    };
-    [TOOL_FILE, POCKET_FILE].into_iter().filter_map(entry).collect()
-}
-
-/// A table of the machine that lies beside the program memory.
-pub(crate) fn is_of_machine(name: &str, site: &Site) -> bool {
-    matches!(name, TOOL_FILE | POCKET_FILE) && path_of(name, site).is_some()
-}
-
-/// A file that holds a table, by its name.
-pub(crate) fn is_table(name: &str) -> bool {
-    form_of(name).is_some()
-}
-
-fn form_of(name: &str) -> Option<TableForm> {
-    let (_, ending) = name.rsplit_once('.')?;
-    let is_meant = |form: &TableForm| form.ending().eq_ignore_ascii_case(ending);
-    TableForm::ALL.into_iter().find(is_meant)
-}
-
-/// MP7224.1 protects the files of a type [000:6870-6880].
-pub(crate) fn is_protected(name: &str, site: &Site) -> bool {
-    let types = site.parameters().table_parameters().types;
-    types.is_protected(type_of(name))
-}
-
-/// MP7224.0 lets nobody see the files of a type [000:6857-6868].
-pub(crate) fn is_disabled(name: &str, site: &Site) -> bool {
-    let types = site.parameters().table_parameters().types;
-    types.is_disabled(type_of(name))
-}
-
-/// The ending by which MP7224 knows a file.
-fn type_of(name: &str) -> &str {
-    match form_of(name) {
-        Some(form) => form.protected_with(),
-        None => name.rsplit_once('.').map_or("", |(_, ending)| ending),
-    }
-}
+use place::{form_of, is_open_to_all, path_of};
+pub(crate) use place::{is_disabled, is_of_machine, is_protected, is_table, of_machine};
 
 /// The tool table: program 0, and the soft key TOOL TABLE [003:1897].
 pub(crate) fn tools(site: &mut Site) -> Turn {
@@ -90,36 +29,9 @@ pub(crate) fn has_tools(site: &Site) -> bool {
     is_open_to_all(TOOL_FILE, site)
 }
 
-/// There is such a table, and MP7224.0 does not disable it [000:9101].
-fn is_open_to_all(name: &str, site: &Site) -> bool {
-    path_of(name, site).is_some() && !is_disabled(name, site)
-}
-
 /// The pocket table.
 pub(crate) fn pockets(site: &mut Site) -> Turn {
     open(POCKET_FILE, site)
-}
-
-/// Puts the new text of a table on the medium, when it has no fault and fits the machine.
-fn store(name: &str, path: &Path, form: TableForm, text: &str, site: &mut Site) -> Result<(), String> {
-    if is_protected(name, site) {
-        return Err(site.message(MessageId::ProtectedPgm));
-    }
-    let checked = form.check(text).map_err(|faults| {
-        let fault = faults.into_iter().next();
-        fault.map_or_else(String::new, |fault| fault.message)
-    });
-    let of_machine = is_of_machine(name, site);
-    let fits = checked.and_then(|()| match of_machine {
-        true => site.machine.fits(form, text, site.parameters()),
-        false => Ok(()),
-    });
-    if let Err(why) = fits {
-        return Err(format!("{}: {why}", site.message(MessageId::EntryValueIncorrect)));
-    }
-    files::write_whole(path, text.as_bytes()).map_err(|error| error.to_string())?;
-    site.programs.was_written();
-    Ok(())
 }
 
 /// Opens the editor of a table.

@@ -1,9 +1,18 @@
 //! The order of the house: arrows between rooms, file lengths, unfinished work.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-use std::collections::{BTreeMap, BTreeSet};
+mod names;
+mod source;
+mod uses;
+mod wholes;
+
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use crate::names::{Files, Texts};
+use crate::source::{code_of, has_word, source_files};
+use crate::uses::Uses;
 
 /// The rooms from the ground floor up: a room may only use rooms that stand before it here and are named
 /// behind it.
@@ -125,17 +134,34 @@ const ROOMS: &[(&str, &[&str])] = &[
 const LINES_MAX: usize = 700;
 
 /// Files that use each other in a circle. None should; a circle that is opened leaves the list.
-const CIRCLES: &[(&str, &[&str])] = &[];
+const CIRCLES: &[(&str, &str)] = &[
+    ("interpreter", "checkpoints growing lib oem work"),
+    ("panel", "station station::warm_start"),
+    ("servo", "spindle spindle::speed"),
+    (
+        "technology",
+        "channel channel::backward channel::drive channel::prepare channel::single",
+    ),
+];
 
-/// What holds the parts of a room together, with its file. It only orders: what its parts do stands with them, and
-/// they get what they may touch.
-const WHOLES: &[(&str, &str, &str)] = &[
-    ("interpreter", "Run", "run.rs"),
-    ("control", "Control", "control.rs"),
-    ("control", "Kernel", "kernel.rs"),
-    ("control", "Channel", "channel.rs"),
-    ("control", "MachineSide", "machine.rs"),
-    ("control", "ProgramRun", "run.rs"),
+/// Types of many fields with methods in many files, and these files. None should be.
+const TOO_MUCH: &[(&str, &str, &str)] = &[
+    (
+        "interpreter",
+        "Interpreter",
+        "checkpoints growing lib oem outside recording work",
+    ),
+    ("machine", "Machine", "acting machine standing"),
+    (
+        "panel",
+        "Station",
+        "station station::teaching station::transfers station::warm_start",
+    ),
+    (
+        "technology",
+        "Channel",
+        "channel channel::backward channel::drive channel::gates channel::kept channel::planned channel::prepare channel::programs channel::single channel::skipped",
+    ),
 ];
 
 /// Arrays of five or nine numbers, letters or the like that are not those of axes.
@@ -158,10 +184,27 @@ const NOT_OF_AXES: &[(&str, &str)] = &[
     ("workpiece/benches/tools.rs", "corner radii"),
 ];
 
+/// Tables in which controls are known by their names, and why.
+const NAMES_OF_CONTROLS: &[(&str, &str)] = &[
+    (
+        "exchange/src/signal.rs",
+        "markers that the manual lists for a control that is none of the models",
+    ),
+    (
+        "link/src/lsv2/peer.rs",
+        "what a control at the other end says that it is; features follow",
+    ),
+];
+
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Whether a file is one of those that look for marks, and has them all.
+fn is_this_check(file: &Path) -> bool {
+    file.ends_with("tests/tidy/main.rs")
 }
 
 #[test]
@@ -209,13 +252,6 @@ fn dependencies(folder: &Path) -> Vec<String> {
         .unwrap_or_default()
 }
 
-/// Whether a name stands in the code, and not as part of a longer one.
-fn has_word(code: &str, name: &str) -> bool {
-    let part = |c: char| c.is_alphanumeric() || c == '_';
-    code.match_indices(name)
-        .any(|(at, _)| !code[..at].ends_with(part) && !code[at + name.len()..].starts_with(part))
-}
-
 #[test]
 fn files_hold_one_idea_and_no_unfinished_work() {
     let mut faults = Vec::new();
@@ -225,7 +261,7 @@ fn files_hold_one_idea_and_no_unfinished_work() {
         if text.lines().count() > LINES_MAX {
             faults.push(format!("{name} has more than {LINES_MAX} lines"));
         }
-        if file.ends_with("tidy.rs") {
+        if is_this_check(&file) {
             continue;
         }
         for mark in UNFINISHED.iter().filter(|mark| text.contains(**mark)) {
@@ -247,7 +283,7 @@ fn nothing_outside_a_crate_is_compiled_into_it() {
         let macros = ["include_str!(\"", "include_bytes!(\""];
         for path in macros.iter().flat_map(|name| text.split(name).skip(1)) {
             let path = path.split('"').next().unwrap();
-            if file.ends_with("tidy.rs") {
+            if is_this_check(&file) {
                 continue;
             }
             let target = fs::canonicalize(file.with_file_name(path)).unwrap();
@@ -270,13 +306,65 @@ fn models_are_compared_in_one_room() {
         let code = code_of(&file);
         for (number, line) in (1..).zip(code.lines()) {
             // The model that is taken when nobody names one.
-            let default = path.ends_with("plc/src/compile/mod.rs") && line.contains("model: ControlModel::");
+            let default =
+                path.ends_with("plc/src/compile/options.rs") && line.contains("model: ControlModel::");
             if comparisons.iter().any(|mark| line.contains(mark)) && !default {
                 faults.push(format!("{path}:{number}: {}", line.trim()));
             }
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Nobody else knows a control by its name either: a model is typed, and what it does otherwise is asked of it.
+#[test]
+fn controls_are_known_by_name_in_tables_only() {
+    let mut faults = Vec::new();
+    let mut known: BTreeSet<&str> = NAMES_OF_CONTROLS.iter().map(|(file, _)| *file).collect();
+    for file in source_files(&root().join("crates")) {
+        let path = file.to_string_lossy();
+        if !path.contains("/src/") || path.contains("crates/parameters/") || path.contains("/tests") {
+            continue;
+        }
+        let named: Vec<String> = code_of(&file)
+            .lines()
+            .filter(|line| names_a_control(line))
+            .map(|line| format!("{path}: {}", line.trim()))
+            .collect();
+        let other = NAMES_OF_CONTROLS.iter().find(|(other, _)| path.ends_with(other));
+        match other {
+            Some((other, _)) if !named.is_empty() => drop(known.remove(other)),
+            _ => faults.extend(named),
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(known.is_empty(), "no such names any more: {known:?}");
+}
+
+/// Whether a text of a line begins with the name of a control: letters, and its number.
+fn names_a_control(line: &str) -> bool {
+    line.split('"').skip(1).step_by(2).any(|text| {
+        let name = text.to_ascii_lowercase();
+        let number = name
+            .trim_start_matches('i')
+            .strip_prefix("tnc")
+            .map(str::trim_start);
+        number.is_some_and(|number| number.starts_with(|letter: char| letter.is_ascii_digit()))
+    })
+}
+
+#[test]
+fn names_of_controls_are_told_from_drives() {
+    for name in [
+        "name.starts_with(\"ITNC530\")",
+        "model == \"TNC 151\"",
+        "of(\"tnc415b\")",
+    ] {
+        assert!(names_a_control(name), "{name}");
+    }
+    for other in ["join(\"TNC:1.H\")", "(\"tnc-plain\", \"h\")", "a TNC 415"] {
+        assert!(!names_a_control(other), "{other}");
+    }
 }
 
 /// Machine parameters have typed getters: their numbers stand in the room `parameters`.
@@ -309,7 +397,7 @@ fn axes_are_counted_in_one_place() {
     let mut faults = Vec::new();
     let mut known: BTreeSet<&str> = NOT_OF_AXES.iter().map(|(file, _)| *file).collect();
     let rooms = ["crates", "machines", "fuzz/fuzz_targets"].map(|folder| source_files(&root().join(folder)));
-    for file in rooms.iter().flatten().filter(|file| !file.ends_with("tidy.rs")) {
+    for file in rooms.iter().flatten().filter(|file| !is_this_check(file)) {
         let path = file.to_string_lossy();
         let other = NOT_OF_AXES.iter().find(|(other, _)| path.ends_with(other));
         let text = fs::read_to_string(file).unwrap();
@@ -368,38 +456,36 @@ fn arrays_of_axes_are_told_from_others() {
 /// Arrows point down within a room, too: no file uses one that uses it, but for the circles that are known.
 #[test]
 fn files_use_each_other_in_no_circle() {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(root().join("crates")).unwrap() {
-        let folder = entry.unwrap().path();
-        let room = folder.file_name().unwrap().to_string_lossy().into_owned();
-        for circle in Uses::of(&folder.join("src")).circles() {
-            found.push((room.clone(), circle));
-        }
-    }
-    let known: Vec<(String, Vec<String>)> = CIRCLES
-        .iter()
-        .map(|(room, files)| {
-            (
-                (*room).to_owned(),
-                files.iter().map(|file| (*file).to_owned()).collect(),
-            )
-        })
-        .collect();
-    let mut faults = Vec::new();
-    for (room, files) in &found {
-        let is_known = known
-            .iter()
-            .any(|(of, known)| of == room && files.iter().all(|file| known.contains(file)));
-        if !is_known {
-            faults.push(format!("a new circle in {room}: {}", files.join(", ")));
-        }
-    }
-    for circle in &known {
-        if !found.contains(circle) {
-            faults.push(format!("this circle is no more as listed: {circle:?}"));
-        }
-    }
-    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    let found = rooms().into_iter().flat_map(|(room, texts)| {
+        let circles = Uses::of(&Files::of(&texts)).circles().into_iter();
+        circles.map(move |files| format!("{room}: {}", files.join(" ")))
+    });
+    let known = CIRCLES.iter().map(|(room, files)| format!("{room}: {files}"));
+    assert_as_known(found.collect(), known.collect());
+}
+
+/// A list of what is known to be out of order names all of that and nothing else, so that it shrinks.
+fn assert_as_known(found: BTreeSet<String>, known: BTreeSet<String>) {
+    let new: Vec<_> = found.difference(&known).cloned().collect();
+    let gone: Vec<_> = known.difference(&found).cloned().collect();
+    assert!(
+        new.is_empty() && gone.is_empty(),
+        "new:\n{}\nno more:\n{}",
+        new.join("\n"),
+        gone.join("\n")
+    );
+}
+
+/// The rooms by their names, with the texts of their files.
+fn rooms() -> Vec<(String, Texts)> {
+    let folders = fs::read_dir(root().join("crates"))
+        .unwrap()
+        .map(|entry| entry.unwrap());
+    let room = |folder: fs::DirEntry| {
+        let name = folder.file_name().to_string_lossy().into_owned();
+        (name, Texts::below(&folder.path().join("src")))
+    };
+    folders.map(room).collect()
 }
 
 /// Whoever opens the documentation of a room sees its use.
@@ -413,221 +499,16 @@ fn front_pages_have_an_example() {
     assert!(without.is_empty(), "{without:?}");
 }
 
-/// The methods of a whole stand in its own file: a file that gets parts of it has functions, or parts, of its own.
+/// Nothing is too much for its file: a type of many fields has its methods in few files.
 #[test]
-fn a_whole_has_its_methods_in_its_own_file() {
-    for (room, whole, file) in WHOLES {
-        let folder = root().join("crates").join(room).join("src");
-        let found: Vec<PathBuf> = source_files(&folder)
-            .into_iter()
-            .filter(|file| has_methods_of(&code_of(file), whole))
-            .collect();
-        assert_eq!(found, [folder.join(file)], "files with `impl {whole}`");
-    }
-}
-
-/// Whether the code has methods of a type that are those of no trait.
-fn has_methods_of(code: &str, of: &str) -> bool {
-    let heads = code.match_indices("impl").filter_map(|(at, mark)| {
-        let is_word = code[..at].chars().next_back().is_none_or(char::is_whitespace);
-        let head = code[at + mark.len()..].split('{').next()?;
-        is_word.then_some(head)
+fn no_type_is_too_much() {
+    let found = rooms().into_iter().flat_map(|(room, texts)| {
+        let types = wholes::too_much(&Files::of(&texts)).into_iter();
+        let said = types.map(|(name, files)| format!("{room} {name}: {}", Vec::from_iter(files).join(" ")));
+        said.collect::<Vec<_>>()
     });
-    heads.into_iter().any(|head| {
-        // Behind the generic parameters of `impl<'a> Type<'a>`.
-        let name = match head.strip_prefix('<') {
-            Some(generic) => generic.split_once("> ").map_or("", |(_, name)| name),
-            None => head.trim_start(),
-        };
-        let name = name.split(['<', ' ', '\n']).next().unwrap_or_default();
-        name.rsplit("::").next() == Some(of) && !head.contains(" for ")
-    })
-}
-
-#[test]
-fn methods_are_told_from_those_of_traits() {
-    assert!(has_methods_of("struct Run;\nimpl Run {", "Run"));
-    assert!(has_methods_of("impl<'a> crate::run::Run<'a> {", "Run"));
-    assert!(!has_methods_of(
-        "impl Runner {\n fn run(&self) -> impl Iterator<Item = Run> {",
-        "Run"
-    ));
-    assert!(!has_methods_of("impl Drop for Run {", "Run"));
-    assert!(!has_methods_of("impl Run for Machine {", "Run"));
-}
-
-/// Which file of a room uses which.
-struct Uses(BTreeMap<String, BTreeSet<String>>);
-
-impl Uses {
-    fn of(folder: &Path) -> Uses {
-        let name = |file: &Path| {
-            let relative = file.strip_prefix(folder).unwrap().with_extension("");
-            let parts: Vec<_> = relative.iter().map(|part| part.to_str().unwrap()).collect();
-            parts.join("::").trim_end_matches("::mod").to_owned()
-        };
-        let files: BTreeMap<String, PathBuf> = source_files(folder)
-            .into_iter()
-            .map(|file| (name(&file), file))
-            .filter(|(name, _)| name != "lib" && name != "main")
-            .collect();
-        let uses = files.iter().map(|(name, file)| {
-            let code = code_of(file);
-            let used = paths(&code, name)
-                .iter()
-                .filter_map(|path| {
-                    (1..=path.len())
-                        .rev()
-                        .map(|count| path[..count].join("::"))
-                        .find(|p| files.contains_key(p))
-                })
-                // A file and the files below it are one.
-                .filter(|used| {
-                    !format!("{used}::").starts_with(&format!("{name}::"))
-                        && !format!("{name}::").starts_with(&format!("{used}::"))
-                })
-                .collect();
-            (name.clone(), used)
-        });
-        Uses(uses.collect())
-    }
-
-    /// Files that reach each other, two and more.
-    fn circles(&self) -> Vec<Vec<String>> {
-        let reach: BTreeMap<&String, BTreeSet<&String>> =
-            self.0.keys().map(|file| (file, self.reached(file))).collect();
-        let mut circles: Vec<Vec<String>> = Vec::new();
-        for (file, reached) in &reach {
-            if circles.iter().any(|circle| circle.contains(file)) {
-                continue;
-            }
-            let circle: Vec<String> = reached
-                .iter()
-                .filter(|other| reach[**other].contains(file))
-                .map(|other| (*other).clone())
-                .collect();
-            if circle.len() > 1 {
-                circles.push(circle);
-            }
-        }
-        circles
-    }
-
-    fn reached<'a>(&'a self, from: &'a String) -> BTreeSet<&'a String> {
-        let mut reached = BTreeSet::new();
-        let mut waiting = vec![from];
-        while let Some(file) = waiting.pop() {
-            waiting.extend(self.0[file].iter().filter(|next| reached.insert(*next)));
-        }
-        reached
-    }
-}
-
-/// The paths below `crate` and `super` that a file names, from the root of its crate.
-fn paths<'a>(code: &'a str, file: &'a str) -> Vec<Vec<&'a str>> {
-    let above: Vec<&str> = file.split("::").collect();
-    let mut found = Vec::new();
-    for mark in ["crate::", "super::"] {
-        for (at, _) in code.match_indices(mark) {
-            let before = code[..at].chars().next_back();
-            if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':') {
-                continue;
-            }
-            let mut written = Vec::new();
-            names(&code[at..], &mut Vec::new(), &mut written);
-            found.extend(written.into_iter().map(|path| from_root(&path, &above)));
-        }
-    }
-    found
-}
-
-/// The names of a path, of each branch where it ends in braces; what is left behind it.
-fn names<'a>(text: &'a str, before: &mut Vec<&'a str>, found: &mut Vec<Vec<&'a str>>) -> &'a str {
-    let depth = before.len();
-    let mut rest = text;
-    loop {
-        let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_'));
-        let (name, behind) = rest.split_at(end.unwrap_or(rest.len()));
-        if !name.is_empty() {
-            before.push(name);
-        }
-        rest = behind;
-        if let Some(more) = behind.strip_prefix("::") {
-            rest = more;
-            if let Some(mut group) = more.strip_prefix('{') {
-                while let Some(branch) = group.trim_start().strip_prefix(',').or(Some(group.trim_start())) {
-                    let branch = branch.trim_start();
-                    if branch.is_empty() || branch.starts_with('}') {
-                        rest = branch.strip_prefix('}').unwrap_or(branch);
-                        break;
-                    }
-                    let behind = names(branch, before, found);
-                    // Renamed: `as other`.
-                    group = behind.find([',', '}']).map_or("", |at| &behind[at..]);
-                }
-                break;
-            }
-            continue;
-        }
-        found.push(before.clone());
-        break;
-    }
-    before.truncate(depth);
-    rest
-}
-
-/// A path from the root of its crate, as the file below `above` writes it.
-fn from_root<'a>(path: &[&'a str], above: &[&'a str]) -> Vec<&'a str> {
-    let mut base = above.len();
-    let mut own = Vec::new();
-    for part in path {
-        match *part {
-            "crate" => base = 0,
-            "super" => base = base.saturating_sub(1),
-            part => own.push(part),
-        }
-    }
-    [&above[..base], &own].concat()
-}
-
-#[test]
-fn paths_are_found_in_groups() {
-    let code = "use crate::{UsageError, files::{self, NewFile as N}, mp};\nlet x = super::emit::cost();";
-    let found: Vec<String> = paths(code, "plc::run")
+    let known = TOO_MUCH
         .iter()
-        .map(|path| path.join("::"))
-        .collect();
-    assert_eq!(
-        found,
-        [
-            "UsageError",
-            "files::self",
-            "files::NewFile",
-            "mp",
-            "plc::emit::cost"
-        ]
-    );
-}
-
-/// The text of a file without comments and without its tests.
-fn code_of(file: &Path) -> String {
-    let text = fs::read_to_string(file).unwrap();
-    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
-    text.lines()
-        .map(|line| line.split("//").next().unwrap_or_default())
-        .collect::<Vec<_>>()
-        .join("\n")
-}
-
-fn source_files(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            files.extend(source_files(&path));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            files.push(path);
-        }
-    }
-    files
+        .map(|(room, name, files)| format!("{room} {name}: {files}"));
+    assert_as_known(found.collect(), known.collect());
 }

@@ -1,0 +1,53 @@
+//! What a compilation is asked for.
+
+use bahn_parameters::ControlModel;
+
+use crate::source::ProgramMemory;
+
+/// How a program is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Options {
+    /// The control: it limits the length of the code.
+    pub model: ControlModel,
+    /// Whether lines that only the manual's own listings spell like that are errors.
+    pub strict: bool,
+    /// Where the files come from (MP4010).
+    pub memory: ProgramMemory,
+}
+
+impl Default for Options {
+    /// A TNC 415B, tolerant, from the RAM.
+    fn default() -> Options {
+        Options {
+            model: ControlModel::Tnc415b,
+            strict: false,
+            memory: ProgramMemory::Ram,
+        }
+    }
+}
+
+impl Options {
+    /// For a control model, tolerant, from the RAM.
+    pub fn for_model(model: ControlModel) -> Options {
+        Options {
+            model,
+            ..Options::default()
+        }
+    }
+
+    /// Refuses loose spelling.
+    pub fn strict(self) -> Options {
+        Options { strict: true, ..self }
+    }
+
+    /// With files of a memory.
+    pub fn stored_in(self, memory: ProgramMemory) -> Options {
+        Options { memory, ..self }
+    }
+
+    /// Bytes of code of all files together.
+    pub(super) fn code_bytes_max(self) -> u32 {
+        self.model.limits().plc_code_max_bytes
+    }
+}
