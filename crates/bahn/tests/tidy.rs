@@ -18,6 +18,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("interpreter", &["path", "parameters", "program", "reader"]),
     ("motion", &["path"]),
     ("din", &["path"]),
+    ("nc", &["path", "parameters", "program", "reader", "din"]),
     ("technology", &["path", "motion", "din"]),
     ("workpiece", &["path", "picture"]),
     ("viewer", &["path", "workpiece"]),

@@ -167,7 +167,7 @@ pub use message::{HandOverError, Message, Shown};
 pub use oscilloscope::OscilloscopeKeys;
 pub use plc_link::{NcFiles, Pocket, WrittenElement, datum_shifts};
 pub use probe_command::{ProbeCommand, ProbeFunction};
-pub use programs::{Programs, ReaderStart};
+pub use programs::Programs;
 pub use progress::RunState;
 pub use sampling::{ServoSampler, ServoSignal, ServoView};
 pub use scanning::{Digitized, DigitizedNews};

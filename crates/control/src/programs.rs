@@ -3,11 +3,9 @@
 use std::sync::Arc;
 
 use bahn_interpreter::Library;
-use bahn_parameters::own_functions::OwnFunctions;
-use bahn_parameters::{ControlModel, MessageId};
-use bahn_path::Position;
+use bahn_parameters::MessageId;
 use bahn_program::Program;
-use bahn_reader::Reader;
+use bahn_reader::{Reader, Start};
 
 use crate::message::Message;
 
@@ -24,7 +22,7 @@ pub trait Programs: Send + Sync {
     ///
     /// # Errors
     /// Why it cannot be read.
-    fn reader(&self, _name: &str, _start: &ReaderStart) -> Result<Option<Box<dyn Reader>>, String> {
+    fn reader(&self, _name: &str, _start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
         Ok(None)
     }
 
@@ -51,17 +49,6 @@ pub trait Programs: Send + Sync {
     }
 }
 
-/// What a program in a language that the control does not read itself begins with.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ReaderStart {
-    /// The control.
-    pub model: ControlModel,
-    /// The M functions that are synchronised otherwise than the control model does.
-    pub functions: OwnFunctions,
-    /// Where the axes stand, workpiece coordinates, mm and degrees.
-    pub position: Position,
-}
-
 /// A program that is to run.
 pub(crate) enum Opened {
     /// One of a TNC.
@@ -75,7 +62,7 @@ impl Opened {
     pub fn of(
         name: &str,
         programs: &dyn Programs,
-        start: impl FnOnce() -> ReaderStart,
+        start: impl FnOnce() -> Start,
     ) -> Result<Option<Opened>, String> {
         if let Some(reader) = programs.reader(name, &start())? {
             return Ok(Some(Opened::Reader(reader)));
@@ -114,7 +101,7 @@ impl Selection {
         &self,
         mdi: bool,
         programs: &dyn Programs,
-        start: impl FnOnce() -> ReaderStart,
+        start: impl FnOnce() -> Start,
     ) -> Result<Opened, Message> {
         if mdi {
             let blocks = self

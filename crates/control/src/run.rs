@@ -329,7 +329,7 @@ impl ProgramRun {
             self.source.set_aside();
         }
         if !self.source.go_on(site) {
-            match self.open(mdi, site) {
+            match self.open(mdi, site, basis) {
                 Ok(opened) => {
                     // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
                     site.tools.counts &= mdi;
@@ -352,14 +352,14 @@ impl ProgramRun {
         self.progress.enter(RunState::Running);
     }
 
-    fn open(&self, mdi: bool, site: &Site) -> Result<Opened, Message> {
+    fn open(&self, mdi: bool, site: &Site, basis: &Basis) -> Result<Opened, Message> {
         if let Some(feed) = self.source.drip_feed.as_ref().filter(|_| !mdi) {
             let program = feed.open(self.selection.start_block).map_err(Message::Plain)?;
             return Ok(Opened::Program(program));
         }
         let reading = &self.source.reading;
         self.selection
-            .open(mdi, &*reading.programs, || reading.begin(site))
+            .open(mdi, &*reading.programs, || reading.begin(site, basis))
     }
 
     /// RESTORE AT N: scans to a block.
@@ -375,7 +375,7 @@ impl ProgramRun {
         }
         let mdi = site.now.mode == Mode::Mdi;
         let ready = self.source.may_begin(mdi);
-        let Some(opened) = self.open(mdi, site).ok().filter(|_| ready) else {
+        let Some(opened) = self.open(mdi, site, basis).ok().filter(|_| ready) else {
             return false;
         };
         // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.
@@ -684,7 +684,7 @@ impl ProgramRun {
     /// The axes are those of the machine: nobody hands one over meanwhile.
     pub fn test_feeder(&self, name: &str, axes: AxisSet, site: &Site, basis: &Basis) -> Option<Feeder> {
         let reading = &self.source.reading;
-        let opened = Opened::of(name, &*reading.programs, || reading.begin(site)).ok()??;
+        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis)).ok()??;
         let mut feeder = self.source.feeder_from(opened, Status::default(), site, basis);
         feeder.expect_axes(axes);
         Some(feeder)

@@ -7,9 +7,9 @@ use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
-use bahn_path::{BlockRef, Frame, PerAxis, Plane, Position};
+use bahn_path::{AxisSet, BlockRef, Frame, PerAxis, Plane, Position};
 use bahn_program::Program;
-use bahn_reader::Reader;
+use bahn_reader::{Reader, Start};
 use bahn_servo::Rotation;
 
 use crate::axes::OwnAxes;
@@ -19,7 +19,7 @@ use crate::feeder::Feeder;
 use crate::kinematics::Chain;
 use crate::manual_probing::ManualProbing;
 use crate::plc_link::PlcLink;
-use crate::programs::{Opened, Programs, ReaderStart, Shelf};
+use crate::programs::{Opened, Programs, Shelf};
 use crate::setup::Checking;
 use crate::site::Site;
 
@@ -48,12 +48,9 @@ pub(crate) struct Reading {
 
 impl Reading {
     /// What a program in another language begins with.
-    pub fn begin(&self, site: &Site) -> ReaderStart {
-        ReaderStart {
-            model: self.model,
-            functions: self.functions.clone(),
-            position: site.here(),
-        }
+    pub fn begin(&self, site: &Site, basis: &Basis) -> Start {
+        // Which axes its channel has the feeder knows.
+        Start::of(basis.list, self.functions.clone(), AxisSet::EMPTY, site.here())
     }
 }
 

@@ -7,13 +7,13 @@ mod support;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_control::{Control, Programs, ReaderStart, RunState};
+use bahn_control::{Control, Programs, RunState};
 use bahn_path::{
-    At, Axis, BlockRef, Curve, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement,
-    Position, Step, Synchronisation, TechnologyFunction,
+    At, Axis, BlockRef, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Position, Step,
+    Synchronisation, TechnologyFunction,
 };
 use bahn_program::Program;
-use bahn_reader::{Mark, ProgramError, Reader, Warning};
+use bahn_reader::{Mark, ProgramError, Reader, Start, Warning};
 use stand::*;
 use support::Rig;
 
@@ -53,20 +53,10 @@ impl ElementSource for Places {
         self.position[Axis::X] = *x;
         let out =
             |code: &u16| TechnologyFunction::new(Function::M(*code), At::Start, Synchronisation::MvsSvs);
-        let element = PathElement {
-            block: self.at(),
-            sequence: self.mark().sequence,
-            curve: Curve::Line,
-            start,
-            end: self.position,
-            feed: FeedRate::Programmed(FEED_MM_MIN),
-            override_law: OverrideLaw::Free,
-            constant_speed: false,
-            tangential_end: false,
-            dwell_s: 0.0,
-            placement: None,
-            functions: m.as_ref().map(|code| [out(code)].into()),
-        };
+        let ends = [start, self.position];
+        let feed = FeedRate::Programmed(FEED_MM_MIN);
+        let mut element = PathElement::new(self.at(), self.mark().sequence, Curve::Line, ends, feed);
+        element.functions = m.as_ref().map(|code| [out(code)].into());
         self.next += 1;
         Step::Element(element)
     }
@@ -149,7 +139,7 @@ impl Programs for Shelf {
         Ok((name == "2.H").then(|| Arc::new(Program::from_bytes(name, text.into()))))
     }
 
-    fn reader(&self, name: &str, start: &ReaderStart) -> Result<Option<Box<dyn Reader>>, String> {
+    fn reader(&self, name: &str, start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
         Ok((name == "1.H").then(|| -> Box<dyn Reader> {
             Box::new(Places {
                 text: Arc::new(Program::from_bytes(name, b"to 60\nto 70, M40\n".to_vec())),

@@ -4,6 +4,7 @@
 //! - [`Reader`]: an [`ElementSource`](bahn_path::ElementSource) that can go back to a block, go on at one, and say
 //!   which block it is at;
 //! - [`Mark`]: a state before a block to which it can go back;
+//! - [`Start`]: what a program finds on a machine when it begins;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it.
 //!
 //! What only some languages have (Q parameters, a tool table, cycles of the machine builder) is not asked here: whoever
@@ -29,6 +30,8 @@
 
 mod error;
 mod reader;
+mod start;
 
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use reader::{Mark, Reader};
+pub use start::Start;
