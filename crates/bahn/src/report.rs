@@ -1,9 +1,10 @@
 //! The report of a test run: what is collected while it runs, and what of it is handed out as JSON.
 
+use bahn_reader::{Reader, WarningKind};
 use std::collections::HashMap;
 use std::fmt;
 
-use bahn_interpreter::{Interpreter, WarningKind};
+use bahn_interpreter::Interpreter;
 use bahn_motion::Planned;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::{Axis, BlockRef, Curve, FeedRate, Function, PathElement, Position};
@@ -161,7 +162,7 @@ impl Record {
     /// The report.
     pub fn report(
         mut self,
-        run: &Interpreter,
+        run: &dyn Reader,
         end: End,
         removed_mm3: Option<f64>,
         model: ControlModel,
@@ -212,7 +213,7 @@ impl Record {
             },
             tool_calls: tool_calls.collect(),
             final_position: Axes(if completed { run.position() } else { self.position }),
-            q: QParameters(run.q_values().to_vec()),
+            q: QParameters(Interpreter::of(run).map_or_else(Vec::new, |run| run.q_values().to_vec())),
             removed_mm3: removed_mm3.map(tidy),
             warnings: warnings.chain(further("warnings", self.more_warnings)).collect(),
             stops: stops.collect(),
@@ -454,7 +455,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    pub fn of(run: &Interpreter, block: BlockRef) -> Place {
+    pub fn of(run: &dyn Reader, block: BlockRef) -> Place {
         let program = run.program(block.program);
         Place {
             program: program

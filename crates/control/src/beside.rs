@@ -26,6 +26,8 @@ pub(crate) struct Loan {
     /// Which loan of the channel it is.
     pub number: u64,
     pub inch: bool,
+    /// It has Q parameters.
+    pub takes_q: bool,
     /// Q parameters that the PLC has set.
     pub q: Vec<(u16, f64)>,
     /// Machine parameters have changed.
@@ -35,10 +37,11 @@ pub(crate) struct Loan {
 }
 
 impl Loan {
-    pub fn new(number: u64, inch: bool) -> Loan {
+    pub fn new(number: u64, feeder: &Feeder) -> Loan {
         Loan {
             number,
-            inch,
+            inch: feeder.inch(),
+            takes_q: feeder.interpreter().is_some(),
             q: Vec::new(),
             rules: None,
             broken_off: false,
@@ -47,7 +50,9 @@ impl Loan {
 
     /// Tells it to the program that is back.
     pub fn settle(self, feeder: &mut Feeder) {
-        let interpreter = feeder.interpreter_mut();
+        let Some(interpreter) = feeder.interpreter_mut() else {
+            return;
+        };
         if self.broken_off {
             interpreter.give_up_work();
         }

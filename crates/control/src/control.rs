@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use bahn_exchange::{Exchange, Image};
-use bahn_interpreter::{Done, Interpreter, Warning, Work};
+use bahn_interpreter::{Done, Interpreter, Work};
 use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::PathElement;
 use bahn_plc::{HostMessage, Tracer};
+use bahn_reader::{Reader, Warning};
 use bahn_servo::Plant;
 
 use crate::alteration::{self, Altered};
@@ -16,6 +17,7 @@ use crate::beside::ReadAhead;
 use crate::channel::Channel;
 use crate::command::{Command, Mode};
 use crate::data_line::{DataLineOrder, OrderedLines};
+use crate::feeder::Feeder;
 use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
 use crate::kernel::Kernel;
@@ -257,14 +259,15 @@ impl Control {
     /// A computation to be done beside.
     pub fn take_work(&mut self) -> Option<Work> {
         let mut feeders = self.kernel.channels.iter_mut().flat_map(Channel::feeders);
-        feeders.find_map(|feeder| feeder.interpreter_mut().take_work())
+        feeders.find_map(|feeder| feeder.interpreter_mut()?.take_work())
     }
 
     /// What a computation came to. It has no effect when what needed it was given up.
     pub fn finish_work(&mut self, done: Done) {
-        let mut feeders = self.kernel.channels.iter_mut().flat_map(Channel::feeders);
-        if let Some(feeder) = feeders.find(|feeder| feeder.interpreter().waits_for(&done)) {
-            feeder.interpreter_mut().finish_work(done);
+        let feeders = self.kernel.channels.iter_mut().flat_map(Channel::feeders);
+        let mut interpreters = feeders.filter_map(Feeder::interpreter_mut);
+        if let Some(interpreter) = interpreters.find(|interpreter| interpreter.waits_for(&done)) {
+            interpreter.finish_work(done);
         }
     }
 
@@ -380,8 +383,8 @@ impl Control {
 
     /// The program of the test run as it stands there, to be gone on with beside: for the graphics. Long computations are
     /// left to whoever drives it when they are here.
-    pub fn tested(&self) -> Option<Interpreter> {
-        self.kernel.channels.first().test().map(TestRun::interpreter)
+    pub fn tested(&self) -> Option<Box<dyn Reader>> {
+        self.kernel.channels.first().test().map(TestRun::reader)
     }
 
     /// The limits within which a path is planned.
@@ -529,10 +532,10 @@ impl Control {
         feeder.map(|feeder| feeder.take_tap()).unwrap_or_default()
     }
 
-    /// The warnings of a channel's interpreter since the last call.
+    /// The warnings of a channel's program since the last call.
     pub fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
-        let interpreter = self.kernel.channels.of_mut(channel).run.source.interpreter_mut();
-        interpreter.map(Interpreter::take_warnings).unwrap_or_default()
+        let reader = self.kernel.channels.of_mut(channel).run.source.reader_mut();
+        reader.map(Reader::take_warnings).unwrap_or_default()
     }
 
     /// Operating mode.
@@ -565,7 +568,12 @@ impl Control {
         self.kernel.channels.first().run.track.path.rest_mm()
     }
 
-    /// The interpreter of the program that runs, or ran last; `None` while it is [lent](Control::lend_reading).
+    /// The program that runs, or ran last; `None` while it is [lent](Control::lend_reading).
+    pub fn reader(&self) -> Option<&dyn Reader> {
+        self.kernel.channels.first().run.source.reader()
+    }
+
+    /// The same as a program of a TNC; `None` when it is in another language.
     pub fn interpreter(&self) -> Option<&Interpreter> {
         self.kernel.channels.first().run.source.interpreter()
     }

@@ -4,23 +4,22 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_interpreter::{AbsentAxes, Cause, Interpreter, Message, ProgramError, Settings};
+use bahn_interpreter::{AbsentAxes, Interpreter};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, PerAxis,
-    Position, Step,
+    Placement, Position, Step,
 };
 use bahn_plc::ToolCallBlock;
-use bahn_program::Program;
+use bahn_reader::{Cause, Message, ProgramError, Reader};
 
 use crate::axis::AxisUnit;
 use crate::kinematics::{Box2, Chain};
 use crate::panel::Direction;
-use crate::programs::{Programs, Shelf};
 
-/// Work of the interpreter in one preparation at most, as [`Interpreter::allow`] counts it: some ms.
+/// Work of the reader in one preparation at most, as [`Reader::allow`] counts it: some ms.
 const WORK: u32 = 4096;
-/// Work of the interpreter beside the control at most before the feeder is back: a command waits so long for it.
+/// Work of the reader beside the control at most before the feeder is back: a command waits so long for it.
 const WORK_BESIDE: u32 = 1024;
 /// Steps that are read ahead beside the control at most.
 const AHEAD: usize = 1024;
@@ -53,7 +52,7 @@ pub(crate) fn absent(
     axis: Axis,
     unit: Option<&AxisUnit>,
     block: BlockRef,
-    run: Option<&Interpreter>,
+    run: Option<&dyn Reader>,
 ) -> ProgramError {
     let program = run.and_then(|run| run.program(block.program));
     let only = AxisSet::EMPTY.with(axis);
@@ -72,7 +71,7 @@ pub(crate) fn absent(
     }
 }
 
-/// Steps of the interpreter that were read beside the control and nobody has taken yet.
+/// Steps of the reader that were read beside the control and nobody has taken yet.
 #[derive(Clone, Default)]
 struct Ahead {
     /// It is read beside the control alone: what is not read yet is waited for.
@@ -92,8 +91,8 @@ impl Ahead {
 /// Feeds the interpolator from a program.
 #[derive(Clone)]
 pub(crate) struct Feeder {
-    interpreter: Interpreter,
-    /// What the interpreter was read ahead by, beside the control.
+    reader: Box<dyn Reader>,
+    /// What the reader was read ahead by, beside the control.
     ahead: Ahead,
     /// Kinematics with the offsets as of the last element handed out.
     chain: Chain,
@@ -108,7 +107,7 @@ pub(crate) struct Feeder {
     /// An element outside the limits, and whether all before it is executed: a function before it may
     /// change traverse range or datum. It comes before those that were given back.
     refused: Option<(PathElement, bool)>,
-    /// Elements read from the interpreter.
+    /// Elements read from the reader.
     read: u64,
     /// Executed elements for whoever wants to see the path.
     tap: Option<Vec<PathElement>>,
@@ -117,18 +116,10 @@ pub(crate) struct Feeder {
 }
 
 impl Feeder {
-    pub fn new(
-        main: Arc<Program>,
-        settings: Settings,
-        programs: Arc<dyn Programs>,
-        chain: Chain,
-        (limits, axes): (Box2, AxisSet),
-    ) -> Feeder {
-        let shelf = Box::new(Shelf(programs));
-        let mut interpreter = Interpreter::new(main, settings, shelf);
-        interpreter.keep_checkpoints();
+    pub fn new(mut reader: Box<dyn Reader>, chain: Chain, (limits, axes): (Box2, AxisSet)) -> Feeder {
+        reader.keep_checkpoints();
         Feeder {
-            interpreter,
+            reader,
             ahead: Ahead::default(),
             chain,
             limits,
@@ -143,12 +134,32 @@ impl Feeder {
         }
     }
 
-    pub fn interpreter(&self) -> &Interpreter {
-        &self.interpreter
+    pub fn reader(&self) -> &dyn Reader {
+        &*self.reader
     }
 
-    pub fn interpreter_mut(&mut self) -> &mut Interpreter {
-        &mut self.interpreter
+    pub fn reader_mut(&mut self) -> &mut dyn Reader {
+        &mut *self.reader
+    }
+
+    /// The program as one of a TNC; `None` when it is in another language.
+    pub fn interpreter(&self) -> Option<&Interpreter> {
+        Interpreter::of(&*self.reader)
+    }
+
+    /// The program as one of a TNC; `None` when it is in another language.
+    pub fn interpreter_mut(&mut self) -> Option<&mut Interpreter> {
+        Interpreter::of_mut(&mut *self.reader)
+    }
+
+    /// How the coordinates of the path stand in the machine at the block that comes next, when not upright.
+    pub fn placement(&self) -> Option<&Arc<Placement>> {
+        self.interpreter().and_then(Interpreter::placement)
+    }
+
+    /// A long computation of it is done, or to be done, beside.
+    fn is_computing(&self) -> bool {
+        self.interpreter().is_some_and(Interpreter::is_computing)
     }
 
     /// The program is read beside the control from now on, by [`Feeder::read_ahead`], or no more.
@@ -162,14 +173,14 @@ impl Feeder {
     /// There is something to be read, and not much of it is there.
     pub fn wants_reading(&self) -> bool {
         let ahead = &self.ahead;
-        ahead.on && !ahead.dammed && ahead.steps.len() <= AHEAD / 2 && !self.interpreter.is_computing()
+        ahead.on && !ahead.dammed && ahead.steps.len() <= AHEAD / 2 && !self.is_computing()
     }
 
     /// Reads ahead what one preparation may need, beside the control.
     pub fn read_ahead(&mut self) {
-        self.interpreter.allow(WORK_BESIDE);
+        self.reader.allow(WORK_BESIDE);
         while !self.ahead.dammed && self.ahead.steps.len() < AHEAD {
-            let step = self.interpreter.next();
+            let step = self.reader.next();
             match step {
                 Step::Starved => return,
                 Step::Element(_) => {}
@@ -187,12 +198,12 @@ impl Feeder {
             _ => None,
         });
         let next = refused.or(self.found.front()).or(read);
-        next.map_or(self.interpreter.blocks_executed() + 1, |element| element.sequence)
+        next.map_or(self.reader.blocks_executed() + 1, |element| element.sequence)
     }
 
     /// The program that is executed is in inches.
     pub fn inch(&self) -> bool {
-        let program = self.interpreter.program(self.interpreter.at().program);
+        let program = self.reader.program(self.reader.at().program);
         program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
     }
 
@@ -200,7 +211,9 @@ impl Feeder {
     pub fn set_datum(&mut self, datum: Position, machine_zero: Position, (limits, axes): (Box2, AxisSet)) {
         (self.limits, self.axes) = (limits, axes);
         self.chain.offsets.datum = datum;
-        self.interpreter.set_machine_zero(machine_zero);
+        if let Some(interpreter) = self.interpreter_mut() {
+            interpreter.set_machine_zero(machine_zero);
+        }
     }
 
     /// These axes may come to the channel before a block moves them.
@@ -213,20 +226,20 @@ impl Feeder {
         let axis = call.axis.and_then(crate::tools::inserted_axis);
         let tool = call.tool.map(f64::from);
         let oversize = [call.length_oversize, call.radius_oversize];
-        self.interpreter
-            .insert_tool_call(tool, axis, call.speed, oversize);
+        if let Some(interpreter) = self.interpreter_mut() {
+            interpreter.insert_tool_call(tool, axis, call.speed, oversize);
+        }
     }
 
     /// The first block that was read behind a sequence before which the tool may be replaced.
     pub fn next_replacement(&mut self, behind: u64, tool: u32) -> Option<u64> {
-        self.interpreter.next_replacement(behind, tool)
+        self.interpreter_mut()?.next_replacement(behind, tool)
     }
 
     /// Replaces the tool before such a block: what was read from there on is read again. With the kinematics and offsets of where
     /// the path stands.
     pub fn replace_tool_before(&mut self, sequence: u64, tool: u32, chain: &Chain) {
-        self.interpreter
-            .go_back(|checkpoint| checkpoint.sequence() == sequence);
+        self.reader.go_back(&|mark| mark.sequence == sequence);
         self.ahead.clear();
         self.found.clear();
         self.refused = None;
@@ -236,14 +249,20 @@ impl Feeder {
             tap.retain(|element| element.sequence < sequence);
             self.dropped_from = Some(sequence);
         }
-        self.interpreter.replace_tool(tool);
+        if let Some(interpreter) = self.interpreter_mut() {
+            interpreter.replace_tool(tool);
+        }
     }
 
     /// Replaces the tool in the spindle before the next block, if it may be.
     pub fn replace_tool(&mut self, worn: u32, tool: u32) {
         let next = self.ahead.steps.is_empty() && self.found.is_empty();
-        if next && self.refused.is_none() && self.interpreter.may_replace_tool(worn) {
-            self.interpreter.replace_tool(tool);
+        if next
+            && self.refused.is_none()
+            && let Some(interpreter) = self.interpreter_mut()
+            && interpreter.may_replace_tool(worn)
+        {
+            interpreter.replace_tool(tool);
         }
     }
 
@@ -277,28 +296,27 @@ impl Feeder {
 
     /// What is executed now: nobody goes back behind it.
     pub fn forget_before(&mut self, sequence: u64) {
-        self.interpreter.forget_before(sequence);
+        self.reader.forget_before(sequence);
     }
 
     /// Allows the work of one preparation: a program that only calculates must not hold the control.
     pub fn allow_work(&mut self) {
-        self.interpreter.allow(WORK);
+        self.reader.allow(WORK);
     }
 
     /// Goes back to the state before a block, which then starts from where the axes stand.
     pub fn return_to(&mut self, sequence: u64, machine: &Position, chain: &Chain, limits: Box2) {
-        if sequence <= self.interpreter.blocks_executed() {
-            self.interpreter
-                .go_back(|checkpoint| checkpoint.sequence() <= sequence);
+        if sequence <= self.reader.blocks_executed() {
+            self.reader.go_back(&|mark| mark.sequence <= sequence);
         }
         self.begin_again(machine, chain, limits);
     }
 
     /// The block to which [`Feeder::return_to`] goes back.
     pub fn block_at(&self, sequence: u64) -> BlockRef {
-        match sequence <= self.interpreter.blocks_executed() {
-            true => self.interpreter.block_at(sequence),
-            false => self.interpreter.at(),
+        match sequence <= self.reader.blocks_executed() {
+            true => self.reader.block_at(sequence),
+            false => self.reader.at(),
         }
     }
 
@@ -309,7 +327,7 @@ impl Feeder {
                 self.block_at(*sequence)
             }
             Some(RunFault::Program(error)) => error.block,
-            None => self.interpreter.at(),
+            None => self.reader.at(),
         }
     }
 
@@ -319,9 +337,8 @@ impl Feeder {
             Some(RunFault::Limit { sequence, .. } | RunFault::Absent { sequence, .. }) => {
                 return self.return_to(sequence, machine, chain, limits);
             }
-            Some(RunFault::Program(error)) if self.interpreter.at() != error.block => {
-                self.interpreter
-                    .go_back(|checkpoint| checkpoint.at() == error.block);
+            Some(RunFault::Program(error)) if self.reader.at() != error.block => {
+                self.reader.go_back(&|mark| mark.at == error.block);
             }
             _ => {}
         }
@@ -336,9 +353,10 @@ impl Feeder {
         self.chain.clone_from(chain);
         self.limits = limits;
         self.beside = Position::ZERO;
-        self.interpreter.retry();
-        self.chain.place(self.interpreter.placement());
-        self.interpreter.relocate(&self.chain.to_path(machine));
+        self.reader.retry();
+        let placement = Interpreter::of(&*self.reader).and_then(Interpreter::placement);
+        self.chain.place(placement);
+        self.reader.relocate(&self.chain.to_path(machine));
     }
 
     /// The next step of the program.
@@ -346,7 +364,7 @@ impl Feeder {
         let step = match self.ahead.steps.pop_front() {
             Some(step) => step,
             None if self.ahead.on => self.answer_of_dam(),
-            None => self.interpreter.next(),
+            None => self.reader.next(),
         };
         let element = match step {
             Step::Element(element) => element,
@@ -382,7 +400,7 @@ impl Feeder {
 
     /// A block that digitizes a range which reaches beyond the software limits [003:8047-8051].
     fn range_fault(&self, block: BlockRef) -> Option<Box<ProgramError>> {
-        let (_, job) = self.interpreter.scan().filter(|(by, _)| *by == block)?;
+        let (_, job) = self.interpreter()?.scan().filter(|(by, _)| *by == block)?;
         let [least, greatest] = &self.limits;
         let axes = [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate();
         let outside = |(place, axis): &(usize, Axis)| {
@@ -396,7 +414,7 @@ impl Feeder {
             of(&job.min) < least[*axis] || high > greatest[*axis]
         };
         let (_, axis) = axes.into_iter().find(outside)?;
-        let program = self.interpreter.program(block.program);
+        let program = self.reader.program(block.program);
         Some(Box::new(ProgramError {
             message: Message::Control(MessageId::FaultyRangeData),
             program: program.map_or_else(String::new, |program| program.name().to_owned()),
@@ -406,10 +424,10 @@ impl Feeder {
         }))
     }
 
-    /// Behind a barrier or the end the interpreter says the same again; what is not read yet is waited for.
+    /// Behind a barrier or the end the reader says the same again; what is not read yet is waited for.
     fn answer_of_dam(&mut self) -> Step<Box<ProgramError>> {
         match self.ahead.dammed {
-            true => self.interpreter.next(),
+            true => self.reader.next(),
             false => Step::Starved,
         }
     }
@@ -504,12 +522,14 @@ impl ElementSource for Feeder {
             Some((_, last)) => {
                 *last = true;
                 for (number, value) in live.q_values {
-                    self.interpreter.set_q(number, value);
+                    if let Some(interpreter) = Interpreter::of_mut(&mut *self.reader) {
+                        interpreter.set_q(number, value);
+                    }
                 }
             }
             None => {
                 self.ahead.dammed = false;
-                self.interpreter.resume(live);
+                self.reader.resume(live);
             }
         }
     }
@@ -518,16 +538,11 @@ impl ElementSource for Feeder {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+    use bahn_interpreter::{NoLibrary, Settings};
+    use bahn_program::Program;
+
     use super::*;
     use crate::kinematics::{Cartesian, Offsets};
-
-    struct Empty;
-
-    impl Programs for Empty {
-        fn open(&self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
-            Ok(None)
-        }
-    }
 
     fn feeder(blocks: &str) -> Feeder {
         let text = format!("BEGIN PGM 1 MM\n{blocks}\nEND PGM 1 MM\n");
@@ -548,7 +563,8 @@ mod tests {
         };
         let chain = Chain::new(Arc::new(Cartesian), offsets);
         let axes = Axis::ALL.into_iter().collect();
-        Feeder::new(program, settings, Arc::new(Empty), chain, (limits, axes))
+        let interpreter = Interpreter::new(program, settings, Box::new(NoLibrary));
+        Feeder::new(Box::new(interpreter), chain, (limits, axes))
     }
 
     fn end(blocks: &str) -> Step<RunFault> {
@@ -609,7 +625,7 @@ mod tests {
         machine[Axis::X] = 112.0;
         let (chain, limits) = (feeder.chain.clone(), feeder.limits);
         feeder.return_to(third.unwrap(), &machine, &chain, limits);
-        assert_eq!(feeder.interpreter().q_values()[1], 5.0);
+        assert_eq!(feeder.interpreter().unwrap().q_values()[1], 5.0);
         let Step::Element(again) = feeder.next() else {
             panic!("block 3 runs again")
         };

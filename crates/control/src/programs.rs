@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bahn_interpreter::Library;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
+use bahn_reader::{Reader, Start};
 
 use crate::message::Message;
 
@@ -15,6 +16,15 @@ pub trait Programs: Send + Sync {
     /// # Errors
     /// Why it cannot be read.
     fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
+
+    /// A program in a language that the control does not read itself, ready to run from its first block; `Ok(None)` when
+    /// it is none of those: then it is [opened](Programs::open). There are none by default.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn reader(&self, _name: &str, _start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
+        Ok(None)
+    }
 
     /// A cycle of the machine builder in the EPROM of the PLC; there is none by default.
     ///
@@ -36,6 +46,28 @@ pub trait Programs: Send + Sync {
     /// Why it cannot be kept.
     fn store(&self, name: &str, _pieces: &[Arc<[u8]>]) -> Result<(), String> {
         Err(format!("{name}: these programs cannot be added to"))
+    }
+}
+
+/// A program that is to run.
+pub(crate) enum Opened {
+    /// One of a TNC.
+    Program(Arc<Program>),
+    /// One in another language.
+    Reader(Box<dyn Reader>),
+}
+
+impl Opened {
+    /// The program of a name, in whatever language; `Ok(None)` when there is none.
+    pub fn of(
+        name: &str,
+        programs: &dyn Programs,
+        start: impl FnOnce() -> Start,
+    ) -> Result<Option<Opened>, String> {
+        if let Some(reader) = programs.reader(name, &start())? {
+            return Ok(Some(Opened::Reader(reader)));
+        }
+        Ok(programs.open(name, "")?.map(Opened::Program))
     }
 }
 
@@ -65,19 +97,25 @@ pub(crate) struct Selection {
 
 impl Selection {
     /// The program of MDI, or of the other automatic modes.
-    pub fn open(&self, mdi: bool, programs: &dyn Programs) -> Result<Arc<Program>, Message> {
+    pub fn open(
+        &self,
+        mdi: bool,
+        programs: &dyn Programs,
+        start: impl FnOnce() -> Start,
+    ) -> Result<Opened, Message> {
         if mdi {
             let blocks = self
                 .mdi
                 .as_ref()
                 .ok_or(Message::Plain(MessageId::KeyNonFunctional))?;
             let text = format!("BEGIN PGM MDI MM\n{blocks}\nEND PGM MDI MM\n");
-            return Ok(Arc::new(Program::from_bytes("$MDI", text.into_bytes())));
+            let program = Program::from_bytes("$MDI", text.into_bytes());
+            return Ok(Opened::Program(Arc::new(program)));
         }
         let not_found = Message::Plain(MessageId::ProgramNotFound);
         let name = self.program.as_ref().ok_or(not_found.clone())?;
-        match programs.open(name, "") {
-            Ok(Some(program)) => Ok(program),
+        match Opened::of(name, programs, start) {
+            Ok(Some(opened)) => Ok(opened),
             Ok(None) | Err(_) => Err(not_found),
         }
     }

@@ -339,5 +339,5 @@ fn pass_tool_change(element: &PathElement, feeder: &mut Feeder, rules: &RestartP
             position[unit.axis] = changed[unit.axis];
         }
     }
-    feeder.interpreter_mut().relocate(&position);
+    feeder.reader_mut().relocate(&position);
 }

@@ -1,11 +1,12 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
 use bahn_exchange::{Image, signal};
-use bahn_interpreter::{Interpreter, Status};
+use bahn_interpreter::Status;
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
 use bahn_path::{AxisSet, Barrier, BlockRef, LiveData, PathElement};
+use bahn_reader::Reader;
 use bahn_servo::Measured;
 
 use crate::axis::{AxisUnit, Mover};
@@ -16,7 +17,7 @@ use crate::feeder::{self, Feeder, RunFault};
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
-use crate::programs::Selection;
+use crate::programs::{Opened, Selection};
 use crate::progress::{Progress, RunState};
 use crate::q_transfer::QTransfer;
 use crate::reference;
@@ -298,7 +299,7 @@ impl ProgramRun {
             let probed = answer.touch.is_some();
             if !probed {
                 // The PLC may have moved the axes, or corrected the datum [000:8914].
-                feeder.interpreter_mut().stand_at(&site.here());
+                feeder.reader_mut().stand_at(&site.here());
             }
             path.resume(feeder, answer);
             if let Some(call) = site.tools.inserted_call.take() {
@@ -328,15 +329,15 @@ impl ProgramRun {
             self.source.set_aside();
         }
         if !self.source.go_on(site) {
-            match self.open(mdi) {
-                Ok(program) => {
+            match self.open(mdi, site, basis) {
+                Ok(opened) => {
                     // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
                     site.tools.counts &= mdi;
                     site.tools.replaces_worn &= mdi;
                     site.tools.takes_larger &= mdi;
                     let block = if mdi { 0 } else { self.selection.start_block };
                     site.chain.place(None);
-                    let feeder = self.source.feeder_for_run(program, block, site, basis);
+                    let feeder = self.source.feeder_for_run(opened, block, site, basis);
                     self.source.put(feeder);
                 }
                 Err(message) => {
@@ -344,18 +345,21 @@ impl ProgramRun {
                     return;
                 }
             }
-        } else if let Some(interpreter) = self.source.interpreter() {
-            site.chain.place(interpreter.placement());
+        } else if let Some(feeder) = self.source.feeder() {
+            site.chain.place(feeder.placement());
         }
         self.track.begin_at(site.here(), site.chain);
         self.progress.enter(RunState::Running);
     }
 
-    fn open(&self, mdi: bool) -> Result<std::sync::Arc<bahn_program::Program>, Message> {
+    fn open(&self, mdi: bool, site: &Site, basis: &Basis) -> Result<Opened, Message> {
         if let Some(feed) = self.source.drip_feed.as_ref().filter(|_| !mdi) {
-            return feed.open(self.selection.start_block).map_err(Message::Plain);
+            let program = feed.open(self.selection.start_block).map_err(Message::Plain)?;
+            return Ok(Opened::Program(program));
         }
-        self.selection.open(mdi, &*self.source.reading.programs)
+        let reading = &self.source.reading;
+        self.selection
+            .open(mdi, &*reading.programs, || reading.begin(site, basis))
     }
 
     /// RESTORE AT N: scans to a block.
@@ -371,7 +375,7 @@ impl ProgramRun {
         }
         let mdi = site.now.mode == Mode::Mdi;
         let ready = self.source.may_begin(mdi);
-        let Some(program) = self.open(mdi).ok().filter(|_| ready) else {
+        let Some(opened) = self.open(mdi, site, basis).ok().filter(|_| ready) else {
             return false;
         };
         // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.
@@ -380,7 +384,7 @@ impl ProgramRun {
         }
         let start = if mdi { 0 } else { self.selection.start_block };
         site.chain.place(None);
-        let feeder = self.source.feeder_for_run(program, start, site, basis);
+        let feeder = self.source.feeder_for_run(opened, start, site, basis);
         self.source.put(feeder);
         self.progress.scan();
         self.restoration.scan(block, site.exchange);
@@ -584,7 +588,7 @@ impl ProgramRun {
                 self.answer = Some(live);
             }
             Probed::Refused(message, block) => {
-                let sequence = self.source.interpreter().map_or(0, Interpreter::blocks_executed);
+                let sequence = self.source.reader().map_or(0, Reader::blocks_executed);
                 site.messages.show(message, block);
                 self.abort(Resume::Block(sequence), site);
             }
@@ -605,7 +609,7 @@ impl ProgramRun {
                 site.messages.show(message, Some(block));
             }
             RunFault::Absent { axis, block, .. } => {
-                let error = feeder::absent(axis, site.axes.at(axis), block, self.source.interpreter());
+                let error = feeder::absent(axis, site.axes.at(axis), block, self.source.reader());
                 self.show(Message::Program(Box::new(error)), site);
             }
         }
@@ -629,7 +633,7 @@ impl ProgramRun {
     /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
     /// [000:11657-11663].
     pub fn set_q(&mut self, number: u16, value: f64) {
-        if self.is_active() {
+        if self.is_active() && self.source.takes_q() {
             self.q_transfer.write(number, value);
         } else {
             self.source.set_q(number, value);
@@ -679,10 +683,9 @@ impl ProgramRun {
     /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
     /// The axes are those of the machine: nobody hands one over meanwhile.
     pub fn test_feeder(&self, name: &str, axes: AxisSet, site: &Site, basis: &Basis) -> Option<Feeder> {
-        let Ok(Some(program)) = self.source.reading.programs.open(name, "") else {
-            return None;
-        };
-        let mut feeder = self.source.feeder_from(program, Status::default(), site, basis);
+        let reading = &self.source.reading;
+        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis)).ok()??;
+        let mut feeder = self.source.feeder_from(opened, Status::default(), site, basis);
         feeder.expect_axes(axes);
         Some(feeder)
     }

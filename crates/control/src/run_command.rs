@@ -76,9 +76,9 @@ fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bo
         let next = run.source.feeder().map(Feeder::next_sequence);
         run.source.resume_at(cut.or(next).map(Resume::Block));
         if run.source.go_on(site)
-            && let Some(interpreter) = run.source.interpreter()
+            && let Some(feeder) = run.source.feeder()
         {
-            site.chain.place(interpreter.placement());
+            site.chain.place(feeder.placement());
         }
         run.track.begin_at(site.here(), site.chain);
     }

@@ -7,8 +7,9 @@ use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
-use bahn_path::{BlockRef, Frame, PerAxis, Position};
+use bahn_path::{AxisSet, BlockRef, Frame, PerAxis, Plane, Position};
 use bahn_program::Program;
+use bahn_reader::{Reader, Start};
 use bahn_servo::Rotation;
 
 use crate::axes::OwnAxes;
@@ -18,7 +19,7 @@ use crate::feeder::Feeder;
 use crate::kinematics::Chain;
 use crate::manual_probing::ManualProbing;
 use crate::plc_link::PlcLink;
-use crate::programs::Programs;
+use crate::programs::{Opened, Programs, Shelf};
 use crate::setup::Checking;
 use crate::site::Site;
 
@@ -43,6 +44,14 @@ pub(crate) struct Reading {
     pub inch_feed: Option<InchFeed>,
     pub functions: OwnFunctions,
     pub programs: Arc<dyn Programs>,
+}
+
+impl Reading {
+    /// What a program in another language begins with.
+    pub fn begin(&self, site: &Site, basis: &Basis) -> Start {
+        // Which axes its channel has the feeder knows.
+        Start::of(basis.list, self.functions.clone(), AxisSet::EMPTY, site.here())
+    }
 }
 
 /// Where a run goes on that was broken off.
@@ -134,7 +143,7 @@ impl Source {
     pub fn lend(&mut self) -> Option<(Feeder, u64)> {
         let feeder = self.feeder.take_if(|feeder| feeder.wants_reading())?;
         self.loans += 1;
-        self.loan = Some(Loan::new(self.loans, feeder.inch()));
+        self.loan = Some(Loan::new(self.loans, &feeder));
         Some((feeder, self.loans))
     }
 
@@ -168,12 +177,28 @@ impl Source {
         }
     }
 
+    pub fn reader(&self) -> Option<&dyn Reader> {
+        self.feeder.as_ref().map(Feeder::reader)
+    }
+
+    pub fn reader_mut(&mut self) -> Option<&mut dyn Reader> {
+        self.feeder.as_mut().map(Feeder::reader_mut)
+    }
+
+    /// The program that runs has Q parameters, which it takes where it waits for the PLC.
+    pub fn takes_q(&self) -> bool {
+        match &self.loan {
+            Some(loan) => loan.takes_q,
+            None => self.interpreter().is_some(),
+        }
+    }
+
     pub fn interpreter(&self) -> Option<&Interpreter> {
-        self.feeder.as_ref().map(Feeder::interpreter)
+        self.feeder.as_ref().and_then(Feeder::interpreter)
     }
 
     pub fn interpreter_mut(&mut self) -> Option<&mut Interpreter> {
-        self.feeder.as_mut().map(Feeder::interpreter_mut)
+        self.feeder.as_mut().and_then(Feeder::interpreter_mut)
     }
 
     /// The program that runs is one that is transferred.
@@ -186,8 +211,9 @@ impl Source {
         let (Some(drip_feed), Some(feeder)) = (&mut self.drip_feed, &mut self.feeder) else {
             return;
         };
-        let interpreter = feeder.interpreter_mut();
-        if interpreter.is_transferred() {
+        if let Some(interpreter) = feeder.interpreter_mut()
+            && interpreter.is_transferred()
+        {
             let at = interpreter.at();
             // In a called program nothing of this one is read.
             let read = if at.program == 0 { at.block } else { 0 };
@@ -366,11 +392,14 @@ impl Source {
             _ => None,
         };
         let over = ended && !self.q_due;
-        let interpreter = self.interpreter().filter(|_| !over);
-        Some(interpreter.map_or_else(
-            || self.status.frame(),
-            |interpreter| interpreter.frame_at(sequence.or(broken_off)),
-        ))
+        Some(match self.feeder.as_ref().filter(|_| !over) {
+            None => self.status.frame(),
+            // Programs in other languages transform nothing.
+            Some(feeder) => feeder.interpreter().map_or_else(
+                || Frame::identity(Plane::XY),
+                |interpreter| interpreter.frame_at(sequence.or(broken_off)),
+            ),
+        })
     }
 
     /// Keeps the Q parameters of the run for the next one.
@@ -395,7 +424,7 @@ impl Source {
     }
 
     /// A feeder of a program that is to run, from a block on, with what the last run left in force.
-    pub fn feeder_for_run(&self, program: Arc<Program>, block: u32, site: &Site, basis: &Basis) -> Feeder {
+    pub fn feeder_for_run(&self, opened: Opened, block: u32, site: &Site, basis: &Basis) -> Feeder {
         let mut status = self.status.clone();
         if status.tool() != Some(site.tools.number) {
             status.cancel_tool();
@@ -407,16 +436,32 @@ impl Source {
             Rotation::M5 => None,
         };
         status.take_spindle(clockwise, spindle.programmed_rpm);
-        let mut feeder = self.feeder_from(program, status, site, basis);
+        let mut feeder = self.feeder_from(opened, status, site, basis);
         if block > 0 {
-            feeder.interpreter_mut().goto(block);
+            feeder.reader_mut().goto(block);
         }
         feeder.set_tap(self.tap);
         feeder
     }
 
     /// A feeder of a program with what is in force before it.
-    pub fn feeder_from(&self, program: Arc<Program>, status: Status, site: &Site, basis: &Basis) -> Feeder {
+    pub fn feeder_from(&self, opened: Opened, status: Status, site: &Site, basis: &Basis) -> Feeder {
+        let limits = (site.axes.traverse_box(), site.axes.programmable());
+        let reader: Box<dyn Reader> = match opened {
+            Opened::Reader(reader) => reader,
+            Opened::Program(program) => Box::new(self.interpreter_of(program, status, site, basis)),
+        };
+        Feeder::new(reader, site.chain.clone(), limits)
+    }
+
+    /// The interpreter of a program with what is in force before it.
+    fn interpreter_of(
+        &self,
+        program: Arc<Program>,
+        status: Status,
+        site: &Site,
+        basis: &Basis,
+    ) -> Interpreter {
         let mut rules = basis.touch.calibrated(Rules::of(basis.list));
         rules.machine_zero = machine_zero(&site.axes, site.chain);
         let settings = Settings {
@@ -441,13 +486,12 @@ impl Source {
             functions: self.reading.functions.clone(),
             ..Settings::default()
         };
-        let programs = Arc::clone(&self.reading.programs);
-        let limits = (site.axes.traverse_box(), site.axes.programmable());
-        let mut feeder = Feeder::new(program, settings, programs, site.chain.clone(), limits);
+        let shelf = Box::new(Shelf(Arc::clone(&self.reading.programs)));
+        let mut interpreter = Interpreter::new(program, settings, shelf);
         if self.defers {
-            feeder.interpreter_mut().defer_work();
+            interpreter.defer_work();
         }
-        feeder
+        interpreter
     }
 }
 

@@ -4,6 +4,7 @@
 use bahn_interpreter::Interpreter;
 use bahn_parameters::MessageId;
 use bahn_path::{Barrier, BlockRef, ElementSource, Function, LiveData, Step, Touch};
+use bahn_reader::Reader;
 
 use crate::axis::{AxisId, AxisUnit};
 use crate::feeder::{self, Feeder, RunFault};
@@ -85,7 +86,9 @@ impl TestRun {
             TestCommand::InterruptAt(block) if running || interrupted => self.interrupt_at = Some(block),
             TestCommand::GoOn if interrupted => self.state = TestState::Running,
             TestCommand::Q(number, value) if interrupted && self.has_q(number) => {
-                self.feeder.interpreter_mut().set_q(number, value);
+                if let Some(interpreter) = self.feeder.interpreter_mut() {
+                    interpreter.set_q(number, value);
+                }
             }
             _ => return false,
         }
@@ -93,13 +96,14 @@ impl TestRun {
     }
 
     fn has_q(&self, number: u16) -> bool {
-        let values = self.feeder.interpreter().q_values();
-        values.get(usize::from(number)).is_some()
+        let values = self.feeder.interpreter().map(Interpreter::q_values);
+        values.is_some_and(|values| values.get(usize::from(number)).is_some())
     }
 
     /// A Q parameter as the test has it now.
     pub fn q_value(&self, number: u16) -> f64 {
-        self.feeder.interpreter().q_value(number)
+        let interpreter = self.feeder.interpreter();
+        interpreter.map_or(0.0, |interpreter| interpreter.q_value(number))
     }
 
     /// A block was tested: whether the test is to be interrupted at it.
@@ -119,15 +123,15 @@ impl TestRun {
     }
 
     /// The run as it stands, to be gone on with by somebody else.
-    pub fn interpreter(&self) -> Interpreter {
-        self.feeder.interpreter().clone()
+    pub fn reader(&self) -> Box<dyn Reader> {
+        self.feeder.reader().boxed()
     }
 
     pub fn report(&self) -> TestReport {
         TestReport {
             program: self.program.clone(),
             block: self.block,
-            blocks: self.feeder.interpreter().blocks_executed(),
+            blocks: self.feeder.reader().blocks_executed(),
             state: self.state.clone(),
         }
     }

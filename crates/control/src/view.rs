@@ -3,6 +3,7 @@
 use bahn_interpreter::Interpreter;
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Frame, PathElement, Position};
+use bahn_reader::Reader;
 
 use crate::axes::machine_position;
 use crate::channel::Channel;
@@ -118,7 +119,12 @@ impl<'a> ChannelView<'a> {
         self.channel.run.track.path.rest_mm()
     }
 
-    /// The interpreter of the program that runs, or ran last.
+    /// The program that runs, or ran last.
+    pub fn reader(&self) -> Option<&'a dyn Reader> {
+        self.channel.run.source.reader()
+    }
+
+    /// The same as a program of a TNC; `None` when it is in another language.
     pub fn interpreter(&self) -> Option<&'a Interpreter> {
         self.channel.run.source.interpreter()
     }
@@ -126,7 +132,7 @@ impl<'a> ChannelView<'a> {
     /// What reports call a block: in DIN/ISO the number that it is programmed with; its place while the program is read on
     /// another thread.
     pub fn number_of(&self, block: BlockRef) -> u32 {
-        let program = self.interpreter().and_then(|run| run.program(block.program));
+        let program = self.reader().and_then(|run| run.program(block.program));
         program.map_or(block.block, |program| program.number_of(block.block))
     }
 

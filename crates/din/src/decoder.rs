@@ -153,6 +153,37 @@ impl Decoder {
         self.stack.last().is_some_and(is_it) && (depth == 1 || !self.has(block))
     }
 
+    /// Where the block stands that is executed next; the end of the text behind the last one.
+    pub fn at(&self) -> Place {
+        let next = self.stack.iter().rev().find_map(|frame| {
+            let line = (frame.line..frame.end).find(|line| frame.program.is_block(*line))?;
+            Some(
+                Frame {
+                    line,
+                    ..frame.clone()
+                }
+                .place(),
+            )
+        });
+        next.unwrap_or_else(|| self.main.last_unit().place)
+    }
+
+    /// Goes on at a line of the program itself, out of all subroutines, with everything else as it is.
+    pub fn goto(&mut self, line: u32) {
+        let Frame { line: first, end, .. } = self.main;
+        let line = line.clamp(first, end);
+        self.stack = vec![Frame {
+            line,
+            ..self.main.clone()
+        }];
+        (self.has_waited, self.is_over) = (false, false);
+    }
+
+    /// The path goes on from elsewhere: whoever follows it has moved axes.
+    pub fn set_position(&mut self, position: Position) {
+        self.state.position = position;
+    }
+
     /// Where the program begins.
     pub fn begin(&self) -> Place {
         self.main.place()

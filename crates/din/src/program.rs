@@ -290,6 +290,11 @@ impl Program {
         }
     }
 
+    /// Whether a line is a block.
+    pub(crate) fn is_block(&self, line: u32) -> bool {
+        matches!(self.kind(line), Line::Block)
+    }
+
     /// What is wrong in the file, as far as it can be said without executing it, at most [`MAX_FAULTS`]. Macros count as
     /// defined from their line on; what uses one that only its caller may define is not judged.
     pub fn faults(&self) -> Vec<Fault> {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use bahn_path::{Axis, Curve, Position};
+use bahn_path::{Axis, Curve, FeedRate, Position};
 
 /// One executed block. What stands in it happens in this order: commands, functions before the motion, motion,
 /// functions after it, the end of the program; which functions come before and which after says their type in the
@@ -48,6 +48,16 @@ pub struct Motion {
     pub rapid: bool,
     /// Feed of G01, G02, G03, mm/min.
     pub feed_mm_min: f64,
+}
+
+impl Motion {
+    /// How fast it is programmed.
+    pub fn feed(&self) -> FeedRate {
+        match self.rapid {
+            true => FeedRate::Rapid,
+            false => FeedRate::Programmed(self.feed_mm_min),
+        }
+    }
 }
 
 /// A technology function as it is programmed [004:102-108].
@@ -175,7 +185,7 @@ pub trait Variables {
 }
 
 /// Where subroutines are found.
-pub trait Shelf {
+pub trait Shelf: Send + Sync {
     /// The text of the program of this name (`L Laser_on.sub`); its file name as it is called in reports.
     fn text(&self, name: &str) -> Option<(String, Vec<u8>)>;
 }

@@ -61,6 +61,7 @@ mod pen;
 mod positioning;
 mod probe;
 mod q_parameters;
+mod reader;
 mod recording;
 mod rehearsal;
 mod run;

@@ -152,6 +152,12 @@ impl OwnFunctions {
         }
     }
 
+    /// Whether any function goes out ahead of its place.
+    pub fn lead(&self) -> bool {
+        let mut all = self.0.values();
+        all.any(|function| matches!(function, OwnFunction::Out { at: At::Ahead(_), .. }))
+    }
+
     /// What the machine builder says of an M function.
     pub fn get(&self, code: u16) -> Option<OwnFunction> {
         self.0.get(&code).copied()

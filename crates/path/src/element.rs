@@ -22,6 +22,17 @@ pub enum FeedRate {
     Programmed(f64),
 }
 
+impl FeedRate {
+    /// The same, but no faster along the path than a limit, mm/min; infinite without one.
+    pub fn up_to(self, limit_mm_min: f64) -> FeedRate {
+        match self {
+            FeedRate::Rapid if limit_mm_min.is_infinite() => FeedRate::Rapid,
+            FeedRate::Rapid => FeedRate::Programmed(limit_mm_min),
+            FeedRate::Programmed(feed) => FeedRate::Programmed(feed.min(limit_mm_min)),
+        }
+    }
+}
+
 /// What the overrides may do to an element, and with it what leads its path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OverrideLaw {
@@ -89,6 +100,30 @@ pub struct PathElement {
 }
 
 impl PathElement {
+    /// A movement from a start to an end by itself: the feed override acts, corners are checked, no function goes out.
+    pub fn new(
+        block: BlockRef,
+        sequence: u64,
+        curve: Curve,
+        [start, end]: [Position; 2],
+        feed: FeedRate,
+    ) -> PathElement {
+        PathElement {
+            block,
+            sequence,
+            curve,
+            start,
+            end,
+            feed,
+            override_law: OverrideLaw::Free,
+            constant_speed: false,
+            tangential_end: false,
+            dwell_s: 0.0,
+            placement: None,
+            functions: None,
+        }
+    }
+
     /// Path length that the feed rate refers to, see [`Curve::length`].
     pub fn length(&self) -> f64 {
         self.curve.length(&self.start, &self.end)

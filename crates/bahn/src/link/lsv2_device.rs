@@ -374,7 +374,7 @@ fn run_of(station: &Station) -> Run {
     let main = path(snapshot.program.as_deref().unwrap_or_default());
     let current = snapshot
         .block
-        .and_then(|block| control.interpreter()?.program(block.program).cloned())
+        .and_then(|block| control.reader()?.program(block.program).cloned())
         .map_or_else(|| main.clone(), |program| path(program.name()));
     let feed = snapshot.feed_override_percent;
     let message = |shown: &Shown| Message {

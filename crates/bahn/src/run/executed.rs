@@ -86,7 +86,7 @@ impl Executed {
                 .element(&element, &mut self.record)
                 .map_err(no_workpiece)?;
         }
-        if let Some(run) = control.interpreter().filter(|_| !self.outputs.is_empty()) {
+        if let Some(run) = control.reader().filter(|_| !self.outputs.is_empty()) {
             self.outputs.element(&element, run, &mut self.record)?;
         }
         Ok(())
@@ -108,7 +108,7 @@ impl Executed {
 
 /// The function of a block that stops the run.
 pub(super) fn stop_name(control: ChannelView, block: Option<BlockRef>) -> &'static str {
-    let run = control.interpreter();
+    let run = control.reader();
     let function = run.zip(block).and_then(|(run, block)| stop_function(run, block));
     function.unwrap_or("programmed stop")
 }

@@ -108,7 +108,7 @@ impl Listed {
 /// Name of the program of a block.
 pub(super) fn program_name(control: ChannelView, block: BlockRef) -> String {
     control
-        .interpreter()
+        .reader()
         .and_then(|run| run.program(block.program))
         .map(|program| short_name(program).to_owned())
         .unwrap_or_default()

@@ -329,7 +329,7 @@ fn finish(
     let record = &mut session.executed.record;
     let mut record = std::mem::replace(record, Record::new(bahn_path::Position::UNKNOWN));
     record.machining_time_s = session.measured.program_us as f64 * 1e-6;
-    let run = session.host.control().interpreter();
+    let run = session.host.control().reader();
     let run = run.filter(|_| programs.main().is_some());
     let program = match run {
         Some(run) => ProgramReport::Ran(Box::new(record.report(run, end, removed_mm3, model))),
@@ -426,7 +426,7 @@ fn failed_channel(ended: &Ended) -> usize {
 fn error(session: &Session, ended: &Ended) -> ErrorReport {
     use bahn_control::Message;
     let channel = session.host.control().channel(failed_channel(ended));
-    let run = channel.and_then(|channel| channel.interpreter());
+    let run = channel.and_then(|channel| channel.reader());
     let mut at = session.block().unwrap_or_default();
     let shown = match ended {
         Ended::Broken(shown) | Ended::Hangs(_, shown) => shown.as_deref(),
@@ -490,7 +490,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
 /// Says it with the block where that is known.
 fn say_failure(error: &ErrorReport, channel: usize, session: &Session, programs: &FolderPrograms) {
     let channel = session.host.control().channel(channel);
-    let run = channel.and_then(|channel| channel.interpreter());
+    let run = channel.and_then(|channel| channel.reader());
     let main = match channel.map_or(0, |channel| channel.number()) {
         0 => programs.main(),
         _ => run.and_then(|run| run.program(0)),

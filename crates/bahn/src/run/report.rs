@@ -280,7 +280,7 @@ impl ChannelReport {
         model: ControlModel,
     ) -> Option<ChannelReport> {
         let channel = host.control().channel(beside.channel)?;
-        let run = channel.interpreter()?;
+        let run = channel.reader()?;
         let end = match error {
             Some(error) => End::Failed(Box::new(error)),
             None if channel.has_ended() => End::Completed,

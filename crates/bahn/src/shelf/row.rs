@@ -195,7 +195,7 @@ impl Row {
                 })
                 .collect(),
             calls: (1..)
-                .map_while(|index| tested.interpreter.program(index))
+                .map_while(|index| tested.reader.program(index))
                 .map(|program| program.name().to_owned())
                 .collect(),
             ..Row::without_run(path, Verdict::Ok, None)

@@ -1,10 +1,11 @@
 //! One program run to its end: nothing is printed here, so that many can run side by side.
 
+use bahn_reader::{ProgramError, Reader};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, ProgramError};
+use bahn_interpreter::Interpreter;
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanJob};
@@ -69,7 +70,7 @@ pub(crate) struct Tested {
     /// Why a file of the path is not whole. The run went on without it.
     pub unwritten: Option<UsageError>,
     /// The programs of the run, for places.
-    pub interpreter: Interpreter,
+    pub reader: Box<dyn Reader>,
 }
 
 impl Bench {
@@ -128,8 +129,9 @@ impl Bench {
         let library = FileLibrary::with_main(&program);
         let mut interpreter = Interpreter::new(program, self.settings.clone(), Box::new(library));
         interpreter.set_interrupt(company.stop.flag());
+        let reader: Box<dyn Reader> = Box::new(interpreter);
         let mut run = TestRun {
-            planner: Planner::new(interpreter, &self.limits, &self.times),
+            planner: Planner::new(reader, &self.limits, &self.times),
             record: Record::new(self.settings.start),
             cutting: self
                 .columns
@@ -154,7 +156,7 @@ impl Bench {
 
 /// A run and everything that takes its elements.
 struct TestRun {
-    planner: Planner<Interpreter>,
+    planner: Planner<Box<dyn Reader>>,
     record: Record,
     /// `None` for a run without graphics.
     cutting: Option<Cutting>,
@@ -239,7 +241,7 @@ impl TestRun {
         }
         if !self.company.outputs.is_empty() {
             let outputs = &mut self.company.outputs;
-            let written = outputs.element(element, self.planner.source(), &mut self.record);
+            let written = outputs.element(element, &**self.planner.source(), &mut self.record);
             if let Err(error) = written {
                 self.unwritten = Some(error);
                 self.company.outputs = Outputs::default();
@@ -270,7 +272,7 @@ impl TestRun {
         };
         let function = match self.last_stop {
             Some((last, function)) if last == *block => function,
-            _ => stop_function(self.planner.source(), *block),
+            _ => stop_function(&**self.planner.source(), *block),
         };
         self.last_stop = Some((*block, function));
         if let Some(function) = function {
@@ -334,7 +336,7 @@ impl TestRun {
 
     fn error_report(&self, error: &ProgramError) -> ErrorReport {
         let run = self.planner.source();
-        let Place { program, block, .. } = Place::of(run, error.block);
+        let Place { program, block, .. } = Place::of(&**run, error.block);
         let line = run
             .program(error.block.program)
             .map_or(0, |program| Marked::of_block(program, error.block.block).line);
@@ -353,7 +355,7 @@ impl TestRun {
     fn failed_before_start(&self, message: MessageId, detail: &str) -> End {
         End::Failed(Box::new(ErrorReport {
             message: message.text(self.model).to_owned(),
-            program: Place::of(self.planner.source(), Default::default()).program,
+            program: Place::of(&**self.planner.source(), Default::default()).program,
             block: 0,
             line: 1,
             detail: detail.to_owned(),
@@ -370,7 +372,7 @@ impl TestRun {
         let removed_mm3 = part.as_ref().map(Part::removed_mm3);
         let report = self
             .record
-            .report(self.planner.source(), end.clone(), removed_mm3, self.model);
+            .report(&**self.planner.source(), end.clone(), removed_mm3, self.model);
         Ok(Tested {
             end,
             report,
@@ -378,13 +380,13 @@ impl TestRun {
             survey: self.company.survey,
             recording: self.company.recording,
             unwritten: self.unwritten.or(written.err()),
-            interpreter: self.planner.into_source(),
+            reader: self.planner.into_source(),
         })
     }
 }
 
 /// What stops in a block: STOP or M0; `None` for M6.
-pub(crate) fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'static str> {
+pub(crate) fn stop_function(run: &dyn Reader, block: BlockRef) -> Option<&'static str> {
     let chunk = run
         .program(block.program)?
         .decode(block.block / Program::CHUNK_SIZE);

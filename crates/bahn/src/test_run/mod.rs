@@ -11,12 +11,12 @@ mod outputs;
 mod part_page;
 mod survey;
 
+use bahn_reader::Reader;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use bahn_interpreter::Interpreter;
 use bahn_viewer::Recording;
 use bahn_workpiece::{Columns, Projection};
 
@@ -82,7 +82,7 @@ fn say(
 ) -> Result<Outcome, UsageError> {
     let report = &tested.report;
     if let Some(error) = &report.error {
-        print_error(error, &tested.interpreter, file);
+        print_error(error, &*tested.reader, file);
     }
     match tested.end {
         End::Interrupted => diagnostics::print_line("interrupted: the report so far"),
@@ -124,7 +124,7 @@ fn outcome(end: &End) -> Outcome {
     }
 }
 
-pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
+pub(crate) fn print_error(error: &ErrorReport, run: &dyn Reader, main: &Path) {
     let Some(program) = run.program(error.at.program) else {
         return;
     };

@@ -1,9 +1,9 @@
 //! The files that take the tool path.
 
+use bahn_reader::Reader;
 use std::io::Write;
 use std::path::PathBuf;
 
-use bahn_interpreter::Interpreter;
 use bahn_path::{BlockRef, Function, PathElement};
 
 use crate::UsageError;
@@ -56,7 +56,7 @@ impl Outputs {
     pub fn element(
         &mut self,
         element: &PathElement,
-        run: &Interpreter,
+        run: &dyn Reader,
         record: &mut Record,
     ) -> Result<(), UsageError> {
         let number = element.block.program;

@@ -1,8 +1,8 @@
 //! The page of a run for a browser.
 
+use bahn_reader::Reader;
 use std::path::Path;
 
-use bahn_interpreter::Interpreter;
 use bahn_parameters::ControlModel;
 use bahn_path::BlockRef;
 use bahn_viewer::{About, Listing, Recording, Remark};
@@ -31,7 +31,7 @@ pub(super) fn write(
 }
 
 fn about(recording: &Recording, tested: &Tested, model: ControlModel) -> About {
-    let (report, run) = (&tested.report, &tested.interpreter);
+    let (report, run) = (&tested.report, &*tested.reader);
     let listings: Vec<Listing> = recording
         .programs()
         .into_iter()
@@ -61,7 +61,7 @@ fn about(recording: &Recording, tested: &Tested, model: ControlModel) -> About {
     }
 }
 
-fn listing(run: &Interpreter, number: u16) -> Option<Listing> {
+fn listing(run: &dyn Reader, number: u16) -> Option<Listing> {
     let program = run.program(number)?;
     Some(Listing {
         program: number,

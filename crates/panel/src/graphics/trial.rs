@@ -8,6 +8,7 @@ use bahn_control::Control;
 use bahn_interpreter::Interpreter;
 use bahn_motion::{AuxiliaryTimes, PlannedStep, Planner};
 use bahn_path::{Axis, Barrier, BlockRef, LiveData, PathElement};
+use bahn_reader::Reader;
 
 use super::stock::{Heard, Stock};
 
@@ -63,14 +64,14 @@ pub(crate) struct Trial {
 impl Trial {
     /// Begins with what the control has just begun to test; `None` when it tests nothing.
     pub fn begin(control: &Control, beside: bool) -> Option<Trial> {
-        let (mut interpreter, report) = (control.tested()?, control.test_report()?);
+        let (mut reader, report) = (control.tested()?, control.test_report()?);
         let stop = Arc::new(AtomicBool::new(false));
-        interpreter.set_interrupt(Arc::clone(&stop));
-        let blocks = interpreter.program(0).map_or(0, |program| program.block_count());
+        reader.set_interrupt(Arc::clone(&stop));
+        let blocks = reader.program(0).map_or(0, |program| program.block_count());
         let stock = Arc::new(Stock::default());
         let wishes = Arc::default();
         let run = Box::new(Run {
-            planner: Planner::new(interpreter, &control.path_limits(), &AuxiliaryTimes::default()),
+            planner: Planner::new(reader, &control.path_limits(), &AuxiliaryTimes::default()),
             stock: Arc::clone(&stock),
             blocks,
             progress: Progress::default(),
@@ -210,7 +211,7 @@ fn turns(element: &PathElement) -> bool {
 
 /// A program on its way.
 struct Run {
-    planner: Planner<Interpreter>,
+    planner: Planner<Box<dyn Reader>>,
     stock: Arc<Stock>,
     /// Blocks of the main program.
     blocks: u32,
@@ -226,7 +227,9 @@ impl Run {
             return true;
         }
         for (number, value) in wishes.q.drain(..) {
-            self.planner.source_mut().set_q(number, value);
+            if let Some(interpreter) = Interpreter::of_mut(&mut **self.planner.source_mut()) {
+                interpreter.set_q(number, value);
+            }
         }
         false
     }
@@ -258,9 +261,10 @@ impl Run {
                 }
                 PlannedStep::Starved => {
                     // A long computation is done here and now; without one it was interrupted.
-                    let run = self.planner.source_mut();
-                    match run.take_work() {
-                        Some(work) => run.finish_work(work.compute()),
+                    let interpreter = Interpreter::of_mut(&mut **self.planner.source_mut());
+                    let work = interpreter.and_then(|run| Some((run.take_work()?, run)));
+                    match work {
+                        Some((work, run)) => run.finish_work(work.compute()),
                         None => self.progress.ended = true,
                     }
                 }

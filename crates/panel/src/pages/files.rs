@@ -328,8 +328,10 @@ pub(crate) fn runs(name: &str, site: &Site) -> bool {
     let control = site.control();
     let selected = control.selected_program().is_some_and(|own| is_same(own, name));
     let called = || {
-        let programs = control.interpreter().map(|own| own.program_names());
-        programs.is_some_and(|mut names| names.any(|own| is_same(file_name(&own), name)))
+        control.reader().is_some_and(|run| {
+            let mut programs = (0..).map_while(|index| run.program(index));
+            programs.any(|own| is_same(file_name(own.name()), name))
+        })
     };
     control.run_state() != RunState::Idle && is_program(name) && (selected || called())
 }

@@ -94,7 +94,7 @@ impl ProgramRun {
             false => element.map(|element| element.block),
         };
         // While the program is read on another thread what was shown stays.
-        let (Some(at), Some(interpreter)) = (at, run.interpreter()) else {
+        let (Some(at), Some(reader)) = (at, run.reader()) else {
             self.called = self.called.take().filter(|_| at.is_none_or(|at| at.program != 0));
             self.cursor = at.filter(|at| at.program == 0).unwrap_or(self.cursor);
             return;
@@ -102,10 +102,12 @@ impl ProgramRun {
         self.cursor = at;
         self.called = match at.program {
             0 => None,
-            program => interpreter.program(program).cloned(),
+            program => reader.program(program).cloned(),
         };
         self.repeats.clear();
-        if let Some(element) = element.filter(|_| run.is_active()) {
+        if let Some(element) = element.filter(|_| run.is_active())
+            && let Some(interpreter) = run.interpreter()
+        {
             self.repeats.extend(interpreter.repeats_at(element.sequence));
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_path::{BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Position};
+use bahn_path::{BlockRef, Curve, FeedRate, PathElement, Position};
 
 use super::order::OrderId;
 use crate::report::Fault;
@@ -141,25 +141,14 @@ impl Leg {
             feed_mm_min,
             limit,
         } = self.driving;
-        let feed = match limit.velocity_mm_min {
-            limit if limit.is_infinite() && rapid => FeedRate::Rapid,
-            limit if rapid => FeedRate::Programmed(limit),
-            limit => FeedRate::Programmed(feed_mm_min.min(limit)),
+        let feed = if rapid {
+            FeedRate::Rapid
+        } else {
+            FeedRate::Programmed(feed_mm_min)
         };
-        PathElement {
-            block: BlockRef::default(),
-            sequence,
-            curve: self.curve,
-            start: self.start,
-            end: self.end,
-            feed,
-            override_law: OverrideLaw::Free,
-            constant_speed: false,
-            tangential_end: false,
-            dwell_s: 0.0,
-            placement: None,
-            functions: None,
-        }
+        let feed = feed.up_to(limit.velocity_mm_min);
+        let ends = [self.start, self.end];
+        PathElement::new(BlockRef::default(), sequence, self.curve, ends, feed)
     }
 }
 

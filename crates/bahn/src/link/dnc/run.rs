@@ -92,7 +92,7 @@ fn report(session: &Session, ended: &Ended, options: &DncRunOptions) -> DncRepor
         program: options.name.clone(),
         completed: *ended == Ended::Completed,
         blocks: session.blocks(),
-        executed: control.interpreter().map_or(0, |run| run.blocks_executed()),
+        executed: control.reader().map_or(0, |run| run.blocks_executed()),
         position,
         message: match ended {
             Ended::Message(message) => Some(message.clone()),

@@ -1,0 +1,152 @@
+//! M functions and speeds of a block, as the control hands them to PLC and spindle.
+
+use bahn_din::{Command, Kind, Target, Unit};
+use bahn_parameters::MessageId;
+use bahn_parameters::own_functions::OwnFunction;
+use bahn_parameters::technology::{Block, Deed, Output, Technology};
+use bahn_path::{At, Function, Synchronisation, TechnologyFunction};
+use bahn_reader::Start;
+
+/// What a block orders beside its motion.
+#[derive(Default)]
+pub(crate) struct Ordered {
+    /// In the order of output.
+    pub functions: Vec<TechnologyFunction>,
+    /// The run stops behind the block: M0, M6.
+    pub stops: bool,
+}
+
+/// Why a block cannot be executed here.
+pub(crate) struct Refusal {
+    pub message: MessageId,
+    pub detail: String,
+}
+
+impl Refusal {
+    /// What only the channel of a TF5200 has.
+    pub fn of_channel(what: impl std::fmt::Display) -> Refusal {
+        Refusal {
+            message: MessageId::BlockNotSupported,
+            detail: format!("{what}: `bahn technology` runs it"),
+        }
+    }
+}
+
+/// The main spindle, as brackets name it: the only one of this control.
+const SPINDLE: &str = "S";
+
+/// Where M19 orients the spindle to without `POS`, degrees (inferred).
+const ORIENTATION_DEG: f64 = 0.0;
+
+/// The functions of a block in the order of its text.
+pub(crate) fn of_block(unit: &Unit, start: &Start) -> Result<Ordered, Refusal> {
+    let mut ordered = Ordered::default();
+    for function in &unit.functions {
+        match &function.target {
+            Some(Target::Axis(axis)) => {
+                let what = format!("a function goes to the range of axis {axis}");
+                return Err(Refusal::of_channel(what));
+            }
+            Some(Target::Spindle(name)) if **name != *SPINDLE => {
+                return Err(Refusal::of_channel(format!("there is no spindle {name} here")));
+            }
+            _ => {}
+        }
+        match function.kind {
+            Kind::H(code) => {
+                return Err(Refusal::of_channel(format!(
+                    "H{code}: this control has no H functions"
+                )));
+            }
+            Kind::M(code) if function.value.is_some() => {
+                return Err(Refusal::of_channel(format!(
+                    "M{code}: its additive value goes to no PLC of this control"
+                )));
+            }
+            Kind::M(code) => m(code, unit, start, &mut ordered)?,
+            Kind::S(rpm) => ordered.functions.push(speed(rpm, start)?),
+        }
+    }
+    Ok(ordered)
+}
+
+fn speed(rpm: f64, start: &Start) -> Result<TechnologyFunction, Refusal> {
+    if rpm > start.speed_max_rpm {
+        return Err(Refusal {
+            message: MessageId::WrongRpm,
+            detail: format!("S{rpm} is more than {} rpm", start.speed_max_rpm),
+        });
+    }
+    let function = Function::SpindleSpeed(rpm);
+    let technology = Technology::of_block(start.model, Block::SpindleSpeed);
+    Ok(technology.map_or_else(
+        || TechnologyFunction::new(function.clone(), At::Start, Synchronisation::MvsSvs),
+        |technology| by_table(function.clone(), technology, start),
+    ))
+}
+
+/// A function where the table of the model has it.
+fn by_table(function: Function, technology: &Technology, start: &Start) -> TechnologyFunction {
+    TechnologyFunction::new(function, technology.at, technology.synchronisation(start.halts))
+}
+
+fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(), Refusal> {
+    if matches!(code, 17 | 29) {
+        // They end a subroutine, and are no functions of the machine.
+        return Ok(());
+    }
+    let Some(technology) = Technology::of_m(start.model, code) else {
+        return Err(Refusal::of_channel(format!(
+            "M{code} is no function of a {}",
+            start.model.name()
+        )));
+    };
+    for deed in technology.deeds() {
+        match deed {
+            Deed::ProgramStop => ordered.stops = true,
+            Deed::ToolChange => ordered.stops |= start.m6_stops,
+            Deed::SpindleOrientation => {
+                let function = Function::SpindleOrientation(orientation(unit));
+                ordered.functions.push(by_table(function, technology, start));
+            }
+            Deed::ProgramEnd | Deed::Spindle(_) | Deed::Coolant(_) | Deed::ModalCycleCall => {}
+            _ => return Err(of_a_tnc(code)),
+        }
+    }
+    if technology.output != Output::Plc {
+        return Err(of_a_tnc(code));
+    }
+    ordered.functions.push(match start.functions.get(code) {
+        Some(OwnFunction::Out { at, synchronisation }) => {
+            TechnologyFunction::new(Function::M(code), at, synchronisation)
+        }
+        Some(OwnFunction::Point) => explicit_place(),
+        None => TechnologyFunction {
+            spindle: technology.spindle(),
+            ..by_table(Function::M(code), technology, start)
+        },
+    });
+    Ok(())
+}
+
+/// `#EXPL SYN`: what waits for it is to be acknowledged here [004:75].
+pub(crate) fn explicit_place() -> TechnologyFunction {
+    TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)
+}
+
+/// The angle that a spindle bracket gives M19.
+fn orientation(unit: &Unit) -> f64 {
+    let of = |command: &Command| match command {
+        Command::Spindle(order) => order.position_deg,
+        _ => None,
+    };
+    unit.commands.iter().find_map(of).unwrap_or(ORIENTATION_DEG)
+}
+
+/// A function that the control itself executes, in programs of its own languages.
+fn of_a_tnc(code: u16) -> Refusal {
+    Refusal {
+        message: MessageId::BlockNotSupported,
+        detail: format!("M{code} acts on the path of a plain-language or DIN/ISO program alone"),
+    }
+}

@@ -1,0 +1,453 @@
+//! A DIN 66025 program that is read block by block.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use bahn_din::{BlockFault, Command, Decoder, Section, Shelf, Unit};
+use bahn_parameters::MessageId;
+use bahn_path::{
+    Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step,
+};
+use bahn_program::Program;
+use bahn_reader::{Cause, Mark, Message, ProgramError, Reader, Start, Warning};
+
+use crate::functions::{self, Ordered, Refusal};
+use crate::onward;
+use crate::texts::Texts;
+use crate::variables::Model;
+
+/// Executes the programs of a file one after the other.
+#[derive(Clone)]
+pub struct NcReader {
+    start: Start,
+    texts: Texts,
+    file: Arc<bahn_din::Program>,
+    shelf: Arc<dyn Shelf>,
+    run: Run,
+    /// States before blocks whose elements were handed out, when they are kept.
+    kept: Option<VecDeque<(Mark, Run)>>,
+    /// Work that may still be done before [`Step::Starved`]; `None` for any amount.
+    work: Option<u32>,
+    interrupt: Option<Arc<AtomicBool>>,
+}
+
+/// All that changes while it runs: a state to go back to is a copy.
+#[derive(Clone)]
+struct Run {
+    /// `None` in a file without a program.
+    decoder: Option<Decoder>,
+    /// Which of the programs of the file it is.
+    program: usize,
+    /// Executed blocks.
+    sequence: u64,
+    /// End of the last element that was handed out.
+    position: Position,
+    /// The axes stand elsewhere than the block before has led them.
+    stands: Option<Position>,
+    /// `#VECTOR LIMIT`: the greatest velocity of the path, mm/min.
+    limit_mm_min: f64,
+    queue: VecDeque<Item>,
+    waiting: Option<Barrier>,
+    ended: Option<Ended>,
+}
+
+#[derive(Clone)]
+enum Item {
+    Element(PathElement),
+    Barrier(Barrier),
+}
+
+#[derive(Clone)]
+enum Ended {
+    Finished,
+    Failed(Box<ProgramError>),
+}
+
+/// What a block costs whose state is kept.
+const STATE_COST: u32 = 4;
+
+impl NcReader {
+    /// Prepares the run of the programs of a file; `name` is its path, `shelf` finds the subroutines beside it.
+    pub fn new(name: &str, bytes: &[u8], start: Start, shelf: Arc<dyn Shelf>) -> NcReader {
+        let file = Arc::new(bahn_din::Program::from_bytes(name, bytes));
+        let texts = Texts::new(name, bytes);
+        let run = Run {
+            decoder: None,
+            program: 0,
+            sequence: 0,
+            position: start.position,
+            stands: None,
+            limit_mm_min: f64::INFINITY,
+            queue: VecDeque::new(),
+            waiting: None,
+            ended: None,
+        };
+        let mut reader = NcReader {
+            start,
+            texts,
+            file,
+            shelf,
+            run,
+            kept: None,
+            work: None,
+            interrupt: None,
+        };
+        reader.open(0);
+        if reader.run.decoder.is_none() {
+            let refusal = Refusal {
+                message: MessageId::WrongProgramData,
+                detail: "the file has no program, only subroutines".to_owned(),
+            };
+            reader.run.ended = Some(Ended::Failed(reader.error(refusal, BlockRef::default())));
+        }
+        reader
+    }
+
+    /// Begins a program of the file, with new modal data, where the path is (inferred). `false` when there is none.
+    fn open(&mut self, program: usize) -> bool {
+        let Some(main) = self.file.mains().nth(program) else {
+            return false;
+        };
+        self.run.decoder = Some(self.decoder(main));
+        self.run.program = program;
+        self.run.limit_mm_min = f64::INFINITY;
+        true
+    }
+
+    fn decoder(&self, main: &Section) -> Decoder {
+        let file = Arc::clone(&self.file);
+        Decoder::new(file, main, self.run.position, Arc::clone(&self.shelf))
+    }
+
+    fn error(&self, refusal: Refusal, block: BlockRef) -> Box<ProgramError> {
+        let program = self.texts.get(block.program);
+        Box::new(ProgramError {
+            message: Message::Control(refusal.message),
+            program: program.map_or_else(String::new, |program| program.name().to_owned()),
+            block,
+            detail: refusal.detail,
+            cause: Cause::default(),
+        })
+    }
+
+    /// Takes work from what is allowed; `false` when nothing is left.
+    fn spend(&mut self) -> bool {
+        let cost = if self.kept.is_some() { STATE_COST } else { 1 };
+        match &mut self.work {
+            Some(0) => false,
+            Some(work) => {
+                *work = work.saturating_sub(cost);
+                true
+            }
+            None => true,
+        }
+    }
+
+    fn is_interrupted(&self) -> bool {
+        let flag = self.interrupt.as_ref();
+        flag.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    /// Executes the next block. One that fails leaves everything as it was before it.
+    fn step(&mut self) {
+        let mark = Mark {
+            sequence: self.run.sequence + 1,
+            at: self.at(),
+        };
+        let before = self.kept.is_some().then(|| self.run.clone());
+        let done = self.execute(mark.at);
+        match (done, before) {
+            (Ok(()), Some(before)) if !self.run.queue.is_empty() => {
+                if let Some(kept) = &mut self.kept {
+                    kept.push_back((mark, before));
+                }
+            }
+            (Ok(()), _) => {}
+            (Err(refusal), before) => {
+                if let Some(before) = before {
+                    self.run = before;
+                }
+                self.run.ended = Some(Ended::Failed(self.error(refusal, mark.at)));
+            }
+        }
+    }
+
+    fn execute(&mut self, at: BlockRef) -> Result<(), Refusal> {
+        let Some(decoder) = &mut self.run.decoder else {
+            self.run.ended = Some(Ended::Finished);
+            return Ok(());
+        };
+        let unit = match decoder.next(&mut Model(self.start.model)) {
+            bahn_din::Step::Unit(unit) => unit,
+            bahn_din::Step::Fault(fault) => return Err(of_text(&fault)),
+            bahn_din::Step::End => return self.end(),
+        };
+        self.texts.take(decoder.files());
+        if !is_end_of_text(&unit) {
+            self.run.sequence += 1;
+        }
+        self.take(&unit, at)?;
+        if unit.ends {
+            self.end()?;
+        }
+        Ok(())
+    }
+
+    /// A program of the file is over; the next one begins.
+    fn end(&mut self) -> Result<(), Refusal> {
+        let last = self.run.queue.iter().rev().find_map(|item| match item {
+            Item::Element(element) => Some(element.end),
+            Item::Barrier(_) => None,
+        });
+        let handed = self.run.position;
+        self.run.position = last.unwrap_or(handed);
+        if !self.open(self.run.program + 1) {
+            self.run.ended = Some(Ended::Finished);
+        }
+        self.run.position = handed;
+        Ok(())
+    }
+
+    /// Makes elements of a block.
+    fn take(&mut self, unit: &Unit, at: BlockRef) -> Result<(), Refusal> {
+        let Ordered { mut functions, stops } = functions::of_block(unit, &self.start)?;
+        let mut waits = false;
+        for command in &unit.commands {
+            match command {
+                Command::ExplicitSynchronisation => functions.push(functions::explicit_place()),
+                Command::Flush { wait } => waits |= self.flush(*wait)?,
+                Command::VectorLimit {
+                    velocity_mm_min,
+                    acceleration_mm_s2: None,
+                    deceleration_mm_s2: None,
+                } => self.run.limit_mm_min = velocity_mm_min.unwrap_or(f64::INFINITY),
+                Command::RadiusCompensation(false) | Command::Spindle(_) => {}
+                other => return Err(Refusal::of_channel(named(other))),
+            }
+        }
+        let functions = (!functions.is_empty()).then(|| functions.into_boxed_slice());
+        if let Some(mut element) = self.motion(unit, at)? {
+            element.functions = functions;
+            element.dwell_s = unit.dwell_s;
+            self.run.queue.push_back(Item::Element(element));
+        } else if functions.is_some() || unit.dwell_s > 0.0 {
+            let ends = [self.run.position; 2];
+            let mut element = PathElement::new(at, self.run.sequence, Curve::Hold, ends, FeedRate::Rapid);
+            element.functions = functions;
+            element.dwell_s = unit.dwell_s;
+            self.run.queue.push_back(Item::Element(element));
+        }
+        if stops {
+            self.run
+                .queue
+                .push_back(Item::Barrier(Barrier::Stop { block: at }));
+        } else if waits {
+            self.run
+                .queue
+                .push_back(Item::Barrier(Barrier::Acknowledge { block: at }));
+        }
+        Ok(())
+    }
+
+    /// The motion of a block, from where the axes stand.
+    fn motion(&mut self, unit: &Unit, at: BlockRef) -> Result<Option<PathElement>, Refusal> {
+        let Some(motion) = &unit.motion else {
+            return Ok(None);
+        };
+        let onward = match self.run.stands.take() {
+            None => None,
+            Some(stands) => Some(onward::from(motion, &stands).map_err(|detail| Refusal {
+                message: MessageId::CircleEndPosIncorrect,
+                detail: detail.to_owned(),
+            })?),
+        };
+        if let (Some(onward), Some(decoder)) = (&onward, &mut self.run.decoder) {
+            decoder.set_position(onward.end);
+        }
+        let motion = onward.as_ref().unwrap_or(motion);
+        let feed = motion.feed().up_to(self.run.limit_mm_min);
+        let ends = [motion.start, motion.end];
+        let element = PathElement::new(at, self.run.sequence, motion.curve, ends, feed);
+        if let Some(axis) = self.start.absent.iter().find(|axis| element.moves(*axis)) {
+            return Err(Refusal {
+                message: MessageId::WrongAxisProgrammed,
+                detail: format!("no program of this machine moves {axis}"),
+            });
+        }
+        Ok(Some(element))
+    }
+
+    /// `#FLUSH`: nothing goes out ahead across it [004:126]. Without functions that go out ahead there is nothing to do.
+    /// Whether the path waits there.
+    fn flush(&self, wait: bool) -> Result<bool, Refusal> {
+        match wait || !self.start.functions.lead() {
+            true => Ok(wait),
+            false => Err(Refusal::of_channel(
+                "#FLUSH without WAIT, on a machine with functions that go out ahead",
+            )),
+        }
+    }
+}
+
+/// The end of the text, which is no block.
+fn is_end_of_text(unit: &Unit) -> bool {
+    unit.ends && unit.functions.is_empty() && unit.motion.is_none()
+}
+
+/// A block that cannot be read or executed.
+fn of_text(fault: &BlockFault) -> Refusal {
+    Refusal {
+        message: MessageId::WrongProgramData,
+        detail: fault.message.clone(),
+    }
+}
+
+/// What a command is called that only a channel of the TF5200 executes.
+fn named(command: &Command) -> &'static str {
+    match command {
+        Command::ExplicitSynchronisation => "#EXPL SYN",
+        Command::Flush { .. } => "#FLUSH",
+        Command::MicroJoint { .. } => "#CHANNEL SET [M_PRE_OUTPUT ..]: this control has no Micro Joints",
+        Command::VectorLimit { .. } => {
+            "#VECTOR LIMIT with ACC or DEC: machine parameters limit acceleration here"
+        }
+        Command::EdgeBanding(_) => "G107 and G108: this control measures no edge banding",
+        Command::RadiusCompensation(_) => "G41 and G42: no tool has a radius in these programs",
+        Command::Independent(_) => "INDP: axes of this control move on their own by the PLC",
+        Command::Spindle(_) => "POS",
+    }
+}
+
+impl ElementSource for NcReader {
+    type Error = Box<ProgramError>;
+
+    fn next(&mut self) -> Step<Box<ProgramError>> {
+        loop {
+            if let Some(barrier) = self.run.waiting {
+                return Step::Barrier(barrier);
+            }
+            match self.run.queue.pop_front() {
+                Some(Item::Element(element)) => {
+                    self.run.position = element.end;
+                    return Step::Element(element);
+                }
+                Some(Item::Barrier(barrier)) => {
+                    self.run.waiting = Some(barrier);
+                    return Step::Barrier(barrier);
+                }
+                None => {}
+            }
+            match &self.run.ended {
+                Some(Ended::Finished) => return Step::End,
+                Some(Ended::Failed(error)) => return Step::Error(error.clone()),
+                None => {}
+            }
+            if self.is_interrupted() || !self.spend() {
+                return Step::Starved;
+            }
+            self.step();
+        }
+    }
+
+    fn resume(&mut self, _live: LiveData) {
+        self.run.waiting = None;
+    }
+}
+
+impl Reader for NcReader {
+    fn boxed(&self) -> Box<dyn Reader> {
+        Box::new(self.clone())
+    }
+
+    fn program(&self, index: u16) -> Option<&Arc<Program>> {
+        self.texts.get(index)
+    }
+
+    fn at(&self) -> BlockRef {
+        let decoder = self.run.decoder.as_ref();
+        decoder.map_or_else(BlockRef::default, |decoder| self.texts.block(&decoder.at()))
+    }
+
+    fn blocks_executed(&self) -> u64 {
+        self.run.sequence
+    }
+
+    fn position(&self) -> Position {
+        self.run.position
+    }
+
+    fn take_warnings(&mut self) -> Vec<Warning> {
+        Vec::new()
+    }
+
+    fn goto(&mut self, block: u32) {
+        let line = self.texts.line(block);
+        let before = |main: &&Section| main.line <= line;
+        let program = self.file.mains().take_while(before).count().saturating_sub(1);
+        self.open(program);
+        if let Some(decoder) = &mut self.run.decoder {
+            decoder.goto(line);
+        }
+        self.run.queue.clear();
+        (self.run.waiting, self.run.ended) = (None, None);
+    }
+
+    fn keep_checkpoints(&mut self) {
+        self.kept = Some(VecDeque::new());
+    }
+
+    fn forget_before(&mut self, sequence: u64) {
+        if let Some(kept) = &mut self.kept {
+            while kept.get(1).is_some_and(|(next, _)| next.sequence <= sequence) {
+                kept.pop_front();
+            }
+        }
+    }
+
+    fn go_back(&mut self, so: &dyn Fn(Mark) -> bool) {
+        let Some(kept) = &mut self.kept else { return };
+        let found = kept.iter().rposition(|(mark, _)| so(*mark));
+        if let Some((_, state)) = found.and_then(|at| kept.swap_remove_back(at)) {
+            self.run = state;
+        }
+        kept.clear();
+    }
+
+    fn block_at(&self, sequence: u64) -> BlockRef {
+        let mut kept = self.kept.iter().flatten();
+        let state = kept.rfind(|(mark, _)| mark.sequence <= sequence);
+        state.map_or_else(|| self.at(), |(mark, _)| mark.at)
+    }
+
+    fn retry(&mut self) {
+        (self.run.ended, self.run.waiting) = (None, None);
+    }
+
+    fn relocate(&mut self, position: &Position) {
+        self.run.queue.clear();
+        self.run.waiting = None;
+        self.run.stands = Some(*position);
+        self.run.position = *position;
+    }
+
+    fn stand_at(&mut self, position: &Position) {
+        if !self.run.queue.is_empty() {
+            return;
+        }
+        for axis in Axis::ALL.into_iter().filter(|axis| !position[*axis].is_nan()) {
+            self.run.position[axis] = position[axis];
+        }
+        if let Some(decoder) = &mut self.run.decoder {
+            decoder.set_position(self.run.position);
+        }
+    }
+
+    fn allow(&mut self, work: u32) {
+        self.work = Some(work);
+    }
+
+    fn set_interrupt(&mut self, flag: Arc<AtomicBool>) {
+        self.interrupt = Some(flag);
+    }
+}

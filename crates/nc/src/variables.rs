@@ -1,0 +1,28 @@
+//! Variables of a channel, which a contouring control does not have.
+
+use bahn_din::{Variable, Variables};
+use bahn_parameters::ControlModel;
+use bahn_parameters::technology::Technology;
+
+/// The control that executes a program.
+pub(crate) struct Model(pub ControlModel);
+
+impl Model {
+    fn refused(&self, variable: &Variable) -> String {
+        format!("{variable} is a variable of a TF5200 channel, which `bahn technology` has")
+    }
+}
+
+impl Variables for Model {
+    fn read(&mut self, variable: &Variable) -> Result<f64, String> {
+        Err(self.refused(variable))
+    }
+
+    fn write(&mut self, variable: &Variable, _value: f64) -> Result<(), String> {
+        Err(self.refused(variable))
+    }
+
+    fn exists(&self, m: bool, number: u16) -> bool {
+        m && Technology::of_m(self.0, number).is_some()
+    }
+}
