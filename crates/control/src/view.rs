@@ -133,10 +133,7 @@ impl<'a> ChannelView<'a> {
     /// What the status display shows beside positions: transformations at the block that is executed, between runs those
     /// that the last one has left; `None` while the program is read on another thread.
     pub fn in_force(&self) -> Option<InForce> {
-        let run = &self.channel.run;
-        let executed = run.track.path.element().filter(|_| run.is_active());
-        let executed = executed.map(|element| element.sequence);
-        let frame = run.source.frame(run.progress().has_ended(), executed)?;
+        let frame = self.channel.run.frame()?;
         let basic = self.channel.touch.memory.basic_rotation_deg;
         let axes = |is: fn(&Frame, Axis) -> bool| {
             let units = self.machine.axes.owned(self.channel.number());

@@ -75,7 +75,7 @@ pub use text::{Entry, ListText};
 pub mod axis {
     pub use crate::settings::{
         AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
-        MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
+        Modulo, MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
         ReferenceType, Synchronization, TravelParameters,
     };
 }

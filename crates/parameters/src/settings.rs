@@ -21,7 +21,7 @@ mod tool_probe;
 
 pub use axis_parameters::{
     AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
-    MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
+    Modulo, MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
     ReferenceType, Synchronization, TravelParameters,
 };
 pub use characteristics::Characteristics;
