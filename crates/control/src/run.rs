@@ -692,7 +692,9 @@ impl ProgramRun {
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.
     pub fn distance_to_go(&self, unit: &AxisUnit, chain: &Chain) -> f64 {
-        let end = self.element().map(|element| chain.to_axes(&element.end)[unit.axis]);
+        let end = self
+            .element()
+            .map(|element| chain.to_axes(&element.end)[unit.axis]);
         end.filter(|end| end.is_finite())
             .map_or(0.0, |end| end - unit.nominal)
     }

@@ -397,7 +397,10 @@ fn cycles_that_act_at_once_leave_m89() {
         ("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+180", -4.0),
         ("CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 0.5", 2.0),
         ("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 0", 4.0),
-        ("CYCL DEF 14.0 CONTOUR GEOMETRY\nCYCL DEF 14.1 CONTOUR LABEL 1", 4.0),
+        (
+            "CYCL DEF 14.0 CONTOUR GEOMETRY\nCYCL DEF 14.1 CONTOUR LABEL 1",
+            4.0,
+        ),
     ] {
         let blocks = format!("L X+1 FMAX M89\n{cycle}\nL X+4 FMAX");
         let holes = drilled(&blocks);

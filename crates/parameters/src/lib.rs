@@ -75,8 +75,8 @@ pub use text::{Entry, ListText};
 pub mod axis {
     pub use crate::settings::{
         AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
-        Modulo, MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
-        ReferenceType, Synchronization, TravelParameters,
+        Modulo, MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters,
+        ReferenceParameters, ReferenceType, Synchronization, TravelParameters,
     };
 }
 

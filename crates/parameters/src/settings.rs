@@ -20,8 +20,8 @@ mod tables;
 mod tool_probe;
 
 pub use axis_parameters::{
-    AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
-    Modulo, MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
+    AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters, Modulo,
+    MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
     ReferenceType, Synchronization, TravelParameters,
 };
 pub use characteristics::Characteristics;

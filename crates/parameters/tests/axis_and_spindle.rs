@@ -261,7 +261,11 @@ fn rotary_axes_count_to_their_modulo_value() {
 #[test]
 fn positions_within_the_modulo_value() {
     let shown = |model, assignment: &str| {
-        let modulo = with(model, &[assignment]).axis_parameters(3).travel.modulo.unwrap();
+        let modulo = with(model, &[assignment])
+            .axis_parameters(3)
+            .travel
+            .modulo
+            .unwrap();
         [-370.0, -10.0, 350.0, 370.0].map(|position| (modulo.shown(position), modulo.turns(position)))
     };
     let signed = [(-10.0, -1.0), (-10.0, 0.0), (350.0, 0.0), (10.0, 1.0)];

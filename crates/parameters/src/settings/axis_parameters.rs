@@ -59,6 +59,8 @@ pub struct EncoderParameters {
     /// Signal period, µm or 1/1000 degree: MP330, 0.1 to 1000 (old: 20 or 10 by MP12+, 20-fold or 10-fold
     /// evaluation to 1 µm) [000:3188-3236] [001:1616-1625].
     pub signal_period_um: f64,
+    /// The input takes square-wave signals, which are evaluated fourfold [000:3206-3214].
+    pub square_wave: bool,
     /// Factor of the external interpolation electronics: MP340, TNC 407 only; 1 elsewhere and for 0
     /// [000:3238-3250].
     pub interpolation: u8,
@@ -370,8 +372,10 @@ impl ParameterList {
 fn encoder(axis: &AxisReader) -> EncoderParameters {
     // MP76: bit 0 concerns inhibited axes, bits 1 to 4 switch X to IV off.
     let checked = || !axis.list().old_bit(76, u32::from(axis.index()) + 1);
+    let input = axis.new_or(110, || f64::from(old_input(axis))) as u8;
     EncoderParameters {
-        input: axis.new_or(110, || f64::from(old_input(axis))) as u8,
+        input,
+        square_wave: input >= axis.list().model().limits().square_wave_input,
         // 20-fold and 10-fold evaluation both make counting steps of 1 µm.
         signal_period_um: axis.new_or(330, || if axis.old(12) == 2.0 { 10.0 } else { 20.0 }),
         interpolation: axis.new_or(340, || 1.0).max(1.0) as u8,
