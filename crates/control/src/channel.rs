@@ -626,11 +626,11 @@ impl Channel {
                 self.desk.choose_mode(mode, self.run.progress(), &mut axes)
             }
             Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
-            Command::WorkingPlane(on) => {
+            Command::WorkingPlane(plane) if !plane.run => {
                 self.touch.leave();
                 let list = self.own_list.as_ref().unwrap_or(machine.link.list());
                 let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
-                self.desk.switch_plane(on, list, &axes, chain)
+                self.desk.switch_plane(&plane, list, &axes, chain)
             }
             ref entered if entered.is_by_hand() => {
                 let axes = &machine.axes.of(self.number);

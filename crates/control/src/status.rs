@@ -206,9 +206,12 @@ pub(crate) fn coordinates<'a>(
     if frame.is_some() {
         link.set_coordinates(CoordinateKind::ShiftedDatum, shifted);
     }
-    // Bit 0: tilted; bit 1: selected by hand; bit 2: by the program that runs.
+    // Bit 0: tilted; bit 1: selected for manual operation; bit 2: for program run, by the menu or by the program.
     let tilted = chain.placement().is_some_and(|placement| placement.is_tilted());
-    let by_program = tilted && (!leans || run.progress().is_on_its_way());
+    let by_program = match run.progress().is_on_its_way() {
+        true => tilted,
+        false => run.source.plane().is_some(),
+    };
     link.set_status(
         StatusItem::WorkingPlane,
         i32::from(tilted) | i32::from(leans) << 1 | i32::from(by_program) << 2,
@@ -234,10 +237,12 @@ pub(crate) fn items(
             1i32.checked_shl(handwheel.max(0) as u32).unwrap_or(0),
         ),
         (StatusItem::ExecutedFile, kind_of_file(executed)),
-        (StatusItem::EditedFile, kind_of_file(tested)),
     ];
     for (item, value) in items {
         link.set_status(item, value);
+    }
+    if link.screen().is_none() {
+        link.set_status(StatusItem::EditedFile, kind_of_file(tested));
     }
     let subdivisions = [
         StatusItem::SubdivisionX,

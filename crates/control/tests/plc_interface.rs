@@ -194,6 +194,10 @@ fn the_plc_reads_the_status() {
     rig.command("test 1.H");
     rig.command("select 2.I");
     assert_eq!(status(&mut rig), [4, 1, 2, 2, 4, 3, 6, 0, 0, 0, 0, 0]);
+    // A screen says what it shows: the machine parameters over the editing screen, a directory over the machine screen, a tool
+    // table that is edited, inches.
+    rig.command("screen 3 2 257 3 1");
+    assert_eq!(status(&mut rig), [4, 3, 2, 2, 4, 3, 6, 3, 2, 0, 1, 0]);
 }
 
 /// A tool change that is broken off before the PLC has acknowledged it: the old tool is in the spindle, with

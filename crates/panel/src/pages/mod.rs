@@ -14,6 +14,7 @@ mod mdi;
 mod menu;
 mod number;
 mod parameters;
+mod plane;
 mod plc;
 mod probe;
 mod programming;
