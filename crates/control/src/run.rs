@@ -622,8 +622,7 @@ impl ProgramRun {
         self.source.q_value(number, self.progress.has_ended(), executed)
     }
 
-    /// Transformations at the block that is executed, between runs those that the last one has left; `None` while the program
-    /// is read on another thread.
+    /// Transformations at the block that is executed, else those that are left; `None` while the program is lent.
     pub fn frame(&self) -> Option<Frame> {
         let executed = self.element().map(|element| element.sequence);
         self.source.frame(self.progress.has_ended(), executed)

@@ -580,11 +580,8 @@ fn the_axes_run_on_while_the_spindle_is_oriented() {
         let mut rig = ready(build.program("1.H", program));
         rig.start();
         rig.until(5.0, "the orientation", |rig| rig.bit("M2127"));
-        let mut farthest = 0.0f64;
-        rig.until(9.0, "the angle", |rig| {
-            farthest = farthest.max(nominal(rig, 'X'));
-            !rig.bit("M2127")
-        });
+        rig.until(9.0, "the angle", |rig| !rig.bit("M2127"));
+        let farthest = nominal(&rig, 'X');
         rig.until(9.0, "the end", |rig| rig.control.snapshot().ended);
         near(display(&rig, 'X'), 120.0);
         assert_eq!(rig.messages(), [""; 0], "{mp7440}");
