@@ -394,8 +394,8 @@ LBL INSERT
 }
 
 /// The programmer is to end the compensation before a PLC positioning [000:4052]; where he does not, the path goes on from where
-/// the axes are, straight to the compensated end of the next block and without a jump. R 3 on the left: X+80 Y+63 at the strobe
-/// stands at the inside corner, 3 mm before X+80; the PLC takes X 5 mm farther back, and Y+90 is reached at X+77.
+/// the axes are, without a jump, and an axis that the next block does not name stays, as without compensation. R 3 on the left:
+/// behind X+80 the strobe stands at the inside corner, X+77 Y+63; the PLC takes X to 72, along which Y goes to 90.
 #[test]
 fn plc_positioning_in_a_compensated_block() {
     let moves_x = plc_moves_z()
@@ -431,8 +431,8 @@ fn plc_positioning_in_a_compensated_block() {
         // 3000 mm/min are 0.15 mm in a contour cycle of 3 ms.
         let way = (now[0] - last[0]).hypot(now[1] - last[1]);
         assert!(way < 0.16, "{last:?} {now:?}");
-        if now[1] < 86.5 {
-            near(now[0], 72.0 + 5.0 * (now[1] - 63.0) / 27.0);
+        if now[1] < 90.0 {
+            near(now[0], 72.0);
         }
         last = now;
     }

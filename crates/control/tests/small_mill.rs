@@ -3,6 +3,7 @@
 mod support;
 
 use bahn_parameters::ControlModel;
+use bahn_servo::Rotation;
 use support::bench::*;
 use support::*;
 
@@ -70,15 +71,13 @@ fn nc_stop_ends_s_and_m_by_hand() {
         rig.command("s 500");
         rig.command("m 3");
         rig.start();
-        rig.until(20.0, "the spindle turns", |rig| {
-            rig.control.snapshot().spindle.actual_rpm.abs() > 450.0
-        });
+        let turns = |rig: &Rig| rig.control.snapshot().spindle.rotation == Rotation::M3;
+        rig.until(20.0, "the spindle turns", turns);
         rig.seconds(0.5);
         rig.command("m 8");
         rig.event("key NC_STOP tap");
-        rig.seconds(10.0);
-        let turns = rig.control.snapshot().spindle.actual_rpm.abs() > 450.0;
-        assert_eq!(turns, !ends, "{mp7270}");
+        rig.seconds(3.0);
+        assert_eq!(turns(&rig), !ends, "{mp7270}");
         assert_eq!(rig.number("W260"), if ends { 9 } else { 3 }, "{mp7270}");
         rig.start();
         rig.seconds(1.0);

@@ -187,6 +187,7 @@ fn the_plc_is_told_what_the_screen_shows() {
     assert_eq!(screen(&mut trainee).machine, 3);
     assert_eq!(screen(&mut trainee).file, 0, "no file of the editing screen");
     // A program is edited: file 1; its directory lies over the editing screen.
+    trainee.write("programs/4711.H", "0 BEGIN PGM 4711 MM\n1 END PGM 4711 MM\n");
     trainee.press("END PROGRAM PGM_NR 4 7 1 1 ENT");
     let editing = screen(&mut trainee);
     assert_eq!(
