@@ -8,9 +8,6 @@ use bahn_servo::{Axis as Servo, Gantry, Mark, Method, Timing};
 use crate::panel::Direction;
 use crate::way_back::WayBack;
 
-/// So far below 0 an axis counts as being at 0, degrees.
-const TURN_TOLERANCE_DEG: f64 = 1e-3;
-
 /// A servo axis of the machine: 0 to 4 are those of the first channel by their index in markers and machine
 /// parameters. 5 is left to the spindle, which counts as the sixth axis in messages [000:3310-3318].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -175,7 +172,7 @@ impl AxisUnit {
     /// The software limits are effective: the axis is referenced and shows no modulo value [000:3442]
     /// [000:4570].
     pub fn limited(&self) -> Option<[f64; 2]> {
-        (self.referenced && self.parameters.travel.modulo_deg.is_none()).then_some(self.limits)
+        (self.referenced && self.parameters.travel.modulo.is_none()).then_some(self.limits)
     }
 
     /// Moves for a cycle, no path; no faster than the rapid traverse.
@@ -359,7 +356,7 @@ impl AxisUnit {
             .iter()
             .fold(f64::NEG_INFINITY, |most, range| most.max(range[1]));
         let beyond = (least - position).max(position - greatest);
-        let endless = travel.modulo_deg.is_some() || !self.parameters.reference.kind.is_coded();
+        let endless = travel.modulo.is_some() || !self.parameters.reference.kind.is_coded();
         if !endless && beyond > (greatest - least) / 2.0 {
             self.servo.refuse_marks();
             return None;
@@ -369,12 +366,12 @@ impl AxisUnit {
 
     /// Counts within one turn again (MP810), after it has turned farther; nothing moves.
     pub fn wrap(&mut self) {
-        let Some(modulo) = self.parameters.travel.modulo_deg else {
+        let Some(modulo) = self.parameters.travel.modulo else {
             return;
         };
-        let turns = ((self.nominal + TURN_TOLERANCE_DEG) / modulo).floor();
+        let turns = modulo.turns(self.nominal);
         if turns != 0.0 {
-            let shift = -turns * modulo;
+            let shift = -turns * modulo.deg;
             self.servo.shift(shift);
             self.nominal += shift;
             self.last_actual += shift;
@@ -384,8 +381,8 @@ impl AxisUnit {
 
     /// A position as it is shown: within one turn where MP810 says so [000:6468-6484].
     pub fn shown(&self, position: f64) -> f64 {
-        match self.parameters.travel.modulo_deg {
-            Some(modulo) => position.rem_euclid(modulo),
+        match self.parameters.travel.modulo {
+            Some(modulo) => modulo.shown(position),
             None => position,
         }
     }

@@ -271,8 +271,8 @@ impl Channel {
                     if self.probe_by_hand(machine, measured) {
                         return;
                     }
-                } else if now.start && !now.stop {
-                    self.output_entered(machine);
+                } else {
+                    self.output_entered(now, machine);
                 }
                 self.move_manually(handwheel, now, machine);
             }
@@ -302,10 +302,10 @@ impl Channel {
         }
     }
 
-    fn output_entered(&mut self, machine: &mut MachineSide) {
-        let (mut manual, model) = (self.desk.manual, machine.model);
+    fn output_entered(&mut self, now: &Now, machine: &mut MachineSide) {
+        let (mut manual, model, ends) = (self.desk.manual, machine.model, self.desk.rules().stop_ends_m);
         let (_, mut site, _) = self.parts(machine);
-        manual.output_entered(model, &mut site);
+        manual.output_entered(model, ends, now, &mut site);
         self.desk.manual = manual;
     }
 
@@ -626,11 +626,11 @@ impl Channel {
                 self.desk.choose_mode(mode, self.run.progress(), &mut axes)
             }
             Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
-            Command::WorkingPlane(on) => {
+            Command::WorkingPlane(plane) if !plane.run => {
                 self.touch.leave();
                 let list = self.own_list.as_ref().unwrap_or(machine.link.list());
                 let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
-                self.desk.switch_plane(on, list, &axes, chain)
+                self.desk.switch_plane(&plane, list, &axes, chain)
             }
             ref entered if entered.is_by_hand() => {
                 let axes = &machine.axes.of(self.number);

@@ -11,7 +11,9 @@ use bahn_plc::TableKind;
 
 use crate::data_line::DataLineEvent;
 use crate::drip_feed::Dnc;
+use crate::plane_command::PlaneCommand;
 use crate::probe_command::ProbeCommand;
+use crate::screen_command::ScreenCommand;
 use crate::test_command::TestCommand;
 
 /// The machine operating modes, as W272 codes them [000:4680-4687].
@@ -128,9 +130,11 @@ pub enum Command {
     /// `oscilloscope start`, `oscilloscope stop`: the soft keys START and STOP behind code number 688 379
     /// [000:18776-18778].
     Oscilloscope(bool),
-    /// `3d-rot on`, `3d-rot off`: by hand the axes move, are shown and get their datum in the plane of the swivel axes as
-    /// they stand [000:4256].
-    WorkingPlane(bool),
+    /// `3d-rot on`, `3d-rot on B+30`, `3d-rot off`: by hand the axes move, are shown and get their datum in the plane of the
+    /// swivel axes; `3d-rot run ..`: programs begin in it [000:4256].
+    WorkingPlane(PlaneCommand),
+    /// `screen EDITING MACHINE WINDOWS FILE UNITS`: what the screen shows, for module 9035.
+    Screen(ScreenCommand),
     /// `handwheel AXIS FACTOR`: axis of the handwheel and its interpolation factor 0 to 10.
     Handwheel(Axis, u8),
     /// `axis-key AXIS`: an axis key of the keyboard: the axis is highlighted (M2096 ff.), and with MP7640 = 2 it is that of
@@ -202,6 +206,7 @@ impl Command {
                 | Command::Dnc(Dnc::Begin(_))
                 | Command::RestoreAt(_)
                 | Command::Q(..)
+                | Command::WorkingPlane(PlaneCommand { run: true, .. })
         )
     }
 
@@ -307,7 +312,12 @@ impl FromStr for Command {
                 number(name, rest, 0, 10).map(|factor| Command::Handwheel(axis, factor))
             }
             "axis-key" => axis_key(name, rest),
-            "3d-rot" => switch(name, rest, "on").map(Command::WorkingPlane),
+            "3d-rot" => PlaneCommand::parse(rest)
+                .map(Command::WorkingPlane)
+                .map_err(CommandError::Wrong),
+            "screen" => ScreenCommand::parse(rest)
+                .map(Command::Screen)
+                .map_err(CommandError::Wrong),
             "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
             "power" => switch(name, rest, "on").map(Command::Power),
             _ if DataLineEvent::WORDS.contains(&name) => data_line(name, rest),
@@ -489,7 +499,8 @@ impl fmt::Display for Command {
             Command::Oscilloscope(false) => write!(f, "oscilloscope stop"),
             Command::Output(Some(feed)) => write!(f, "output step {feed}"),
             Command::Output(None) => write!(f, "output ramp"),
-            Command::WorkingPlane(on) => write!(f, "3d-rot {}", if *on { "on" } else { "off" }),
+            Command::WorkingPlane(plane) => write!(f, "3d-rot {plane}"),
+            Command::Screen(screen) => write!(f, "screen {screen}"),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
             Command::AxisKey(axis) => write!(f, "axis-key {axis}"),
             Command::Dnc(dnc) => write!(f, "dnc {dnc}"),

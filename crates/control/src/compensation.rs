@@ -117,8 +117,8 @@ impl Compensation {
                     continue;
                 };
                 let position = driving.servo.actual_mm();
-                let position = match driving.parameters.travel.modulo_deg {
-                    Some(modulo) => position.rem_euclid(modulo),
+                let position = match driving.parameters.travel.modulo {
+                    Some(modulo) => position.rem_euclid(modulo.deg),
                     None => position,
                 };
                 error_mm += correction.table.error_mm(position);

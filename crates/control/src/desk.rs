@@ -19,6 +19,7 @@ use crate::message::Messages;
 use crate::now::{Facts, Now};
 use crate::overrides::Override;
 use crate::panel::{Panel, PlcFaultCode};
+use crate::plane_command::PlaneCommand;
 use crate::probing::{Guarded, Probe, Stylus};
 use crate::progress::{Progress, RunState};
 use crate::reach::Reach;
@@ -278,22 +279,28 @@ impl Desk {
         })
     }
 
-    /// Switches 3D ROT on or off.
+    /// Switches 3D ROT on or off for manual operation.
     pub fn switch_plane(
         &mut self,
-        on: bool,
+        command: &PlaneCommand,
         list: &ParameterList,
         axes: &OwnAxes,
         chain: &mut Chain,
     ) -> bool {
         let swivels = list.swivels().filter(|_| self.rules.tilting && self.is_by_hand());
+        let Some(swivels) = swivels.filter(|_| axes.stand()) else {
+            return false;
+        };
+        let Some(angles) = command.positions(&swivels, axes) else {
+            return false;
+        };
         let was = self.leaning.is_on();
-        let done = self.leaning.switch(on, swivels, axes, chain.offsets);
-        if done && was && !on {
+        self.leaning.switch(angles, swivels, chain.offsets);
+        if was && angles.is_none() {
             Leaning::leave(chain);
         }
         self.manual.leans = self.leaning.is_on();
-        done
+        true
     }
 
     /// DATUM SET: the actual position becomes a value, in the plane of 3D ROT along it. `false` where that is inhibited.

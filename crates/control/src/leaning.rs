@@ -84,15 +84,15 @@ impl Leaning {
         self.plane.is_some()
     }
 
-    /// Switches 3D ROT on, in the plane of the swivel axes as they stand, or off; outside the cycle. `false` where there
-    /// is nothing to tilt.
-    pub fn switch(&mut self, on: bool, swivels: Option<Swivels>, axes: &OwnAxes, of: Offsets) -> bool {
-        let Some(swivels) = swivels.filter(|_| axes.stand()) else {
-            return false;
-        };
+    /// Machine positions of the swivel axes in the plane, degrees.
+    pub fn angles(&self) -> Option<Position> {
+        self.plane.as_ref().map(|plane| plane.angles)
+    }
+
+    /// Switches 3D ROT on, in the plane of these positions of the swivel axes, or off; outside the cycle.
+    pub fn switch(&mut self, angles: Option<Position>, swivels: Swivels, of: Offsets) {
         self.moving = None;
-        self.plane = on.then(|| Plane::new(swivels, axes.machine_position(), of));
-        true
+        self.plane = angles.map(|angles| Plane::new(swivels, angles, of));
     }
 
     /// The positions by hand are those of the plane, with datum and tool as they are now; outside the cycle.

@@ -104,6 +104,7 @@ mod oscilloscope;
 mod overrides;
 mod panel;
 mod per_channel;
+mod plane_command;
 mod plc_link;
 mod positioning;
 mod probe_command;
@@ -120,6 +121,7 @@ mod run;
 mod run_command;
 mod sampling;
 mod scanning;
+mod screen_command;
 mod seam;
 mod setup;
 mod signal;
@@ -165,12 +167,14 @@ pub use key_code::KeyCode;
 pub use kinematics::{Cartesian, Kinematics, Offsets, Shares};
 pub use message::{HandOverError, Message, Shown};
 pub use oscilloscope::OscilloscopeKeys;
+pub use plane_command::PlaneCommand;
 pub use plc_link::{NcFiles, Pocket, WrittenElement, datum_shifts};
 pub use probe_command::{ProbeCommand, ProbeFunction};
 pub use programs::Programs;
 pub use progress::RunState;
 pub use sampling::{ServoSampler, ServoSignal, ServoView};
 pub use scanning::{Digitized, DigitizedNews};
+pub use screen_command::ScreenCommand;
 pub use setup::{
     AxisLimit, Calibration, ChannelError, ChannelSetup, Checking, Position0, ProbeMemory, Remembered,
     SelectedLine, Setup, ToolProbeCalibration,

@@ -151,6 +151,7 @@ impl MachineSide {
             Command::Ce => self.clear_message(),
             Command::ToolLife(tool, minutes) => self.set_tool_life(*tool, *minutes),
             Command::Table(kind, line, element, value) => self.take_element(*kind, *line, *element, *value),
+            Command::Screen(screen) => self.link.show(*screen),
             Command::Oscilloscope(start) => self.oscilloscope.press(*start),
             Command::OffsetAdjustment(adjust) => self.adjust_offsets(*adjust),
             _ => return None,

@@ -20,6 +20,9 @@ use crate::plc_link::StatusChanges;
 use crate::reach::{Reach, within};
 use crate::site::Site;
 
+/// M functions that end what was entered: spindle and coolant off.
+const SWITCHED_OFF: [u16; 2] = [5, 9];
+
 /// What manual operation remembers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Manual {
@@ -41,6 +44,10 @@ pub(crate) struct Manual {
     m: Option<u16>,
     /// Spindle speed that was entered and waits for NC start, rpm.
     s: Option<f64>,
+    /// NC stop is pressed.
+    stopped: bool,
+    /// S and M are to be ended.
+    ends: bool,
     /// 3D ROT is on.
     pub leans: bool,
     /// OUTPUT of the oscilloscope: STEP with this feed, mm/min, or the RAMP [000:18737-18756].
@@ -59,6 +66,8 @@ impl Default for Manual {
             last_key: 0,
             m: None,
             s: None,
+            stopped: false,
+            ends: false,
             leans: false,
             step_mm_min: None,
         }
@@ -102,9 +111,24 @@ impl Manual {
         possible
     }
 
-    /// NC start in Manual and Handwheel: outputs what was entered.
-    pub fn output_entered(&mut self, model: ControlModel, site: &mut Site) {
+    /// Manual and Handwheel: NC start outputs what was entered. Where `stop_ends`, NC stop ends S and M: what waits is forgotten,
+    /// spindle and coolant are switched off by M5 and M9 (inferred) [003:7307-7315].
+    pub fn output_entered(&mut self, model: ControlModel, stop_ends: bool, now: &Now, site: &mut Site) {
+        if now.stop && !self.stopped && stop_ends {
+            (self.m, self.s, self.ends) = (None, None, true);
+        }
+        self.stopped = now.stop;
         if !site.handshakes.is_idle() {
+            return;
+        }
+        if std::mem::take(&mut self.ends) {
+            for code in SWITCHED_OFF {
+                if let Some(technology) = Technology::of_m(model, code) {
+                    site.m_by_hand(technology, code);
+                }
+            }
+        }
+        if !now.start || now.stop {
             return;
         }
         if let Some(rpm) = self.s.take() {

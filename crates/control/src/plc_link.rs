@@ -19,6 +19,7 @@ use bahn_plc::{
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
 use crate::correction_tables::CorrectionTables;
 use crate::markers::AXES;
+use crate::screen_command::ScreenCommand;
 
 /// Files and tables of the NC memory that modules read.
 #[derive(Clone, Debug, Default)]
@@ -160,6 +161,7 @@ pub(crate) struct PlcLink {
     pub spindle: SpindlePosition,
     pub status: [i32; ITEMS],
     pub plc_axes: PerPlcAxis<PlcAxisStatus>,
+    screen: Option<ScreenCommand>,
     pub orienting: bool,
     pub requests: Requests,
     /// The list that module 9033 has selected.
@@ -194,6 +196,7 @@ impl PlcLink {
             spindle: SpindlePosition::default(),
             status: [0; ITEMS],
             plc_axes: PerPlcAxis::splat(PlcAxisStatus::default()),
+            screen: None,
             orienting: false,
             requests: Requests::default(),
             selected_list: None,
@@ -235,6 +238,20 @@ impl PlcLink {
         if let Some(row) = self.coordinates.get_mut(kind as usize) {
             *row = values;
         }
+    }
+
+    /// What the screen shows, once somebody has said it.
+    pub fn screen(&self) -> Option<ScreenCommand> {
+        self.screen
+    }
+
+    /// A screen shows something else.
+    pub fn show(&mut self, screen: ScreenCommand) -> bool {
+        self.screen = Some(screen);
+        for (item, value) in screen.items() {
+            self.set_status(item, value);
+        }
+        true
     }
 
     /// Sets what 9035 will read.

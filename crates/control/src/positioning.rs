@@ -236,11 +236,13 @@ impl Positioning {
     /// PLC axes: modules 9120 to 9124. Always with servo lag, no override but that of 9124, no software
     /// limits in the reference run [000:4094-4116] [000:15938-16000].
     pub fn move_plc_axes(&mut self, axes: &mut OwnAxes, statuses: &mut PerPlcAxis<PlcAxisStatus>, now: &Now) {
-        for unit in axes.iter_mut().filter(|unit| unit.is_plc_axis()) {
+        for unit in axes.iter_mut() {
             if let (Some(axis), Some(status)) =
                 (self.plc_axes.get_mut(unit.index), statuses.get_mut(unit.index))
             {
-                axis.moves(unit, now);
+                if unit.is_plc_axis() {
+                    axis.moves(unit, now);
+                }
                 *status = PlcAxisStatus {
                     positioning: axis.command.is_some(),
                     negative: unit.speed < 0.0,
@@ -320,7 +322,8 @@ impl PlcAxis {
                 let wanted = *self.target.get_or_insert(if incremental {
                     unit.nominal + target
                 } else {
-                    shortest(unit.nominal, target, unit.parameters.travel.modulo_deg)
+                    let modulo = unit.parameters.travel.modulo.map(|modulo| modulo.deg);
+                    shortest(unit.nominal, target, modulo)
                 });
                 let feed = feed.max(0.0) * self.override_percent / 100.0;
                 unit.drive(now.time_s, Aim::Position(wanted), feed);

@@ -5,7 +5,7 @@ use bahn_interpreter::Status;
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
-use bahn_path::{AxisSet, Barrier, BlockRef, LiveData, PathElement};
+use bahn_path::{AxisSet, Barrier, BlockRef, Frame, LiveData, PathElement};
 use bahn_reader::Reader;
 use bahn_servo::Measured;
 
@@ -622,12 +622,14 @@ impl ProgramRun {
 
     /// A Q parameter at the block that is executed; without a run as the last one has left it.
     pub fn q_value(&self, number: u16) -> f64 {
-        let executed = self.track.path.element().filter(|_| self.is_active());
-        self.source.q_value(
-            number,
-            self.progress.has_ended(),
-            executed.map(|element| element.sequence),
-        )
+        let executed = self.element().map(|element| element.sequence);
+        self.source.q_value(number, self.progress.has_ended(), executed)
+    }
+
+    /// Transformations at the block that is executed, else those that are left; `None` while the program is lent.
+    pub fn frame(&self) -> Option<Frame> {
+        let executed = self.element().map(|element| element.sequence);
+        self.source.frame(self.progress.has_ended(), executed)
     }
 
     /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
@@ -692,12 +694,10 @@ impl ProgramRun {
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.
     pub fn distance_to_go(&self, unit: &AxisUnit, chain: &Chain) -> f64 {
-        match self.element() {
-            Some(element) => {
-                let end = chain.to_axes(&element.end)[unit.axis];
-                if end.is_finite() { end - unit.nominal } else { 0.0 }
-            }
-            None => 0.0,
-        }
+        let end = self
+            .element()
+            .map(|element| chain.to_axes(&element.end)[unit.axis]);
+        end.filter(|end| end.is_finite())
+            .map_or(0.0, |end| end - unit.nominal)
     }
 }

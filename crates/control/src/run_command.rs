@@ -6,6 +6,7 @@ use crate::command::Command;
 use crate::drip_feed::{Dnc, DripFeed};
 use crate::feeder::Feeder;
 use crate::message::Message;
+use crate::plane_command::PlaneCommand;
 use crate::progress::RunState;
 use crate::run::ProgramRun;
 use crate::site::Site;
@@ -29,9 +30,20 @@ pub(crate) fn execute(
         Command::RestorePosition => run.restore_position(site),
         Command::Q(number, value) => enter_q(number, value, run, site),
         Command::RestoreAt(block) => run.restore_at(block, rules, site, basis),
+        Command::WorkingPlane(plane) => tilt(&plane, run, site, basis),
         // `Set` and `Power` are of the whole control.
         _ => false,
     }
+}
+
+/// 3D ROT for program run, while no program runs.
+fn tilt(plane: &PlaneCommand, run: &mut ProgramRun, site: &Site, basis: &Basis) -> bool {
+    let basic = basis.touch.basic_rotation(site.chain.offsets.tool_axis).angle_deg;
+    let tilting = basis.list.operation_parameters().tilting && !run.is_active();
+    let swivels = basis.list.swivels().filter(|_| tilting);
+    let positions = swivels.and_then(|swivels| plane.positions(&swivels, &site.axes));
+    // A basic rotation is measured and in force with the swivel axes at 0 only [000:4269].
+    positions.is_some_and(|positions| (basic == 0.0 || positions.is_none()) && run.source.tilt(positions))
 }
 
 /// A program is transferred while it runs, or comes to be.

@@ -82,6 +82,9 @@ pub(crate) struct Source {
     resume_from: Option<Resume>,
     /// What the last run left in force.
     status: Status,
+    /// 3D ROT for program run: the machine positions of the swivel axes, degrees. What MP7300 cancels leaves it; cycle 19 goes
+    /// over it.
+    plane: Option<Position>,
     /// Q parameters between runs.
     q: Vec<(u16, f64)>,
     /// The run has ended: its Q parameters are to be kept.
@@ -106,6 +109,7 @@ impl Source {
             mdi_over: false,
             resume_from: None,
             status: Status::default(),
+            plane: None,
             q,
             q_due: false,
             tap: false,
@@ -315,6 +319,7 @@ impl Source {
             }
             if let Some(interpreter) = self.interpreter() {
                 self.status = interpreter.status();
+                self.plane = self.plane.and(self.status.plane_angles());
             }
         }
         due
@@ -381,6 +386,21 @@ impl Source {
         }
     }
 
+    /// The machine positions of the swivel axes in whose plane the next program begins, degrees; during a run as it began.
+    pub fn plane(&self) -> Option<Position> {
+        self.status.plane_angles().or(self.plane)
+    }
+
+    /// 3D ROT for program run: the next program begins in the plane of these positions of the swivel axes, or upright.
+    /// `false` while one can still go on, and where transformations are in force that begin behind the plane only.
+    pub fn tilt(&mut self, angles: Option<Position>) -> bool {
+        let done = self.resume_from.is_none() && !self.q_due && self.status.tilt(None);
+        if done {
+            self.plane = angles;
+        }
+        done
+    }
+
     /// The transformations before the block of a sequence, else where a run that was broken off goes on or the interpreter is,
     /// else as the last run has left them; `None` while the program is lent.
     pub fn frame(&self, ended: bool, sequence: Option<u64>) -> Option<Frame> {
@@ -426,6 +446,9 @@ impl Source {
     /// A feeder of a program that is to run, from a block on, with what the last run left in force.
     pub fn feeder_for_run(&self, opened: Opened, block: u32, site: &Site, basis: &Basis) -> Feeder {
         let mut status = self.status.clone();
+        if status.plane_angles().is_none() && self.plane.is_some() {
+            status.tilt(self.plane);
+        }
         if status.tool() != Some(site.tools.number) {
             status.cancel_tool();
         }

@@ -2,6 +2,7 @@
 
 use bahn_exchange::{Exchange, signal};
 use bahn_parameters::PerPlcAxis;
+use bahn_path::Position;
 use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 
@@ -76,6 +77,8 @@ pub(crate) fn preset<'a>(axes: impl Iterator<Item = &'a AxisUnit>, english: bool
     }
     strobe_form::preset(exchange);
     exchange.nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
+    // No help file is selected [000:7048].
+    exchange.nc_set_number(signal::HELP_LINE, -1);
     exchange.nc_set(signal::ENGLISH_SELECTED, english);
 }
 
@@ -174,8 +177,15 @@ pub(crate) fn coordinates<'a>(
     /// actual from the machine datum, lag, distance to go.
     const SERVED: usize = 5;
     let [actual, nominal] = path_positions(axes.clone(), chain);
+    // Of the datum shift alone, not of what is turned or mirrored around it (inferred).
+    let frame = run.frame();
+    let shift = frame.map_or(Position::ZERO, |frame| frame.shift);
     let mut rows = [PerPlcAxis::splat(0.0); SERVED];
+    let mut shifted = PerPlcAxis::splat(0.0);
     for unit in axes {
+        if let Some(cell) = shifted.get_mut(unit.index) {
+            *cell = actual[unit.axis] - shift[unit.axis];
+        }
         let values: [f64; SERVED] = [
             actual[unit.axis],
             nominal[unit.axis],
@@ -192,11 +202,16 @@ pub(crate) fn coordinates<'a>(
     for (kind, row) in CoordinateKind::ALL.iter().zip(rows) {
         link.set_coordinates(*kind, row);
     }
-    let [actual, ..] = rows;
-    link.set_coordinates(CoordinateKind::ShiftedDatum, actual);
-    // Bit 0: tilted; bit 1: selected by hand; bit 2: by the program that runs.
+    // While the program is read on another thread the last ones stay.
+    if frame.is_some() {
+        link.set_coordinates(CoordinateKind::ShiftedDatum, shifted);
+    }
+    // Bit 0: tilted; bit 1: selected for manual operation; bit 2: for program run, by the menu or by the program.
     let tilted = chain.placement().is_some_and(|placement| placement.is_tilted());
-    let by_program = tilted && (!leans || run.progress().is_on_its_way());
+    let by_program = match run.progress().is_on_its_way() {
+        true => tilted,
+        false => run.source.plane().is_some(),
+    };
     link.set_status(
         StatusItem::WorkingPlane,
         i32::from(tilted) | i32::from(leans) << 1 | i32::from(by_program) << 2,
@@ -222,10 +237,12 @@ pub(crate) fn items(
             1i32.checked_shl(handwheel.max(0) as u32).unwrap_or(0),
         ),
         (StatusItem::ExecutedFile, kind_of_file(executed)),
-        (StatusItem::EditedFile, kind_of_file(tested)),
     ];
     for (item, value) in items {
         link.set_status(item, value);
+    }
+    if link.screen().is_none() {
+        link.set_status(StatusItem::EditedFile, kind_of_file(tested));
     }
     let subdivisions = [
         StatusItem::SubdivisionX,

@@ -14,6 +14,7 @@ use crate::machine::MachineSide;
 use crate::progress::RunState;
 use crate::reference;
 use crate::scanning::DigitizedNews;
+use crate::screen_command::ScreenCommand;
 use crate::seam::Seam;
 use crate::setup::{AxisLimit, Remembered};
 use crate::signal::Signal;
@@ -34,6 +35,8 @@ pub struct InForce {
     pub rotated: bool,
     /// `SCL`: scaling.
     pub scaled: bool,
+    /// Positions are those of a tilted working plane: of a program that runs, or of 3D ROT by hand [000:4254-4256].
+    pub tilted: bool,
 }
 
 /// A channel of a control as of now.
@@ -139,10 +142,7 @@ impl<'a> ChannelView<'a> {
     /// What the status display shows beside positions: transformations at the block that is executed, between runs those
     /// that the last one has left; `None` while the program is read on another thread.
     pub fn in_force(&self) -> Option<InForce> {
-        let run = &self.channel.run;
-        let executed = run.track.path.element().filter(|_| run.is_active());
-        let executed = executed.map(|element| element.sequence);
-        let frame = run.source.frame(run.progress().has_ended(), executed)?;
+        let frame = self.channel.run.frame()?;
         let basic = self.channel.touch.memory.basic_rotation_deg;
         let axes = |is: fn(&Frame, Axis) -> bool| {
             let units = self.machine.axes.owned(self.channel.number());
@@ -161,12 +161,23 @@ impl<'a> ChannelView<'a> {
             mirrored: axes(|frame, axis| frame.factor[axis] < 0.0),
             rotated: frame.rotation_deg != 0.0 || basic != 0.0,
             scaled: Axis::ALL.into_iter().any(scaled),
+            tilted: self
+                .channel
+                .chain()
+                .placement()
+                .is_some_and(|placement| placement.is_tilted()),
         })
     }
 
-    /// 3D ROT is on by hand.
-    pub fn leans(&self) -> bool {
-        self.channel.desk().leaning.is_on()
+    /// Machine positions of A, B and C in the plane of 3D ROT for manual operation or program run, degrees; `None` where it is
+    /// off [000:4256]. That of program run is the one in which the next program begins: set in the menu, or left by
+    /// cycle 19.
+    pub fn plane(&self, run: bool) -> Option<[f64; 3]> {
+        let angles = match run {
+            true => self.channel.run.source.plane(),
+            false => self.channel.desk().leaning.angles(),
+        };
+        angles.map(|angles| [Axis::A, Axis::B, Axis::C].map(|axis| angles[axis]))
     }
 
     /// AXIS LIMIT of MOD.
@@ -199,6 +210,11 @@ impl<'a> ChannelView<'a> {
     /// The datum table with M status.
     pub fn datum_table_name(&self) -> Option<&'a str> {
         self.machine.link.datum_table_name().map(String::as_str)
+    }
+
+    /// What a screen said last that it shows.
+    pub fn screen(&self) -> Option<ScreenCommand> {
+        self.machine.link.screen()
     }
 
     /// The list of machine parameters as it is edited, of the first channel.

@@ -6,6 +6,7 @@ mod stand;
 mod support;
 
 use bahn_control::{RunState, Tool};
+use bahn_path::ToolShape;
 use stand::*;
 
 fn m_functions(lines: &str) -> String {
@@ -390,4 +391,51 @@ LBL INSERT
         assert_eq!(rig.control.tool(), expected, "tool {tool}");
         assert_eq!(rig.messages(), [""; 0]);
     }
+}
+
+/// The programmer is to end the compensation before a PLC positioning [000:4052]; where he does not, the path goes on from where
+/// the axes are, without a jump, and an axis that the next block does not name stays, as without compensation. R 3 on the left:
+/// behind X+80 the strobe stands at the inside corner, X+77 Y+63; the PLC takes X to 72, along which Y goes to 90.
+#[test]
+fn plc_positioning_in_a_compensated_block() {
+    let moves_x = plc_moves_z()
+        .replace("D536", "D528")
+        .replace("W564", "W560")
+        .replace("M2706", "M2704");
+    let program = "TOOL CALL 1 Z S0\nL X+60 Y+60 RL F3000\nL X+80 M70\nL Y+90\nL X+100 R0";
+    let mut rig = ready(bench("").program("1.H", program));
+    let to_machine = rig.machine_position('X') - display(&rig, 'X');
+    let target = ((72.0 + to_machine) * 10_000.0).round();
+    let mut build = bench(&moves_x.replace("K+800000", &format!("K+{target}"))).program("1.H", program);
+    let shape = ToolShape {
+        radius: 3.0,
+        ..ToolShape::default()
+    };
+    let tool = Tool {
+        shape,
+        ..Tool::default()
+    };
+    build.tools = Some([(1, tool)].into());
+    rig = ready(build);
+    rig.start();
+    rig.until(5.0, "the strobe", |rig| rig.bit("M2704"));
+    near(nominal(&rig, 'X'), 77.0);
+    near(nominal(&rig, 'Y'), 63.0);
+    rig.until(5.0, "the position", |rig| !rig.bit("M2704"));
+    near(nominal(&rig, 'X'), 72.0);
+    let mut last = [nominal(&rig, 'X'), nominal(&rig, 'Y')];
+    while !rig.control.snapshot().ended {
+        rig.cycle();
+        assert!(rig.control.time_us() < 60_000_000, "no end");
+        let now = [nominal(&rig, 'X'), nominal(&rig, 'Y')];
+        // 3000 mm/min are 0.15 mm in a contour cycle of 3 ms.
+        let way = (now[0] - last[0]).hypot(now[1] - last[1]);
+        assert!(way < 0.16, "{last:?} {now:?}");
+        if now[1] < 90.0 {
+            near(now[0], 72.0);
+        }
+        last = now;
+    }
+    near(display(&rig, 'X'), 100.0);
+    assert_eq!(rig.messages(), [""; 0]);
 }

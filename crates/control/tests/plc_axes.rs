@@ -550,3 +550,24 @@ LBL 50
     assert_eq!(rig.number("B236") & 0b111, 0b011, "not positioning");
     assert_eq!(rig.messages(), [""; 0]);
 }
+
+/// Bit 1 of module 9122 tells of an NC axis, too, whether it has passed its reference mark: off at power-on, on behind
+/// the reference run [000:15938-15963].
+#[test]
+fn module_9122_tells_the_reference_of_nc_axes() {
+    let read = "
+       PS K+0
+       CM 9122
+       PL B236
+";
+    let mut rig = bench(read).rig();
+    rig.until(5.0, "the reference run is asked for", |rig| {
+        rig.control.snapshot().mode == bahn_control::Mode::Reference
+    });
+    rig.scan();
+    assert_eq!(rig.number("B236"), 0);
+    rig.start();
+    rig.until(60.0, "the mark of X", |rig| rig.axis('X').referenced);
+    rig.scan();
+    assert_eq!(rig.number("B236"), 0b10);
+}

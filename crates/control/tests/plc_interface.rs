@@ -194,6 +194,10 @@ fn the_plc_reads_the_status() {
     rig.command("test 1.H");
     rig.command("select 2.I");
     assert_eq!(status(&mut rig), [4, 1, 2, 2, 4, 3, 6, 0, 0, 0, 0, 0]);
+    // A screen says what it shows: the machine parameters over the editing screen, a directory over the machine screen, a tool
+    // table that is edited, inches.
+    rig.command("screen 3 2 257 3 1");
+    assert_eq!(status(&mut rig), [4, 3, 2, 2, 4, 3, 6, 3, 2, 0, 1, 0]);
 }
 
 /// A tool change that is broken off before the PLC has acknowledged it: the old tool is in the spindle, with
@@ -400,4 +404,38 @@ fn a_selected_list_resets_the_control() {
         (rig.control.starts(), rig.number("B82"), rig.number("B84")),
         (2, 0, 1)
     );
+}
+
+/// Module 9041 reads actual values from the datum that was set (0) and from the one that cycle 7 has shifted it to (6)
+/// [000:14998-15006]: X+50 behind a shift of 20 stands at 70.
+#[test]
+fn the_plc_reads_positions_in_the_shifted_datum() {
+    let read = "
+       PS    K+100
+       PS    K+0
+       CM    9041
+       PS    K+200
+       PS    K+6
+       CM    9041
+";
+    let program = "L X+50 R0 F6000\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+20\nCYCL DEF 7.2 Y-5\nL X+40\nL X+50 M0\nL X+60";
+    let mut rig = bench_with(&format!("{ACKNOWLEDGE}{read}"), program);
+    let read = |rig: &Rig| {
+        ["D100", "D104", "D200", "D204"].map(|word| (f64::from(rig.number(word)) / 10_000.0).round())
+    };
+    rig.seconds(0.1);
+    let [x, y, ..] = read(&rig);
+    assert_eq!(read(&rig), [x, y, x, y], "nothing is shifted");
+    rig.start();
+    rig.until(4.0, "M0", |rig| display(rig, 'X') > 69.99);
+    rig.seconds(0.2);
+    assert_eq!(read(&rig), [70.0, y, 50.0, y + 5.0]);
+}
+
+/// Until a help file is selected W270 is -1, from power-on on [000:7048].
+#[test]
+fn without_a_help_file_its_line_is_minus_1() {
+    let mut rig = bench_with(ACKNOWLEDGE, "L X+60");
+    rig.seconds(0.1);
+    assert_eq!(rig.number("W270"), -1);
 }

@@ -3,6 +3,7 @@
 mod support;
 
 use bahn_parameters::ControlModel;
+use bahn_servo::Rotation;
 use support::bench::*;
 use support::*;
 
@@ -53,4 +54,33 @@ fn the_small_mill_works() {
     rig.settle();
     assert_eq!(rig.messages(), [""; 0]);
     close(rig.axis('X').actual, 90.0, 0.02);
+}
+
+/// MP7270 + 2: behind NC stop in manual operation S and M are no longer active [003:7307-7315]: the spindle that M3 has switched
+/// on by hand stops; without it turns on. What was entered and not yet output is forgotten, too.
+#[test]
+fn nc_stop_ends_s_and_m_by_hand() {
+    for (mp7270, ends) in [
+        ("7270=0", false),
+        ("7270=1", false),
+        ("7270=2", true),
+        ("7270=3", true),
+    ] {
+        let mut rig = small_mill().mp(mp7270).rig();
+        rig.power_on();
+        rig.command("s 500");
+        rig.command("m 3");
+        rig.start();
+        let turns = |rig: &Rig| rig.control.snapshot().spindle.rotation == Rotation::M3;
+        rig.until(20.0, "the spindle turns", turns);
+        rig.seconds(0.5);
+        rig.command("m 8");
+        rig.event("key NC_STOP tap");
+        rig.seconds(3.0);
+        assert_eq!(turns(&rig), !ends, "{mp7270}");
+        assert_eq!(rig.number("W260"), if ends { 9 } else { 3 }, "{mp7270}");
+        rig.start();
+        rig.seconds(1.0);
+        assert_eq!(rig.number("W260"), if ends { 9 } else { 8 }, "{mp7270}");
+    }
 }

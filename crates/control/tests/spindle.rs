@@ -565,3 +565,50 @@ fn the_encoder_of_the_spindle_is_monitored() {
         }
     }
 }
+
+/// MP7440 bit 2 = 1: the axes do not wait for an M function [000:7303], nor for the orientation that the PLC makes of it; the
+/// program ends when the spindle stands at its angle. With bit 2 = 0 they wait.
+#[test]
+fn the_axes_run_on_while_the_spindle_is_oriented() {
+    let program = "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 45\nTOOL CALL 0 Z S1000\nL X+60 R0 F3000 M19\nL X+120";
+    let farthest = |mp7440: &str| {
+        let build = diagram(ORIENTATION)
+            .mp("3440.0=5")
+            .mp("3520.1=60")
+            .mp("3410.1=0.05")
+            .mp(mp7440);
+        let mut rig = ready(build.program("1.H", program));
+        rig.start();
+        rig.until(5.0, "the orientation", |rig| rig.bit("M2127"));
+        rig.until(9.0, "the angle", |rig| !rig.bit("M2127"));
+        let farthest = nominal(&rig, 'X');
+        rig.until(9.0, "the end", |rig| rig.control.snapshot().ended);
+        near(display(&rig, 'X'), 120.0);
+        assert_eq!(rig.messages(), [""; 0], "{mp7440}");
+        let angle = rig.control.snapshot().spindle.angle_deg.unwrap();
+        assert!((angle - 45.0).abs() < 1.0, "{angle}");
+        farthest
+    };
+    near(farthest("7440=%00011"), 60.0);
+    let moved = farthest("7440=%00111");
+    assert!(moved > 65.0, "{moved}");
+}
+
+/// MP7440 speaks of M functions: for the gear range of a TOOL CALL the axes wait with bit 2 = 1, too, until the PLC has
+/// acknowledged it [000:5645-5651] [000:7303].
+#[test]
+fn the_axes_wait_for_the_gear_range() {
+    let plc = format!("{SPINDLE}       L     M2043\n       A     I20\n       = M2480\n");
+    for mp7440 in ["7440=%00011", "7440=%00111"] {
+        let build = diagram(&plc).mp(mp7440).mp("3030=0");
+        let mut rig = ready(build.program("1.H", "L X+60 R0 F3000\nTOOL CALL 0 Z S3000\nL X+70"));
+        rig.start();
+        rig.until(3.0, "the gear strobe", |rig| rig.bit("M2043"));
+        rig.seconds(1.0);
+        near(display(&rig, 'X'), 60.0);
+        rig.event("key A press");
+        rig.until(3.0, "the end", |rig| rig.control.snapshot().ended);
+        near(display(&rig, 'X'), 70.0);
+        assert_eq!(rig.control.snapshot().spindle.gear, 2, "{mp7440}");
+    }
+}

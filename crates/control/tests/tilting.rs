@@ -596,3 +596,63 @@ fn the_datum_is_probed_in_the_plane() {
     rig.command("probe rotation");
     assert_eq!(rig.messages(), [""; 0]);
 }
+
+/// 3D ROT for program run, apart from manual operation [000:4256]: a program without cycle 19 runs in the plane of the swivel
+/// axes, along which X leads by cos 30° in X and by -sin 30° in Z of the machine; off again, it is upright. Module 9035 tells
+/// which is selected [000:14933].
+#[test]
+fn program_run_in_the_plane_of_the_menu() {
+    let mut build = swivelling().program("1.H", "L IX+10 R0 F6000");
+    build.plc = build.plc.replacen(
+        "       EM\n",
+        "       PS    K+18\n       CM    9035\n       PL    W900\n       EM\n",
+        1,
+    );
+    let mut rig = by_hand(build);
+    let selected = |rig: &mut Rig| {
+        rig.seconds(0.1);
+        rig.number("W900")
+    };
+    assert_eq!(selected(&mut rig), 0b011);
+    rig.command("3d-rot off");
+    assert_eq!(selected(&mut rig), 0b000);
+    rig.command("3d-rot run on");
+    assert_eq!(selected(&mut rig), 0b100);
+    let start = machine(&rig);
+    rig.run("1.H", 10.0);
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let tilted = [start[0] + 10.0 * cos, start[1], start[2] - 10.0 * sin];
+    rig.seconds(0.2);
+    assert_near(machine(&rig), tilted);
+    assert_eq!(selected(&mut rig), 0b100, "behind the program, too");
+    rig.command("3d-rot run off");
+    assert_eq!(selected(&mut rig), 0b000);
+    rig.run("1.H", 10.0);
+    rig.seconds(0.2);
+    assert_near(machine(&rig), [tilted[0] + 10.0, tilted[1], tilted[2]]);
+}
+
+/// The position of the swivel axis is edited [000:4256]: B stands at 30 degrees, X+ leads along the plane of 45.
+#[test]
+fn by_hand_in_a_plane_that_was_entered() {
+    let mut rig = by_hand(swivelling());
+    rig.command("3d-rot on B+45");
+    rig.seconds(0.1);
+    let start = machine(&rig);
+    rig.event("key X+ press");
+    rig.seconds(1.0);
+    rig.event("key X+ release");
+    rig.seconds(0.5);
+    let way = (machine(&rig)[0] - start[0]) / 45f64.to_radians().cos();
+    assert!(way > 5.0, "{way}");
+    assert_near(
+        machine(&rig),
+        [
+            start[0] + way * 0.5f64.sqrt(),
+            start[1],
+            start[2] - way * 0.5f64.sqrt(),
+        ],
+    );
+    // The machine has no axis A that swivels.
+    assert!(!rig.control.command("3d-rot on A+45".parse().unwrap()));
+}

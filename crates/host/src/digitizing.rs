@@ -1,4 +1,5 @@
-//! The program that a digitizing writes: kept in memory until the range is scanned, then stored as a whole.
+//! The program that a digitizing writes: kept in memory until the range is scanned, then stored as a whole; or printed block by
+//! block at a data interface, as the interface function PRINT says [003:6554-6557].
 
 use std::sync::Arc;
 
@@ -17,6 +18,16 @@ pub(crate) struct Digitizing {
     /// The news that were looked at.
     seen: u64,
     text: Option<Text>,
+    /// Blocks are printed as they come, nothing is stored.
+    prints: bool,
+}
+
+/// What comes of a cycle.
+pub(crate) enum Written {
+    /// Blocks for the data interface, each with its end of line.
+    Printed(String),
+    /// A program for the memory.
+    Complete(Complete),
 }
 
 /// A program that has come to its end.
@@ -36,9 +47,9 @@ struct Text {
 }
 
 impl Text {
-    fn new(job: ScanJob) -> Text {
+    fn new(job: ScanJob, prints: bool) -> Text {
         let mut blocks = DigitizedText::new(job);
-        let mut last = String::with_capacity(PIECE + BLOCK);
+        let mut last = String::with_capacity(if prints { BLOCK } else { PIECE + BLOCK });
         last.push_str(&blocks.begin());
         Text {
             job,
@@ -58,8 +69,11 @@ impl Text {
         }
     }
 
-    fn finish(mut self) -> Complete {
+    fn end(&mut self) {
         self.last.push_str(&self.blocks.end());
+    }
+
+    fn finish(mut self) -> Complete {
         self.pieces.push(Arc::from(self.last.as_bytes()));
         Complete {
             name: self.job.program.as_str().to_owned(),
@@ -70,22 +84,103 @@ impl Text {
 }
 
 impl Digitizing {
-    /// Takes what a cycle of the channel said; a program when that was its last point.
-    pub fn follow(&mut self, news: DigitizedNews) -> Option<Complete> {
+    /// What begins from now on is printed, not stored.
+    pub fn print(&mut self, prints: bool) {
+        self.prints = prints;
+    }
+
+    /// Takes what a cycle of the channel said. A scan that is broken off leaves nothing in the memory; what is printed ends
+    /// there.
+    pub fn follow(&mut self, news: DigitizedNews) -> Option<Written> {
         if news.number == self.seen {
             return None;
         }
         self.seen = news.number;
-        match news.what? {
-            Digitized::Begins(job) => self.text = Some(Text::new(job)),
-            Digitized::Point(point) => {
-                if let Some(text) = &mut self.text {
-                    text.point(&point);
-                }
-            }
+        let what = news.what?;
+        match what {
+            Digitized::Begins(job) => self.text = Some(Text::new(job, self.prints)),
+            Digitized::Point(point) => self.text.as_mut()?.point(&point),
             Digitized::BrokenOff => self.text = None,
-            Digitized::Complete => return self.text.take().map(Text::finish),
+            Digitized::Complete => self.text.as_mut()?.end(),
         }
-        None
+        let text = self.text.as_mut()?;
+        if self.prints {
+            return Some(Written::Printed(std::mem::take(&mut text.last)));
+        }
+        let over = matches!(what, Digitized::Complete);
+        let text = self.text.take_if(|_| over)?;
+        Some(Written::Complete(text.finish()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+    use bahn_path::{Axis, ScanName, ScanPattern, ScanRules};
+
+    fn job() -> ScanJob {
+        ScanJob {
+            tool_axis: Axis::Z,
+            min: [0.0, 0.0, -10.0],
+            max: [20.0, 20.0, 1.0],
+            shift: [0.0; 3],
+            clearance_mm: 40.0,
+            pattern: ScanPattern::ContourLines {
+                start: [0.0, 5.0, 0.0],
+                approach: (Axis::Y, 1.0),
+                direction: (Axis::X, 1.0),
+                time_limit_s: 0.0,
+            },
+            travel_mm: 0.5,
+            spacing_mm: 0.5,
+            interval_mm: 0.2,
+            stylus_radius_mm: 2.0,
+            beside: [0.0; 3],
+            inch: false,
+            program: ScanName::new("DATA").unwrap(),
+            rules: ScanRules::default(),
+        }
+    }
+
+    /// What a scan of two points comes to.
+    fn scanned(prints: bool) -> Vec<Written> {
+        let mut digitizing = Digitizing::default();
+        digitizing.print(prints);
+        let said = [
+            Digitized::Begins(job()),
+            Digitized::Point([1.0, 5.0, -2.0]),
+            Digitized::Point([2.0, 5.0, -2.5]),
+            Digitized::Complete,
+        ];
+        let news = (1..).zip(said).map(|(number, what)| DigitizedNews {
+            number,
+            what: Some(what),
+        });
+        news.filter_map(|news| digitizing.follow(news)).collect()
+    }
+
+    /// The interface function PRINT decides where the blocks go: into the memory as a whole program, or to a data interface as
+    /// the points come, the same blocks [003:6554-6557].
+    #[test]
+    fn printed_blocks_are_those_of_the_stored_program() {
+        let stored = scanned(false);
+        let [Written::Complete(complete)] = stored.as_slice() else {
+            panic!("one program");
+        };
+        let stored: Vec<u8> = complete.pieces.iter().flat_map(|piece| piece.to_vec()).collect();
+        let printed: Vec<String> = scanned(true)
+            .into_iter()
+            .map(|written| match written {
+                Written::Printed(blocks) => blocks,
+                Written::Complete(_) => panic!("nothing is stored"),
+            })
+            .collect();
+        assert_eq!(printed.len(), 4, "as they come");
+        assert!(
+            printed[1].contains("X+1") && printed[2].contains("X+2"),
+            "{printed:?}"
+        );
+        assert_eq!(printed.concat().into_bytes(), stored);
     }
 }

@@ -15,7 +15,7 @@ use bahn_plc::{PlcProgram, Tracer, WindowView};
 
 use crate::background::Background;
 use crate::deed::{Answer, Deed, Operable, Source};
-use crate::digitizing::Digitizing;
+use crate::digitizing::{Digitizing, Written};
 use crate::error::HostError;
 use crate::feed::{Feed, Reader};
 use crate::journal::{Given, Journal};
@@ -347,6 +347,12 @@ impl<P: Operable> Host<P> {
         Ok(())
     }
 
+    /// What is digitized from now on is printed block by block as [`Notice::Printed`], not stored: the interface function PRINT
+    /// [003:6554-6557].
+    pub fn print_digitized(&mut self, prints: bool) {
+        self.digitizing.iter_mut().for_each(|own| own.print(prints));
+    }
+
     /// Takes the points of channels that digitize, and stores a program whose range is scanned.
     fn keep_digitized(&mut self) -> Result<(), HostError> {
         let mut kept = Ok(());
@@ -355,8 +361,15 @@ impl<P: Operable> Host<P> {
             let (Some(digitizing), Some(news)) = (self.digitizing.get_mut(number), news) else {
                 continue;
             };
-            let Some(complete) = digitizing.follow(news).filter(|_| !self.repeats) else {
-                continue;
+            let complete = match digitizing.follow(news).filter(|_| !self.repeats) {
+                Some(Written::Complete(complete)) => complete,
+                Some(Written::Printed(blocks)) => {
+                    for block in blocks.lines() {
+                        self.tell_in(number, Notice::Printed(block.into()));
+                    }
+                    continue;
+                }
+                None => continue,
             };
             let stored = self.programs.get(number).map_or(Ok(()), |programs| {
                 programs.store(&complete.name, &complete.pieces)

@@ -304,7 +304,7 @@ impl Rules {
             tilting: list.operation_parameters().tilting,
             modulo_deg: PerAxis::from_fn(|axis| {
                 let index = list.axis_index(axis)?;
-                list.axis_parameters(index).travel.modulo_deg
+                list.axis_parameters(index).travel.modulo.map(|modulo| modulo.deg)
             }),
             fifth_axis: Axis::ALL
                 .into_iter()

@@ -3,6 +3,8 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Frame, Plane, Position, ToolShape};
 
+use crate::tilting;
+
 /// A tool in the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tool {
@@ -174,6 +176,30 @@ impl Status {
     /// The tilted working plane.
     pub(crate) fn plane(&self) -> Option<WorkingPlane> {
         self.plane
+    }
+
+    /// Machine positions of the swivel axes in the tilted working plane, degrees.
+    pub fn plane_angles(&self) -> Option<Position> {
+        self.plane.map(|plane| plane.angles)
+    }
+
+    /// Tilts the working plane as cycle 19 does, to machine positions of the swivel axes in degrees, or puts it upright:
+    /// transformations are ended in the reverse order of their beginning [000:4254]. `false` where others than a datum shift
+    /// are in force, and in the plane any. The basic rotation is not looked at.
+    pub fn tilt(&mut self, angles: Option<Position>) -> bool {
+        let (mut frame, feed) = self
+            .programmed
+            .unwrap_or_else(|| (Frame::identity(Plane::XY), None));
+        // Every run has that of the machine.
+        frame.basic_rotation_deg = 0.0;
+        if tilting::may_tilt(&frame, self.plane.is_some()).is_err() {
+            return false;
+        }
+        let outer = tilting::outer_of(&frame, self.plane.as_ref());
+        let inner = angles.map_or(outer, |_| tilting::within(&outer));
+        self.programmed = Some((inner, feed));
+        self.plane = angles.map(|angles| WorkingPlane { angles, outer });
+        true
     }
 
     pub(crate) fn tool_data(&self) -> Option<Tool> {

@@ -21,50 +21,53 @@ pub(crate) fn working_plane(c: &mut Context<'_>, words: &[Resolved]) -> Result<(
     if c.modal.tilting.compensates {
         return Err(out_of_order("M114 is in force; M115 ends it"));
     }
-    let tilting = &c.modal.tilting;
-    let frame = &c.modal.frame;
-    let shift = frame.shift.values();
-    let is_moved = |axis: Axis| !axis.is_rotary() && shift[axis] != 0.0;
-    let plain = Frame {
-        shift: frame.shift,
-        ..Frame::identity(frame.plane)
-    };
-    // Transformations are ended in the reverse order of their beginning [000:4254].
-    if *frame != plain {
-        return Err(out_of_order(
-            "rotation, mirror image and scaling begin behind cycle 19 and end before it",
-        ));
-    }
-    if tilting.plane.is_some() && Axis::ALL.into_iter().any(is_moved) {
-        return Err(out_of_order("a datum shift in the tilted plane is to end first"));
-    }
+    let (frame, plane) = (&c.modal.frame, c.modal.tilting.plane);
+    may_tilt(frame, plane.is_some()).map_err(out_of_order)?;
+    let outer = outer_of(frame, plane.as_ref());
     let angles = swivel_angles(c, words)?;
     c.pen.finish_contour()?;
-    let outer = tilting_frame(c.modal);
-    c.modal.frame = outer;
+    c.modal.frame = angles.map_or(outer, |_| within(&outer));
     c.modal.tilting.plane = angles.map(|angles| WorkingPlane { angles, outer });
-    if c.modal.tilting.plane.is_some() {
-        // The datum is that of the frame before; only rotary axes keep their shift.
-        for axis in Axis::ALL.into_iter().filter(|axis| !axis.is_rotary()) {
-            c.modal.frame.shift[axis] = 0.0;
-        }
-    }
     c.modal.forget_tangent();
     place(c);
     Ok(())
 }
 
-/// The transformations in force where nothing is tilted; those of rotary axes as they are now.
-fn tilting_frame(modal: &Modal) -> Frame {
-    let Some(plane) = modal.tilting.plane else {
-        return modal.frame;
+/// Why the plane may not be tilted or put upright: transformations are ended in the reverse order of their beginning
+/// [000:4254].
+pub(crate) fn may_tilt(frame: &Frame, is_tilted: bool) -> Result<(), &'static str> {
+    let plain = Frame {
+        shift: frame.shift,
+        ..Frame::identity(frame.plane)
     };
-    let mut outer = plane.outer;
-    for axis in [Axis::A, Axis::B, Axis::C] {
-        outer.shift[axis] = modal.frame.shift[axis];
+    let mut linear = Axis::ALL.into_iter().filter(|axis| !axis.is_rotary());
+    if *frame != plain {
+        Err("rotation, mirror image and scaling begin behind cycle 19 and end before it")
+    } else if is_tilted && linear.any(|axis| frame.shift[axis] != 0.0) {
+        Err("a datum shift in the tilted plane is to end first")
+    } else {
+        Ok(())
     }
-    outer.plane = modal.frame.plane;
+}
+
+/// The transformations where nothing is tilted, of those in a plane; those of rotary axes as they are now.
+pub(crate) fn outer_of(frame: &Frame, plane: Option<&WorkingPlane>) -> Frame {
+    let Some(plane) = plane else { return *frame };
+    let mut outer = plane.outer;
+    for axis in Axis::ALL.into_iter().filter(|axis| axis.is_rotary()) {
+        outer.shift[axis] = frame.shift[axis];
+    }
+    outer.plane = frame.plane;
     outer
+}
+
+/// The transformations in a plane that is tilted now: the datum is that of those before it; only rotary axes keep their shift.
+pub(crate) fn within(outer: &Frame) -> Frame {
+    let mut frame = *outer;
+    for axis in Axis::ALL.into_iter().filter(|axis| !axis.is_rotary()) {
+        frame.shift[axis] = 0.0;
+    }
+    frame
 }
 
 /// In the plane of cycle 19 a movement of other axes begins and ends where the swivel axes stand as the cycle says: they

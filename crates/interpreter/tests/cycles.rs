@@ -376,12 +376,6 @@ fn cycle_calls() {
         )),
         [1.0]
     );
-    // A definition ends it [003:4877-4881]; a cycle that acts at once, as a datum shift, is none that is called [003:4846-4855]:
-    // M89 goes on with the one before (inferred).
-    assert_eq!(
-        drilled("L X+1 FMAX M89\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nL X+4 FMAX"),
-        [1.0, 14.0]
-    );
     // M89 is a free function when MP7440 says so.
     let text = program(&format!("{DRILL}\nL X+0 Y+0 Z+2 FMAX\nL X+1 FMAX M89"));
     let run = Job::new(text)
@@ -390,6 +384,30 @@ fn cycle_calls() {
     run.assert_completed();
     assert!(run.functions().contains(&(10, &Function::M(89))));
     assert_eq!(run.of_block(10).len(), 1);
+}
+
+/// What ends M89 is the definition of a cycle that is called [003:4877-4881]: behind one that acts at once [003:4846-4852] the
+/// last-programmed machining cycle [000:7274] is called as before, here where the datum is then.
+#[test]
+fn cycles_that_act_at_once_leave_m89() {
+    for (cycle, hole) in [
+        ("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10", 14.0),
+        ("CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X", -4.0),
+        ("CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1", 4.0),
+        ("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+180", -4.0),
+        ("CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 0.5", 2.0),
+        ("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 0", 4.0),
+        (
+            "CYCL DEF 14.0 CONTOUR GEOMETRY\nCYCL DEF 14.1 CONTOUR LABEL 1",
+            4.0,
+        ),
+    ] {
+        let blocks = format!("L X+1 FMAX M89\n{cycle}\nL X+4 FMAX");
+        let holes = drilled(&blocks);
+        assert_eq!(holes.len(), 2, "{cycle}: {holes:?}");
+        close(holes[0], 1.0, 1e-9);
+        close(holes[1], hole, 1e-9);
+    }
 }
 
 /// Cycle 9 dwells where it is defined; the spindle goes on [003:6462-6474].

@@ -1,12 +1,12 @@
 //! Who has the keys: the machine side with its operating mode, or programming beside it, and the pages that stand on
 //! them.
 
-use bahn_control::{Command, Mode};
+use bahn_control::{Command, Mode, ScreenCommand};
 use bahn_dialogue::Key;
 use bahn_parameters::{ControlModel, MessageId};
 
 use crate::graphics::Subject;
-use crate::page::{Page, Side, Turn, View};
+use crate::page::{Overlay, Page, Side, Turn, View};
 use crate::pages;
 use crate::screen::{Heading, SoftKeys};
 use crate::site::Site;
@@ -58,6 +58,21 @@ impl Stack {
             view.window = page.show(site, lines).window;
         }
         view
+    }
+
+    /// What lies over the mode.
+    fn overlay(&self) -> Overlay {
+        let opened = self.opened.iter().rev().map(|page| page.overlay());
+        opened
+            .into_iter()
+            .find(|overlay| *overlay != Overlay::None)
+            .unwrap_or_default()
+    }
+
+    /// The file that is edited or tested.
+    fn file(&self) -> Option<&str> {
+        let mut pages = self.opened.iter().rev().chain([&self.base]);
+        pages.find_map(|page| page.file())
     }
 
     /// Goes on with what came of a key; what is to be said.
@@ -366,6 +381,34 @@ impl Console {
         }
     }
 
+    /// What the screen shows, for module 9035 [000:14899-14916].
+    pub fn shown(&self, site: &Site, has_plc_window: bool) -> ScreenCommand {
+        let programming = self.programming.as_ref().map(|(_, stack)| stack);
+        let kind = programming.and_then(Stack::file).map_or(0, kind_of_file);
+        let overlay = |stack: Option<&Stack>| stack.map_or(Overlay::None, Stack::overlay);
+        let both = self.split && programming.is_some();
+        let side = |side: Side, stack: Option<&Stack>| {
+            let is_there = stack.is_some() && (both || self.front() == side);
+            // Positions and the PLC's window stand beside every mode.
+            let position_alone = side == Side::Machine
+                && matches!(self.mode, Mode::Manual | Mode::Handwheel | Mode::Reference)
+                && stack.is_some_and(|stack| stack.opened.is_empty());
+            let graphics = self
+                .subject(side)
+                .is_some_and(|cut| site.graphics.line(cut).is_some());
+            let bits = [true, both, !position_alone, true, has_plc_window, graphics];
+            let bits = (0u16..).zip(bits).filter(|(_, on)| *on && is_there);
+            bits.fold(0u16, |windows, (bit, _)| windows | 1 << bit)
+        };
+        ScreenCommand {
+            editing: overlay(programming) as u8,
+            machine: (overlay(Some(&self.machine)) as u8).min(Overlay::Table as u8),
+            windows: side(Side::Programming, programming) | side(Side::Machine, Some(&self.machine)) << 8,
+            file: kind,
+            inch: site.settings.inch,
+        }
+    }
+
     /// The headings of both sides.
     pub fn headings(&self, site: &Site) -> Vec<Heading> {
         let (key, title) = heading(site.mode());
@@ -387,6 +430,14 @@ impl Console {
         });
         std::iter::once(machine).chain(programming).collect()
     }
+}
+
+/// The kind of a file as module 9035 codes it by its ending; 0 for others.
+fn kind_of_file(name: &str) -> u8 {
+    const KINDS: [&str; 7] = ["H", "I", "T", "D", "P", "A", "S"];
+    let ending = name.rsplit_once('.').map_or("H", |(_, ending)| ending);
+    let place = KINDS.iter().position(|kind| kind.eq_ignore_ascii_case(ending));
+    place.map_or(0, |place| place as u8 + 1)
 }
 
 /// The machine operating mode of a key.

@@ -76,6 +76,16 @@ pub(crate) trait Page: Send {
         Turn::Done
     }
 
+    /// What it is to module 9035, where it lies over an operating mode.
+    fn overlay(&self) -> Overlay {
+        Overlay::None
+    }
+
+    /// The file that it edits or tests.
+    fn file(&self) -> Option<&str> {
+        None
+    }
+
     /// CAPTURE in MANUAL OPERATION or ELECTRONIC HANDWHEEL, for what is programmed beside it [003:2287-2316].
     fn capture(&mut self, _site: &mut Site) -> Turn {
         Turn::Refused
@@ -85,6 +95,22 @@ pub(crate) trait Page: Send {
     fn text(&mut self, _text: &str, _site: &mut Site) -> Turn {
         Turn::Refused
     }
+}
+
+/// What lies over an operating mode, as module 9035 codes it in items 2 and 3 [000:14899-14900].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Overlay {
+    /// Nothing, or what belongs to the mode.
+    #[default]
+    None,
+    /// MOD.
+    Mode,
+    /// A directory, or EXT.
+    Directory,
+    /// On the editing screen the machine parameters, on the machine screen the tool table.
+    Table,
+    /// The PLC mode.
+    Plc,
 }
 
 /// What a page shows.

@@ -234,6 +234,7 @@ impl Station {
                 None => {}
             }
             console.tick(&mut site);
+            self.tell_screen();
         }
         self.record_with(Recorder::keep);
         self.past.follow(&mut self.host);
@@ -241,6 +242,19 @@ impl Station {
         self.follow_lesson();
         self.store_settings();
         cycled
+    }
+
+    /// The PLC may ask what the screen shows (module 9035).
+    fn tell_screen(&mut self) {
+        if self.past.looks_back() {
+            return;
+        }
+        let has_plc_window = self.plc_window().is_some();
+        let (console, mut site) = self.parts();
+        let shown = console.shown(&site, has_plc_window);
+        if site.control().first().screen() != Some(shown) {
+            site.command(Command::Screen(shown));
+        }
     }
 
     /// The control may have begun anew with a program that was compiled meanwhile.

@@ -146,11 +146,12 @@ pub(crate) fn of(
     }
 }
 
-/// The tool axis, once a tool was called, and the flags `N XY`, `S X`, `ROT`, `SCL` [003:1297].
+/// The tool axis, once a tool was called, and the flags `N XY`, `S X`, `ROT`, `SCL` [003:1297], in a tilted plane `3D ROT`.
 fn of_program(in_force: &InForce, tool: u32) -> (Option<String>, Vec<String>) {
     let letters = |axes: &[Axis]| axes.iter().map(|axis| axis.letter()).collect::<String>();
     let marked = |name: &str, axes: &[Axis]| (!axes.is_empty()).then(|| format!("{name} {}", letters(axes)));
     let flags = [
+        in_force.tilted.then(|| "3D ROT".to_owned()),
         marked("N", &in_force.shifted),
         marked("S", &in_force.mirrored),
         in_force.rotated.then(|| "ROT".to_owned()),

@@ -120,12 +120,26 @@ fn the_plane_of_the_swivel_axes_is_switched_by_hand() {
     let mut trainee = Trainee::at("gantry");
     trainee.ready();
     let key = |trainee: &mut Trainee| trainee.screen().soft_keys.keys[5].clone();
-    assert_eq!(key(&mut trainee), "3D ROT ON");
+    assert_eq!(key(&mut trainee), "3D ROT");
     trainee.press("SK6").wait(0.1);
-    assert!(trainee.station.control().first().leans());
-    assert_eq!(key(&mut trainee), "3D ROT OFF");
-    trainee.press("SK6").wait(0.1);
-    assert_eq!(key(&mut trainee), "3D ROT ON");
+    let stands =
+        |trainee: &mut Trainee| ["PROGRAM RUN", "MANUAL OPERATION", "B"].map(|name| trainee.menu_value(name));
+    let shown = |trainee: &mut Trainee| trainee.screen().status.flags.contains(&"3D ROT".to_owned());
+    // Nothing is on: B where it stands.
+    let [run, by_hand, b] = stands(&mut trainee);
+    assert_eq!([run, by_hand], ["INACTIVE", "INACTIVE"]);
+    // Manual operation and program run are switched apart, and the position of B is edited.
+    trainee.press("DOWN ENT").wait(0.1);
+    assert_eq!(stands(&mut trainee), ["INACTIVE", "ACTIVE", &b]);
+    trainee.press("DOWN ENT").number("30").press("ENT").wait(0.1);
+    assert_eq!(stands(&mut trainee), ["INACTIVE", "ACTIVE", "+30.000"]);
+    assert!(shown(&mut trainee));
+    trainee.press("UP UP ENT").wait(0.1);
+    assert_eq!(stands(&mut trainee), ["ACTIVE", "ACTIVE", "+30.000"]);
+    trainee.press("DOWN ENT").wait(0.1);
+    assert_eq!(stands(&mut trainee), ["ACTIVE", "INACTIVE", "+30.000"]);
+    assert!(!shown(&mut trainee));
+    trainee.press("END");
     // The mill has no swivel axes.
     let mut trainee = Trainee::at("mill");
     trainee.ready();
@@ -148,4 +162,44 @@ fn messages_are_in_the_language_of_the_dialogue() {
     );
     trainee.press("END CE PROGRAM CL_PGM Z Z ENT");
     assert_eq!(trainee.messages(), ["PROGRAMM NICHT GEFUNDEN"]);
+}
+
+/// What module 9035 tells the PLC of the screen in items 2 to 5 and 17 [000:14899-14916].
+#[test]
+fn the_plc_is_told_what_the_screen_shows() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    let screen = |trainee: &mut Trainee| {
+        trainee.wait(0.1);
+        trainee.station.control().first().screen().unwrap()
+    };
+    let by_hand = screen(&mut trainee);
+    assert_eq!((by_hand.editing, by_hand.machine, by_hand.inch), (0, 0, false));
+    // The machine screen is displayed (8) with positions (11) and without blocks (10), the editing screen is not (0).
+    assert_eq!(by_hand.windows & 0b1101_0000_0001, 0b1001_0000_0000);
+    // A program run shows blocks.
+    trainee.press("FULL");
+    assert_eq!(screen(&mut trainee).windows & 0b0101_0000_0001, 0b0101_0000_0000);
+    // MOD lies over the machine screen, its tool table is 3; MM/INCH is item 17.
+    trainee.press("MANUAL MOD");
+    assert_eq!(screen(&mut trainee).machine, 1);
+    trainee.press("END TOOL_DEF");
+    assert_eq!(screen(&mut trainee).machine, 3);
+    assert_eq!(screen(&mut trainee).file, 0, "no file of the editing screen");
+    // A program is edited: file 1; its directory lies over the editing screen.
+    trainee.write("programs/4711.H", "0 BEGIN PGM 4711 MM\n1 END PGM 4711 MM\n");
+    trainee.press("END PROGRAM PGM_NR 4 7 1 1 ENT");
+    let editing = screen(&mut trainee);
+    assert_eq!(
+        (editing.editing, editing.file, editing.windows & 0b1_0000_0001),
+        (0, 1, 1)
+    );
+    trainee.press("PGM_NR");
+    assert_eq!(screen(&mut trainee).editing, 2);
+    // A control that is switched on anew is told again.
+    trainee.press("END");
+    let told = screen(&mut trainee);
+    trainee.give("{\"power\":false}").wait(1.0);
+    trainee.give("{\"power\":true}").wait(1.0);
+    assert_eq!(screen(&mut trainee).file, told.file);
 }

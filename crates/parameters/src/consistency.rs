@@ -123,7 +123,7 @@ impl Reporter<'_> {
 }
 
 fn travel(axis: &AxisParameters, report: &mut Reporter) {
-    if axis.travel.modulo_deg.is_some() {
+    if axis.travel.modulo.is_some() {
         return;
     }
     let ranges = if report.is_old() { 1 } else { 3 };

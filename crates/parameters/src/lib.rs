@@ -74,7 +74,7 @@ pub use text::{Entry, ListText};
 /// Of an axis: [`ParameterList::axis_parameters`](crate::ParameterList::axis_parameters).
 pub mod axis {
     pub use crate::settings::{
-        AxisParameters, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
+        AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
     };
 }
 

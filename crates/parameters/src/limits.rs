@@ -141,6 +141,9 @@ pub struct Limits {
     pub numbering: Numbering,
 
     // Terminals.
+    /// First encoder input with square-wave signals, counted from 0: X5 of the TNC 407, X6 of the TNC 415/425 [000:1503-1505]
+    /// [000:18201]; none on the others (inferred).
+    pub square_wave_input: u8,
     /// Inputs that machines are wired to, first and last of each board: TNC 151/155 E0-E62, E64-E126
     /// [001:297]; [000:11556-11567] and those of the handwheel [000:8276-8281]; TNC 360 as these (inferred).
     pub inputs: &'static [(u16, u16)],

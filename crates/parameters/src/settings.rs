@@ -21,7 +21,7 @@ mod tables;
 mod tool_probe;
 
 pub use axis_parameters::{
-    AxisParameters, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
+    AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
 };
 pub use characteristics::Characteristics;
 pub use interfaces::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};

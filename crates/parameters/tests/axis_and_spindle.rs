@@ -245,16 +245,33 @@ fn a_window_of_the_spindle_is_counted_in_increments() {
 fn rotary_axes_count_to_their_modulo_value() {
     let modulo = |model, assignment: &str| {
         let list = with(model, &[assignment]);
-        [0, 3].map(|index| list.axis_parameters(index).travel.modulo_deg)
+        [0, 3].map(|index| list.axis_parameters(index).travel.modulo.map(|modulo| modulo.deg))
     };
     assert_eq!(modulo(ControlModel::Tnc415b, "810.3=720"), [None, Some(720.0)]);
     assert_eq!(modulo(ControlModel::Tnc415b, "810.3=0"), [None, None]);
     // The axis counts to the modulo value as C, not as U.
     assert_eq!(modulo(ControlModel::Tnc415b, "410.3=3"), [None, None]);
-    // 0 to 359.999 degrees, or to 30 000 [003:7424-7430].
+    // 359.999 degrees to both sides of 0, or 30 000 [003:7424-7430].
     assert_eq!(modulo(ControlModel::Tnc360, "7470=0"), [None, Some(360.0)]);
     assert_eq!(modulo(ControlModel::Tnc360, "7470=1"), [None, None]);
     assert_eq!(modulo(ControlModel::Tnc155, "90=2"), [None, None]);
+}
+
+/// A TNC 360 displays up to ±359.999 degrees [003:7424-7430], a TNC 415 from 0 up to its modulo value [000:6470-6478].
+#[test]
+fn positions_within_the_modulo_value() {
+    let shown = |model, assignment: &str| {
+        let modulo = with(model, &[assignment])
+            .axis_parameters(3)
+            .travel
+            .modulo
+            .unwrap();
+        [-370.0, -10.0, 350.0, 370.0].map(|position| (modulo.shown(position), modulo.turns(position)))
+    };
+    let signed = [(-10.0, -1.0), (-10.0, 0.0), (350.0, 0.0), (10.0, 1.0)];
+    assert_eq!(shown(ControlModel::Tnc360, "7470=0"), signed);
+    let positive = [(350.0, -2.0), (350.0, -1.0), (350.0, 0.0), (10.0, 1.0)];
+    assert_eq!(shown(ControlModel::Tnc415b, "810.3=360"), positive);
 }
 
 #[test]

@@ -335,7 +335,7 @@ Graphics display | graphics.third_angle
 Arc end-point tolerance | arc_tolerance_mm
 Handwheel | operation.handwheel.kind
 Multi-function parameter | operation.keys_latched
-Display mode / modulo value of rotary and PLC auxiliary axes, 4th axis | axis.3.travel.modulo_deg";
+Display mode / modulo value of rotary and PLC auxiliary axes, 4th axis | axis.3.travel.modulo";
     // MP43 corrects linear measuring systems only: axis IV is U.
     each_reaches(ControlModel::Tnc155, &["90=3"], OLD);
     each_reaches(ControlModel::Tnc415b, &[], NEW);

@@ -130,6 +130,29 @@ fn values_are_rounded_to_what_is_stored() {
     );
 }
 
+/// "Up to 3 decimal places can be entered in MP330" [000:3204], from 0.1 on.
+#[test]
+fn a_signal_period_has_three_decimals() {
+    let mut list = ParameterList::reference(ControlModel::Tnc415b);
+    for (entered, stored) in [
+        ("19.9996", 20.0),
+        ("1.23449", 1.234),
+        ("1.2346", 1.235),
+        ("0.0996", 0.1),
+    ] {
+        list.assign(&format!("330.0={entered}")).unwrap();
+        assert_eq!(list.get(330, 0), Some(stored), "{entered}");
+    }
+    for wrong in ["0.0994", "0", "-20"] {
+        assert!(list.assign(&format!("330.0={wrong}")).is_err(), "{wrong}");
+    }
+    assert_eq!(list.get(330, 0), Some(0.1), "as it was");
+    list.assign("330.0=20.48").unwrap();
+    let text = list.to_string();
+    let line = text.lines().find(|line| line.starts_with("MP330.0 ")).unwrap();
+    assert!(line.starts_with("MP330.0  : 20.48 "), "{line}");
+}
+
 #[test]
 fn bits_and_colours_are_written_in_their_formats() {
     let text = ParameterList::reference(ControlModel::Tnc415b).to_string();

@@ -487,7 +487,7 @@ impl Axis {
         };
         let rapid = self.settings.motion.rapid_mm_min;
         let volts = self.settings.output.rapid_volts;
-        let seen = self.measuring.step_mm().abs() / self.timing.contour_min();
+        let seen = self.measuring.measuring_step_mm() / self.timing.contour_min();
         // A digital drive is not told a voltage: MP1050 is inactive [000:18360-18362].
         let resolved = match self.settings.digital {
             Some(_) => 0.0,

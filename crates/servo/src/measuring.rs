@@ -20,6 +20,8 @@ pub struct Mark {
 #[derive(Clone, Debug)]
 pub(crate) struct MeasuringSystem {
     step_mm: f64,
+    /// Counting steps of a measuring step.
+    measuring_steps: i64,
     code: Option<DistanceCode>,
     linear_factor: f64,
     backlash_mm: f64,
@@ -44,6 +46,7 @@ impl MeasuringSystem {
     pub(crate) fn new(settings: &AxisSettings) -> MeasuringSystem {
         let mut new = MeasuringSystem {
             step_mm: 0.0,
+            measuring_steps: 1,
             code: None,
             linear_factor: 1.0,
             backlash_mm: 0.0,
@@ -69,6 +72,10 @@ impl MeasuringSystem {
         let period_um = encoder.signal_period_um;
         let sign = if encoder.counts_negative { -1.0 } else { 1.0 };
         self.step_mm = sign * period_um * 1e-3 / Encoder::STEPS as f64;
+        self.measuring_steps = match encoder.square_wave {
+            true => Encoder::SQUARE_WAVE_STEPS,
+            false => 1,
+        };
         let interpolation = encoder.interpolation.max(1);
         let coded = matches!(
             settings.marks.kind,
@@ -93,8 +100,17 @@ impl MeasuringSystem {
         self.step_mm
     }
 
+    /// The least way that is seen, mm.
+    pub(crate) fn measuring_step_mm(&self) -> f64 {
+        self.step_mm.abs() * self.measuring_steps as f64
+    }
+
     /// Takes a reading.
     pub(crate) fn read(&mut self, encoder: Encoder, settings: &AxisSettings) -> Option<EncoderFault> {
+        let encoder = match settings.encoder.square_wave {
+            true => encoder.fourfold(),
+            false => encoder,
+        };
         if !self.measured_once {
             self.measured_once = true;
             self.datum_count = encoder.count;

@@ -171,6 +171,18 @@ impl Encoder {
     pub const STEPS: i64 = 1024;
     /// Counting steps of a grating period of a motor's encoder at X15 to X19 [000:18299] [000:18345].
     pub const MOTOR_STEPS: i64 = 256;
+    /// Counting steps of a measuring step at a square-wave input, which evaluates the signals fourfold [000:3214].
+    pub const SQUARE_WAVE_STEPS: i64 = Encoder::STEPS / 4;
+
+    /// What a square-wave input sees of it: whole measuring steps.
+    pub(crate) fn fourfold(self) -> Encoder {
+        let whole = |count: i64| count.div_euclid(Self::SQUARE_WAVE_STEPS) * Self::SQUARE_WAVE_STEPS;
+        Encoder {
+            count: whole(self.count),
+            mark: self.mark.map(whole),
+            ..self
+        }
+    }
 }
 
 /// What a drive says of itself on a bus; an analogue drive says nothing, its contact is a PLC input.

@@ -62,6 +62,8 @@ pub struct EncoderSettings {
     /// Signal period, µm or 1/1000 degree: MP330, 0.1 to 1000 (old: 20 or 10 by MP12+, 20-fold or 10-fold
     /// evaluation to 1 µm) [000:3188-3236] [001:1616-1625].
     pub signal_period_um: f64,
+    /// The input takes square-wave signals, which are evaluated fourfold [000:3206-3214].
+    pub square_wave: bool,
     /// Factor of the external interpolation electronics: MP340, TNC 407 only; 1 elsewhere and for 0
     /// [000:3238-3250].
     pub interpolation: u8,

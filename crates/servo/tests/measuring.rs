@@ -35,6 +35,33 @@ fn a_signal_period_is_as_long_as_mp330_says() {
     }
 }
 
+/// Square-wave inputs, X5 and X6 of a TNC 407, X6 of a TNC 415 [000:1503-1505], are evaluated fourfold [000:3214]: of a
+/// signal period of 4 µm the control sees whole steps of 1 µm, where a sine input sees each 4/1024 µm.
+#[test]
+fn square_wave_inputs_are_evaluated_fourfold() {
+    const STEP: i64 = Encoder::STEPS / 4;
+    for (model, input, square) in [
+        (Tnc407, "110.0=3", false),
+        (Tnc407, "110.0=4", true),
+        (Tnc407, "110.0=5", true),
+        (Tnc415b, "110.0=4", false),
+        (Tnc415b, "110.0=5", true),
+    ] {
+        let mut axis = Axis::new(parameters(model, &["330.0=4", input]), model.timing());
+        axis.measure(Encoder::default());
+        for count in [-STEP - 1, -1, 1, STEP - 1, STEP, 1000 * STEP + 1] {
+            axis.measure(at(count, None));
+            let seen = if square {
+                count.div_euclid(STEP) * STEP
+            } else {
+                count
+            };
+            let way = seen as f64 * 0.004 / 1024.0;
+            assert!((axis.actual_mm() - way).abs() < 1e-12, "{model} {input}: {count}");
+        }
+    }
+}
+
 #[test]
 fn counts_stay_exact_far_from_the_datum() {
     let mut axis = axis(&["330.0=20"]);

@@ -87,7 +87,7 @@ pub(crate) struct ServeOptions {
     /// What is answered to ERASE/OVERREAD when a file comes by a serial port.
     #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
     pub answer: Answer,
-    /// Where FN15 prints: rs232, rs422, or a file to which lines are added.
+    /// Where FN15 prints: rs232, rs422, or a file to which lines are added. At a port digitizing prints, too.
     #[arg(long, value_name = "WHERE")]
     pub print: Option<String>,
     /// Write down what passes over the serial ports.

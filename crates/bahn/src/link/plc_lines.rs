@@ -81,6 +81,9 @@ impl PlcLines {
             Some("rs422") => Some(at(1, "rs422")?),
             Some(path) => Some(Printer::File(path.into())),
         };
+        // Into a file only FN15 prints: what is digitized stays a program of the memory.
+        let at_port = matches!(printer, Some(Printer::Port(_)));
+        station.host().print_digitized(at_port);
         Ok(PlcLines {
             notices: station.host().notices(),
             ports,

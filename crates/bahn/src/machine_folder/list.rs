@@ -40,7 +40,8 @@ output step FEED, output ramp       what direction keys put out on axes with dig
 oscilloscope start|stop             recording of --oscilloscope by hand, behind `code 688379`
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
 axis-key AXIS                       an axis key of the keyboard in the modes by hand: the axis is highlighted, M2096 ff.
-3d-rot on, 3d-rot off               by hand the axes move in the plane of the swivel axes
+3d-rot [run] on [B+30 ..], off      the plane of the swivel axes, by hand or for program run
+screen EDITING MACHINE WINDOWS FILE UNITS   items 2 to 5 and 17 of module 9035
 manual-operation                    axes may be moved while a run is interrupted
 restore-position                    back to the contour with NC start
 restore-at N                        block scan to block N

@@ -8,7 +8,7 @@ use bahn_parameters::MessageId;
 use crate::page::{Page, Turn, View};
 use crate::pages::handwheel::Handwheel;
 use crate::pages::number::Number;
-use crate::pages::{datum, handwheel, probe, supplementary, table};
+use crate::pages::{datum, handwheel, plane, probe, supplementary, table};
 use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
@@ -59,10 +59,6 @@ impl Page for ByHand {
         }
         let there = |there: bool, text: String| if there { text } else { String::new() };
         let rules = site.parameters().operation_parameters();
-        let leans = match site.control().first().leans() {
-            true => site.words("3D ROT OFF"),
-            false => site.words("3D ROT ON"),
-        };
         // "Jog increment" is asked in ELECTRONIC HANDWHEEL, where the PLC enables it [000:8496-8499].
         let jogs =
             site.mode() == Mode::Handwheel && site.control().memory().bit(signal::ENABLE_JOG_INCREMENT);
@@ -72,7 +68,7 @@ impl Page for ByHand {
             site.words("TOUCH PROBE"),
             there(jogs, site.words("INCREMENT")),
             site.words("HANDWHEEL"),
-            there(rules.tilting, leans),
+            there(rules.tilting, site.words("3D ROT")),
             // Until all axes have passed theirs [000:4581].
             there(
                 site.control().first().misses_marks(),
@@ -102,13 +98,7 @@ impl Page for ByHand {
                 (0.0..=JOG_MAX).contains(&value) && site.command(Command::JogIncrement(value))
             })),
             4 => Turn::Open(Box::new(Handwheel::default())),
-            5 => {
-                let on = !site.control().first().leans();
-                match site.command(Command::WorkingPlane(on)) {
-                    true => Turn::Done,
-                    false => Turn::Refused,
-                }
-            }
+            5 => plane::menu(),
             6 => match site.command(Command::Mode(Mode::Reference)) {
                 true => Turn::Done,
                 false => Turn::Refused,

@@ -6,7 +6,7 @@ use bahn_control::Mode;
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Side, Turn, View};
+use crate::page::{Overlay, Page, Side, Turn, View};
 use crate::pages::ask::Name;
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::{list, transfer};
@@ -71,6 +71,10 @@ impl Menu {
 }
 
 impl Page for Menu {
+    fn overlay(&self) -> Overlay {
+        Overlay::Directory
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if let Some(lines) = list::way_of_key(key) {
             self.current = list::moved(self.current, lines, MENU.len());

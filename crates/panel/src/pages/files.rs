@@ -6,7 +6,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::frames;
-use crate::page::{Page, Turn, View};
+use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::{Choice, Name};
 use crate::pages::transfer;
 use crate::pages::{list, table};
@@ -360,6 +360,10 @@ fn said(denial: Denial, site: &Site) -> String {
 }
 
 impl Page for Directory {
+    fn overlay(&self) -> Overlay {
+        Overlay::Directory
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if let Some(lines) = list::way_of_key(key) {
             self.current = list::moved(self.current, lines, self.entries.len());

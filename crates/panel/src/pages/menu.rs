@@ -2,7 +2,7 @@
 
 use bahn_dialogue::Key;
 
-use crate::page::{Page, Turn, View};
+use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::list;
 use crate::screen::{Line, WindowKind};
 use crate::site::Site;
@@ -47,6 +47,10 @@ pub(crate) trait Items: Send {
     /// A soft key of its own on a line.
     fn own_key(&mut self, _name: &str, _place: usize, _site: &mut Site) -> Turn {
         Turn::Refused
+    }
+    /// What it is to module 9035.
+    fn overlay(&self) -> Overlay {
+        Overlay::None
     }
     /// It is left.
     fn leave(&mut self, _site: &mut Site) {}
@@ -108,6 +112,10 @@ impl<I: Items> Page for Menu<I> {
                 None => self.close(site),
             },
         }
+    }
+
+    fn overlay(&self) -> Overlay {
+        self.items.overlay()
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {

@@ -15,6 +15,7 @@ mod menu;
 mod no_program;
 mod number;
 mod parameters;
+mod plane;
 mod plc;
 mod probe;
 mod programming;

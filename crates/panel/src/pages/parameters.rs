@@ -10,7 +10,7 @@ use bahn_dialogue::Key;
 use bahn_host::{LoadedMachine, files};
 use bahn_parameters::{Definition, ListText, MessageId, ParameterId, ParameterList, Reaction};
 
-use crate::page::{Page, Turn, View};
+use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
 use crate::screen::{Dialogue, Line, Mark, WindowKind};
@@ -358,6 +358,10 @@ impl Parameters {
 }
 
 impl Page for Parameters {
+    fn overlay(&self) -> Overlay {
+        Overlay::Table
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
             Key::Up => self.go(-1, site),

@@ -252,6 +252,10 @@ fn builder_cycles(site: &Site) -> (Vec<BuilderCycle>, Option<String>) {
 }
 
 impl Page for Programming {
+    fn file(&self) -> Option<&str> {
+        self.open.as_ref().map(|open| open.name.as_str())
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
             Key::ClPgm => Turn::Open(Box::new(Directory::new(Purpose::Erase, site))),

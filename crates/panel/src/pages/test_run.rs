@@ -120,6 +120,10 @@ fn go_on(site: &mut Site) -> Turn {
 const KEYS: [Key; 5] = [Key::Start, Key::Stop, Key::Graphics, Key::BlkForm, Key::Magn];
 
 impl Page for TestRun {
+    fn file(&self) -> Option<&str> {
+        self.open.as_ref().map(|(name, _)| name.as_str())
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if site.graphics.key(Subject::Test, key) {
             return Turn::Done;

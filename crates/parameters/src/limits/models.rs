@@ -78,6 +78,7 @@ const TNC151: Limits = Limits {
     one_axis_by_mdi: false,
     shows_feed_of_keys: true,
     oscilloscope: false,
+    square_wave_input: 6,
 };
 
 /// TNC 151 with graphics [001:186].
@@ -137,6 +138,7 @@ const TNC407: Limits = Limits {
     one_axis_by_mdi: false,
     shows_feed_of_keys: true,
     oscilloscope: true,
+    square_wave_input: 4,
     ..TNC360
 };
 
@@ -158,6 +160,7 @@ const TNC415B: Limits = Limits {
     plc_positioning_axes_max: 5,
     emergency_stop_test: STOP_TEST_415,
     draws_what_runs: true,
+    square_wave_input: 5,
     ..TNC407
 };
 

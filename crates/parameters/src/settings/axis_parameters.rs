@@ -89,15 +89,46 @@ pub struct ReferenceParameters {
     pub mark_spacing_mm: f64,
 }
 
+/// How far a rotary axis counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Modulo {
+    /// One turn of the display, degrees.
+    pub deg: f64,
+    /// Positions on the negative side of 0 keep their sign: a TNC 360, whose display goes up to ±359.999 degrees
+    /// [003:7424-7430].
+    pub signed: bool,
+}
+
+impl Modulo {
+    /// So near before a whole turn a position counts as it, degrees (inferred).
+    const TOLERANCE_DEG: f64 = 1e-3;
+
+    /// Whole turns that a position in degrees is beyond what is displayed.
+    pub fn turns(&self, position_deg: f64) -> f64 {
+        match self.signed && position_deg < 0.0 {
+            true => ((position_deg - Self::TOLERANCE_DEG) / self.deg).ceil(),
+            false => ((position_deg + Self::TOLERANCE_DEG) / self.deg).floor(),
+        }
+    }
+
+    /// A position in degrees as it is displayed.
+    pub fn shown(&self, position_deg: f64) -> f64 {
+        match self.signed {
+            true => position_deg % self.deg,
+            false => position_deg.rem_euclid(self.deg),
+        }
+    }
+}
+
 /// Limits and datums of an axis, from machine zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TravelParameters {
     /// Software limits of the traverse ranges 1 to 3, mm, least first: MP920/910, MP921/911, MP922/912, -99
     /// 999.9999 to 99 999.9999; old: MP44-51, three times the same [000:3438-3497] [001:3188-3195].
     pub ranges_mm: [[f64; 2]; 3],
-    /// Modulo value of the display, degrees; with one the software limits are off: MP810, rotary axes only
-    /// [000:6470-6478]. The TNC 360 has MP7470 = 0 for 360 degrees; TNC 151/155: none.
-    pub modulo_deg: Option<f64>,
+    /// How far the display of a rotary axis counts; with it the software limits are off: MP810 [000:6470-6478]. The TNC
+    /// 360 has MP7470 = 0 for 359.999 degrees to both sides of 0; TNC 151/155: none.
+    pub modulo: Option<Modulo>,
     /// Distance from the scale datum to the machine datum, mm: MP960; 0 on the TNC 151/155/360, which have
     /// none [000:6264-6269].
     pub machine_datum_mm: f64,
@@ -196,8 +227,10 @@ impl ParameterList {
 fn encoder(axis: &AxisReader) -> EncoderSettings {
     // MP76: bit 0 concerns inhibited axes, bits 1 to 4 switch X to IV off.
     let checked = || !axis.list().old_bit(76, u32::from(axis.index()) + 1);
+    let input = axis.new_or(110, || f64::from(old_input(axis))) as u8;
     EncoderSettings {
-        input: axis.new_or(110, || f64::from(old_input(axis))) as u8,
+        input,
+        square_wave: input >= axis.list().model().limits().square_wave_input,
         // 20-fold and 10-fold evaluation both make counting steps of 1 µm.
         signal_period_um: axis.new_or(330, || if axis.old(12) == 2.0 { 10.0 } else { 20.0 }),
         interpolation: axis.new_or(340, || 1.0).max(1.0) as u8,
@@ -348,17 +381,14 @@ fn travel(axis: &AxisReader) -> TravelParameters {
         let old = old_limits();
         [axis.new_or(plus + 10, || old[0]), axis.new_or(plus, || old[1])]
     };
-    let modulo = || {
-        if axis.list().get(7470, 0) == Some(0.0) {
-            360.0
-        } else {
-            0.0
-        }
-    };
+    let signed = axis.list().get(7470, 0) == Some(0.0) && axis.list().get(810, 0).is_none();
+    let turn = || if signed { 360.0 } else { 0.0 };
     let has_hirth = axis.new_or(420, || 0.0) == 1.0;
     TravelParameters {
         ranges_mm: [range(910), range(911), range(912)],
-        modulo_deg: positive(axis.new_or(810, modulo)).filter(|_| axis.is_rotary()),
+        modulo: positive(axis.new_or(810, turn))
+            .filter(|_| axis.is_rotary())
+            .map(|deg| Modulo { deg, signed }),
         machine_datum_mm: axis.machine_datum(),
         m92_mm: axis.value(950, 186),
         tool_change_mm: axis.bit_or(7450, || false).then(|| axis.new_or(951, || 0.0)),

@@ -23,6 +23,8 @@ pub struct OperationParameters {
     pub axes_wait_at_m: bool,
     /// Manual modes always show the smallest manual feed: MP7270 = 1 (old MP167) [000:6536].
     pub manual_feed_shown: bool,
+    /// S and M are no longer active behind NC stop in manual modes: MP7270 + 2 of the TNC 360 [003:7307-7315].
+    pub stop_ends_m: bool,
     /// Overrides.
     pub overrides: OverrideParameters,
     /// Return to the contour and block scan.
@@ -240,8 +242,9 @@ impl ParameterList {
             eprom_test: test(1),
             keys_latched: if old { self.old(68) == 1.0 } else { multi(0) },
             axes_wait_at_m: self.m_functions().axes_wait,
-            // The TNC 360 adds 2 for something else [003:7307-7315].
             manual_feed_shown: self.bit((7270, 0), (167, 0), 0),
+            stop_ends_m: self.model() == ControlModel::Tnc360
+                && self.get(7270, 0).is_some_and(|sum| sum >= 2.0),
             overrides: self.override_parameters(),
             restart: RestartParameters {
                 return_to_contour: multi(1),

@@ -1,5 +1,7 @@
 //! Modules 9120 to 9124: PLC axes [000:15907-16035][000:4092-4240].
 
+use bahn_parameters::PLC_AXES;
+
 use super::{Call, Outcome};
 use crate::{PlcAxisCommand, PlcError};
 
@@ -31,24 +33,23 @@ pub(super) fn stop(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     call.code(code)
 }
 
-/// 9122: status bits of an axis.
+/// 9122: status bits of an axis. Whether it is over its reference point is told of every axis; the other bits are those of
+/// modules 9120 to 9123, which move PLC axes alone (inferred).
 pub(super) fn status(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [axis] = call.arguments()?;
-    let word = match plc_axis(call, axis) {
-        Err(NO_SUCH_AXIS) => None,
-        Err(_) => Some(0),
-        Ok(axis) => {
-            let status = call.nc.plc_axis_status(axis);
-            let bits = [
-                true,
-                status.referenced,
-                status.positioning,
-                status.negative,
-                status.error,
-            ];
-            Some((0..).zip(bits).map(|(bit, set)| i32::from(set) << bit).sum())
-        }
-    };
+    let place = usize::try_from(axis).ok().filter(|axis| *axis < PLC_AXES);
+    let word = place.map(|place| {
+        let status = call.nc.plc_axis_status(place);
+        let own = plc_axis(call, axis).is_ok();
+        let bits = [
+            own,
+            status.referenced,
+            own && status.positioning,
+            own && status.negative,
+            own && status.error,
+        ];
+        (0..).zip(bits).map(|(bit, set)| i32::from(set) << bit).sum()
+    });
     call.result_or_failed(word)
 }
 
@@ -99,7 +100,7 @@ fn command_standing(call: &mut Call<'_>, axis: i32, command: PlcAxisCommand) -> 
 fn plc_axis(call: &Call<'_>, axis: i32) -> Result<usize, i32> {
     let axis = usize::try_from(axis)
         .ok()
-        .filter(|axis| *axis < 5)
+        .filter(|axis| *axis < PLC_AXES)
         .ok_or(NO_SUCH_AXIS)?;
     let has = |number: u16| call.parameter(number, 0) as u32 >> axis & 1 != 0;
     if has(10) && has(60) {

@@ -63,6 +63,10 @@ fn m9122_tells_the_status() {
     desk.nc.axes[3].status.error = true;
     assert_eq!(desk.cyclic(9122, &[3], 1), value(0b1_0011));
     assert_eq!(desk.cyclic(9122, &[0], 1), value(0), "no PLC axis");
+    // Bit 1 is of every axis, the others of what modules 9120 to 9123 do.
+    desk.nc.axes[0].status.referenced = true;
+    desk.nc.axes[0].status.negative = true;
+    assert_eq!(desk.cyclic(9122, &[0], 1), value(REFERENCED));
     for wrong in [5, -1] {
         assert_eq!(desk.cyclic(9122, &[wrong], 1), (vec![0], true));
     }

@@ -15,7 +15,7 @@ mod texts;
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Turn, View};
+use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::list;
 use crate::pages::parameters;
 use crate::screen::{Line, Window, WindowKind};
@@ -77,6 +77,10 @@ impl MainMenu {
 }
 
 impl Page for MainMenu {
+    fn overlay(&self) -> Overlay {
+        Overlay::Plc
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
             Key::PgmNr => files::open(site),

@@ -13,7 +13,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use bahn_dialogue::Key;
 
-use crate::page::{Page, Side, Turn};
+use crate::page::{Overlay, Page, Side, Turn};
 use crate::pages::ask::Name;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::{help, parameters, plc};
@@ -126,6 +126,10 @@ impl Items for Supplementary {
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
         let function = self.functions(site).nth(place);
         function.map_or(Turn::Refused, |function| function.choose(true, site))
+    }
+
+    fn overlay(&self) -> Overlay {
+        Overlay::Mode
     }
 
     fn own_keys(&self, site: &Site) -> [&'static str; 6] {

@@ -8,7 +8,7 @@ use super::cells::{is_mark, read};
 use super::editor::{CELL_MAX, RENEWED, TableEditor, WIDTH};
 use super::{POCKET_FILE, TOOL_FILE, is_open_to_all, pockets, tools};
 use crate::entry::Entry;
-use crate::page::{Page, Turn, View};
+use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::Choice;
 use crate::pages::list;
 use crate::screen::{Dialogue, Line, Mark, WindowKind};
@@ -197,6 +197,14 @@ const SOFT_KEYS: [&str; 6] = [
 ];
 
 impl Page for TableEditor {
+    fn overlay(&self) -> Overlay {
+        Overlay::Table
+    }
+
+    fn file(&self) -> Option<&str> {
+        Some(&self.name)
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if let Some(rows) = list::way_of_key(key) {
             return self.leave_cell(rows, 0, site);

@@ -1,0 +1,109 @@
+//! 3D ROT: the tilted working plane, for program run and for manual operation each for itself, and the positions of the swivel
+//! axes in it [000:4256].
+
+use bahn_control::{Command, PlaneCommand};
+
+use crate::page::Turn;
+use crate::pages::menu::{Item, Items, Menu};
+use crate::pages::number::Number;
+use crate::site::Site;
+
+/// What is switched: program run, and not manual operation.
+const SWITCHES: [(&str, bool); 2] = [("PROGRAM RUN", true), ("MANUAL OPERATION", false)];
+/// The axes that may swivel.
+const LETTERS: [char; 3] = ['A', 'B', 'C'];
+
+/// The menu.
+pub(super) fn menu() -> Turn {
+    Turn::Open(Box::new(Menu::new(Plane)))
+}
+
+struct Plane;
+
+/// The swivel axes of the machine, by their places in [`LETTERS`].
+fn swivel_axes(site: &Site) -> Vec<usize> {
+    let swivels = site.parameters().swivels();
+    let free = swivels.iter().flat_map(|swivels| swivels.free_axes());
+    free.filter_map(|axis| LETTERS.iter().position(|letter| *letter == axis.letter()))
+        .collect()
+}
+
+/// The position of a swivel axis in the plane that is on, of manual operation first, else where it stands, degrees.
+fn angle(place: usize, site: &Site) -> f64 {
+    let channel = site.control().first();
+    let plane = channel.plane(false).or_else(|| channel.plane(true));
+    let of_plane = plane.and_then(|angles| angles.get(place).copied());
+    let letter = LETTERS.get(place).copied().unwrap_or_default();
+    of_plane
+        .or_else(|| site.captured_reference(letter))
+        .unwrap_or_default()
+}
+
+fn angles(site: &Site) -> [Option<f64>; 3] {
+    let axes = swivel_axes(site);
+    [0, 1, 2].map(|place| axes.contains(&place).then(|| angle(place, site)))
+}
+
+fn switch(run: bool, angles: Option<[Option<f64>; 3]>, site: &mut Site) -> bool {
+    site.command(Command::WorkingPlane(PlaneCommand { run, angles }))
+}
+
+/// Another position of a swivel axis, for what is on; where nothing is, manual operation is switched on with it.
+fn edit(place: usize, value: f64, site: &mut Site) -> bool {
+    let mut wanted = angles(site);
+    if let Some(angle) = wanted.get_mut(place) {
+        *angle = Some(value);
+    }
+    let channel = site.control().first();
+    let [by_hand, run] = [false, true].map(|run| channel.plane(run).is_some());
+    let mut done = true;
+    if by_hand || !run {
+        done &= switch(false, Some(wanted), site);
+    }
+    if run {
+        done &= switch(true, Some(wanted), site);
+    }
+    done
+}
+
+impl Items for Plane {
+    fn title(&self, site: &Site) -> String {
+        site.words("TILTED WORKING PLANE")
+    }
+
+    fn items(&self, site: &Site) -> Vec<Item> {
+        let channel = site.control().first();
+        let switches = SWITCHES.map(|(name, run)| {
+            let on = channel.plane(run).is_some();
+            Item::new(
+                site.words(name),
+                site.words(if on { "ACTIVE" } else { "INACTIVE" }),
+            )
+        });
+        let axes = swivel_axes(site).into_iter().filter_map(|place| {
+            let letter = LETTERS.get(place)?;
+            Some(Item::new(
+                letter.to_string(),
+                format!("{:+.3}", angle(place, site)),
+            ))
+        });
+        switches.into_iter().chain(axes).collect()
+    }
+
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
+        if let Some((_, run)) = SWITCHES.get(place).copied() {
+            let on = site.control().first().plane(run).is_none();
+            let wanted = on.then(|| angles(site));
+            return match switch(run, wanted, site) {
+                true => Turn::Done,
+                false => Turn::Refused,
+            };
+        }
+        let Some(axis) = swivel_axes(site).get(place - SWITCHES.len()).copied() else {
+            return Turn::Refused;
+        };
+        let letter = LETTERS.get(axis).copied().unwrap_or_default();
+        let ask = Number::ask(format!("{letter} ="), move |value, site| edit(axis, value, site));
+        Turn::Open(ask.capturing(move |site| site.captured_reference(letter)))
+    }
+}
