@@ -124,6 +124,31 @@ impl Control {
         Arc::make_mut(&mut self.supply.made_of).0.plc = program;
     }
 
+    /// Another list of machine parameters goes into effect, as the editor does it that is left with it [000:10072-10074]:
+    /// the control begins anew. `None` is the usual list of the machine. `false` while a program runs, or while the supply
+    /// is off.
+    pub fn select_list(&mut self, name: Option<String>, list: ParameterList) -> bool {
+        if self.supply.off || self.kernel.channels.iter().any(|channel| channel.run.is_active()) {
+            return false;
+        }
+        if let Some(name) = &name {
+            // Module 9033 selects what was entered.
+            let lists = &mut Arc::make_mut(&mut self.supply.made_of).0.files.parameter_lists;
+            lists.insert(name.clone(), Some(list.clone()));
+        }
+        self.kernel.machine.link.selected_list = name;
+        self.begin_anew(list);
+        self.supply.starts += 1;
+        self.kernel.machine.unsaved = true;
+        true
+    }
+
+    /// Time, messages and connections go on from those of a control that was in its place.
+    pub fn follow_on(&mut self, before: &Control) {
+        self.kernel.follow_on(&before.kernel);
+        self.supply.starts = before.supply.starts + 1;
+    }
+
     /// The kernel begins anew with what it has kept, at the time that it is.
     fn begin_anew(&mut self, parameters: ParameterList) {
         let (mut setup, mut others) = (*self.supply.made_of).clone();

@@ -10,6 +10,7 @@ use bahn_control::{
 };
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
+use bahn_parameters::ParameterList;
 use bahn_path::PathElement;
 use bahn_plc::{PlcProgram, Tracer, WindowView};
 
@@ -86,6 +87,32 @@ impl Host {
             load_magazine(&mut plant, machine, &power_on.remembered);
         }
         Host::with_plant(machine, plant, power_on, programs, operator)
+    }
+
+    /// Another machine takes the place of this one, as its files are by now: time goes on, whoever follows and orders stays,
+    /// and what was given before is forgotten.
+    pub fn replace(
+        &mut self,
+        machine: &LoadedMachine,
+        power_on: PowerOn,
+        programs: Arc<dyn Programs>,
+        operator: Operator,
+    ) {
+        // Two machines never have one state.
+        self.state = None;
+        let mut other = Host::new(machine, power_on, programs, operator);
+        other.control.follow_on(&self.control);
+        std::mem::swap(&mut self.control, &mut other.control);
+        std::mem::swap(&mut self.plant, &mut other.plant);
+        std::mem::swap(&mut self.operator, &mut other.operator);
+        std::mem::swap(&mut self.programs, &mut other.programs);
+        std::mem::swap(&mut self.digitizing, &mut other.digitizing);
+        std::mem::swap(&mut self.state, &mut other.state);
+        self.before = Before::default();
+        self.journal = Journal::default();
+        self.waiting = Waiting::default();
+        self.restart = None;
+        self.forget_background();
     }
 }
 
@@ -451,6 +478,23 @@ impl<P: Operable> Host<P> {
         let now = self.control.time_us();
         self.journal.add(now, Given::Plc(Arc::clone(&program)));
         self.control.replace_plc(program);
+    }
+
+    /// Another list of machine parameters goes into effect; see [`Control::select_list`]. Who goes back finds the one of then.
+    pub fn select_list(&mut self, name: Option<String>, list: ParameterList) -> bool {
+        let now = self.control.time_us();
+        let given = Given::List(name.clone(), Box::new(list.clone()));
+        self.journal.add(now, given);
+        self.select(name, list)
+    }
+
+    pub(crate) fn select(&mut self, name: Option<String>, list: ParameterList) -> bool {
+        self.background.settle(&mut self.control);
+        let done = self.control.select_list(name, list);
+        if done {
+            self.forget_background();
+        }
+        done
     }
 
     /// The plant.

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_control::{Command, Dnc};
+use bahn_parameters::ParameterList;
 use bahn_plc::PlcProgram;
 
 use crate::deed::{Deed, Source};
@@ -24,6 +25,8 @@ pub(crate) enum Given {
     Order(Order),
     /// A PLC program for the next power-on.
     Plc(Arc<PlcProgram>),
+    /// A list of machine parameters with its name, that goes into effect.
+    List(Option<String>, Box<ParameterList>),
 }
 
 impl Given {
@@ -32,7 +35,7 @@ impl Given {
         match self {
             Given::AtOnce(source, deed) => Some((source, deed)),
             Given::Order(order) => Some((&order.source, &order.deed)),
-            Given::Plc(_) => None,
+            Given::Plc(_) | Given::List(..) => None,
         }
     }
 

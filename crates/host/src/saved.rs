@@ -156,6 +156,9 @@ impl<P: Operable + Clone> Host<P> {
                     Given::AtOnce(source, deed) => drop(self.execute(source, deed)),
                     Given::Order(order) => self.take(order),
                     Given::Plc(program) => self.control.replace_plc(program),
+                    Given::List(name, list) => {
+                        self.select(name, *list);
+                    }
                 }
             }
             if at_end {
