@@ -89,6 +89,11 @@ impl Host {
         Host::with_plant(machine, plant, power_on, programs, operator)
     }
 
+    /// Gives back what survives power-off, so that somebody else can take it; nothing is kept from now on.
+    pub fn release_state(&mut self) {
+        self.state = None;
+    }
+
     /// Another machine takes the place of this one, as its files are by now: time goes on, whoever follows and orders stays,
     /// and what was given before is forgotten.
     pub fn replace(
@@ -98,8 +103,6 @@ impl Host {
         programs: Arc<dyn Programs>,
         operator: Operator,
     ) {
-        // Two machines never have one state.
-        self.state = None;
         let mut other = Host::new(machine, power_on, programs, operator);
         other.control.follow_on(&self.control);
         std::mem::swap(&mut self.control, &mut other.control);

@@ -34,6 +34,8 @@ use crate::site::Site;
 
 pub(crate) use files::runs;
 pub(crate) use help::follow as follow_help;
+pub(crate) use parameters::commission;
+pub(crate) use supplementary::{backup_ended, restored};
 
 /// The page of a machine operating mode.
 pub(crate) fn of_mode(mode: Mode, model: ControlModel) -> Box<dyn Page> {

@@ -14,10 +14,11 @@ use super::keys::Keys;
 use super::source;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Later, Name};
-use crate::pages::list;
+use crate::pages::{external, list, transfer};
 use crate::programs::NAME_MAX;
 use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
+use crate::transfer::{TransferDeed, TransferFiles};
 
 /// Soft keys with one window, in two rows; what has no name is not there.
 const ONE: [[&str; 8]; 2] = [
@@ -334,8 +335,8 @@ impl Files {
             "SHOW ALL" => self.pane_mut().ending = None,
             TNC => self.pane_mut().eprom = false,
             EPROM => self.pane_mut().eprom = true,
-            // No interface of the panel has a device.
-            EXT => return Turn::Say(site.message(MessageId::ExtInOutputNotReady)),
+            // What is on the device is listed, and read in from there.
+            EXT => return transfer::begin_with(TransferFiles::Plc, TransferDeed::Directory, site),
             ending => self.pane_mut().ending = Some(ending.to_owned()),
         }
         Turn::Done
@@ -443,6 +444,10 @@ impl Page for Files {
                 self.erase(site)
             }
             Key::Ent => self.select(site),
+            Key::Ext => {
+                self.stale = true;
+                external::of_plc(site)
+            }
             Key::End | Key::NoEnt | Key::Del => Turn::Close,
             _ => Turn::Refused,
         }
