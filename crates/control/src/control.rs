@@ -23,6 +23,7 @@ use crate::key_code::KeyCode;
 use crate::message::{Message, Shown};
 use crate::oscilloscope::OscilloscopeKeys;
 use crate::progress::RunState;
+use crate::renewal::{self, Renewed};
 use crate::sampling::{ServoSampler, ServoView};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::signal::Signal;
@@ -119,28 +120,18 @@ impl Control {
         true
     }
 
-    /// A PLC program that was compiled anew: it runs when the control begins anew, at the next power-on or reset.
-    pub fn replace_plc(&mut self, program: Arc<bahn_plc::PlcProgram>) {
-        Arc::make_mut(&mut self.supply.made_of).0.plc = program;
-    }
-
-    /// Another list of machine parameters goes into effect, as the editor does it that is left with it [000:10072-10074]:
-    /// the control begins anew. `None` is the usual list of the machine. `false` while a program runs, or while the supply
-    /// is off.
-    pub fn select_list(&mut self, name: Option<String>, list: ParameterList) -> bool {
-        if self.supply.off || self.kernel.channels.iter().any(|channel| channel.run.is_active()) {
-            return false;
+    /// Takes over what an editor of the machine builder has written; `false` when that is not possible now.
+    pub fn renew(&mut self, renewed: Renewed) -> bool {
+        let setup = &mut Arc::make_mut(&mut self.supply.made_of).0;
+        match renewal::take(renewed, setup, &mut self.kernel, self.supply.off) {
+            Altered::Reset(list) => {
+                self.begin_anew(*list);
+                self.supply.starts += 1;
+                self.kernel.machine.unsaved = true;
+                true
+            }
+            altered => altered == Altered::Done,
         }
-        if let Some(name) = &name {
-            // Module 9033 selects what was entered.
-            let lists = &mut Arc::make_mut(&mut self.supply.made_of).0.files.parameter_lists;
-            lists.insert(name.clone(), Some(list.clone()));
-        }
-        self.kernel.machine.link.selected_list = name;
-        self.begin_anew(list);
-        self.supply.starts += 1;
-        self.kernel.machine.unsaved = true;
-        true
     }
 
     /// Time, messages and connections go on from those of a control that was in its place.
@@ -475,6 +466,11 @@ impl Control {
         let axes = self.kernel.machine.axes.owned(0);
         let units = by_index(axes, |unit| unit.index, |unit| unit.servo.offset_units());
         self.kernel.machine.offsets.shown.then_some(units)
+    }
+
+    /// Texts of the PLC dialogues, from 0.
+    pub fn plc_dialogues(&self) -> &[String] {
+        self.kernel.machine.link.dialogues()
     }
 
     /// The line of the compensation assignment that is active: it survives power-off [000:15547-15580].

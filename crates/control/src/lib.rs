@@ -114,6 +114,7 @@ mod progress;
 mod q_transfer;
 mod reach;
 mod reference;
+mod renewal;
 mod replacement;
 mod restore;
 mod run;
@@ -169,6 +170,7 @@ pub use plc_link::{NcFiles, Pocket, WrittenElement, datum_shifts};
 pub use probe_command::{ProbeCommand, ProbeFunction};
 pub use programs::Programs;
 pub use progress::RunState;
+pub use renewal::{CompensationFiles, Renewed};
 pub use sampling::{ServoSampler, ServoSignal, ServoView};
 pub use scanning::{Digitized, DigitizedNews};
 pub use setup::{

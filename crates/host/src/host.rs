@@ -5,14 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use bahn_control::{
-    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, ServoSampler, Setup, Snapshot,
-    SpindleWiring,
+    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, Renewed, ServoSampler, Setup,
+    Snapshot, SpindleWiring,
 };
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
-use bahn_parameters::ParameterList;
 use bahn_path::PathElement;
-use bahn_plc::{PlcProgram, Tracer, WindowView};
+use bahn_plc::{Tracer, WindowView};
 
 use crate::background::Background;
 use crate::deed::{Answer, Deed, Operable, Source};
@@ -476,25 +475,18 @@ impl<P: Operable> Host<P> {
         self.window = view;
     }
 
-    /// A PLC program that was compiled anew; see [`Control::replace_plc`]. Who goes back finds the one of then.
-    pub fn replace_plc(&mut self, program: Arc<PlcProgram>) {
+    /// Takes over what an editor has written; see [`Control::renew`]. Who goes back finds what was there then.
+    pub fn renew(&mut self, renewed: Renewed) -> bool {
         let now = self.control.time_us();
-        self.journal.add(now, Given::Plc(Arc::clone(&program)));
-        self.control.replace_plc(program);
+        self.journal.add(now, Given::Renewed(renewed.clone()));
+        self.take_over(renewed)
     }
 
-    /// Another list of machine parameters goes into effect; see [`Control::select_list`]. Who goes back finds the one of then.
-    pub fn select_list(&mut self, name: Option<String>, list: ParameterList) -> bool {
-        let now = self.control.time_us();
-        let given = Given::List(name.clone(), Box::new(list.clone()));
-        self.journal.add(now, given);
-        self.select(name, list)
-    }
-
-    pub(crate) fn select(&mut self, name: Option<String>, list: ParameterList) -> bool {
+    pub(crate) fn take_over(&mut self, renewed: Renewed) -> bool {
+        let starts = self.control.starts();
         self.background.settle(&mut self.control);
-        let done = self.control.select_list(name, list);
-        if done {
+        let done = self.control.renew(renewed);
+        if starts != self.control.starts() {
             self.forget_background();
         }
         done

@@ -189,7 +189,8 @@ fn a_faulty_line_is_found_and_mended() {
     trainee.press("CE");
     let edited = trainee.file("plc/MAIN.PLC");
     let mut expected: Vec<&str> = main.lines().collect();
-    let typed_lines = ["LN M3100", "= M3001", "XYZ M1"];
+    // Set in the columns of the manual [000:4155-4199]; a line with an error is not [000:11925].
+    let typed_lines = ["LN     M3100", "=      M3001", "XYZ M1"];
     expected.splice(begin - 1..begin - 1, typed_lines);
     assert_eq!(edited.lines().collect::<Vec<_>>(), expected);
     // Half a line is on the medium, too.
@@ -203,7 +204,7 @@ fn a_faulty_line_is_found_and_mended() {
     trainee.press("ENT");
     assert_eq!(title(&mut trainee), "COMPILE: ERRORS");
     let (shown, wrong) = (line(&mut trainee), begin + 2);
-    let expected = format!("MAIN.PLC:{wrong} 0 not a valid command");
+    let expected = format!("MAIN.PLC:{wrong} INPUT ERROR 0 not a valid command");
     assert!(shown.starts_with(&expected), "{shown}");
     trainee.press("ENT");
     assert_eq!(line(&mut trainee), format!("{wrong:>6} XYZ M1"));

@@ -267,7 +267,9 @@ impl Loader<'_> {
         let mut files = self.compensation(&folder);
         let parameters = model.and_then(|model| self.parameters(&folder, model));
         let mut none = NcFiles::default();
-        let tools = self.tool_files(&folder, parameters.as_ref(), files.as_mut().unwrap_or(&mut none));
+        // Tables fit the list that is entered, when it is.
+        let sizes = parameters.as_ref().filter(|_| !self.is_to_be_entered);
+        let tools = self.tool_files(&folder, sizes, files.as_mut().unwrap_or(&mut none));
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
         let mut files = files?;
@@ -582,6 +584,16 @@ impl Loader<'_> {
     pub(super) fn fault_at_key(&mut self, key: &str, message: &str) {
         let line = self.line_of(key).unwrap_or(1);
         self.fault_in_description(line, 1, message.to_owned());
+    }
+
+    pub(super) fn warning_at_key(&mut self, key: &str, message: &str) {
+        let (path, text) = &self.description;
+        let place = (self.line_of(key).unwrap_or(1), None);
+        let fault = file_fault(path, text, place, "something is not used", message);
+        self.warnings.push(FileFault {
+            severity: Severity::Warning,
+            ..fault
+        });
     }
 
     pub(super) fn fault_at_line(&mut self, line: usize, message: String) {

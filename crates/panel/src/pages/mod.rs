@@ -1,9 +1,10 @@
 //! The pages: operating modes below, menus, tables and questions that stand on them.
 
 mod ask;
+mod axis_errors;
 mod by_hand;
-mod corrections;
 mod datum;
+mod description;
 mod editing;
 mod external;
 mod files;

@@ -228,7 +228,7 @@ impl Open {
 /// The cycles of the machine builder with their dialogue texts, and what is to be said of a folder that cannot be read.
 fn builder_cycles(site: &Site) -> (Vec<BuilderCycle>, Option<String>) {
     let folder = site.machine.programs(0);
-    let found = oem_cycles::find(&folder, &site.machine.plc_dialogues, site.parameters());
+    let found = oem_cycles::find(&folder, site.control().plc_dialogues(), site.parameters());
     let found = match found {
         Ok(found) => found,
         Err(error) => {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use bahn_control::Renewed;
 use bahn_host::{LoadedMachine, files};
 use bahn_parameters::{ListError, ListText, ParameterId, ParameterList};
 
@@ -139,6 +140,6 @@ impl ListFile {
     /// The whole list goes into effect [000:10072-10074].
     pub fn put_into_effect(&self, list: ParameterList, site: &mut Site) {
         let name = (self.name != site.machine.folder.parameters).then(|| self.name.clone());
-        site.host.select_list(name, list);
+        site.host.renew(Renewed::List(name, Box::new(list)));
     }
 }

@@ -99,7 +99,7 @@ pub(crate) fn user(site: &Site) -> Turn {
     let list = site.parameters();
     let row = |own: bahn_parameters::operation::UserParameter| {
         let definition = Definition::named(list.model(), own.id).ok()?;
-        let dialogues = &site.machine.plc_dialogues;
+        let dialogues = site.control().plc_dialogues();
         Some(Row {
             dialogue: dialogues.get(usize::from(own.dialogue_line)).cloned(),
             ..Row::of(definition)

@@ -14,7 +14,7 @@ use super::keys::Keys;
 use super::source;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Later, Name};
-use crate::pages::{external, list, transfer};
+use crate::pages::{axis_errors, external, list, transfer};
 use crate::programs::NAME_MAX;
 use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
@@ -39,7 +39,7 @@ const ONE: [[&str; 8]; 2] = [
         "UNPROTECT",
         "RENAME",
         "CONVERT",
-        "",
+        "NEW FILE",
         "END",
     ],
 ];
@@ -223,6 +223,9 @@ impl Files {
         let Some(name) = self.own() else {
             return Turn::Refused;
         };
+        if let Some(opened) = axis_errors::editor(name, &source::path(name, site)) {
+            return opened.unwrap_or_else(Turn::Say);
+        }
         // Where the PLC was stopped: of a time out at the last jump [000:11919].
         let stopped = site.control().plc().stopped();
         let line = stopped
@@ -375,6 +378,21 @@ impl Files {
     }
 }
 
+/// A new file: tables of axis errors begin with their head [000:11370].
+fn new_file(site: &Site) -> Turn {
+    Turn::Open(Name::ask(
+        site.words("FILE NAME ="),
+        NAME_MAX + 4,
+        |name, site| {
+            let name = source::named_at_interface(&name);
+            match source::create(&name, axis_errors::new_file(&name).as_bytes(), site) {
+                Ok(()) => Turn::Close,
+                Err(why) => Turn::CloseSaying(why),
+            }
+        },
+    ))
+}
+
 /// Copies files one after the other; one that is there already is asked for, with the others behind it.
 fn copies(mut files: VecDeque<(String, Vec<u8>)>, mut copied: u32, asked: bool, site: &Site) -> Turn {
     while let Some((name, bytes)) = files.pop_front() {
@@ -464,6 +482,7 @@ impl Page for Files {
             "SELECT" => self.select(site),
             "COPY" => self.named("DESTINATION FILE =", source::copy, site),
             "RENAME" => self.rename(site),
+            "NEW FILE" => new_file(site),
             "PROTECT" | "UNPROTECT" => self.protect(name == "PROTECT", site),
             "MODIFY WINDOW" => self.keys(DEVICES),
             "SELECT TYPE" => self.keys(TYPES),

@@ -7,6 +7,7 @@ mod convert;
 mod diagram;
 mod editor;
 mod files;
+mod form;
 mod keys;
 mod operands;
 mod source;
