@@ -124,7 +124,7 @@ fn binary_code_is_written_for_an_eprom() {
 #[test]
 fn the_file_of_messages_is_selected() {
     let mut trainee = Trainee::with("mill", |folder| {
-        std::fs::write(folder.join("plc/OTHER.ER1"), "ANOTHER TEXT\n").unwrap();
+        std::fs::write(folder.join("plc/OTHER.ER1"), "-\n".repeat(11) + "ANOTHER TEXT\n").unwrap();
         std::fs::write(folder.join("plc/LONG.ER1"), "x\n".repeat(2000)).unwrap();
     });
     let before = trainee.file("machine.toml");
@@ -143,13 +143,13 @@ fn the_file_of_messages_is_selected() {
     assert_eq!(shown[2], "OTHER.ER1");
     trainee.down_to("OTHER.ER1");
     trainee.press("ENT");
-    // It is active at once [000:11237-11240]: M2924 is message 0, and shows the text.
+    // It is active at once [000:11237-11240]: M2935 is message 11, which the program of the mill leaves alone.
     assert_eq!(
         trainee.screen().program.lines[2].text.split_whitespace().last(),
         Some("ACTIVE")
     );
     let shows = |trainee: &mut Trainee, text: &str| {
-        trainee.give(r#"{"deed":"M2924=1"}"#).wait(0.05);
+        trainee.give(r#"{"deed":"M2935=1"}"#).wait(0.05);
         let shown = trainee.messages().iter().any(|own| own == text);
         trainee.press("CE");
         shown
@@ -159,7 +159,11 @@ fn the_file_of_messages_is_selected() {
     trainee.press("END");
     trainee.soft("EDIT");
     trainee.down_to("OTHER.ER1");
-    trainee.press("ENT").typed("X").press("END");
+    trainee
+        .press("ENT")
+        .press(&"DOWN ".repeat(11))
+        .typed("X")
+        .press("END");
     assert!(shows(&mut trainee, "XANOTHER TEXT"), "{:?}", trainee.messages());
     let after = trainee.file("machine.toml");
     let differing = before
@@ -168,7 +172,7 @@ fn the_file_of_messages_is_selected() {
         .filter(|(one, other)| one != other);
     assert_eq!(differing.count(), 1, "{after}");
     let trainee = trainee.killed();
-    assert_eq!(trainee.station.machine().plc_messages, ["XANOTHER TEXT"]);
+    assert_eq!(trainee.station.machine().plc_messages[11], "XANOTHER TEXT");
 }
 
 #[test]
@@ -416,8 +420,17 @@ fn files_of_the_plc_are_transferred() {
         trainee.give(r#"{"transfer":"ended complete"}"#).press("END END");
         assert_eq!(trainee.screen().program.title, "PLC PROGRAMMING");
     }
-    // From the files, too: all of them that an interface knows.
+    // From the files, too: all of them that an interface knows. The main program has the status M [000:14608].
     trainee.soft("EDIT");
+    let shown = lines(&mut trainee);
+    let status = |name: &str| {
+        let line = shown.iter().find(|line| line.starts_with(name)).unwrap();
+        line.split_whitespace().nth(1).map(str::to_owned)
+    };
+    assert_eq!(
+        (status("MAIN.PLC").as_deref(), status("CONFIG.CMA")),
+        (Some("M"), None)
+    );
     trainee.press("EXT DOWN DOWN DOWN DOWN DOWN ENT");
     let order = orders.try_recv().unwrap();
     let TransferDeed::Write(names) = order.deed else {

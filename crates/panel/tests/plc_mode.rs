@@ -198,8 +198,14 @@ fn a_faulty_line_is_found_and_mended() {
     let half = trainee.file("plc/MAIN.PLC");
     assert_eq!(half.len(), edited.len() + 2);
     assert!(half.lines().nth(begin + 2).unwrap().starts_with("EM "));
+    // The line that was left is in columns now, behind its blanks.
     trainee.press("CE CE END");
-    assert_eq!(trainee.file("plc/MAIN.PLC"), edited);
+    let (left, comment) = main.lines().nth(begin - 1).unwrap().split_once(';').unwrap();
+    let (instruction, operand) = left.trim().split_once(' ').unwrap();
+    let (operand, blanks) = (operand.trim(), left.len() - left.trim_start().len());
+    let set = format!("{}{instruction:<7}{operand:<11};{comment}", " ".repeat(blanks));
+    expected[begin + 2] = &set;
+    assert_eq!(trainee.file("plc/MAIN.PLC").lines().collect::<Vec<_>>(), expected);
     trainee.soft("COMPILE");
     trainee.press("ENT");
     assert_eq!(title(&mut trainee), "COMPILE: ERRORS");
@@ -319,7 +325,7 @@ fn what_somebody_else_has_written_is_not_lost() {
     trainee.soft("INSERT/OVERWRITE");
     trainee.press("RIGHT RIGHT RIGHT 3 END");
     let written = std::fs::read(trainee.folder().join("plc/MAIN.PLC")).unwrap();
-    assert_eq!(written, b"L I4 ;T\xfcr\r\n= O3\r\nEM\r\n");
+    assert_eq!(written, b"L I4 ;T\xfcr\r\n=      O3\r\nEM\r\n");
 }
 
 #[test]

@@ -86,12 +86,6 @@ impl Table {
         self.head.get(COLUMNS..).unwrap_or_default()
     }
 
-    /// Lines that are shown: one behind the last point.
-    fn count(&self) -> usize {
-        let last = self.points.keys().next_back().map_or(0, |last| last + 1);
-        (last + 1).min(POINTS_MAX)
-    }
-
     fn written(&self) -> String {
         let mut text = format!("{}\n", self.head.join(" "));
         for (number, cells) in &self.points {
@@ -172,7 +166,7 @@ impl Table {
     }
 
     fn go(&mut self, rows: isize) -> Turn {
-        self.row = list::moved(self.row, rows, self.count());
+        self.row = list::moved(self.row, rows, POINTS_MAX);
         self.entry = Entry::default();
         Turn::Done
     }
@@ -255,7 +249,7 @@ impl Page for Table {
             self.name,
             columns.join(" ")
         );
-        let cursor = (self.row, self.count());
+        let cursor = (self.row, POINTS_MAX);
         View {
             window: Some(list::window(title, WindowKind::Table, cursor, lines, |point| {
                 self.line(point)

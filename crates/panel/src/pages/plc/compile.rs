@@ -69,7 +69,7 @@ impl Items for Programs {
     fn items(&self, site: &Site) -> Vec<Item> {
         let main = source::main_file(site);
         let runtime = |name: &String| match name == main {
-            true => Item::new(name.clone(), site.words("RUNTIME PGM")),
+            true => Item::new(name.clone(), format!("M {}", site.words("RUNTIME PGM"))),
             false => Item::new(name.clone(), ""),
         };
         self.names.iter().map(runtime).collect()

@@ -515,8 +515,9 @@ impl Page for Files {
         let line = |place: usize| {
             let entry = pane.entries.get(place);
             let mut text = entry.map(text_of).unwrap_or_default();
+            // Status M: the main program, as COMPILE has made it [000:14608].
             if entry.is_some_and(|entry| entry.eprom.is_none() && entry.name == main) {
-                text = format!("{text:<34} {}", site.words("RUNTIME PGM"));
+                text = format!("{text:<32} M {}", site.words("RUNTIME PGM"));
             }
             Line {
                 text,
