@@ -149,7 +149,7 @@ pub enum Command {
     /// `code N`: a code number [000:6928-6947].
     Code(u32),
     /// `key CODE`: a key by its code 58 to 127 [000:7338-7404], or what W516 calls else: `xx50` hexadecimal, M, S,
-    /// TOUCH PROBE [000:7406-7436].
+    /// TOUCH PROBE [000:7406-7436]; codes of other commands are read as these.
     Key(u16),
     /// `test NAME`: TEST RUN of a program beside what the machine does [003:1514-1535].
     Test(String),
@@ -208,6 +208,17 @@ impl Command {
                 | Command::Q(..)
                 | Command::WorkingPlane(PlaneCommand { run: true, .. })
         )
+    }
+
+    /// What a code of W516 calls: the soft keys INTERNAL STOP, PASS OVER REFERENCE and RESTORE POSITION are commands of
+    /// their own [000:7424-7436], all else is a key.
+    pub(crate) fn of_key_code(code: u16) -> Command {
+        match code {
+            0x0000 => Command::InternalStop,
+            0x0400 => Command::Mode(Mode::Reference),
+            0x0500 => Command::RestorePosition,
+            code => Command::Key(code),
+        }
     }
 
     /// It is entered for moving by hand.
@@ -279,7 +290,7 @@ impl FromStr for Command {
             "restore-at" => number(name, rest, 0, u32::MAX).map(Command::RestoreAt),
             "code" => number(name, rest, 0, u32::MAX).map(Command::Code),
             "m" => number(name, rest, 0, 999).map(Command::MFunction),
-            "key" => number(name, rest, 58, 0xFF50).map(Command::Key),
+            "key" => number(name, rest, 0, 0xFF50).map(Command::of_key_code),
             "s" => value(name, rest, 0.0, SPEED_MAX).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
             "oscilloscope" => oscilloscope(rest),

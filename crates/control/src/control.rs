@@ -25,6 +25,7 @@ use crate::key_code::KeyCode;
 use crate::message::{Message, Shown};
 use crate::oscilloscope::OscilloscopeKeys;
 use crate::progress::RunState;
+use crate::renewal::{self, Renewed};
 use crate::sampling::{ServoSampler, ServoView};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::signal::Signal;
@@ -121,9 +122,24 @@ impl Control {
         true
     }
 
-    /// A PLC program that was compiled anew: it runs when the control begins anew, at the next power-on or reset.
-    pub fn replace_plc(&mut self, program: Arc<bahn_plc::PlcProgram>) {
-        Arc::make_mut(&mut self.supply.made_of).0.plc = program;
+    /// Takes over what an editor of the machine builder has written; `false` when that is not possible now.
+    pub fn renew(&mut self, renewed: Renewed) -> bool {
+        let setup = &mut Arc::make_mut(&mut self.supply.made_of).0;
+        match renewal::take(renewed, setup, &mut self.kernel, self.supply.off) {
+            Altered::Reset(list) => {
+                self.begin_anew(*list);
+                self.supply.starts += 1;
+                self.kernel.machine.unsaved = true;
+                true
+            }
+            altered => altered == Altered::Done,
+        }
+    }
+
+    /// Time, messages and connections go on from those of a control that was in its place.
+    pub fn follow_on(&mut self, before: &Control) {
+        self.kernel.follow_on(&before.kernel);
+        self.supply.starts = before.supply.starts + 1;
     }
 
     /// The kernel begins anew with what it has kept, at the time that it is.
@@ -453,6 +469,11 @@ impl Control {
         let axes = self.kernel.machine.axes.owned(0);
         let units = by_index(axes, |unit| unit.index, |unit| unit.servo.offset_units());
         self.kernel.machine.offsets.shown.then_some(units)
+    }
+
+    /// Texts of the PLC dialogues, from 0.
+    pub fn plc_dialogues(&self) -> &[String] {
+        self.kernel.machine.link.dialogues()
     }
 
     /// The line of the compensation assignment that is active: it survives power-off [000:15547-15580].

@@ -170,6 +170,13 @@ pub(crate) struct PlcLink {
     pub pallet: PalletSelection,
 }
 
+fn texts(messages: &[String], dialogues: &[String]) -> MachineTexts {
+    MachineTexts {
+        messages: messages.into(),
+        dialogues: dialogues.into(),
+    }
+}
+
 impl PlcLink {
     pub fn new(
         parameters: ParameterList,
@@ -180,10 +187,7 @@ impl PlcLink {
         PlcLink {
             edited: parameters.clone(),
             parameters,
-            texts: MachineTexts {
-                messages: messages.as_slice().into(),
-                dialogues: dialogues.as_slice().into(),
-            },
+            texts: texts(&messages, &dialogues),
             messages,
             dialogues,
             files,
@@ -202,6 +206,18 @@ impl PlcLink {
             selected_list: None,
             pallet: PalletSelection::default(),
         }
+    }
+
+    /// Other texts of messages and dialogues.
+    pub fn take_texts(&mut self, messages: Vec<String>, dialogues: Vec<String>) {
+        self.texts = texts(&messages, &dialogues);
+        self.messages = messages;
+        self.dialogues = dialogues;
+    }
+
+    /// Texts of the PLC dialogues.
+    pub fn dialogues(&self) -> &[String] {
+        &self.dialogues
     }
 
     /// The texts of the machine for FN14 and FN15.

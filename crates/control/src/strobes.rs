@@ -155,12 +155,7 @@ pub(crate) fn key(nc: &Image) -> Option<Option<Command>> {
                 .unwrap_or(-1)
         }
     };
-    Some(match code {
-        0x0000 => Some(Command::InternalStop),
-        0x0400 => Some(Command::Mode(Mode::Reference)),
-        0x0500 => Some(Command::RestorePosition),
-        code => u16::try_from(code).ok().map(Command::Key),
-    })
+    Some(u16::try_from(code).ok().map(Command::of_key_code))
 }
 
 /// The key was executed, or M2187 = 1 [000:7406-7440].

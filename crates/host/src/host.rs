@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use bahn_control::{
-    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, ServoSampler, Setup, Snapshot,
-    SpindleWiring,
+    Cartesian, ChannelSetup, Command, Control, Dnc, KeyCode, Programs, Renewed, ServoSampler, Setup,
+    Snapshot, SpindleWiring,
 };
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
 use bahn_path::PathElement;
-use bahn_plc::{PlcProgram, Tracer, WindowView};
+use bahn_plc::{Tracer, WindowView};
 
 use crate::background::Background;
 use crate::deed::{Answer, Deed, Operable, Source};
@@ -86,6 +86,35 @@ impl Host {
             load_magazine(&mut plant, machine, &power_on.remembered);
         }
         Host::with_plant(machine, plant, power_on, programs, operator)
+    }
+
+    /// Gives back what survives power-off, so that somebody else can take it; nothing is kept from now on.
+    pub fn release_state(&mut self) {
+        self.state = None;
+    }
+
+    /// Another machine takes the place of this one, as its files are by now: time goes on, whoever follows and orders stays,
+    /// and what was given before is forgotten.
+    pub fn replace(
+        &mut self,
+        machine: &LoadedMachine,
+        power_on: PowerOn,
+        programs: Arc<dyn Programs>,
+        operator: Operator,
+    ) {
+        let mut other = Host::new(machine, power_on, programs, operator);
+        other.control.follow_on(&self.control);
+        std::mem::swap(&mut self.control, &mut other.control);
+        std::mem::swap(&mut self.plant, &mut other.plant);
+        std::mem::swap(&mut self.operator, &mut other.operator);
+        std::mem::swap(&mut self.programs, &mut other.programs);
+        std::mem::swap(&mut self.digitizing, &mut other.digitizing);
+        std::mem::swap(&mut self.state, &mut other.state);
+        self.before = Before::default();
+        self.journal = Journal::default();
+        self.waiting = Waiting::default();
+        self.restart = None;
+        self.forget_background();
     }
 }
 
@@ -459,11 +488,21 @@ impl<P: Operable> Host<P> {
         self.window = view;
     }
 
-    /// A PLC program that was compiled anew; see [`Control::replace_plc`]. Who goes back finds the one of then.
-    pub fn replace_plc(&mut self, program: Arc<PlcProgram>) {
+    /// Takes over what an editor has written; see [`Control::renew`]. Who goes back finds what was there then.
+    pub fn renew(&mut self, renewed: Renewed) -> bool {
         let now = self.control.time_us();
-        self.journal.add(now, Given::Plc(Arc::clone(&program)));
-        self.control.replace_plc(program);
+        self.journal.add(now, Given::Renewed(renewed.clone()));
+        self.take_over(renewed)
+    }
+
+    pub(crate) fn take_over(&mut self, renewed: Renewed) -> bool {
+        let starts = self.control.starts();
+        self.background.settle(&mut self.control);
+        let done = self.control.renew(renewed);
+        if starts != self.control.starts() {
+            self.forget_background();
+        }
+        done
     }
 
     /// The plant.

@@ -1,10 +1,8 @@
 //! What was given since power-on, and when: given again at these times it repeats the run.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 
-use bahn_control::{Command, Dnc};
-use bahn_plc::PlcProgram;
+use bahn_control::{Command, Dnc, Renewed};
 
 use crate::deed::{Deed, Source};
 use crate::orders::Order;
@@ -22,8 +20,8 @@ pub(crate) enum Given {
     AtOnce(Source, Deed),
     /// At the desk.
     Order(Order),
-    /// A PLC program for the next power-on.
-    Plc(Arc<PlcProgram>),
+    /// What an editor has written.
+    Renewed(Renewed),
 }
 
 impl Given {
@@ -32,7 +30,7 @@ impl Given {
         match self {
             Given::AtOnce(source, deed) => Some((source, deed)),
             Given::Order(order) => Some((&order.source, &order.deed)),
-            Given::Plc(_) => None,
+            Given::Renewed(_) => None,
         }
     }
 

@@ -32,6 +32,7 @@
 //!   another [`Course`] that was kept;
 //! - an [`ExecutedPath`] hands out the elements of the path when they are executed;
 //! - [`State`] is what survives power-off: it is on the medium before the control goes on;
+//! - a [`backup`] is a machine as one text;
 //! - [`oem_cycles`] are the cycles of the machine builder, [`eprom`] what of them and of the PLC is put into an EPROM, as
 //!   [`s_records`];
 //! - [`files`] reads programs and tables and writes files that are whole or not there; [`lists`] and
@@ -45,6 +46,7 @@
 )]
 
 mod background;
+pub mod backup;
 mod called;
 mod columns;
 mod deed;

@@ -155,7 +155,9 @@ impl<P: Operable + Clone> Host<P> {
                 match entry {
                     Given::AtOnce(source, deed) => drop(self.execute(source, deed)),
                     Given::Order(order) => self.take(order),
-                    Given::Plc(program) => self.control.replace_plc(program),
+                    Given::Renewed(renewed) => {
+                        self.take_over(renewed);
+                    }
                 }
             }
             if at_end {

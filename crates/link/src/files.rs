@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Cursor, Read, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::store::{Entry, Existing, Store, StoreError};
+use crate::store::{Entry, Existing, Place, Store, StoreError};
 
 /// A file in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,6 +69,53 @@ impl Files for Store {
 
     fn create(&mut self, name: &str) -> Result<Box<dyn NewFile>, StoreError> {
         let file = Store::create(self, &self.whereabouts(name)?, Existing::Replace)?;
+        Ok(Box::new(file))
+    }
+}
+
+/// The files of some types in the folder of a drive: nothing else there is seen or written, and no folder below it.
+#[derive(Clone, Debug)]
+pub struct OfKinds {
+    store: Store,
+    extensions: &'static [&'static str],
+}
+
+impl OfKinds {
+    /// Of files with these extensions.
+    pub fn new(store: Store, extensions: &'static [&'static str]) -> OfKinds {
+        OfKinds { store, extensions }
+    }
+
+    fn place(&self, name: &str) -> Result<Place, StoreError> {
+        match self.knows(name) {
+            true => self.store.root().join(name),
+            false => Err(StoreError::BadName(name.to_owned())),
+        }
+    }
+
+    fn knows(&self, name: &str) -> bool {
+        let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+        let mut known = self.extensions.iter();
+        known.any(|own| own.eq_ignore_ascii_case(extension))
+    }
+}
+
+impl Files for OfKinds {
+    fn list(&mut self) -> Vec<Listed> {
+        let entries = self.store.list(&self.store.root()).unwrap_or_default();
+        let files = entries.into_iter().filter(|entry| !entry.attributes.is_folder);
+        files
+            .filter(|entry| self.knows(&entry.name))
+            .map(listed)
+            .collect()
+    }
+
+    fn open(&mut self, name: &str) -> Result<Box<dyn Read + Send>, StoreError> {
+        Ok(Box::new(Store::open(&self.store, &self.place(name)?)?))
+    }
+
+    fn create(&mut self, name: &str) -> Result<Box<dyn NewFile>, StoreError> {
+        let file = Store::create(&self.store, &self.place(name)?, Existing::Replace)?;
         Ok(Box::new(file))
     }
 }

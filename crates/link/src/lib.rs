@@ -8,7 +8,6 @@
 //! assert_eq!(types.len(), 5); // texts, messages and dialogues share a letter
 //! ```
 //!
-//! - [`backup`] is a machine as one text;
 //! - [`dnc`] is the drip feed: programs that are executed while they are transferred;
 //! - [`Channel`] carries bytes: a socket, a pseudo terminal or a serial port, written as a [`Spec`]; [`Characters`] are
 //!   their bits and time, [`Settings`] what machine parameters say for a [`Mode`];
@@ -27,7 +26,6 @@
     reason = "citations as [000:7188] look like links"
 )]
 
-pub mod backup;
 pub mod blockwise;
 mod channel;
 mod characters;
@@ -54,7 +52,7 @@ pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spe
 pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
-pub use files::{Files, Listed, Memory, NewFile};
+pub use files::{Files, Listed, Memory, NewFile, OfKinds};
 pub use hard_copy::HardCopy;
 pub use monitor::Monitor;
 pub use passive::{Passive, peripheral};

@@ -112,6 +112,8 @@ pub(crate) struct Console {
     pub split: bool,
     /// Messages of the panel, the oldest first.
     notes: Vec<String>,
+    /// The list of machine parameters is entered, and nothing else can be chosen.
+    enters: bool,
 }
 
 impl Console {
@@ -124,15 +126,30 @@ impl Console {
             programming: None,
             split: false,
             notes: Vec::new(),
+            enters: false,
         }
+    }
+
+    /// The control goes on when this page is left: it has all keys.
+    pub fn enter(&mut self, page: Box<dyn Page>) {
+        self.machine.opened = vec![page];
+        self.enters = true;
+    }
+
+    /// Whether such a page still stands.
+    pub fn enters(&self) -> bool {
+        self.enters && !self.machine.opened.is_empty()
     }
 
     /// Takes a key of the keyboard.
     pub fn key(&mut self, key: Key, site: &mut Site) {
-        if let Some(mode) = machine_mode(key) {
+        if let Some(mode) = machine_mode(key).filter(|_| !self.enters) {
             return self.choose(mode, site);
         }
         match key {
+            Key::Program | Key::Test if self.enters => {
+                self.say(site.message(MessageId::KeyNonFunctional));
+            }
             Key::Program => self.program(Programming::Edit, site),
             Key::Test => self.program(Programming::Test, site),
             Key::Ce if !self.notes.is_empty() => drop(self.notes.pop()),

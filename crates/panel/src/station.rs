@@ -1,5 +1,6 @@
 //! The operator's station: a machine that is on, and its panel.
 
+mod commissioning;
 mod teaching;
 mod transfers;
 mod warm_start;
@@ -33,6 +34,7 @@ use crate::timeline::Past;
 use crate::transfer::Transfers;
 use crate::why::Waits;
 use crate::{colours, numbers, status, texts, why};
+use commissioning::Commissioning;
 use warm_start::WarmStart;
 
 /// Lines of the large window, and of one beside it.
@@ -69,6 +71,8 @@ pub struct Station {
     plc: PlcMode,
     graphics: Graphics,
     transfers: Transfers,
+    /// While the list of machine parameters is entered: what the control kept, which nobody else takes meanwhile.
+    commissioning: Option<Commissioning>,
     shown: Screen,
 }
 
@@ -83,11 +87,11 @@ impl Station {
     }
 
     /// The same with what the control finds.
-    pub fn with(machine: LoadedMachine, power_on: PowerOn) -> Station {
+    pub fn with(machine: LoadedMachine, mut power_on: PowerOn) -> Station {
         let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
-        let operator = Operator::new(Attendance::Absent, machine.folder.operator.clone(), None);
+        let commissioning = Commissioning::of(&machine, &mut power_on);
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
-        let mut host = Host::new(&machine, power_on, shared, operator);
+        let mut host = Host::new(&machine, power_on, shared, operator_of(&machine));
         // Sessions and the time line repeat what was.
         host.be_exact();
         let state_folder = machine.root.join(&machine.folder.state);
@@ -109,6 +113,7 @@ impl Station {
             lesson: None,
             plc: PlcMode::default(),
             transfers: Transfers::default(),
+            commissioning,
             shown: Screen::default(),
             host,
             machine,
@@ -127,6 +132,7 @@ impl Station {
             let words = texts::words(language, "WHAT THE OPERATOR HAS CHOSEN CANNOT BE READ");
             station.console.say(format!("{words}: {wrong}"));
         }
+        station.commission();
         station
     }
 
@@ -227,6 +233,8 @@ impl Station {
         self.graphics.cycle(&mut self.host);
         if is_on {
             self.count_time();
+        }
+        if is_on || self.commissioning.is_some() {
             let (console, mut site) = self.parts();
             match inhibit::simulated(&mut site) {
                 Some(Simulated::Key(key)) => console.key(key, &mut site),
@@ -236,6 +244,7 @@ impl Station {
             console.tick(&mut site);
             self.tell_screen();
         }
+        self.follow_commissioning();
         self.record_with(Recorder::keep);
         self.past.follow(&mut self.host);
         self.waits.follow(self.host.control());
@@ -367,7 +376,7 @@ impl Station {
 
     /// The screen as it is now. Its serial counts on when it is another one.
     pub fn screen(&mut self) -> &Screen {
-        let mut screen = match self.is_on {
+        let mut screen = match self.is_on || self.commissioning.is_some() {
             true => self.make_screen(),
             false => Screen::default(),
         };
@@ -561,7 +570,7 @@ impl Station {
             let words = texts::around(self.language(), "the {1} has no key {2}");
             return Err(Refusal(texts::filled(words, &[model.name(), key.name()])));
         }
-        if !self.is_on {
+        if !self.is_on && self.commissioning.is_none() {
             return Ok(());
         }
         let (console, mut site) = self.parts();
@@ -614,9 +623,8 @@ impl Station {
     }
 
     fn power(&mut self, on: bool) {
-        let command = Deed::Command(0, Command::Power(on));
         // A control that is on stays on.
-        let _ = self.host.act(Source::Client("panel".to_owned()), command);
+        let _ = self.act(Deed::Command(0, Command::Power(on)));
     }
 
     fn deed(&mut self, text: &str) -> Result<(), Refusal> {
@@ -624,6 +632,10 @@ impl Station {
     }
 
     fn act(&mut self, deed: Deed) -> Result<(), Refusal> {
+        // The list is entered before anything goes on.
+        if self.commissioning.is_some() && matches!(deed, Deed::Command(_, Command::Power(_))) {
+            return Ok(());
+        }
         let answer = self.host.act(Source::Client("panel".to_owned()), deed);
         match answer.map_err(|error| Refusal(error.to_string()))? {
             Answer::Done => Ok(()),
@@ -646,12 +658,18 @@ impl Station {
     }
 }
 
-/// Loads the machine of a folder, with its faults in words.
+/// Nobody acts at the machine but who has the panel.
+fn operator_of(machine: &LoadedMachine) -> Operator {
+    Operator::new(Attendance::Absent, machine.folder.operator.clone(), None)
+}
+
+/// Loads the machine of a folder, with its faults in words. A list of machine parameters that is empty or has faults is
+/// none: it is entered.
 ///
 /// # Errors
 /// All faults of all files, one a line.
 pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
-    let loaded = LoadedMachine::load(folder).map_err(|error| error.to_string())?;
+    let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
     loaded.map_err(|faults| {
         let lines = faults.iter().map(|fault| fault.title.clone());
         lines.collect::<Vec<_>>().join("\n")

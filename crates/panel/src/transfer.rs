@@ -21,8 +21,24 @@ pub struct TransferOrder {
     pub baud: u32,
     /// Which programs are read in where no name says it, by their ending: `H` or `I`, as PROGRAM INPUT says.
     pub kind: &'static str,
+    /// Among which files.
+    pub files: TransferFiles,
     /// What is to be done.
     pub deed: TransferDeed,
+}
+
+/// The files that are transferred.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TransferFiles {
+    /// Programs and tables, of PROGRAMMING AND EDITING.
+    #[default]
+    Programs,
+    /// Lists of machine parameters, of their editor [000:10011].
+    Lists,
+    /// Files of the PLC, of PLC PROGRAMMING [000:3867-3869] [000:11386-11390].
+    Plc,
+    /// The one file with everything, of BACKUP DATA and RESTORE DATA [000:465-467].
+    Backup,
 }
 
 /// What is to be done at an interface.
@@ -138,6 +154,8 @@ pub(crate) struct Transfers {
     connected: [bool; 2],
     /// The order that is being carried out.
     running: Option<TransferOrder>,
+    /// The files of the order that was carried out last.
+    last: TransferFiles,
     /// What waits for an answer.
     pub question: Option<TransferNews>,
     /// What has happened since the transfer began.
@@ -168,6 +186,7 @@ impl Transfers {
         }
         self.told.clear();
         self.question = None;
+        self.last = order.files;
         self.running = Some(order);
         Ok(())
     }
@@ -193,6 +212,24 @@ impl Transfers {
     fn send(&self, order: &TransferOrder) -> bool {
         let orders = self.orders.as_ref();
         orders.is_none_or(|orders| orders.send(order.clone()).is_ok())
+    }
+
+    /// The files of the order that was carried out last.
+    pub fn last_files(&self) -> TransferFiles {
+        self.last
+    }
+
+    /// The files of the order that is being carried out.
+    pub fn files(&self) -> Option<TransferFiles> {
+        self.running.as_ref().map(|order| order.files)
+    }
+
+    /// What the order that is being carried out reads.
+    pub fn reads(&self) -> Option<&str> {
+        match &self.running.as_ref()?.deed {
+            TransferDeed::Read(name) => Some(name),
+            _ => None,
+        }
     }
 
     /// Something has happened.
@@ -261,6 +298,7 @@ mod tests {
             mode: "fe1",
             baud: 9600,
             kind: "H",
+            files: TransferFiles::Programs,
             deed: TransferDeed::ReadAll,
         };
         assert_eq!(transfers.begin(order(0)), Err(MessageId::ExtInOutputNotReady));

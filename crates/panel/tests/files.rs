@@ -356,6 +356,38 @@ fn a_tnc_360_stores_32_programs() {
     }
 }
 
+/// A TNC 407 and later store up to 100 files of all types [000:171]: programs, tables and texts count alike.
+#[test]
+fn a_tnc_407_stores_100_files() {
+    for model in ["tnc407", "tnc415b"] {
+        let mut trainee = Trainee::with("mill", |folder| {
+            let there = std::fs::read_dir(folder.join("programs")).unwrap().flatten();
+            let there = there.filter(|file| file.path().is_file()).count();
+            for number in there..99 {
+                std::fs::write(folder.join(format!("programs/{number}.A")), "").unwrap();
+            }
+            let path = folder.join("machine.toml");
+            let text = std::fs::read_to_string(&path).unwrap();
+            std::fs::write(
+                &path,
+                text.replace("model = \"tnc415b\"", &format!("model = \"{model}\"")),
+            )
+            .unwrap();
+        });
+        trainee.ready();
+        assert_eq!(trainee.station.control().model().id(), model);
+        trainee.press("PROGRAM PGM_NR 9 0 1 ENT ENT");
+        assert!(
+            trainee.has("programs/901.H"),
+            "the 100th: {:?}",
+            trainee.messages()
+        );
+        trainee.press("PGM_NR 9 0 2 ENT");
+        assert_eq!(trainee.messages(), ["FURTHER PROGRAM ENTRY IMPOSSIBLE"]);
+        assert!(!trainee.has("programs/902.H"));
+    }
+}
+
 /// In the directory of a TNC 360 programs in DIN/ISO are indicated with "ISO" [003:977].
 #[test]
 fn iso_programs_are_indicated() {

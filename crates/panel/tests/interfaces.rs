@@ -206,3 +206,22 @@ fn types_of_files_are_hidden_and_protected() {
     assert_eq!(trainee.messages(), ["PROTECTED PGM"]);
     assert!(trainee.has("programs/A.A") && trainee.has("programs/D.HLP"));
 }
+
+/// MP7224.1 bit 0: programs in plain language "cannot be edited or changed" [000:6855-6882], those in DIN/ISO can.
+#[test]
+fn programs_of_a_protected_type_are_not_edited() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        set(folder, &["MP7224.1 : %00000001"]);
+        std::fs::write(folder.join("programs/9.H"), "BEGIN PGM 9 MM\nEND PGM 9 MM\n").unwrap();
+        std::fs::write(folder.join("programs/8.I"), "%8 G71 *\nN99999 %8 G71 *\n").unwrap();
+    });
+    trainee.ready();
+    let before = trainee.file("programs/9.H");
+    trainee.press("PROGRAM PGM_NR 9 ENT STOP END");
+    assert!(
+        trainee.messages().contains(&"PROTECTED PGM".to_owned()),
+        "{:?}",
+        trainee.messages()
+    );
+    assert_eq!(trainee.file("programs/9.H"), before);
+}

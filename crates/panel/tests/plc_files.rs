@@ -6,6 +6,7 @@ mod support;
 
 use bahn_host::eprom::LoadList;
 use bahn_host::s_records::Image;
+use bahn_panel::{TransferDeed, TransferFiles};
 use support::Trainee;
 
 /// The main menu of the PLC mode.
@@ -123,7 +124,7 @@ fn binary_code_is_written_for_an_eprom() {
 #[test]
 fn the_file_of_messages_is_selected() {
     let mut trainee = Trainee::with("mill", |folder| {
-        std::fs::write(folder.join("plc/OTHER.ER1"), "ANOTHER TEXT\n").unwrap();
+        std::fs::write(folder.join("plc/OTHER.ER1"), "-\n".repeat(11) + "ANOTHER TEXT\n").unwrap();
         std::fs::write(folder.join("plc/LONG.ER1"), "x\n".repeat(2000)).unwrap();
     });
     let before = trainee.file("machine.toml");
@@ -142,10 +143,28 @@ fn the_file_of_messages_is_selected() {
     assert_eq!(shown[2], "OTHER.ER1");
     trainee.down_to("OTHER.ER1");
     trainee.press("ENT");
+    // It is active at once [000:11237-11240]: M2935 is message 11, which the program of the mill leaves alone.
     assert_eq!(
-        last_message(&mut trainee),
-        "THE TEXTS COUNT WHEN THE MACHINE IS STARTED ANEW"
+        trainee.screen().program.lines[2].text.split_whitespace().last(),
+        Some("ACTIVE")
     );
+    let shows = |trainee: &mut Trainee, text: &str| {
+        trainee.give(r#"{"deed":"M2935=1"}"#).wait(0.05);
+        let shown = trainee.messages().iter().any(|own| own == text);
+        trainee.press("CE");
+        shown
+    };
+    assert!(shows(&mut trainee, "ANOTHER TEXT"), "{:?}", trainee.messages());
+    // What is written into the active file is there when its editor is left.
+    trainee.press("END");
+    trainee.soft("EDIT");
+    trainee.down_to("OTHER.ER1");
+    trainee
+        .press("ENT")
+        .press(&"DOWN ".repeat(11))
+        .typed("X")
+        .press("END");
+    assert!(shows(&mut trainee, "XANOTHER TEXT"), "{:?}", trainee.messages());
     let after = trainee.file("machine.toml");
     let differing = before
         .lines()
@@ -153,7 +172,7 @@ fn the_file_of_messages_is_selected() {
         .filter(|(one, other)| one != other);
     assert_eq!(differing.count(), 1, "{after}");
     let trainee = trainee.killed();
-    assert_eq!(trainee.station.machine().plc_messages, ["ANOTHER TEXT"]);
+    assert_eq!(trainee.station.machine().plc_messages[11], "XANOTHER TEXT");
 }
 
 #[test]
@@ -370,4 +389,55 @@ fn only_programs_are_checked_and_compiled() {
             .any(|line| line.contains(".ER1") || line.contains(".A")),
         "{shown:?}"
     );
+}
+
+/// EXT in PLC PROGRAMMING: the .CMA file is assigned the extension .S and the .COM file the extension .V [000:3867-3869];
+/// programs and texts go as they are [000:11386-11390].
+#[test]
+fn files_of_the_plc_are_transferred() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        std::fs::write(
+            folder.join("plc/ACHSE-Y.COM"),
+            "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n",
+        )
+        .unwrap();
+        std::fs::write(folder.join("plc/CONFIG.CMA"), "0 Y=ACHSE-Y\n").unwrap();
+    });
+    let orders = trainee.station.transfer_orders();
+    plc_mode(&mut trainee);
+    trainee.give(r#"{"transfer":"connected 0"}"#);
+    for (typed, name) in [
+        ("CONFIG.S", "CONFIG.CMA"),
+        ("NEW.V", "NEW.COM"),
+        ("MAIN", "MAIN.PLC"),
+        ("M.ER1", "M.ER1"),
+    ] {
+        trainee.press("EXT DOWN DOWN DOWN ENT");
+        trainee.give(&format!("{{\"text\":\"{typed}\"}}")).press("ENT");
+        let order = orders.try_recv().unwrap();
+        assert_eq!(order.deed, TransferDeed::Read(name.to_owned()));
+        assert_eq!(order.files, TransferFiles::Plc);
+        trainee.give(r#"{"transfer":"ended complete"}"#).press("END END");
+        assert_eq!(trainee.screen().program.title, "PLC PROGRAMMING");
+    }
+    // From the files, too: all of them that an interface knows. The main program has the status M [000:14608].
+    trainee.soft("EDIT");
+    let shown = lines(&mut trainee);
+    let status = |name: &str| {
+        let line = shown.iter().find(|line| line.starts_with(name)).unwrap();
+        line.split_whitespace().nth(1).map(str::to_owned)
+    };
+    assert_eq!(
+        (status("MAIN.PLC").as_deref(), status("CONFIG.CMA")),
+        (Some("M"), None)
+    );
+    trainee.press("EXT DOWN DOWN DOWN DOWN DOWN ENT");
+    let order = orders.try_recv().unwrap();
+    let TransferDeed::Write(names) = order.deed else {
+        panic!("{order:?}");
+    };
+    for name in ["ACHSE-Y.COM", "CONFIG.CMA", "MAIN.ER1", "MAIN.PLC"] {
+        assert!(names.iter().any(|own| own == name), "{names:?}");
+    }
+    assert!(!names.iter().any(|name| name.ends_with(".TXT")), "{names:?}");
 }

@@ -189,7 +189,8 @@ fn a_faulty_line_is_found_and_mended() {
     trainee.press("CE");
     let edited = trainee.file("plc/MAIN.PLC");
     let mut expected: Vec<&str> = main.lines().collect();
-    let typed_lines = ["LN M3100", "= M3001", "XYZ M1"];
+    // Set in the columns of the manual [000:4155-4199]; a line with an error is not [000:11925].
+    let typed_lines = ["LN     M3100", "=      M3001", "XYZ M1"];
     expected.splice(begin - 1..begin - 1, typed_lines);
     assert_eq!(edited.lines().collect::<Vec<_>>(), expected);
     // Half a line is on the medium, too.
@@ -197,13 +198,19 @@ fn a_faulty_line_is_found_and_mended() {
     let half = trainee.file("plc/MAIN.PLC");
     assert_eq!(half.len(), edited.len() + 2);
     assert!(half.lines().nth(begin + 2).unwrap().starts_with("EM "));
+    // The line that was left is in columns now, behind its blanks.
     trainee.press("CE CE END");
-    assert_eq!(trainee.file("plc/MAIN.PLC"), edited);
+    let (left, comment) = main.lines().nth(begin - 1).unwrap().split_once(';').unwrap();
+    let (instruction, operand) = left.trim().split_once(' ').unwrap();
+    let (operand, blanks) = (operand.trim(), left.len() - left.trim_start().len());
+    let set = format!("{}{instruction:<7}{operand:<11};{comment}", " ".repeat(blanks));
+    expected[begin + 2] = &set;
+    assert_eq!(trainee.file("plc/MAIN.PLC").lines().collect::<Vec<_>>(), expected);
     trainee.soft("COMPILE");
     trainee.press("ENT");
     assert_eq!(title(&mut trainee), "COMPILE: ERRORS");
     let (shown, wrong) = (line(&mut trainee), begin + 2);
-    let expected = format!("MAIN.PLC:{wrong} 0 not a valid command");
+    let expected = format!("MAIN.PLC:{wrong} INPUT ERROR 0 not a valid command");
     assert!(shown.starts_with(&expected), "{shown}");
     trainee.press("ENT");
     assert_eq!(line(&mut trainee), format!("{wrong:>6} XYZ M1"));
@@ -318,7 +325,7 @@ fn what_somebody_else_has_written_is_not_lost() {
     trainee.soft("INSERT/OVERWRITE");
     trainee.press("RIGHT RIGHT RIGHT 3 END");
     let written = std::fs::read(trainee.folder().join("plc/MAIN.PLC")).unwrap();
-    assert_eq!(written, b"L I4 ;T\xfcr\r\n= O3\r\nEM\r\n");
+    assert_eq!(written, b"L I4 ;T\xfcr\r\n=      O3\r\nEM\r\n");
 }
 
 #[test]

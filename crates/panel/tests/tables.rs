@@ -93,26 +93,144 @@ fn correction_tables_are_edited_point_by_point() {
         trainee.messages()
     );
     trainee.press("CE CE").number("0.02").press("ENT");
-    assert_eq!(trainee.messages(), ["THE CORRECTION COUNTS FROM POWER-ON"]);
+    assert_eq!(trainee.messages(), [""; 0]);
     assert_eq!(
         trainee.file("ERRORS.COM"),
         table.replace("\n1 0.01\n", "\n1 0.02\n")
     );
     // A head line is none of the points.
-    trainee.press("CE UP UP UP").number("1").press("ENT");
+    trainee.press("UP UP UP").number("1").press("ENT");
     assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
 }
 
-/// A machine without such a file says so.
+/// Code number 105 296 is the entry of correction tables [000:3875-3887]: where there are none they are made, always with 64
+/// points, at most one for each axis.
 #[test]
-fn without_correction_tables_the_code_number_says_so() {
+fn correction_tables_are_made_by_their_code_number() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     trainee.press("PROGRAM MOD ENT").number("105296").press("ENT");
-    assert_eq!(
-        trainee.messages(),
-        ["THE MACHINE HAS NO CORRECTION TABLES (.COM)"]
+    let prompt = trainee.screen().dialogue.prompt;
+    assert!(
+        prompt.starts_with("THE MACHINE HAS NO CORRECTION TABLES"),
+        "{prompt}"
     );
+    trainee.press("ENT");
+    assert_eq!(trainee.screen().program.total, 65);
+    // Z over Y, from -90 mm on.
+    trainee.soft("HEAD LINE");
+    trainee
+        .press("ENT ENT DOWN ENT DOWN ENT")
+        .number("-90")
+        .press("ENT END")
+        .wait(0.1);
+    assert_eq!(
+        trainee.screen().program.lines[0].text,
+        "Z OVER Y MM DATUM -90 DIST 16"
+    );
+    // Neighbours differ by 6.5536 mm / 64 = 0.1024 mm at most.
+    trainee.press("DOWN").number("0.1").press("ENT");
+    assert_eq!(trainee.messages(), [""; 0]);
+    trainee.soft("NEW TABLE");
+    assert_eq!(trainee.screen().program.total, 130);
+    trainee.press("END");
+    let file = trainee.file("CORRECTION.TAB");
+    assert!(
+        file.starts_with("Z OVER Y MM DATUM -90 DIST 16\n0 0.1\n1 0\n"),
+        "{file}"
+    );
+    assert!(file.contains("\nX OVER X MM DATUM 0 DIST 16\n0 0\n"), "{file}");
+    // The machine has them from now on.
+    let trainee = trainee.killed();
+    let tables = trainee.station.machine().files.correction_tables.clone().unwrap();
+    assert_eq!(tables.error_mm(2, -90.0), 0.1);
+}
+
+/// The manual's example: ACHSE-Y and ACHSE-Z are assigned in CONFIG.CMA, line 0 is active [000:3787-3865]. MP730 selects Y
+/// and Z: the error acts at once, and no more when the line is cleared.
+#[test]
+fn axis_errors_are_entered_assigned_and_activated() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let path = folder.join("parameters.mp");
+        let list = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(path, list.replace("MP730    : %00000", "MP730    : %00110")).unwrap();
+    });
+    trainee.ready();
+    trainee.press("PROGRAM MOD ENT").number("807667").press("ENT");
+    trainee.soft("EDIT");
+    for name in ["ACHSE-Y.COM", "CONFIG.CMA"] {
+        trainee.soft("NEW FILE");
+        trainee
+            .give(&format!("{{\"text\":\"{name}\"}}"))
+            .press("ENT")
+            .wait(0.1);
+    }
+    trainee.down_to("ACHSE-Y.COM");
+    trainee.soft("SELECT");
+    assert!(trainee.screen().program.title.starts_with("FILE ACHSE-Y.COM"));
+    // DATUM -90, DIST 16, Y=F() and Z=F().
+    trainee.soft("HEAD LINE");
+    trainee
+        .press("ENT")
+        .number("-90")
+        .press("ENT DOWN DOWN DOWN ENT DOWN ENT END")
+        .wait(0.1);
+    assert_eq!(
+        trainee.file("plc/ACHSE-Y.COM"),
+        "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n"
+    );
+    // Line 0: +0 and -0.01; line 2: +0.005 and -0.02.
+    trainee
+        .press("RIGHT")
+        .number("-0.01")
+        .press("ENT ENT")
+        .number("-0.02")
+        .press("ENT");
+    trainee.press("UP LEFT").number("0.005").press("ENT");
+    let title = trainee.screen().program.title;
+    assert!(title.ends_with("Y=F() Z=F()"), "{title}");
+    // The third line stands at -90 + 2 · 2^16 · 0.1 µm = -76.8928.
+    let lines = trainee.screen().program.lines;
+    let words: Vec<&str> = lines[2].text.split_whitespace().collect();
+    assert_eq!(words, ["2", "-76.8928", "0.005", "-0.02"]);
+    assert_eq!(
+        trainee.file("plc/ACHSE-Y.COM"),
+        "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n0 Z=-0.01\n2 Y=0.005 Z=-0.02\n"
+    );
+    trainee.press("END");
+    trainee.soft("EDIT");
+    trainee.down_to("CONFIG.CMA");
+    trainee.soft("SELECT");
+    trainee.press("RIGHT");
+    trainee
+        .give(r#"{"key":"A"}"#)
+        .press("CE")
+        .give(r#"{"text":"ACHSE-Y"}"#)
+        .press("ENT")
+        .wait(0.1);
+    let active = |trainee: &Trainee| trainee.station.control().compensation_line();
+    assert_eq!(active(&trainee), None);
+    trainee.soft("SET ACTIV LINE");
+    assert_eq!(active(&trainee), Some(0), "{:?}", trainee.messages());
+    assert_eq!(trainee.file("plc/CONFIG.CMA"), "0 Y=ACHSE-Y\nACTIVE 0\n");
+    assert!(
+        trainee
+            .file("machine.toml")
+            .contains("compensation = \"plc/CONFIG.CMA\"")
+    );
+    assert!(trainee.screen().program.lines[0].text.contains(">>"));
+    trainee.soft("CLEAR ACTIV LINE");
+    assert_eq!(active(&trainee), None);
+    // A table that is not there cannot be active.
+    trainee.press("RIGHT");
+    trainee
+        .give(r#"{"key":"A"}"#)
+        .press("CE")
+        .give(r#"{"text":"NONE"}"#)
+        .press("ENT")
+        .wait(0.1);
+    assert!(!trainee.messages().is_empty());
+    assert_eq!(trainee.file("plc/CONFIG.CMA"), "0 Y=ACHSE-Y\n");
 }
 
 #[test]

@@ -101,6 +101,12 @@ impl ParameterError {
             | ParameterError::DoublyDefined { id, .. } => Some(id),
         }
     }
+
+    /// The parameter whose value it is that cannot be read; none of a line that names no parameter of the control, or one
+    /// that has its value in another line.
+    pub fn entry_id(&self) -> Option<ParameterId> {
+        self.id().filter(|_| matches!(self.number(), 2 | 3 | 6))
+    }
 }
 
 /// An error in the text of a list of machine parameters.

@@ -137,16 +137,13 @@ impl ListText {
 
     /// The text of a line, from 1, without its end; empty for a line that does not exist.
     pub fn line(&self, number: usize) -> String {
-        let bytes = || {
-            let start = *self.lines.get(number.checked_sub(1)?)?;
-            let end = self.lines.get(number).copied().unwrap_or(self.bytes.len());
-            self.bytes.get(start..end)
-        };
-        let text = String::from_utf8_lossy(bytes().unwrap_or_default());
+        let bytes = self.line_at(number).and_then(|at| self.bytes.get(at));
+        let text = String::from_utf8_lossy(bytes.unwrap_or_default());
         text.trim_end_matches(['\r', '\n']).to_owned()
     }
 
-    /// Sets a value in its place, or appends a line for it with its name.
+    /// Sets a value in its place, or appends a line for it with its name. A line of the parameter that cannot be read
+    /// gives way to it, and keeps its comment.
     ///
     /// # Errors
     /// When the model has no such parameter, or the value is outside its range.
@@ -154,9 +151,12 @@ impl ListText {
         let definition = Definition::named(self.model, id)?;
         let value = definition.check(value)?;
         let written = definition.format_value(value);
-        match self.entries.iter().find(|entry| entry.id == definition.id) {
-            Some(entry) => self.replace(entry.value_at.clone(), &written),
-            None => {
+        let entry = self.entries.iter().find(|entry| entry.id == definition.id);
+        let unread = self.fault_of(definition.id).map(|fault| fault.line);
+        match (entry, unread) {
+            (Some(entry), _) => self.replace(entry.value_at.clone(), &written),
+            (None, Some(line)) => self.mend(line, definition, &written),
+            (None, None) => {
                 let end = self.line_end();
                 self.end_last_line(end);
                 self.append(definition, &written, end);
@@ -164,6 +164,39 @@ impl ListText {
         }
         self.read();
         Ok(())
+    }
+
+    /// What keeps the value of a parameter from being read: its line has no value, or one that it does not take.
+    pub fn fault_of(&self, id: ParameterId) -> Option<&ListError> {
+        let mut faults = self.faults.iter();
+        faults.find(|fault| fault.error.entry_id() == Some(id))
+    }
+
+    /// Takes a line away, from 1, with its end.
+    pub fn remove_line(&mut self, number: usize) {
+        if let Some(at) = self.line_at(number) {
+            self.bytes.drain(at);
+            self.read();
+        }
+    }
+
+    /// A line that cannot be read becomes one that sets a parameter; its comment stays.
+    fn mend(&mut self, number: usize, definition: &Definition, value: &str) {
+        let Some(at) = self.line_at(number) else { return };
+        let old = self.line(number);
+        let new = match old.split_once(';') {
+            Some((_, comment)) => format!("{:<9}: {value:<12} ;{comment}", definition.id.to_string()),
+            None => definition.line(value),
+        };
+        let end = self.line_end();
+        self.bytes.splice(at, format!("{new}{end}").into_bytes());
+        self.read();
+    }
+
+    /// The bytes of a line, from 1, with its end.
+    fn line_at(&self, number: usize) -> Option<Range<usize>> {
+        let start = *self.lines.get(number.checked_sub(1)?)?;
+        Some(start..self.lines.get(number).copied().unwrap_or(self.bytes.len()))
     }
 
     /// The comment behind a value, without its semicolon; empty where there is none [000:10017].
@@ -392,14 +425,15 @@ pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> R
 
 /// Reads a value; the error is the length of what could be read of it, 0 for nothing.
 fn read_value(written: &str) -> Result<f64, usize> {
-    // Groups of bits may stand apart, as in the manual's "%111 000" [000:10040].
-    let bits = || {
+    // Groups of digits may stand apart, and apart from their sign, as in the manual's "%111 000" and "$ 38"
+    // [000:10031-10038].
+    let groups = || {
         written
-            .starts_with('%')
+            .starts_with(['%', '$'])
             .then(|| parse_number(&written.replace(' ', "")))
             .flatten()
     };
-    if let Some(number) = parse_number(written).or_else(bits) {
+    if let Some(number) = parse_number(written).or_else(groups) {
         return Ok(number);
     }
     let first = written.split(char::is_whitespace).next().unwrap_or_default();

@@ -53,6 +53,38 @@ fn every_fault_has_line_column_length_and_the_control_s_number_and_text() {
     );
 }
 
+/// MP7224.0 disables datum tables, pallet tables and text files: binary "%111 000", hexadecimal "$ 38", decimal 56
+/// [000:10025-10040].
+#[test]
+fn the_value_of_the_manual_s_example_in_its_three_forms() {
+    let value = 2f64.powi(3) + 2f64.powi(4) + 2f64.powi(5);
+    for written in ["%111 000", "$ 38", "$38", "56"] {
+        let text = format!("MP7224.0 : {written} ; types\n");
+        let list = ListText::from_bytes(MODEL, text.as_bytes());
+        assert_eq!(list.faults(), [], "{written}");
+        assert_eq!(list.entries()[0].value, value, "{written}");
+        let mut entered = ParameterList::reference(MODEL);
+        entered.assign(&format!("MP7224.0={written}")).unwrap();
+        assert_eq!(entered.get(7224, 0), Some(value), "{written}");
+    }
+}
+
+/// A line with an entry that is incorrect [000:10059] takes the right one; its comment and the other lines stay.
+#[test]
+fn a_line_that_cannot_be_read_is_mended() {
+    let text = "; mill\nMP7430 : x ;overlap\nMPX : 3\nMP7410 : 1\n";
+    let mut list = ListText::from_bytes(MODEL, text.as_bytes());
+    let lines: Vec<usize> = list.faults().iter().map(|fault| fault.line).collect();
+    assert_eq!(lines, [2, 3]);
+    assert_eq!(list.fault_of(id(7430, None)).map(|fault| fault.line), Some(2));
+    assert_eq!(list.fault_of(id(7410, None)), None);
+    list.set(id(7430, None), 1.2).unwrap();
+    list.remove_line(3);
+    assert_eq!(list.faults(), []);
+    let mended = String::from_utf8(list.to_bytes()).unwrap();
+    assert_eq!(mended, "; mill\nMP7430   : 1.2          ;overlap\nMP7410 : 1\n");
+}
+
 #[test]
 fn a_list_that_lacks_parameters_is_refused_with_all_of_them() {
     let faults = ParameterList::load(MODEL, b"MP10 : %00111\nMP7430 : 1.2\n").unwrap_err();

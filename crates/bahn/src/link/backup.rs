@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use bahn_host::backup::{BACKUP_NAME, BackupError, Restore, back_up};
 use bahn_host::{HostError, LoadedMachine, files};
-use bahn_link::backup::{BACKUP_NAME, BackupError, Restore, back_up};
 use bahn_link::blockwise::Want;
 use bahn_link::{FileType, Memory};
 use bahn_parameters::{ControlModel, ParameterList};

@@ -9,12 +9,12 @@ use std::time::Duration;
 
 use bahn_host::LoadedMachine;
 use bahn_link::blockwise::{self, DirectoryRequest, Want};
-use bahn_link::store::Store;
+use bahn_link::store::{PLC, Store, StoreError, TNC};
 use bahn_link::{
-    Attendant, Channel, Event, FileType, Line, Mode, Protocol, Question, Resting, Settings, SharedPort, Spec,
-    drive, standard,
+    Attendant, Channel, Event, FileType, Files, Line, Mode, OfKinds, Protocol, Question, Resting, Settings,
+    SharedPort, Spec, drive, standard,
 };
-use bahn_panel::{Input, Link, Live, Station, TransferDeed, TransferNews, TransferOrder};
+use bahn_panel::{Input, Link, Live, Station, TransferDeed, TransferFiles, TransferNews, TransferOrder};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 
 use super::plc_lines::PlcLines;
@@ -28,7 +28,42 @@ const LOOK: Duration = Duration::from_millis(10);
 /// The interfaces of a machine that is about to be switched on.
 pub(crate) struct PanelPorts {
     ports: Vec<Port>,
-    store: Store,
+    memory: Memory,
+}
+
+/// The files that the panel transfers: programs with tables, files of the PLC, lists of machine parameters.
+#[derive(Clone)]
+struct Memory {
+    programs: Store,
+    plc: Option<Store>,
+    lists: Option<Store>,
+}
+
+impl Memory {
+    fn of(machine: &LoadedMachine) -> Result<Memory, StoreError> {
+        let plc = port::plc_folder(machine);
+        Ok(Memory {
+            programs: Store::of_machine(&machine.programs(0), &plc)?,
+            plc: Store::of_drive(PLC, &plc).ok(),
+            lists: Store::of_drive(TNC, &machine.root).ok(),
+        })
+    }
+
+    /// Those among which an order is carried out; each knows its own types alone.
+    fn files(&self, files: TransferFiles) -> Box<dyn Files> {
+        let (store, kinds): (&Option<Store>, &[&str]) = match files {
+            TransferFiles::Programs | TransferFiles::Backup => return Box::new(self.programs.clone()),
+            TransferFiles::Plc => (
+                &self.plc,
+                &["PLC", "ER1", "ERE", "DI1", "DIE", "A", "HLP", "COM", "CMA"],
+            ),
+            TransferFiles::Lists => (&self.lists, &["MP"]),
+        };
+        match store {
+            Some(store) => Box::new(OfKinds::new(store.clone(), kinds)),
+            None => Box::new(bahn_link::Memory::default()),
+        }
+    }
 }
 
 impl PanelPorts {
@@ -40,11 +75,10 @@ impl PanelPorts {
         named: [Option<&String>; 2],
         machine: &LoadedMachine,
     ) -> Result<Option<PanelPorts>, UsageError> {
-        let store = Store::of_machine(&machine.programs(0), &port::plc_folder(machine))
-            .map_err(|error| UsageError::new(error.to_string()))?;
+        let memory = Memory::of(machine).map_err(|error| UsageError::new(error.to_string()))?;
         let ports: Result<Vec<Port>, Refused> =
             serial_ports::specs(named).and_then(|specs| serial_ports::open(&specs, &machine.parameters));
-        Ok(ports.ok().map(|ports| PanelPorts { ports, store }))
+        Ok(ports.ok().map(|ports| PanelPorts { ports, memory }))
     }
 
     /// Connects the panel and the PLC of the machine.
@@ -61,7 +95,7 @@ impl PanelPorts {
             orders: station.transfer_orders(),
             lines,
             ports: self.ports,
-            store: self.store,
+            memory: self.memory,
         })
     }
 }
@@ -71,7 +105,7 @@ pub(crate) struct ConnectedPorts {
     orders: Receiver<TransferOrder>,
     lines: PlcLines,
     ports: Vec<Port>,
-    store: Store,
+    memory: Memory,
 }
 
 impl ConnectedPorts {
@@ -84,7 +118,7 @@ impl ConnectedPorts {
             orders,
             mut lines,
             ports,
-            store,
+            memory,
         } = self;
         let stop = Arc::new(AtomicBool::new(false));
         let mut desks: [Option<Arc<Desk>>; 2] = [None, None];
@@ -96,7 +130,7 @@ impl ConnectedPorts {
             }
             let worker = Worker {
                 link: live.link(),
-                store: store.clone(),
+                memory: memory.clone(),
                 stop: Arc::clone(&stop),
                 desk,
             };
@@ -183,7 +217,7 @@ impl Desk {
 /// The thread of a port.
 struct Worker {
     link: Link,
-    store: Store,
+    memory: Memory,
     stop: Arc<AtomicBool>,
     desk: Arc<Desk>,
 }
@@ -268,7 +302,7 @@ impl Worker {
     }
 
     fn protocol(&self, order: &TransferOrder, settings: Settings) -> Box<dyn Protocol> {
-        let files = Box::new(self.store.clone());
+        let files = self.memory.files(order.files);
         let (want, kind) = match &order.deed {
             TransferDeed::Write(names) | TransferDeed::WriteOffered(names) => {
                 let asks = matches!(order.deed, TransferDeed::WriteOffered(_));

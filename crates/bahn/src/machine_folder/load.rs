@@ -16,6 +16,15 @@ pub(crate) fn load(folder: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>
         .map_err(|error| UsageError::new(format!("{error}; `bahn machine new` makes one")))
 }
 
+/// The same for a panel, where a list of machine parameters that is empty or has faults is entered.
+///
+/// # Errors
+/// As [`load`].
+pub(crate) fn load_to_enter(folder: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
+    LoadedMachine::load_to_enter(folder)
+        .map_err(|error| UsageError::new(format!("{error}; `bahn machine new` makes one")))
+}
+
 /// The same with another tool table of the folder, when one is named.
 ///
 /// # Errors

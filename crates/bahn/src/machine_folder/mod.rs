@@ -13,7 +13,7 @@ pub(crate) use options::MachineFolderOptions;
 use crate::{Outcome, UsageError};
 use options::MachineCommand;
 
-pub(crate) use load::{load, load_with_tools};
+pub(crate) use load::{load, load_to_enter, load_with_tools};
 
 /// Executes a subcommand of `bahn machine`.
 pub(crate) fn command(options: &MachineFolderOptions) -> Result<Outcome, UsageError> {

@@ -52,7 +52,7 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
         Some(folder) => folder.clone(),
         None => own_mill()?,
     };
-    let machine: LoadedMachine = match machine_folder::load(&folder)? {
+    let machine: LoadedMachine = match machine_folder::load_to_enter(&folder)? {
         Ok(machine) => machine,
         Err(faults) => {
             diagnostics::print_faults(&faults);

@@ -51,6 +51,8 @@ pub struct LoadedMachine {
     pub functions: OwnFunctions,
     /// What is accepted, but looks wrong.
     pub warnings: Vec<FileFault>,
+    /// Its list of machine parameters is empty or has faults, and is to be entered before the control goes on.
+    pub is_to_be_entered: bool,
     /// Faults of files that are refused when they are used: they come from outside, so that none of them keeps a machine
     /// from being switched on.
     pub refused: Vec<FileFault>,
@@ -93,6 +95,19 @@ impl LoadedMachine {
     ) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
         let instead = Instead {
             file: Some((name, bytes)),
+            ..Instead::default()
+        };
+        load(root, &instead)
+    }
+
+    /// The same for a control that has its editor: a list of machine parameters that is missing, empty or faulty keeps none
+    /// from being switched on, it is entered [000:10011]. What can be read of it counts meanwhile, where a machine can be so.
+    ///
+    /// # Errors
+    /// As [`LoadedMachine::load`].
+    pub fn load_to_enter(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+        let instead = Instead {
+            enters: true,
             ..Instead::default()
         };
         load(root, &instead)
@@ -188,6 +203,8 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
     let mut loader = Loader {
         root,
         file: instead.file,
+        enters: instead.enters,
+        is_to_be_entered: false,
         faults: Vec::new(),
         warnings: Vec::new(),
         refused: Vec::new(),
@@ -200,6 +217,7 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
     Ok(match machine {
         Some(mut machine) if loader.faults.is_empty() => {
             machine.warnings = loader.warnings;
+            machine.is_to_be_entered = loader.is_to_be_entered;
             machine.refused = loader.refused;
             Ok(machine)
         }
@@ -219,12 +237,17 @@ struct Instead<'a> {
     tools: Option<&'a str>,
     /// The bytes of a file.
     file: Option<(&'a str, &'a [u8])>,
+    /// The list of machine parameters can be entered.
+    enters: bool,
 }
 
 pub(super) struct Loader<'a> {
     pub root: &'a Path,
     /// The bytes of a file that are taken in place of its own.
     file: Option<(&'a str, &'a [u8])>,
+    /// The list of machine parameters can be entered, and is to be.
+    enters: bool,
+    is_to_be_entered: bool,
     pub faults: Vec<FileFault>,
     pub warnings: Vec<FileFault>,
     /// See [`LoadedMachine::refused`].
@@ -244,7 +267,9 @@ impl Loader<'_> {
         let mut files = self.compensation(&folder);
         let parameters = model.and_then(|model| self.parameters(&folder, model));
         let mut none = NcFiles::default();
-        let tools = self.tool_files(&folder, parameters.as_ref(), files.as_mut().unwrap_or(&mut none));
+        // Tables fit the list that is entered, when it is.
+        let sizes = parameters.as_ref().filter(|_| !self.is_to_be_entered);
+        let tools = self.tool_files(&folder, sizes, files.as_mut().unwrap_or(&mut none));
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
         let mut files = files?;
@@ -277,6 +302,7 @@ impl Loader<'_> {
             hand_overs,
             functions,
             warnings: Vec::new(),
+            is_to_be_entered: false,
             refused: Vec::new(),
             folder,
         })
@@ -351,7 +377,30 @@ impl Loader<'_> {
 
     fn parameters(&mut self, folder: &MachineFolder, model: ControlModel) -> Option<ParameterList> {
         let line = self.line_of("parameters").unwrap_or(1);
+        if self.enters && !folder.parameters.is_empty() && self.stays_inside("parameters", &folder.parameters)
+        {
+            return Some(self.list_to_enter(&folder.parameters, model));
+        }
         self.list_at(line, &folder.parameters, model)
+    }
+
+    /// A list that may be entered: what can be read of it, unless no machine can be so.
+    fn list_to_enter(&mut self, name: &str, model: ControlModel) -> ParameterList {
+        let path = self.root.join(name);
+        let bytes = files::read_table(&path);
+        let text = ListText::from_bytes(model, bytes.as_deref().unwrap_or_default());
+        let mut list = ParameterList::reference(model);
+        list.take(&text);
+        let found = lists::machine_list(&text, &list, &path);
+        let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
+        self.is_to_be_entered = faulty || text.entries().is_empty();
+        if !self.is_to_be_entered {
+            self.warnings.extend(found);
+        }
+        match list.inconsistencies().iter().any(|found| found.impossible) {
+            true => ParameterList::reference(model),
+            false => list,
+        }
     }
 
     /// A list of machine parameters that a line of `machine.toml` names.
@@ -535,6 +584,16 @@ impl Loader<'_> {
     pub(super) fn fault_at_key(&mut self, key: &str, message: &str) {
         let line = self.line_of(key).unwrap_or(1);
         self.fault_in_description(line, 1, message.to_owned());
+    }
+
+    pub(super) fn warning_at_key(&mut self, key: &str, message: &str) {
+        let (path, text) = &self.description;
+        let place = (self.line_of(key).unwrap_or(1), None);
+        let fault = file_fault(path, text, place, "something is not used", message);
+        self.warnings.push(FileFault {
+            severity: Severity::Warning,
+            ..fault
+        });
     }
 
     pub(super) fn fault_at_line(&mut self, line: usize, message: String) {

@@ -61,6 +61,14 @@ impl Loader<'_> {
             return Some(None);
         };
         let sizes = parameters.map(|list| list.operation_parameters().tools);
+        if sizes.as_ref().is_some_and(|sizes| sizes.table_size == 0) {
+            // "The system will run without a tool table": tools come from TOOL DEF [000:9103].
+            self.warning_at_key(
+                "tools",
+                "the control has no tool table (MP7260 = 0): it is not used",
+            );
+            return Some(None);
+        }
         let path = self.named("tools", name)?;
         let mut tools = self.table(&path, "the tool table is wrong", |text| {
             let tools = tool_table::parse(text)?;

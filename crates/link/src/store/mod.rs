@@ -81,6 +81,14 @@ impl Store {
         Store::over(&[(TNC, programs), (PLC, plc)], views, None)
     }
 
+    /// The files of one folder, as a drive of this name.
+    ///
+    /// # Errors
+    /// When the folder is not there.
+    pub fn of_drive(name: &'static str, folder: &Path) -> Result<Store, StoreError> {
+        Store::over(&[(name, folder)], Vec::new(), None)
+    }
+
     /// A disk: one folder without folders in it, with at most [`DISK_FILES`] files.
     ///
     /// # Errors

@@ -127,6 +127,11 @@ impl Name {
             answered: Box::new(answered),
         })
     }
+
+    /// Its first character is typed already.
+    pub fn begin(&mut self, key: Key) {
+        self.typed.extend(key.character());
+    }
 }
 
 impl Page for Name {

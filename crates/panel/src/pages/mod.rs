@@ -1,9 +1,10 @@
 //! The pages: operating modes below, menus, tables and questions that stand on them.
 
 mod ask;
+mod axis_errors;
 mod by_hand;
-mod corrections;
 mod datum;
+mod description;
 mod editing;
 mod external;
 mod files;
@@ -35,6 +36,8 @@ use crate::site::Site;
 
 pub(crate) use files::runs;
 pub(crate) use help::follow as follow_help;
+pub(crate) use parameters::commission;
+pub(crate) use supplementary::{backup_ended, restored};
 
 use no_program::no_program;
 

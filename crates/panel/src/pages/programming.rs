@@ -6,13 +6,14 @@ use std::sync::Arc;
 use bahn_control::RunState;
 use bahn_dialogue::{BuilderCycle, Draft, Editor, Key, Setting};
 use bahn_host::oem_cycles;
+use bahn_parameters::MessageId;
 use bahn_program::Program;
 use serde_json::Value;
 
 use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
-use crate::pages::editing;
 use crate::pages::files::{Directory, Purpose, is_same};
+use crate::pages::{editing, table};
 use crate::screen::SoftKeys;
 use crate::site::Site;
 use crate::texts;
@@ -190,6 +191,11 @@ impl Programming {
             return Turn::Say(site.words("BACKGROUND PROGRAMMING NOT POSSIBLE"));
         }
         let (turn, changed) = what(&mut open.editor, site);
+        // MP7224.1: files of a protected type are not edited; what stands in this one counts [000:6870-6882].
+        if changed && table::is_protected(&open.name, site) {
+            self.renew(site);
+            return Turn::Say(site.message(MessageId::ProtectedPgm));
+        }
         match self.keep(changed, site) {
             Some(fault) => Turn::Say(fault),
             None => turn,
@@ -228,7 +234,7 @@ impl Open {
 /// The cycles of the machine builder with their dialogue texts, and what is to be said of a folder that cannot be read.
 fn builder_cycles(site: &Site) -> (Vec<BuilderCycle>, Option<String>) {
     let folder = site.machine.programs(0);
-    let found = oem_cycles::find(&folder, &site.machine.plc_dialogues, site.parameters());
+    let found = oem_cycles::find(&folder, site.control().plc_dialogues(), site.parameters());
     let found = match found {
         Ok(found) => found,
         Err(error) => {

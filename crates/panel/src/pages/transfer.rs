@@ -8,14 +8,19 @@ use crate::pages::list;
 use crate::pages::supplementary::order;
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferNews};
+use crate::transfer::{TransferDeed, TransferFiles, TransferNews};
 
-/// Begins a transfer and shows it.
+/// Begins a transfer of programs and shows it.
 pub(crate) fn begin(deed: TransferDeed, site: &mut Site) -> Turn {
+    begin_with(TransferFiles::Programs, deed, site)
+}
+
+/// The same with other files.
+pub(crate) fn begin_with(files: TransferFiles, deed: TransferDeed, site: &mut Site) -> Turn {
     if matches!(&deed, TransferDeed::Write(names) | TransferDeed::WriteOffered(names) if names.is_empty()) {
         return Turn::Say(site.message(MessageId::ProgramNotFound));
     }
-    let begun = order(deed, site).and_then(|order| site.transfers.begin(order));
+    let begun = order(files, deed, site).and_then(|order| site.transfers.begin(order));
     match begun {
         Ok(()) => show(),
         Err(message) => Turn::Say(site.message(message)),
@@ -56,8 +61,12 @@ impl Page for Transfer {
             // A program of the directory is read in.
             (Key::Ent, false) => match self.listed(site) {
                 Some(name) => {
-                    let turn = begin(TransferDeed::Read(site.with_ending(&name)), site);
-                    match turn {
+                    let files = site.transfers.last_files();
+                    let name = match files {
+                        TransferFiles::Programs => site.with_ending(&name),
+                        _ => name,
+                    };
+                    match begin_with(files, TransferDeed::Read(name), site) {
                         Turn::Open(page) => Turn::Replace(page),
                         other => other,
                     }

@@ -279,6 +279,7 @@ mod tests {
         assert_eq!(read("== K1").mnemonic, Mnemonic::Equal);
         assert_eq!(read("K-100000").operand, Operand::Constant(-100_000));
         assert_eq!(read("L K$FFFFFFFF").operand, Operand::Constant(-1));
+        assert_eq!(read("L K$ 38").operand, Operand::Constant(0x38));
         assert_eq!(read("L K-2147483648").operand, Operand::Constant(i32::MIN));
     }
 

@@ -125,6 +125,7 @@ impl<'a> Scanner<'a> {
             self.take('+');
         }
         if self.take('$') {
+            self.skip_blanks();
             let digits = self.take_while(|c| c.is_ascii_hexdigit());
             if digits.is_empty() {
                 return Err(missing());

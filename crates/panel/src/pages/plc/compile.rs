@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use bahn_control::Renewed;
 use bahn_host::{FileFault, PlcSource, Severity};
 use bahn_plc::{Options, ProgramMemory};
 
@@ -14,7 +15,8 @@ use crate::site::Site;
 /// Compiles a main file and what it links; the machine's own program takes effect at the next power-on.
 pub(super) fn run(name: &str, site: &mut Site) -> Turn {
     let mut compiled = source_of(name, site);
-    let faults: Vec<Fault> = compiled.faults().into_iter().map(Fault::of).collect();
+    let faults = compiled.faults().into_iter();
+    let faults: Vec<Fault> = faults.map(|fault| Fault::of(fault, site)).collect();
     let Some(program) = compiled.compilation.program.take() else {
         return Turn::Replace(Box::new(Menu::new(Faults { faults })));
     };
@@ -28,7 +30,7 @@ pub(super) fn run(name: &str, site: &mut Site) -> Turn {
         return Turn::CloseSaying(said);
     }
     let program = Arc::new(program);
-    site.host.replace_plc(Arc::clone(&program));
+    site.host.renew(Renewed::Plc(Arc::clone(&program)));
     site.plc.compiled = Some(program);
     Turn::CloseSaying(format!(
         "{said}; {}",
@@ -67,7 +69,7 @@ impl Items for Programs {
     fn items(&self, site: &Site) -> Vec<Item> {
         let main = source::main_file(site);
         let runtime = |name: &String| match name == main {
-            true => Item::new(name.clone(), site.words("RUNTIME PGM")),
+            true => Item::new(name.clone(), format!("M {}", site.words("RUNTIME PGM"))),
             false => Item::new(name.clone(), ""),
         };
         self.names.iter().map(runtime).collect()
@@ -89,16 +91,20 @@ struct Fault {
 
 impl Fault {
     /// In the words of `bahn plc check`.
-    fn of(fault: FileFault) -> Fault {
+    fn of(fault: FileFault, site: &Site) -> Fault {
         let file = fault
             .path
             .file_name()
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
+        // "INPUT ERROR n", with its number [000:11919].
         let kind = match fault.severity {
-            Severity::Error => "",
-            Severity::Warning => "warning: ",
+            Severity::Error if fault.title.starts_with(|first: char| first.is_ascii_digit()) => {
+                format!("{} ", site.words("INPUT ERROR"))
+            }
+            Severity::Error => String::new(),
+            Severity::Warning => "warning: ".to_owned(),
         };
         let detail = match fault.label.is_empty() {
             true => String::new(),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use bahn_plc::{Access, PlcProgram, Subject, accesses};
 
+use super::form::unformatted;
 use super::{compile, source};
 use crate::page::Turn;
 use crate::pages::ask::Name;
@@ -88,35 +89,6 @@ fn text_of(name: &str, form: Form, site: &Site) -> Result<String, String> {
         text.push_str(&cross_references(&program));
     }
     Ok(text)
-}
-
-/// A line without what sets its words in columns: single blanks, but for those of a string and of a comment (inferred).
-fn unformatted(line: &str) -> String {
-    let (code, comment) = match line.find(';') {
-        Some(at)
-            if line
-                .get(..at)
-                .is_some_and(|code| code.matches('"').count() % 2 == 0) =>
-        {
-            line.split_at(at)
-        }
-        _ => (line, ""),
-    };
-    let parts = code.split('"').enumerate().map(|(place, part)| match place % 2 {
-        1 => part.to_owned(),
-        _ => {
-            let mut plain = part.split_whitespace().collect::<Vec<_>>().join(" ");
-            if part.starts_with(char::is_whitespace) && place > 0 {
-                plain.insert(0, ' ');
-            }
-            if part.ends_with(char::is_whitespace) && !plain.ends_with(' ') {
-                plain.push(' ');
-            }
-            plain
-        }
-    });
-    let code = parts.collect::<Vec<_>>().join("\"");
-    format!("{}{comment}", code.trim_start()).trim_end().to_owned()
 }
 
 /// Each operand with the lines that use it, those that write it with a star; a line of another file has its name.

@@ -5,6 +5,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::check_line;
 
+use super::form;
 use super::source::{self, NotWritten, Source};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
@@ -115,8 +116,20 @@ impl Editor {
             return Turn::Done;
         }
         match check_line(self.current(), site.control().model()) {
-            Ok(()) => Turn::Done,
+            Ok(()) => {
+                self.format(site);
+                Turn::Done
+            }
             Err(error) => Turn::Say(format!("{} {error}", site.words("INPUT ERROR"))),
+        }
+    }
+
+    /// A line without an error is set in columns [000:11925].
+    fn format(&mut self, site: &Site) {
+        let new = form::formatted(self.current());
+        let is_same = check_line(&new, site.control().model()).is_ok() && new.chars().count() <= LINE_MAX;
+        if let Some(line) = self.source.lines.get_mut(self.line).filter(|_| is_same) {
+            *line = new;
         }
     }
 
@@ -272,9 +285,15 @@ impl Editor {
         }
     }
 
-    fn finish(&mut self, site: &Site) -> Turn {
-        match self.leave(site) {
-            Turn::Say(text) => Turn::CloseSaying(text),
+    fn finish(&mut self, site: &mut Site) -> Turn {
+        let left = self.leave(site);
+        // Texts in use stand there at once.
+        let renewed = match super::texts::is_active(&self.name, site) {
+            true => super::texts::renew(site),
+            false => Ok(()),
+        };
+        match (left, renewed) {
+            (Turn::Say(text), _) | (_, Err(text)) => Turn::CloseSaying(text),
             _ => Turn::Close,
         }
     }

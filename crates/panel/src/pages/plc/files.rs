@@ -14,10 +14,11 @@ use super::keys::Keys;
 use super::source;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Later, Name};
-use crate::pages::list;
+use crate::pages::{axis_errors, external, list, transfer};
 use crate::programs::NAME_MAX;
 use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
+use crate::transfer::{TransferDeed, TransferFiles};
 
 /// Soft keys with one window, in two rows; what has no name is not there.
 const ONE: [[&str; 8]; 2] = [
@@ -38,7 +39,7 @@ const ONE: [[&str; 8]; 2] = [
         "UNPROTECT",
         "RENAME",
         "CONVERT",
-        "",
+        "NEW FILE",
         "END",
     ],
 ];
@@ -222,6 +223,9 @@ impl Files {
         let Some(name) = self.own() else {
             return Turn::Refused;
         };
+        if let Some(opened) = axis_errors::editor(name, &source::path(name, site)) {
+            return opened.unwrap_or_else(Turn::Say);
+        }
         // Where the PLC was stopped: of a time out at the last jump [000:11919].
         let stopped = site.control().plc().stopped();
         let line = stopped
@@ -334,8 +338,8 @@ impl Files {
             "SHOW ALL" => self.pane_mut().ending = None,
             TNC => self.pane_mut().eprom = false,
             EPROM => self.pane_mut().eprom = true,
-            // No interface of the panel has a device.
-            EXT => return Turn::Say(site.message(MessageId::ExtInOutputNotReady)),
+            // What is on the device is listed, and read in from there.
+            EXT => return transfer::begin_with(TransferFiles::Plc, TransferDeed::Directory, site),
             ending => self.pane_mut().ending = Some(ending.to_owned()),
         }
         Turn::Done
@@ -372,6 +376,21 @@ impl Files {
         };
         (0..longest.min(lines)).map(line).collect()
     }
+}
+
+/// A new file: tables of axis errors begin with their head [000:11370].
+fn new_file(site: &Site) -> Turn {
+    Turn::Open(Name::ask(
+        site.words("FILE NAME ="),
+        NAME_MAX + 4,
+        |name, site| {
+            let name = source::named_at_interface(&name);
+            match source::create(&name, axis_errors::new_file(&name).as_bytes(), site) {
+                Ok(()) => Turn::Close,
+                Err(why) => Turn::CloseSaying(why),
+            }
+        },
+    ))
 }
 
 /// Copies files one after the other; one that is there already is asked for, with the others behind it.
@@ -443,6 +462,10 @@ impl Page for Files {
                 self.erase(site)
             }
             Key::Ent => self.select(site),
+            Key::Ext => {
+                self.stale = true;
+                external::of_plc(site)
+            }
             Key::End | Key::NoEnt | Key::Del => Turn::Close,
             _ => Turn::Refused,
         }
@@ -459,6 +482,7 @@ impl Page for Files {
             "SELECT" => self.select(site),
             "COPY" => self.named("DESTINATION FILE =", source::copy, site),
             "RENAME" => self.rename(site),
+            "NEW FILE" => new_file(site),
             "PROTECT" | "UNPROTECT" => self.protect(name == "PROTECT", site),
             "MODIFY WINDOW" => self.keys(DEVICES),
             "SELECT TYPE" => self.keys(TYPES),
@@ -491,8 +515,9 @@ impl Page for Files {
         let line = |place: usize| {
             let entry = pane.entries.get(place);
             let mut text = entry.map(text_of).unwrap_or_default();
+            // Status M: the main program, as COMPILE has made it [000:14608].
             if entry.is_some_and(|entry| entry.eprom.is_none() && entry.name == main) {
-                text = format!("{text:<34} {}", site.words("RUNTIME PGM"));
+                text = format!("{text:<32} M {}", site.words("RUNTIME PGM"));
             }
             Line {
                 text,

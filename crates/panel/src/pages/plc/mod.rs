@@ -7,6 +7,7 @@ mod convert;
 mod diagram;
 mod editor;
 mod files;
+mod form;
 mod keys;
 mod operands;
 mod source;
@@ -16,10 +17,11 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::page::{Overlay, Page, Turn, View};
-use crate::pages::list;
-use crate::pages::parameters;
+use crate::pages::{external, list, parameters};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
+
+pub(crate) use source::{named_at_interface, transferable};
 
 /// The code number opens the mode until power-off; controls without it have no PLC that could be programmed.
 pub(crate) fn open(site: &mut Site) -> Turn {
@@ -84,6 +86,7 @@ impl Page for MainMenu {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
             Key::PgmNr => files::open(site),
+            Key::Ext => external::of_plc(site),
             Key::End | Key::Del | Key::NoEnt => Turn::Close,
             _ => Turn::Refused,
         }

@@ -148,6 +148,40 @@ pub(super) fn is_source(name: &str) -> bool {
     !NO_SOURCE.iter().any(|other| other.eq_ignore_ascii_case(ending))
 }
 
+/// The types that data interfaces know, and the letters of those that have one of their own there [000:16895-16913]
+/// [000:3867-3869].
+const TRANSFERRED: [(&str, Option<&str>); 9] = [
+    ("PLC", Some("P")),
+    ("CMA", Some("S")),
+    ("COM", Some("V")),
+    ("HLP", Some("J")),
+    ("A", None),
+    ("ER1", None),
+    ("ERE", None),
+    ("DI1", None),
+    ("DIE", None),
+];
+
+/// The files that data interfaces transfer.
+pub(crate) fn transferable(site: &Site) -> Vec<String> {
+    let known = |name: &String| {
+        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+        let mut types = TRANSFERRED.iter();
+        types.any(|(own, _)| own.eq_ignore_ascii_case(ending))
+    };
+    list(site).into_iter().filter(known).collect()
+}
+
+/// A file by the name that is entered for a transfer: programs need no type, and a letter stands for its type.
+pub(crate) fn named_at_interface(name: &str) -> String {
+    let Some((stem, ending)) = name.rsplit_once('.') else {
+        return format!("{name}.PLC");
+    };
+    let mut types = TRANSFERRED.iter();
+    let own = types.find(|(_, letter)| letter.is_some_and(|letter| letter.eq_ignore_ascii_case(ending)));
+    own.map_or_else(|| name.to_owned(), |(own, _)| format!("{stem}.{own}"))
+}
+
 /// Where a main file lies; its name comes from [`list`].
 pub(super) fn path(name: &str, site: &Site) -> PathBuf {
     folder(site).join(name)

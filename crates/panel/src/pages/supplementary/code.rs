@@ -6,7 +6,7 @@ use bahn_parameters::MessageId;
 use super::{offsets, oscilloscope, timers};
 use crate::page::Turn;
 use crate::pages::ask::{Choice, Name};
-use crate::pages::corrections;
+use crate::pages::axis_errors;
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::{parameters, plc};
 use crate::site::Site;
@@ -52,7 +52,7 @@ fn entered(code: u32, site: &mut Site) -> Turn {
     match code {
         USER_PARAMETERS => parameters::of_code(site),
         MACHINE_PARAMETERS => parameters::all(site),
-        CORRECTION_TABLES => corrections::open(site),
+        CORRECTION_TABLES => axis_errors::corrections(site),
         CANCEL_PROTECTION => Turn::Open(Box::new(Directory::new(Purpose::Unprotect, site))),
         OFFSET_ADJUSTMENT => offsets::open(site),
         OSCILLOSCOPE => oscilloscope::open(),

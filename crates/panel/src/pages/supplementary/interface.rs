@@ -6,13 +6,17 @@
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
+use super::backup;
 use crate::page::{Page, Turn};
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::number::Number;
 use crate::settings::{BAUD_RATES, Interface, InterfaceMode, TransferOf};
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferOrder};
+use crate::transfer::{TransferDeed, TransferFiles, TransferOrder};
 
+/// Soft keys of the machine parameter editor.
+const BACKUP: &str = "BACKUP DATA";
+const RESTORE: &str = "RESTORE DATA";
 /// Names of the interfaces.
 const PORTS: [&str; 2] = ["RS-232", "RS-422"];
 /// Baud rates that the two interfaces cannot have together [000:17552-17554].
@@ -35,16 +39,25 @@ enum Row {
 
 /// The page.
 pub(super) fn page() -> Box<dyn Page> {
-    Box::new(Menu::new(Interfaces))
+    Box::new(Menu::new(Interfaces { backs_up: false }))
+}
+
+/// The page with BACKUP DATA and RESTORE DATA, of the machine parameter editor [000:465].
+pub(super) fn with_backup() -> Box<dyn Page> {
+    Box::new(Menu::new(Interfaces { backs_up: true }))
 }
 
 /// What is to be done at the interface of file transfers, as it is set up.
 ///
 /// # Errors
 /// The message of the control: no device can answer there.
-pub(crate) fn order(deed: TransferDeed, site: &Site) -> Result<TransferOrder, MessageId> {
-    let [files, _] = site.settings.second_interface;
-    let port = usize::from(files && site.control().model().has_rs_422());
+pub(crate) fn order(
+    files: TransferFiles,
+    deed: TransferDeed,
+    site: &Site,
+) -> Result<TransferOrder, MessageId> {
+    let [second, _] = site.settings.second_interface;
+    let port = usize::from(second && site.control().model().has_rs_422());
     let interface = site.settings.interfaces.get(port).copied().unwrap_or_default();
     let mode = match interface.mode {
         InterfaceMode::Fe1 => "fe1",
@@ -61,12 +74,21 @@ pub(crate) fn order(deed: TransferDeed, site: &Site) -> Result<TransferOrder, Me
         port,
         mode,
         baud: baud(port, site),
-        kind: if site.settings.iso { "I" } else { "H" },
+        kind: match files {
+            TransferFiles::Programs if site.settings.iso => "I",
+            TransferFiles::Programs => "H",
+            TransferFiles::Lists => "MP",
+            TransferFiles::Plc => "PLC",
+            TransferFiles::Backup => "A",
+        },
+        files,
         deed,
     })
 }
 
-struct Interfaces;
+struct Interfaces {
+    backs_up: bool,
+}
 
 /// The lines of a control: one with a single interface assigns nothing, and its EXT is EXT1.
 fn rows(site: &Site) -> Vec<Row> {
@@ -160,6 +182,21 @@ impl Items for Interfaces {
 
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
         change(place, true, site)
+    }
+
+    fn own_keys(&self, _site: &Site) -> [&'static str; 6] {
+        match self.backs_up {
+            true => [BACKUP, RESTORE, "", "", "", ""],
+            false => [""; 6],
+        }
+    }
+
+    fn own_key(&mut self, name: &str, _place: usize, site: &mut Site) -> Turn {
+        match name {
+            BACKUP => backup::save(site),
+            RESTORE => backup::ask_to_restore(site),
+            _ => Turn::Refused,
+        }
     }
 
     /// ENT and RIGHT go to the next setting, LEFT back.

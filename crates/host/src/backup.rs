@@ -19,9 +19,10 @@ use std::io::{self, Write as _};
 use std::path::{Component, Path, PathBuf};
 
 use bahn_control::unescaped;
-use bahn_host::HostError;
-use bahn_host::files::{self, NewFile, cannot};
 use thiserror::Error;
+
+use crate::HostError;
+use crate::files::{self, NewFile, cannot};
 
 /// Name under which it is sent [000:435-441].
 pub const BACKUP_NAME: &str = "$BACKUP";
@@ -53,7 +54,7 @@ pub enum BackupError {
 
 /// The lines of a backup of a folder, one after the other.
 ///
-/// Hidden files, symbolic links and folders in more than eight folders are left out.
+/// Hidden files, other backups, symbolic links and folders in more than eight folders are left out.
 ///
 /// # Errors
 /// When a file cannot be read, or the lines cannot be taken.
@@ -103,6 +104,10 @@ fn collect(folder: &Path, below: &Path, paths: &mut Vec<PathBuf>) -> Result<(), 
     }
     names.sort_by(|one, other| one.0.cmp(&other.0));
     for (name, kind) in names {
+        // A backup that is on its way holds no other.
+        if name.starts_with(BACKUP_NAME) {
+            continue;
+        }
         let path = below.join(&name);
         if relative(&path.to_string_lossy()).is_none() {
             continue;

@@ -1,0 +1,271 @@
+//! A compensation table (.COM): the errors of some axes over the points of one, line by line as the manual shows it
+//! [000:3809-3853]. Only the kinks are entered.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use bahn_dialogue::Key;
+use bahn_parameters::MessageId;
+
+use super::head::{self, Field};
+use super::{AXES, lines, read, store};
+use crate::entry::Entry;
+use crate::page::{Page, Turn, View};
+use crate::pages::list;
+use crate::screen::{Dialogue, Line, Mark, WindowKind};
+use crate::site::Site;
+
+/// Its soft keys [000:3829].
+const SOFT_KEYS: [&str; 8] = [
+    "BEGIN",
+    "LAST LINE",
+    "PAGE UP",
+    "PAGE DOWN",
+    "INSERT LINE",
+    "DELETE LINE",
+    "HEAD LINE",
+    "END",
+];
+/// Points of a table at most [000:3770].
+const POINTS_MAX: usize = 256;
+/// Unit of the spacing, mm: DIST is its exponent of two [000:3777].
+const UNIT_MM: f64 = 1e-4;
+/// Words of the head line before its columns.
+const COLUMNS: usize = 6;
+/// Width of number, position and column in the window.
+const WIDTHS: [usize; 3] = [5, 12, 11];
+
+/// The editor.
+struct Table {
+    name: String,
+    path: PathBuf,
+    head: Vec<String>,
+    points: BTreeMap<usize, BTreeMap<String, String>>,
+    row: usize,
+    column: usize,
+    entry: Entry,
+    /// The head line lies open.
+    heads: bool,
+}
+
+/// Opens a table.
+pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
+    let mut table = Table {
+        name: name.to_owned(),
+        path: path.to_owned(),
+        head: Vec::new(),
+        points: BTreeMap::new(),
+        row: 0,
+        column: 0,
+        entry: Entry::default(),
+        heads: false,
+    };
+    table.renew()?;
+    Ok(Turn::Replace(Box::new(table)))
+}
+
+impl Table {
+    fn renew(&mut self) -> Result<(), String> {
+        let lines = lines(&read(&self.path)?);
+        let mut lines = lines.iter().map(|line| line.split_whitespace());
+        self.head = lines.next().into_iter().flatten().map(str::to_owned).collect();
+        self.points.clear();
+        for mut words in lines {
+            let Some(number) = words.next().and_then(|word| word.parse().ok()) else {
+                continue;
+            };
+            let cells = words.filter_map(|word| word.split_once('='));
+            let cells = cells.map(|(axis, value)| (axis.to_owned(), value.to_owned()));
+            self.points.insert(number, cells.collect());
+        }
+        self.column = self.column.min(self.columns().len().saturating_sub(1));
+        Ok(())
+    }
+
+    fn columns(&self) -> &[String] {
+        self.head.get(COLUMNS..).unwrap_or_default()
+    }
+
+    fn written(&self) -> String {
+        let mut text = format!("{}\n", self.head.join(" "));
+        for (number, cells) in &self.points {
+            let cells: String = cells
+                .iter()
+                .map(|(axis, value)| format!(" {axis}={value}"))
+                .collect();
+            text += &format!("{number}{cells}\n");
+        }
+        text
+    }
+
+    /// Changes the points; what does not fit stays as it was.
+    fn change(&mut self, what: impl FnOnce(&mut Table), site: &mut Site) -> Turn {
+        let before = self.points.clone();
+        what(self);
+        match store(&self.path, &self.written(), site) {
+            Ok(()) => {
+                self.entry = Entry::default();
+                Turn::Done
+            }
+            Err(why) => {
+                self.points = before;
+                Turn::Say(format!("{}: {why}", site.message(MessageId::EntryValueIncorrect)))
+            }
+        }
+    }
+
+    /// Sets the cell, or empties it.
+    fn set(&mut self, value: Option<f64>, site: &mut Site) -> Turn {
+        let (row, Some(axis)) = (self.row, self.columns().get(self.column).cloned()) else {
+            return Turn::Refused;
+        };
+        self.change(
+            |table| {
+                let cells = table.points.entry(row).or_default();
+                match value {
+                    Some(value) => drop(cells.insert(axis, value.to_string())),
+                    None => drop(cells.remove(&axis)),
+                }
+                if cells.is_empty() {
+                    table.points.remove(&row);
+                }
+            },
+            site,
+        )
+    }
+
+    /// A line comes in between, or goes: those behind it move by one point.
+    fn shift(&mut self, on: bool, site: &mut Site) -> Turn {
+        let row = self.row;
+        if on && self.points.contains_key(&(POINTS_MAX - 1)) {
+            return Turn::Refused;
+        }
+        self.change(
+            |table| {
+                let old = std::mem::take(&mut table.points);
+                let place = |number: usize| match (on, number < row) {
+                    (_, true) => Some(number),
+                    (true, false) => Some(number + 1),
+                    (false, false) if number == row => None,
+                    (false, false) => Some(number - 1),
+                };
+                let moved = old
+                    .into_iter()
+                    .filter_map(|(number, cells)| Some((place(number)?, cells)));
+                table.points = moved.collect();
+            },
+            site,
+        )
+    }
+
+    fn head_line(&mut self) -> Turn {
+        self.heads = true;
+        let columns = (0..AXES.len()).map(|axis| Field::Column(axis, COLUMNS));
+        let fields = [Field::Number("DATUM", 3), Field::Number("DIST", 5)];
+        head::open(self.path.clone(), 0, fields.into_iter().chain(columns).collect())
+    }
+
+    fn go(&mut self, rows: isize) -> Turn {
+        self.row = list::moved(self.row, rows, POINTS_MAX);
+        self.entry = Entry::default();
+        Turn::Done
+    }
+
+    /// The place of a point, mm from the machine datum.
+    fn position(&self, point: usize) -> f64 {
+        let number = |place: usize| self.head.get(place).and_then(|word| word.parse::<f64>().ok());
+        let (datum, exponent) = (number(3).unwrap_or(0.0), number(5).unwrap_or(0.0));
+        datum + point as f64 * exponent.exp2() * UNIT_MM
+    }
+
+    fn line(&self, point: usize) -> Line {
+        let [number, position, width] = WIDTHS;
+        let place = format!("{:.4}", self.position(point));
+        let place = place.trim_end_matches('0').trim_end_matches('.');
+        let mut text = format!("{point:<number$}{place:<position$}");
+        let mut marks = Vec::new();
+        for (column, axis) in self.columns().iter().enumerate() {
+            let value = self.points.get(&point).and_then(|cells| cells.get(axis));
+            let from = text.chars().count();
+            if (point, column) == (self.row, self.column) {
+                marks.push((from, from + width - 1, Mark::Cursor));
+            }
+            text += &format!("{:<width$}", value.map_or("", String::as_str));
+        }
+        Line {
+            text: text.trim_end().to_owned(),
+            current: point == self.row,
+            marks,
+        }
+    }
+}
+
+impl Page for Table {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(rows) = list::way_of_key(key) {
+            return self.go(rows);
+        }
+        match key {
+            Key::Left => self.column = self.column.saturating_sub(1),
+            Key::Right => self.column = list::moved(self.column, 1, self.columns().len()),
+            Key::Ent => {
+                let Some(value) = self.entry.value() else {
+                    return self.go(1);
+                };
+                let turn = self.set(Some(value), site);
+                if matches!(turn, Turn::Done) {
+                    self.go(1);
+                }
+                return turn;
+            }
+            Key::NoEnt => return self.set(None, site),
+            Key::End | Key::Del => return Turn::Close,
+            key if self.entry.key(key) => {}
+            _ => return Turn::Refused,
+        }
+        Turn::Done
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        vec![list::soft_keys(&SOFT_KEYS, site)]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        match list::name_at(&SOFT_KEYS, place) {
+            "INSERT LINE" => self.shift(true, site),
+            "DELETE LINE" => self.shift(false, site),
+            "HEAD LINE" => self.head_line(),
+            name => list::way_of(name).map_or(Turn::Close, |rows| self.go(rows)),
+        }
+    }
+
+    fn show(&self, site: &Site, lines: usize) -> View {
+        let axis = |name: &String| format!("{name}=F()");
+        let columns: Vec<String> = self.columns().iter().map(axis).collect();
+        let head = self.head.get(1..COLUMNS).unwrap_or_default().join(" ");
+        let title = format!(
+            "{} {}  {head}  {}",
+            site.words("FILE"),
+            self.name,
+            columns.join(" ")
+        );
+        let cursor = (self.row, POINTS_MAX);
+        View {
+            window: Some(list::window(title, WindowKind::Table, cursor, lines, |point| {
+                self.line(point)
+            })),
+            dialogue: Dialogue {
+                prompt: site.words("COMPENSATION VALUE ?"),
+                entry: self.entry.text(),
+                open: true,
+            },
+        }
+    }
+
+    fn tick(&mut self, _site: &mut Site) -> Turn {
+        match std::mem::take(&mut self.heads).then(|| self.renew()) {
+            Some(Err(why)) => Turn::Say(why),
+            _ => Turn::Done,
+        }
+    }
+}

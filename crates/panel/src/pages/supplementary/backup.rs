@@ -1,0 +1,91 @@
+//! BACKUP DATA and RESTORE DATA: everything of the machine as one file over the data interface [000:463-467].
+//!
+//! While it is on its way the file lies in the program memory, which the data interfaces read and write.
+
+use bahn_control::RunState;
+use bahn_host::backup::{BACKUP_NAME, Restore, back_up};
+use bahn_parameters::MessageId;
+
+use crate::page::Turn;
+use crate::pages::ask::Choice;
+use crate::pages::transfer;
+use crate::site::Site;
+use crate::transfer::{TransferDeed, TransferFiles};
+
+/// Its name in the program memory; programs of the manufacturer store it as `$BACKUP.ANC`.
+fn name() -> String {
+    format!("{BACKUP_NAME}.A")
+}
+
+/// BACKUP DATA.
+pub(super) fn save(site: &mut Site) -> Turn {
+    match written(site) {
+        Ok(()) => begun(TransferDeed::Write(vec![name()]), site),
+        Err(why) => Turn::Say(why),
+    }
+}
+
+/// All files of the machine as they are now.
+fn written(site: &mut Site) -> Result<(), String> {
+    site.host.store().map_err(|error| error.to_string())?;
+    let mut text = String::new();
+    let count = back_up(&site.machine.root, &site.machine.folder.name, |line| {
+        text.push_str(line);
+        text.push('\n');
+        Ok(())
+    });
+    count.map_err(|error| error.to_string())?;
+    site.programs.write(&name(), text.as_bytes())
+}
+
+/// RESTORE DATA replaces what is there: it is asked for.
+pub(super) fn ask_to_restore(site: &Site) -> Turn {
+    if site.control().run_state() != RunState::Idle {
+        return Turn::Say(site.message(MessageId::KeyNonFunctional));
+    }
+    let erase = site.message(MessageId::EraseOverread);
+    let prompt = format!("{erase} {BACKUP_NAME}: {}", site.words("YES = ENT / NO = NO ENT"));
+    let restore = site.words("RESTORE DATA");
+    Turn::Open(Choice::confirm(prompt, restore, |site| {
+        match begun(TransferDeed::Read(name()), site) {
+            Turn::Open(page) => Turn::Replace(page),
+            Turn::Say(why) => Turn::CloseSaying(why),
+            turn => turn,
+        }
+    }))
+}
+
+/// A transfer that does not begin leaves nothing.
+fn begun(deed: TransferDeed, site: &mut Site) -> Turn {
+    let turn = transfer::begin_with(TransferFiles::Backup, deed, site);
+    if !matches!(turn, Turn::Open(_)) {
+        ended(site);
+    }
+    turn
+}
+
+/// The transfer is over: nothing of it stays in the program memory.
+pub(crate) fn ended(site: &mut Site) {
+    if site.programs.has(&name()) {
+        // It is removed with the next one.
+        let _ = site.programs.erase(&name());
+    }
+}
+
+/// What was read in, ready to take the place of what is there.
+///
+/// # Errors
+/// In words: it is damaged, or a program runs.
+pub(crate) fn restored(site: &Site) -> Result<Restore, String> {
+    if site.control().run_state() != RunState::Idle {
+        return Err(site.message(MessageId::KeyNonFunctional));
+    }
+    let text = site.programs.text(&name()).unwrap_or_default();
+    let mut restore = Restore::new(&site.machine.root);
+    let read = text.lines().try_for_each(|line| restore.line(line));
+    read.map_err(|error| error.to_string())?;
+    match restore.is_complete() {
+        true => Ok(restore),
+        false => Err(bahn_host::backup::BackupError::Incomplete.to_string()),
+    }
+}

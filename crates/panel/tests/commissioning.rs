@@ -1,0 +1,329 @@
+//! A list of machine parameters that is empty or has faults is presented when the control is switched on; several lists,
+//! their transfer, and everything of the machine as one file [000:463-467] [000:10007-10074].
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
+
+mod support;
+
+use std::path::Path;
+
+use bahn_host::backup::Restore;
+use bahn_panel::{TransferDeed, TransferFiles};
+use support::Trainee;
+
+/// The mill with something else in its list.
+fn with(change: impl Fn(&str) -> String) -> Trainee {
+    Trainee::with("mill", |folder| {
+        let path = folder.join("parameters.mp");
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(path, change(&text)).unwrap();
+    })
+}
+
+fn current(trainee: &mut Trainee) -> String {
+    let lines = trainee.screen().program.lines;
+    lines
+        .into_iter()
+        .find(|line| line.current)
+        .map(|line| line.text)
+        .unwrap_or_default()
+}
+
+fn shows(trainee: &mut Trainee, text: &str) -> bool {
+    let lines = trainee.screen().program.lines;
+    lines.iter().any(|line| line.text.contains(text))
+}
+
+fn code(trainee: &mut Trainee, code: &str) {
+    trainee.press("PROGRAM MOD");
+    trainee.down_to("CODE NUMBER");
+    trainee.press("ENT").number(code).press("ENT");
+}
+
+fn news(trainee: &mut Trainee, text: &str) {
+    trainee.give(&format!("{{\"transfer\":\"{text}\"}}"));
+}
+
+/// "Missing or incorrect entries result in error messages that prompt you to correct your entry" [000:10050-10062].
+#[test]
+fn a_faulty_list_is_presented_and_the_control_goes_on_when_it_is_whole() {
+    let mut trainee = with(|list| {
+        // The feed of Y is no number, and a line names no parameter of the control.
+        let list = list.replace("MP1020.1 : 3000", "MP1020.1 : fast ;manual feed");
+        list + "MP9 : 1\n"
+    });
+    trainee.wait(0.1);
+    let screen = trainee.screen();
+    assert_eq!(screen.program.title, "MACHINE PARAMETERS");
+    assert!(trainee.station.control().is_off());
+    // The first fault has the cursor, with its number and text.
+    assert!(current(&mut trainee).contains("fast"), "{:#?}", screen.program);
+    assert!(shows(&mut trainee, "3 Entry value incorrect: MP1020.1"));
+    // END prompts for it; nothing else has the keys.
+    trainee.press("END");
+    assert!(trainee.messages()[0].contains("3 Entry value incorrect"));
+    trainee.press("CE MANUAL");
+    assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
+    trainee.press("CE").give(r#"{"power":true}"#).wait(0.1);
+    assert!(trainee.station.control().is_off());
+    trainee.number("600").press("ENT END");
+    assert!(
+        trainee.messages()[0].contains("1 Invalid MP number"),
+        "{:?}",
+        trainee.messages()
+    );
+    assert!(current(&mut trainee).ends_with("MP9 : 1"));
+    trainee.press("CE DEL END");
+    // It is whole: as after any power-on.
+    trainee.ready();
+    let list = trainee.file("parameters.mp");
+    let line = list.lines().find(|line| line.starts_with("MP1020.1")).unwrap();
+    assert!(
+        line.contains(": 600 ") && line.ends_with(";manual feed"),
+        "{line}"
+    );
+    assert!(!list.contains("MP9 "));
+    assert_eq!(
+        trainee.station.control().first().edited_list().get(1020, 1),
+        Some(600.0)
+    );
+}
+
+/// What the machine kept is what it was: the datum that was set before the list was damaged.
+#[test]
+fn what_is_kept_survives_a_faulty_list() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.give(r#"{"deed":"datum X 12.5"}"#).wait(0.5);
+    trainee.station.store().unwrap();
+    let kept_datums = trainee.station.control().remember().datums;
+    let list = trainee.file("parameters.mp");
+    trainee.write("parameters.mp", &list.replace("MP10     : %01111", "MP10 : ?"));
+    let kept = trainee.file("state/control.toml");
+    let mut trainee = trainee.killed();
+    trainee.wait(1.0);
+    assert_eq!(trainee.file("state/control.toml"), kept);
+    trainee.press("SK1").number("1111").press("END");
+    trainee.until(5.0, |screen| !screen.messages.is_empty());
+    assert_eq!(trainee.messages(), ["POWER INTERRUPTED"]);
+    assert_eq!(trainee.station.control().remember().datums, kept_datums);
+}
+
+/// "If during commissioning no entries are made, the TNC will generate a standard machine parameter list when the END key is
+/// pressed": a programming station (MP7210 = 1) with all other values at their minimum [000:10066-10070].
+#[test]
+fn an_empty_list_becomes_the_standard_list() {
+    for missing in [false, true] {
+        let mut trainee = Trainee::with("mill", |folder| {
+            std::fs::write(folder.join("parameters.mp"), "").unwrap();
+            if missing {
+                std::fs::remove_file(folder.join("parameters.mp")).unwrap();
+            }
+        });
+        trainee.wait(0.1);
+        assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+        trainee.press("END");
+        assert!(!trainee.station.control().is_off(), "{:?}", trainee.messages());
+        let list = trainee.station.control().first().edited_list();
+        assert_eq!((list.get(7210, 0), list.get(10, 0)), (Some(1.0), Some(0.0)));
+        assert!(
+            trainee
+                .file("parameters.mp")
+                .lines()
+                .any(|line| line.starts_with("MP7210"))
+        );
+    }
+}
+
+/// Values of an empty list are entered by hand, and count [000:10011].
+#[test]
+fn an_empty_list_is_entered_by_hand() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        std::fs::write(folder.join("parameters.mp"), "").unwrap();
+    });
+    trainee.wait(0.1);
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
+    trainee.number("750").press("END").wait(0.1);
+    assert!(!trainee.station.control().is_off(), "{:?}", trainee.messages());
+    let list = trainee.station.control().first().edited_list();
+    assert_eq!(list.get(1020, 1), Some(750.0));
+}
+
+/// "The desired list can be selected in the machine parameter editor by pressing the PGM NAME key and the SELECT soft key. The
+/// list which is active when you exit the editor goes into effect" [000:10072-10074].
+#[test]
+fn one_of_several_lists_is_selected() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let list = std::fs::read_to_string(folder.join("parameters.mp")).unwrap();
+        let slow = list.replace("MP1020.1 : 3000", "MP1020.1 : 600");
+        std::fs::write(folder.join("SLOW.MP"), slow).unwrap();
+        std::fs::write(folder.join("WRONG.MP"), "MP1020.1 : x\n").unwrap();
+    });
+    trainee.ready();
+    let starts = trainee.station.control().starts();
+    code(&mut trainee, "95148");
+    trainee.press("PGM_NR");
+    assert_eq!(trainee.screen().program.title, "MACHINE PARAMETER LISTS");
+    assert!(current(&mut trainee).starts_with("parameters.mp") && current(&mut trainee).ends_with("ACTIVE"));
+    // A faulty list goes into no effect, and what is wrong stands there.
+    trainee.down_to("WRONG.MP");
+    trainee.soft("SELECT");
+    trainee.wait(0.1).press("END");
+    assert!(
+        trainee.messages()[0].contains("3 Entry value incorrect"),
+        "{:?}",
+        trainee.messages()
+    );
+    assert_eq!(trainee.station.control().starts(), starts);
+    trainee.press("CE PGM_NR");
+    trainee.down_to("SLOW.MP");
+    trainee.soft("SELECT");
+    trainee.wait(0.1);
+    assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS  SLOW.MP");
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
+    assert!(current(&mut trainee).contains("600"));
+    // What is entered belongs to this list.
+    trainee.number("450").press("END").wait(0.1);
+    assert_eq!(trainee.station.control().starts(), starts + 1);
+    let feed = |trainee: &Trainee| trainee.station.control().first().edited_list().get(1020, 1);
+    assert_eq!(feed(&trainee), Some(450.0));
+    assert!(trainee.file("parameters.mp").contains("MP1020.1 : 3000"));
+    // It stays selected over power-off.
+    trainee.wait(0.5).station.store().unwrap();
+    let mut trainee = trainee.killed();
+    trainee.wait(0.1);
+    assert_eq!(feed(&trainee), Some(450.0));
+    // And back to the usual one.
+    trainee.ready();
+    code(&mut trainee, "95148");
+    trainee.press("PGM_NR UP UP ENT").wait(0.1);
+    trainee.press("END").wait(0.1);
+    assert_eq!(feed(&trainee), Some(3000.0));
+    assert_eq!(trainee.station.control().remember().parameter_list, None);
+}
+
+/// "The data interface is activated by pressing the EXT key": FE1 with 9600 baud at first [000:10011].
+#[test]
+fn lists_are_transferred() {
+    let mut trainee = Trainee::at("mill");
+    let orders = trainee.station.transfer_orders();
+    trainee.ready();
+    news(&mut trainee, "connected 0");
+    code(&mut trainee, "95148");
+    trainee.press("EXT DOWN DOWN DOWN ENT");
+    assert_eq!(trainee.screen().dialogue.prompt, "FILE NAME =");
+    trainee.typed("NEW").press("ENT");
+    let order = orders.try_recv().unwrap();
+    assert_eq!(order.deed, TransferDeed::Read("NEW.MP".to_owned()));
+    assert_eq!(
+        (order.files, order.mode, order.kind),
+        (TransferFiles::Lists, "fe1", "MP")
+    );
+    news(&mut trainee, "ended complete");
+    trainee.press("END DOWN ENT");
+    assert!(shows(&mut trainee, "PARAMETERS.MP"));
+    trainee.press("ENT");
+    let order = orders.try_recv().unwrap();
+    assert_eq!(order.deed, TransferDeed::Write(vec!["PARAMETERS.MP".to_owned()]));
+    news(&mut trainee, "ended complete");
+    // A list that came in the place of the one in force goes into effect when the editor is left.
+    let list = trainee.file("parameters.mp");
+    trainee.write(
+        "parameters.mp",
+        &list.replace("MP1020.1 : 3000", "MP1020.1 : 700"),
+    );
+    trainee.press("END END END").wait(0.1);
+    assert_eq!(
+        trainee.station.control().first().edited_list().get(1020, 1),
+        Some(700.0)
+    );
+}
+
+/// In commissioning, too: the list comes over the data interface.
+#[test]
+fn a_list_comes_over_the_data_interface_while_commissioning() {
+    let mut trainee = with(|_| "MP10 : x\n".to_owned());
+    let orders = trainee.station.transfer_orders();
+    news(&mut trainee, "connected 0");
+    trainee
+        .press("EXT DOWN DOWN DOWN ENT")
+        .typed("PARAMETERS")
+        .press("ENT");
+    let order = orders.try_recv().unwrap();
+    assert_eq!(order.deed, TransferDeed::Read("PARAMETERS.MP".to_owned()));
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/mill/parameters.mp");
+    std::fs::copy(shipped, trainee.folder().join("parameters.mp")).unwrap();
+    news(&mut trainee, "received PARAMETERS.MP");
+    news(&mut trainee, "ended complete");
+    trainee.press("END END END");
+    trainee.ready();
+}
+
+/// BACKUP DATA sends all files as the one file $BACKUP; RESTORE DATA makes the machine what it was then [000:463-467].
+#[test]
+fn everything_is_backed_up_and_restored() {
+    let mut trainee = Trainee::at("mill");
+    let orders = trainee.station.transfer_orders();
+    trainee.ready();
+    news(&mut trainee, "connected 0");
+    let (list, programs) = (trainee.file("parameters.mp"), trainee.file("programs/CIRCLE.H"));
+    code(&mut trainee, "95148");
+    trainee.press("MOD");
+    trainee.soft("BACKUP DATA");
+    let order = orders.try_recv().unwrap();
+    assert_eq!(order.files, TransferFiles::Backup);
+    assert_eq!(order.deed, TransferDeed::Write(vec!["$BACKUP.A".to_owned()]));
+    let text = trainee.file("programs/$BACKUP.A");
+    news(&mut trainee, "sent $BACKUP.A");
+    news(&mut trainee, "ended complete");
+    assert!(!trainee.has("programs/$BACKUP.A"));
+    // Every kind of file is in it, and it reads as a backup.
+    for path in [
+        "parameters.mp",
+        "plc/MAIN.PLC",
+        "plc/MAIN.ER1",
+        "programs/CIRCLE.H",
+        "tools.tsv",
+        "state/control.toml",
+    ] {
+        assert!(
+            text.lines()
+                .any(|line| line.starts_with("FILE ") && line.ends_with(path)),
+            "{path}"
+        );
+    }
+    let elsewhere = trainee.folder().join("elsewhere");
+    let mut restore = Restore::new(&elsewhere);
+    std::fs::create_dir(&elsewhere).unwrap();
+    text.lines().for_each(|line| restore.line(line).unwrap());
+    assert!(restore.commit().unwrap() > 10);
+    // Software replacement: other files, then RESTORE DATA.
+    trainee.write(
+        "parameters.mp",
+        &list.replace("MP1020.1 : 3000", "MP1020.1 : 700"),
+    );
+    trainee.write("programs/CIRCLE.H", "BEGIN PGM CIRCLE MM\nEND PGM CIRCLE MM\n");
+    trainee.press("END END MOD");
+    trainee.soft("RESTORE DATA");
+    trainee.press("ENT");
+    let order = orders.try_recv().unwrap();
+    assert_eq!(order.deed, TransferDeed::Read("$BACKUP.A".to_owned()));
+    trainee.write("programs/$BACKUP.A", &text);
+    news(&mut trainee, "received $BACKUP.A");
+    news(&mut trainee, "ended complete");
+    assert_eq!(trainee.file("parameters.mp"), list);
+    assert_eq!(trainee.file("programs/CIRCLE.H"), programs);
+    assert!(!trainee.has("programs/$BACKUP.A"));
+    trainee.ready();
+    // A damaged backup changes nothing, and is said.
+    code(&mut trainee, "95148");
+    trainee.press("MOD");
+    trainee.soft("RESTORE DATA");
+    trainee.press("ENT");
+    trainee.write("programs/$BACKUP.A", &text[..text.len() / 2]);
+    news(&mut trainee, "received $BACKUP.A");
+    news(&mut trainee, "ended complete");
+    assert!(!trainee.messages().is_empty());
+    assert_eq!(trainee.file("parameters.mp"), list);
+    assert!(!trainee.station.control().is_off());
+}
