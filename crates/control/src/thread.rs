@@ -227,6 +227,7 @@ impl Tapping {
             };
             site.spindle.lead(None);
         }
+        site.spindle.monitor_movement(beside_max_deg(track, site));
         let window = rigid.then(|| window_mm(site));
         let element = track.path.element();
         for unit in site.axes.iter_mut() {
@@ -285,6 +286,17 @@ pub(crate) fn is_in_position(track: &Track, site: &Site) -> bool {
     let mut axes = site.axes.iter().filter(|unit| unit.mover == Mover::Path);
     missing <= window
         && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
+}
+
+/// So far the spindle may turn beside what it is led, degrees, before that is a fault: as far as takes the tool axis out of its
+/// place by MP1110. In an EMERGENCY STOP it runs out, and where the PLC suppresses the monitoring of the tool axis there is
+/// none (inferred).
+fn beside_max_deg(track: &Track, site: &Site) -> Option<f64> {
+    let element = track.path.element().filter(|_| track.path.is_coupled())?;
+    let unit = site.axes.at(site.chain.offsets.tool_axis)?;
+    let monitored = site.now.ready && site.now.loops_closed && unit.servo.is_monitored();
+    let pitch = element.thread().filter(|_| monitored)?.pitch_mm;
+    Some(unit.parameters.monitoring.standstill_mm / pitch * 360.0)
 }
 
 /// How far the spindle is from where it is held, in mm of the thread.

@@ -100,3 +100,33 @@ fn a_tool_that_ran_out_of_its_thread_goes_back_to_its_end() {
     assert_eq!(rig.messages(), [""; 0]);
     assert!((observe(&rig, "S.angle") - stands).abs() < 5.0);
 }
+
+/// What is wrong with the spindle in a thread is a GROSS POSITIONING ERROR C of S: the loops open, and the tool axis is no deeper than
+/// the thread until then. By the movement monitoring that is MP1110 = 0.2 mm beside what half as fast again as the thread, for
+/// 0.1 s and on the ramp of 1667 rpm/s, would be, and what Z needs to stop.
+#[test]
+fn a_spindle_that_does_not_do_what_it_is_told_ends_the_thread() {
+    for fault in ["drive S runaway", "drive S reversed", "encoder S stuck"] {
+        let mut rig = thread();
+        rig.until(20.0, "it is half way", |rig| observe(rig, "Z.actual") < 403.0);
+        let from = observe(&rig, "Z.actual");
+        rig.event(&format!("fault {fault}"));
+        rig.until(2.0, "it is seen", |rig| !rig.messages().is_empty());
+        assert_eq!(rig.messages(), ["GROSS POSITIONING ERROR S C"], "{fault}");
+        rig.seconds(1.0);
+        let (v, ramp) = (RPM * PITCH / 60.0, 1667.0 * PITCH / 60.0);
+        let allowed = 1.5 * v * (0.1 + 0.5 * v / ramp) + 0.2 + 0.3;
+        let way = (observe(&rig, "Z.actual") - from).abs();
+        assert!(way < allowed, "{fault}: {way} of {allowed}");
+    }
+}
+
+/// The encoder of the spindle loses its signal in the thread: MEASURING SYSTEM DEFECTIVE A of S, by bit 5 of MP31 [000:3310-3318].
+#[test]
+fn an_encoder_of_the_spindle_without_signal_ends_the_thread() {
+    let mut rig = thread();
+    rig.seconds(0.5);
+    rig.event("fault encoder S amplitude");
+    rig.seconds(0.05);
+    assert_eq!(rig.messages(), ["MEASURING SYSTEM S DEFECTIVE A"]);
+}

@@ -222,7 +222,8 @@ impl Leading {
         // What brings tool and spindle apart couples them anew as they are then.
         let follows =
             |watch: AxisWatch| watch.closed && !watch.halted && watch.beside == 0.0 && watch.fault.is_none();
-        let coupled = channel.follows_spindle() && channel.watch().all(follows);
+        // Axes that were taken over beside the thread are led back to it first; meanwhile it does not go on.
+        let coupled = channel.follows_spindle() && !channel.restores() && channel.watch().all(follows);
         let element = channel.element().filter(|_| coupled);
         let Some((element, thread)) = element.and_then(|element| Some((element, element.thread()?))) else {
             self.thread = None;
