@@ -416,7 +416,7 @@ impl ProgramRun {
         if possible {
             site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, true);
             if !coupled {
-                site.axes.release(|mover| mover == Mover::Path);
+                site.axes.leave_path(self.probe.is_on());
             }
         }
         possible
