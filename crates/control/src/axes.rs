@@ -332,6 +332,15 @@ impl OwnAxes<'_> {
         }
     }
 
+    /// The operator may move those that a path has led. Where a probe has led them no path says, and so it is remembered:
+    /// RESTORE POSITION brings them back to it.
+    pub fn leave_path(&mut self, probed: bool) {
+        for unit in self.iter_mut().filter(|unit| unit.mover == Mover::Path && probed) {
+            unit.left_at.get_or_insert(unit.nominal);
+        }
+        self.release(|mover| mover == Mover::Path);
+    }
+
     /// Those that something moves belong to nobody.
     pub fn release(&mut self, moved_by: impl Fn(Mover) -> bool) {
         for unit in self.iter_mut().filter(|unit| moved_by(unit.mover)) {

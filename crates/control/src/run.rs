@@ -420,7 +420,7 @@ impl ProgramRun {
         if possible {
             site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, true);
             if !coupled {
-                site.axes.release(|mover| mover == Mover::Path);
+                site.axes.leave_path(self.probe.is_on());
             }
         }
         possible
@@ -449,7 +449,8 @@ impl ProgramRun {
             site.chain.superimposed.stand();
             return;
         }
-        if self.probe.is_held(&site.axes) || self.tapping.holds(&self.track, site) {
+        let runs = self.progress.goes_on();
+        if self.probe.is_held(&site.axes) || self.tapping.holds(&mut self.track, runs, site) {
             // Without feed enable the axes stand at once [000:5352].
             site.chain.superimposed.stand();
             self.track.halt();
@@ -457,11 +458,10 @@ impl ProgramRun {
             return;
         }
         if self.probe.is_on() {
-            let probed = self.probe.moves(self.progress.goes_on(), site, measured);
+            let probed = self.probe.moves(runs, site, measured);
             self.take_probed(probed, site);
             return;
         }
-        self.tapping.couple(&mut self.track, site);
         let settled = self.is_in_position(site);
         let wear = Wear::of(site.tools, site.magazine).message();
         let drive = Driving {

@@ -325,7 +325,7 @@ impl SpindleUnit {
         self.by_program.switch_off();
     }
 
-    /// A fault of its encoder.
+    /// A fault of its encoder, or of its movement in a thread.
     pub fn fault(&self) -> Option<Fault> {
         self.servo.fault()
     }
@@ -366,6 +366,11 @@ impl SpindleUnit {
         if let Some(angle) = angle_deg {
             self.servo.lead(angle);
         }
+    }
+
+    /// In a thread it may turn so far beside what it is led, degrees; `None` where nothing follows it.
+    pub fn monitor_movement(&mut self, most_deg: Option<f64>) {
+        self.servo.monitor_movement(most_deg);
     }
 
     /// The ramp of M03, M04 and M05 while cycle 2 taps, `None` otherwise: MP3410.2, or flatter, so that it stands

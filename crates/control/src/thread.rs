@@ -14,7 +14,7 @@
 
 use bahn_exchange::signal;
 use bahn_motion::{Lead, Master};
-use bahn_path::{At, AxisSet, OverrideLaw, PathElement, Thread};
+use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Thread};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
@@ -144,18 +144,21 @@ impl Tapping {
     /// The axes cannot move along the path; or they can again, and in a thread wait for their spindle to stand, too. One that
     /// stands where the path has led it goes on; one that ran out without its drive has come apart from the axis
     /// (inferred): to go after it would be a jump.
-    pub fn holds(&mut self, track: &Track, site: &Site) -> bool {
+    pub fn holds(&mut self, track: &mut Track, runs: bool, site: &mut Site) -> bool {
         if !track.is_able(&site.axes) {
             self.held = track.path.is_coupled();
             return true;
         }
         let thread = track.path.element().and_then(PathElement::thread);
-        let Some(thread) = thread.filter(|_| self.held) else {
-            return false;
-        };
-        self.held = site.spindle.state().actual_rpm.abs() >= STANDS_RPM;
-        self.apart |= !self.held && missing_mm(thread, site) > window_mm(site);
-        self.held
+        if let Some(thread) = thread.filter(|_| self.held) {
+            self.held = site.spindle.state().actual_rpm.abs() >= STANDS_RPM;
+            self.apart |= !self.held && missing_mm(thread, site) > window_mm(site);
+        }
+        if self.held {
+            return true;
+        }
+        self.couple(track, runs, site);
+        !track.is_able(&site.axes)
     }
 
     /// The axis goes where the spindle turns.
@@ -163,9 +166,9 @@ impl Tapping {
         track.path.is_coupled() && !self.held && !self.apart
     }
 
-    /// Couples them as they stand, once they can move again. The tool axis does not go back to where the path
-    /// has left it.
-    pub fn couple(&mut self, track: &mut Track, site: &mut Site) {
+    /// Couples them as they stand, once they can move again: the tool axis does not go back to where the path has left
+    /// it. A tool that is out of the thread goes back to where that begins: nothing couples it there.
+    fn couple(&mut self, track: &mut Track, runs: bool, site: &mut Site) {
         let sound = site
             .axes
             .iter()
@@ -177,22 +180,34 @@ impl Tapping {
         let Some(element) = track.path.element() else {
             return;
         };
+        let tool_axis = site.chain.offsets.tool_axis;
+        let mut here = site.axes.programmed_position();
+        for unit in site.axes.iter().filter(|unit| unit.is_free()) {
+            here[unit.axis] = unit.servo.actual_mm();
+        }
+        let here = site.chain.to_path(&here);
         let mut at = track.path.position();
-        let here = site.here();
         for unit in site.axes.iter().filter(|unit| element.moves_axis(unit.axis)) {
             at[unit.axis] = here[unit.axis];
         }
+        at[tool_axis] = at[tool_axis].min(top(element, tool_axis));
         let [_, now] = site.spindle.angles_deg(0.0);
         let own = site.axes.iter().map(|unit| unit.axis);
         let moved: AxisSet = own.filter(|axis| element.moves_axis(*axis)).collect();
         track.path.couple_again(&at, now);
-        // In a tilted plane axes that ran on are beside the thread, too: NC start leads them back to it.
+        // In a tilted plane axes that ran on are beside the thread, too. A run that waits for its feed enable only leads
+        // them back to it before it goes on, an interrupted one with NC start.
         let nominal = site.chain.to_axes(&track.path.position());
         for unit in site.axes.iter_mut().filter(|unit| moved.contains(unit.axis)) {
             let actual = unit.servo.actual_mm();
-            unit.stand(actual);
-            let beside = (nominal[unit.axis] - actual).abs() > BESIDE_MM;
-            unit.left_at = beside.then_some(nominal[unit.axis]);
+            if runs {
+                unit.stand(nominal[unit.axis]);
+                unit.go_back();
+            } else {
+                unit.stand(actual);
+                let beside = (nominal[unit.axis] - actual).abs() > BESIDE_MM;
+                unit.left_at = beside.then_some(nominal[unit.axis]);
+            }
         }
     }
 
@@ -212,6 +227,7 @@ impl Tapping {
             };
             site.spindle.lead(None);
         }
+        site.spindle.monitor_movement(beside_max_deg(track, site));
         let window = rigid.then(|| window_mm(site));
         let element = track.path.element();
         for unit in site.axes.iter_mut() {
@@ -248,8 +264,12 @@ pub(crate) fn is_in_thread(track: &Track, site: &Site) -> bool {
     let Some(element) = track.path.element().filter(|_| track.path.is_coupled()) else {
         return false;
     };
-    let out = element.start[axis].max(element.end[axis]);
-    track.path.position()[axis] < out - window_mm(site)
+    track.path.position()[axis] < top(element, axis) - window_mm(site)
+}
+
+/// Where the tool is out of the thread.
+fn top(element: &PathElement, tool_axis: Axis) -> f64 {
+    element.start[tool_axis].max(element.end[tool_axis])
 }
 
 /// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128]. While the loops are
@@ -266,6 +286,17 @@ pub(crate) fn is_in_position(track: &Track, site: &Site) -> bool {
     let mut axes = site.axes.iter().filter(|unit| unit.mover == Mover::Path);
     missing <= window
         && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
+}
+
+/// So far the spindle may turn beside what it is led, degrees, before that is a fault: as far as takes the tool axis out of its
+/// place by MP1110. In an EMERGENCY STOP it runs out, and where the PLC suppresses the monitoring of the tool axis there is
+/// none (inferred).
+fn beside_max_deg(track: &Track, site: &Site) -> Option<f64> {
+    let element = track.path.element().filter(|_| track.path.is_coupled())?;
+    let unit = site.axes.at(site.chain.offsets.tool_axis)?;
+    let monitored = site.now.ready && site.now.loops_closed && unit.servo.is_monitored();
+    let pitch = element.thread().filter(|_| monitored)?.pitch_mm;
+    Some(unit.parameters.monitoring.standstill_mm / pitch * 360.0)
 }
 
 /// How far the spindle is from where it is held, in mm of the thread.

@@ -16,6 +16,14 @@ fn plc() -> String {
     format!("{ACKNOWLEDGE}       L     M2503\n       AN    I20\n       R     M2503")
 }
 
+/// The same, and contact B moves Z up in MANUAL OPERATION (M2018).
+fn plc_by_hand() -> String {
+    format!(
+        "{}\n       L     I21\n       A     M2018\n       = M2460\n       =N M2476",
+        plc()
+    )
+}
+
 /// The upper face of the box from X 80 to 120 and Y 0 to 100 is at Z 0. Three lines of 10 mm, 1 mm apart.
 const FACE: &str = "TOOL CALL 0 Z S0
 TCH PROBE 5.0 RANGE
@@ -599,4 +607,39 @@ fn no_cycle_of_a_scan_allocates() {
 
 fn within(actual: f64, expected: f64, window: f64) {
     assert!((actual - expected).abs() <= window, "{actual} is not {expected}");
+}
+
+/// In the second of three lines the scan is interrupted, and the operator leads the stylus away: RESTORE POSITION and NC start bring it back to
+/// where it was, not to where the scan began, and the lines are completed.
+#[test]
+fn an_interrupted_scan_goes_on_where_it_was() {
+    let mut rig = rig_of_bench(bench(&plc_by_hand()).mp("7680=%0000010"), FACE);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |_, kept| {
+        let last = kept.points.last();
+        last.is_some_and(|point| (20.9..21.1).contains(&point[1]) && point[0] < 91.0)
+    });
+    rig.event("key NC_STOP tap");
+    kept.until(&mut rig, 1.0, |rig, _| {
+        rig.control.snapshot().run == RunState::Interrupted
+    });
+    rig.seconds(0.5);
+    let place = |rig: &Rig| ['X', 'Y', 'Z'].map(|letter| nominal(rig, letter));
+    let left = place(&rig);
+    rig.command("manual-operation");
+    rig.event("key B press");
+    rig.seconds(0.5);
+    rig.event("key B release");
+    rig.seconds(0.5);
+    assert!(nominal(&rig, 'Z') > left[2] + 5.0, "{left:?} {:?}", place(&rig));
+    rig.command("restore-position");
+    rig.start();
+    rig.seconds(4.0);
+    assert_eq!(place(&rig), left);
+    rig.start();
+    kept.until_the_end(&mut rig);
+    kept.covers_the_face();
+    assert_eq!((kept.begun, kept.complete, kept.broken), (1, 1, 0));
+    assert_eq!(rig.messages(), [""; 0]);
 }

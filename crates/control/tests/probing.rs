@@ -13,6 +13,14 @@ fn plc() -> String {
     format!("{ACKNOWLEDGE}       L     M2503\n       AN    I20\n       R     M2503")
 }
 
+/// The same, and contact B moves Z up in MANUAL OPERATION (M2018).
+fn plc_by_hand() -> String {
+    format!(
+        "{}\n       L     I21\n       A     M2018\n       = M2460\n       =N M2476",
+        plc()
+    )
+}
+
 /// The solid begins at machine X 80; ball radius 2; touching in +X the ball's centre stands at 78. MP6140 = 5
 /// keeps the centre at 75 before.
 const PROGRAM: &str = "TCH PROBE 0.0 REF. PLANE Q5 X+\nTCH PROBE 0.1 X+80 Y+50 Z-20\nL X+50 R0 F6000";
@@ -273,4 +281,53 @@ fn a_guarded_probe_limits_every_feed() {
     rig.start();
     let speed = fastest(&mut rig, &|rig| (nominal(rig, 'X') - 30.0).abs() < 1e-6);
     assert!((speed - 600.0).abs() < 1.0, "{speed}");
+}
+
+/// On the way to the surface the probing is interrupted, and the operator leads the axes away: RESTORE POSITION and NC start bring
+/// them back to where the probing was, not to its start, and the next NC start goes on from there. No axis is commanded
+/// faster than its rapid traverse of 20 m/min.
+#[test]
+fn an_interrupted_probing_goes_on_where_it_was() {
+    let mut rig = rig_of(bench(&plc_by_hand()).mp("7680=%0000010"), PROGRAM);
+    rig.start();
+    rig.until(10.0, "it searches", |rig| nominal(rig, 'X') > 76.0);
+    rig.event("key NC_STOP tap");
+    rig.seconds(0.5);
+    let place = |rig: &Rig| ['X', 'Z'].map(|letter| nominal(rig, letter));
+    let left = place(&rig);
+    let mut before = left;
+    let mut follow = |rig: &mut Rig, seconds: f64| {
+        for _ in 0..(seconds / 0.003) as u32 {
+            rig.cycle();
+            let now = place(rig);
+            let way = (now[0] - before[0]).abs().max((now[1] - before[1]).abs());
+            assert!(
+                way <= 20_000.0 / 60.0 * 0.003,
+                "a jump from {before:?} to {now:?}"
+            );
+            before = now;
+        }
+    };
+    rig.command("manual-operation");
+    rig.event("key B press");
+    follow(&mut rig, 0.5);
+    rig.event("key B release");
+    follow(&mut rig, 0.5);
+    assert!(place(&rig)[1] > left[1] + 5.0, "{left:?} {:?}", place(&rig));
+    rig.command("restore-position");
+    rig.start();
+    follow(&mut rig, 3.0);
+    assert_eq!(place(&rig), left);
+    rig.start();
+    follow(&mut rig, 0.75);
+    // The end of the program clears it.
+    let q5 = |rig: &Rig| {
+        let remembered = rig.control.remember().q;
+        let found = remembered.iter().find(|(number, _)| *number == 5);
+        found.map(|(_, value)| *value)
+    };
+    rig.until(20.0, "the touch", |rig| q5(rig).is_some());
+    assert!((q5(&rig).unwrap() - 80.0).abs() < 0.004, "{:?}", q5(&rig));
+    rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.messages(), [""; 0]);
 }

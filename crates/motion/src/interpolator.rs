@@ -43,7 +43,7 @@ pub struct Interpolator<E> {
     phase: Phase,
     /// Path speed, mm/s.
     speed: f64,
-    /// Way to the end of the current element, mm.
+    /// Way to the end of the current element, mm; negative where a path that follows the spindle stands beyond it.
     rest: f64,
     position: Position,
     /// The placement in which that is: that of the element that was begun last.
@@ -307,6 +307,9 @@ impl<E> Interpolator<E> {
 
     /// Drives along the current element. What the path does when the time is spent before its end.
     fn drive_along(&mut self, drive: &Drive, time: &mut f64) -> Option<State> {
+        if let Some(state) = self.drive_in(drive, *time) {
+            return Some(state);
+        }
         if let Some(state) = self.drive_back(drive, *time) {
             return Some(state);
         }
@@ -393,6 +396,25 @@ impl<E> Interpolator<E> {
         let (speed, covered) = master::go_back(item, self.speed, item.length - self.rest, limit, time);
         (self.speed, self.rest) = (speed, item.length - covered);
         Some(if speed > 0.0 { State::Moving } else { State::Held })
+    }
+
+    /// Goes back for a time to the end of the current element, beyond which spindle and axis have come to stand; `None` when
+    /// it is not beyond.
+    fn drive_in(&mut self, drive: &Drive, time: f64) -> Option<State> {
+        let item = self.ring.current()?;
+        if self.rest >= 0.0 {
+            return None;
+        }
+        self.backward = true;
+        let held = drive.hold && !drive.back;
+        let limit = if held { 0.0 } else { self.ring.feed() };
+        let (speed, beyond) = master::go_back(item, self.speed, -self.rest, limit, time);
+        (self.speed, self.rest) = (speed, 0.0 - beyond);
+        Some(if speed > 0.0 || !held {
+            State::Moving
+        } else {
+            State::Held
+        })
     }
 
     /// Goes on behind the current element, unless the path has to wait there. What it waits for.
@@ -499,7 +521,7 @@ impl<E> Interpolator<E> {
     pub fn release(&mut self) {
         match self.phase {
             Phase::Gate(Gate::Start) => self.phase = Phase::Move,
-            Phase::Gate(Gate::End) if self.rest > 0.0 => self.phase = Phase::Move,
+            Phase::Gate(Gate::End) if self.rest != 0.0 => self.phase = Phase::Move,
             Phase::Gate(Gate::End) => self.phase = Phase::Done,
             _ => self.released = true,
         }
@@ -628,10 +650,11 @@ impl<E> Interpolator<E> {
             return;
         };
         let (way, place) = coupling.renew(item, position, angle_deg);
-        let rest = (item.length - way).clamp(0.0, item.length);
+        // Beyond its ends, too: what is told the spindle begins where it stands.
+        let rest = item.length - way;
         match self.phase {
-            // Its end was reached in nominal values alone, the axis that follows the spindle is before it.
-            Phase::Dwell(_) | Phase::Finish | Phase::Done if rest > 0.0 => {
+            // Its end was reached in nominal values alone, the axis that follows the spindle is elsewhere.
+            Phase::Dwell(_) | Phase::Finish | Phase::Done if rest != 0.0 => {
                 (self.phase, self.rest) = (Phase::Move, rest);
             }
             Phase::Move | Phase::Gate(Gate::End) => self.rest = rest,

@@ -267,6 +267,67 @@ fn coupled_again_as_they_stand() {
     assert!((deepest + DEPTH).abs() < 1e-9, "{deepest}");
 }
 
+/// Spindle and axis have come to stand beyond an end of the thread: the path goes back to it as they are coupled, on the ramp of
+/// the spindle, and on from there. Nothing is told the spindle that is elsewhere than it stands: 50 mm/s² over a cycle of
+/// 3 ms are 0.15 mm/s, and 0.0002 mm of the thread.
+#[test]
+fn beyond_its_ends_a_thread_begins_where_it_stands() {
+    for (element, here_z) in [(0, -DEPTH - 2.0), (0, 2.0), (1, 2.0), (1, -DEPTH - 2.0)] {
+        let mut bench = Bench::new(&thread(), 0);
+        bench.until(|bench, cycle| {
+            let down = bench.path.element().is_some_and(|e| e.end[Axis::Z] < 0.0);
+            cycle.position[Axis::Z] < -15.0 && down == (element == 0)
+        });
+        bench.drive.hold = true;
+        bench.until(|_, cycle| cycle.state == State::Held);
+        let mut here = bench.path.position();
+        here[Axis::Z] = here_z;
+        bench.told.push(100.0);
+        bench.path.couple_again(&here, 100.0);
+        // By the axis key it goes back to the nearer end at most, and nowhere from before its start.
+        let beyond = (element == 0) == (here_z < 0.0);
+        bench.drive.back = true;
+        for _ in 0..10 {
+            let cycle = bench.cycle();
+            let moved = height(bench.angle() - 100.0).abs();
+            assert!(
+                moved < 0.5 * 50.0 * 0.03 * 0.03 + 1e-6,
+                "{element} {here_z}: {moved}"
+            );
+            assert_eq!(cycle.state == State::Moving, beyond, "{element} {here_z}");
+        }
+        bench.drive.back = false;
+        bench.until(|_, cycle| cycle.state == State::Held);
+        bench.drive.hold = false;
+        let (mut told, mut speed, mut deepest) = (bench.angle(), 0.0, here_z.min(0.0));
+        let end = bench.until(|bench, cycle| {
+            if let Some(lead) = cycle.lead {
+                let now = (height(lead.angle_deg) - height(told)) / 0.003;
+                let change = f64::abs(now - speed);
+                assert!(
+                    change <= 50.0 * 0.003 + 1e-6,
+                    "{element} {here_z}: {speed} {now} at {}",
+                    cycle.position[Axis::Z]
+                );
+                (told, speed) = (lead.angle_deg, now);
+            }
+            if bench.path.is_coupled() {
+                let expected = here_z + height(bench.drive.master.actual_deg - 100.0);
+                assert!((cycle.position[Axis::Z] - expected).abs() < 1e-9);
+            }
+            deepest = deepest.min(cycle.position[Axis::Z]);
+            cycle.position[Axis::X] > 0.0
+        });
+        assert!(end.position[Axis::Z].abs() < 1e-9, "{element} {here_z}");
+        let expected = if element == 0 {
+            here_z.min(-DEPTH)
+        } else {
+            here_z.min(0.0)
+        };
+        assert!((deepest - expected).abs() < 1e-9, "{element} {here_z}: {deepest}");
+    }
+}
+
 /// The path has reached the end of a thread in nominal values, and its function is output, when the drives are taken away from a spindle
 /// that lags behind: what is left of the thread is driven again, from a standstill, and the function is not output again.
 #[test]

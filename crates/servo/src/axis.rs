@@ -458,6 +458,11 @@ impl Axis {
         self.monitored = monitored;
     }
 
+    /// Its monitoring is not suppressed.
+    pub fn is_monitored(&self) -> bool {
+        self.monitored
+    }
+
     /// Chooses the method of positioning. In motion the velocity goes on without a jump.
     pub fn set_method(&mut self, method: Method) {
         if method != self.method {

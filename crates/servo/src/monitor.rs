@@ -8,10 +8,10 @@ use crate::timing::{OUTPUT_VOLTS, Timing};
 
 /// Time over which the way is compared with the calculated one, s (inferred: "several servo cycles"
 /// [000:5270]).
-const MOVEMENT_WINDOW_S: f64 = 0.1;
+pub(crate) const MOVEMENT_WINDOW_S: f64 = 0.1;
 /// Part of the calculated way by which the way may differ (inferred): a drive that accelerates behind its
 /// nominal value stays below it.
-const MOVEMENT_TOLERANCE: f64 = 0.5;
+pub(crate) const MOVEMENT_TOLERANCE: f64 = 0.5;
 
 /// What a servo step shows.
 pub(crate) struct Sample {

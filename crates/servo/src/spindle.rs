@@ -2,6 +2,7 @@
 
 mod encoder;
 mod lead;
+mod movement;
 mod orientation;
 pub mod settings;
 mod speed;
@@ -10,11 +11,12 @@ mod speed_code;
 use settings::{Gear, SpindleSettings};
 
 use crate::characteristic::KV_PER_MIN;
-use crate::fault::Fault;
+use crate::fault::{Fault, GrossFault};
 use crate::plant::Encoder;
 use crate::timing::{OUTPUT_VOLTS, Timing};
 use encoder::SpindleEncoder;
 use lead::Lead;
+use movement::Movement;
 use orientation::{Dynamics, Orientation, Phase};
 
 pub use speed_code::SpeedCode;
@@ -99,6 +101,9 @@ pub struct Spindle {
     enabled: bool,
     opens: bool,
     lead: Lead,
+    movement: Movement,
+    /// So far it may turn beside what it is led, degrees.
+    beside_max_deg: Option<f64>,
     /// The nominal value on its ramp, before offset and converter.
     ramp_volts: f64,
     goal_volts: f64,
@@ -125,6 +130,8 @@ impl Spindle {
             enabled: true,
             opens: false,
             lead: Lead::new(&settings, &timing),
+            movement: Movement::default(),
+            beside_max_deg: None,
             ramp_volts: 0.0,
             goal_volts: 0.0,
             offset_volts: 0.0,
@@ -287,6 +294,11 @@ impl Spindle {
         }
     }
 
+    /// Monitors a spindle that is led: it may turn so far beside what it is told, degrees. `None` where it need not follow.
+    pub fn monitor_movement(&mut self, most_deg: Option<f64>) {
+        self.beside_max_deg = most_deg;
+    }
+
     /// The angle where the loop holds the spindle, on the scale of [`Spindle::turned_deg`]; without a loop
     /// where it is.
     pub fn held_deg(&self) -> f64 {
@@ -330,6 +342,7 @@ impl Spindle {
             self.lead
                 .step(encoder.turned_deg(), encoder.rpm(), slope, &self.timing);
         }
+        self.monitor();
         self.goal_volts = self.goal();
         let ramps = &self.settings.ramps;
         let ramp = match (self.mode, self.ramp) {
@@ -357,6 +370,23 @@ impl Spindle {
         let by_speed = matches!(self.mode, Mode::Speed(_) | Mode::Jog(_));
         self.settled = by_speed && !self.on_ramp();
         self.volts
+    }
+
+    /// Movement monitoring while it is led: where it turns farther beside that than it may, that is a gross positioning error.
+    fn monitor(&mut self) {
+        let actual = self.encoder.rpm() * 360.0;
+        let most = self
+            .beside_max_deg
+            .filter(|_| self.mode == Mode::Lead && self.enabled);
+        let Some(most) = most else {
+            self.movement.begin(actual);
+            return;
+        };
+        let ramp = self.deceleration(self.settings.ramps.rigid_v_ms);
+        let told = self.lead.velocity_deg_min();
+        if self.movement.step(told, actual, ramp, &self.timing) > most {
+            self.fault = self.fault.or(Some(Fault::Gross(GrossFault::Movement)));
+        }
     }
 
     /// The voltage that the ramp goes to.
@@ -453,9 +483,7 @@ impl Spindle {
     }
 
     fn dynamics(&self, rpm: f64) -> Dynamics {
-        let gear = self.gear();
-        let ramp_v_min = self.settings.ramps.orientation_v_ms * 60_000.0;
-        let deceleration = ramp_v_min * gear.rated_rpm * 360.0 / gear.rated_volts;
+        let deceleration = self.deceleration(self.settings.ramps.orientation_v_ms);
         Dynamics {
             speed: rpm * 360.0,
             slope: self.slope(),
@@ -465,6 +493,12 @@ impl Spindle {
                 f64::INFINITY
             },
         }
+    }
+
+    /// How fast a ramp, V/ms, changes the speed in the gear, degrees/min²; 0 without a ramp.
+    fn deceleration(&self, ramp_v_ms: f64) -> f64 {
+        let gear = self.gear();
+        ramp_v_ms * 60_000.0 * gear.rated_rpm * 360.0 / gear.rated_volts
     }
 
     /// Sign of the voltage that turns the spindle as M03.
@@ -553,8 +587,8 @@ impl Spindle {
         self.encoder.rpm()
     }
 
-    /// What the monitoring of the encoder has found: amplitude (MP31 bit 5) or edges (MP32 bit 5) of its signals
-    /// [000:3290-3328].
+    /// What monitoring has found: amplitude (MP31 bit 5) or edges (MP32 bit 5) of the signals of its encoder
+    /// [000:3290-3328], in a thread that it turns otherwise than it is told.
     pub fn fault(&self) -> Option<Fault> {
         self.fault
     }

@@ -65,7 +65,8 @@ impl Coupling {
     }
 }
 
-/// Goes back along an element for a time, not faster than a limit, mm/s: the speed and the way that is covered then.
+/// Goes back along an element for a time, not faster than a limit, mm/s: the speed and the way that is covered then. Before the
+/// start of the element it stays where it is.
 pub(super) fn go_back(item: &Item, speed: f64, covered: f64, limit: f64, time: f64) -> (f64, f64) {
     let ramp = Ramp {
         speed,
@@ -76,7 +77,7 @@ pub(super) fn go_back(item: &Item, speed: f64, covered: f64, limit: f64, time: f
     };
     match ramp.drive(time) {
         Driven::OnTheWay { speed, rest } => (speed, rest),
-        Driven::Arrived { .. } => (0.0, 0.0),
+        Driven::Arrived { .. } => (0.0, covered.min(0.0)),
     }
 }
 

@@ -1,0 +1,47 @@
+//! Movement monitoring of a spindle that is led: whether it turns as it is told.
+//!
+//! The manual monitors axes alone [000:5266-5287]. In a thread the tool axis goes wherever the spindle turns, and so does what
+//! a drive or an encoder does wrong: it is monitored there, too (inferred). Its loop is open [000:6122], and how much the drive
+//! lags nobody knows; but a drive without overshoot turns no faster than the fastest that it was told lately, and no slower
+//! than the slowest.
+
+use crate::monitor::{MOVEMENT_TOLERANCE, MOVEMENT_WINDOW_S};
+use crate::timing::Timing;
+
+/// Speeds between which a sound spindle turns, degrees/min, and how far it is beside them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Movement {
+    least: f64,
+    greatest: f64,
+    beside_deg: f64,
+}
+
+impl Movement {
+    /// Begins anew with a spindle that turns at a speed, degrees/min.
+    pub(super) fn begin(&mut self, actual: f64) {
+        (self.least, self.greatest, self.beside_deg) = (actual, actual, 0.0);
+    }
+
+    /// A servo step with the speed that is told and the actual one, degrees/min. How far the spindle has turned beside what
+    /// it was told, degrees: a time constant of [`MOVEMENT_WINDOW_S`], the `ramp` of rigid tapping (degrees/min², 0 for none) and
+    /// [`MOVEMENT_TOLERANCE`] are its own.
+    pub(super) fn step(&mut self, told: f64, actual: f64, ramp: f64, timing: &Timing) -> f64 {
+        let step_min = timing.step_min();
+        let part = step_min * 60.0 / MOVEMENT_WINDOW_S;
+        let most = if ramp > 0.0 {
+            ramp * step_min
+        } else {
+            f64::INFINITY
+        };
+        self.greatest = told.max(self.greatest - ((self.greatest - told) * part).min(most));
+        self.least = told.min(self.least + ((told - self.least) * part).min(most));
+        let least = self.least - self.least.abs() * MOVEMENT_TOLERANCE;
+        let greatest = self.greatest + self.greatest.abs() * MOVEMENT_TOLERANCE;
+        let beside = actual - actual.clamp(least, greatest);
+        self.beside_deg = match beside == 0.0 {
+            true => 0.0,
+            false => self.beside_deg + beside * step_min,
+        };
+        self.beside_deg.abs()
+    }
+}
