@@ -2,6 +2,7 @@
 
 mod ask;
 mod axis_errors;
+mod backup;
 mod by_hand;
 mod datum;
 mod description;
@@ -10,10 +11,12 @@ mod external;
 mod files;
 mod handwheel;
 mod help;
+mod interface;
 mod list;
 mod mdi;
 mod menu;
 mod number;
+mod order;
 mod parameters;
 mod plc;
 mod probe;
@@ -33,10 +36,10 @@ use crate::page::{Page, Side, Turn, View};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
+pub(crate) use backup::{ended as backup_ended, restored};
 pub(crate) use files::runs;
 pub(crate) use help::follow as follow_help;
 pub(crate) use parameters::commission;
-pub(crate) use supplementary::{backup_ended, restored};
 
 /// The page of a machine operating mode.
 pub(crate) fn of_mode(mode: Mode, model: ControlModel) -> Box<dyn Page> {
