@@ -234,6 +234,24 @@ fn convert_to_and_fro() {
     );
 }
 
+/// "If MP7260 contains a zero value, then the system will run without a tool table" [000:9103]: that of machine.toml is not
+/// used, which is said.
+#[test]
+fn a_machine_without_a_tool_table_says_so() {
+    let folder = Folder::with_mill("");
+    let list = folder.read("mill/parameters.mp");
+    let mut lines = list.lines();
+    let line = lines.find(|line| line.starts_with("MP7260")).unwrap();
+    folder.write("mill/parameters.mp", list.replace(line, "MP7260 : 0"));
+    let run = folder.bahn("machine check mill");
+    let text = run.out() + &run.err();
+    assert_eq!(run.code(), 0, "{text}");
+    assert!(
+        text.contains("the control has no tool table (MP7260 = 0)"),
+        "{text}"
+    );
+}
+
 /// What does not fit the machine is a fault of its folder: MP7260, MP7261 (TNC 151/155: MP225), MP7264, MP7226
 /// [000:9103-9113] [001:1600-1607].
 #[test]
@@ -268,11 +286,8 @@ fn tables_fit_the_parameters_of_their_machine() {
         text.contains("tools.tsv:10:1") && text.contains("the tool table ends with tool 8 (MP7260)"),
         "{text}"
     );
-    let (_, text) = said(&[("MP7260", "0")], &[], "");
-    assert!(
-        text.contains("the control has no tool table (MP7260 = 0)"),
-        "{text}"
-    );
+    // With MP7260 = 0 "the system will run without a tool table" [000:9103].
+    assert_eq!(said(&[("MP7260", "0")], &[], "").0, 0);
     let old = Folder::new();
     assert_eq!(old.bahn("machine new o --model tnc155").code(), 0);
     assert_eq!(old.bahn("table check o").code(), 0);

@@ -5,6 +5,7 @@
 mod support;
 
 use bahn_panel::{Mark, Star, WindowKind};
+use bahn_parameters::{ControlModel, ListText};
 use support::Trainee;
 
 /// What is highlighted in the window.
@@ -373,6 +374,14 @@ fn a_tnc_407_stores_100_files() {
                 text.replace("model = \"tnc415b\"", &format!("model = \"{model}\"")),
             )
             .unwrap();
+            // The list of the mill without what the model does not have.
+            let path = folder.join("parameters.mp");
+            let own = model.parse::<ControlModel>().unwrap();
+            let mut list = ListText::from_bytes(own, &std::fs::read(&path).unwrap());
+            while let Some(line) = list.faults().last().map(|fault| fault.line) {
+                list.remove_line(line);
+            }
+            std::fs::write(&path, list.to_bytes()).unwrap();
         });
         trainee.ready();
         assert_eq!(trainee.station.control().model().id(), model);

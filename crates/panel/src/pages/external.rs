@@ -11,7 +11,7 @@ use crate::page::{Overlay, Page, Side, Turn, View};
 use crate::pages::ask::Name;
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::menu::{self, Item, Items};
-use crate::pages::{list, parameters, plc, transfer};
+use crate::pages::{list, transfer};
 use crate::programs::NAME_MAX;
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
@@ -28,27 +28,36 @@ const MENU: [&str; 7] = [
     "READ-OUT PROGRAM OFFERED",
 ];
 
-/// EXT in the machine parameter editor.
-pub(crate) fn of_lists(site: &Site) -> Turn {
-    of(TransferFiles::Lists, site)
+/// What an editor transfers.
+#[derive(Clone, Copy)]
+pub(crate) struct Own {
+    /// Which files.
+    pub files: TransferFiles,
+    /// The names of all of them.
+    pub names: fn(&Site) -> Vec<String>,
+    /// One by the name that is entered: with its type where that is not said.
+    pub named: fn(&str, &Site) -> String,
 }
 
-/// EXT in PLC PROGRAMMING.
-pub(crate) fn of_plc(site: &Site) -> Turn {
-    of(TransferFiles::Plc, site)
-}
+/// Programs and tables.
+const PROGRAMS: Own = Own {
+    files: TransferFiles::Programs,
+    names: |site| site.programs.list().into_iter().map(|entry| entry.name).collect(),
+    named: |name, site| site.with_ending(name),
+};
 
-fn of(files: TransferFiles, site: &Site) -> Turn {
+/// EXT: the menu, or the transfer that is under way.
+pub(crate) fn of(own: Own, site: &Site) -> Turn {
     match site.transfers.is_running() {
         true => transfer::show(),
-        false => Turn::Open(Box::new(Menu { current: 0, files })),
+        false => Turn::Open(Box::new(Menu { current: 0, own })),
     }
 }
 
 /// EXT: in PROGRAMMING AND EDITING the menu, or the transfer that is under way.
 pub(crate) fn open(side: Side, site: &mut Site) -> Turn {
     match side {
-        Side::Programming => of(TransferFiles::Programs, site),
+        Side::Programming => of(PROGRAMS, site),
         // A program that is executed while it is transferred is started by the computer (docs/dnc.md).
         Side::Machine if matches!(site.mode(), Mode::SingleBlock | Mode::FullSequence) => {
             Turn::Say(site.message(MessageId::ExtInOutputNotReady))
@@ -60,33 +69,7 @@ pub(crate) fn open(side: Side, site: &mut Site) -> Turn {
 /// The menu.
 struct Menu {
     current: usize,
-    files: TransferFiles,
-}
-
-/// The names of all files of a kind.
-fn names(files: TransferFiles, site: &Site) -> Vec<String> {
-    match files {
-        TransferFiles::Lists => {
-            let names = parameters::lists_of_machine(site);
-            names.iter().map(|name| name.to_uppercase()).collect()
-        }
-        TransferFiles::Plc => plc::transferable(site),
-        TransferFiles::Programs | TransferFiles::Backup => {
-            let programs = site.programs.list().into_iter();
-            programs.map(|entry| entry.name).collect()
-        }
-    }
-}
-
-/// A file by the name that is entered: with its type where that is not said. Of tables of the PLC the type is the letter
-/// that they have at the interface, .S and .V [000:3867-3869].
-fn named(name: &str, files: TransferFiles, site: &Site) -> String {
-    match files {
-        TransferFiles::Lists if !name.contains('.') => format!("{name}.MP"),
-        TransferFiles::Lists => name.to_owned(),
-        TransferFiles::Plc => plc::named_at_interface(name),
-        TransferFiles::Programs | TransferFiles::Backup => site.with_ending(name),
-    }
+    own: Own,
 }
 
 /// READ-OUT SELECTED of files that the directory of programs does not have.
@@ -118,35 +101,35 @@ impl Items for Selected {
 
 impl Menu {
     fn choose(&self, site: &mut Site) -> Turn {
-        let files = self.files;
+        let Own { files, names, .. } = self.own;
         let deed = match self.current {
             0 => TransferDeed::Directory,
             1 => TransferDeed::ReadAll,
             2 => TransferDeed::ReadOffered,
-            3 => return ask(files, site),
+            3 => return ask(self.own, site),
             4 if files == TransferFiles::Programs => {
                 return Turn::Open(Box::new(Directory::new(Purpose::ReadOut, site)));
             }
             4 => {
-                let names = names(files, site);
+                let names = names(site);
                 return Turn::Open(Box::new(menu::Menu::new(Selected { names, files })));
             }
-            5 => TransferDeed::Write(names(files, site)),
-            _ => TransferDeed::WriteOffered(names(files, site)),
+            5 => TransferDeed::Write(names(site)),
+            _ => TransferDeed::WriteOffered(names(site)),
         };
         transfer::begin_with(files, deed, site)
     }
 }
 
 /// READ-IN SELECTED: by its name.
-fn ask(files: TransferFiles, site: &Site) -> Turn {
-    let prompt = match files {
+fn ask(own: Own, site: &Site) -> Turn {
+    let prompt = match own.files {
         TransferFiles::Programs => site.words("PROGRAM NUMBER ="),
         _ => site.words("FILE NAME ="),
     };
     Turn::Open(Name::ask(prompt, NAME_MAX + 4, move |name, site| {
-        let deed = TransferDeed::Read(named(&name, files, site));
-        match transfer::begin_with(files, deed, site) {
+        let deed = TransferDeed::Read((own.named)(&name, site));
+        match transfer::begin_with(own.files, deed, site) {
             Turn::Open(page) => Turn::Replace(page),
             other => other,
         }

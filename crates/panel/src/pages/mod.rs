@@ -2,6 +2,7 @@
 
 mod ask;
 mod axis_errors;
+mod backup;
 mod by_hand;
 mod datum;
 mod description;
@@ -10,11 +11,13 @@ mod external;
 mod files;
 mod handwheel;
 mod help;
+mod interface;
 mod list;
 mod mdi;
 mod menu;
 mod no_program;
 mod number;
+mod order;
 mod parameters;
 mod plane;
 mod plc;
@@ -34,10 +37,10 @@ use bahn_parameters::ControlModel;
 use crate::page::{Page, Side, Turn};
 use crate::site::Site;
 
+pub(crate) use backup::{ended as backup_ended, restored};
 pub(crate) use files::runs;
 pub(crate) use help::follow as follow_help;
 pub(crate) use parameters::commission;
-pub(crate) use supplementary::{backup_ended, restored};
 
 use no_program::no_program;
 

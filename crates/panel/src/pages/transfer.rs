@@ -5,7 +5,7 @@ use bahn_parameters::MessageId;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
-use crate::pages::supplementary::order;
+use crate::pages::order::order;
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 use crate::transfer::{TransferDeed, TransferFiles, TransferNews};

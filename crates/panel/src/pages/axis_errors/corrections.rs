@@ -134,13 +134,8 @@ impl Corrections {
     /// The lines of the table under the cursor: from its head on to the next one.
     fn table(&self) -> std::ops::Range<usize> {
         let is_head = |line: &String| line.contains(" OVER ");
-        let before = self.lines.iter().take(self.current + 1);
-        let from = before
-            .enumerate()
-            .filter(|(_, line)| is_head(line))
-            .map(|(at, _)| at)
-            .last();
-        let from = from.unwrap_or(0);
+        let before = self.lines.get(..=self.current).unwrap_or_default();
+        let from = before.iter().rposition(is_head).unwrap_or(0);
         let behind = self.lines.iter().skip(from + 1).position(is_head);
         from..behind.map_or(self.lines.len(), |at| from + 1 + at)
     }

@@ -10,7 +10,7 @@ use bahn_parameters::{ListError, ListText, ParameterId, ParameterList};
 use crate::site::Site;
 
 /// The lists of the machine: the usual one, and the files `NAME.MP` of its folder [000:14894-14896].
-pub(crate) fn names(site: &Site) -> Vec<String> {
+pub(super) fn names(site: &Site) -> Vec<String> {
     let usual = &site.machine.folder.parameters;
     let entries = std::fs::read_dir(&site.machine.root);
     let is_list = |name: &String| {

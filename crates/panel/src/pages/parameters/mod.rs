@@ -13,12 +13,22 @@ use bahn_parameters::{Definition, ListError, MessageId, ParameterList, Reaction}
 
 use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::Later;
-use crate::pages::{external, list, supplementary};
+use crate::pages::external::{self, Own};
+use crate::pages::{interface, list};
 use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
+use crate::transfer::TransferFiles;
 use file::{Entered, ListFile, Refused};
 
-pub(crate) use file::names as lists_of_machine;
+/// What EXT transfers: the lists of the machine.
+const LISTS: Own = Own {
+    files: TransferFiles::Lists,
+    names: |site| file::names(site).iter().map(|name| name.to_uppercase()).collect(),
+    named: |name, _| match name.contains('.') {
+        true => name.to_owned(),
+        false => format!("{name}.MP"),
+    },
+};
 
 /// Characters of a value at most: a sign, 32 binary digits, blanks.
 const VALUE_MAX: usize = 40;
@@ -534,9 +544,9 @@ impl Page for Parameters {
             Key::PgmNr => lists::ask(&self.file.name, &self.chosen, site),
             Key::Ext => {
                 self.exchanged = true;
-                external::of_lists(site)
+                external::of(LISTS, site)
             }
-            Key::Mod => Turn::Open(supplementary::interfaces_with_backup()),
+            Key::Mod => Turn::Open(interface::with_backup()),
             Key::Goto => self.goto.ask(site.words("GOTO: NUMBER ="), 8),
             key => self.typed(key),
         }

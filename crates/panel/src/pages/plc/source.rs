@@ -163,7 +163,7 @@ const TRANSFERRED: [(&str, Option<&str>); 9] = [
 ];
 
 /// The files that data interfaces transfer.
-pub(crate) fn transferable(site: &Site) -> Vec<String> {
+pub(super) fn transferable(site: &Site) -> Vec<String> {
     let known = |name: &String| {
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
         let mut types = TRANSFERRED.iter();
@@ -173,7 +173,7 @@ pub(crate) fn transferable(site: &Site) -> Vec<String> {
 }
 
 /// A file by the name that is entered for a transfer: programs need no type, and a letter stands for its type.
-pub(crate) fn named_at_interface(name: &str) -> String {
+pub(super) fn named_at_interface(name: &str) -> String {
     let Some((stem, ending)) = name.rsplit_once('.') else {
         return format!("{name}.PLC");
     };

@@ -1,15 +1,10 @@
 //! MOD: supplementary functions, of PROGRAMMING and TEST RUN and of the machine operating modes [003:6980-7160].
 
 mod axis_limit;
-mod backup;
 mod code;
-mod interface;
 mod offsets;
 mod oscilloscope;
 mod timers;
-
-pub(crate) use backup::{ended as backup_ended, restored};
-pub(crate) use interface::order;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -18,7 +13,7 @@ use bahn_dialogue::Key;
 use crate::page::{Overlay, Page, Side, Turn};
 use crate::pages::ask::Name;
 use crate::pages::menu::{Item, Items, Menu};
-use crate::pages::{help, parameters, plc};
+use crate::pages::{help, interface, parameters, plc};
 use crate::settings::PositionType;
 use crate::site::Site;
 use crate::texts::{self, Language};
@@ -91,11 +86,6 @@ pub(crate) fn menu(side: Side) -> Box<dyn Page> {
         Side::Programming => PROGRAMMING,
     };
     Box::new(Menu::new(Supplementary { functions }))
-}
-
-/// The data interfaces with BACKUP DATA and RESTORE DATA.
-pub(crate) fn interfaces_with_backup() -> Box<dyn Page> {
-    interface::with_backup()
 }
 
 struct Supplementary {

@@ -18,7 +18,7 @@ fn name() -> String {
 }
 
 /// BACKUP DATA.
-pub(super) fn save(site: &mut Site) -> Turn {
+pub(crate) fn save(site: &mut Site) -> Turn {
     match written(site) {
         Ok(()) => begun(TransferDeed::Write(vec![name()]), site),
         Err(why) => Turn::Say(why),
@@ -39,7 +39,7 @@ fn written(site: &mut Site) -> Result<(), String> {
 }
 
 /// RESTORE DATA replaces what is there: it is asked for.
-pub(super) fn ask_to_restore(site: &Site) -> Turn {
+pub(crate) fn ask_to_restore(site: &Site) -> Turn {
     if site.control().run_state() != RunState::Idle {
         return Turn::Say(site.message(MessageId::KeyNonFunctional));
     }

@@ -6,13 +6,13 @@
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use super::backup;
 use crate::page::{Page, Turn};
+use crate::pages::backup;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::number::Number;
+use crate::pages::order::{baud, is_inhibited};
 use crate::settings::{BAUD_RATES, Interface, InterfaceMode, TransferOf};
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferFiles, TransferOrder};
 
 /// Soft keys of the machine parameter editor.
 const BACKUP: &str = "BACKUP DATA";
@@ -21,9 +21,6 @@ const RESTORE: &str = "RESTORE DATA";
 const PORTS: [&str; 2] = ["RS-232", "RS-422"];
 /// Baud rates that the two interfaces cannot have together [000:17552-17554].
 const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
-/// ME 101 has this baud rate and no other [003:7048].
-const ME_BAUD: u32 = 2_400;
-
 /// A line of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Row {
@@ -38,52 +35,13 @@ enum Row {
 }
 
 /// The page.
-pub(super) fn page() -> Box<dyn Page> {
+pub(crate) fn page() -> Box<dyn Page> {
     Box::new(Menu::new(Interfaces { backs_up: false }))
 }
 
 /// The page with BACKUP DATA and RESTORE DATA, of the machine parameter editor [000:465].
-pub(super) fn with_backup() -> Box<dyn Page> {
+pub(crate) fn with_backup() -> Box<dyn Page> {
     Box::new(Menu::new(Interfaces { backs_up: true }))
-}
-
-/// What is to be done at the interface of file transfers, as it is set up.
-///
-/// # Errors
-/// The message of the control: no device can answer there.
-pub(crate) fn order(
-    files: TransferFiles,
-    deed: TransferDeed,
-    site: &Site,
-) -> Result<TransferOrder, MessageId> {
-    let [second, _] = site.settings.second_interface;
-    let port = usize::from(second && site.control().model().has_rs_422());
-    let interface = site.settings.interfaces.get(port).copied().unwrap_or_default();
-    let mode = match interface.mode {
-        InterfaceMode::Fe1 => "fe1",
-        InterfaceMode::Fe2 => "fe2",
-        InterfaceMode::Me => "me",
-        InterfaceMode::Ext1 => "ext1",
-        InterfaceMode::Ext2 => "ext2",
-        InterfaceMode::Lsv2 | InterfaceMode::None => return Err(MessageId::ExtInOutputNotReady),
-    };
-    if is_inhibited(port, site) {
-        return Err(MessageId::ExtInOutputNotReady);
-    }
-    Ok(TransferOrder {
-        port,
-        mode,
-        baud: baud(port, site),
-        kind: match files {
-            TransferFiles::Programs if site.settings.iso => "I",
-            TransferFiles::Programs => "H",
-            TransferFiles::Lists => "MP",
-            TransferFiles::Plc => "PLC",
-            TransferFiles::Backup => "A",
-        },
-        files,
-        deed,
-    })
 }
 
 struct Interfaces {
@@ -105,20 +63,6 @@ fn rows(site: &Site) -> Vec<Row> {
             Ext(1),
         ],
         false => vec![Baud(0), Mode(0), Ext(0)],
-    }
-}
-
-fn is_inhibited(port: usize, site: &Site) -> bool {
-    let inhibited = site.parameters().interface_parameters().inhibited;
-    inhibited.get(port).is_some_and(|own| *own)
-}
-
-/// The baud rate in force.
-fn baud(port: usize, site: &Site) -> u32 {
-    let interface = site.settings.interfaces.get(port).copied().unwrap_or_default();
-    match interface.mode {
-        InterfaceMode::Me => ME_BAUD,
-        _ => interface.baud,
     }
 }
 
