@@ -1,9 +1,10 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
 use bahn_exchange::{Exchange, Image, signal};
+use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_path::{Axis, BlockRef, Position};
+use bahn_path::{Axis, BlockRef, Position, ScanPoint, deflection_along_axes};
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
@@ -261,6 +262,14 @@ impl Desk {
             rest: keys.iter().all(Option::is_none) && stand(),
             automatic,
         });
+    }
+
+    /// How far a measuring probe is deflected along X, Y and Z of the machine, mm; 0 with a triggering one.
+    pub fn deflection(&self, list: &ParameterList) -> ScanPoint {
+        let along = |probe: MeasuringProbe| {
+            deflection_along_axes(&self.stylus.deflection_mm, probe.axes, probe.reversed)
+        };
+        list.measuring_probe().map_or([0.0; 3], along)
     }
 
     /// The handwheel moves an axis, with an interpolation factor.

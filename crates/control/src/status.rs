@@ -9,6 +9,7 @@ use bahn_servo::Measured;
 use crate::axes::{OwnAxes, path_positions};
 use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
+use crate::desk::Desk;
 use crate::kinematics::Chain;
 use crate::manual::Manual;
 use crate::markers::{
@@ -170,7 +171,7 @@ pub(crate) fn coordinates<'a>(
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     chain: &Chain,
     run: &ProgramRun,
-    leans: bool,
+    desk: &Desk,
     link: &mut PlcLink,
 ) {
     /// Kinds of coordinates that each axis has, in the order of [`CoordinateKind`]: actual and nominal from the datum,
@@ -202,6 +203,10 @@ pub(crate) fn coordinates<'a>(
     for (kind, row) in CoordinateKind::ALL.iter().zip(rows) {
         link.set_coordinates(*kind, row);
     }
+    let deflection = desk.deflection(link.list());
+    let deflection =
+        PerPlcAxis::from_fn(|axis| deflection.get(usize::from(axis)).copied().unwrap_or_default());
+    link.set_coordinates(CoordinateKind::Deflection, deflection);
     // While the program is read on another thread the last ones stay.
     if frame.is_some() {
         link.set_coordinates(CoordinateKind::ShiftedDatum, shifted);
@@ -214,7 +219,7 @@ pub(crate) fn coordinates<'a>(
     };
     link.set_status(
         StatusItem::WorkingPlane,
-        i32::from(tilted) | i32::from(leans) << 1 | i32::from(by_program) << 2,
+        i32::from(tilted) | i32::from(desk.manual.leans) << 1 | i32::from(by_program) << 2,
     );
 }
 
