@@ -1,10 +1,9 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
 use bahn_exchange::{Exchange, Image, signal};
-use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_path::{Axis, BlockRef, Position, ScanPoint, deflection_along_axes};
+use bahn_path::{Axis, BlockRef, Position};
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
@@ -13,7 +12,7 @@ use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
 use crate::key_code::KeyCode;
 use crate::kinematics::Chain;
-use crate::leaning::Leaning;
+use crate::leaning::{self, Leaning};
 use crate::manual::Manual;
 use crate::marker_codes;
 use crate::message::Messages;
@@ -257,19 +256,12 @@ impl Desk {
         probe: &Probe,
         stand: impl FnOnce() -> bool,
     ) {
+        self.manual.deflection_mm = measured.probe.deflection_mm;
         let (keys, automatic) = (&self.panel.axis_keys, self.mode.is_automatic());
         self.stylus.watch(measured, guards, probe, || Guarded {
             rest: keys.iter().all(Option::is_none) && stand(),
             automatic,
         });
-    }
-
-    /// How far a measuring probe is deflected along X, Y and Z of the machine, mm; 0 with a triggering one.
-    pub fn deflection(&self, list: &ParameterList) -> ScanPoint {
-        let along = |probe: MeasuringProbe| {
-            deflection_along_axes(&self.stylus.deflection_mm, probe.axes, probe.reversed)
-        };
-        list.measuring_probe().map_or([0.0; 3], along)
     }
 
     /// The handwheel moves an axis, with an interpolation factor.
@@ -300,7 +292,7 @@ impl Desk {
         let Some(swivels) = swivels.filter(|_| axes.stand()) else {
             return false;
         };
-        let Some(angles) = command.positions(&swivels, axes) else {
+        let Some(angles) = leaning::positions(command, &swivels, axes) else {
             return false;
         };
         let was = self.leaning.is_on();

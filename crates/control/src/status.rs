@@ -2,14 +2,14 @@
 
 use bahn_exchange::{Exchange, signal};
 use bahn_parameters::PerPlcAxis;
-use bahn_path::Position;
+use bahn_parameters::machining::MeasuringProbe;
+use bahn_path::{Position, deflection_along_axes};
 use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 
 use crate::axes::{OwnAxes, path_positions};
 use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
-use crate::desk::Desk;
 use crate::kinematics::Chain;
 use crate::manual::Manual;
 use crate::markers::{
@@ -171,7 +171,7 @@ pub(crate) fn coordinates<'a>(
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     chain: &Chain,
     run: &ProgramRun,
-    desk: &Desk,
+    manual: &Manual,
     link: &mut PlcLink,
 ) {
     /// Kinds of coordinates that each axis has, in the order of [`CoordinateKind`]: actual and nominal from the datum,
@@ -203,7 +203,9 @@ pub(crate) fn coordinates<'a>(
     for (kind, row) in CoordinateKind::ALL.iter().zip(rows) {
         link.set_coordinates(*kind, row);
     }
-    let deflection = desk.deflection(link.list());
+    let along =
+        |probe: MeasuringProbe| deflection_along_axes(&manual.deflection_mm, probe.axes, probe.reversed);
+    let deflection = link.list().measuring_probe().map_or([0.0; 3], along);
     let deflection =
         PerPlcAxis::from_fn(|axis| deflection.get(usize::from(axis)).copied().unwrap_or_default());
     link.set_coordinates(CoordinateKind::Deflection, deflection);
@@ -219,7 +221,7 @@ pub(crate) fn coordinates<'a>(
     };
     link.set_status(
         StatusItem::WorkingPlane,
-        i32::from(tilted) | i32::from(desk.manual.leans) << 1 | i32::from(by_program) << 2,
+        i32::from(tilted) | i32::from(manual.leans) << 1 | i32::from(by_program) << 2,
     );
 }
 
