@@ -202,7 +202,6 @@ const UNSAID: &[&str] = &[
     "control::one_mark_from_the_cam",
     "control::positioning_error_in_a_program",
     "control::software_limits",
-    "interpreter::dwell_time",
     "interpreter::functions_calculate",
     "interpreter::functions_jump",
     // The function is reached by its own interface, or goes by another name: a chamfer is an L block.

@@ -180,7 +180,8 @@ fn programs_come_and_go_by_the_key_ext() {
 /// A pseudo terminal whose device says nothing: END breaks the transfer off, and nothing partial is left.
 #[test]
 fn end_breaks_a_transfer_off_while_the_machine_goes_on() {
-    let bench = Bench::new("ext-end", &["--rs232", "pty:rs232"]);
+    // However slow the machine of the test is, END comes before the device counts as dead.
+    let bench = Bench::new("ext-end", &["--rs232", "pty:rs232,timeout=600"]);
     let before = std::fs::read_dir(bench.programs()).unwrap().count();
     // The other end is open, and says nothing.
     let other = std::fs::OpenOptions::new()
@@ -194,8 +195,19 @@ fn end_breaks_a_transfer_off_while_the_machine_goes_on() {
     bench.until("DATA TRANSFER HAS ENDED");
     bench.until("PROGRAM INCOMPLETE");
     assert_eq!(std::fs::read_dir(bench.programs()).unwrap().count(), before);
-    // A device that is silent is dead: error N.
-    bench.press("CE END ENT");
+    drop(other);
+}
+
+/// A device that is silent is dead: error N.
+#[test]
+fn a_silent_device_is_dead() {
+    let bench = Bench::new("ext-silent", &["--rs232", "pty:rs232,timeout=1"]);
+    let other = std::fs::OpenOptions::new()
+        .read(true)
+        .write(true)
+        .open(bench.folder.join("rs232"))
+        .unwrap();
+    bench.press("PROGRAM EXT DOWN ENT");
     bench.until("TRANSFERRED DATA INCORRECT N");
     drop(other);
 }

@@ -433,7 +433,7 @@ impl Channel {
     pub fn inform(&self, machine: &mut MachineSide) {
         let (axes, link) = (machine.axes.owned(self.number), &mut machine.link);
         let spindle = machine.spindles.of(self.number);
-        status::coordinates(axes, &self.datums.chain, &self.run, self.desk.manual.leans, link);
+        status::coordinates(axes, &self.datums.chain, &self.run, &self.desk.manual, link);
         let executed = self.run.selection.program.as_deref();
         let tested = self.test.as_ref().map(TestRun::program);
         status::items(self.desk.mode(), &self.desk.manual, executed, tested, link);

@@ -280,9 +280,7 @@ impl FromStr for Command {
             "manual-operation" => nothing(Command::ManualOperation),
             "restore-position" => nothing(Command::RestorePosition),
             "end-test" => nothing(Command::EndTest),
-            "test-run" => TestCommand::parse(rest)
-                .map(Command::TestRun)
-                .map_err(CommandError::Wrong),
+            "test-run" => parsed(TestCommand::parse(rest), Command::TestRun),
             "test" if !rest.is_empty() => Ok(Command::Test(rest.to_owned())),
             "select" if !rest.is_empty() => Ok(Command::Select(rest.to_owned())),
             "mdi" if !rest.is_empty() => Ok(Command::Mdi(rest.replace("\\n", "\n"))),
@@ -308,10 +306,8 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
             }
-            "dnc" => Dnc::parse(rest).map(Command::Dnc).map_err(CommandError::Wrong),
-            "probe" => ProbeCommand::parse(rest)
-                .map(Command::Probe)
-                .map_err(CommandError::Wrong),
+            "dnc" => parsed(Dnc::parse(rest), Command::Dnc),
+            "probe" => parsed(ProbeCommand::parse(rest), Command::Probe),
             "tool-life" => {
                 let (tool, minutes) = rest.split_once(' ').unwrap_or((rest, ""));
                 let tool = number(name, tool, 0, u32::MAX)?;
@@ -323,12 +319,8 @@ impl FromStr for Command {
                 number(name, rest, 0, 10).map(|factor| Command::Handwheel(axis, factor))
             }
             "axis-key" => axis_key(name, rest),
-            "3d-rot" => PlaneCommand::parse(rest)
-                .map(Command::WorkingPlane)
-                .map_err(CommandError::Wrong),
-            "screen" => ScreenCommand::parse(rest)
-                .map(Command::Screen)
-                .map_err(CommandError::Wrong),
+            "3d-rot" => parsed(PlaneCommand::parse(rest), Command::WorkingPlane),
+            "screen" => parsed(ScreenCommand::parse(rest), Command::Screen),
             "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
             "power" => switch(name, rest, "on").map(Command::Power),
             _ if DataLineEvent::WORDS.contains(&name) => data_line(name, rest),
@@ -338,6 +330,11 @@ impl FromStr for Command {
             _ => Err(CommandError::Unknown(name.to_owned())),
         }
     }
+}
+
+/// A command with what stands behind its name.
+fn parsed<T>(read: Result<T, String>, command: fn(T) -> Command) -> Result<Command, CommandError> {
+    read.map(command).map_err(CommandError::Wrong)
 }
 
 /// An axis key of the keyboard.

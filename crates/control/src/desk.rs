@@ -12,7 +12,7 @@ use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
 use crate::key_code::KeyCode;
 use crate::kinematics::Chain;
-use crate::leaning::Leaning;
+use crate::leaning::{self, Leaning};
 use crate::manual::Manual;
 use crate::marker_codes;
 use crate::message::Messages;
@@ -256,6 +256,7 @@ impl Desk {
         probe: &Probe,
         stand: impl FnOnce() -> bool,
     ) {
+        self.manual.deflection_mm = measured.probe.deflection_mm;
         let (keys, automatic) = (&self.panel.axis_keys, self.mode.is_automatic());
         self.stylus.watch(measured, guards, probe, || Guarded {
             rest: keys.iter().all(Option::is_none) && stand(),
@@ -291,7 +292,7 @@ impl Desk {
         let Some(swivels) = swivels.filter(|_| axes.stand()) else {
             return false;
         };
-        let Some(angles) = command.positions(&swivels, axes) else {
+        let Some(angles) = leaning::positions(command, &swivels, axes) else {
             return false;
         };
         let was = self.leaning.is_on();

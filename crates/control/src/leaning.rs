@@ -13,6 +13,7 @@ use crate::kinematics::{Chain, Offsets};
 use crate::message::Message;
 use crate::now::Now;
 use crate::panel::Direction;
+use crate::plane_command::{PlaneCommand, ROTARY};
 use crate::reach::Reach;
 
 /// The axes of a plane.
@@ -21,6 +22,30 @@ pub(crate) const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 const NO_PART: f64 = 1e-12;
 /// So near a software limit an axis stands at it, mm: positions in the plane are rounded.
 const AT_LIMIT_MM: f64 = 1e-6;
+
+/// The positions of the swivel axes in the plane, `Some(None)` when it is off; `None` where an angle is said of an axis
+/// that does not swivel.
+pub(crate) fn positions(
+    command: &PlaneCommand,
+    swivels: &Swivels,
+    axes: &OwnAxes,
+) -> Option<Option<Position>> {
+    let Some(angles) = command.angles else {
+        return Some(None);
+    };
+    let mut positions = Position::ZERO;
+    for axis in swivels.free_axes() {
+        positions[axis] = axes.at(axis).map_or(0.0, |unit| unit.nominal);
+    }
+    for (axis, angle) in ROTARY.into_iter().zip(angles) {
+        let Some(angle) = angle else { continue };
+        if !swivels.free_axes().any(|free| free == axis) {
+            return None;
+        }
+        positions[axis] = angle;
+    }
+    Some(Some(positions))
+}
 
 /// What the operator wants of the axes of the plane.
 #[derive(Clone, Copy, Debug, Default)]

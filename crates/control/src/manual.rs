@@ -50,6 +50,8 @@ pub(crate) struct Manual {
     ends: bool,
     /// 3D ROT is on.
     pub leans: bool,
+    /// How far a measuring probe is deflected along its own axes, mm.
+    pub deflection_mm: [f64; 3],
     /// OUTPUT of the oscilloscope: STEP with this feed, mm/min, or the RAMP [000:18737-18756].
     step_mm_min: Option<f64>,
 }
@@ -69,6 +71,7 @@ impl Default for Manual {
             stopped: false,
             ends: false,
             leans: false,
+            deflection_mm: [0.0; 3],
             step_mm_min: None,
         }
     }

@@ -3,12 +3,10 @@
 
 use std::fmt;
 
-use bahn_path::{Axis, Position, Swivels};
-
-use crate::axes::OwnAxes;
+use bahn_path::Axis;
 
 /// The axes that may swivel, in the order of [`PlaneCommand::angles`].
-const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
+pub(crate) const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
 
 /// `3d-rot on`, `3d-rot on B+30`, `3d-rot off`, the same for program run behind `run`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,26 +36,6 @@ impl PlaneCommand {
             None => Ok(PlaneCommand { run, angles }),
             Some(_) => Err(wrong()),
         }
-    }
-
-    /// The positions of the swivel axes in the plane, `Some(None)` when it is off; `None` where an angle is said of an axis
-    /// that does not swivel.
-    pub(crate) fn positions(&self, swivels: &Swivels, axes: &OwnAxes) -> Option<Option<Position>> {
-        let Some(angles) = self.angles else {
-            return Some(None);
-        };
-        let mut positions = Position::ZERO;
-        for axis in swivels.free_axes() {
-            positions[axis] = axes.at(axis).map_or(0.0, |unit| unit.nominal);
-        }
-        for (axis, angle) in ROTARY.into_iter().zip(angles) {
-            let Some(angle) = angle else { continue };
-            if !swivels.free_axes().any(|free| free == axis) {
-                return None;
-            }
-            positions[axis] = angle;
-        }
-        Some(Some(positions))
     }
 }
 

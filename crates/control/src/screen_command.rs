@@ -27,7 +27,7 @@ impl ScreenCommand {
     pub(crate) fn parse(text: &str) -> Result<ScreenCommand, String> {
         let wrong = || "`screen` takes five numbers: items 2, 3, 4, 5 and 17 of module 9035".to_owned();
         let mut words = text.split_whitespace();
-        let mut numbers = [0; 5];
+        let mut numbers = GREATEST.map(|_| 0);
         for (number, greatest) in numbers.iter_mut().zip(GREATEST) {
             let word = words.next().and_then(|word| word.parse().ok());
             *number = word.filter(|number| *number <= greatest).ok_or_else(wrong)?;

@@ -2,7 +2,8 @@
 
 use bahn_exchange::{Exchange, signal};
 use bahn_parameters::PerPlcAxis;
-use bahn_path::Position;
+use bahn_parameters::machining::MeasuringProbe;
+use bahn_path::{Position, deflection_along_axes};
 use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 
@@ -170,7 +171,7 @@ pub(crate) fn coordinates<'a>(
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     chain: &Chain,
     run: &ProgramRun,
-    leans: bool,
+    manual: &Manual,
     link: &mut PlcLink,
 ) {
     /// Kinds of coordinates that each axis has, in the order of [`CoordinateKind`]: actual and nominal from the datum,
@@ -202,6 +203,12 @@ pub(crate) fn coordinates<'a>(
     for (kind, row) in CoordinateKind::ALL.iter().zip(rows) {
         link.set_coordinates(*kind, row);
     }
+    let along =
+        |probe: MeasuringProbe| deflection_along_axes(&manual.deflection_mm, probe.axes, probe.reversed);
+    let deflection = link.list().measuring_probe().map_or([0.0; 3], along);
+    let deflection =
+        PerPlcAxis::from_fn(|axis| deflection.get(usize::from(axis)).copied().unwrap_or_default());
+    link.set_coordinates(CoordinateKind::Deflection, deflection);
     // While the program is read on another thread the last ones stay.
     if frame.is_some() {
         link.set_coordinates(CoordinateKind::ShiftedDatum, shifted);
@@ -214,7 +221,7 @@ pub(crate) fn coordinates<'a>(
     };
     link.set_status(
         StatusItem::WorkingPlane,
-        i32::from(tilted) | i32::from(leans) << 1 | i32::from(by_program) << 2,
+        i32::from(tilted) | i32::from(manual.leans) << 1 | i32::from(by_program) << 2,
     );
 }
 

@@ -480,7 +480,8 @@ fn positioning_error_in_the_middle() {
 
 /// A TM 110 on the bench: it stays deflected by MP6310 and scans with MP6360 along the face.
 fn measuring(mounting: &str, parameters: &[&str]) -> Rig {
-    measuring_with(bench(&plc()), FACE, mounting, parameters)
+    let reads = "\n       PS    K+100\n       PS    K+5\n       CM    9041\n";
+    measuring_with(bench(&(plc() + reads)), FACE, mounting, parameters)
 }
 
 fn measuring_with(build: Build, program: &str, mounting: &str, parameters: &[&str]) -> Rig {
@@ -529,6 +530,12 @@ fn a_measuring_probe_stays_deflected() {
             kept.look(&rig);
             depth.push(-display(&rig, 'Z'));
         }
+        // Module 9041 tells the PLC the deflection along the axes of the machine [000:15004].
+        let [x, y, z] = ["D100", "D104", "D108"].map(|word| f64::from(rig.number(word)) / 10_000.0);
+        assert!(
+            x.abs() < 0.1 && y.abs() < 0.1 && (0.3..0.6).contains(&z),
+            "{x} {y} {z}"
+        );
         let least = depth.iter().copied().fold(f64::MAX, f64::min);
         assert!(
             least > 0.3 && depth.iter().all(|depth| *depth < 0.6),

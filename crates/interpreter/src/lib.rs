@@ -76,6 +76,7 @@ mod tools;
 mod unrolled;
 mod voltage;
 mod work;
+mod working_plane;
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};

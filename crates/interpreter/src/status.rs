@@ -3,7 +3,7 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Frame, Plane, Position, ToolShape};
 
-use crate::tilting;
+use crate::working_plane::{self, WorkingPlane};
 
 /// A tool in the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,15 +64,6 @@ impl Spindle {
             other => other,
         }
     }
-}
-
-/// A working plane that cycle 19 has tilted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WorkingPlane {
-    /// Machine positions of the swivel axes in it, degrees.
-    pub angles: Position,
-    /// The transformations before it.
-    pub outer: Frame,
 }
 
 /// What is in force for swivel axes.
@@ -192,11 +183,11 @@ impl Status {
             .unwrap_or_else(|| (Frame::identity(Plane::XY), None));
         // Every run has that of the machine.
         frame.basic_rotation_deg = 0.0;
-        if tilting::may_tilt(&frame, self.plane.is_some()).is_err() {
+        if working_plane::may_tilt(&frame, self.plane.is_some()).is_err() {
             return false;
         }
-        let outer = tilting::outer_of(&frame, self.plane.as_ref());
-        let inner = angles.map_or(outer, |_| tilting::within(&outer));
+        let outer = working_plane::outer_of(&frame, self.plane.as_ref());
+        let inner = angles.map_or(outer, |_| working_plane::within(&outer));
         self.programmed = Some((inner, feed));
         self.plane = angles.map(|angles| WorkingPlane { angles, outer });
         true

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use bahn_parameters::MessageId;
 use bahn_parameters::technology::Deed;
-use bahn_path::{Axis, AxisSet, Frame, Placement, Position, Swivels};
+use bahn_path::{Axis, AxisSet, Placement, Position, Swivels};
 use bahn_program::Coordinates;
 
 use crate::context::Context;
@@ -13,7 +13,8 @@ use crate::definition::Resolved;
 use crate::error::{Fault, WarningKind};
 use crate::modal::Modal;
 use crate::settings::Settings;
-use crate::status::{Tilting, Way, WorkingPlane};
+use crate::status::{Tilting, Way};
+use crate::working_plane::{WorkingPlane, may_tilt, outer_of, within};
 
 /// Cycle 19 WORKING PLANE: the positions of the swivel axes, machine coordinates; one that is not given stands at 0. Without
 /// an axis the plane is upright again (inferred).
@@ -31,43 +32,6 @@ pub(crate) fn working_plane(c: &mut Context<'_>, words: &[Resolved]) -> Result<(
     c.modal.forget_tangent();
     place(c);
     Ok(())
-}
-
-/// Why the plane may not be tilted or put upright: transformations are ended in the reverse order of their beginning
-/// [000:4254].
-pub(crate) fn may_tilt(frame: &Frame, is_tilted: bool) -> Result<(), &'static str> {
-    let plain = Frame {
-        shift: frame.shift,
-        ..Frame::identity(frame.plane)
-    };
-    let mut linear = Axis::ALL.into_iter().filter(|axis| !axis.is_rotary());
-    if *frame != plain {
-        Err("rotation, mirror image and scaling begin behind cycle 19 and end before it")
-    } else if is_tilted && linear.any(|axis| frame.shift[axis] != 0.0) {
-        Err("a datum shift in the tilted plane is to end first")
-    } else {
-        Ok(())
-    }
-}
-
-/// The transformations where nothing is tilted, of those in a plane; those of rotary axes as they are now.
-pub(crate) fn outer_of(frame: &Frame, plane: Option<&WorkingPlane>) -> Frame {
-    let Some(plane) = plane else { return *frame };
-    let mut outer = plane.outer;
-    for axis in Axis::ALL.into_iter().filter(|axis| axis.is_rotary()) {
-        outer.shift[axis] = frame.shift[axis];
-    }
-    outer.plane = frame.plane;
-    outer
-}
-
-/// The transformations in a plane that is tilted now: the datum is that of those before it; only rotary axes keep their shift.
-pub(crate) fn within(outer: &Frame) -> Frame {
-    let mut frame = *outer;
-    for axis in Axis::ALL.into_iter().filter(|axis| !axis.is_rotary()) {
-        frame.shift[axis] = 0.0;
-    }
-    frame
 }
 
 /// In the plane of cycle 19 a movement of other axes begins and ends where the swivel axes stand as the cycle says: they

@@ -347,3 +347,20 @@ fn any_stairs() {
         assert_no_farther(&points, interval_mm, &case);
     }
 }
+
+/// Slots narrower than P.P.INT, down to three tenths of it: the stylus may pass over one or feel its floor, but every line comes
+/// to its end, every point lies on the surface, and none is farther from the one before than P.P.INT [003:6655-6671].
+#[test]
+fn slots_narrower_than_the_interval() {
+    for width in [0.9, 0.6, 0.3] {
+        for depth in [0.5, 3.0] {
+            let slot = |x: f64| ((x - 8.0).abs() < width / 2.0) || ((x - 13.3).abs() < width / 2.0);
+            let height = |x: f64, _: f64| if slot(x) { 1.0 - depth } else { 1.0 };
+            let (points, scanned, _) = scan(job(), height);
+            let case = format!("slot {width} wide, {depth} deep");
+            assert_eq!(scanned.fault, None, "{case}");
+            assert_no_farther(&points, 1.0, &case);
+            assert_scanned(&points, &scanned, 0.06, height);
+        }
+    }
+}

@@ -39,6 +39,8 @@ use warm_start::WarmStart;
 
 /// Lines of the large window, and of one beside it.
 const LINES: usize = 16;
+/// So often the PLC is told what the screen shows, µs.
+const SCREEN_TOLD_US: u64 = 50_000;
 /// A minute, µs.
 const MINUTE_US: u64 = 60_000_000;
 /// Stands in the status window while a logic diagram is recorded [000:11466].
@@ -253,9 +255,11 @@ impl Station {
         cycled
     }
 
-    /// The PLC may ask what the screen shows (module 9035).
+    /// The PLC may ask what the screen shows (module 9035): now and then, since nobody presses keys faster.
     fn tell_screen(&mut self) {
-        if self.past.looks_back() {
+        let control = self.host.control();
+        let is_due = control.time_us() % SCREEN_TOLD_US < u64::from(control.cycle_us());
+        if !is_due || self.past.looks_back() {
             return;
         }
         let has_plc_window = self.plc_window().is_some();

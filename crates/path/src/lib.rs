@@ -48,6 +48,9 @@ pub use element::{
 pub use frame::{AxisScaling, Frame};
 pub use placement::Placement;
 pub use plane::{Plane, Point2};
-pub use scan::{MeasuringRules, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint, ScanRules, Scanned};
+pub use scan::{
+    MeasuringRules, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint, ScanRules, Scanned,
+    deflection_along_axes,
+};
 pub use source::{Barrier, ElementSource, LiveData, MeasuredPart, Step, ToolMeasuring, Touch};
 pub use swivel::{Link, Swivels};

@@ -141,16 +141,22 @@ pub struct MeasuringRules {
 impl MeasuringRules {
     /// A deflection along the axes of the machine.
     pub fn along_axes(&self, probe: &ScanPoint) -> ScanPoint {
-        std::array::from_fn(|k| {
-            let place = self.axes.get(k).copied().unwrap_or(k);
-            let value = probe.get(place).copied().unwrap_or(0.0);
-            if self.reversed.get(k) == Some(&true) {
-                -value
-            } else {
-                value
-            }
-        })
+        deflection_along_axes(probe, self.axes, self.reversed)
     }
+}
+
+/// A deflection of a measuring probe along the axes of the machine, mm: which axis of the probe belongs to each (MP6322), and
+/// whether that counts against it (MP6320).
+pub fn deflection_along_axes(probe: &ScanPoint, axes: [usize; 3], reversed: [bool; 3]) -> ScanPoint {
+    std::array::from_fn(|k| {
+        let place = axes.get(k).copied().unwrap_or(k);
+        let value = probe.get(place).copied().unwrap_or(0.0);
+        if reversed.get(k) == Some(&true) {
+            -value
+        } else {
+            value
+        }
+    })
 }
 
 impl Default for ScanRules {
