@@ -18,7 +18,10 @@ fn plc() -> String {
 
 /// The same, and contact B moves Z up in MANUAL OPERATION (M2018).
 fn plc_by_hand() -> String {
-    format!("{}\n       L     I21\n       A     M2018\n       = M2460\n       =N M2476", plc())
+    format!(
+        "{}\n       L     I21\n       A     M2018\n       = M2460\n       =N M2476",
+        plc()
+    )
 }
 
 /// The upper face of the box from X 80 to 120 and Y 0 to 100 is at Z 0. Three lines of 10 mm, 1 mm apart.
@@ -618,7 +621,9 @@ fn an_interrupted_scan_goes_on_where_it_was() {
         last.is_some_and(|point| (20.9..21.1).contains(&point[1]) && point[0] < 91.0)
     });
     rig.event("key NC_STOP tap");
-    kept.until(&mut rig, 1.0, |rig, _| rig.control.snapshot().run == RunState::Interrupted);
+    kept.until(&mut rig, 1.0, |rig, _| {
+        rig.control.snapshot().run == RunState::Interrupted
+    });
     rig.seconds(0.5);
     let place = |rig: &Rig| ['X', 'Y', 'Z'].map(|letter| nominal(rig, letter));
     let left = place(&rig);

@@ -15,7 +15,10 @@ fn plc() -> String {
 
 /// The same, and contact B moves Z up in MANUAL OPERATION (M2018).
 fn plc_by_hand() -> String {
-    format!("{}\n       L     I21\n       A     M2018\n       = M2460\n       =N M2476", plc())
+    format!(
+        "{}\n       L     I21\n       A     M2018\n       = M2460\n       =N M2476",
+        plc()
+    )
 }
 
 /// The solid begins at machine X 80; ball radius 2; touching in +X the ball's centre stands at 78. MP6140 = 5
@@ -298,7 +301,10 @@ fn an_interrupted_probing_goes_on_where_it_was() {
             rig.cycle();
             let now = place(rig);
             let way = (now[0] - before[0]).abs().max((now[1] - before[1]).abs());
-            assert!(way <= 20_000.0 / 60.0 * 0.003, "a jump from {before:?} to {now:?}");
+            assert!(
+                way <= 20_000.0 / 60.0 * 0.003,
+                "a jump from {before:?} to {now:?}"
+            );
             before = now;
         }
     };

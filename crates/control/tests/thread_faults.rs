@@ -65,7 +65,11 @@ fn behind_a_lost_feed_enable_the_axis_follows_its_spindle() {
         if observe(&rig, "path.speed") > 10.0 && observe(&rig, "path.block") == 8.0 {
             // Z takes the angle of the cycle before.
             led += 1;
-            assert!(z_now != z || angle_now == angle, "Z stands at {z}, {:?}", rig.control.snapshot());
+            assert!(
+                z_now != z || angle_now == angle,
+                "Z stands at {z}, {:?}",
+                rig.control.snapshot()
+            );
         }
         (z, angle) = (z_now, angle_now);
     }

@@ -410,7 +410,11 @@ impl<E> Interpolator<E> {
         let limit = if held { 0.0 } else { self.ring.feed() };
         let (speed, beyond) = master::go_back(item, self.speed, -self.rest, limit, time);
         (self.speed, self.rest) = (speed, 0.0 - beyond);
-        Some(if speed > 0.0 || !held { State::Moving } else { State::Held })
+        Some(if speed > 0.0 || !held {
+            State::Moving
+        } else {
+            State::Held
+        })
     }
 
     /// Goes on behind the current element, unless the path has to wait there. What it waits for.

@@ -143,6 +143,56 @@ fn what_cannot_be_scanned_says_why() {
     }
 }
 
+/// The stylus says that it is deflected, wherever it is, for two seconds and at many times: it goes back to get clear by up to
+/// MP6240 = 5 mm [000:7825], but not out of the range; there it lifts at once. Beyond the edge it needs what it takes to stop and
+/// three cycles: that in which it passes the edge, that in which this is seen, and what is left of one at the end of the ramp.
+/// Where it taps on something steep there, it leaves it by 0.43 P.P.INT at most. What was felt in the air may end the scan.
+#[test]
+fn a_stylus_that_does_not_get_clear_stays_in_the_range() {
+    let job = ScanJob {
+        rules: ScanRules {
+            deflection_mm: 5.0,
+            ..ScanRules::default()
+        },
+        ..job()
+    };
+    let feed = job.feed_mm_min() / 60.0;
+    let stop = feed * feed / (2.0 * ACCELERATION_M_S2 * 1e3) + 3.0 * feed * CYCLE_S + 0.43 * job.interval_mm;
+    for from_s in [1.0, 1.3, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0] {
+        let mut scan = Scan::new(job, ACCELERATION_M_S2);
+        let mut sense = Sense {
+            at: scan.position(),
+            ..Sense::default()
+        };
+        let (mut time, mut touched, mut over) = (0.0, None, None);
+        while over.is_none() {
+            match scan.cycle(CYCLE_S, &sense, 1.0) {
+                ScanStep::Over(scanned) => over = Some(scanned),
+                ScanStep::Point(point) => {
+                    touched = touched.or(Some(time));
+                    assert!((-stop..=20.0 + stop).contains(&point[0]), "{from_s}: {point:?}");
+                }
+                ScanStep::Moves => {}
+            }
+            time += CYCLE_S;
+            let at = scan.position();
+            assert!(
+                (-stop..=20.0 + stop).contains(&at[0]),
+                "{from_s}: {at:?} of {stop}"
+            );
+            let since = touched.map_or(0.0, |first| time - first);
+            let deflected = at[2] <= 1.0 || (from_s..from_s + 2.0).contains(&since);
+            sense = Sense {
+                touch: (deflected && !sense.deflected).then_some(at),
+                deflected,
+                at,
+                deflection: [0.0; 3],
+            };
+            assert!(time < 2000.0);
+        }
+    }
+}
+
 /// Override 0 holds the stylus, half the override takes about twice the time.
 #[test]
 fn the_override_slows_the_stylus() {

@@ -290,7 +290,10 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
         for _ in 0..10 {
             let cycle = bench.cycle();
             let moved = height(bench.angle() - 100.0).abs();
-            assert!(moved < 0.5 * 50.0 * 0.03 * 0.03 + 1e-6, "{element} {here_z}: {moved}");
+            assert!(
+                moved < 0.5 * 50.0 * 0.03 * 0.03 + 1e-6,
+                "{element} {here_z}: {moved}"
+            );
             assert_eq!(cycle.state == State::Moving, beyond, "{element} {here_z}");
         }
         bench.drive.back = false;
@@ -316,7 +319,11 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
             cycle.position[Axis::X] > 0.0
         });
         assert!(end.position[Axis::Z].abs() < 1e-9, "{element} {here_z}");
-        let expected = if element == 0 { here_z.min(-DEPTH) } else { here_z.min(0.0) };
+        let expected = if element == 0 {
+            here_z.min(-DEPTH)
+        } else {
+            here_z.min(0.0)
+        };
         assert!((deepest - expected).abs() < 1e-9, "{element} {here_z}: {deepest}");
     }
 }

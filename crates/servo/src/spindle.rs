@@ -376,7 +376,9 @@ impl Spindle {
     /// Movement monitoring while it is led: where it turns farther beside that than it may, that is a gross positioning error.
     fn monitor(&mut self) {
         let actual = self.encoder.rpm() * 360.0;
-        let most = self.beside_max_deg.filter(|_| self.mode == Mode::Lead && self.enabled);
+        let most = self
+            .beside_max_deg
+            .filter(|_| self.mode == Mode::Lead && self.enabled);
         let Some(most) = most else {
             self.movement.begin(actual);
             return;

@@ -40,7 +40,14 @@ struct Bench {
 impl Bench {
     fn new() -> Bench {
         let mut list = ParameterList::reference(Tnc415b);
-        for assignment in ["3010=6", "3510.0=6000", "3210.0=9", "3410.3=0.01", "3140=0", "3120=0"] {
+        for assignment in [
+            "3010=6",
+            "3510.0=6000",
+            "3210.0=9",
+            "3410.3=0.01",
+            "3140=0",
+            "3120=0",
+        ] {
             list.assign(assignment).unwrap();
         }
         let timing = Timing::of(Tnc415b);
@@ -81,8 +88,16 @@ impl Bench {
                 Drive::Reversed => -nominal,
                 Drive::Dead => 0.0,
             };
-            let most = if self.drive == Drive::Dead { FRICTION_RPM_S } else { ACCELERATION_RPM_S } * step_s;
-            let rate = if self.drive == Drive::Dead { 1.0 } else { step_s / TIME_CONSTANT_S };
+            let most = if self.drive == Drive::Dead {
+                FRICTION_RPM_S
+            } else {
+                ACCELERATION_RPM_S
+            } * step_s;
+            let rate = if self.drive == Drive::Dead {
+                1.0
+            } else {
+                step_s / TIME_CONSTANT_S
+            };
             self.rpm += ((wanted - self.rpm) * rate).clamp(-most, most);
             self.turns += self.rpm / 60.0 * step_s;
             if !self.stuck {
@@ -141,7 +156,10 @@ fn a_runaway_is_found_when_it_is_beside_by_what_it_may() {
         bench.seconds(1.0, rpm);
         bench.drive = Drive::Runaway;
         let found = bench.found_after(rpm).unwrap();
-        assert!(found >= expected - 0.003 && found <= expected + 0.009, "{rpm}: {found} {expected}");
+        assert!(
+            found >= expected - 0.003 && found <= expected + 0.009,
+            "{rpm}: {found} {expected}"
+        );
     }
 }
 
@@ -153,12 +171,18 @@ fn a_stuck_encoder_is_found() {
     bench.stuck = true;
     let found = bench.found_after(320.0).unwrap();
     let expected = MOST_DEG / (160.0 * 6.0);
-    assert!(found >= expected - 0.003 && found <= expected + 0.009, "{found} {expected}");
+    assert!(
+        found >= expected - 0.003 && found <= expected + 0.009,
+        "{found} {expected}"
+    );
     // From standstill it is known as soon as the spindle must have begun to turn: the drive has 0.1 s for that.
     let mut bench = Bench::new();
     bench.stuck = true;
     let found = bench.found_after(320.0).unwrap();
-    assert!(found > expected && found < expected + 0.1 + 0.05 + 0.009, "{found} {expected}");
+    assert!(
+        found > expected && found < expected + 0.1 + 0.05 + 0.009,
+        "{found} {expected}"
+    );
 }
 
 /// A drive that turns the wrong way round, and one without power.
@@ -168,7 +192,10 @@ fn a_drive_that_does_something_else_is_found() {
         let mut bench = Bench::new();
         bench.seconds(1.0, 600.0);
         bench.drive = drive;
-        assert!(bench.found_after(600.0).is_some_and(|found| found < 1.5), "{drive:?}");
+        assert!(
+            bench.found_after(600.0).is_some_and(|found| found < 1.5),
+            "{drive:?}"
+        );
     }
 }
 

@@ -1,13 +1,15 @@
 //! Where the machine leads the path, and no curve says how far: a probe goes to what it touches, and a thread as far as
 //! its spindle turns.
 //!
-//! What is led stays where it was undisturbed, and beyond that no farther than it takes to stop there. What a probe has felt
+//! What is led stays where it was undisturbed, and beyond that no farther than it takes to stop there; a stylus that digitizes
+//! may be anywhere in its RANGE up to the clearance height, and where it looks for the surface at an outside corner beside it by
+//! P.P.INT [000:7803-7825]. What a probe has felt
 //! elsewhere than undisturbed moves what the program does behind it by as much: no shipped program makes more of a touch.
 
 use std::collections::HashMap;
 
-use bahn_control::{AxisWatch, ChannelView, Signal};
-use bahn_path::{Axis, BlockRef, PerAxis, Position};
+use bahn_control::{AxisWatch, ChannelView, Digitized, Signal};
+use bahn_path::{Axis, BlockRef, PerAxis, Position, ScanJob};
 
 use super::axes::Moment;
 
@@ -34,6 +36,8 @@ struct Stretch {
 #[derive(Clone, Debug)]
 pub(super) struct Led {
     stretches: HashMap<BlockRef, Stretch>,
+    /// What is digitized.
+    scans: HashMap<BlockRef, ScanJob>,
     /// How fast the axes of a thread are at most, mm/s.
     threads: HashMap<BlockRef, PerAxis<f64>>,
     open: Option<BlockRef>,
@@ -45,6 +49,7 @@ impl Default for Led {
     fn default() -> Led {
         Led {
             stretches: HashMap::new(),
+            scans: HashMap::new(),
             threads: HashMap::new(),
             open: None,
             wheels: PerAxis::splat(0.0),
@@ -65,6 +70,9 @@ impl Led {
         if element.thread().is_some() {
             let fastest = self.threads.entry(block);
             grow(fastest.or_insert_with(|| PerAxis::splat(0.0)), channel);
+        }
+        if let Some(Digitized::Begins(job)) = channel.digitized().what {
+            self.scans.insert(block, job);
         }
         if channel.is_led_by_probe() {
             let place = place(channel);
@@ -104,6 +112,11 @@ impl Led {
 
     /// A place is where the block was led, or no farther beside that than it reaches.
     fn holds(&self, block: BlockRef, place: &Position, reach: &PerAxis<f64>, tolerance: f64) -> bool {
+        let scan = self.scans.get(&block);
+        scan.is_some_and(|job| is_scanned(job, place, reach)) || self.was_led(block, place, reach, tolerance)
+    }
+
+    fn was_led(&self, block: BlockRef, place: &Position, reach: &PerAxis<f64>, tolerance: f64) -> bool {
         self.stretches.get(&block).is_some_and(|stretch| {
             Axis::ALL.into_iter().all(|axis| {
                 let beside = (stretch.least[axis] - place[axis]).max(place[axis] - stretch.greatest[axis]);
@@ -121,6 +134,21 @@ pub(super) fn place(channel: &ChannelView) -> Position {
         place[watch.axis] = f64::NAN;
     }
     place
+}
+
+/// A place is in the RANGE of what is digitized, below its clearance height, or beyond that by the interval of its points, and as
+/// far as it takes to stop.
+fn is_scanned(job: &ScanJob, place: &Position, reach: &PerAxis<f64>) -> bool {
+    let up = job.tool_place();
+    [Axis::X, Axis::Y, Axis::Z]
+        .into_iter()
+        .enumerate()
+        .all(|(k, axis)| {
+            let top = if k == up { job.clearance_mm } else { job.max[k] };
+            let most = reach[axis] + job.interval_mm;
+            let tip = place[axis] + job.beside[k];
+            tip >= job.min[k] - most && tip <= top + most
+        })
 }
 
 fn length(of: &PerAxis<f64>) -> f64 {

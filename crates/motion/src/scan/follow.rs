@@ -68,6 +68,8 @@ pub(super) struct Follower {
     interval_mm: f64,
     deflection_mm: f64,
     up: ScanPoint,
+    /// The range, least and greatest.
+    range: [ScanPoint; 2],
     /// Of a measuring probe.
     glide: Option<Glide>,
 }
@@ -103,6 +105,7 @@ impl Follower {
             interval_mm: job.interval_mm,
             deflection_mm: job.rules.deflection_mm,
             up,
+            range: [job.min, job.max],
             glide: job.rules.measuring.map(Glide::new),
         }
     }
@@ -210,7 +213,7 @@ impl Follower {
             Phase::Clear => {
                 if !felt.deflected {
                     self.phase = Phase::Forth;
-                } else if along <= -self.deflection_mm {
+                } else if along <= -self.deflection_mm || self.is_at_edge(felt.nominal) {
                     self.phase = Phase::Lift;
                 }
                 self.wish(-1.0, 0.0)
@@ -230,6 +233,17 @@ impl Follower {
                 Followed::Moves(Wish::along(self.up, self.along_mm_s))
             }
         }
+    }
+
+    /// Going back from here leads out of the range, where the stylus has not been (inferred).
+    fn is_at_edge(&self, at: ScanPoint) -> bool {
+        let [least, greatest] = self.range;
+        let direction = self.direction();
+        (0..3).any(|k| {
+            let beyond =
+                direction[k] > 0.0 && at[k] <= least[k] || direction[k] < 0.0 && at[k] >= greatest[k];
+            beyond && self.up[k] == 0.0
+        })
     }
 
     /// How far it goes along from point to point, mm.

@@ -28,7 +28,11 @@ impl Movement {
     pub(super) fn step(&mut self, told: f64, actual: f64, ramp: f64, timing: &Timing) -> f64 {
         let step_min = timing.step_min();
         let part = step_min * 60.0 / MOVEMENT_WINDOW_S;
-        let most = if ramp > 0.0 { ramp * step_min } else { f64::INFINITY };
+        let most = if ramp > 0.0 {
+            ramp * step_min
+        } else {
+            f64::INFINITY
+        };
         self.greatest = told.max(self.greatest - ((self.greatest - told) * part).min(most));
         self.least = told.min(self.least + ((told - self.least) * part).min(most));
         let least = self.least - self.least.abs() * MOVEMENT_TOLERANCE;
