@@ -278,7 +278,7 @@ fn what_was_led_goes_on_without_a_jump() {
 }
 
 /// What a thread and a probe were led to behind faults: a drive of Z that ran away beyond the end of a thread, a feed enable that bounces, a
-/// spindle that runs away, turns the wrong way round, or whose encoder is stuck or loses its signal; axes that go back to a thread
+/// spindle that runs away, turns the wrong way round, has no power for a moment, or whose encoder is stuck or loses its signal; axes that go back to a thread
 /// behind POSITIONING ERROR and EMERGENCY STOP; a stylus that says that it is deflected, and MANUAL OPERATION while it scans.
 #[test]
 fn threads_and_scans_stay_where_they_are_led() {
@@ -295,6 +295,9 @@ fn threads_and_scans_stay_where_they_are_led() {
                 (3_004_393, "force Y 4000"),
                 (3_001_357, "fault drive S runaway"),
                 (3_005_981, "fault encoder S stuck"),
+                (7_110_097, "fault drive Z runaway"),
+                (7_110_156, "fault drive S runaway"),
+                (7_110_633, "fault drive S dead"),
             ],
         ),
         (

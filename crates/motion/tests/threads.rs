@@ -337,9 +337,16 @@ fn between_its_ways_a_thread_begins_where_it_stands() {
         bench.drive.single_block = single_block;
         bench.until(|_, cycle| cycle.state == State::Settling);
         bench.drive.hold = true;
-        let waits = if single_block { State::BlockEnd } else { State::Held };
+        let waits = if single_block {
+            State::BlockEnd
+        } else {
+            State::Held
+        };
         bench.until(|_, cycle| cycle.state == waits);
-        let second = bench.path.element().is_some_and(|element| element.end[Axis::Z] == 0.0);
+        let second = bench
+            .path
+            .element()
+            .is_some_and(|element| element.end[Axis::Z] == 0.0);
         assert_eq!(second, !single_block);
         bench.dead = 0;
         let mut here = bench.path.position();
@@ -352,7 +359,10 @@ fn between_its_ways_a_thread_begins_where_it_stands() {
         let end = bench.until(|bench, cycle| {
             if let Some(lead) = cycle.lead {
                 let now = (height(lead.angle_deg) - height(told)) / 0.003;
-                assert!(f64::abs(now - speed) <= 50.0 * 0.003 + 1e-6, "{single_block}: {speed} {now}");
+                assert!(
+                    f64::abs(now - speed) <= 50.0 * 0.003 + 1e-6,
+                    "{single_block}: {speed} {now}"
+                );
                 (told, speed) = (lead.angle_deg, now);
             }
             if bench.path.is_coupled() {
