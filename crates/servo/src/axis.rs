@@ -1,5 +1,6 @@
 //! The position loop of an axis.
 
+mod monitoring;
 mod torque;
 
 use bahn_parameters::axis::AxisParameters;
@@ -9,7 +10,7 @@ use crate::fault::{EncoderFault, Fault, GrossFault};
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::measuring::{Mark, MeasuringSystem};
 use crate::method::Method;
-use crate::monitor::{Monitor, Sample};
+use crate::monitor::Monitor;
 use crate::offset::Offset;
 use crate::plant::{AxisCommand, Encoder};
 use crate::reversal::{ReversalPeak, Travel};
@@ -358,33 +359,6 @@ impl Axis {
         self.velocity_mm_min = velocity + self.bias_mm_min;
     }
 
-    fn watch(&mut self, standing: bool, way_mm: f64, volts: f64) {
-        if let Some(fault) = self.offset.fault() {
-            self.raise(Fault::Gross(fault));
-        }
-        self.residual_steps = self.residual_steps.saturating_sub(1);
-        if !self.monitored {
-            self.monitor.reset();
-            return;
-        }
-        let sample = Sample {
-            actual_mm: self.actual_mm,
-            lag_mm: self.lag_mm(),
-            way_mm,
-            standing,
-            in_position: self.in_position,
-            velocity_mm_min: self.velocity_mm_min,
-            volts,
-            enabled: self.drives(),
-        };
-        let found = self
-            .monitor
-            .check(&sample, self.method, &self.parameters, &self.timing);
-        if let Some(fault) = found {
-            self.raise(fault);
-        }
-    }
-
     /// Whether the actual position is within the window; with pre-control only when the axis itself is slower than
     /// MP1525 [000:813] [000:5304-5318].
     fn is_in_window(&self) -> bool {
@@ -451,17 +425,6 @@ impl Axis {
     /// position stays: what lag is left then is driven out when the enable comes back.
     pub fn set_enabled(&mut self, enabled: bool) {
         self.enabled = enabled;
-    }
-
-    /// Switches the monitoring of lag, voltage, movement and standstill on or off: M2688 to M2692, MP4130
-    /// [000:5162-5188].
-    pub fn set_monitored(&mut self, monitored: bool) {
-        self.monitored = monitored;
-    }
-
-    /// Its monitoring is not suppressed.
-    pub fn is_monitored(&self) -> bool {
-        self.monitored
     }
 
     /// Chooses the method of positioning. In motion the velocity goes on without a jump.
