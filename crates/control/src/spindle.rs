@@ -368,6 +368,11 @@ impl SpindleUnit {
         }
     }
 
+    /// A thread goes on from where it stands.
+    pub fn lead_from_here(&mut self) {
+        self.servo.lead_from_here();
+    }
+
     /// In a thread it may turn so far beside what it is led, degrees; `None` where nothing follows it.
     pub fn monitor_movement(&mut self, most_deg: Option<f64>) {
         self.servo.monitor_movement(most_deg);

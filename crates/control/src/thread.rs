@@ -158,7 +158,7 @@ impl Tapping {
             return true;
         }
         self.couple(track, runs, site);
-        !track.is_able(&site.axes)
+        runs && self.apart || !track.is_able(&site.axes)
     }
 
     /// The axis goes where the spindle turns.
@@ -166,14 +166,15 @@ impl Tapping {
         track.path.is_coupled() && !self.held && !self.apart
     }
 
-    /// Couples them as they stand, once they can move again: the tool axis does not go back to where the path has left
+    /// Couples them as they stand, once they can move again and the spindle does not: the tool axis does not go back to where the path has left
     /// it. A tool that is out of the thread goes back to where that begins: nothing couples it there.
     fn couple(&mut self, track: &mut Track, runs: bool, site: &mut Site) {
         let sound = site
             .axes
             .iter()
             .all(|unit| unit.servo.fault().is_none() && unit.servo.closed());
-        if !self.apart || !site.now.loops_closed || !sound {
+        let stands = site.spindle.state().actual_rpm.abs() < STANDS_RPM;
+        if !self.apart || !site.now.loops_closed || !sound || !stands {
             return;
         }
         self.apart = false;
@@ -195,6 +196,7 @@ impl Tapping {
         let own = site.axes.iter().map(|unit| unit.axis);
         let moved: AxisSet = own.filter(|axis| element.moves_axis(*axis)).collect();
         track.path.couple_again(&at, now);
+        site.spindle.lead_from_here();
         // In a tilted plane axes that ran on are beside the thread, too. A run that waits for its feed enable only leads
         // them back to it before it goes on, an interrupted one with NC start.
         let nominal = site.chain.to_axes(&track.path.position());

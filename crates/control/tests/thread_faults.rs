@@ -41,6 +41,16 @@ fn observe(rig: &Rig, signal: &str) -> f64 {
     rig.control.observe(&signal.parse::<Signal>().unwrap())
 }
 
+/// The spindle is told no more than what the thread asks for, 9 V at 1500 rpm in gear 1, and what its loop adds to hold it: 0.1 V.
+fn assert_told_the_thread(rig: &Rig) {
+    let volts = observe(rig, "S.volts");
+    assert!(
+        volts.abs() < 9.0 * RPM / 1500.0 + 0.1,
+        "{volts} V, {:?}",
+        rig.messages()
+    );
+}
+
 /// The tool is on its way out of the hole.
 fn retracts(rig: &Rig) -> bool {
     observe(rig, "S.rpm") < -0.9 * RPM
@@ -57,10 +67,15 @@ fn behind_a_lost_feed_enable_the_axis_follows_its_spindle() {
         rig.input("I19", false);
         rig.seconds(f64::from(milliseconds) * 1e-3);
         rig.input("I19", true);
+        for _ in 0..60 {
+            rig.cycle();
+            assert_told_the_thread(&rig);
+        }
     }
     let (mut z, mut angle, mut led) = (observe(&rig, "Z.nominal"), observe(&rig, "S.angle"), 0);
     while rig.bit("M2095") {
         rig.cycle();
+        assert_told_the_thread(&rig);
         let (z_now, angle_now) = (observe(&rig, "Z.nominal"), observe(&rig, "S.angle"));
         if observe(&rig, "path.speed") > 10.0 && observe(&rig, "path.block") == 8.0 {
             // Z takes the angle of the cycle before.
@@ -95,6 +110,7 @@ fn a_tool_that_ran_out_of_its_thread_goes_back_to_its_end() {
     rig.command("ce");
     for _ in 0..1000 {
         rig.cycle();
+        assert!(observe(&rig, "S.volts").abs() < 0.1);
         let angle = observe(&rig, "S.angle");
         assert!((angle - stands).abs() < 5.0, "{stands} {angle}");
     }
@@ -115,7 +131,10 @@ fn a_spindle_that_does_not_do_what_it_is_told_ends_the_thread() {
         rig.until(20.0, "it is half way", |rig| observe(rig, "Z.actual") < 403.0);
         let from = observe(&rig, "Z.actual");
         rig.event(&format!("fault {fault}"));
-        rig.until(2.0, "it is seen", |rig| !rig.messages().is_empty());
+        rig.until(2.0, "it is seen", |rig| {
+            assert_told_the_thread(rig);
+            !rig.messages().is_empty()
+        });
         assert_eq!(rig.messages(), ["GROSS POSITIONING ERROR S C"], "{fault}");
         rig.seconds(1.0);
         let (v, ramp) = (RPM * PITCH / 60.0, 1667.0 * PITCH / 60.0);

@@ -277,6 +277,45 @@ fn what_was_led_goes_on_without_a_jump() {
     }
 }
 
+/// What a thread and a probe were led to behind faults: a drive of Z that ran away beyond the end of a thread, a feed enable that bounces, a
+/// spindle that runs away, turns the wrong way round, has no power for a moment, or whose encoder is stuck or loses its signal; axes that go back to a thread
+/// behind POSITIONING ERROR and EMERGENCY STOP; a stylus that says that it is deflected, and MANUAL OPERATION while it scans.
+#[test]
+fn threads_and_scans_stay_where_they_are_led() {
+    let threads = [
+        (5_000_331, "fault drive Z runaway"),
+        (5_003_494, "fault input I19 bouncing"),
+        (5_000_689, "fault encoder S amplitude"),
+        (5_001_672, "fault drive S reversed"),
+        (5_000_937, "fault encoder Z stuck"),
+        (3_004_393, "force Y 4000"),
+        (3_001_357, "fault drive S runaway"),
+        (3_005_981, "fault encoder S stuck"),
+        (7_110_097, "fault drive Z runaway"),
+        (7_110_156, "fault drive S runaway"),
+        (7_110_633, "fault drive S dead"),
+    ];
+    let scans = [
+        (5_004_658, "fault probe early"),
+        (3_002_660, "manual-operation"),
+        (3_005_973, "fault probe early"),
+    ];
+    let found = [
+        ("gantry", "THREADS.H", &threads[..]),
+        ("dig425", "MODEL.H", &scans[..]),
+    ];
+    for (machine, program, seeds) in found {
+        let campaign = of_programs(support::machine(machine), &[program]);
+        let mut worker = campaign.worker().unwrap();
+        for (seed, what) in seeds {
+            let plan = worker.plan(*seed);
+            let happens = plan.happenings.iter().any(|happening| happening.what == *what);
+            assert!(happens, "seed {seed} is another one now: {plan:?}");
+            assert_eq!(worker.run(&plan).violation, None, "seed {seed} on {machine}");
+        }
+    }
+}
+
 /// What a seed did is a script that a run repeats: each command has a line of its own.
 #[test]
 fn a_script_has_a_line_for_each_command() {

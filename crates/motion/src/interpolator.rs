@@ -652,14 +652,12 @@ impl<E> Interpolator<E> {
         let (way, place) = coupling.renew(item, position, angle_deg);
         // Beyond its ends, too: what is told the spindle begins where it stands.
         let rest = item.length - way;
-        match self.phase {
-            // Its end was reached in nominal values alone, the axis that follows the spindle is elsewhere.
-            Phase::Dwell(_) | Phase::Finish | Phase::Done if rest != 0.0 => {
-                (self.phase, self.rest) = (Phase::Move, rest);
-            }
-            Phase::Move | Phase::Gate(Gate::End) => self.rest = rest,
-            _ => {}
+        // Its end was reached in nominal values alone, the axis that follows the spindle is elsewhere.
+        let ended = matches!(self.phase, Phase::Dwell(_) | Phase::Finish) || self.phase.is_executed();
+        if ended && rest != 0.0 {
+            self.phase = Phase::Move;
         }
+        self.rest = rest;
         (self.speed, self.position) = (0.0, place);
     }
 

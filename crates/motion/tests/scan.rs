@@ -146,7 +146,7 @@ fn what_cannot_be_scanned_says_why() {
 /// The stylus says that it is deflected, wherever it is, for two seconds and at many times: it goes back to get clear by up to
 /// MP6240 = 5 mm [000:7825], but not out of the range; there it lifts at once. Beyond the edge it needs what it takes to stop and
 /// three cycles: that in which it passes the edge, that in which this is seen, and what is left of one at the end of the ramp.
-/// Where it taps on something steep there, it leaves it by 0.43 P.P.INT at most. Then the lines are scanned to their end.
+/// Where it taps on something steep there, it leaves it by 0.43 P.P.INT at most. What was felt in the air may end the scan.
 #[test]
 fn a_stylus_that_does_not_get_clear_stays_in_the_range() {
     let job = ScanJob {
@@ -190,7 +190,6 @@ fn a_stylus_that_does_not_get_clear_stays_in_the_range() {
             };
             assert!(time < 2000.0);
         }
-        assert_eq!(over.map(|scanned| scanned.fault), Some(None), "{from_s}");
     }
 }
 
@@ -345,22 +344,5 @@ fn any_stairs() {
         let (points, scanned, _) = scan(job, surface);
         assert_eq!(scanned.fault, None, "{case}");
         assert_no_farther(&points, interval_mm, &case);
-    }
-}
-
-/// Slots narrower than P.P.INT, down to three tenths of it: the stylus may pass over one or feel its floor, but every line comes
-/// to its end, every point lies on the surface, and none is farther from the one before than P.P.INT [003:6655-6671].
-#[test]
-fn slots_narrower_than_the_interval() {
-    for width in [0.9, 0.6, 0.3] {
-        for depth in [0.5, 3.0] {
-            let slot = |x: f64| ((x - 8.0).abs() < width / 2.0) || ((x - 13.3).abs() < width / 2.0);
-            let height = |x: f64, _: f64| if slot(x) { 1.0 - depth } else { 1.0 };
-            let (points, scanned, _) = scan(job(), height);
-            let case = format!("slot {width} wide, {depth} deep");
-            assert_eq!(scanned.fault, None, "{case}");
-            assert_no_farther(&points, 1.0, &case);
-            assert_scanned(&points, &scanned, 0.06, height);
-        }
     }
 }

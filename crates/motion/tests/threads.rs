@@ -328,6 +328,53 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
     }
 }
 
+/// Stopped between the two ways of a thread, with single block, too: coupled again elsewhere it begins where spindle and axis
+/// stand, and goes on to the end of the way that it stands before or behind.
+#[test]
+fn between_its_ways_a_thread_begins_where_it_stands() {
+    for single_block in [false, true] {
+        let mut bench = Bench::new(&thread(), 3);
+        bench.drive.single_block = single_block;
+        bench.until(|_, cycle| cycle.state == State::Settling);
+        bench.drive.hold = true;
+        let waits = if single_block {
+            State::BlockEnd
+        } else {
+            State::Held
+        };
+        bench.until(|_, cycle| cycle.state == waits);
+        let second = bench
+            .path
+            .element()
+            .is_some_and(|element| element.end[Axis::Z] == 0.0);
+        assert_eq!(second, !single_block);
+        bench.dead = 0;
+        let mut here = bench.path.position();
+        here[Axis::Z] = -12.0;
+        bench.told.push(100.0);
+        bench.path.couple_again(&here, 100.0);
+        (bench.drive.hold, bench.drive.single_block) = (false, false);
+        bench.path.go_on();
+        let (mut told, mut speed) = (100.0, 0.0);
+        let end = bench.until(|bench, cycle| {
+            if let Some(lead) = cycle.lead {
+                let now = (height(lead.angle_deg) - height(told)) / 0.003;
+                assert!(
+                    f64::abs(now - speed) <= 50.0 * 0.003 + 1e-6,
+                    "{single_block}: {speed} {now}"
+                );
+                (told, speed) = (lead.angle_deg, now);
+            }
+            if bench.path.is_coupled() {
+                let expected = -12.0 + height(bench.drive.master.actual_deg - 100.0);
+                assert!((cycle.position[Axis::Z] - expected).abs() < 1e-9);
+            }
+            cycle.position[Axis::X] > 0.0
+        });
+        assert!(end.position[Axis::Z].abs() < 1e-9, "{single_block}");
+    }
+}
+
 /// The path has reached the end of a thread in nominal values, and its function is output, when the drives are taken away from a spindle
 /// that lags behind: what is left of the thread is driven again, from a standstill, and the function is not output again.
 #[test]

@@ -242,7 +242,7 @@ faults! {
         Some(M::GrossPositioningError), "A", ServoStep, ControlReadyOff, Brake, PowerOff, "[000:5200-5255] [000:4490]";
     GrossVoltage: "more than 10 V with pre-control", Some(M::GrossPositioningError), "B",
         ServoStep, ControlReadyOff, Brake, PowerOff, "[000:5258-5264]";
-    GrossMovement: "the axis does not move as its voltage says (MP1140)", Some(M::GrossPositioningError), "C",
+    GrossMovement: "the axis does not move as its voltage says (MP1140), the spindle in a thread not as it is told", Some(M::GrossPositioningError), "C",
         ServoStep, ControlReadyOff, Brake, PowerOff, "[000:5266-5287]";
     GrossStandstill: "the axis moves at standstill, over its target or backwards by MP1110",
         Some(M::GrossPositioningError), "D", ServoStep, ControlReadyOff, Brake, PowerOff, "[000:5289-5300]";

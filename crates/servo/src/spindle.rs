@@ -294,6 +294,14 @@ impl Spindle {
         }
     }
 
+    /// A spindle that is led stands somewhere else than it was led to: it is led from there.
+    pub fn lead_from_here(&mut self) {
+        if self.mode == Mode::Lead {
+            let held = self.lead.velocity_deg_min();
+            self.lead.begin(self.encoder.turned_deg(), held);
+        }
+    }
+
     /// Monitors a spindle that is led: it may turn so far beside what it is told, degrees. `None` where it need not follow.
     pub fn monitor_movement(&mut self, most_deg: Option<f64>) {
         self.beside_max_deg = most_deg;

@@ -273,9 +273,9 @@ impl Leading {
             .sqrt();
         let turned = (turned_deg - begun.turned_deg).abs() / 360.0;
         let off = (way - thread.pitch_mm * turned).abs();
-        Some((
-            off,
-            THREAD_CYCLES * length(&self.fastest) * moment.cycle_s + ROUNDING_MM,
-        ))
+        // A spindle that runs away is faster than the axis that comes after it.
+        let turns_mm_s = channel.observe(&Signal::SpindleRpm).abs() / 60.0 * thread.pitch_mm;
+        let fastest = length(&self.fastest).max(turns_mm_s);
+        Some((off, THREAD_CYCLES * fastest * moment.cycle_s + ROUNDING_MM))
     }
 }
