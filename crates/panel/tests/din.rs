@@ -39,8 +39,14 @@ fn single_block() {
 #[test]
 fn test_run() {
     let mut trainee = trainee();
-    trainee.press("TEST PGM_NR F R A M E POINT N C ENT START").wait(1.0);
-    assert!(current(&mut trainee).ends_with("N40 M30"), "{:#?}", trainee.screen());
+    trainee
+        .press("TEST PGM_NR F R A M E POINT N C ENT START")
+        .wait(1.0);
+    assert!(
+        current(&mut trainee).ends_with("N40 M30"),
+        "{:#?}",
+        trainee.screen()
+    );
     assert_eq!(trainee.messages(), [""; 0]);
 }
 
@@ -54,5 +60,9 @@ fn a_refused_block() {
     trainee.until(60.0, |screen| !screen.messages.is_empty());
     assert_eq!(trainee.messages(), ["FUNCTION NOT YET SUPPORTED"]);
     trainee.wait(0.5);
-    assert!(current(&mut trainee).ends_with("N20 H5"), "{:#?}", trainee.screen());
+    assert!(
+        current(&mut trainee).ends_with("N20 H5"),
+        "{:#?}",
+        trainee.screen()
+    );
 }
