@@ -73,13 +73,6 @@ fn regular(path: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Whether a file is a program of DIN 66025: it is named `.nc`, and does not begin as one of plain language. Shops name
-/// those so, too.
-pub(crate) fn is_din(path: &Path, bytes: &[u8]) -> bool {
-    let plain = || bahn_program::Program::from_bytes("1.H", bytes.to_vec()).begins_with_header();
-    extension(path) == "nc" && !bytes.trim_ascii().is_empty() && !plain()
-}
-
 /// What a name ends with behind its last dot, in small letters; empty without one.
 pub(crate) fn extension(path: &Path) -> String {
     path.extension()

@@ -651,7 +651,7 @@ impl Channel {
             Command::Test(name) => {
                 let axes = machine.axes.iter().map(|unit| unit.axis).collect();
                 let (run, site, basis) = self.parts(machine);
-                let feeder = run.test_feeder(&name, axes, &site, &basis);
+                let feeder = run.source.feeder_for_test(&name, axes, &site, &basis);
                 feeder
                     .map(|feeder| self.test = Some(TestRun::new(&name, feeder)))
                     .is_some()

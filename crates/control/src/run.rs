@@ -1,11 +1,10 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
 use bahn_exchange::{Image, signal};
-use bahn_interpreter::Status;
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
-use bahn_path::{AxisSet, Barrier, BlockRef, Frame, LiveData, PathElement};
+use bahn_path::{Barrier, BlockRef, Frame, LiveData, PathElement};
 use bahn_reader::Reader;
 use bahn_servo::Measured;
 
@@ -17,7 +16,7 @@ use crate::feeder::{self, Feeder, RunFault};
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
-use crate::programs::{Opened, Selection};
+use crate::programs::Selection;
 use crate::progress::{Progress, RunState};
 use crate::q_transfer::QTransfer;
 use crate::reference;
@@ -329,7 +328,7 @@ impl ProgramRun {
             self.source.set_aside();
         }
         if !self.source.go_on(site) {
-            match self.open(mdi, site, basis) {
+            match self.source.open(mdi, &self.selection, site, basis) {
                 Ok(opened) => {
                     // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
                     site.tools.counts &= mdi;
@@ -352,16 +351,6 @@ impl ProgramRun {
         self.progress.enter(RunState::Running);
     }
 
-    fn open(&self, mdi: bool, site: &Site, basis: &Basis) -> Result<Opened, Message> {
-        if let Some(feed) = self.source.drip_feed.as_ref().filter(|_| !mdi) {
-            let program = feed.open(self.selection.start_block).map_err(Message::Plain)?;
-            return Ok(Opened::Program(program));
-        }
-        let reading = &self.source.reading;
-        self.selection
-            .open(mdi, &*reading.programs, || reading.begin(site, basis))
-    }
-
     /// RESTORE AT N: scans to a block.
     pub fn restore_at(
         &mut self,
@@ -375,7 +364,12 @@ impl ProgramRun {
         }
         let mdi = site.now.mode == Mode::Mdi;
         let ready = self.source.may_begin(mdi);
-        let Some(opened) = self.open(mdi, site, basis).ok().filter(|_| ready) else {
+        let Some(opened) = self
+            .source
+            .open(mdi, &self.selection, site, basis)
+            .ok()
+            .filter(|_| ready)
+        else {
             return false;
         };
         // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.
@@ -680,16 +674,6 @@ impl ProgramRun {
             self.selection.mdi = Some(blocks);
         }
         possible
-    }
-
-    /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
-    /// The axes are those of the machine: nobody hands one over meanwhile.
-    pub fn test_feeder(&self, name: &str, axes: AxisSet, site: &Site, basis: &Basis) -> Option<Feeder> {
-        let reading = &self.source.reading;
-        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis)).ok()??;
-        let mut feeder = self.source.feeder_from(opened, Status::default(), site, basis);
-        feeder.expect_axes(axes);
-        Some(feeder)
     }
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.

@@ -18,8 +18,9 @@ use crate::drip_feed::DripFeed;
 use crate::feeder::Feeder;
 use crate::kinematics::Chain;
 use crate::manual_probing::ManualProbing;
+use crate::message::Message;
 use crate::plc_link::PlcLink;
-use crate::programs::{Opened, Programs, Shelf};
+use crate::programs::{Opened, Programs, Selection, Shelf};
 use crate::setup::Checking;
 use crate::site::Site;
 
@@ -441,6 +442,35 @@ impl Source {
     fn keep_q(&mut self, number: u16, value: f64) {
         self.q.retain(|(known, _)| *known != number);
         self.q.push((number, value));
+    }
+
+    /// The program of the next run.
+    ///
+    /// # Errors
+    /// The message why there is none.
+    pub fn open(
+        &self,
+        mdi: bool,
+        selection: &Selection,
+        site: &Site,
+        basis: &Basis,
+    ) -> Result<Opened, Message> {
+        if let Some(feed) = self.drip_feed.as_ref().filter(|_| !mdi) {
+            let program = feed.open(selection.start_block).map_err(Message::Plain)?;
+            return Ok(Opened::Program(program));
+        }
+        let reading = &self.reading;
+        selection.open(mdi, &*reading.programs, || reading.begin(site, basis))
+    }
+
+    /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
+    /// The axes are those of the machine: nobody hands one over meanwhile.
+    pub fn feeder_for_test(&self, name: &str, axes: AxisSet, site: &Site, basis: &Basis) -> Option<Feeder> {
+        let reading = &self.reading;
+        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis)).ok()??;
+        let mut feeder = self.feeder_from(opened, Status::default(), site, basis);
+        feeder.expect_axes(axes);
+        Some(feeder)
     }
 
     /// A feeder of a program that is to run, from a block on, with what the last run left in force.

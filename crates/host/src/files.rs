@@ -1,5 +1,6 @@
 //! Files: reading programs, finding called ones, writing without leaving half-written files.
 
+mod nc;
 mod neighbours;
 
 use std::collections::HashMap;
@@ -13,6 +14,8 @@ use bahn_interpreter::Library;
 use bahn_program::Program;
 
 use crate::{HostError, called};
+
+pub use nc::{NcFolder, is_din, nc_reader};
 
 /// Largest program file, 1 GiB. A larger one is FURTHER PROGRAM ENTRY IMPOSSIBLE: the run holds the file in
 /// memory.

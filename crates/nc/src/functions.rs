@@ -12,8 +12,8 @@ use bahn_reader::Start;
 pub(crate) struct Ordered {
     /// In the order of output.
     pub functions: Vec<TechnologyFunction>,
-    /// The run stops behind the block: M0, M6.
-    pub stops: bool,
+    /// The run stops behind the block: by M0, or for the tool change of M6, which has no name.
+    pub stops: Option<Option<&'static str>>,
 }
 
 /// Why a block cannot be executed here.
@@ -103,13 +103,19 @@ fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(),
     };
     for deed in technology.deeds() {
         match deed {
-            Deed::ProgramStop => ordered.stops = true,
-            Deed::ToolChange => ordered.stops |= start.m6_stops,
+            Deed::ProgramStop => ordered.stops = Some(Some("M0")),
+            Deed::ToolChange if start.m6_stops => {
+                ordered.stops.get_or_insert(None);
+            }
             Deed::SpindleOrientation => {
                 let function = Function::SpindleOrientation(orientation(unit));
                 ordered.functions.push(by_table(function, technology, start));
             }
-            Deed::ProgramEnd | Deed::Spindle(_) | Deed::Coolant(_) | Deed::ModalCycleCall => {}
+            Deed::ToolChange
+            | Deed::ProgramEnd
+            | Deed::Spindle(_)
+            | Deed::Coolant(_)
+            | Deed::ModalCycleCall => {}
             _ => return Err(of_a_tnc(code)),
         }
     }

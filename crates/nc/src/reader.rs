@@ -1,5 +1,6 @@
 //! A DIN 66025 program that is read block by block.
 
+use std::any::Any;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,6 +50,8 @@ struct Run {
     limit_mm_min: f64,
     queue: VecDeque<Item>,
     waiting: Option<Barrier>,
+    /// The block that has stopped the run last, and its function.
+    stopped: Option<(BlockRef, &'static str)>,
     ended: Option<Ended>,
 }
 
@@ -81,6 +84,7 @@ impl NcReader {
             limit_mm_min: f64::INFINITY,
             queue: VecDeque::new(),
             waiting: None,
+            stopped: None,
             ended: None,
         };
         let mut reader = NcReader {
@@ -102,6 +106,17 @@ impl NcReader {
             reader.run.ended = Some(Ended::Failed(reader.error(refusal, BlockRef::default())));
         }
         reader
+    }
+
+    /// The reader as one of these programs; `None` for a program in another language.
+    pub fn of(reader: &dyn Reader) -> Option<&NcReader> {
+        (reader as &dyn Any).downcast_ref()
+    }
+
+    /// What stops the run in a block that is a stop: M0; `None` for a tool change.
+    pub fn stop_function(&self, block: BlockRef) -> Option<&'static str> {
+        let stopped = self.run.stopped.filter(|(at, _)| *at == block);
+        stopped.map(|(_, function)| function)
     }
 
     /// Begins a program of the file, with new modal data, where the path is (inferred). `false` when there is none.
@@ -238,7 +253,8 @@ impl NcReader {
             element.dwell_s = unit.dwell_s;
             self.run.queue.push_back(Item::Element(element));
         }
-        if stops {
+        if let Some(stop) = stops {
+            self.run.stopped = stop.map(|function| (at, function));
             self.run
                 .queue
                 .push_back(Item::Barrier(Barrier::Stop { block: at }));

@@ -11,6 +11,7 @@ use bahn_host::FolderPrograms;
 use bahn_host::files::{self, Loaded, NewFile};
 use bahn_parameters::MessageId;
 use bahn_program::{Edit, Program};
+use bahn_reader::{Reader, Start};
 
 use crate::frames;
 
@@ -226,6 +227,12 @@ pub(crate) fn is_program(name: &str) -> bool {
     })
 }
 
+/// What can be run and tested, by its name: part programs, and those of DIN 66025.
+pub(crate) fn is_executed(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map(|(_, ending)| ending);
+    is_program(name) || ending.is_some_and(|ending| ending.eq_ignore_ascii_case("nc"))
+}
+
 /// The first block of a program says that it is protected.
 fn is_protected(path: &Path) -> bool {
     let mut head = Vec::new();
@@ -244,6 +251,11 @@ impl Programs for ProgramMemory {
     fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         let inner = self.inner.read().unwrap_or_else(PoisonError::into_inner);
         inner.open(name, caller)
+    }
+
+    fn reader(&self, name: &str, start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
+        let inner = self.inner.read().unwrap_or_else(PoisonError::into_inner);
+        inner.reader(name, start)
     }
 
     fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {

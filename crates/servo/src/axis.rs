@@ -376,10 +376,8 @@ impl Axis {
             volts,
             enabled: self.drives(),
         };
-        let found = self
-            .monitor
-            .check(&sample, self.method, &self.settings, &self.timing);
-        if let Some(fault) = found {
+        let monitor = &mut self.monitor;
+        if let Some(fault) = monitor.check(&sample, self.method, &self.settings, &self.timing) {
             self.raise(fault);
         }
     }

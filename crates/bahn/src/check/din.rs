@@ -1,6 +1,6 @@
 //! `bahn check` of a DIN 66025 program: what is wrong in its text, and what its execution comes to.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use bahn_din::{Fault, FileFault as Found, Program, Shelf, examine};
@@ -24,7 +24,7 @@ pub(super) fn check(path: &Path, format: Format, interrupt: &Interrupt) -> Resul
         true => (vec![whole(&program, files::TOO_LARGE)], Complete::NotBegun),
         false if bytes.trim_ascii().is_empty() => (vec![whole(&program, files::EMPTY)], Complete::NotBegun),
         false => {
-            let shelf: Arc<dyn Shelf> = Arc::new(NcFolder::of(path));
+            let shelf: Arc<dyn Shelf> = Arc::new(files::NcFolder::of(path));
             let examined = examine(&program, &shelf, &interrupt.flag());
             let complete = match examined.complete {
                 true => Complete::Yes,
@@ -62,31 +62,6 @@ fn whole(program: &Arc<Program>, message: &str) -> Found {
     Found {
         program: Arc::clone(program),
         fault,
-    }
-}
-
-/// Subroutines that lie beside a program, or in folders below.
-pub(crate) struct NcFolder(PathBuf);
-
-impl NcFolder {
-    /// The folder of a program.
-    pub(crate) fn of(program: &Path) -> NcFolder {
-        NcFolder(program.parent().unwrap_or(Path::new("")).to_owned())
-    }
-}
-
-impl Shelf for NcFolder {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
-        let relative = name.replace('\\', "/");
-        let inside = relative
-            .split('/')
-            .all(|part| !part.is_empty() && part != ".." && !part.contains(':'));
-        let path = self.0.join(&relative);
-        if !inside || !path.is_file() {
-            return None;
-        }
-        let bytes = files::read_program(&path).ok()??;
-        Some((relative, bytes))
     }
 }
 

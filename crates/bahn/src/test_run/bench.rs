@@ -1,12 +1,13 @@
 //! One program run to its end: nothing is printed here, so that many can run side by side.
 
-use bahn_reader::{ProgramError, Reader};
+use bahn_reader::{ProgramError, Reader, Start};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_interpreter::Interpreter;
+use bahn_interpreter::{AbsentAxes, Interpreter};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
+use bahn_nc::NcReader;
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanJob};
 use bahn_program::{Operation, Program};
@@ -126,10 +127,8 @@ impl Bench {
             }
         };
         let progress = company.progress.then(|| Progress::new(program.block_count()));
-        let library = FileLibrary::with_main(&program);
-        let mut interpreter = Interpreter::new(program, self.settings.clone(), Box::new(library));
-        interpreter.set_interrupt(company.stop.flag());
-        let reader: Box<dyn Reader> = Box::new(interpreter);
+        let mut reader = self.reader(program);
+        reader.set_interrupt(company.stop.flag());
         let mut run = TestRun {
             planner: Planner::new(reader, &self.limits, &self.times),
             record: Record::new(self.settings.start),
@@ -151,6 +150,21 @@ impl Bench {
             None => run.run()?,
         };
         run.finish(end)
+    }
+}
+
+impl Bench {
+    /// What reads the program, by its language.
+    fn reader(&self, program: Arc<Program>) -> Box<dyn Reader> {
+        let settings = &self.settings;
+        let AbsentAxes { missing, plc, slaves } = settings.absent;
+        let absent = missing.union(plc).union(slaves);
+        let start = Start::of(&self.list, settings.functions.clone(), absent, settings.start);
+        if let Some(reader) = files::nc_reader(&program, &start) {
+            return Box::new(reader);
+        }
+        let library = FileLibrary::with_main(&program);
+        Box::new(Interpreter::new(program, settings.clone(), Box::new(library)))
     }
 }
 
@@ -387,6 +401,9 @@ impl TestRun {
 
 /// What stops in a block: STOP or M0; `None` for M6.
 pub(crate) fn stop_function(run: &dyn Reader, block: BlockRef) -> Option<&'static str> {
+    if let Some(run) = NcReader::of(run) {
+        return run.stop_function(block);
+    }
     let chunk = run
         .program(block.program)?
         .decode(block.block / Program::CHUNK_SIZE);

@@ -23,6 +23,8 @@ Examples:
       On a TNC 360 with another machine parameter and Q parameters set.
   bahn test part.h --tools tool.t --start X0,Y0,Z100 --format json
       With a tool table, from a start position; the report as JSON.
+  bahn test part.nc --start X0,Y0,Z0
+      A program of DIN 66025, as this control executes it; docs/din66025.md says what of it.
   bahn test parts/ --report shelf.html
       All programs of a folder and the folders in it on all cores: a table, and a page with the pictures.
   bahn test parts/ --report shelf.csv --comma --density 7.85

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bahn_control::Programs;
 use bahn_interpreter::Library;
 use bahn_program::Program;
+use bahn_reader::{Reader, Start};
 
 use crate::HostError;
 use crate::files::{self, FileLibrary, Loaded, NewFile};
@@ -107,6 +108,12 @@ impl Programs for FolderPrograms {
             (None, Some(main)) => library.find(name, main.name()),
             (found, _) => Ok(found),
         }
+    }
+
+    fn reader(&self, name: &str, start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
+        let program = self.open(name, "")?;
+        let reader = program.and_then(|program| files::nc_reader(&program, start));
+        Ok(reader.map(|reader| -> Box<dyn Reader> { Box::new(reader) }))
     }
 
     fn name_here(&self, name: &str) -> String {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bahn_control::{Message, Programs};
 use bahn_machine::Machine;
 use bahn_program::Program;
+use bahn_reader::{Reader, Start};
 
 use super::contour::Contour;
 use super::led::Led;
@@ -148,6 +149,10 @@ struct ReadOnly(FolderPrograms);
 impl Programs for ReadOnly {
     fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         self.0.open(name, caller)
+    }
+
+    fn reader(&self, name: &str, start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
+        self.0.reader(name, start)
     }
 
     fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {

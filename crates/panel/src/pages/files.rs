@@ -10,7 +10,7 @@ use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::{Choice, Name};
 use crate::pages::transfer;
 use crate::pages::{list, table};
-use crate::programs::{Denial, Entry, NAME_MAX, is_program};
+use crate::programs::{Denial, Entry, NAME_MAX, is_executed, is_program};
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 use crate::transfer::TransferDeed;
@@ -65,9 +65,8 @@ impl Directory {
         match self.purpose {
             Purpose::Edit => self.entries.extend(table::of_machine(site)),
             Purpose::Erase | Purpose::ReadOut => {}
-            Purpose::Run | Purpose::Test | Purpose::Unprotect => {
-                self.entries.retain(|entry| is_program(&entry.name));
-            }
+            Purpose::Run | Purpose::Test => self.entries.retain(|entry| is_executed(&entry.name)),
+            Purpose::Unprotect => self.entries.retain(|entry| is_program(&entry.name)),
         }
         self.entries
             .retain(|entry| !table::is_disabled(&entry.name, site));
@@ -333,7 +332,7 @@ pub(crate) fn runs(name: &str, site: &Site) -> bool {
             programs.any(|own| is_same(file_name(own.name()), name))
         })
     };
-    control.run_state() != RunState::Idle && is_program(name) && (selected || called())
+    control.run_state() != RunState::Idle && is_executed(name) && (selected || called())
 }
 
 /// A program may be named by its path.
