@@ -138,10 +138,8 @@ const CIRCLES: &[(&str, &str)] = &[
     ("interpreter", "checkpoints growing lib oem work"),
     ("panel", "station station::warm_start"),
     ("servo", "spindle spindle::speed"),
-    (
-        "technology",
-        "channel channel::backward channel::drive channel::prepare channel::single",
-    ),
+    ("technology", "channel channel::backward"),
+    ("technology", "channel::plan channel::prepare"),
 ];
 
 /// Types of many fields with methods in many files, and these files. None should be.
@@ -156,11 +154,6 @@ const TOO_MUCH: &[(&str, &str, &str)] = &[
         "panel",
         "Station",
         "station station::teaching station::transfers station::warm_start",
-    ),
-    (
-        "technology",
-        "Channel",
-        "channel channel::backward channel::drive channel::gates channel::kept channel::planned channel::prepare channel::programs channel::single channel::skipped",
     ),
 ];
 
