@@ -3,7 +3,9 @@
 //! `take` (in `prepare`) turns a block into elements and deeds; `gates` does what is to be done where the path is, `leads`
 //! what is to be done ahead of that, `drive` is a cycle of the path. `programs` runs one program behind the other.
 
+mod back;
 mod backward;
+mod decoding;
 mod drive;
 mod fault;
 mod gates;
@@ -31,7 +33,7 @@ use crate::bounds::Bounds;
 use crate::plc::{Plc, PlcMemory, Script};
 use crate::report::{Fault, Skipped};
 use crate::settings::ChannelSettings;
-use backward::Backward;
+use back::Backward;
 use motion::Motion;
 use plan::Plan;
 use record::{Moment, Record};

@@ -2,10 +2,10 @@
 
 use bahn_path::Position;
 
+use super::decoding::Decoding;
 use super::in_force::InForce;
 use super::leads::Leads;
 use super::order::Orders;
-use super::prepare::Decoding;
 use super::ranges::Ranges;
 use super::track::Track;
 use super::window::Window;

@@ -3,6 +3,7 @@
 use bahn_din::{Command, Unit};
 use bahn_path::{Axis, Curve};
 
+use super::decoding::Edge;
 use super::fault::{named, numbered};
 use super::order::{Lead, OrderId};
 use super::plan::{Around, Plan};
@@ -15,39 +16,6 @@ use crate::synch::SynchType;
 
 /// 0.1 µm are this part of a mm.
 const PER_MM: f64 = 1e4;
-
-/// What lies in blocks before the one that is decoded and still has its effect.
-#[derive(Debug, Default)]
-pub(super) struct Decoding {
-    /// Count of executed blocks, over all programs.
-    pub(super) units: u64,
-    /// MVS_SLM and MVS_SLP functions that wait for their place, over all programs.
-    pub(super) late: [Vec<OrderId>; 2],
-    /// Decoding goes on when the channel has run empty.
-    pub(super) holds: bool,
-    /// The end of the program is decoded.
-    pub(super) ended: bool,
-    limit: Option<VectorLimit>,
-    radius_compensation: bool,
-    edge: Option<Edge>,
-}
-
-impl Decoding {
-    /// Another program begins: what is modal ends, late functions remain.
-    pub(super) fn begin(&mut self) {
-        *self = Decoding {
-            units: self.units,
-            late: std::mem::take(&mut self.late),
-            ..Decoding::default()
-        };
-    }
-}
-
-/// Edge banding between G108 and G107: the way to where the path has passed the probe, mm.
-#[derive(Clone, Copy, Debug, Default)]
-struct Edge {
-    probed: Option<f64>,
-}
 
 /// The functions of a block by where they are output and waited for.
 #[derive(Debug, Default)]

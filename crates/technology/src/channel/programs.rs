@@ -4,7 +4,7 @@ use bahn_din::{Place, Unit};
 use bahn_path::Position;
 
 use super::Channel;
-use super::backward::Backward;
+use super::back::Backward;
 use super::fault::named;
 use super::in_force::InForce;
 use super::plan::Around;
