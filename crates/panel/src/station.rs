@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use bahn_control::{Command, Control, Programs, RunState};
@@ -30,7 +31,7 @@ use crate::settings::Settings;
 use crate::site::Site;
 use crate::steps::{Steps, StepsEnd, Ticket};
 use crate::timeline::Past;
-use crate::transfer::Transfers;
+use crate::transfer::{TransferOrder, Transfers};
 use crate::why::Waits;
 use crate::{colours, numbers, status, texts, why};
 use warm_start::WarmStart;
@@ -180,7 +181,12 @@ impl Station {
     fn take(&mut self, input: &Input) -> Result<(), Refusal> {
         match input {
             Input::Key(key) => self.key(*key)?,
-            Input::Held(key, down) => self.hold(*key, *down)?,
+            Input::Held(key, down) => {
+                self.warm_start.hold(*key, *down, self.host.control().time_us());
+                if *down {
+                    self.key(*key)?;
+                }
+            }
             Input::Machine(name, action) => return self.machine_key(name, *action),
             Input::Text(text) => {
                 let (console, mut site) = self.parts();
@@ -202,7 +208,11 @@ impl Station {
             Input::Lesson(name) => self.begin_lesson(name.as_deref())?,
             Input::HandIn => self.hand_in(),
             Input::Deed(text) => self.deed(text)?,
-            Input::Transfer(news) => self.transfer_news(news),
+            Input::Transfer(news) => {
+                let language = self.language();
+                let (console, mut site) = self.parts();
+                transfers::take(news, language, console, &mut site);
+            }
         }
         Ok(())
     }
@@ -213,7 +223,13 @@ impl Station {
     /// When what survives power-off cannot be written; the machine goes on all the same.
     pub fn cycle(&mut self) -> Result<(), HostError> {
         self.steps.pass();
-        self.start_warm();
+        // The control begins as after power-on.
+        if self.warm_start.is_due(self.host.control()) {
+            self.power(false);
+            self.console.power_off();
+            self.plc.power_off();
+            self.power(true);
+        }
         let keys = self.host.control().oscilloscope();
         let sampler = self.graphics.scope.sampler(keys);
         let cycled = self.plc.cycle(&mut self.host, sampler);
@@ -319,6 +335,14 @@ impl Station {
     pub fn keyboard(&self) -> impl Iterator<Item = Key> {
         let model = self.control().model();
         Key::ALL.iter().copied().filter(move |key| key.is_on(model))
+    }
+
+    /// Where what the operator wants of the data interfaces arrives from now on. Who takes it says
+    /// [`Input::Transfer`] with `connected 0` or `connected 1`, and then what happens.
+    pub fn transfer_orders(&mut self) -> Receiver<TransferOrder> {
+        let (sender, orders) = channel();
+        self.transfers.connect(sender);
+        orders
     }
 
     /// Part programs and tables were written by somebody else: the control reads them anew.
