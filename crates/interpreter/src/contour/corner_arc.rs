@@ -129,6 +129,8 @@ pub(crate) fn directions_in_space(one: &PathElement, other: &PathElement) -> Opt
 
 #[cfg(test)]
 mod tests {
+    use bahn_path::PerAxis;
+
     use super::*;
 
     const XY: AxisSet = AxisSet::EMPTY.with(Axis::X).with(Axis::Y);

@@ -1,6 +1,7 @@
 //! What the file service does, and what nobody brings it to do.
 
 use std::io::{Read, Write};
+use std::path::PathBuf;
 
 use super::*;
 use crate::Files;
