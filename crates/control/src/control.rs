@@ -378,14 +378,6 @@ impl Control {
             .execute(command, &mut self.kernel.machine)
     }
 
-    /// Breaks a test run off, or clears its result.
-    pub fn end_test(&mut self) {
-        self.kernel
-            .channels
-            .first_mut()
-            .execute(Command::EndTest, &mut self.kernel.machine);
-    }
-
     /// The test run that was started last.
     pub fn test_report(&self) -> Option<TestReport> {
         self.kernel.channels.first().test().map(TestRun::report)

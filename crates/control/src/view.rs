@@ -192,11 +192,6 @@ impl<'a> ChannelView<'a> {
         (axis, handwheel.factors().get(axis).copied().unwrap_or_default())
     }
 
-    /// The jog increment, mm.
-    pub fn jog_increment_mm(&self) -> f64 {
-        self.channel.desk().manual.increment
-    }
-
     /// A function of the TOUCH PROBE menu is chosen.
     pub fn probe_is_chosen(&self) -> bool {
         self.channel.touch.is_chosen()

@@ -163,7 +163,7 @@ impl TextTable {
     ///
     /// # Errors
     /// When the table does not have the column, or the value cannot stand there.
-    pub fn line_with(&self, line: &str, name: &str, value: &str) -> Result<String, String> {
+    pub(crate) fn line_with(&self, line: &str, name: &str, value: &str) -> Result<String, String> {
         let place = self
             .place(name)
             .ok_or_else(|| format!("the table has no column {name}; `bahn table convert` can add it"))?;
@@ -174,7 +174,7 @@ impl TextTable {
     ///
     /// # Errors
     /// As [`TextTable::line_with`].
-    pub fn new_line(&self, values: &[(&str, &str)]) -> Result<String, String> {
+    pub(crate) fn new_line(&self, values: &[(&str, &str)]) -> Result<String, String> {
         let mut line = self.layout.blank(self.names.len());
         for (name, value) in values {
             line = self.line_with(&line, name, value)?;

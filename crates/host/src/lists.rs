@@ -8,7 +8,7 @@ use crate::fault::{FileFault, Marked, Severity};
 
 /// All faults of the list of a machine, then what does not go together in it. What the list does not name
 /// keeps its value of the reference list.
-pub fn machine_list(text: &ListText, list: &ParameterList, path: &Path) -> Vec<FileFault> {
+pub(crate) fn machine_list(text: &ListText, list: &ParameterList, path: &Path) -> Vec<FileFault> {
     let faults = text.faults();
     if !faults.is_empty() {
         return faults.iter().map(|found| fault(found, text, path)).collect();

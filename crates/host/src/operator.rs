@@ -129,11 +129,6 @@ impl Operator {
         self.stations.iter().any(|station| station.started)
     }
 
-    /// There is a program to start.
-    pub fn has_job(&self) -> bool {
-        self.stations.iter().any(|station| station.job.is_some())
-    }
-
     /// The channels, from 0, that have a program to start.
     pub fn channels_with_job(&self) -> impl Iterator<Item = usize> {
         let stations = self.stations.iter().filter(|station| station.job.is_some());

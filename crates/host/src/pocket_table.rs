@@ -137,7 +137,7 @@ fn neighbours(pocket: u16, sizes: &ToolParameters) -> impl Iterator<Item = u16> 
 }
 
 /// The tools as they lie in the pockets, and the pockets themselves.
-pub fn put_away(
+pub(crate) fn put_away(
     lines: &BTreeMap<u16, PocketLine>,
     tools: &mut BTreeMap<u32, Tool>,
     pockets: &mut BTreeMap<u16, Pocket>,

@@ -50,7 +50,7 @@ impl Characters {
     };
 
     /// Those of a freely configurable mode: bits of MP5020 (MP222).
-    pub fn of_format(format: &TransferFormat) -> Characters {
+    pub(crate) fn of_format(format: &TransferFormat) -> Characters {
         Characters {
             data_bits: format.data_bits,
             parity: format.odd.map(|odd| if odd { Parity::Odd } else { Parity::Even }),

@@ -88,7 +88,7 @@ impl FileType {
     }
 
     /// Whether its files carry their name in their first line, so that many can be read at once [000:16939].
-    pub fn is_named_in_first_line(self) -> bool {
+    pub(crate) fn is_named_in_first_line(self) -> bool {
         self.named_in_first_line
     }
 }

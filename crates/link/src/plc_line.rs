@@ -275,7 +275,7 @@ impl PlcLine {
     }
 
     /// Whether it has stopped the other side by RTS.
-    pub fn has_stopped_by_rts(&self) -> bool {
+    pub(crate) fn has_stopped_by_rts(&self) -> bool {
         self.stops && self.settings.is_some_and(|settings| settings.stop_by_rts)
     }
 }

@@ -46,13 +46,13 @@ impl Machine {
                 if self.tool_probe.is_none() {
                     self.magazine_mut()?;
                 }
-                self.by_hand.insert(*tool);
-                if let Some(magazine) = &mut self.magazine {
+                self.mechanism.by_hand.insert(*tool);
+                if let Some(magazine) = &mut self.mechanism.magazine {
                     magazine.insert(*tool);
                 }
             }
             Event::Probe(inserted) => {
-                let angle = self.spindle_deg();
+                let angle = self.mechanism.spindle_deg();
                 self.probe()?.insert(*inserted, angle);
             }
             Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
@@ -89,7 +89,12 @@ impl Machine {
     }
 
     fn switch(&mut self, name: &str, state: &str) -> Result<(), EventError> {
-        let Some(device) = self.devices.iter_mut().find(|device| device.name == name) else {
+        let Some(device) = self
+            .mechanism
+            .devices
+            .iter_mut()
+            .find(|device| device.name == name)
+        else {
             return Err(no("thing", name, self.devices().map(|device| device.name)));
         };
         if !device.by_hand() {
@@ -103,20 +108,23 @@ impl Machine {
     }
 
     fn probe(&mut self) -> Result<&mut Probe, EventError> {
-        self.probe
+        self.mechanism
+            .probe
             .as_mut()
             .ok_or_else(|| no("part", "probe", std::iter::empty()))
     }
 
     fn magazine_mut(&mut self) -> Result<&mut Magazine, EventError> {
-        self.magazine
+        self.mechanism
+            .magazine
             .as_mut()
             .ok_or_else(|| no("part", "magazine", std::iter::empty()))
     }
 
     fn axis_mut(&mut self, letter: char) -> Result<&mut Axis, EventError> {
-        let known: String = self.axes.iter().map(|axis| axis.letter).collect();
-        self.axes
+        let known: String = self.mechanism.axes.iter().map(|axis| axis.letter).collect();
+        self.mechanism
+            .axes
             .iter_mut()
             .find(|axis| axis.letter == letter)
             .ok_or_else(|| EventError::Name {
@@ -127,7 +135,8 @@ impl Machine {
     }
 
     fn spindle_mut(&mut self) -> Result<&mut Spindle, EventError> {
-        self.spindles
+        self.mechanism
+            .spindles
             .first_mut()
             .ok_or_else(|| no("part", "spindle", std::iter::empty()))
     }
@@ -136,7 +145,7 @@ impl Machine {
     ///
     /// # Errors
     /// When the machine does not have it.
-    pub fn inject(&mut self, fault: &Fault) -> Result<(), EventError> {
+    pub(crate) fn inject(&mut self, fault: &Fault) -> Result<(), EventError> {
         self.rests = false;
         match fault {
             Fault::Encoder(letter, kind) => return self.encoder_fault(*letter, Some(*kind)),
@@ -172,6 +181,7 @@ impl Machine {
         }
         let with_encoder = |axis: &&Axis| axis.counter.is_some();
         let known: Vec<String> = self
+            .mechanism
             .axes
             .iter()
             .filter(with_encoder)
@@ -188,7 +198,11 @@ impl Machine {
         if self.axis_mut(letter)?.lose_motor() {
             return Ok(());
         }
-        let digital = self.axes.iter().filter(|axis| axis.motor_count().is_some());
+        let digital = self
+            .mechanism
+            .axes
+            .iter()
+            .filter(|axis| axis.motor_count().is_some());
         let known: Vec<String> = digital.map(|axis| axis.letter.to_string()).collect();
         Err(no(
             "digital drive",
@@ -206,7 +220,12 @@ impl Machine {
             self.magazine_mut()?.fault = kind;
             return Ok(());
         }
-        if let Some(device) = self.devices.iter_mut().find(|device| device.name == name) {
+        if let Some(device) = self
+            .mechanism
+            .devices
+            .iter_mut()
+            .find(|device| device.name == name)
+        {
             device.fault = kind;
             return Ok(());
         }
@@ -216,22 +235,25 @@ impl Machine {
     /// Repairs one thing, or `all`. Counts that an encoder lost stay lost, a changed offset stays.
     fn repair(&mut self, what: &str) -> Result<(), EventError> {
         if what == "all" {
-            let letters: Vec<char> = self.axes.iter().map(|axis| axis.letter).collect();
+            let letters: Vec<char> = self.mechanism.axes.iter().map(|axis| axis.letter).collect();
             for letter in letters {
                 self.repair_axis(letter)?;
             }
-            if !self.spindles.is_empty() {
+            if !self.mechanism.spindles.is_empty() {
                 self.repair("S")?;
                 self.repair("gear")?;
             }
-            self.devices.iter_mut().for_each(|device| device.fault = None);
-            if let Some(magazine) = &mut self.magazine {
+            self.mechanism
+                .devices
+                .iter_mut()
+                .for_each(|device| device.fault = None);
+            if let Some(magazine) = &mut self.mechanism.magazine {
                 magazine.fault = None;
             }
             self.stuck.clear();
             self.chain.fault = None;
             self.buffer_battery_low = false;
-            if self.probe.is_some() {
+            if self.mechanism.probe.is_some() {
                 self.repair("probe")?;
             }
             return Ok(());
@@ -335,7 +357,7 @@ mod tests {
 
     /// What a step without any shortcut does to all axes: for each of them the state and the encoder.
     fn stepped(machine: &Machine) -> String {
-        let axes = machine.axes.iter().cloned().map(|mut axis| {
+        let axes = machine.mechanism.axes.iter().cloned().map(|mut axis| {
             let load = axis.load();
             axis.step(&load, 2e-4);
             format!("{axis:?}")
@@ -344,7 +366,7 @@ mod tests {
     }
 
     fn run(machine: &mut Machine) -> String {
-        let axes = machine.axes.iter().cloned().map(|mut axis| {
+        let axes = machine.mechanism.axes.iter().cloned().map(|mut axis| {
             axis.run(1, 2e-4);
             format!("{axis:?}")
         });

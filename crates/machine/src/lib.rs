@@ -49,12 +49,12 @@ mod folder;
 mod machine;
 mod magazine;
 mod mechanics;
+mod mechanism;
 mod noise;
 mod panel;
 mod probe;
 mod reader;
 mod spindle;
-mod standing;
 mod tool_probe;
 
 pub use axis::{AxisState, DriveFault};

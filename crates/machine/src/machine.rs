@@ -11,6 +11,8 @@ use crate::by_hand::ByHand;
 use crate::chain::{Chain, ContactFault};
 use crate::device::{Device, DeviceState};
 use crate::magazine::{Magazine, MagazineState};
+use crate::mechanics::Mechanics;
+use crate::mechanism::Mechanism;
 use crate::panel::Panel;
 use crate::probe::{Probe, Solid};
 use crate::reader::{PlantError, Reader, Section, Wire};
@@ -53,20 +55,14 @@ pub struct Machine {
     pending_us: u32,
     tick_us: u32,
     time_us: u64,
-    pub(crate) axes: Vec<Axis>,
-    /// The axes X, Y, Z of the probe in `axes`.
+    pub(crate) mechanism: Mechanism,
+    /// The axes X, Y, Z of the probe among the axes.
     probe_axes: [Option<usize>; 3],
-    /// That of the control, and those of further channels.
-    pub(crate) spindles: Vec<Spindle>,
     pub(crate) chain: Chain,
-    pub(crate) devices: Vec<Device>,
-    pub(crate) magazine: Option<Magazine>,
     pub(crate) panel: Panel,
     /// The place of the key of the control voltage.
     voltage_key: Option<usize>,
-    pub(crate) probe: Option<Probe>,
     pub(crate) tool_probe: Option<ToolProbe>,
-    pub(crate) by_hand: ByHand,
     pub(crate) volts: [f64; ANALOGUE_INPUTS],
     pub(crate) temperatures: [f64; ANALOGUE_INPUTS],
     /// Time has passed since the encoders were read.
@@ -117,7 +113,25 @@ impl Machine {
             .into_iter()
             .map(|(name, section)| Device::read(name, section))
             .collect();
-        let index = |letter| axes.iter().position(|axis| axis.letter == letter);
+        // Read in this order: wires are counted in it.
+        let spindles = root.one_or_more("spindle").into_iter();
+        let spindles = spindles
+            .map(|section| Spindle::read(section, step_s, seed))
+            .collect();
+        let chain = Chain::read(&root);
+        let magazine = root.section("magazine");
+        let magazine = magazine.map(|section| Magazine::read(section, &devices));
+        let panel = Panel::read(&root);
+        let probe = root.section("probe").map(Probe::read);
+        let mechanism = Mechanism {
+            axes,
+            spindles,
+            devices,
+            magazine,
+            by_hand: ByHand::default(),
+            probe,
+        };
+        let index = |letter| mechanism.axes.iter().position(|axis| axis.letter == letter);
         let mut machine = Machine {
             name: root.text("name").unwrap_or("machine").to_owned(),
             step_us,
@@ -126,21 +140,10 @@ impl Machine {
             tick_us: 0,
             time_us: 0,
             probe_axes: ['X', 'Y', 'Z'].map(index),
-            spindles: root
-                .one_or_more("spindle")
-                .into_iter()
-                .map(|section| Spindle::read(section, step_s, seed))
-                .collect(),
-            chain: Chain::read(&root),
-            magazine: root
-                .section("magazine")
-                .map(|section| Magazine::read(section, &devices)),
-            devices,
+            chain,
             voltage_key: None,
-            panel: Panel::read(&root),
-            probe: root.section("probe").map(Probe::read),
+            panel,
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
-            by_hand: ByHand::default(),
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [20.0; ANALOGUE_INPUTS],
             moved_on: true,
@@ -150,7 +153,7 @@ impl Machine {
             stuck: Vec::new(),
             buffer_battery_low: false,
             wires: Vec::new(),
-            axes,
+            mechanism,
         };
         let key = machine.chain.key();
         machine.voltage_key = key.and_then(|key| machine.panel.place(key));
@@ -161,11 +164,11 @@ impl Machine {
 
     /// What only shows when all parts are known.
     fn check(&self, root: &Section) {
-        if self.axes.is_empty() {
+        if self.mechanism.axes.is_empty() {
             root.fault("a machine has at least one axis: [axis.X]".to_owned());
         }
-        for (place, axis) in self.axes.iter().enumerate() {
-            for other in self.axes.iter().take(place) {
+        for (place, axis) in self.mechanism.axes.iter().enumerate() {
+            for other in self.mechanism.axes.iter().take(place) {
                 let input = |axis: &Axis| axis.counter.as_ref().map(|counter| counter.input);
                 if other.output == axis.output {
                     root.fault_at(
@@ -181,8 +184,8 @@ impl Machine {
                 }
             }
         }
-        for clamped in self.devices.iter().filter_map(|device| device.clamps) {
-            if !self.axes.iter().any(|axis| axis.letter == clamped) {
+        for clamped in self.mechanism.devices.iter().filter_map(|device| device.clamps) {
+            if !self.mechanism.axes.iter().any(|axis| axis.letter == clamped) {
                 root.fault_at("device", format!("there is no axis {clamped} to clamp"));
             }
         }
@@ -244,9 +247,24 @@ impl Machine {
         self.panel.lamp(name, &self.live)
     }
 
+    /// Where everything stands now.
+    pub fn mechanics(&self) -> Mechanics {
+        self.mechanism.places()
+    }
+
+    /// Puts everything where it stood, at rest: the machine at power-on. What does not fit leaves all as it was.
+    ///
+    /// # Errors
+    /// In words, what this machine does not have, or cannot be.
+    pub fn stand_at(&mut self, mechanics: &Mechanics) -> Result<(), String> {
+        self.mechanism.stand_at(mechanics)?;
+        self.rests = false;
+        Ok(())
+    }
+
     /// The true state of all axes, in the order of the description.
     pub fn axes(&self) -> impl Iterator<Item = AxisState> {
-        self.axes.iter().map(Axis::state)
+        self.mechanism.axes.iter().map(Axis::state)
     }
 
     /// The true state of one axis.
@@ -261,12 +279,12 @@ impl Machine {
 
     /// The true state of all spindles, in the order of the description.
     pub fn spindles(&self) -> impl Iterator<Item = SpindleState> {
-        self.spindles.iter().map(Spindle::state)
+        self.mechanism.spindles.iter().map(Spindle::state)
     }
 
     /// The state of all things with two states.
     pub fn devices(&self) -> impl Iterator<Item = DeviceState<'_>> {
-        self.devices.iter().map(Device::state)
+        self.mechanism.devices.iter().map(Device::state)
     }
 
     /// The state of one of them.
@@ -276,29 +294,29 @@ impl Machine {
 
     /// Where the tools of the magazine are; `None` without one.
     pub fn magazine(&self) -> Option<MagazineState<'_>> {
-        let magazine = self.magazine.as_ref()?;
-        Some(magazine.state(&self.devices))
+        let magazine = self.mechanism.magazine.as_ref()?;
+        Some(magazine.state(&self.mechanism.devices))
     }
 
     /// The tools lie in the magazine as its operator has put them there: pocket and tool, and the tool in the spindle.
     pub fn load_magazine(&mut self, tools: impl Iterator<Item = (u16, u32)>, spindle: u32) {
         self.rests = false;
-        if let Some(magazine) = &mut self.magazine {
+        if let Some(magazine) = &mut self.mechanism.magazine {
             magazine.load(tools, spindle);
         }
-        self.by_hand.insert(spindle);
+        self.mechanism.by_hand.insert(spindle);
     }
 
     /// A tool was called and its change is confirmed: unless the magazine has changed it, who stands at the machine has.
     pub fn tool_is_called(&mut self, tool: u32) {
-        self.by_hand.called(tool);
+        self.mechanism.by_hand.called(tool);
     }
 
     /// The tool in the spindle.
     fn tool_in_spindle(&self) -> u32 {
-        match &self.magazine {
+        match &self.mechanism.magazine {
             Some(magazine) if magazine.has_changed => magazine.tool_in_spindle(),
-            _ => self.by_hand.tool(),
+            _ => self.mechanism.by_hand.tool(),
         }
     }
 
@@ -310,8 +328,8 @@ impl Machine {
     /// Contacts, relays and things: once in a millisecond.
     fn tick(&mut self) {
         self.panel.advance();
-        let (tool, angle) = (self.tool_in_spindle(), self.spindle_deg());
-        if let Some(probe) = &mut self.probe {
+        let (tool, angle) = (self.tool_in_spindle(), self.mechanism.spindle_deg());
+        if let Some(probe) = &mut self.mechanism.probe {
             probe.is_held(tool, angle);
         }
         let limits_clear = !self.chain.watches_limits() || self.limit_switches_clear();
@@ -322,21 +340,22 @@ impl Machine {
         }
         self.live = self.chain.live(&self.outputs);
         let mut moves = false;
-        for device in &mut self.devices {
+        for device in &mut self.mechanism.devices {
             moves |= device.advance(&self.live);
         }
-        if let Some(magazine) = &mut self.magazine {
-            moves |= magazine.advance(&self.live, &mut self.devices);
+        if let Some(magazine) = &mut self.mechanism.magazine {
+            moves |= magazine.advance(&self.live, &mut self.mechanism.devices);
         }
         let voltage = self.chain.voltage();
-        for axis in &mut self.axes {
+        for axis in &mut self.mechanism.axes {
             moves |= axis.set_power(voltage, self.chain.control_ready, &self.live);
             axis.clamped = self
+                .mechanism
                 .devices
                 .iter()
                 .any(|device| device.clamps == Some(axis.letter) && device.is_forth());
         }
-        for spindle in &mut self.spindles {
+        for spindle in &mut self.mechanism.spindles {
             spindle.set_power(voltage, &self.live);
             moves |= spindle.shift(&self.live);
         }
@@ -373,10 +392,10 @@ impl Machine {
                 .get(output)
                 .map_or(0.0, |command| limited(command.volts))
         };
-        for axis in &mut self.axes {
+        for axis in &mut self.mechanism.axes {
             axis.volts = volts(axis.output);
         }
-        for spindle in &mut self.spindles {
+        for spindle in &mut self.mechanism.spindles {
             spindle.volts = volts(spindle.output);
         }
     }
@@ -384,7 +403,7 @@ impl Machine {
     /// What the encoders answer; inputs without encoder stay as they are.
     fn read_encoders(&mut self, measured: &mut Measured) {
         let again = !std::mem::take(&mut self.moved_on);
-        for axis in &mut self.axes {
+        for axis in &mut self.mechanism.axes {
             let input = axis.counter.as_ref().map(|counter| counter.input);
             if let Some(read) = input.and_then(|input| measured.encoders.get_mut(input)) {
                 axis.read_encoder(again, read);
@@ -395,7 +414,7 @@ impl Machine {
                 *motor = axis.motor_count();
             }
         }
-        for spindle in &mut self.spindles {
+        for spindle in &mut self.mechanism.spindles {
             let input = spindle.counter.as_ref().map(|counter| counter.input);
             if let Some(read) = input.and_then(|input| measured.encoders.get_mut(input)) {
                 spindle.read_encoder(again, read);
@@ -429,10 +448,10 @@ impl Machine {
         while self.pending_us >= self.step_us {
             // Between two ticks the parts do not see each other.
             let steps = (self.pending_us / self.step_us).min((TICK_US - self.tick_us) / self.step_us);
-            for axis in &mut self.axes {
+            for axis in &mut self.mechanism.axes {
                 axis.run(steps, self.step_s);
             }
-            for spindle in &mut self.spindles {
+            for spindle in &mut self.mechanism.spindles {
                 for _ in 0..steps {
                     spindle.step(self.step_s);
                 }
@@ -454,10 +473,16 @@ impl Machine {
     /// Sets a nominal value output, V.
     pub fn set_nominal(&mut self, output: usize, volts: f64) {
         let volts = limited(volts);
-        for axis in self.axes.iter_mut().filter(|axis| axis.output == output) {
+        for axis in self
+            .mechanism
+            .axes
+            .iter_mut()
+            .filter(|axis| axis.output == output)
+        {
             axis.volts = volts;
         }
         for spindle in self
+            .mechanism
             .spindles
             .iter_mut()
             .filter(|spindle| spindle.output == output)
@@ -472,9 +497,14 @@ impl Machine {
         let at = |counter: &Option<crate::encoder::Counter>| {
             counter.as_ref().is_some_and(|counter| counter.input == input)
         };
-        if let Some(axis) = self.axes.iter_mut().find(|axis| at(&axis.counter)) {
+        if let Some(axis) = self.mechanism.axes.iter_mut().find(|axis| at(&axis.counter)) {
             axis.read_encoder(false, &mut read);
-        } else if let Some(spindle) = self.spindles.iter_mut().find(|spindle| at(&spindle.counter)) {
+        } else if let Some(spindle) = self
+            .mechanism
+            .spindles
+            .iter_mut()
+            .find(|spindle| at(&spindle.counter))
+        {
             spindle.read_encoder(false, &mut read);
         }
         read
@@ -485,16 +515,16 @@ impl Machine {
         inputs.fill(false);
         self.panel.set_inputs(inputs);
         self.chain.set_inputs(inputs);
-        for axis in &self.axes {
+        for axis in &self.mechanism.axes {
             axis.set_inputs(inputs);
         }
-        for spindle in &self.spindles {
+        for spindle in &self.mechanism.spindles {
             spindle.set_inputs(inputs);
         }
-        for device in &self.devices {
+        for device in &self.mechanism.devices {
             device.set_inputs(inputs);
         }
-        if let Some(magazine) = &self.magazine {
+        if let Some(magazine) = &self.mechanism.magazine {
             magazine.set_inputs(inputs);
         }
         for (input, fault) in &self.stuck {
@@ -530,7 +560,7 @@ impl Machine {
 
     /// No limit switch of an axis is actuated.
     pub fn limit_switches_clear(&self) -> bool {
-        self.axes.iter().all(Axis::limits_clear)
+        self.mechanism.axes.iter().all(Axis::limits_clear)
     }
 
     /// The tool probe; none is never ready. It knows the tool that the magazine or a hand has put into the spindle.
@@ -552,20 +582,13 @@ impl Machine {
     /// Where the axes X, Y and Z stand, which both probes need.
     fn probe_place(&self) -> Option<[f64; 3]> {
         let [x, y, z] = self.probe_axes;
-        let at = |place: Option<usize>| Some(self.axes.get(place?)?.table);
+        let at = |place: Option<usize>| Some(self.mechanism.axes.get(place?)?.table);
         Some([at(x)?, at(y)?, at(z)?])
-    }
-
-    /// The angle of the first spindle since power-on, degrees.
-    pub(crate) fn spindle_deg(&self) -> f64 {
-        self.spindles
-            .first()
-            .map_or(0.0, |spindle| spindle.state().angle_deg)
     }
 
     /// The touch probe; none is never ready.
     pub fn touch_probe(&self) -> Touch {
-        let Some(probe) = &self.probe else {
+        let Some(probe) = &self.mechanism.probe else {
             return Touch::default();
         };
         if !probe.inserted {
@@ -575,23 +598,26 @@ impl Machine {
             };
         }
         let place = self.probe_place();
-        let deflected = place.is_some_and(|place| probe.deflected(place, self.spindle_deg())) || probe.early;
+        let deflected =
+            place.is_some_and(|place| probe.deflected(place, self.mechanism.spindle_deg())) || probe.early;
         Touch {
             deflected,
             ready: probe.ready,
             battery_low: probe.battery_low,
-            deflection_mm: place.map_or([0.0; 3], |place| probe.deflection(place, self.spindle_deg())),
+            deflection_mm: place.map_or([0.0; 3], |place| {
+                probe.deflection(place, self.mechanism.spindle_deg())
+            }),
         }
     }
 
     /// The radius of the ball of the touch probe, mm; `None` without one.
     pub fn probe_radius_mm(&self) -> Option<f64> {
-        self.probe.as_ref().map(Probe::radius_mm)
+        self.mechanism.probe.as_ref().map(Probe::radius_mm)
     }
 
     /// Puts a solid on the table that the touch probe can touch, in place of the last one, or takes it away.
     pub fn put_on_table(&mut self, solid: Option<Arc<dyn Solid>>) {
-        if let Some(probe) = &mut self.probe {
+        if let Some(probe) = &mut self.mechanism.probe {
             probe.put(solid);
         }
     }

@@ -50,7 +50,7 @@ pub enum Input {
 
 impl Input {
     /// It does not wait behind other inputs, nor for work that takes long.
-    pub fn is_urgent(&self) -> bool {
+    pub(crate) fn is_urgent(&self) -> bool {
         matches!(self, Input::Machine(name, _) if name == EMERGENCY_STOP)
     }
 }

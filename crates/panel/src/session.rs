@@ -149,7 +149,7 @@ impl Recorder {
     }
 
     /// Everything that was written is on the medium.
-    pub fn is_safe(&self) -> bool {
+    pub(crate) fn is_safe(&self) -> bool {
         self.unsafe_since.is_none()
     }
 

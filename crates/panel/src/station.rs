@@ -6,14 +6,15 @@ mod transfers;
 mod warm_start;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
-use bahn_host::{Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source};
+use bahn_host::{Answer, Clock, Deed, Host, HostError, LoadedMachine, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
@@ -31,10 +32,12 @@ use crate::settings::Settings;
 use crate::site::Site;
 use crate::steps::{Steps, StepsEnd, Ticket};
 use crate::timeline::Past;
-use crate::transfer::Transfers;
+use crate::transfer::{TransferOrder, Transfers};
 use crate::why::Waits;
 use crate::{colours, numbers, status, texts, why};
-use commissioning::Commissioning;
+use commissioning::{Commissioning, operator_of};
+
+pub use commissioning::load;
 use warm_start::WarmStart;
 
 /// Lines of the large window, and of one beside it.
@@ -188,7 +191,12 @@ impl Station {
     fn take(&mut self, input: &Input) -> Result<(), Refusal> {
         match input {
             Input::Key(key) => self.key(*key)?,
-            Input::Held(key, down) => self.hold(*key, *down)?,
+            Input::Held(key, down) => {
+                self.warm_start.hold(*key, *down, self.host.control().time_us());
+                if *down {
+                    self.key(*key)?;
+                }
+            }
             Input::Machine(name, action) => return self.machine_key(name, *action),
             Input::Text(text) => {
                 let (console, mut site) = self.parts();
@@ -210,7 +218,13 @@ impl Station {
             Input::Lesson(name) => self.begin_lesson(name.as_deref())?,
             Input::HandIn => self.hand_in(),
             Input::Deed(text) => self.deed(text)?,
-            Input::Transfer(news) => self.transfer_news(news),
+            Input::Transfer(news) => {
+                let language = self.language();
+                let (console, mut site) = self.parts();
+                if let Some(restore) = transfers::take(news, language, console, &mut site) {
+                    self.restore(restore);
+                }
+            }
         }
         Ok(())
     }
@@ -221,7 +235,13 @@ impl Station {
     /// When what survives power-off cannot be written; the machine goes on all the same.
     pub fn cycle(&mut self) -> Result<(), HostError> {
         self.steps.pass();
-        self.start_warm();
+        // The control begins as after power-on.
+        if self.warm_start.is_due(self.host.control()) {
+            self.power(false);
+            self.console.power_off();
+            self.plc.power_off();
+            self.power(true);
+        }
         let keys = self.host.control().oscilloscope();
         let sampler = self.graphics.scope.sampler(keys);
         let cycled = self.plc.cycle(&mut self.host, sampler);
@@ -346,6 +366,14 @@ impl Station {
     pub fn keyboard(&self) -> impl Iterator<Item = Key> {
         let model = self.control().model();
         Key::ALL.iter().copied().filter(move |key| key.is_on(model))
+    }
+
+    /// Where what the operator wants of the data interfaces arrives from now on. Who takes it says
+    /// [`Input::Transfer`] with `connected 0` or `connected 1`, and then what happens.
+    pub fn transfer_orders(&mut self) -> Receiver<TransferOrder> {
+        let (sender, orders) = channel();
+        self.transfers.connect(sender);
+        orders
     }
 
     /// Part programs and tables were written by somebody else: the control reads them anew.
@@ -660,22 +688,4 @@ impl Station {
         }
         self.stored = self.settings.clone();
     }
-}
-
-/// Nobody acts at the machine but who has the panel.
-fn operator_of(machine: &LoadedMachine) -> Operator {
-    Operator::new(Attendance::Absent, machine.folder.operator.clone(), None)
-}
-
-/// Loads the machine of a folder, with its faults in words. A list of machine parameters that is empty or has faults is
-/// none: it is entered.
-///
-/// # Errors
-/// All faults of all files, one a line.
-pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
-    let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
-    loaded.map_err(|faults| {
-        let lines = faults.iter().map(|fault| fault.title.clone());
-        lines.collect::<Vec<_>>().join("\n")
-    })
 }

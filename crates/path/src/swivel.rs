@@ -82,7 +82,7 @@ impl Swivels {
     }
 
     /// Those of the head.
-    pub fn head_axes(&self) -> impl Iterator<Item = Axis> + '_ {
+    pub(crate) fn head_axes(&self) -> impl Iterator<Item = Axis> + '_ {
         self.head
             .iter()
             .filter(|link| link.is_free())
@@ -190,11 +190,6 @@ impl Swivels {
                 }
             }
         }
-    }
-
-    /// Whether there is a table that turns.
-    pub fn has_table(&self) -> bool {
-        self.table.iter().any(Link::is_free)
     }
 
     /// The tool datum seen from the end of the head's links, in the directions there; and the directions of the tool

@@ -94,7 +94,7 @@ pub enum Sign {
 
 impl Sign {
     /// Whether `+` is printed before a number.
-    pub fn prints_plus(self) -> bool {
+    pub(crate) fn prints_plus(self) -> bool {
         !matches!(self, Sign::Unsigned | Sign::Minus)
     }
 

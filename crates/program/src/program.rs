@@ -76,15 +76,6 @@ impl Program {
         Program::of_bytes(name, bytes, language)
     }
 
-    /// [`Program::from_bytes`] in any language.
-    pub fn in_language<L: Language>(
-        name: impl Into<Box<str>>,
-        bytes: Vec<u8>,
-        language: &'static L,
-    ) -> Program {
-        Program::of_bytes(name.into(), bytes, language)
-    }
-
     pub(crate) fn of_bytes(name: Box<str>, bytes: Vec<u8>, language: &'static dyn Bulk) -> Program {
         let mut file = without_utf16(bytes);
         file.truncate(usize::try_from(Program::MAX_BYTES).unwrap_or(usize::MAX));

@@ -71,7 +71,7 @@ pub use report::{
 };
 pub use run::{Blocks, Programs, Run};
 pub use settings::{
-    ChannelSettings, EdgeBanding, FUNCTIONS, FunctionSettings, FunctionTable, INTERNAL_M, MicroJoint,
-    PreOutput, SPINDLES, SpindleFunction, SpindleSettings,
+    ChannelSettings, EdgeBanding, FUNCTIONS, FunctionSettings, FunctionTable, MicroJoint, PreOutput,
+    SpindleFunction, SpindleSettings,
 };
 pub use synch::{Synch, SynchError, SynchType};

@@ -7,12 +7,9 @@ use crate::synch::{Synch, SynchType};
 /// Numbers of M and H functions that a list has, from 0 on [004:195-204].
 pub const FUNCTIONS: usize = 1000;
 
-/// Spindles that a channel has at most (public: P-CHAN-00082, 16 as of V3.1.31).
-pub const SPINDLES: usize = 16;
-
 /// M functions that the channel knows by itself: without an entry they are not output and nothing waits for them, but
 /// they may be programmed [004:48] [004:204]. M5 is missing in the manual's list; it is like M3 and M4 (inferred).
-pub const INTERNAL_M: [u32; 10] = [0, 1, 2, 3, 4, 5, 17, 19, 29, 30];
+pub(crate) const INTERNAL_M: [u32; 10] = [0, 1, 2, 3, 4, 5, 17, 19, 29, 30];
 
 /// The functions of a spindle among them, unless they are free [004:159]: then they are known with an entry only.
 pub(crate) const SPINDLE_M: [u32; 4] = [3, 4, 5, 19];

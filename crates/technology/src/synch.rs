@@ -84,17 +84,17 @@ impl SynchType {
     }
 
     /// Whether a lead says how far ahead it is output, without Micro Joints.
-    pub fn is_pre_output(self) -> bool {
+    pub(crate) fn is_pre_output(self) -> bool {
         self.leads_by_time() || matches!(self, SynchType::MepMos | SynchType::MepSvs)
     }
 
     /// Whether its lead is a time, µs; the lead of all others is a way, 0.1 µm.
-    pub fn leads_by_time(self) -> bool {
+    pub(crate) fn leads_by_time(self) -> bool {
         matches!(self, SynchType::MetMos | SynchType::MetSvs)
     }
 
     /// Whether a lead makes it the function of a Micro Joint [004:114-120].
-    pub fn takes_micro_joint(self) -> bool {
+    pub(crate) fn takes_micro_joint(self) -> bool {
         matches!(
             self,
             SynchType::Mos | SynchType::MvsSvs | SynchType::MvsSns | SynchType::MnsSns | SynchType::MosTs
@@ -107,7 +107,7 @@ impl SynchType {
     }
 
     /// Whether the path waits for its acknowledgement anywhere; what is not waited for must be fetched all the same.
-    pub fn is_waited_for(self) -> bool {
+    pub(crate) fn is_waited_for(self) -> bool {
         !matches!(
             self,
             SynchType::NoSynch | SynchType::Mos | SynchType::MosTs | SynchType::MepMos | SynchType::MetMos

@@ -101,7 +101,7 @@ impl<'a> Files<'a> {
                 let mut written = Vec::new();
                 names(used, &mut Vec::new(), &mut written);
                 imports.extend(written.into_iter().filter_map(|(path, name)| {
-                    let path = files.from_root(file, &path)?;
+                    let path = files.rooted(file, &path)?;
                     Some(Import {
                         name,
                         path,
@@ -140,13 +140,13 @@ impl<'a> Files<'a> {
         let (first, behind) = path.split_first()?;
         let path = match self.imports(file).iter().find(|import| import.name == *first) {
             Some(import) => [&import.path, behind].concat(),
-            None => self.from_root(file, path)?,
+            None => self.rooted(file, path)?,
         };
         self.defining(&path, 0)
     }
 
     /// The path that a file writes, from the root of its crate; nothing, if it leads into another crate.
-    fn from_root(&self, file: &'a str, path: &[&'a str]) -> Option<Vec<&'a str>> {
+    fn rooted(&self, file: &'a str, path: &[&'a str]) -> Option<Vec<&'a str>> {
         let here: Vec<&str> = file.split("::").filter(|part| *part != FRONT).collect();
         let (first, rest) = path.split_first()?;
         match *first {

@@ -1,4 +1,4 @@
-//! Types that have become too much: many fields, and methods in many files.
+//! Types that have become too much: many fields, and methods in several files.
 //!
 //! What holds the parts of a room together only orders: what its parts do stands with them, and they get what they
 //! may touch. Whoever adds a file of methods to a type of many fields gives that file all of them.
@@ -8,14 +8,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::names::{Files, Texts};
 use crate::source::is_of_name;
 
-/// A type with more fields may have its methods in [`FILES_MAX`] files.
+/// A type with more fields has its methods in one file.
 const FIELDS_MAX: usize = 12;
 
-/// In more files the methods of a type with many fields do not stand.
-const FILES_MAX: usize = 2;
-
-/// The types of a room that have more than [`FIELDS_MAX`] fields and methods of their own in more than
-/// [`FILES_MAX`] files, each with these files.
+/// The types of a room that have more than [`FIELDS_MAX`] fields and methods of their own in several files, each with
+/// these files.
 pub fn too_much<'a>(files: &Files<'a>) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
     let mut with_methods: BTreeMap<(&str, &str), BTreeSet<&str>> = BTreeMap::new();
     for file in files.names() {
@@ -33,7 +30,7 @@ pub fn too_much<'a>(files: &Files<'a>) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
     });
     large
         .filter_map(|whole| Some((whole.1, with_methods.remove(&whole)?)))
-        .filter(|(_, files)| files.len() > FILES_MAX)
+        .filter(|(_, files)| files.len() > 1)
         .collect()
 }
 

@@ -179,7 +179,7 @@ impl State {
     }
 
     /// Where the mechanics stand is kept here.
-    pub fn mechanics_file(&self) -> &Path {
+    pub(crate) fn mechanics_file(&self) -> &Path {
         &self.mechanics
     }
 

@@ -29,7 +29,7 @@ pub struct Faults {
 
 impl Faults {
     /// The faults of a seed, for one of the two directions.
-    pub fn of_seed(seed: u64, direction: u64) -> Faults {
+    pub(crate) fn of_seed(seed: u64, direction: u64) -> Faults {
         Faults::with_rate(seed, direction, ONE_IN)
     }
 

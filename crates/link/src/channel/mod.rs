@@ -111,7 +111,7 @@ impl Channel {
     }
 
     /// All eight bits of a byte count from now on, or those of the characters again.
-    pub fn set_transparent(&mut self, on: bool) {
+    pub(crate) fn set_transparent(&mut self, on: bool) {
         self.transparent = on;
     }
 
@@ -182,7 +182,7 @@ impl Channel {
     }
 
     /// Stops the other side by RTS, or lets it go on.
-    pub fn request_to_send(&mut self, on: bool) {
+    pub(crate) fn request_to_send(&mut self, on: bool) {
         self.wire.request_to_send(on);
     }
 
@@ -230,7 +230,7 @@ impl Channel {
     }
 
     /// How long one may wait when there is more to send.
-    pub fn until_room(&self) -> Duration {
+    pub(crate) fn until_room(&self) -> Duration {
         self.next_room().saturating_sub(self.start.elapsed())
     }
 
@@ -265,7 +265,7 @@ impl Channel {
     }
 
     /// Whether everything that was sent is written.
-    pub fn is_written(&self) -> bool {
+    pub(crate) fn is_written(&self) -> bool {
         self.outgoing.is_empty()
     }
 }

@@ -222,7 +222,7 @@ impl<T: Transport> Client<T> {
     ///
     /// # Errors
     /// When the device does not answer it, or `take` fails.
-    pub fn ask_all(
+    pub(crate) fn ask_all(
         &mut self,
         telegram: &Telegram,
         mut take: impl FnMut(&Telegram) -> Result<(), ClientError>,

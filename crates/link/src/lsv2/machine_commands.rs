@@ -202,7 +202,7 @@ fn to_plc(session: &Session, telegram: &Telegram) -> Result<(), ErrorNumber> {
 }
 
 /// A message of the PLC as it goes to a host.
-pub fn from_plc(message: &PlcMessage) -> Telegram {
+pub(crate) fn from_plc(message: &PlcMessage) -> Telegram {
     let telegram = Telegram::new(Command::M_PC);
     match message {
         PlcMessage::Double(value) => telegram.raw(&value.to_be_bytes()),

@@ -33,7 +33,7 @@ pub use device::{
 pub use error::ErrorNumber;
 pub use keys::name as key_name;
 pub use peer::Features;
-pub use serial::{ANSWER, LineEvent, LineFault, NEXT, SerialLine, Side, check_byte, frame};
+pub use serial::{ANSWER, LineEvent, LineFault, NEXT, SerialLine, Side, frame};
 pub use serial_server::SerialServer;
 pub use server::{OpenPort, Server, ServerOptions};
 pub use session::{Session, Site};

@@ -119,7 +119,7 @@ pub struct SerialLine {
 }
 
 /// The check byte: all bytes of the telegram and `ETX`, without the `DLE` that frame them (public).
-pub fn check_byte(bytes: &[u8]) -> u8 {
+pub(crate) fn check_byte(bytes: &[u8]) -> u8 {
     bytes.iter().fold(ETX, |check, byte| check ^ byte)
 }
 

@@ -157,17 +157,17 @@ impl Session {
     }
 
     /// Whether it takes messages of the PLC, and is in the middle of nothing.
-    pub fn takes_messages(&self) -> bool {
+    pub(crate) fn takes_messages(&self) -> bool {
         self.has(Level::Dnc) && matches!(self.task, Task::None)
     }
 
     /// Somebody is logged in.
-    pub fn is_logged_in(&self) -> bool {
+    pub(crate) fn is_logged_in(&self) -> bool {
         !self.levels.is_empty()
     }
 
     /// Wrong passwords so far: each costs time.
-    pub fn wrong_passwords(&self) -> u32 {
+    pub(crate) fn wrong_passwords(&self) -> u32 {
         self.wrong_passwords
     }
 

@@ -67,7 +67,7 @@ impl TcpReader {
     }
 
     /// Part of a telegram has arrived.
-    pub fn is_within(&self) -> bool {
+    pub(crate) fn is_within(&self) -> bool {
         self.at < self.bytes.len()
     }
 }

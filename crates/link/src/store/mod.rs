@@ -232,7 +232,7 @@ impl Store {
     ///
     /// # Errors
     /// When there is something of this name, or the store is a disk.
-    pub fn make_folder(&self, place: &Place) -> Result<(), StoreError> {
+    pub(crate) fn make_folder(&self, place: &Place) -> Result<(), StoreError> {
         if self.medium.limit.is_some() {
             return Err(StoreError::BadName(place.to_string()));
         }
@@ -244,7 +244,7 @@ impl Store {
     ///
     /// # Errors
     /// When it is not there, is a drive, or is not empty.
-    pub fn remove_folder(&self, place: &Place) -> Result<(), StoreError> {
+    pub(crate) fn remove_folder(&self, place: &Place) -> Result<(), StoreError> {
         if place.name().is_none() {
             return Err(StoreError::Protected(place.to_string()));
         }

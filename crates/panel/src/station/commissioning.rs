@@ -2,12 +2,14 @@
 //! and it goes on when the list is whole [000:10011] [000:10050-10066]. And another machine in the place of this one, when
 //! its files are those of a backup.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use bahn_control::{Command, Programs};
-use bahn_host::{Deed, LoadedMachine, PowerOn, Source, State};
+use bahn_host::backup::Restore;
+use bahn_host::{Attendance, Deed, LoadedMachine, Operator, PowerOn, Source, State};
 
-use super::{Station, operator_of};
+use super::Station;
 use crate::console::Console;
 use crate::pages;
 use crate::programs::ProgramMemory;
@@ -64,8 +66,18 @@ impl Station {
         }
     }
 
+    /// The machine becomes what it was when a backup was made.
+    pub(super) fn restore(&mut self, restore: Restore) {
+        // What the control keeps is not written over what is restored.
+        self.host.release_state();
+        match restore.commit() {
+            Ok(_) => self.load_anew(),
+            Err(error) => self.console.say(error.to_string()),
+        }
+    }
+
     fn loaded_anew(&mut self) -> Result<(), String> {
-        let machine = super::load(&self.machine.root)?;
+        let machine = load(&self.machine.root)?;
         // The state is free before it is taken again.
         self.commissioning = None;
         self.host.release_state();
@@ -88,4 +100,22 @@ impl Station {
         self.past = Past::new(&mut self.host);
         Ok(())
     }
+}
+
+/// Nobody acts at the machine but who has the panel.
+pub(super) fn operator_of(machine: &LoadedMachine) -> Operator {
+    Operator::new(Attendance::Absent, machine.folder.operator.clone(), None)
+}
+
+/// Loads the machine of a folder, with its faults in words. A list of machine parameters that is empty or has faults is
+/// none: it is entered.
+///
+/// # Errors
+/// All faults of all files, one a line.
+pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
+    let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
+    loaded.map_err(|faults| {
+        let lines = faults.iter().map(|fault| fault.title.clone());
+        lines.collect::<Vec<_>>().join("\n")
+    })
 }

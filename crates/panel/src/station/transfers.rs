@@ -1,57 +1,39 @@
 //! What happens at the data interfaces.
 
-use std::sync::mpsc::{Receiver, channel};
+use bahn_host::backup::Restore;
 
-use super::Station;
+use crate::console::Console;
 use crate::pages::{self, runs};
-use crate::texts;
-use crate::transfer::{TransferFiles, TransferNews, TransferOrder};
+use crate::site::Site;
+use crate::texts::{self, Language};
+use crate::transfer::{TransferFiles, TransferNews};
 
-impl Station {
-    /// Where what the operator wants of the data interfaces arrives from now on. Who takes it says
-    /// [`Input::Transfer`](crate::Input::Transfer) with `connected 0` or `connected 1`, and then what happens.
-    pub fn transfer_orders(&mut self) -> Receiver<TransferOrder> {
-        let (sender, orders) = channel();
-        self.transfers.connect(sender);
-        orders
-    }
-
-    pub(super) fn transfer_news(&mut self, news: &TransferNews) {
-        let backup = self.transfers.files() == Some(TransferFiles::Backup);
-        let reads = self.transfers.reads().is_some();
-        self.transfers.news(news.clone());
-        match news {
-            TransferNews::Message(text) => {
-                let text = texts::translate(self.language(), text);
-                self.console.say(text);
-            }
-            TransferNews::Received(_) => self.programs.was_written(),
-            TransferNews::Ended(complete) if backup => self.backup_ended(*complete && reads),
-            // Nobody replaces a program while it runs.
-            TransferNews::Overread(name) if runs(name, &self.parts().1) => {
-                self.transfers.answer(false);
-                let words = texts::words(self.language(), "BACKGROUND PROGRAMMING NOT POSSIBLE");
-                self.console.say(format!("{name}: {words}"));
-            }
-            _ => {}
+/// Takes what has happened, and says what the operator is to know of it. A backup that was read in is what the machine
+/// becomes again.
+pub(super) fn take(
+    news: &TransferNews,
+    language: Language,
+    console: &mut Console,
+    site: &mut Site<'_>,
+) -> Option<Restore> {
+    let backup = site.transfers.files() == Some(TransferFiles::Backup);
+    let reads = site.transfers.reads().is_some();
+    site.transfers.news(news.clone());
+    match news {
+        TransferNews::Message(text) => console.say(texts::translate(language, text)),
+        TransferNews::Received(_) => site.programs.was_written(),
+        TransferNews::Ended(complete) if backup => {
+            let restored = (*complete && reads).then(|| pages::restored(site));
+            pages::backup_ended(site);
+            return restored?.map_err(|why| console.say(why)).ok();
         }
-    }
-
-    /// A backup was read out, or read in: the machine becomes what it was then.
-    fn backup_ended(&mut self, restores: bool) {
-        let restored = restores.then(|| pages::restored(&self.parts().1));
-        pages::backup_ended(&mut self.parts().1);
-        match restored {
-            Some(Ok(restore)) => {
-                // What the control keeps is not written over what is restored.
-                self.host.release_state();
-                match restore.commit() {
-                    Ok(_) => self.load_anew(),
-                    Err(error) => self.console.say(error.to_string()),
-                }
-            }
-            Some(Err(why)) => self.console.say(why),
-            None => {}
+        // Nobody replaces a program while it runs.
+        TransferNews::Overread(name) if runs(name, site) => {
+            site.transfers.answer(false);
+            let words = texts::words(language, "BACKGROUND PROGRAMMING NOT POSSIBLE");
+            console.say(format!("{name}: {words}"));
         }
+        _ => {}
     }
+    None
 }

@@ -1,9 +1,7 @@
 //! The warm start: a flashing message goes when the key END is held for several seconds [003:7946].
 
+use bahn_control::Control;
 use bahn_dialogue::Key;
-
-use super::Station;
-use crate::input::Refusal;
 
 /// How long END is held, µs (inferred: several seconds).
 const HELD_US: u64 = 3_000_000;
@@ -12,30 +10,22 @@ const HELD_US: u64 = 3_000_000;
 #[derive(Default)]
 pub(super) struct WarmStart(Option<u64>);
 
-impl Station {
-    /// A key of the keyboard goes down, which presses it, or comes up.
-    pub(super) fn hold(&mut self, key: Key, down: bool) -> Result<(), Refusal> {
+impl WarmStart {
+    /// A key of the keyboard goes down or comes up, at a time, µs.
+    pub(super) fn hold(&mut self, key: Key, down: bool, now_us: u64) {
         if key == Key::End {
-            self.warm_start.0 = down.then(|| self.host.control().time_us());
-        }
-        match down {
-            true => self.key(key),
-            false => Ok(()),
+            self.0 = down.then_some(now_us);
         }
     }
 
-    /// END was held long enough before a flashing message: the control begins as after power-on.
-    pub(super) fn start_warm(&mut self) {
-        let Some(since_us) = self.warm_start.0 else { return };
-        let control = self.host.control();
+    /// Whether END was held long enough before a flashing message; it is said once.
+    pub(super) fn is_due(&mut self, control: &Control) -> bool {
+        let Some(since_us) = self.0 else { return false };
         let flashes = control.shown().iter().any(|shown| shown.flashing);
-        if !flashes || control.is_off() || control.time_us().saturating_sub(since_us) < HELD_US {
-            return;
+        let is_due = flashes && !control.is_off() && control.time_us().saturating_sub(since_us) >= HELD_US;
+        if is_due {
+            self.0 = None;
         }
-        self.warm_start.0 = None;
-        self.power(false);
-        self.console.power_off();
-        self.plc.power_off();
-        self.power(true);
+        is_due
     }
 }

@@ -44,7 +44,7 @@ impl Region {
     ///
     /// # Errors
     /// When the effort ends it.
-    pub fn from_contour_within<E: Effort>(contour: &Contour, effort: &E) -> Result<Region, E::Stop> {
+    pub(crate) fn from_contour_within<E: Effort>(contour: &Contour, effort: &E) -> Result<Region, E::Stop> {
         let contour = contour.clone().closed();
         let inside = |w: &[i32]| w.first().is_some_and(|w| *w != 0);
         Region::from_loops(overlay(&[(0, &contour)], 1, &inside, effort)?, effort)

@@ -77,7 +77,7 @@ impl PlcWindow {
     /// Characters of a line.
     pub const COLUMNS: usize = 38;
     /// Where text begins in a line with a bar chart: 19 characters remain [000:15318].
-    pub const COLUMNS_OF_BAR: usize = 19;
+    pub(crate) const COLUMNS_OF_BAR: usize = 19;
 
     /// The characters of a line as they are shown: each has its colour. Characters with colour 0 have that
     /// of the character to their left [000:15285]; at the start of a line that is not defined and

@@ -26,10 +26,10 @@ use crate::{Block, BlockError, Operation};
 /// HEIDENHAIN DIN/ISO.
 ///
 /// ```
-/// use bahn_program::{IsoLanguage, Operation, Program};
+/// use bahn_program::{Operation, Program};
 ///
 /// let text = "%7 G71 *\nN10 T1 G17 S500 *\nN20 G00 G40 G90 X+10 Y+5 M3 *\nN99999 %7 G71 *\n";
-/// let program = Program::in_language("7.I", text.into(), &IsoLanguage);
+/// let program = Program::from_bytes("7.I", text.into());
 /// assert_eq!((program.block_count(), program.number_of(2)), (4, 20));
 /// assert!(matches!(program.decode(0).blocks[2].operation, Operation::Motion(_)));
 /// ```

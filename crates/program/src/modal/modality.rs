@@ -74,7 +74,7 @@ impl PathFunction {
 
     /// Whether its end point is given by R and H.
     #[inline]
-    pub const fn is_polar(self) -> bool {
+    pub(crate) const fn is_polar(self) -> bool {
         self as u8 >= PathFunction::PolarRapid as u8
     }
 }

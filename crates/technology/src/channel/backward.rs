@@ -7,84 +7,13 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use bahn_motion::{Drive, Interpolator};
-use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step};
 
 use super::Channel;
+use super::back::{Back, FeedBack};
 use super::order::{OrderId, State};
 use super::record::Moment;
-use super::track::{Deed, Track};
+use super::track::Deed;
 use crate::synch::{Synch, SynchType};
-
-#[derive(Debug, Default)]
-pub(super) struct Backward {
-    back: Option<Back>,
-}
-
-/// The path goes back.
-#[derive(Debug)]
-struct Back {
-    /// The element on which it turned, and how much of that was executed, mm.
-    from: u64,
-    along: f64,
-    /// Number of the way back that the interpolator is given next: the first is 1.
-    fed: u64,
-    /// The place to which the path has come back, and the one whose functions were looked at last.
-    reached: u64,
-    seen: u64,
-    /// Functions that are to be output at that place, and those that are waited for.
-    queue: VecDeque<OrderId>,
-    gate: Vec<OrderId>,
-    /// In single block it stands there.
-    at_limit: bool,
-}
-
-impl Backward {
-    pub(super) fn is_on(&self) -> bool {
-        self.back.is_some()
-    }
-}
-
-/// Gives the interpolator the elements of the track from one on back.
-struct FeedBack<'a> {
-    track: &'a Track,
-    back: &'a mut Back,
-}
-
-impl ElementSource for FeedBack<'_> {
-    type Error = ();
-
-    fn next(&mut self) -> Step<()> {
-        let number = self.back.element(self.back.fed);
-        let leg = number.and_then(|number| self.track.leg(number));
-        let Some(leg) = leg else {
-            return Step::Barrier(Barrier::Acknowledge {
-                block: BlockRef::default(),
-            });
-        };
-        let along = if self.back.fed == 1 {
-            self.back.along
-        } else {
-            leg.length
-        };
-        let element = leg.rest(along, true).element(self.back.fed);
-        self.back.fed += 1;
-        Step::Element(element)
-    }
-
-    fn resume(&mut self, _: LiveData) {}
-}
-
-impl Back {
-    /// The element that is so many on the way back.
-    fn element(&self, back: u64) -> Option<u64> {
-        (self.from + 1).checked_sub(back)
-    }
-
-    /// It cannot go on where it is.
-    fn waits(&self) -> bool {
-        !self.queue.is_empty() || !self.gate.is_empty() || self.at_limit
-    }
-}
 
 impl Channel<'_> {
     /// Spends a cycle on the path. Whether it moved.
@@ -97,11 +26,11 @@ impl Channel<'_> {
             return self.spend_on(drive);
         }
         // The path turns where it stands.
-        if !self.still {
+        if !self.motion.still {
             drive.hold = true;
             return self.spend_on(drive);
         }
-        if !self.stands {
+        if !self.motion.stands {
             let at = self.now();
             self.stop(at);
         }
@@ -124,10 +53,13 @@ impl Channel<'_> {
 
     /// The element on which the path is, and how much of it is executed, mm.
     fn whereabouts(&self) -> (u64, f64) {
-        let number = self.reached;
-        let leg = self.track.leg(number);
+        let number = self.motion.reached;
+        let leg = self.plan.track.leg(number);
         let along = leg.map_or(0.0, |leg| self.way() - leg.from);
-        match number.checked_sub(1).and_then(|before| self.track.leg(before)) {
+        match number
+            .checked_sub(1)
+            .and_then(|before| self.plan.track.leg(before))
+        {
             Some(before) if along <= 0.0 => (number - 1, before.length),
             _ => (number, along),
         }
@@ -135,11 +67,10 @@ impl Channel<'_> {
 
     fn turn_back(&mut self) {
         let (from, along) = self.whereabouts();
-        let position = self.path.position();
-        self.all_block_ends();
-        self.leads.watched.clear();
-        self.path.clear();
-        self.path.set_position(position);
+        let position = self.motion.path.position();
+        self.single.all_block_ends();
+        self.plan.leads.watched.clear();
+        self.motion.turn(position);
         self.backward.back = Some(Back {
             from,
             along,
@@ -156,13 +87,13 @@ impl Channel<'_> {
     pub(super) fn way_back(&self, path: &Interpolator<()>) -> Option<f64> {
         let back = self.backward.back.as_ref()?;
         let number = path.element().and_then(|element| back.element(element.sequence));
-        let leg = number.and_then(|number| self.track.leg(number));
+        let leg = number.and_then(|number| self.plan.track.leg(number));
         Some(match leg {
             Some(leg) => leg.from + path.rest_mm(),
-            None => self
-                .track
-                .leg(back.from)
-                .map_or_else(|| self.track.way(self.track.first()), |leg| leg.from + back.along),
+            None => self.plan.track.leg(back.from).map_or_else(
+                || self.plan.track.way(self.plan.track.first()),
+                |leg| leg.from + back.along,
+            ),
         })
     }
 
@@ -171,48 +102,49 @@ impl Channel<'_> {
             return false;
         };
         let mut feed = FeedBack {
-            track: &self.track,
+            track: &self.plan.track,
             back,
         };
-        self.path.prepare(&mut feed, usize::MAX);
+        self.motion.path.prepare(&mut feed, usize::MAX);
         let (from, seen, reached) = (back.from, back.seen, back.reached);
         let waits = back.waits();
         // The next place with a function that is waited for on the way back.
-        let first = self.track.first();
+        let first = self.plan.track.first();
         let known = (from + 2).saturating_sub(back.fed).max(first);
         let stop = (known..seen).rev().find(|place| self.waits_backward(*place));
         drive.stop_before = stop.map(|place| from + 2 - place);
         drive.hold |= waits;
         if stop != Some(reached) && !waits {
-            self.path.go_on();
+            self.motion.path.go_on();
         }
         let number = if reached > from {
             from
         } else {
             reached.saturating_sub(1)
         };
-        let block = self.track.leg(number).map(|leg| leg.block.clone());
+        let block = self.plan.track.leg(number).map(|leg| leg.block.clone());
         self.drive_once(&drive, block)
     }
 
     /// Whether the path stops at a place on the way back.
     fn waits_backward(&self, place: u64) -> bool {
-        let deeds = self.track.deeds(place);
-        deeds.iter().any(|deed| matches!(deed, Deed::BlockEnd)) && self.stops_at(place, true)
+        let deeds = self.plan.track.deeds(place);
+        deeds.iter().any(|deed| matches!(deed, Deed::BlockEnd))
+            && self.single.stops_at(self.plan.track.way(place), true)
             || self.of_place(place).into_iter().any(|id| {
-                let order = self.orders.get(id);
+                let order = self.plan.orders.get(id);
                 order.is_some_and(|order| order.synch.backward)
             })
     }
 
     /// The functions of a place that are output on the way back, in program order.
     fn of_place(&self, place: u64) -> Vec<OrderId> {
-        let outputs = self.track.deeds(place).iter().filter_map(|deed| match deed {
+        let outputs = self.plan.track.deeds(place).iter().filter_map(|deed| match deed {
             Deed::Output(id) => Some(*id),
             _ => None,
         });
         let mut ids: Vec<OrderId> = outputs.collect();
-        for id in self.leads.of_place(self.track.way(place)) {
+        for id in self.plan.leads.of_place(self.plan.track.way(place)) {
             let at = ids.iter().position(|other| *other > id).unwrap_or(ids.len());
             ids.insert(at, id);
         }
@@ -227,7 +159,7 @@ impl Channel<'_> {
                     back.reached = place;
                 }
             }
-            None => self.reached = self.reached.max(sequence + 1),
+            None => self.motion.reached = self.motion.reached.max(sequence + 1),
         }
     }
 
@@ -245,15 +177,18 @@ impl Channel<'_> {
                 back.queue.pop_front();
                 any = true;
                 let at = Moment {
-                    position: self.track.position(back.seen),
+                    position: self.plan.track.position(back.seen),
                     ..self.now()
                 };
                 self.output(id, at, None);
                 back.gate.push(id);
             }
-            back.gate.retain(|id| !self.orders.is_done(*id));
+            back.gate.retain(|id| !self.plan.orders.is_done(*id));
             if back.at_limit && back.queue.is_empty() && back.gate.is_empty() {
-                back.at_limit = self.stands_at_end(back.seen, true, back.reached < back.seen);
+                let moves = !self.motion.still || back.reached < back.seen;
+                back.at_limit = self
+                    .single
+                    .stands_at_end(self.plan.track.way(back.seen), true, moves);
                 any |= !back.at_limit;
             }
             if back.waits() || back.seen <= back.reached {
@@ -263,7 +198,7 @@ impl Channel<'_> {
             any = true;
             back.queue = self.repeated(back.seen);
             let limit = |deed: &Deed| matches!(deed, Deed::BlockEnd);
-            back.at_limit = self.track.deeds(back.seen).iter().any(limit);
+            back.at_limit = self.plan.track.deeds(back.seen).iter().any(limit);
         }
         self.backward.back = Some(back);
         any
@@ -273,7 +208,7 @@ impl Channel<'_> {
     fn repeated(&mut self, place: u64) -> VecDeque<OrderId> {
         let mut queue = VecDeque::new();
         for id in self.of_place(place).into_iter().rev() {
-            let Some(mut order) = self.orders.get(id).cloned() else {
+            let Some(mut order) = self.plan.orders.get(id).cloned() else {
                 continue;
             };
             order.waits = order.synch.backward;
@@ -289,7 +224,7 @@ impl Channel<'_> {
                 ..order.synch
             };
             (order.spindle, order.state) = (None, State::default());
-            queue.push_back(self.orders.push(order));
+            queue.push_back(self.plan.orders.push(order));
         }
         queue
     }
@@ -310,38 +245,40 @@ impl Channel<'_> {
         let Some(back) = self.backward.back.take() else {
             return;
         };
-        let number = back.reached.saturating_sub(1).max(self.track.first());
-        let (mut number, mut along) = match self.track.leg(number) {
+        let number = back.reached.saturating_sub(1).max(self.plan.track.first());
+        let (mut number, mut along) = match self.plan.track.leg(number) {
             Some(leg) => (number, (way - leg.from).max(0.0)),
             // There is no way to go back: it is still at the place where it turned.
             None => (number, 0.0),
         };
-        if self.track.leg(number).is_some_and(|leg| along >= leg.length) {
+        if self.plan.track.leg(number).is_some_and(|leg| along >= leg.length) {
             (number, along) = (number + 1, 0.0);
         }
-        let position = self.path.position();
-        self.all_block_ends();
-        self.path.clear();
-        self.path.set_position(position);
+        let position = self.motion.path.position();
+        self.single.all_block_ends();
         let first = if along > 0.0 { number + 1 } else { number };
-        let turned = self.track.leg(back.from).map_or(way, |leg| leg.from + back.along);
-        let ahead = self.leads.repeat(turned, way);
-        self.renew(first, self.cursor.0, &ahead);
+        let turned = self
+            .plan
+            .track
+            .leg(back.from)
+            .map_or(way, |leg| leg.from + back.along);
+        let ahead = self.plan.leads.repeat(turned, way);
+        self.renew(first, self.gates.cursor.0, &ahead);
         let done = if along > 0.0 {
-            self.track.deeds(number).len()
+            self.plan.track.deeds(number).len()
         } else {
             0
         };
-        (self.fed, self.reached, self.cursor) = (number, number, (number, done));
-        (self.open_to, self.dwell) = (number, None);
-        self.part = (along > 0.0).then_some(along);
+        let part = (along > 0.0).then_some(along);
+        self.motion.begin_on(position, number, part);
+        (self.gates.cursor, self.gates.open_to, self.gates.dwell) = ((number, done), number, None);
     }
 
     /// The functions of these places, and these that are output ahead, are new ones.
     fn renew(&mut self, first: u64, last: u64, ahead: &[OrderId]) {
         let mut old: BTreeSet<OrderId> = ahead.iter().copied().collect();
         for place in first..=last {
-            for deed in self.track.deeds(place) {
+            for deed in self.plan.track.deeds(place) {
                 if let Deed::Output(id) | Deed::Command(id) = deed {
                     old.insert(*id);
                 }
@@ -349,14 +286,14 @@ impl Channel<'_> {
         }
         let mut renewed: BTreeMap<OrderId, OrderId> = BTreeMap::new();
         for id in old {
-            if let Some(mut order) = self.orders.get(id).cloned() {
+            if let Some(mut order) = self.plan.orders.get(id).cloned() {
                 order.state = State::default();
-                renewed.insert(id, self.orders.push(order));
+                renewed.insert(id, self.plan.orders.push(order));
             }
         }
         let new = |id: &mut OrderId| *id = renewed.get(id).copied().unwrap_or(*id);
-        for place in first..=self.track.last() {
-            for deed in self.track.deeds_mut(place) {
+        for place in first..=self.plan.track.last() {
+            for deed in self.plan.track.deeds_mut(place) {
                 match deed {
                     Deed::Output(id) | Deed::Command(id) | Deed::Stand(id) => new(id),
                     Deed::Gate(ids) => ids.iter_mut().for_each(new),
@@ -364,7 +301,7 @@ impl Channel<'_> {
                 }
             }
         }
-        self.decoding.late.iter_mut().flatten().for_each(new);
-        self.leads.rename(new);
+        self.plan.decoding.late.iter_mut().flatten().for_each(new);
+        self.plan.leads.rename(new);
     }
 }

@@ -22,22 +22,22 @@ impl Channel<'_> {
         let mut any = false;
         self.plc.begin(self.cycle);
         if let Some(message) = self.plc.take_fault() {
-            self.fault = Some(super::fault::named(&self.here(), "plc", message));
+            self.progress.fault = Some(super::fault::named(&self.here(), "plc", message));
         }
         while let Some(deed) = self.plc.next(self.cycle) {
             any = true;
             let at = self.now();
             match deed {
                 plc::Deed::Fetch(id) => {
-                    self.ranges.fetch(id, &mut self.orders);
+                    self.plan.ranges.fetch(id, &mut self.plan.orders);
                     self.tell(EventKind::Fetch, id, at);
                 }
                 plc::Deed::Acknowledge(id) => {
-                    self.ranges.acknowledge(id, &mut self.orders);
+                    self.plan.ranges.acknowledge(id, &mut self.plan.orders);
                     self.tell(EventKind::Acknowledge, id, at);
                 }
                 plc::Deed::Confirm(id) => {
-                    if let Some(order) = self.orders.get_mut(id) {
+                    if let Some(order) = self.plan.orders.get_mut(id) {
                         order.state.confirmed = true;
                     }
                 }
@@ -47,8 +47,8 @@ impl Channel<'_> {
     }
 
     fn tell(&mut self, kind: EventKind, id: OrderId, at: Moment) {
-        if let Some(order) = self.orders.get(id) {
-            let target = order.range.map_or("", |range| self.ranges.name(range));
+        if let Some(order) = self.plan.orders.get(id) {
+            let target = order.range.map_or("", |range| self.plan.ranges.name(range));
             self.record.function(kind, (id, order), target, at);
         }
     }
@@ -56,19 +56,19 @@ impl Channel<'_> {
     /// Does what is to be done up to where the path is. Whether anything was done.
     pub(super) fn act(&mut self) -> bool {
         let mut any = false;
-        while self.fault.is_none() && !self.ended {
-            let (place, index) = self.cursor;
-            if place > self.reached {
+        while self.progress.fault.is_none() && !self.progress.ended {
+            let (place, index) = self.gates.cursor;
+            if place > self.motion.reached {
                 break;
             }
-            if index < self.track.deeds(place).len() {
+            if index < self.plan.track.deeds(place).len() {
                 if self.deed(place, index) == Done::NotYet {
                     break;
                 }
-                self.cursor.1 += 1;
+                self.gates.cursor.1 += 1;
                 any = true;
-            } else if place < self.reached {
-                self.cursor = (place + 1, 0);
+            } else if place < self.motion.reached {
+                self.gates.cursor = (place + 1, 0);
                 any = true;
             } else {
                 break;
@@ -78,7 +78,7 @@ impl Channel<'_> {
     }
 
     fn deed(&mut self, place: u64, index: usize) -> Done {
-        let Some(deed) = self.track.deeds(place).get(index) else {
+        let Some(deed) = self.plan.track.deeds(place).get(index) else {
             return Done::Yes;
         };
         match deed {
@@ -103,10 +103,14 @@ impl Channel<'_> {
                     Done::NotYet
                 }
             }
-            Deed::Stand(id) if self.stands || !self.stands_for(*id) => Done::Yes,
+            Deed::Stand(id) if self.motion.stands || !self.stands_for(*id) => Done::Yes,
             Deed::Stand(_) => Done::NotYet,
             Deed::BlockEnd => {
-                if self.stands_at_end(place, false, place < self.reached) {
+                let moves = !self.motion.still || place < self.motion.reached;
+                if self
+                    .single
+                    .stands_at_end(self.plan.track.way(place), false, moves)
+                {
                     Done::NotYet
                 } else {
                     Done::Yes
@@ -115,18 +119,19 @@ impl Channel<'_> {
             Deed::Dwell(seconds) => self.dwell(place, *seconds),
             Deed::Independent(independent) => {
                 let independent = independent.as_ref().clone();
-                self.begin_independent(independent);
+                let at = self.now().position[independent.axis];
+                self.motion.begin_independent(independent, at);
                 Done::Yes
             }
-            Deed::AllEnded if self.independent.is_empty() => Done::Yes,
+            Deed::AllEnded if self.motion.independent.is_empty() => Done::Yes,
             Deed::AllEnded => Done::NotYet,
             Deed::Fault(fault) => {
-                self.fault = Some(fault.as_ref().clone());
+                self.progress.fault = Some(fault.as_ref().clone());
                 Done::Yes
             }
-            Deed::End if !self.leads.queue.is_empty() => Done::NotYet,
+            Deed::End if !self.plan.leads.queue.is_empty() => Done::NotYet,
             Deed::End => {
-                self.ended = true;
+                self.progress.ended = true;
                 Done::Yes
             }
         }
@@ -137,52 +142,55 @@ impl Channel<'_> {
         let cycle = self.cycle;
         let left = self.passed(place).map_or(0.0, |passed| passed.0);
         let end = *self
+            .gates
             .dwell
             .get_or_insert_with(|| cycle + cycle_at((seconds - left).max(0.0), self.cycle_s));
         if cycle < end {
             return Done::NotYet;
         }
-        self.dwell = None;
+        self.gates.dwell = None;
         Done::Yes
     }
 
     pub(super) fn range_of(&self, id: OrderId) -> Option<RangeId> {
-        self.orders.get(id).and_then(|order| order.range)
+        self.plan.orders.get(id).and_then(|order| order.range)
     }
 
     /// The function for which nothing can be output to a range.
     pub(super) fn blocker(&self, range: RangeId) -> Option<OrderId> {
-        self.ranges.blocked(range, self.plc.fetched_before(self.cycle))
+        self.plan
+            .ranges
+            .blocked(range, self.plc.fetched_before(self.cycle))
     }
 
     /// A spindle of the NC executes a function.
     fn command(&mut self, id: OrderId) {
-        let Some(order) = self.orders.get_mut(id) else {
+        let Some(order) = self.plan.orders.get_mut(id) else {
             return;
         };
         order.state.commanded = true;
         if let Some(index) = order.spindle {
-            let names = super::resolve::names(RangeId::Spindle(index), self.settings);
+            let names = super::resolve::names(RangeId::Spindle(index), self.plan.settings);
             self.plc.command(id, &names, order.process_s, self.cycle);
         }
     }
 
     /// How long before this cycle, s, and how fast, mm/s, the path came to a place, if that was in the cycle before.
     pub(super) fn passed(&self, place: u64) -> Option<(f64, f64)> {
-        let passed = self.path.passed().iter();
+        let passed = self.motion.path.passed().iter();
         let mut at = passed.filter(|passed| passed.sequence + 1 == place);
         at.next().map(|passed| (passed.left_s, passed.speed_mm_s))
     }
 
     /// A function is output at a place of the path.
     fn output_at(&mut self, id: OrderId, place: u64) {
-        let (left_s, speed_mm_s) = self.passed(place).unwrap_or((0.0, self.speed()));
+        let (left_s, speed_mm_s) = self.passed(place).unwrap_or((0.0, self.motion.speed()));
         let at = Moment {
             t: self.t(),
-            position: self.track.position(place),
+            position: self.plan.track.position(place),
             speed_mm_s,
         };
-        let stamped = self.orders.get(id).is_some_and(|order| {
+        let stamped = self.plan.orders.get(id).is_some_and(|order| {
             order.synch.kind == SynchType::MosTs && order.range == Some(RangeId::Channel)
         });
         // Below the cycle, however it is rounded.
@@ -195,20 +203,20 @@ impl Channel<'_> {
 
     /// A function is output, with the time since the path was at its place, µs, where the PLC gets that.
     pub(super) fn output(&mut self, id: OrderId, at: Moment, offset_us: Option<f64>) {
-        let simulated = self.simulated;
-        if let Some(order) = self.orders.get_mut(id)
+        let simulated = self.gates.simulated;
+        if let Some(order) = self.plan.orders.get_mut(id)
             && simulated
             && !order.synch.forward
         {
             order.waits = false;
         }
-        let has_room = self.ranges.output(id, &mut self.orders, self.cycle);
-        let Some(order) = self.orders.get(id) else {
+        let has_room = self.plan.ranges.output(id, &mut self.plan.orders, self.cycle);
+        let Some(order) = self.plan.orders.get(id) else {
             return;
         };
         let Some(range) = order.range else { return };
         let label = order.label();
-        let names = self.ranges.names(range);
+        let names = self.plan.ranges.names(range);
         let output = Output {
             id,
             names,
@@ -222,35 +230,38 @@ impl Channel<'_> {
             waits: order.waits,
         };
         self.plc.order(&output, self.cycle);
-        let target = self.ranges.name(range);
+        let target = self.plan.ranges.name(range);
         self.record.function(EventKind::Output, (id, order), target, at);
         if !has_room {
             let message = format!("{label} is one late function too many that is not acknowledged");
-            self.fault = Some(super::fault::numbered(&order.place, 60146, message));
+            self.progress.fault = Some(super::fault::numbered(&order.place, 60146, message));
         }
     }
 
     /// Nothing is waited for because of this function.
     fn is_open(&self, id: OrderId) -> bool {
-        self.orders.get(id).is_none_or(|order| self.order_is_open(order))
+        self.plan
+            .orders
+            .get(id)
+            .is_none_or(|order| self.order_is_open(order))
     }
 
     /// Whether the path comes to a standstill for a function in any case: not in simulated motion, as its type says there.
     fn stands_for(&self, id: OrderId) -> bool {
-        !self.simulated || self.orders.get(id).is_some_and(|order| order.synch.forward)
+        !self.gates.simulated || self.plan.orders.get(id).is_some_and(|order| order.synch.forward)
     }
 
     fn order_is_open(&self, order: &Order) -> bool {
-        order.is_done() || self.simulated && !order.state.output && !order.synch.forward
+        order.is_done() || self.gates.simulated && !order.state.output && !order.synch.forward
     }
 
     /// Whether the path has to stop at a place, looking from one of its deeds on.
     pub(super) fn is_closed(&self, place: u64, from: usize) -> bool {
-        let deeds = self.track.deeds(place).get(from..).unwrap_or_default();
+        let deeds = self.plan.track.deeds(place).get(from..).unwrap_or_default();
         deeds.iter().any(|deed| match deed {
             Deed::Gate(ids) => !ids.iter().all(|id| self.is_open(*id)),
             Deed::Stand(id) => self.stands_for(*id),
-            Deed::BlockEnd => self.stops_at(place, false),
+            Deed::BlockEnd => self.single.stops_at(self.plan.track.way(place), false),
             Deed::Dwell(_) | Deed::AllEnded | Deed::End | Deed::Fault(_) => true,
             Deed::Output(_) | Deed::Command(_) | Deed::Independent(_) => false,
         })
@@ -258,22 +269,22 @@ impl Channel<'_> {
 
     /// The nearest place where the path has to stop, as far as it is known.
     pub(super) fn nearest_closed(&mut self) -> Option<u64> {
-        let (cursor, index) = self.cursor;
-        let last = self.track.last();
-        let mut place = self.open_to.max(cursor);
+        let (cursor, index) = self.gates.cursor;
+        let last = self.plan.track.last();
+        let mut place = self.gates.open_to.max(cursor);
         while place < last && !self.is_closed(place, if place == cursor { index } else { 0 }) {
             place += 1;
         }
-        self.open_to = place;
+        self.gates.open_to = place;
         let closed =
             (place < last || self.is_closed(place, if place == cursor { index } else { 0 })).then_some(place);
-        if !self.ranges.any_blocked(self.plc.fetched_before(self.cycle)) {
+        if !self.plan.ranges.any_blocked(self.plc.fetched_before(self.cycle)) {
             return closed;
         }
         // What is to be output next to a range whose last function is not fetched stops the path, too.
         let blocked = (cursor..place).find(|place| {
             let from = if *place == cursor { index } else { 0 };
-            let deeds = self.track.deeds(*place).get(from..).unwrap_or_default();
+            let deeds = self.plan.track.deeds(*place).get(from..).unwrap_or_default();
             deeds.iter().any(|deed| match deed {
                 Deed::Output(id) => self.range_of(*id).and_then(|range| self.blocker(range)).is_some(),
                 _ => false,
@@ -284,7 +295,7 @@ impl Channel<'_> {
 
     /// The path went over a place where it should have stopped, but could not any more.
     pub(super) fn is_overrun(&self) -> bool {
-        self.cursor.0 < self.reached
+        self.gates.cursor.0 < self.motion.reached
     }
 
     /// The functions for which the path cannot go on where it is.
@@ -292,10 +303,10 @@ impl Channel<'_> {
         if self.backward.is_on() {
             return self.missing_backward();
         }
-        let (place, index) = self.cursor;
+        let (place, index) = self.gates.cursor;
         let mut missing = Vec::new();
-        if place <= self.reached {
-            match self.track.deeds(place).get(index) {
+        if place <= self.motion.reached {
+            match self.plan.track.deeds(place).get(index) {
                 Some(Deed::Gate(ids)) => {
                     missing.extend(ids.iter().copied().filter(|id| !self.is_open(*id)));
                 }
@@ -314,8 +325,8 @@ impl Channel<'_> {
         if self.backward.is_on() {
             return true;
         }
-        let (place, index) = self.cursor;
+        let (place, index) = self.gates.cursor;
         let waits = |deed: &Deed| !matches!(deed, Deed::End | Deed::AllEnded);
-        place <= self.reached && self.track.deeds(place).get(index).is_some_and(waits)
+        place <= self.motion.reached && self.plan.track.deeds(place).get(index).is_some_and(waits)
     }
 }

@@ -23,11 +23,11 @@ impl Channel<'_> {
         };
         match ahead.lead {
             Lead::Time(_) if self.way() + SAME < ahead.point => {
-                self.leads.watched.promises.push_back(promise)
+                self.plan.leads.watched.promises.push_back(promise)
             }
             Lead::Time(lead_s) => self.tell_lead(promise, (0.0, lead_s * PER_S), "ms"),
             Lead::Way(lead) => {
-                let placed = self.leads.placed(ahead.id).unwrap_or(ahead.point);
+                let placed = self.plan.leads.placed(ahead.id).unwrap_or(ahead.point);
                 let way = ahead.point - placed;
                 if way + 2.0 * SAME < lead {
                     self.tell_lead(promise, (way, lead), "mm");
@@ -40,15 +40,15 @@ impl Channel<'_> {
     /// The path has come so far in a cycle that ends at a time, s.
     pub(super) fn passed_leads(&mut self, now_s: f64) {
         let way = self.way();
-        while let Some(promise) = self.leads.watched.promises.front().copied()
+        while let Some(promise) = self.plan.leads.watched.promises.front().copied()
             && promise.ahead.point <= way + SAME
         {
-            self.leads.watched.promises.pop_front();
+            self.plan.leads.watched.promises.pop_front();
             let Lead::Time(lead_s) = promise.ahead.lead else {
                 continue;
             };
-            let mut passed = self.path.passed().iter();
-            let at = passed.find(|end| self.track.way(end.sequence + 1) >= promise.ahead.point - SAME);
+            let mut passed = self.motion.path.passed().iter();
+            let at = passed.find(|end| self.plan.track.way(end.sequence + 1) >= promise.ahead.point - SAME);
             let was_s = now_s - at.map_or(0.0, |end| end.left_s) - promise.output_s;
             if was_s + self.cycle_s + ROUNDING_S < lead_s {
                 self.tell_lead(promise, (was_s * PER_S, lead_s * PER_S), "ms");
@@ -58,11 +58,11 @@ impl Channel<'_> {
 
     /// A lead is less than it should be.
     fn tell_lead(&mut self, promise: Promise, (is, asked): (f64, f64), unit: &str) {
-        let Some(order) = self.orders.get(promise.ahead.id) else {
+        let Some(order) = self.plan.orders.get(promise.ahead.id) else {
             return;
         };
         let (label, place) = (order.label(), order.place.clone());
-        let told = &mut self.leads.watched.told;
+        let told = &mut self.plan.leads.watched.told;
         if !told.insert((label.clone(), place.program.clone(), place.line)) {
             return;
         }
@@ -84,21 +84,21 @@ impl Channel<'_> {
             Lead::Time(lead_s) => promise.planned_s + self.cycle_s + ROUNDING_S < lead_s,
             _ => true,
         };
-        let waits = self.orders.get(ahead.id).is_some_and(|order| order.waits);
+        let waits = self.plan.orders.get(ahead.id).is_some_and(|order| order.waits);
         if !short && waits {
             return "it is planned with an end velocity of 0 there, and the path has not stopped".to_owned();
         }
         if !short {
             return "the path has come there sooner than it was planned".to_owned();
         }
-        let placed = self.leads.placed(ahead.id).unwrap_or(ahead.point);
+        let placed = self.plan.leads.placed(ahead.id).unwrap_or(ahead.point);
         match ahead.held {
-            _ if placed > ahead.earliest + self.path.speed_mm_s() * self.cycle_s + SAME => {
+            _ if placed > ahead.earliest + self.motion.path.speed_mm_s() * self.cycle_s + SAME => {
                 "another function came first, or was not fetched".to_owned()
             }
             Held::Barrier => "the path begins there, or comes to rest there for a flush".to_owned(),
             Held::LookAhead => {
-                let blocks = self.in_force.settings.pre_output.blocks;
+                let blocks = self.plan.in_force.settings.pre_output.blocks;
                 format!("the look-ahead of {blocks} blocks begins there (P-CHAN-00274)")
             }
         }

@@ -3,14 +3,18 @@
 //! `take` (in `prepare`) turns a block into elements and deeds; `gates` does what is to be done where the path is, `leads`
 //! what is to be done ahead of that, `drive` is a cycle of the path. `programs` runs one program behind the other.
 
+mod back;
 mod backward;
+mod decoding;
 mod drive;
 mod fault;
 mod gates;
 mod in_force;
 mod kept;
 mod leads;
+mod motion;
 mod order;
+mod plan;
 mod planned;
 mod prepare;
 mod programs;
@@ -22,79 +26,55 @@ mod skipped;
 mod track;
 mod window;
 
-use bahn_motion::{Interpolator, Limits, PointToPoint};
+use bahn_motion::{Interpolator, Limits};
 use bahn_path::Position;
 
 use crate::bounds::Bounds;
 use crate::plc::{Plc, PlcMemory, Script};
 use crate::report::{Fault, Skipped};
 use crate::settings::ChannelSettings;
-use backward::Backward;
-use drive::LOOK_AHEAD;
-use in_force::InForce;
-use leads::Leads;
-use order::Orders;
-use prepare::Decoding;
-use ranges::Ranges;
+use back::Backward;
+use motion::Motion;
+use plan::Plan;
 use record::{Moment, Record};
 use single::Single;
-use track::Track;
-use window::Window;
 
-/// All of a channel.
+/// A channel: what is planned, what moves along it, and what is done where that is.
 struct Channel<'a> {
-    limits: &'a Limits,
-    settings: &'a ChannelSettings,
     cycle_s: f64,
     /// Cycles of the run that are over.
     cycle: u64,
-    /// Settings as the program has left them.
-    in_force: InForce,
-    decoding: Decoding,
-    window: Window,
-    leads: Leads,
-    track: Track,
-    orders: Orders,
-    ranges: Ranges,
+    plan: Plan<'a>,
     plc: Plc<'a>,
     record: Record,
-    path: Interpolator<()>,
-    /// Number of the element that the interpolator is given next.
-    fed: u64,
-    /// So much of it is executed already, mm.
-    part: Option<f64>,
-    /// Greatest path acceleration that it was given last, mm/s².
-    acceleration: f64,
+    motion: Motion<'a>,
+    gates: Gates,
+    backward: Backward,
+    single: Single,
+    progress: Progress,
+}
+
+/// Where deeds are done next, and where the path has to stop.
+struct Gates {
     /// The place at which deeds are done next, and which of them.
     cursor: (u64, usize),
-    /// The place that the path has come to or stands at.
-    reached: u64,
     /// Places before this one do not stop the path.
     open_to: u64,
     /// The cycle in which a dwell ends.
     dwell: Option<u64>,
-    /// Way along the path before the last cycle, mm.
-    way_before: f64,
-    /// The path stood still in the last cycle.
-    still: bool,
-    /// That was said.
-    stands: bool,
-    /// It stands because it is held.
-    held: bool,
-    /// Resets that were done.
-    reset_count: usize,
-    /// Where axes stand that moved on their own.
-    ended_at: Position,
-    /// Axes that move on their own.
-    independent: Vec<(bahn_din::Independent, PointToPoint)>,
-    backward: Backward,
-    single: Single,
-    /// What was passed over before the block with which the run began.
-    skipped: Option<Vec<Skipped>>,
-    /// File of the program that runs.
-    program: String,
     /// Functions are simulated.
     simulated: bool,
+}
+
+/// How far the run is.
+#[derive(Default)]
+struct Progress {
+    /// File of the program that runs.
+    program: String,
+    /// Resets that were done.
+    reset_count: usize,
+    /// What was passed over before the block with which the run began.
+    skipped: Option<Vec<Skipped>>,
     /// Why the run cannot go on.
     fault: Option<Fault>,
     /// The program has ended.
@@ -111,54 +91,29 @@ impl<'a> Channel<'a> {
         memory: Option<&'a mut (dyn PlcMemory + 'a)>,
         start: Position,
     ) -> Channel<'a> {
-        let mut path = Interpolator::new(limits, LOOK_AHEAD);
-        path.set_position(start);
         // The interpolator has the same bounds.
         let cycle_s = if limits.cycle_s.is_nan() {
             0.0001
         } else {
             limits.cycle_s.clamp(0.0001, 1.0)
         };
-        let mut channel = Channel {
-            limits,
-            settings,
+        Channel {
             cycle_s,
             cycle: 0,
-            in_force: InForce::new(settings),
-            decoding: Decoding::default(),
-            window: Window::default(),
-            leads: Leads::default(),
-            track: Track::new(start, 1, 0.0),
-            orders: Orders::default(),
-            ranges: Ranges::default(),
+            plan: Plan::new(settings, start),
             plc: Plc::new(script, memory, cycle_s),
             record: Record::default(),
-            path,
-            fed: 1,
-            part: None,
-            acceleration: f64::INFINITY,
-            cursor: (1, 0),
-            reached: 1,
-            open_to: 1,
-            dwell: None,
-            way_before: 0.0,
-            still: true,
-            stands: true,
-            held: false,
-            reset_count: 0,
-            ended_at: Position::UNKNOWN,
-            independent: Vec::new(),
+            motion: Motion::new(limits, start),
+            gates: Gates {
+                cursor: (1, 0),
+                open_to: 1,
+                dwell: None,
+                simulated: false,
+            },
             backward: Backward::default(),
             single: Single::default(),
-            skipped: None,
-            program: String::new(),
-            simulated: false,
-            fault: None,
-            ended: false,
-            bounds: Bounds::default(),
-        };
-        channel.window.begin(0.0);
-        channel
+            progress: Progress::default(),
+        }
     }
 
     /// Time of the run, s.
@@ -168,7 +123,7 @@ impl<'a> Channel<'a> {
 
     /// Way along the path, mm.
     fn way(&self) -> f64 {
-        self.way_of(&self.path)
+        self.way_of(&self.motion.path)
     }
 
     /// Way along the path of an interpolator on it, mm.
@@ -177,32 +132,32 @@ impl<'a> Channel<'a> {
             return way;
         }
         let Some(element) = path.element() else {
-            return self.track.way(self.reached);
+            return self.plan.track.way(self.motion.reached);
         };
-        match self.track.leg(element.sequence) {
+        match self.plan.track.leg(element.sequence) {
             Some(leg) => leg.to() - path.rest_mm(),
-            None => self.track.way(self.reached),
+            None => self.plan.track.way(self.motion.reached),
         }
     }
 
     /// Now, and where the path is.
     fn now(&self) -> Moment {
-        let mut position = self.path.position();
+        let mut position = self.motion.path.position();
         // Before it moves, the path does not know where axes stand that are programmed first.
-        let place = self.track.position(self.reached);
+        let place = self.plan.track.position(self.motion.reached);
         for axis in place.known().iter() {
             position[axis] = position.get(axis).unwrap_or(place[axis]);
         }
-        for axis in self.ended_at.known().iter() {
-            position[axis] = self.ended_at[axis];
+        for axis in self.motion.ended_at.known().iter() {
+            position[axis] = self.motion.ended_at[axis];
         }
-        for (independent, axis) in &self.independent {
+        for (independent, axis) in &self.motion.independent {
             position[independent.axis] = axis.position();
         }
         Moment {
             t: self.t(),
             position,
-            speed_mm_s: self.speed(),
+            speed_mm_s: self.motion.speed(),
         }
     }
 }

@@ -22,8 +22,8 @@ impl Channel<'_> {
     /// Outputs the functions whose places come near. Whether there were any.
     pub(super) fn output_ahead(&mut self, drive: &Drive) -> bool {
         let mut any = false;
-        if !self.leads.queue.is_empty() {
-            self.feed();
+        if !self.plan.leads.queue.is_empty() {
+            self.motion.feed(&self.plan);
         }
         while let Some((index, ahead)) = self.next_ahead(drive) {
             let blocked = self.range_of(ahead.id).and_then(|range| self.blocker(range));
@@ -31,18 +31,19 @@ impl Channel<'_> {
                 break;
             }
             let way = self.way();
-            self.leads
-                .take(index, self.in_force.settings.pre_output.value_to_go, way);
+            self.plan
+                .leads
+                .take(index, self.plan.in_force.settings.pre_output.value_to_go, way);
             any = true;
             let mut at = self.now();
             if !matches!(ahead.lead, Lead::Time(_)) {
                 // What could not go out at its place, for that was not known or another came before, does so where the path is.
-                let in_cycle = |place: &f64| (self.way_before - SAME..=way).contains(place);
-                let places = [ahead.place(), self.leads.floor];
+                let in_cycle = |place: &f64| (self.motion.way_before - SAME..=way).contains(place);
+                let places = [ahead.place(), self.plan.leads.floor];
                 let place = places.into_iter().find(in_cycle).unwrap_or(way);
-                self.leads.output_at(ahead.id, place);
+                self.plan.leads.output_at(ahead.id, place);
                 at = Moment {
-                    position: self.track.position_at(place, self.reached + 1),
+                    position: self.plan.track.position_at(place, self.motion.reached + 1),
                     ..at
                 };
             }
@@ -58,17 +59,20 @@ impl Channel<'_> {
     /// The next function that is due.
     fn next_ahead(&self, drive: &Drive) -> Option<(usize, Ahead)> {
         let way = self.way();
-        let passed =
-            |point: f64, ids: &[OrderId]| way > point - SAME && ids.iter().all(|id| self.orders.is_done(*id));
-        let one_by_one = self.in_force.settings.pre_output.value_to_go;
-        let mut candidates = self.leads.next(one_by_one, passed);
+        let passed = |point: f64, ids: &[OrderId]| {
+            way > point - SAME && ids.iter().all(|id| self.plan.orders.is_done(*id))
+        };
+        let one_by_one = self.plan.in_force.settings.pre_output.value_to_go;
+        let mut candidates = self.plan.leads.next(one_by_one, passed);
         let due = candidates.find(|(_, ahead)| self.is_due(ahead, way, drive));
         due.map(|(index, ahead)| (index, *ahead))
     }
 
     /// The function for which the next one that is due cannot be output.
     pub(super) fn blocked_lead(&self) -> Option<OrderId> {
-        if self.leads.queue.is_empty() || !self.ranges.any_blocked(self.plc.fetched_before(self.cycle)) {
+        if self.plan.leads.queue.is_empty()
+            || !self.plan.ranges.any_blocked(self.plc.fetched_before(self.cycle))
+        {
             return None;
         }
         let (_, ahead) = self.next_ahead(&self.drive_now())?;
@@ -95,8 +99,8 @@ impl Channel<'_> {
     /// The greatest speed up to a place, mm/s, at most.
     fn fastest(&self, point: f64, drive: &Drive) -> f64 {
         let mut fastest = 0.0f64;
-        let mut number = self.reached;
-        while let Some(leg) = self.track.leg(number).filter(|leg| leg.from < point) {
+        let mut number = self.motion.reached;
+        while let Some(leg) = self.plan.track.leg(number).filter(|leg| leg.from < point) {
             if leg.driving.rapid {
                 return f64::INFINITY;
             }
@@ -104,23 +108,24 @@ impl Channel<'_> {
             number += 1;
         }
         let percent = drive.feed_override_percent.max(100.0);
-        fastest.max(self.path.speed_mm_s() * 60.0) / 60.0 * percent / 100.0
+        fastest.max(self.motion.path.speed_mm_s() * 60.0) / 60.0 * percent / 100.0
     }
 
     /// How long the path takes to a place of it, s: as it is planned, with the standstills that are known now. So it stops at
     /// the place of a function that it waits for, whose gate is closed [004:87], and passes that of any other.
     /// `None` when that is longer than asked for.
     fn time_to(&self, point: f64, most_s: f64, drive: &Drive) -> Option<f64> {
-        let last = self.track.last();
-        let mut target = self.reached + u64::from(self.path.rest_mm() <= 0.0);
-        while target < last && self.track.way(target) < point - SAME {
+        let last = self.plan.track.last();
+        let mut target = self.motion.reached + u64::from(self.motion.path.rest_mm() <= 0.0);
+        while target < last && self.plan.track.way(target) < point - SAME {
             target += 1;
         }
-        if self.track.way(target) < point - SAME {
+        if self.plan.track.way(target) < point - SAME {
             return None;
         }
-        let mut stops = (self.open_to.max(self.reached + 1)..=last).filter(|place| self.is_closed(*place, 0));
-        let mut path = self.path.clone();
+        let mut stops = (self.gates.open_to.max(self.motion.reached + 1)..=last)
+            .filter(|place| self.is_closed(*place, 0));
+        let mut path = self.motion.path.clone();
         let mut drive = Drive {
             hold: false,
             stop_before: stops.next(),
@@ -152,7 +157,7 @@ impl Channel<'_> {
 
     /// Cycles that the path dwells at a place to which it came so long before the end of a cycle, s, from one of its deeds on.
     fn dwells(&self, place: u64, from: usize, left_s: f64) -> u64 {
-        let deeds = self.track.deeds(place).get(from..).unwrap_or_default();
+        let deeds = self.plan.track.deeds(place).get(from..).unwrap_or_default();
         let dwell = deeds.iter().filter_map(|deed| match deed {
             Deed::Dwell(seconds) => Some(cycle_at((seconds - left_s).max(0.0), self.cycle_s)),
             _ => None,
@@ -162,9 +167,13 @@ impl Channel<'_> {
 
     /// Cycles that it dwells where it is.
     fn dwells_now(&self) -> u64 {
-        let place = self.reached;
-        let index = if self.cursor.0 == place { self.cursor.1 } else { 0 };
-        match self.dwell {
+        let place = self.motion.reached;
+        let index = if self.gates.cursor.0 == place {
+            self.gates.cursor.1
+        } else {
+            0
+        };
+        match self.gates.dwell {
             Some(end) => end.saturating_sub(self.cycle) + self.dwells(place, index + 1, 0.0),
             None => {
                 let left_s = self.passed(place).map_or(0.0, |passed| passed.0);
@@ -185,8 +194,8 @@ impl Channel<'_> {
 
     /// What is left to the place where a function is synchronised that is output now.
     fn to_go(&self, ahead: &Ahead, drive: &Drive) -> Option<ToGo> {
-        let order = self.orders.get(ahead.id)?;
-        if !self.in_force.settings.pre_output.value_to_go || !order.waits {
+        let order = self.plan.orders.get(ahead.id)?;
+        if !self.plan.in_force.settings.pre_output.value_to_go || !order.waits {
             return None;
         }
         let way = if matches!(ahead.lead, Lead::Time(_)) {

@@ -1,53 +1,21 @@
 //! From blocks to the path: where each function is output, and where the path waits for it.
 
 use bahn_din::{Command, Unit};
-use bahn_motion::Limits;
 use bahn_path::{Axis, Curve};
 
-use super::Channel;
+use super::decoding::Edge;
 use super::fault::{named, numbered};
 use super::order::{Lead, OrderId};
+use super::plan::{Around, Plan};
 use super::resolve::Resolve;
 use super::track::{Deed, Driving, Leg, VectorLimit};
 use super::window::{Held, JointFeed};
+use crate::plc::Script;
 use crate::report::{Fault, Warning};
 use crate::synch::SynchType;
 
 /// 0.1 µm are this part of a mm.
 const PER_MM: f64 = 1e4;
-
-/// What lies in blocks before the one that is decoded and still has its effect.
-#[derive(Debug, Default)]
-pub(super) struct Decoding {
-    /// Count of executed blocks, over all programs.
-    pub(super) units: u64,
-    /// MVS_SLM and MVS_SLP functions that wait for their place, over all programs.
-    pub(super) late: [Vec<OrderId>; 2],
-    /// Decoding goes on when the channel has run empty.
-    pub(super) holds: bool,
-    /// The end of the program is decoded.
-    pub(super) ended: bool,
-    limit: Option<VectorLimit>,
-    radius_compensation: bool,
-    edge: Option<Edge>,
-}
-
-impl Decoding {
-    /// Another program begins: what is modal ends, late functions remain.
-    pub(super) fn begin(&mut self) {
-        *self = Decoding {
-            units: self.units,
-            late: std::mem::take(&mut self.late),
-            ..Decoding::default()
-        };
-    }
-}
-
-/// Edge banding between G108 and G107: the way to where the path has passed the probe, mm.
-#[derive(Clone, Copy, Debug, Default)]
-struct Edge {
-    probed: Option<f64>,
-}
 
 /// The functions of a block by where they are output and waited for.
 #[derive(Debug, Default)]
@@ -71,25 +39,25 @@ struct Sorted {
     measured: Option<OrderId>,
 }
 
-impl Channel<'_> {
+impl Plan<'_> {
     /// Takes a block into the path.
-    pub(super) fn take(&mut self, unit: &Unit) -> Result<(), Fault> {
+    pub(super) fn take(&mut self, unit: &Unit, around: &mut Around<'_>) -> Result<(), Fault> {
         self.decoding.units += 1;
         let mut resolve = Resolve {
             settings: &self.in_force.settings,
             ranges: &mut self.ranges,
             orders: &mut self.orders,
-            cycle_s: self.cycle_s,
+            cycle_s: around.cycle_s,
         };
         let ids = resolve.block(unit)?;
         let flush_and_wait = self.flush_and_wait(&ids, unit)?;
         self.commands(unit)?;
         let moves = unit.motion.as_ref().is_some_and(is_moving);
         let sorted = self.sort(&ids, unit, moves)?;
-        self.before(&sorted, unit)?;
+        self.before(&sorted, unit, around.warnings)?;
         if let Some(motion) = &unit.motion {
             if moves {
-                self.motion(motion, unit);
+                self.motion(motion, unit, around.script);
             }
             if let Some(id) = sorted.measured {
                 self.measured(id, unit);
@@ -103,7 +71,7 @@ impl Channel<'_> {
                 self.window.bar();
             }
         }
-        self.behind(&sorted, unit)?;
+        self.behind(&sorted, unit, around.warnings)?;
         // An axis that moves on its own has ended with its block (inferred).
         let moves_alone = |command: &Command| matches!(command, Command::Independent(_));
         let alone = unit.commands.iter().any(moves_alone);
@@ -261,12 +229,12 @@ impl Channel<'_> {
     }
 
     /// What is done before the motion.
-    fn before(&mut self, sorted: &Sorted, unit: &Unit) -> Result<(), Fault> {
+    fn before(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
         for id in &sorted.commanded {
             self.window.deed(Deed::Command(*id));
         }
         for id in &sorted.joints {
-            self.joint(*id, unit)?;
+            self.joint(*id, unit, warnings)?;
         }
         for id in &sorted.before {
             self.window.deed(Deed::Output(*id));
@@ -285,7 +253,7 @@ impl Channel<'_> {
     }
 
     /// Takes the motion of a block.
-    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit) {
+    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit, script: Option<&Script>) {
         let settings = &self.in_force.settings;
         let leg = Leg {
             curve: motion.curve,
@@ -303,7 +271,7 @@ impl Channel<'_> {
         };
         let blocks = settings.pre_output.blocks as usize;
         self.leads.block(leg.from, blocks);
-        if let (Some(edge), Some(script)) = (&mut self.decoding.edge, self.plc.script())
+        if let (Some(edge), Some(script)) = (&mut self.decoding.edge, script)
             && edge.probed.is_none()
         {
             let mut crossings = script.probes.iter().filter_map(|probe| crossing(&leg, *probe));
@@ -318,12 +286,12 @@ impl Channel<'_> {
     }
 
     /// What is done behind the motion.
-    fn behind(&mut self, sorted: &Sorted, unit: &Unit) -> Result<(), Fault> {
+    fn behind(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
         if unit.dwell_s > 0.0 {
             self.window.deed(Deed::Dwell(unit.dwell_s));
         }
         for id in &sorted.joints_behind {
-            self.joint(*id, unit)?;
+            self.joint(*id, unit, warnings)?;
         }
         for deed in &sorted.behind {
             self.window.deed(deed.clone());
@@ -333,7 +301,7 @@ impl Channel<'_> {
     }
 
     /// A function that is output within what was decoded before.
-    fn joint(&mut self, id: OrderId, unit: &Unit) -> Result<(), Fault> {
+    fn joint(&mut self, id: OrderId, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
         let Some(order) = self.orders.get(id) else {
             return Ok(());
         };
@@ -357,7 +325,7 @@ impl Channel<'_> {
             return Err(numbered(&unit.place, 120_815, message));
         }
         if planned.held == Held::Window {
-            self.record.warnings.push(Warning {
+            warnings.push(Warning {
                 message: format!(
                     "{label} is output {:.4} mm behind its planned place: the look-ahead ends there",
                     planned.deviation
@@ -467,13 +435,4 @@ fn crossing(leg: &Leg, (axis, place): (Axis, f64)) -> Option<f64> {
         return Some(b);
     }
     None
-}
-
-/// The limits with which an element is driven within a path acceleration, mm/s².
-pub(super) fn within(limits: &Limits, acceleration_mm_s2: f64) -> Limits {
-    let greatest = acceleration_mm_s2 / 1000.0;
-    Limits {
-        acceleration_m_s2: limits.acceleration_m_s2.map(|own| own.min(greatest)),
-        ..limits.clone()
-    }
 }

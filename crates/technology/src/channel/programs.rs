@@ -4,15 +4,17 @@ use bahn_din::{Place, Unit};
 use bahn_path::Position;
 
 use super::Channel;
-use super::backward::Backward;
+use super::back::Backward;
 use super::fault::named;
 use super::in_force::InForce;
+use super::plan::Around;
 use super::record::{self, EVENTS};
+use super::single::braked;
 use super::skipped::Begun;
-use super::track::{Deed, Track};
+use super::track::Deed;
 use crate::bounds::Bounds;
 use crate::plc::{PlcMemory, cycle_at};
-use crate::report::{Coordinates, Fault, ProgramEnd, Report};
+use crate::report::{Coordinates, Fault, ProgramEnd, Report, Warning};
 use crate::run::{Blocks, Run};
 
 /// Elements of the path that are decoded ahead of it at most.
@@ -49,13 +51,17 @@ impl Run<'_> {
 
 fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -> Report {
     let mut channel = Channel::new(run.settings, run.limits, run.script, memory, run.start);
-    channel.bounds = run.bounds;
+    channel.progress.bounds = run.bounds;
     let mut programs = Vec::new();
     let mut begun = None;
     if let Some(block) = run.from {
-        match channel.search(run, block) {
-            Ok(found) => begun = Some(found),
-            Err(fault) => channel.fault = Some(fault),
+        let start = channel.now().position;
+        match channel.plan.search(run, block, start, channel.cycle_s) {
+            Ok(mut found) => {
+                channel.progress.skipped = Some(std::mem::take(&mut found.skipped));
+                begun = Some(found);
+            }
+            Err(fault) => channel.progress.fault = Some(fault),
         }
     }
     let first = begun.as_ref().map_or(0, |begun| begun.index);
@@ -79,13 +85,13 @@ fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -
     }
     Report {
         completed,
-        error: channel.fault.take(),
+        error: channel.progress.fault.take(),
         time_s: record::time(end_s),
         cycle_s: channel.cycle_s,
         path_end: Coordinates(channel.now().position),
         events: channel.record.events,
         waits: channel.record.waits,
-        skipped: channel.skipped,
+        skipped: channel.progress.skipped,
         programs,
         warnings: channel.record.warnings,
         samples: channel.record.samples,
@@ -104,24 +110,25 @@ impl Channel<'_> {
 
     /// Runs a program of a run, from a block on where one was looked for.
     fn open<'r>(&mut self, run: &'r Run<'_>, index: usize, begun: Option<Begun<'r>>) -> Ended {
-        self.program = run.programs.name(index);
-        if self.fault.is_some() {
+        self.progress.program = run.programs.name(index);
+        if self.progress.fault.is_some() {
             return Ended::Faulty;
         }
         let begun = match begun {
             Some(begun) => begun,
             None => {
-                self.in_force = InForce::new(self.settings);
+                self.plan.in_force = InForce::new(self.plan.settings);
                 let position = self.now().position;
                 match run.programs.open(index, &position) {
                     Ok(blocks) => Begun {
+                        skipped: Vec::new(),
                         index,
                         blocks,
                         position,
                         commands: Vec::new(),
                     },
                     Err(fault) => {
-                        self.fault = Some(fault);
+                        self.progress.fault = Some(fault);
                         return Ended::Faulty;
                     }
                 }
@@ -134,11 +141,11 @@ impl Channel<'_> {
             ..
         } = begun;
         self.begin_path(position);
-        self.begin_program();
+        self.plan.begin_program();
         if !commands.is_empty() {
             let unit = Unit {
                 place: Place {
-                    program: self.program.as_str().into(),
+                    program: self.progress.program.as_str().into(),
                     block: run.from.unwrap_or_default().into(),
                     line: 0,
                 },
@@ -149,7 +156,7 @@ impl Channel<'_> {
                 ends: false,
             };
             if let Err(fault) = self.take(&unit) {
-                self.fault = Some(fault);
+                self.progress.fault = Some(fault);
                 return Ended::Faulty;
             }
         }
@@ -158,27 +165,22 @@ impl Channel<'_> {
 
     /// The path begins anew, somewhere.
     pub(super) fn begin_path(&mut self, start: Position) {
-        let (first, way) = (self.track.last() + 1, self.way());
-        self.path.clear();
-        self.path.set_position(start);
-        self.track = Track::new(start, first, way);
-        self.window.begin(way);
-        self.leads.begin(way);
-        (self.fed, self.reached, self.open_to) = (first, first, first);
-        self.cursor = (first, 0);
-        (self.dwell, self.ended, self.part) = (None, false, None);
+        let first = self.plan.begin_path(start, self.way());
+        self.motion.begin(start, first);
+        (self.gates.cursor, self.gates.open_to) = ((first, 0), first);
+        (self.gates.dwell, self.progress.ended) = (None, false);
         self.backward = Backward::default();
-        self.all_block_ends();
-        self.ended_at = Position::UNKNOWN;
-        self.independent.clear();
+        self.single.all_block_ends();
     }
 
-    /// The fault of a block with the code that a variable has given it.
-    pub(super) fn coded(&mut self, fault: Fault) -> Fault {
-        match self.in_force.code.take() {
-            Some(code) => Fault { code, ..fault },
-            None => fault,
-        }
+    /// Takes a block into the path.
+    fn take(&mut self, unit: &Unit) -> Result<(), Fault> {
+        let mut around = Around {
+            cycle_s: self.cycle_s,
+            script: self.plc.script(),
+            warnings: &mut self.record.warnings,
+        };
+        self.plan.take(unit, &mut around)
     }
 
     /// Runs a program to its end.
@@ -203,20 +205,20 @@ impl Channel<'_> {
             self.lists();
             self.stand();
             self.limits();
-            if self.fault.is_some() {
+            if self.progress.fault.is_some() {
                 return Ended::Faulty;
             }
-            if self.ended {
+            if self.progress.ended {
                 self.record.stands_for_nothing(self.t());
                 return Ended::Completed;
             }
-            if self.resets() && self.still {
+            if self.resets() && self.motion.still {
                 self.reset();
                 return Ended::Reset;
             }
             let moved = self.spend(drive);
             // In a dwell the time of what is output ahead comes nearer.
-            let nears = self.dwell.is_some() && !self.leads.queue.is_empty();
+            let nears = self.gates.dwell.is_some() && !self.plan.leads.queue.is_empty();
             quiet = if any || moved || nears { 0 } else { quiet + 1 };
             // Twice without anything to do, and nothing changes until something comes from outside.
             if quiet < 2 {
@@ -226,7 +228,7 @@ impl Channel<'_> {
             let next = [
                 self.plc.next_cycle(self.cycle, quiet),
                 self.next_change(),
-                self.dwell,
+                self.gates.dwell,
             ];
             match next.into_iter().flatten().min() {
                 Some(next) => self.cycle = next.max(self.cycle + 1),
@@ -238,41 +240,45 @@ impl Channel<'_> {
     /// Decodes as far ahead as there is room. Whether there was any block.
     fn decode(&mut self, blocks: &mut dyn Blocks) -> bool {
         let mut count = 0;
-        while count < BLOCKS && !self.decoding.ended && self.fault.is_none() {
-            if self.decoding.holds {
+        while count < BLOCKS && !self.plan.decoding.ended && self.progress.fault.is_none() {
+            if self.plan.decoding.holds {
                 if !self.is_empty() {
                     break;
                 }
-                self.decoding.holds = false;
-                if !self.stands {
+                self.plan.decoding.holds = false;
+                if !self.motion.stands {
                     let at = self.now();
                     self.stop(at);
                 }
                 self.take_over();
             }
-            let last = self.track.last();
-            let done = if self.cursor.0 == last { self.cursor.1 } else { 0 };
-            if last > self.reached + AHEAD || self.track.deeds(last).len() > DEEDS + done {
+            let last = self.plan.track.last();
+            let done = if self.gates.cursor.0 == last {
+                self.gates.cursor.1
+            } else {
+                0
+            };
+            if last > self.motion.reached + AHEAD || self.plan.track.deeds(last).len() > DEEDS + done {
                 break;
             }
             if done > DEEDS {
-                self.track.forget_done(done);
-                self.cursor.1 = 0;
+                self.plan.track.forget_done(done);
+                self.gates.cursor.1 = 0;
             }
             count += 1;
-            let taken = match blocks.next(&mut self.in_force) {
+            let taken = match blocks.next(&mut self.plan.in_force) {
                 Ok(Some(unit)) => self.take(&unit),
                 Ok(None) => {
-                    self.end();
-                    self.window.release(&mut self.track);
+                    self.plan.end();
+                    self.plan.window.release(&mut self.plan.track);
                     Ok(())
                 }
-                Err(fault) => Err(self.coded(fault)),
+                Err(fault) => Err(self.plan.coded(fault)),
             };
             if let Err(fault) = taken {
-                self.window.release(&mut self.track);
-                self.track.push_deed(Deed::Fault(Box::new(fault)));
-                self.decoding.ended = true;
+                self.plan.window.release(&mut self.plan.track);
+                self.plan.track.push_deed(Deed::Fault(Box::new(fault)));
+                self.plan.decoding.ended = true;
             }
         }
         count > 0
@@ -280,25 +286,26 @@ impl Channel<'_> {
 
     /// The path goes on from where axes went on their own: all that is decoded is executed.
     fn take_over(&mut self) {
-        if !self.ended_at.known().is_empty() {
+        if !self.motion.ended_at.known().is_empty() {
             let position = self.now().position;
-            self.path.set_position(position);
-            self.track.set_end(position);
-            self.ended_at = Position::UNKNOWN;
+            self.motion.path.set_position(position);
+            self.plan.track.set_end(position);
+            self.motion.ended_at = Position::UNKNOWN;
         }
     }
 
     /// All that is decoded is executed.
     fn is_empty(&self) -> bool {
-        let last = self.track.last();
-        self.reached == last && self.cursor == (last, self.track.deeds(last).len())
+        let last = self.plan.track.last();
+        self.motion.reached == last && self.gates.cursor == (last, self.plan.track.deeds(last).len())
     }
 
     /// Says which lists of active functions have changed.
     fn lists(&mut self) {
         let at = self.now();
         let record = &mut self.record;
-        self.ranges
+        self.plan
+            .ranges
             .changed(|target, letter, numbers| record.active(target, letter, numbers, at));
     }
 
@@ -309,17 +316,39 @@ impl Channel<'_> {
             .plc
             .script()
             .is_some_and(|script| script.simulated.iter().any(|range| range.contains(&t)));
-        if simulated != self.simulated {
-            self.simulated = simulated;
-            self.open_to = self.cursor.0;
+        if simulated != self.gates.simulated {
+            self.gates.simulated = simulated;
+            self.gates.open_to = self.gates.cursor.0;
         }
         self.follow_single(t);
         if self.cycle.is_multiple_of(FORGET) {
-            let first = self.track.forget_before(self.reached);
-            let ahead = self.leads.forget_before(self.track.way(self.track.first()));
-            let next = self.orders.next();
-            self.orders
-                .forget_before(first.into_iter().chain(ahead).min().unwrap_or(next));
+            self.plan.forget_before(self.motion.reached);
+        }
+    }
+
+    /// What the script says of single block at this moment.
+    fn follow_single(&mut self, t: f64) {
+        let Some(script) = self.plc.script() else { return };
+        if self.single.switch(script, t) {
+            self.gates.open_to = self.gates.cursor.0;
+        }
+        if self.single.is_unseen() {
+            let way = self.way_of(&braked(self.motion.path.clone()));
+            self.single.see(way);
+        }
+        self.single.take_starts(script, self.cycle, self.cycle_s);
+    }
+
+    /// A start while the path does not stand at the end of a block has no effect.
+    fn drop_start(&mut self) {
+        if let Some(start) = self.single.take_start() {
+            self.record.warnings.push(Warning {
+                message: format!(
+                    "the start at {start} s has no effect: the path does not stand at the end of a block"
+                ),
+                program: self.progress.program.clone(),
+                block: self.plan.track.block_before(self.motion.reached).to_string(),
+            });
         }
     }
 
@@ -328,28 +357,28 @@ impl Channel<'_> {
         let next = self
             .plc
             .script()
-            .and_then(|script| script.resets.get(self.reset_count));
+            .and_then(|script| script.resets.get(self.progress.reset_count));
         next.is_some_and(|reset| cycle_at(*reset, self.cycle_s) <= self.cycle)
     }
 
     /// Drops all that is open: the path stands [004:48] (inferred).
     fn reset(&mut self) {
-        self.reset_count += 1;
+        self.progress.reset_count += 1;
         self.record.stands_for_nothing(self.t());
-        if !self.stands {
+        if !self.motion.stands {
             let at = self.now();
             self.stop(at);
         }
         self.plc.reset();
-        self.ranges.reset();
-        self.decoding.late.iter_mut().for_each(Vec::clear);
+        self.plan.ranges.reset();
+        self.plan.decoding.late.iter_mut().for_each(Vec::clear);
         self.lists();
     }
 
     /// The block in which the path is, or at whose end it stands, for faults of no block.
     pub(super) fn here(&self) -> Place {
         Place {
-            program: self.program.as_str().into(),
+            program: self.progress.program.as_str().into(),
             block: self.block_now(),
             line: 0,
         }
@@ -357,8 +386,8 @@ impl Channel<'_> {
 
     /// Named limits instead of runs without end.
     fn limits(&mut self) {
-        let Bounds { time_s, blocks } = self.bounds;
-        let message = if self.decoding.units > blocks {
+        let Bounds { time_s, blocks } = self.progress.bounds;
+        let message = if self.plan.decoding.units > blocks {
             format!("more than {blocks} blocks")
         } else if self.t() > time_s {
             format!("longer than {time_s} s")
@@ -367,6 +396,6 @@ impl Channel<'_> {
         } else {
             return;
         };
-        self.fault = Some(named(&self.here(), "endless", message));
+        self.progress.fault = Some(named(&self.here(), "endless", message));
     }
 }

@@ -6,8 +6,8 @@
 use bahn_din::{Command, Unit};
 use bahn_path::Position;
 
-use super::Channel;
 use super::in_force::InForce;
+use super::plan::Plan;
 use super::resolve::Resolve;
 use crate::report::{Fault, Skipped};
 use crate::run::{Blocks, Run};
@@ -20,6 +20,8 @@ const GROUPS: [&[&str]; 2] = [
 
 /// Where a run begins.
 pub(super) struct Begun<'a> {
+    /// What was passed over before.
+    pub(super) skipped: Vec<Skipped>,
     /// Number of the program.
     pub(super) index: usize,
     pub(super) blocks: Box<dyn Blocks + 'a>,
@@ -28,10 +30,16 @@ pub(super) struct Begun<'a> {
     pub(super) commands: Vec<Command>,
 }
 
-impl Channel<'_> {
+impl Plan<'_> {
     /// Looks for a block in the programs of the first file, one behind the other.
-    pub(super) fn search<'r>(&mut self, run: &'r Run<'_>, block: &str) -> Result<Begun<'r>, Fault> {
-        let mut position = self.now().position;
+    pub(super) fn search<'r>(
+        &mut self,
+        run: &'r Run<'_>,
+        block: &str,
+        start: Position,
+        cycle_s: f64,
+    ) -> Result<Begun<'r>, Fault> {
+        let mut position = start;
         let mut list = Vec::new();
         let mut missing = None;
         let first = run.programs.name(0);
@@ -40,10 +48,10 @@ impl Channel<'_> {
             self.in_force = InForce::new(self.settings);
             let mut blocks = run.programs.open(index, &position)?;
             let mut commands = Vec::new();
-            let found = self.skip_to(blocks.as_mut(), block, &mut list, &mut commands);
+            let found = self.skip_to(blocks.as_mut(), (block, cycle_s), &mut list, &mut commands);
             if found.map_err(|fault| self.coded(fault))? {
-                self.skipped = Some(list);
                 return Ok(Begun {
+                    skipped: list,
                     index,
                     position: blocks.position(),
                     blocks,
@@ -66,7 +74,7 @@ impl Channel<'_> {
     fn skip_to(
         &mut self,
         blocks: &mut dyn Blocks,
-        block: &str,
+        (block, cycle_s): (&str, f64),
         list: &mut Vec<Skipped>,
         commands: &mut Vec<Command>,
     ) -> Result<bool, Fault> {
@@ -74,7 +82,7 @@ impl Channel<'_> {
             let Some(unit) = blocks.next(&mut self.in_force)? else {
                 return Ok(false);
             };
-            self.skip(&unit, list);
+            self.skip(&unit, cycle_s, list);
             if unit.ends {
                 return Ok(false);
             }
@@ -84,12 +92,12 @@ impl Channel<'_> {
     }
 
     /// Notes the functions of a block that is passed over. What the channel does not know is nobody's state.
-    fn skip(&mut self, unit: &Unit, list: &mut Vec<Skipped>) {
+    fn skip(&mut self, unit: &Unit, cycle_s: f64, list: &mut Vec<Skipped>) {
         let mut resolve = Resolve {
             settings: &self.in_force.settings,
             ranges: &mut self.ranges,
             orders: &mut Default::default(),
-            cycle_s: self.cycle_s,
+            cycle_s,
         };
         for (function, value, target) in resolve.skipped(unit) {
             let free = self.in_force.settings.spindle_m_free;

@@ -136,7 +136,7 @@ impl Definition {
     }
 
     /// The name with its indices: `spindel[0].m3_synch`.
-    pub fn name_with(&self, indices: &[u32]) -> String {
+    pub(crate) fn name_with(&self, indices: &[u32]) -> String {
         let mut letters = ["[i]", "[j]"].into_iter();
         let mut name = self.name.to_owned();
         for index in indices {

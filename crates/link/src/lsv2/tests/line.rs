@@ -5,6 +5,7 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::*;
+use crate::lsv2::serial::check_byte;
 
 const NOW: Duration = Duration::ZERO;
 

@@ -1,13 +1,28 @@
-//! Where everything of a machine stands, and how it is put there.
+//! What moves: where everything of a machine stands, and how it is put there.
 
 use crate::axis::Axis;
+use crate::by_hand::ByHand;
 use crate::device::Device;
-use crate::machine::Machine;
+use crate::magazine::Magazine;
 use crate::mechanics::Mechanics;
+use crate::probe::Probe;
+use crate::spindle::Spindle;
 
-impl Machine {
+/// What of a machine moves and stands somewhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Mechanism {
+    pub axes: Vec<Axis>,
+    /// That of the control, and those of further channels.
+    pub spindles: Vec<Spindle>,
+    pub devices: Vec<Device>,
+    pub magazine: Option<Magazine>,
+    pub by_hand: ByHand,
+    pub probe: Option<Probe>,
+}
+
+impl Mechanism {
     /// Where everything stands now.
-    pub fn mechanics(&self) -> Mechanics {
+    pub fn places(&self) -> Mechanics {
         Mechanics {
             axis: self.axes.iter().map(Axis::place).collect(),
             spindle: self.spindles.iter().map(|spindle| spindle.place()).collect(),
@@ -21,13 +36,9 @@ impl Machine {
         }
     }
 
-    /// Puts everything where it stood, at rest: the machine at power-on. What does not fit leaves all as it was.
-    ///
-    /// # Errors
-    /// In words, what this machine does not have, or cannot be.
+    /// Puts everything where it stood, at rest. What does not fit leaves all as it was.
     pub fn stand_at(&mut self, mechanics: &Mechanics) -> Result<(), String> {
         self.fits(mechanics)?;
-        self.rests = false;
         for (axis, place) in self.axes.iter_mut().zip(&mechanics.axis) {
             axis.stand_at(place);
         }
@@ -49,6 +60,13 @@ impl Machine {
             );
         }
         Ok(())
+    }
+
+    /// The angle of the first spindle since power-on, degrees.
+    pub fn spindle_deg(&self) -> f64 {
+        self.spindles
+            .first()
+            .map_or(0.0, |spindle| spindle.state().angle_deg)
     }
 
     /// Whether these are places of this machine.
