@@ -244,11 +244,6 @@ impl InchFeed {
 }
 
 impl ControlModel {
-    /// Limits and functions of the model.
-    pub const fn limits(self) -> &'static Limits {
-        models::limits(self)
-    }
-
     /// Its contour cycle of 3 or 6 ms, in servo steps of 0.6 ms where it has fine interpolation [000:212-224], and the
     /// bits of its converter.
     pub fn timing(self) -> Timing {

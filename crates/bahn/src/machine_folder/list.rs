@@ -40,13 +40,14 @@ output step FEED, output ramp       what direction keys put out on axes with dig
 oscilloscope start|stop             recording of --oscilloscope by hand, behind `code 688379`
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
 axis-key AXIS                       an axis key of the keyboard in the modes by hand: the axis is highlighted, M2096 ff.
-3d-rot [run] on [B+30 ..], off      the plane of the swivel axes, by hand or for program run
+3d-rot [run] on [B+30], 3d-rot [run] off   the plane of the swivel axes, by hand or for program run; several angles: B+30 C+10
 screen EDITING MACHINE WINDOWS FILE UNITS   items 2 to 5 and 17 of module 9035
 manual-operation                    axes may be moved while a run is interrupted
 restore-position                    back to the contour with NC start
 restore-at N                        block scan to block N
 code N                              a code number
-key CODE                            a key by its code: 58 to 127; 256 M, 512 S, 768 TOUCH PROBE; a letter * 256 + 80
+key CODE                            what W516 calls: a key by its code 58 to 127; 0 INTERNAL STOP, 256 M, 512 S, 768 TOUCH
+                                    PROBE, 1024 PASS OVER REFERENCE, 1280 RESTORE POSITION; a letter * 256 + 80
 test PROGRAM                        TEST RUN beside what the machine does
 test-run stop, test-run stop N      interrupts it, at once or at block N
 test-run go-on                      it goes on, as behind STOP and M0

@@ -4,15 +4,17 @@
 use super::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
 use crate::ControlModel;
 
-/// Limits and functions of a model.
-pub(super) const fn limits(model: ControlModel) -> &'static Limits {
-    match model {
-        ControlModel::Tnc151 => &TNC151,
-        ControlModel::Tnc155 => &TNC155,
-        ControlModel::Tnc360 => &TNC360,
-        ControlModel::Tnc407 => &TNC407,
-        ControlModel::Tnc415b => &TNC415B,
-        ControlModel::Tnc425 => &TNC425,
+impl ControlModel {
+    /// Limits and functions of the model.
+    pub const fn limits(self) -> &'static Limits {
+        match self {
+            ControlModel::Tnc151 => &TNC151,
+            ControlModel::Tnc155 => &TNC155,
+            ControlModel::Tnc360 => &TNC360,
+            ControlModel::Tnc407 => &TNC407,
+            ControlModel::Tnc415b => &TNC415B,
+            ControlModel::Tnc425 => &TNC425,
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use bahn_control::CompensationAssignment;
 use bahn_dialogue::Key;
 use bahn_host::files;
 
-use super::{AXES, act, lines, read, store, text_of};
+use super::text::{AXES, act, lines, read, store, text_of};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Name;
 use crate::pages::{description, list};

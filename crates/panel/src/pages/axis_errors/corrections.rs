@@ -8,7 +8,7 @@ use bahn_host::files;
 use bahn_parameters::MessageId;
 
 use super::head::{self, Field};
-use super::{AXES, NEW_HEAD, act, lines, read, text_of};
+use super::text::{AXES, NEW_HEAD, act, lines, read, text_of};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Choice;
@@ -122,7 +122,7 @@ impl Corrections {
             let incorrect = site.message(MessageId::EntryValueIncorrect);
             return Turn::Say(format!("{incorrect}: {}", error.what));
         }
-        match super::store(&self.path, &text, site) {
+        match super::text::store(&self.path, &text, site) {
             Ok(()) => {
                 self.lines = lines;
                 Turn::Done

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{AXES, lines, read, store, text_of};
+use super::text::{AXES, lines, read, store, text_of};
 use crate::page::Turn;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::number::Number;

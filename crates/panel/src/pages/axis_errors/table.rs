@@ -8,7 +8,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use super::head::{self, Field};
-use super::{AXES, lines, read, store};
+use super::text::{AXES, lines, read, store};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::list;

@@ -464,7 +464,7 @@ impl Page for Files {
             Key::Ent => self.select(site),
             Key::Ext => {
                 self.stale = true;
-                external::of(super::FILES, site)
+                external::of(source::FILES, site)
             }
             Key::End | Key::NoEnt | Key::Del => Turn::Close,
             _ => Turn::Refused,

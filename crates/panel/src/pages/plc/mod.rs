@@ -17,18 +17,10 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::page::{Overlay, Page, Turn, View};
-use crate::pages::external::{self, Own};
+use crate::pages::external;
 use crate::pages::{list, parameters};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
-use crate::transfer::TransferFiles;
-
-/// What EXT transfers: the files of the PLC.
-const FILES: Own = Own {
-    files: TransferFiles::Plc,
-    names: source::transferable,
-    named: |name, _| source::named_at_interface(name),
-};
 
 /// The code number opens the mode until power-off; controls without it have no PLC that could be programmed.
 pub(crate) fn open(site: &mut Site) -> Turn {
@@ -93,7 +85,7 @@ impl Page for MainMenu {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
             Key::PgmNr => files::open(site),
-            Key::Ext => external::of(FILES, site),
+            Key::Ext => external::of(source::FILES, site),
             Key::End | Key::Del | Key::NoEnt => Turn::Close,
             _ => Turn::Refused,
         }

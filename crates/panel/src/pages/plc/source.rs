@@ -6,8 +6,17 @@ use std::path::{Path, PathBuf};
 use bahn_host::files;
 use bahn_parameters::MessageId;
 
+use crate::pages::external::Own;
 use crate::programs::is_name;
 use crate::site::Site;
+use crate::transfer::TransferFiles;
+
+/// What EXT transfers: the files of the PLC.
+pub(super) const FILES: Own = Own {
+    files: TransferFiles::Plc,
+    names: transferable,
+    named: |name, _| named_at_interface(name),
+};
 
 /// Bytes of a source file at most.
 const SIZE_MAX: u64 = 4 << 20;
