@@ -10,7 +10,7 @@ use crate::monitor::{MOVEMENT_TOLERANCE, MOVEMENT_WINDOW_S};
 use crate::timing::Timing;
 
 /// A drive goes on towards its speed when it would reach it within this time, s (inferred).
-const REACHED_WITHIN_S: f64 = 2.0;
+const REACHED_WITHIN_S: f64 = 5.0;
 /// Over this time the acceleration is taken, s: several contour cycles, since the speed is that of one.
 const ACCELERATION_S: f64 = 0.02;
 
@@ -53,11 +53,10 @@ impl Movement {
         self.actual = actual;
         let off = told - actual;
         let goes_on = self.acceleration * off.signum() * REACHED_WITHIN_S >= off.abs();
-        if beside == 0.0 {
-            self.beside_deg = 0.0;
-        } else if !goes_on {
-            self.beside_deg += beside * step_min;
-        }
+        self.beside_deg = match beside == 0.0 || goes_on {
+            true => 0.0,
+            false => self.beside_deg + beside * step_min,
+        };
         self.beside_deg.abs()
     }
 }
