@@ -246,11 +246,14 @@ fn operator(
         false => Mode::FullSequence,
     };
     let job = |channel: usize| {
-        let name = programs.get(channel)?.main_name()?;
+        let own = programs.get(channel)?;
+        let start = options.run.start_block.filter(|_| channel == 0);
+        // The control refuses a block behind the end: none has this number.
+        let block = |number| own.main().and_then(|main| main.block_of(number)).unwrap_or(u32::MAX);
         Some(Job {
-            program: name.to_owned(),
+            program: own.main_name()?.to_owned(),
             mode,
-            start_block: options.run.start_block.filter(|_| channel == 0),
+            start_block: start.map(block),
             transferred: false,
         })
     };
