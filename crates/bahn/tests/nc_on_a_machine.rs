@@ -142,8 +142,13 @@ fn a_start_in_the_middle() {
     let report = run("35").json();
     assert_eq!(report["completed"], true, "{report}");
     assert_near(number(&report, "/path_mm/feed"), 30.0);
-    // No block has this number: none is executed.
-    assert_ne!(run("36").code(), 0);
+    let refused = run("36");
+    assert_eq!(refused.code(), 2);
+    assert!(
+        refused.err().contains("no block of a.nc has this number"),
+        "{}",
+        refused.err()
+    );
 }
 
 /// A program of the control calls none of these, whatever its blocks would mean in plain language: M30 alone is one there.

@@ -123,6 +123,10 @@ fn number_at(text: &[u8]) -> Option<(usize, usize, usize)> {
         return None;
     }
     let digits = behind_blanks(start + 1)?;
-    let count = text.get(digits..)?.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let count = text
+        .get(digits..)?
+        .iter()
+        .take_while(|byte| byte.is_ascii_digit())
+        .count();
     (count > 0).then_some((start, digits, digits + count))
 }

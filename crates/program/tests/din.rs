@@ -51,7 +51,10 @@ fn no_block_has_a_meaning_of_plain_language() {
 /// Shops name programs in plain language `.nc`, too: those begin with BEGIN PGM, behind comments or not.
 #[test]
 fn plain_language_with_this_ending() {
-    for text in ["BEGIN PGM 1 MM\nEND PGM 1 MM\n", "; of 1987\n0 BEGIN PGM 1 MM\n1 END PGM 1 MM\n"] {
+    for text in [
+        "BEGIN PGM 1 MM\nEND PGM 1 MM\n",
+        "; of 1987\n0 BEGIN PGM 1 MM\n1 END PGM 1 MM\n",
+    ] {
         let program = Program::from_bytes("1.NC", text.into());
         assert!(!program.is_din() && program.begins_with_header(), "{text}");
     }
@@ -68,6 +71,8 @@ fn transferred() {
     assert_eq!(din.number_of(2), 10);
     assert!(din.completed().is_din());
     assert!(Program::growing("1.NC").more(b"N10 M30").completed().is_din());
-    let plain = Program::growing("1.NC").more(b"; part\n").more(b"BEGIN PGM 1 MM\nL X+5\nEND PGM 1 MM\n");
+    let plain = Program::growing("1.NC")
+        .more(b"; part\n")
+        .more(b"BEGIN PGM 1 MM\nL X+5\nEND PGM 1 MM\n");
     assert!(!plain.is_din() && plain.block_count() == 3);
 }

@@ -73,7 +73,11 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     settings::assign(&mut power_on.parameters, &options.run.mp)?;
     settings::say_without_effect(&power_on.parameters, &options.run.mp);
     machine.parameters = power_on.parameters.clone();
-    let operator = operator(options, &machine, &programs);
+    let start_block = match (options.run.start_block, programs.first()) {
+        (Some(number), Some(own)) => Some(block_of(number, own)?),
+        _ => None,
+    };
+    let operator = operator(options, &machine, &programs, start_block);
     for (channel, programs) in power_on.channels.iter_mut().zip(programs.split_off(1)) {
         channel.programs = programs;
     }
@@ -227,10 +231,22 @@ fn all_programs(
     Ok(programs)
 }
 
+/// The block that the operator names by its number.
+fn block_of(number: u32, programs: &FolderPrograms) -> Result<u32, UsageError> {
+    let block = programs.main().map_or(Some(number), |main| main.block_of(number));
+    let name = programs.main_name().unwrap_or_default();
+    block.ok_or_else(|| {
+        UsageError::new(format!(
+            "--start-block {number}: no block of {name} has this number"
+        ))
+    })
+}
+
 fn operator(
     options: &RunMachineOptions,
     machine: &LoadedMachine,
     programs: &[Arc<FolderPrograms>],
+    start_block: Option<u32>,
 ) -> Operator {
     let attendance = options
         .run
@@ -246,14 +262,11 @@ fn operator(
         false => Mode::FullSequence,
     };
     let job = |channel: usize| {
-        let own = programs.get(channel)?;
-        let start = options.run.start_block.filter(|_| channel == 0);
-        // The control refuses a block behind the end: none has this number.
-        let block = |number| own.main().and_then(|main| main.block_of(number)).unwrap_or(u32::MAX);
+        let name = programs.get(channel)?.main_name()?;
         Some(Job {
-            program: own.main_name()?.to_owned(),
+            program: name.to_owned(),
             mode,
-            start_block: start.map(block),
+            start_block: start_block.filter(|_| channel == 0),
             transferred: false,
         })
     };
