@@ -532,4 +532,14 @@ fn a_program_of_din_66025() {
         (1, &"FUNCTION NOT YET SUPPORTED".into()),
         "{report}"
     );
+    // The computer at the other end does not offer it either.
+    let folder = Folder::new();
+    folder.write("15.nc", "M8\nM30\n");
+    let run = folder.bahn("link dnc send --dir . --port tcp:127.0.0.1:0 15.NC");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.err().contains("15.NC is a program of DIN 66025"),
+        "{}",
+        run.err()
+    );
 }

@@ -104,6 +104,7 @@ fn faults_and_stops() {
     let report = run.json();
     assert_eq!(report["error"]["line"], 3);
     assert_eq!(report["error"]["block"], 30, "its number, not its place");
+    assert!(run.err().contains("help: Correct the block"), "{}", run.err());
     assert_eq!(report["stops"][0]["function"], "M0");
     let stopped = folder
         .bahn("test a.nc --start X0,Y0,Z0 --stop --format json")

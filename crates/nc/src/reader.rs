@@ -67,6 +67,9 @@ enum Ended {
     Failed(Box<ProgramError>),
 }
 
+/// What to do about a text that is wrong.
+const CORRECT: &str = "Correct the block; `bahn check` tells all that is wrong in the file.";
+
 /// What a block costs whose state is kept.
 const STATE_COST: u32 = 4;
 
@@ -142,7 +145,11 @@ impl NcReader {
             program: program.map_or_else(String::new, |program| program.name().to_owned()),
             block,
             detail: refusal.detail,
-            cause: Cause::default(),
+            cause: match refusal.message {
+                // The remedy of the message speaks of the cassette unit.
+                MessageId::WrongProgramData => Cause::Written(CORRECT),
+                _ => Cause::default(),
+            },
         })
     }
 

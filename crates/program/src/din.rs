@@ -25,7 +25,7 @@ impl DinLanguage {
             column: 1,
             length: character_count(text.bytes).max(1),
             detail: REFUSED.into(),
-            help: None,
+            help: Some("Run the program by itself, or write what it does in the language of the control."),
         }
     }
 }
