@@ -69,7 +69,7 @@ impl Language for DinLanguage {
             value: digits..behind,
         });
         let behind = number.as_ref().map_or(0, |number| number.span.end);
-        let rest = (behind < end).then(|| WordSpan {
+        let rest = (behind < end).then_some(WordSpan {
             kind: WordKind::Text,
             span: behind..end,
             value: end..end,
