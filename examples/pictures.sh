@@ -17,6 +17,7 @@ done
 "$bahn" test examples/three-tools.H --tools examples/tools.tsv --color tool --toolpath \
     --image "$out/three-tools-path.png" >/dev/null
 "$bahn" test examples/dial.H --path "$out/dial.svg" >/dev/null
+"$bahn" test examples/bead.nc --path "$out/bead.svg" >/dev/null
 # A hole of machines/mill/programs/INDEX.H with the table clamped for it, on the machine.
 recording=$(mktemp -d)
 trap 'rm -rf "$recording"' EXIT

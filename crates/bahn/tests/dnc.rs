@@ -89,9 +89,15 @@ fn mill() -> Folder {
 
 /// Starts the control, which connects to the test.
 fn control(folder: &Folder, further: &str) -> (Child, Device) {
+    control_for(folder, "15.H", further)
+}
+
+/// The same for a program of some name.
+fn control_for(folder: &Folder, name: &str, further: &str) -> (Child, Device) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = format!("connect:{}", listener.local_addr().unwrap());
-    let arguments = format!("link dnc run --machine mill --fresh --format json --port {port} 15.H {further}");
+    let arguments =
+        format!("link dnc run --machine mill --fresh --format json --port {port} {name} {further}");
     let child = folder
         .command()
         .args(arguments.split_whitespace())
@@ -506,4 +512,34 @@ fn wrong_ports() {
         let run = folder.bahn(&format!("link dnc run --machine mill --fresh --port {port} 15.H"));
         assert_eq!(run.code(), 1, "{port}");
     }
+}
+
+/// A program of DIN 66025 is no program of this control, and is not executed as one while it comes, though each of its
+/// blocks is one of plain language, too.
+#[test]
+fn a_program_of_din_66025() {
+    let (child, mut device) = control_for(&mill(), "15.NC", "");
+    device.block(SOH);
+    device.0.write_all(&[ACK]).unwrap();
+    for block in ["M8", "M30"] {
+        device.send(STX, block);
+        assert_eq!(device.answer(), ACK, "{block}");
+    }
+    device.0.write_all(&[ETX]).unwrap();
+    let (report, status) = report(child);
+    assert_eq!(
+        (status, &report["message"]),
+        (1, &"FUNCTION NOT YET SUPPORTED".into()),
+        "{report}"
+    );
+    // The computer at the other end does not offer it either.
+    let folder = Folder::new();
+    folder.write("15.nc", "M8\nM30\n");
+    let run = folder.bahn("link dnc send --dir . --port tcp:127.0.0.1:0 15.NC");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.err().contains("15.NC is a program of DIN 66025"),
+        "{}",
+        run.err()
+    );
 }

@@ -103,6 +103,8 @@ fn faults_and_stops() {
     assert_eq!(run.code(), 1);
     let report = run.json();
     assert_eq!(report["error"]["line"], 3);
+    assert_eq!(report["error"]["block"], 30, "its number, not its place");
+    assert!(run.err().contains("help: Correct the block"), "{}", run.err());
     assert_eq!(report["stops"][0]["function"], "M0");
     let stopped = folder
         .bahn("test a.nc --start X0,Y0,Z0 --stop --format json")
@@ -121,4 +123,46 @@ fn subroutines_beside_the_program() {
         .bahn("test parts/main.nc --start X0,Y0,Z0 --format json")
         .json();
     assert_near(number(&report, "/path_mm/feed"), 30.0);
+}
+
+/// `--start-block` takes the number of the file: only the 30 mm of N35 are driven.
+#[test]
+fn a_start_in_the_middle() {
+    let folder = Folder::new();
+    folder.write(
+        "a.nc",
+        "N10 G01 X10 F3000\n\nN20 X100\nN35 G91 G01 Y30 F3000\nN40 M30\n",
+    );
+    let gantry = machines().join("gantry");
+    let run = |from: &str| {
+        folder.bahn(&format!(
+            "run a.nc --machine {} --fresh --format json --start-block {from}",
+            gantry.display()
+        ))
+    };
+    let report = run("35").json();
+    assert_eq!(report["completed"], true, "{report}");
+    assert_near(number(&report, "/path_mm/feed"), 30.0);
+    let refused = run("36");
+    assert_eq!(refused.code(), 2);
+    assert!(
+        refused.err().contains("no block of a.nc has this number"),
+        "{}",
+        refused.err()
+    );
+}
+
+/// A program of the control calls none of these, whatever its blocks would mean in plain language: M30 alone is one there.
+#[test]
+fn called_from_plain_language() {
+    let folder = Folder::new();
+    folder.write("main.h", "BEGIN PGM main MM\nCALL PGM side.nc\nEND PGM main MM\n");
+    folder.write("side.nc", "N10 M30\n");
+    for command in ["test main.h", "check main.h"] {
+        let run = folder.bahn(command);
+        assert_eq!(run.code(), 1, "{command}");
+        let said = format!("{}{}", run.out(), run.err());
+        assert!(said.contains("FUNCTION NOT YET SUPPORTED"), "{command}: {said}");
+        assert!(said.contains("a program of DIN 66025"), "{command}: {said}");
+    }
 }

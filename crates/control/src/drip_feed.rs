@@ -222,7 +222,11 @@ impl DripFeed {
         self.line = DripFeedLine::Complete;
         self.look_at();
         if self.program.end().is_none() && !said_before {
-            self.broken_by = Some(MessageId::ProgramIncomplete);
+            // A program in another language has no END PGM that could be missing.
+            self.broken_by = Some(match self.program.refused() {
+                Some(_) => MessageId::BlockNotSupported,
+                None => MessageId::ProgramIncomplete,
+            });
             return self.broken_by;
         }
         None

@@ -39,6 +39,15 @@ fn in_any_case(folder: &Path, names: &[String]) -> Option<PathBuf> {
     })
 }
 
+/// A file of a folder by its name: as it is written, else in any case.
+pub fn named(folder: &Path, name: &str) -> Option<PathBuf> {
+    let exact = folder.join(name);
+    match exact.is_file() {
+        true => Some(exact),
+        false => in_any_case(folder, &[name.to_owned()]),
+    }
+}
+
 /// File names of a called program. Later controls write folders (`TNC:\PARTS\7.H`): only the name counts,
 /// everything lies in one folder here.
 fn candidates(name: &str, callers_ending: &str) -> Vec<String> {

@@ -15,6 +15,8 @@ use bahn_program::Program;
 
 use crate::{HostError, called};
 
+pub use crate::called::named;
+
 pub use nc::{NcFolder, is_din, nc_reader};
 
 /// Largest program file, 1 GiB. A larger one is FURTHER PROGRAM ENTRY IMPOSSIBLE: the run holds the file in

@@ -67,6 +67,9 @@ enum Ended {
     Failed(Box<ProgramError>),
 }
 
+/// What to do about a text that is wrong.
+const CORRECT: &str = "Correct the block; `bahn check` tells all that is wrong in the file.";
+
 /// What a block costs whose state is kept.
 const STATE_COST: u32 = 4;
 
@@ -142,7 +145,11 @@ impl NcReader {
             program: program.map_or_else(String::new, |program| program.name().to_owned()),
             block,
             detail: refusal.detail,
-            cause: Cause::default(),
+            cause: match refusal.message {
+                // The remedy of the message speaks of the cassette unit.
+                MessageId::WrongProgramData => Cause::Written(CORRECT),
+                _ => Cause::default(),
+            },
         })
     }
 
@@ -193,9 +200,10 @@ impl NcReader {
             self.run.ended = Some(Ended::Finished);
             return Ok(());
         };
-        let unit = match decoder.next(&mut Model(self.start.model)) {
+        let mut model = Model::of(self.start.model);
+        let unit = match decoder.next(&mut model) {
             bahn_din::Step::Unit(unit) => unit,
-            bahn_din::Step::Fault(fault) => return Err(of_text(&fault)),
+            bahn_din::Step::Fault(fault) => return Err(of_text(&fault, &model)),
             bahn_din::Step::End => return self.end(),
         };
         self.texts.take(decoder.files());
@@ -311,10 +319,13 @@ fn is_end_of_text(unit: &Unit) -> bool {
     unit.ends && unit.functions.is_empty() && unit.motion.is_none()
 }
 
-/// A block that cannot be read or executed.
-fn of_text(fault: &BlockFault) -> Refusal {
+/// A block that cannot be read or executed, by its text or because it wants a variable of a channel.
+fn of_text(fault: &BlockFault, model: &Model) -> Refusal {
     Refusal {
-        message: MessageId::WrongProgramData,
+        message: match model.refused {
+            true => MessageId::BlockNotSupported,
+            false => MessageId::WrongProgramData,
+        },
         detail: fault.message.clone(),
     }
 }

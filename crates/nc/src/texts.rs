@@ -12,7 +12,7 @@ pub(crate) struct Texts(Vec<Arc<Program>>);
 
 impl Texts {
     pub fn new(name: &str, bytes: &[u8]) -> Texts {
-        Texts(vec![Arc::new(Program::from_bytes(name, bytes.to_vec()))])
+        Texts(vec![Arc::new(Program::of_din(name, bytes.to_vec()))])
     }
 
     pub fn get(&self, index: u16) -> Option<&Arc<Program>> {
@@ -27,7 +27,7 @@ impl Texts {
             }
             let lines: Vec<&str> = (1..=file.line_count()).map(|line| file.line(line)).collect();
             let bytes = file.encoded(&lines.join("\n"));
-            self.0.push(Arc::new(Program::from_bytes(&**file.name(), bytes)));
+            self.0.push(Arc::new(Program::of_din(&**file.name(), bytes)));
         }
     }
 

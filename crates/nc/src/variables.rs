@@ -5,10 +5,22 @@ use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 
 /// The control that executes a program.
-pub(crate) struct Model(pub ControlModel);
+pub(crate) struct Model {
+    model: ControlModel,
+    /// A variable was wanted: it is this that stops the block.
+    pub refused: bool,
+}
 
 impl Model {
-    fn refused(&self, variable: &Variable) -> String {
+    pub fn of(model: ControlModel) -> Model {
+        Model {
+            model,
+            refused: false,
+        }
+    }
+
+    fn refused(&mut self, variable: &Variable) -> String {
+        self.refused = true;
         format!("{variable} is a variable of a TF5200 channel, which `bahn technology` has")
     }
 }
@@ -23,6 +35,6 @@ impl Variables for Model {
     }
 
     fn exists(&self, m: bool, number: u16) -> bool {
-        m && Technology::of_m(self.0, number).is_some()
+        m && Technology::of_m(self.model, number).is_some()
     }
 }

@@ -229,10 +229,19 @@ fn refusals() {
             "N20 X[INDP G01 FEED=100 POS=5]",
             "INDP: axes of this control move on their own by the PLC: `bahn technology` runs it",
         ),
+        (
+            "N20 P1 = V.G.RW",
+            "V.G.RW is a variable of a TF5200 channel, which `bahn technology` has",
+        ),
         ("N20 G01 X20", "no feed F is programmed"),
     ] {
         let error = error(&format!("N10 G00 X10\n{text}\n"));
         assert_eq!((error.detail.as_str(), error.block.block), (detail, 2), "{text}");
+        let said = match text {
+            "N20 G01 X20" => "WRONG PROGRAM DATA",
+            _ => "FUNCTION NOT YET SUPPORTED",
+        };
+        assert_eq!(error.message.text(MODEL), said, "{text}");
     }
     assert_eq!(
         error("N10 S1000000 M3").message.text(MODEL),
@@ -320,4 +329,20 @@ fn work() {
     run.allow(10);
     assert!(matches!(run.next(), Step::Element(_)));
     assert_eq!(run.next(), Step::End);
+}
+
+/// The blocks of a subroutine have the numbers of its own file, whatever that is called.
+#[test]
+fn numbers_of_a_subroutine() {
+    let mut run = reader("N10 G00 X10\n\nN50 L side\nN60 M30\n");
+    let path = elements(&mut run);
+    let numbers: Vec<(u16, u32)> = path
+        .iter()
+        .map(|element| {
+            let program = run.program(element.block.program).unwrap();
+            (element.block.program, program.number_of(element.block.block))
+        })
+        .collect();
+    assert_eq!(numbers[..2], [(0, 10), (1, 1)]);
+    assert_eq!(numbers.last(), Some(&(0, 60)));
 }

@@ -80,9 +80,11 @@ impl ProgramMemory {
         entries
     }
 
-    /// Where a file of the memory lies; `None` for a name that leads out of it or to no plain file's place.
+    /// Where a file of the memory lies, or would; `None` for a name that leads out of it or to no plain file's place. In
+    /// capital or small letters it is the same file, as where a program calls it: the keys have capitals alone.
     pub fn path(&self, name: &str) -> Option<PathBuf> {
-        is_name(name).then(|| self.folder.join(name))
+        let in_folder = || files::named(&self.folder, name).unwrap_or_else(|| self.folder.join(name));
+        is_name(name).then(in_folder)
     }
 
     /// There is a file of this name.

@@ -1,9 +1,12 @@
 //! Which language a file is written in, by its name.
 
 use crate::bulk::Bulk;
+use crate::din::DinLanguage;
 use crate::iso::IsoLanguage;
-use crate::language::Language;
+use crate::language::{Landmark, Language};
+use crate::lines::Lines;
 use crate::plain::PlainLanguage;
+use crate::text::text_start;
 
 /// A type of files that hold part programs.
 #[derive(Clone, Copy, Debug)]
@@ -39,10 +42,26 @@ pub fn language_of(file_name: &str) -> Option<&'static dyn Language> {
     FILE_TYPES.iter().find(of_name)?.language
 }
 
-/// The language of a file by its name; plain language where the name does not say.
-pub(crate) fn bulk_language_of(file_name: &str) -> &'static dyn Bulk {
-    match file_name.rsplit_once('.') {
-        Some((_, extension)) if extension.eq_ignore_ascii_case("I") => &IsoLanguage,
-        _ => &PlainLanguage,
+/// The language of a file by its name and, where shops name two languages alike, by its text; plain language where
+/// neither says it.
+pub(crate) fn bulk_language_of(file_name: &str, text: &[u8]) -> &'static dyn Bulk {
+    let is = |ending: &str| {
+        let own = file_name.rsplit_once('.');
+        own.is_some_and(|(_, own)| own.eq_ignore_ascii_case(ending))
+    };
+    match () {
+        () if is("I") => &IsoLanguage,
+        () if is("NC") && !begins_as_plain(text) => &DinLanguage,
+        () => &PlainLanguage,
     }
+}
+
+/// Whether the first block of a text that is no comment is BEGIN PGM.
+fn begins_as_plain(file: &[u8]) -> bool {
+    let text = file.get(text_start(file)..).unwrap_or_default();
+    let mut lines = Lines::new(text, 1);
+    let blocks = std::iter::from_fn(|| PlainLanguage.next_block(&mut lines)).map(|raw| raw.text(text));
+    let mut blocks = blocks.skip_while(|block| PlainLanguage.stands_alone(*block));
+    let first = blocks.next().and_then(|block| PlainLanguage.landmark(block));
+    matches!(first, Some(Landmark::Begin(_)))
 }

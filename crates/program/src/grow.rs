@@ -4,7 +4,11 @@ mod growth;
 
 use std::ops::Range;
 
-use crate::language::Landmark;
+use crate::bulk::Bulk;
+use crate::din::DinLanguage;
+use crate::file_types::bulk_language_of;
+use crate::language::{Landmark, Language};
+use crate::lines::RawBlock;
 use crate::plain::PlainLanguage;
 use crate::rope::{PIECE_BLOCKS, Rope, pieces};
 use crate::survey::Frame;
@@ -17,7 +21,8 @@ pub(crate) use growth::Growth;
 const LEADING_MAX: usize = 1 << 16;
 
 impl Program {
-    /// A program in plain language of which nothing has come yet.
+    /// A program in plain language of which nothing has come yet. One that is named `.nc` and turns out to be of DIN 66025
+    /// is [refused](Program::refused).
     ///
     /// ```
     /// use bahn_program::Program;
@@ -116,11 +121,19 @@ impl Program {
         }
         if complete {
             // All of it is here.
-            return Program::of_bytes(self.name.clone(), text, self.language);
+            let language = self.language_by(&text);
+            return Program::of_file(self.name.clone(), text, language);
         }
         let start = text_start(&text);
         let raws = self.language.cut(text.get(start..).unwrap_or_default(), 1);
         let settled = raws.get(..raws.len().saturating_sub(1)).unwrap_or_default();
+        let begins = |raw: &RawBlock| {
+            let block = raw.text(text.get(start..).unwrap_or_default());
+            !self.language.stands_alone(block)
+        };
+        if settled.iter().any(begins) && self.language_by(&text).name() == DinLanguage.name() {
+            return self.turned_out_din(text.split_off(start));
+        }
         let begin = settled.iter().find_map(|raw| {
             let block = raw.text(text.get(start..)?);
             match self.language.landmark(block) {
@@ -153,6 +166,33 @@ impl Program {
                 let began = self.with_rope(Rope::new(Vec::new(), 1, 1), frame, self.growth.clone());
                 began.appended(text.split_off(start), false)
             }
+        }
+    }
+
+    /// The program once its first block shows that it is none of plain language: whoever executes it learns why not.
+    fn turned_out_din(&self, text: Vec<u8>) -> Program {
+        let first = RawBlock {
+            start: 0,
+            end: text.len(),
+            line: 1,
+            joined: false,
+        };
+        let frame = Frame {
+            refused: DinLanguage.refuses(first.text(&text)),
+            ..Frame::default()
+        };
+        let rope = Rope::new(Vec::new(), 1, 1);
+        let mut program = Program::of(self.name.clone(), &DinLanguage, rope, frame, self.line_end);
+        program.growth.clone_from(&self.growth);
+        program.appended(text, false)
+    }
+
+    /// DIN 66025 where name and text say so, else plain language.
+    fn language_by(&self, text: &[u8]) -> &'static dyn Bulk {
+        let language = bulk_language_of(&self.name, text);
+        match language.name() == DinLanguage.name() {
+            true => language,
+            false => self.language,
         }
     }
 

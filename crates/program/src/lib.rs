@@ -3,6 +3,7 @@
 //! The face of this room:
 //! - [`Program`]: a version of a file; decodes its blocks a [`Chunk`] at a time;
 //! - [`Language`]: what a language has to say, and how one block is read by itself; [`PlainLanguage`] and [`IsoLanguage`];
+//!   of [`DinLanguage`] the texts and numbers alone;
 //! - [`Edit`]: makes a new version of a program, which shares what stays the same;
 //! - [`Program::growing`]: a program that is executed while it is still being transferred;
 //! - [`InForce`]: the G functions in force, which fill in what a block leaves to them;
@@ -39,6 +40,7 @@ mod check;
 mod cycles;
 mod diagnostics;
 mod digitized;
+mod din;
 mod edit;
 mod error;
 mod file_types;
@@ -66,6 +68,7 @@ pub use check::{LimitFault, Reading, check_limits, each_parameter};
 pub use cycles::{CYCLES, Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle, cycle_parameters};
 pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity, Uncounted};
 pub use digitized::DigitizedText;
+pub use din::DinLanguage;
 pub use edit::{Edit, EditError};
 pub use error::BlockError;
 pub use file_types::{FILE_TYPES, FileType, language_of};

@@ -61,6 +61,24 @@ impl<'a> Lines<'a> {
         self.number
     }
 
+    /// The next line with text, as a block.
+    #[inline]
+    pub fn next_with_text(&mut self) -> Option<RawBlock> {
+        loop {
+            let line = self.number();
+            let (start, end) = self.line()?;
+            if self.bytes(start, end).iter().all(|&byte| is_blank(byte)) {
+                continue;
+            }
+            return Some(RawBlock {
+                start,
+                end,
+                line,
+                joined: false,
+            });
+        }
+    }
+
     /// Bytes of a range of the text.
     #[inline]
     pub fn bytes(&self, start: usize, end: usize) -> &'a [u8] {

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::bulk::Bulk;
+use crate::din::DinLanguage;
 use crate::file_types::bulk_language_of;
 use crate::grow::Growth;
 use crate::labels::Labels;
@@ -68,16 +69,22 @@ impl Program {
     /// Largest file that can be indexed. Callers refuse larger ones.
     pub const MAX_BYTES: u64 = u32::MAX as u64 - 1;
 
-    /// Takes a file of any bytes in the language of its name: ISO where that ends with `.I`, plain language else. What cannot be read becomes [`Operation::Invalid`] when it is
+    /// Takes a file of any bytes in the language of its name: ISO where that ends with `.I`, DIN 66025 with `.nc` unless
+    /// the file begins with BEGIN PGM, plain language else. What cannot be read becomes [`Operation::Invalid`] when it is
     /// decoded; bytes beyond [`Program::MAX_BYTES`] are cut off.
     pub fn from_bytes(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
         let name = name.into();
-        let language = bulk_language_of(&name);
-        Program::of_bytes(name, bytes, language)
+        let file = without_utf16(bytes);
+        let language = bulk_language_of(&name, &file);
+        Program::of_file(name, file, language)
     }
 
-    pub(crate) fn of_bytes(name: Box<str>, bytes: Vec<u8>, language: &'static dyn Bulk) -> Program {
-        let mut file = without_utf16(bytes);
+    /// Takes a file of DIN 66025, whatever its name: subroutines have other endings, or none.
+    pub fn of_din(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
+        Program::of_file(name.into(), without_utf16(bytes), &DinLanguage)
+    }
+
+    pub(crate) fn of_file(name: Box<str>, mut file: Vec<u8>, language: &'static dyn Bulk) -> Program {
         file.truncate(usize::try_from(Program::MAX_BYTES).unwrap_or(usize::MAX));
         let line_end = settle_line_ends(&mut file);
         let file = Arc::new(file);
@@ -106,6 +113,11 @@ impl Program {
     /// The language that it is written in.
     pub fn language(&self) -> &'static dyn Language {
         self.language
+    }
+
+    /// Whether it is a program of DIN 66025, whose blocks no language of the control reads.
+    pub fn is_din(&self) -> bool {
+        self.language.name() == DinLanguage.name()
     }
 
     /// The name that the program was opened by.

@@ -73,7 +73,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     settings::assign(&mut power_on.parameters, &options.run.mp)?;
     settings::say_without_effect(&power_on.parameters, &options.run.mp);
     machine.parameters = power_on.parameters.clone();
-    let operator = operator(options, &machine, &programs);
+    let start_block = start_block(options.run.start_block, programs.first())?;
+    let operator = operator(options, &machine, &programs, start_block);
     for (channel, programs) in power_on.channels.iter_mut().zip(programs.split_off(1)) {
         channel.programs = programs;
     }
@@ -227,10 +228,29 @@ fn all_programs(
     Ok(programs)
 }
 
+/// The block to begin with, which the operator names by its number.
+fn start_block(
+    number: Option<u32>,
+    programs: Option<&Arc<FolderPrograms>>,
+) -> Result<Option<u32>, UsageError> {
+    let (Some(number), Some(programs)) = (number, programs) else {
+        return Ok(None);
+    };
+    let block = programs.main().map_or(Some(number), |main| main.block_of(number));
+    let name = programs.main_name().unwrap_or_default();
+    let missing = || {
+        UsageError::new(format!(
+            "--start-block {number}: no block of {name} has this number"
+        ))
+    };
+    block.map(Some).ok_or_else(missing)
+}
+
 fn operator(
     options: &RunMachineOptions,
     machine: &LoadedMachine,
     programs: &[Arc<FolderPrograms>],
+    start_block: Option<u32>,
 ) -> Operator {
     let attendance = options
         .run
@@ -250,7 +270,7 @@ fn operator(
         Some(Job {
             program: name.to_owned(),
             mode,
-            start_block: options.run.start_block.filter(|_| channel == 0),
+            start_block: start_block.filter(|_| channel == 0),
             transferred: false,
         })
     };

@@ -154,7 +154,7 @@ pub(crate) struct RunControl {
     /// Single block instead of full sequence.
     #[arg(long)]
     pub single_block: bool,
-    /// Start with this block instead of the first.
+    /// Start with the block of this number instead of the first; in DIN/ISO and DIN 66025 that which it is programmed with.
     #[arg(long, value_name = "N")]
     pub start_block: Option<u32>,
     /// What F counts in a program in inches, instead of what it counts on the model.

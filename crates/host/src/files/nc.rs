@@ -13,24 +13,14 @@ use super::read_program;
 /// Whether a file is a program of DIN 66025: it is named `.nc`, and does not begin as one of plain language. Shops name
 /// those so, too.
 pub fn is_din(path: &Path, bytes: &[u8]) -> bool {
-    let plain = || Program::from_bytes("1.H", bytes.to_vec()).begins_with_header();
-    is_named(path) && !bytes.trim_ascii().is_empty() && !plain()
-}
-
-fn is_named(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("nc"))
+    !bytes.trim_ascii().is_empty() && Program::from_bytes(path.to_string_lossy(), bytes.to_vec()).is_din()
 }
 
 /// The reader of a program of DIN 66025; `None` for one in a language of the control.
 pub fn nc_reader(program: &Program, start: &Start) -> Option<NcReader> {
-    let path = Path::new(program.name());
-    if !is_named(path) {
-        return None;
-    }
-    let bytes = program.to_bytes();
-    is_din(path, &bytes).then(|| {
-        let beside = Arc::new(NcFolder::of(path));
+    let bytes = program.is_din().then(|| program.to_bytes())?;
+    (!bytes.trim_ascii().is_empty()).then(|| {
+        let beside = Arc::new(NcFolder::of(Path::new(program.name())));
         NcReader::new(program.name(), &bytes, start.clone(), beside)
     })
 }

@@ -106,6 +106,10 @@ impl Directory {
             Purpose::Edit if table::is_of_machine(&name, site) => return table::open(&name, site),
             Purpose::Edit if !there => return create(name, site),
             Purpose::Edit if table::is_table(&name) => return table::open(&name, site),
+            // The dialogue writes the control's own languages alone.
+            Purpose::Edit if site.programs.read(&name).is_some_and(|own| own.is_din()) => {
+                return Turn::Say(site.message(MessageId::BlockNotSupported));
+            }
             Purpose::Edit => {
                 site.settings.edited = Some(name);
                 true

@@ -16,7 +16,6 @@ use crate::pages::list;
 use crate::pages::number::Number;
 use crate::pages::q_parameters::QParameters;
 use crate::pages::table;
-use crate::programs::is_program;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
@@ -321,12 +320,9 @@ fn q_parameters(site: &Site) -> Turn {
     }
 }
 
-/// A block as it stands in the file, without the number that it has there. In DIN 66025 the number is a name.
+/// A block as it stands in the file, without the number that it has there.
 fn without_number(program: &Program, block: u32) -> String {
     let text = program.text_of(block);
-    if !is_program(program.name()) && !program.begins_with_header() {
-        return text;
-    }
     let words = program.language().parse_block(&text).words;
     let number = words.iter().find(|word| word.kind == WordKind::Number);
     let parts = number.and_then(|word| Some((text.get(..word.span.start)?, text.get(word.span.end..)?)));

@@ -20,7 +20,7 @@ use crate::language::{Landmark, Language, WordSpan};
 use crate::lines::{BlockText, Lines, RawBlock};
 use crate::parse::cursor::Cursor;
 use crate::parse::{frames_begin, language_faults, prefix};
-use crate::text::{is_blank, trim};
+use crate::text::trim;
 use crate::{Block, BlockError, Operation};
 
 /// HEIDENHAIN DIN/ISO.
@@ -48,19 +48,7 @@ impl Language for IsoLanguage {
 
     #[inline]
     fn next_block(&self, lines: &mut Lines<'_>) -> Option<RawBlock> {
-        loop {
-            let line = lines.number();
-            let (start, end) = lines.line()?;
-            if lines.bytes(start, end).iter().all(|&byte| is_blank(byte)) {
-                continue;
-            }
-            return Some(RawBlock {
-                start,
-                end,
-                line,
-                joined: false,
-            });
-        }
+        lines.next_with_text()
     }
 
     #[inline]

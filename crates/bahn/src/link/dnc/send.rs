@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::options::DncSendOptions;
 use super::port;
+use crate::files::{self, Loaded};
 use crate::interrupt::Interrupt;
 use crate::link::port as link_port;
 use crate::options::Format;
@@ -28,6 +29,12 @@ pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
         let folder = options.dir.display();
         return Err(UsageError::new(format!(
             "there is no program {missing} in {folder}"
+        )));
+    }
+    if let Some(name) = options.names.iter().find(|name| is_din(options, name)) {
+        return Err(UsageError::new(format!(
+            "{name} is a program of DIN 66025, which no control executes while it comes: `bahn link send --as host` \
+             brings it into the memory"
         )));
     }
     let Ok(list) = link_port::list(options.parameters.as_deref()) else {
@@ -94,6 +101,12 @@ pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
         Ok(()) if interrupt.is_requested() => Outcome::Interrupted,
         Ok(()) => Outcome::ProgramError,
     })
+}
+
+/// Whether a program of the folder is in none of the control's languages.
+fn is_din(options: &DncSendOptions, name: &str) -> bool {
+    let program = files::named(&options.dir, name).and_then(|path| files::load_program(&path).ok());
+    matches!(program, Some(Loaded::Program(program)) if program.is_din())
 }
 
 /// Tells how far a program is.

@@ -1,0 +1,132 @@
+//! DIN 66025 (`.nc`), as far as its text goes: where its blocks stand and how they are numbered. What they do another
+//! room executes; here, as a part of a program of the control, each is refused.
+
+use bahn_parameters::{Limits, MessageId};
+
+use crate::format::FormatOptions;
+use crate::language::{Landmark, Language, WordKind, WordSpan};
+use crate::lines::{BlockText, Lines, RawBlock};
+use crate::text::{character_count, is_blank, to_text};
+use crate::{Block, BlockError, InvalidBlock, Operation};
+
+/// Why no block of it is executed as one of the control's own languages.
+const REFUSED: &str = "a program of DIN 66025 runs by itself from the program memory: it is neither called nor executed \
+                       while it is transferred";
+
+/// DIN 66025: each line with text is a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DinLanguage;
+
+impl DinLanguage {
+    fn fault(text: BlockText<'_>) -> BlockError {
+        BlockError {
+            message: MessageId::BlockNotSupported,
+            line: 0,
+            column: 1,
+            length: character_count(text.bytes).max(1),
+            detail: REFUSED.into(),
+            help: Some("Run the program by itself, or write what it does in the language of the control."),
+        }
+    }
+}
+
+impl Language for DinLanguage {
+    fn name(&self) -> &'static str {
+        "DIN 66025"
+    }
+
+    fn refuses(&self, _first_block: BlockText<'_>) -> Option<String> {
+        Some(REFUSED.to_owned())
+    }
+
+    fn next_block(&self, lines: &mut Lines<'_>) -> Option<RawBlock> {
+        lines.next_with_text()
+    }
+
+    fn landmark(&self, _text: BlockText<'_>) -> Option<Landmark> {
+        None
+    }
+
+    fn read(&self, text: BlockText<'_>, _may_begin: bool, block: &mut Block) {
+        *block = Block {
+            operation: Operation::Invalid(Box::new(InvalidBlock {
+                text: to_text(text.bytes).into_boxed_str(),
+                error: DinLanguage::fault(text),
+            })),
+            ..Block::EMPTY
+        };
+    }
+
+    fn faults(&self, text: BlockText<'_>, _may_begin: bool) -> Vec<BlockError> {
+        vec![DinLanguage::fault(text)]
+    }
+
+    fn words(&self, text: BlockText<'_>) -> Vec<WordSpan> {
+        let end = text.bytes.len();
+        let number = number_at(text.bytes).map(|(start, digits, behind)| WordSpan {
+            kind: WordKind::Number,
+            span: start..behind,
+            value: digits..behind,
+        });
+        let behind = number.as_ref().map_or(0, |number| number.span.end);
+        let rest = (behind < end).then_some(WordSpan {
+            kind: WordKind::Text,
+            span: behind..end,
+            value: end..end,
+        });
+        number.into_iter().chain(rest).collect()
+    }
+
+    fn stands_alone(&self, text: BlockText<'_>) -> bool {
+        text.bytes.iter().find(|byte| !is_blank(**byte)) == Some(&b';')
+    }
+
+    fn write(&self, block: &Block, _options: FormatOptions, text: &mut String) {
+        if let Operation::Invalid(invalid) = &block.operation {
+            text.push_str(&invalid.text);
+        }
+    }
+
+    fn write_number(&self, text: BlockText<'_>, _number: u32, _step: u32, new: &mut Vec<u8>) {
+        new.extend_from_slice(text.bytes);
+    }
+
+    fn write_line_number(&self, _number: u32, _block: &Block, _options: FormatOptions, _text: &mut String) {}
+
+    fn number(&self, text: BlockText<'_>) -> Option<u32> {
+        let (_, digits, behind) = number_at(text.bytes)?;
+        let digits = std::str::from_utf8(text.bytes.get(digits..behind)?).ok()?;
+        digits.parse().ok()
+    }
+
+    fn has_numbers(&self) -> bool {
+        true
+    }
+
+    fn characters_max(&self, _limits: &Limits) -> Option<u32> {
+        None
+    }
+
+    fn frames(&self) -> [&'static str; 2] {
+        ["%NAME", "M30"]
+    }
+}
+
+/// Where the number of a block stands: its `N`, its digits, and the byte behind them.
+fn number_at(text: &[u8]) -> Option<(usize, usize, usize)> {
+    let behind_blanks = |from: usize| {
+        let blanks = text.get(from..)?.iter().take_while(|byte| is_blank(**byte));
+        Some(from + blanks.count())
+    };
+    let start = behind_blanks(0)?;
+    if !text.get(start)?.eq_ignore_ascii_case(&b'N') {
+        return None;
+    }
+    let digits = behind_blanks(start + 1)?;
+    let count = text
+        .get(digits..)?
+        .iter()
+        .take_while(|byte| byte.is_ascii_digit())
+        .count();
+    (count > 0).then_some((start, digits, digits + count))
+}
