@@ -3,6 +3,7 @@
 
 mod cells;
 mod editor;
+mod made;
 mod page;
 mod place;
 mod store;
@@ -21,12 +22,16 @@ pub(crate) use place::{is_disabled, is_of_machine, is_protected, is_table, of_ma
 
 /// The tool table: program 0, and the soft key TOOL TABLE [003:1897].
 pub(crate) fn tools(site: &mut Site) -> Turn {
-    open(TOOL_FILE, site)
+    match has_tools(site) && path_of(TOOL_FILE, site).is_none() {
+        true => made::ask(site),
+        false => open(TOOL_FILE, site),
+    }
 }
 
-/// The machine has a tool table that is not disabled.
+/// The machine has a tool table that is not disabled: MP7260 says so, also where its file is still to be made [000:9103].
 pub(crate) fn has_tools(site: &Site) -> bool {
-    is_open_to_all(TOOL_FILE, site)
+    let sizes = site.parameters().operation_parameters().tools;
+    sizes.table_size > 0 && !is_disabled(TOOL_FILE, site)
 }
 
 /// The pocket table.
