@@ -54,7 +54,6 @@ pub(crate) fn absent(
     block: BlockRef,
     run: Option<&dyn Reader>,
 ) -> ProgramError {
-    let program = run.and_then(|run| run.program(block.program));
     let only = AxisSet::EMPTY.with(axis);
     let mut reasons = AbsentAxes::default();
     match unit {
@@ -62,11 +61,23 @@ pub(crate) fn absent(
         Some(unit) if unit.is_plc_axis() => reasons.plc = only,
         Some(_) => reasons.slaves = only,
     }
+    let why = reasons.reason(only).unwrap_or_default();
+    error(MessageId::WrongAxisProgrammed, why, block, run)
+}
+
+/// The error of a program into which the PLC inserts a TOOL CALL and that has no tools.
+pub(crate) fn without_tools(block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
+    let why = "module 9150 inserts a TOOL CALL: a program in this language has no tools";
+    error(MessageId::BlockNotSupported, why.to_owned(), block, run)
+}
+
+fn error(message: MessageId, detail: String, block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
+    let program = run.and_then(|run| run.program(block.program));
     ProgramError {
-        message: Message::Control(MessageId::WrongAxisProgrammed),
+        message: Message::Control(message),
         program: program.map_or_else(String::new, |program| program.name().to_owned()),
         block,
-        detail: reasons.reason(only).unwrap_or_default(),
+        detail,
         cause: Cause::default(),
     }
 }
@@ -414,14 +425,9 @@ impl Feeder {
             of(&job.min) < least[*axis] || high > greatest[*axis]
         };
         let (_, axis) = axes.into_iter().find(outside)?;
-        let program = self.reader.program(block.program);
-        Some(Box::new(ProgramError {
-            message: Message::Control(MessageId::FaultyRangeData),
-            program: program.map_or_else(String::new, |program| program.name().to_owned()),
-            block,
-            detail: format!("the range leaves the traverse range of {}", axis.letter()),
-            cause: Cause::default(),
-        }))
+        let why = format!("the range leaves the traverse range of {}", axis.letter());
+        let run = Some(&*self.reader);
+        Some(Box::new(error(MessageId::FaultyRangeData, why, block, run)))
     }
 
     /// Behind a barrier or the end the reader says the same again; what is not read yet is waited for.

@@ -13,6 +13,7 @@ use crate::block_time::BlockTime;
 use crate::command::Mode;
 use crate::driving::Driving;
 use crate::feeder::{self, Feeder, RunFault};
+use crate::inserted_call;
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
@@ -273,7 +274,7 @@ impl ProgramRun {
         }
         self.track.reserve();
         if !self.is_active() && site.handshakes.is_idle() {
-            site.call_inserted_tool();
+            inserted_call::execute(site);
         }
         self.replacement
             .prepare(self.source.feeder_mut(), &mut self.track, site);
@@ -629,7 +630,7 @@ impl ProgramRun {
     /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
     /// [000:11657-11663].
     pub fn set_q(&mut self, number: u16, value: f64) {
-        if self.is_active() && self.source.takes_q() {
+        if self.is_active() && self.source.is_of_control() {
             self.q_transfer.write(number, value);
         } else {
             self.source.set_q(number, value);

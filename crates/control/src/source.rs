@@ -190,10 +190,11 @@ impl Source {
         self.feeder.as_mut().map(Feeder::reader_mut)
     }
 
-    /// The program that runs has Q parameters, which it takes where it waits for the PLC.
-    pub fn takes_q(&self) -> bool {
+    /// The program that runs is in a language of the control: it has Q parameters, which it takes where it waits for the PLC,
+    /// and tools.
+    pub fn is_of_control(&self) -> bool {
         match &self.loan {
-            Some(loan) => loan.takes_q,
+            Some(loan) => loan.of_control,
             None => self.interpreter().is_some(),
         }
     }

@@ -1,0 +1,43 @@
+//! The TOOL CALL that module 9150 inserts, where no program of the control takes it up [000:16063-16118].
+
+use bahn_plc::ToolCallBlock;
+
+use crate::feeder;
+use crate::message::Message;
+use crate::run::ProgramRun;
+use crate::site::Site;
+
+/// It is kept until the strobe is acknowledged, or for now without a program. A program that has no tools is broken off at
+/// the block of the strobe, with a message [000:16071].
+pub(crate) fn take(call: ToolCallBlock, run: &mut ProgramRun, site: &mut Site) {
+    if !run.is_active() || run.source.is_of_control() {
+        site.tools.inserted_call = Some(call);
+        return;
+    }
+    let block = run.running_block();
+    let error = feeder::without_tools(block.unwrap_or_default(), run.source.reader());
+    site.messages.show(Message::Program(Box::new(error)), block);
+    if !run.refuse_block(site) {
+        run.stop();
+    }
+}
+
+/// Without a program it is executed at once; a wrong one is passed over without a message [000:16063-16075].
+pub(crate) fn execute(site: &mut Site) {
+    let Some(inserted) = site.tools.inserted_call.take() else {
+        return;
+    };
+    let modal = (site.chain.offsets.tool_axis, site.spindle.state().programmed_rpm);
+    let Some(call) = site.tools.tool_call(&inserted, modal, site.magazine) else {
+        return;
+    };
+    let called = inserted.tool.is_some() && call.tool != 0;
+    if called && !site.magazine.may_be_called(call.tool) {
+        return;
+    }
+    match inserted.tool {
+        Some(_) => site.tool(&call),
+        None if inserted.speed.is_some() => site.speed(call.speed_rpm, true),
+        None => {}
+    }
+}
