@@ -50,14 +50,14 @@ impl Loan {
 
     /// Tells it to the program that is back.
     pub fn settle(self, feeder: &mut Feeder) {
+        if let Some(rules) = self.rules {
+            feeder.set_rules(rules);
+        }
         let Some(interpreter) = feeder.interpreter_mut() else {
             return;
         };
         if self.broken_off {
             interpreter.give_up_work();
-        }
-        if let Some(rules) = self.rules {
-            interpreter.set_rules(rules);
         }
         for (number, value) in self.q {
             interpreter.set_q(number, value);

@@ -169,8 +169,8 @@ impl Source {
     pub fn set_rules(&mut self, rules: Rules) {
         if let Some(loan) = &mut self.loan {
             loan.rules = Some(rules);
-        } else if let Some(interpreter) = self.interpreter_mut() {
-            interpreter.set_rules(rules);
+        } else if let Some(feeder) = &mut self.feeder {
+            feeder.set_rules(rules);
         }
     }
 

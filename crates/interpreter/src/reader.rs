@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use bahn_path::{BlockRef, Position};
 use bahn_program::Program;
-use bahn_reader::{Mark, Reader, Warning};
+use bahn_reader::{MachineRules, Mark, Reader, Warning};
 
 use crate::Interpreter;
 
@@ -87,6 +87,14 @@ impl Reader for Interpreter {
 
     fn allow(&mut self, work: u32) {
         self.allow(work);
+    }
+
+    fn set_machine_rules(&mut self, rules: MachineRules) {
+        let own = &mut self.settings.rules;
+        own.m_functions.m6_stops = rules.m6_stops;
+        own.m_functions.axes_wait = rules.halts.at_m_functions;
+        own.m_functions.axes_wait_for_speed = rules.halts.at_speeds;
+        own.speed_max_rpm = rules.speed_max_rpm;
     }
 
     fn set_interrupt(&mut self, flag: Arc<AtomicBool>) {
