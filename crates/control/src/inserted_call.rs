@@ -1,4 +1,4 @@
-//! The TOOL CALL that module 9150 inserts, where no program of the control takes it up [000:16063-16118].
+//! The TOOL CALL that module 9150 inserts: whether the program that runs can take it up [000:16063-16118].
 
 use bahn_plc::ToolCallBlock;
 
@@ -19,25 +19,5 @@ pub(crate) fn take(call: ToolCallBlock, run: &mut ProgramRun, site: &mut Site) {
     site.messages.show(Message::Program(Box::new(error)), block);
     if !run.refuse_block(site) {
         run.stop();
-    }
-}
-
-/// Without a program it is executed at once; a wrong one is passed over without a message [000:16063-16075].
-pub(crate) fn execute(site: &mut Site) {
-    let Some(inserted) = site.tools.inserted_call.take() else {
-        return;
-    };
-    let modal = (site.chain.offsets.tool_axis, site.spindle.state().programmed_rpm);
-    let Some(call) = site.tools.tool_call(&inserted, modal, site.magazine) else {
-        return;
-    };
-    let called = inserted.tool.is_some() && call.tool != 0;
-    if called && !site.magazine.may_be_called(call.tool) {
-        return;
-    }
-    match inserted.tool {
-        Some(_) => site.tool(&call),
-        None if inserted.speed.is_some() => site.speed(call.speed_rpm, true),
-        None => {}
     }
 }

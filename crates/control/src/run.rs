@@ -13,7 +13,6 @@ use crate::block_time::BlockTime;
 use crate::command::Mode;
 use crate::driving::Driving;
 use crate::feeder::{self, Feeder, RunFault};
-use crate::inserted_call;
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
@@ -274,7 +273,7 @@ impl ProgramRun {
         }
         self.track.reserve();
         if !self.is_active() && site.handshakes.is_idle() {
-            inserted_call::execute(site);
+            site.call_inserted_tool();
         }
         self.replacement
             .prepare(self.source.feeder_mut(), &mut self.track, site);

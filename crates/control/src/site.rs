@@ -99,7 +99,7 @@ impl Site<'_> {
     }
 
     /// TOOL CALL: the tool goes to the PLC, then its speed; length and axis count from here on.
-    pub fn tool(&mut self, call: &ToolCall) {
+    fn tool(&mut self, call: &ToolCall) {
         if !self.spindle.judge(call.speed_rpm, self.exchange) {
             // The call is refused as a whole.
             return;
@@ -118,6 +118,27 @@ impl Site<'_> {
             self.exchange.nc_put(*marker, set);
         }
         self.speed(call.speed_rpm, true);
+    }
+
+    /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
+    /// [000:16063-16075].
+    pub fn call_inserted_tool(&mut self) {
+        let Some(inserted) = self.tools.inserted_call.take() else {
+            return;
+        };
+        let modal = (self.chain.offsets.tool_axis, self.spindle.state().programmed_rpm);
+        let Some(call) = self.tools.tool_call(&inserted, modal, self.magazine) else {
+            return;
+        };
+        let called = inserted.tool.is_some() && call.tool != 0;
+        if called && !self.magazine.may_be_called(call.tool) {
+            return;
+        }
+        match inserted.tool {
+            Some(_) => self.tool(&call),
+            None if inserted.speed.is_some() => self.speed(call.speed_rpm, true),
+            None => {}
+        }
     }
 
     /// A speed: gear range or S code, by MP3010.

@@ -2,32 +2,19 @@
 
 use bahn_host::files;
 
-use super::open;
-use super::place::{TOOL_FILE, TOOLS};
-use crate::page::Turn;
-use crate::pages::ask::Choice;
+use super::place::TOOLS;
 use crate::pages::description;
 use crate::site::Site;
 
 /// The name of its file in the machine's folder (inferred).
 const NEW: &str = "TOOL.T";
 
-/// Asks whether it is to be made.
-pub(super) fn ask(site: &Site) -> Turn {
-    let ask = site.words("THE MACHINE HAS NO TOOL TABLE: MAKE IT = ENT / END = NO ENT");
-    Turn::Open(Choice::confirm(ask, "ENT".to_owned(), |site| match make(site) {
-        Ok(()) => match open(TOOL_FILE, site) {
-            Turn::Open(page) => Turn::Replace(page),
-            Turn::Say(why) => Turn::CloseSaying(why),
-            other => other,
-        },
-        Err(why) => Turn::CloseSaying(why),
-    }))
-}
-
 /// The tools 0 to MP7260 without sizes [000:9103]. They can be called from the next power-on: until then tools come from TOOL
 /// DEF (inferred).
-fn make(site: &mut Site) -> Result<(), String> {
+///
+/// # Errors
+/// In words: the medium or `machine.toml` does not take it.
+pub(super) fn make(site: &mut Site) -> Result<(), String> {
     let path = site.machine.root.join(NEW);
     if !path.exists() {
         let most = site.parameters().operation_parameters().tools.table_size;

@@ -11,6 +11,7 @@ mod store;
 use bahn_parameters::MessageId;
 
 use crate::page::Turn;
+use crate::pages::ask::Choice;
 use crate::site::Site;
 use editor::TableEditor;
 
@@ -23,9 +24,24 @@ pub(crate) use place::{is_disabled, is_of_machine, is_protected, is_table, of_ma
 /// The tool table: program 0, and the soft key TOOL TABLE [003:1897].
 pub(crate) fn tools(site: &mut Site) -> Turn {
     match has_tools(site) && path_of(TOOL_FILE, site).is_none() {
-        true => made::ask(site),
+        true => ask_to_make(site),
         false => open(TOOL_FILE, site),
     }
+}
+
+/// There should be a tool table, but the machine has no file of it.
+fn ask_to_make(site: &Site) -> Turn {
+    let ask = site.words("THE MACHINE HAS NO TOOL TABLE: MAKE IT = ENT / END = NO ENT");
+    Turn::Open(Choice::confirm(ask, "ENT".to_owned(), |site| {
+        match made::make(site) {
+            Ok(()) => match open(TOOL_FILE, site) {
+                Turn::Open(page) => Turn::Replace(page),
+                Turn::Say(why) => Turn::CloseSaying(why),
+                other => other,
+            },
+            Err(why) => Turn::CloseSaying(why),
+        }
+    }))
 }
 
 /// The machine has a tool table that is not disabled: MP7260 says so, also where its file is still to be made [000:9103].
