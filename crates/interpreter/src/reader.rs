@@ -90,11 +90,7 @@ impl Reader for Interpreter {
     }
 
     fn set_machine_rules(&mut self, rules: MachineRules) {
-        let own = &mut self.settings.rules;
-        own.m_functions.m6_stops = rules.m6_stops;
-        own.m_functions.axes_wait = rules.halts.at_m_functions;
-        own.m_functions.axes_wait_for_speed = rules.halts.at_speeds;
-        own.speed_max_rpm = rules.speed_max_rpm;
+        self.set_common_rules(rules);
     }
 
     fn set_interrupt(&mut self, flag: Arc<AtomicBool>) {
