@@ -26,8 +26,8 @@ pub(crate) struct Loan {
     /// Which loan of the channel it is.
     pub number: u64,
     pub inch: bool,
-    /// It has Q parameters.
-    pub takes_q: bool,
+    /// It is in a language of the control.
+    pub of_control: bool,
     /// Q parameters that the PLC has set.
     pub q: Vec<(u16, f64)>,
     /// Machine parameters have changed.
@@ -41,7 +41,7 @@ impl Loan {
         Loan {
             number,
             inch: feeder.inch(),
-            takes_q: feeder.interpreter().is_some(),
+            of_control: feeder.interpreter().is_some(),
             q: Vec::new(),
             rules: None,
             broken_off: false,
@@ -50,14 +50,14 @@ impl Loan {
 
     /// Tells it to the program that is back.
     pub fn settle(self, feeder: &mut Feeder) {
+        if let Some(rules) = self.rules {
+            feeder.set_rules(rules);
+        }
         let Some(interpreter) = feeder.interpreter_mut() else {
             return;
         };
         if self.broken_off {
             interpreter.give_up_work();
-        }
-        if let Some(rules) = self.rules {
-            interpreter.set_rules(rules);
         }
         for (number, value) in self.q {
             interpreter.set_q(number, value);

@@ -33,7 +33,7 @@ use crate::source::{self, Basis, Reading, Source};
 use crate::test_run::TestRun;
 use crate::tools::Tools;
 use crate::track::{Track, path_limits};
-use crate::{run_command, status, strobes, tables, upkeep};
+use crate::{inserted_call, run_command, status, strobes, tables, upkeep};
 
 /// A channel.
 #[derive(Clone)]
@@ -501,13 +501,13 @@ impl Channel {
     pub fn take_module_requests(&mut self, machine: &mut MachineSide) {
         let requests = &mut machine.link.requests;
         self.positioning.take_requests(requests);
-        if let Some(call) = requests.tool_call.take() {
-            self.tools.inserted_call = Some(call);
-        }
         self.desk.manual.take_status(std::mem::take(&mut requests.status));
-        let pallet = &mut requests.pallet;
-        if let Some(request) = pallet.take_if(|_| !self.run.source.is_lent()) {
+        if let Some(request) = requests.pallet.take_if(|_| !self.run.source.is_lent()) {
             self.select_pallet(request, machine);
+        }
+        if let Some(call) = machine.link.requests.tool_call.take() {
+            let (run, mut site, _) = self.parts(machine);
+            inserted_call::take(call, run, &mut site);
         }
         let requests = &mut machine.link.requests;
         if std::mem::take(&mut requests.geometry) {

@@ -4,14 +4,15 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_interpreter::{AbsentAxes, Interpreter};
+use bahn_interpreter::{AbsentAxes, Interpreter, Rules};
 use bahn_parameters::MessageId;
+use bahn_parameters::technology::AxisHalts;
 use bahn_path::{
     Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, PerAxis,
     Placement, Position, Step,
 };
 use bahn_plc::ToolCallBlock;
-use bahn_reader::{Cause, Message, ProgramError, Reader};
+use bahn_reader::{Cause, MachineRules, Message, ProgramError, Reader};
 
 use crate::axis::AxisUnit;
 use crate::kinematics::{Box2, Chain};
@@ -54,7 +55,6 @@ pub(crate) fn absent(
     block: BlockRef,
     run: Option<&dyn Reader>,
 ) -> ProgramError {
-    let program = run.and_then(|run| run.program(block.program));
     let only = AxisSet::EMPTY.with(axis);
     let mut reasons = AbsentAxes::default();
     match unit {
@@ -62,11 +62,23 @@ pub(crate) fn absent(
         Some(unit) if unit.is_plc_axis() => reasons.plc = only,
         Some(_) => reasons.slaves = only,
     }
+    let why = reasons.reason(only).unwrap_or_default();
+    error(MessageId::WrongAxisProgrammed, why, block, run)
+}
+
+/// The error of a program into which the PLC inserts a TOOL CALL and that has no tools.
+pub(crate) fn without_tools(block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
+    let why = "module 9150 inserts a TOOL CALL: a program in this language has no tools";
+    error(MessageId::BlockNotSupported, why.to_owned(), block, run)
+}
+
+fn error(message: MessageId, detail: String, block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
+    let program = run.and_then(|run| run.program(block.program));
     ProgramError {
-        message: Message::Control(MessageId::WrongAxisProgrammed),
+        message: Message::Control(message),
         program: program.map_or_else(String::new, |program| program.name().to_owned()),
         block,
-        detail: reasons.reason(only).unwrap_or_default(),
+        detail,
         cause: Cause::default(),
     }
 }
@@ -150,6 +162,23 @@ impl Feeder {
     /// The program as one of a TNC; `None` when it is in another language.
     pub fn interpreter_mut(&mut self) -> Option<&mut Interpreter> {
         Interpreter::of_mut(&mut *self.reader)
+    }
+
+    /// The rules of machine parameters, for the blocks that are read from now on.
+    pub fn set_rules(&mut self, rules: Rules) {
+        let m = &rules.m_functions;
+        let common = MachineRules {
+            halts: AxisHalts {
+                at_m_functions: m.axes_wait,
+                at_speeds: m.axes_wait_for_speed,
+            },
+            m6_stops: m.m6_stops,
+            speed_max_rpm: rules.speed_max_rpm,
+        };
+        match self.interpreter_mut() {
+            Some(interpreter) => interpreter.set_rules(rules),
+            None => self.reader.set_machine_rules(common),
+        }
     }
 
     /// How the coordinates of the path stand in the machine at the block that comes next, when not upright.
@@ -414,14 +443,9 @@ impl Feeder {
             of(&job.min) < least[*axis] || high > greatest[*axis]
         };
         let (_, axis) = axes.into_iter().find(outside)?;
-        let program = self.reader.program(block.program);
-        Some(Box::new(ProgramError {
-            message: Message::Control(MessageId::FaultyRangeData),
-            program: program.map_or_else(String::new, |program| program.name().to_owned()),
-            block,
-            detail: format!("the range leaves the traverse range of {}", axis.letter()),
-            cause: Cause::default(),
-        }))
+        let why = format!("the range leaves the traverse range of {}", axis.letter());
+        let run = Some(&*self.reader);
+        Some(Box::new(error(MessageId::FaultyRangeData, why, block, run)))
     }
 
     /// Behind a barrier or the end the reader says the same again; what is not read yet is waited for.

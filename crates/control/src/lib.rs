@@ -86,6 +86,7 @@ mod gantry;
 mod hand_over;
 mod handshake;
 mod handwheel;
+mod inserted_call;
 mod kernel;
 mod key_code;
 mod kinematics;

@@ -629,7 +629,7 @@ impl ProgramRun {
     /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
     /// [000:11657-11663].
     pub fn set_q(&mut self, number: u16, value: f64) {
-        if self.is_active() && self.source.takes_q() {
+        if self.is_active() && self.source.is_of_control() {
             self.q_transfer.write(number, value);
         } else {
             self.source.set_q(number, value);

@@ -169,8 +169,8 @@ impl Source {
     pub fn set_rules(&mut self, rules: Rules) {
         if let Some(loan) = &mut self.loan {
             loan.rules = Some(rules);
-        } else if let Some(interpreter) = self.interpreter_mut() {
-            interpreter.set_rules(rules);
+        } else if let Some(feeder) = &mut self.feeder {
+            feeder.set_rules(rules);
         }
     }
 
@@ -190,10 +190,11 @@ impl Source {
         self.feeder.as_mut().map(Feeder::reader_mut)
     }
 
-    /// The program that runs has Q parameters, which it takes where it waits for the PLC.
-    pub fn takes_q(&self) -> bool {
+    /// The program that runs is in a language of the control: it has Q parameters, which it takes where it waits for the PLC,
+    /// and tools.
+    pub fn is_of_control(&self) -> bool {
         match &self.loan {
-            Some(loan) => loan.takes_q,
+            Some(loan) => loan.of_control,
             None => self.interpreter().is_some(),
         }
     }

@@ -13,7 +13,7 @@ use bahn_path::{
     Synchronisation, TechnologyFunction,
 };
 use bahn_program::Program;
-use bahn_reader::{Mark, ProgramError, Reader, Start, Warning};
+use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning};
 use stand::*;
 use support::Rig;
 
@@ -126,6 +126,8 @@ impl Reader for Places {
     }
 
     fn allow(&mut self, _work: u32) {}
+
+    fn set_machine_rules(&mut self, _rules: MachineRules) {}
 
     fn set_interrupt(&mut self, _flag: Arc<AtomicBool>) {}
 }

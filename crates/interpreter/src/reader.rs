@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use bahn_path::{BlockRef, Position};
 use bahn_program::Program;
-use bahn_reader::{Mark, Reader, Warning};
+use bahn_reader::{MachineRules, Mark, Reader, Warning};
 
 use crate::Interpreter;
 
@@ -87,6 +87,10 @@ impl Reader for Interpreter {
 
     fn allow(&mut self, work: u32) {
         self.allow(work);
+    }
+
+    fn set_machine_rules(&mut self, rules: MachineRules) {
+        self.set_common_rules(rules);
     }
 
     fn set_interrupt(&mut self, flag: Arc<AtomicBool>) {

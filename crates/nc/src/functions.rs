@@ -71,10 +71,10 @@ pub(crate) fn of_block(unit: &Unit, start: &Start) -> Result<Ordered, Refusal> {
 }
 
 fn speed(rpm: f64, start: &Start) -> Result<TechnologyFunction, Refusal> {
-    if rpm > start.speed_max_rpm {
+    if rpm > start.rules.speed_max_rpm {
         return Err(Refusal {
             message: MessageId::WrongRpm,
-            detail: format!("S{rpm} is more than {} rpm", start.speed_max_rpm),
+            detail: format!("S{rpm} is more than {} rpm", start.rules.speed_max_rpm),
         });
     }
     let function = Function::SpindleSpeed(rpm);
@@ -87,7 +87,11 @@ fn speed(rpm: f64, start: &Start) -> Result<TechnologyFunction, Refusal> {
 
 /// A function where the table of the model has it.
 fn by_table(function: Function, technology: &Technology, start: &Start) -> TechnologyFunction {
-    TechnologyFunction::new(function, technology.at, technology.synchronisation(start.halts))
+    TechnologyFunction::new(
+        function,
+        technology.at,
+        technology.synchronisation(start.rules.halts),
+    )
 }
 
 fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(), Refusal> {
@@ -104,7 +108,7 @@ fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(),
     for deed in technology.deeds() {
         match deed {
             Deed::ProgramStop => ordered.stops = Some(Some("M0")),
-            Deed::ToolChange if start.m6_stops => {
+            Deed::ToolChange if start.rules.m6_stops => {
                 ordered.stops.get_or_insert(None);
             }
             Deed::SpindleOrientation => {

@@ -11,7 +11,7 @@ use bahn_path::{
     Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step,
 };
 use bahn_program::Program;
-use bahn_reader::{Cause, Mark, Message, ProgramError, Reader, Start, Warning};
+use bahn_reader::{Cause, MachineRules, Mark, Message, ProgramError, Reader, Start, Warning};
 
 use crate::functions::{self, Ordered, Refusal};
 use crate::onward;
@@ -468,6 +468,10 @@ impl Reader for NcReader {
         if let Some(decoder) = &mut self.run.decoder {
             decoder.set_position(self.run.position);
         }
+    }
+
+    fn set_machine_rules(&mut self, rules: MachineRules) {
+        self.start.rules = rules;
     }
 
     fn allow(&mut self, work: u32) {

@@ -445,3 +445,53 @@ fn a_recording_starts_beside_the_instruction_list() {
     trainee.wait(1.0);
     assert_eq!(trainee.screen().program.title, title, "nothing more is recorded");
 }
+
+/// "The main program must have the status flag M": COMPILE of another file gives it to that one [000:14608]. It is the main
+/// program of the machine from the next power-on; the one before is a file like others.
+#[test]
+fn compiling_another_file_makes_it_the_main_program() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    let main = trainee.file("plc/MAIN.PLC");
+    let mut lines: Vec<&str> = main.lines().collect();
+    // ERROR 77 is shown with M3001; M3100 is 0.
+    let begin = begin_of(&main) - 1;
+    lines.splice(begin..begin, ["LN     M3100", "=      M3001"]);
+    trainee.write("plc/OTHER.PLC", &(lines.join("\n") + "\n"));
+    plc_mode(&mut trainee);
+    trainee.soft("COMPILE");
+    trainee.down_to("OTHER.PLC");
+    trainee.press("ENT");
+    let said = trainee.messages();
+    assert!(said[0].starts_with("OTHER.PLC: 0 ERRORS, "), "{said:?}");
+    assert!(said[0].ends_with("RUNS FROM THE NEXT POWER-ON"), "{said:?}");
+    trainee.press("CE").wait(1.0);
+    assert_eq!(trainee.messages(), [""; 0], "the program of before runs on");
+    trainee.soft("COMPILE");
+    trainee.down_to("OTHER.PLC");
+    assert!(
+        line(&mut trainee).contains("M RUNTIME PGM"),
+        "{}",
+        line(&mut trainee)
+    );
+    trainee.down_to("MAIN.PLC");
+    assert!(
+        !line(&mut trainee).contains("RUNTIME PGM"),
+        "{}",
+        line(&mut trainee)
+    );
+    trainee.press("END");
+    // It runs from the next power-on, also when all is read anew.
+    trainee.give(r#"{"power":false}"#).wait(0.5);
+    trainee.give(r#"{"power":true}"#);
+    runs_other(&mut trainee);
+    runs_other(&mut trainee.killed());
+}
+
+fn runs_other(trainee: &mut Trainee) {
+    trainee.wait(5.0).press("CE").wait(2.0);
+    let shown = trainee.messages();
+    assert!(shown.contains(&"PLC: ERROR 77".to_owned()), "{shown:?}");
+    let running = &trainee.station.control().plc().program().files[0].name;
+    assert_eq!(running, "OTHER.PLC");
+}

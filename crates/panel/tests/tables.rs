@@ -67,6 +67,77 @@ fn the_tool_table_opens_in_program_run() {
     assert!(line.current && line.text.contains("100"), "{line:?}");
 }
 
+/// The mill with another number of tools in the tool table, and without the files of tools and pockets.
+fn without_tools(most: u32) -> Trainee {
+    Trainee::with("mill", |folder| {
+        let edit = |name: &str, what: &dyn Fn(&str) -> Option<String>| {
+            let text = std::fs::read_to_string(folder.join(name)).unwrap();
+            let lines: Vec<String> = text.lines().filter_map(what).collect();
+            std::fs::write(folder.join(name), lines.join("\n") + "\n").unwrap();
+        };
+        edit("machine.toml", &|line| {
+            let own = line.starts_with("tools ") || line.starts_with("pockets ");
+            (!own || most == 0).then(|| line.to_owned())
+        });
+        edit("parameters.mp", &|line| {
+            Some(match line.starts_with("MP7260") {
+                true => format!("MP7260 : {most}"),
+                false => line.to_owned(),
+            })
+        });
+        if most > 0 {
+            std::fs::remove_file(folder.join("tools.tsv")).unwrap();
+        }
+    })
+}
+
+fn has_soft(trainee: &mut Trainee, name: &str) -> bool {
+    let rows = trainee.screen().soft_keys.keys;
+    rows.iter().any(|key| key == name)
+}
+
+/// "If MP7260 contains a zero value, then the system will run without a tool table ("TOOL.T" does not exist)" [000:9103]:
+/// neither soft key nor directory offer the file that machine.toml names.
+#[test]
+fn without_tools_in_the_table_there_is_none() {
+    let mut trainee = without_tools(0);
+    trainee.ready();
+    trainee.press("FULL");
+    assert!(!has_soft(&mut trainee, "TOOL TABLE"));
+    trainee.press("PROGRAM PGM_NR");
+    let lines = trainee.screen().program.lines;
+    let tables = lines.iter().filter(|line| line.text.starts_with("TOOL"));
+    assert_eq!(tables.count(), 0, "{lines:#?}");
+    trainee.press("0 ENT");
+    assert_eq!(trainee.messages(), ["PROGRAM NOT FOUND"]);
+}
+
+/// "The number of tools in the tool table is defined in machine parameter MP7260" [000:9103]: with MP7260 = 5 there is TOOL.T
+/// with the tools 0 to 5. A machine that has no file of it makes one.
+#[test]
+fn the_tool_table_is_made_with_the_tools_of_the_parameter() {
+    let mut trainee = without_tools(5);
+    trainee.ready();
+    trainee.press("FULL");
+    trainee.soft("TOOL TABLE");
+    let prompt = trainee.screen().dialogue.prompt;
+    assert!(prompt.starts_with("THE MACHINE HAS NO TOOL TABLE"), "{prompt}");
+    trainee.press("ENT");
+    let lines = trainee.screen().program.lines;
+    let numbers: Vec<&str> = lines
+        .iter()
+        .skip(1)
+        .filter_map(|line| line.text.split_whitespace().next())
+        .collect();
+    assert_eq!(numbers, ["0", "1", "2", "3", "4", "5"], "{lines:#?}");
+    trainee.press("DOWN RIGHT").number("100").press("ENT END");
+    // The machine has it from the next power-on.
+    let trainee = trainee.killed();
+    let tools = trainee.station.machine().tools.clone().unwrap();
+    let lengths: Vec<f64> = tools.values().map(|tool| tool.shape.length).collect();
+    assert_eq!(lengths, [0.0, 100.0, 0.0, 0.0, 0.0, 0.0]);
+}
+
 #[test]
 fn correction_tables_are_edited_point_by_point() {
     let points: String = (0..64)

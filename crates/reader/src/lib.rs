@@ -34,4 +34,4 @@ mod start;
 
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use reader::{Mark, Reader};
-pub use start::Start;
+pub use start::{MachineRules, Start};

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use bahn_path::{BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::Program;
 
-use crate::{ProgramError, Warning};
+use crate::{MachineRules, ProgramError, Warning};
 
 /// A state before a block, kept to go back to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +70,9 @@ pub trait Reader: ElementSource<Error = Box<ProgramError>> + Any + Send + Sync {
     /// The axes were moved at a barrier: the next block begins where they stand now, workpiece coordinates. Axes whose
     /// place is unknown stay.
     fn stand_at(&mut self, position: &Position);
+
+    /// Machine parameters were changed by the PLC: their rules count for the blocks that are read from now on.
+    fn set_machine_rules(&mut self, rules: MachineRules);
 
     /// Allows an amount of work until the next call, about one for a block; then the next step is [`Step::Starved`].
     fn allow(&mut self, work: u32);

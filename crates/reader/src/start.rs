@@ -5,6 +5,32 @@ use bahn_parameters::technology::AxisHalts;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{AxisSet, Position};
 
+/// What machine parameters rule in programs of any language.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachineRules {
+    /// At which functions the axes halt.
+    pub halts: AxisHalts,
+    /// M6 stops the run: MP7440 bit 0 = 0 [000:7258-7262].
+    pub m6_stops: bool,
+    /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
+    pub speed_max_rpm: f64,
+}
+
+impl MachineRules {
+    /// By a list of machine parameters.
+    pub fn of(list: &ParameterList) -> MachineRules {
+        let m = list.m_functions();
+        MachineRules {
+            halts: AxisHalts {
+                at_m_functions: m.axes_wait,
+                at_speeds: m.axes_wait_for_speed,
+            },
+            m6_stops: m.m6_stops,
+            speed_max_rpm: list.spindle_speed_max_rpm(),
+        }
+    }
+}
+
 /// What a program finds on a machine when it begins, whatever language it is in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
@@ -12,12 +38,8 @@ pub struct Start {
     pub model: ControlModel,
     /// The M functions that are synchronised otherwise than the control model does.
     pub functions: OwnFunctions,
-    /// At which functions its axes halt.
-    pub halts: AxisHalts,
-    /// M6 stops the run: MP7440 bit 0 = 0 [000:7258-7262].
-    pub m6_stops: bool,
-    /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
-    pub speed_max_rpm: f64,
+    /// What its machine parameters say.
+    pub rules: MachineRules,
     /// Axes that no program moves, where whoever feeds from it does not find that out.
     pub absent: AxisSet,
     /// Where the axes stand, workpiece coordinates, mm and degrees.
@@ -27,16 +49,10 @@ pub struct Start {
 impl Start {
     /// On a machine with a list of machine parameters.
     pub fn of(list: &ParameterList, functions: OwnFunctions, absent: AxisSet, position: Position) -> Start {
-        let m = list.m_functions();
         Start {
             model: list.model(),
             functions,
-            halts: AxisHalts {
-                at_m_functions: m.axes_wait,
-                at_speeds: m.axes_wait_for_speed,
-            },
-            m6_stops: m.m6_stops,
-            speed_max_rpm: list.spindle_speed_max_rpm(),
+            rules: MachineRules::of(list),
             absent,
             position,
         }

@@ -9,10 +9,12 @@ use bahn_plc::{Options, ProgramMemory};
 use super::editor::Editor;
 use super::source;
 use crate::page::Turn;
+use crate::pages::description;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::site::Site;
 
-/// Compiles a main file and what it links; the machine's own program takes effect at the next power-on.
+/// Compiles a main file and what it links. It has the status M then: it is the main file of the machine [000:14608], and runs
+/// from the next power-on.
 pub(super) fn run(name: &str, site: &mut Site) -> Turn {
     let mut compiled = source_of(name, site);
     let faults = compiled.faults().into_iter();
@@ -26,8 +28,10 @@ pub(super) fn run(name: &str, site: &mut Site) -> Turn {
         site.words("ERRORS"),
         site.words("BYTES")
     );
-    if name != source::main_file(site) {
-        return Turn::CloseSaying(said);
+    if name != source::main_file(site)
+        && let Err(why) = description::set(source::MAIN, &source::named(name, site), site)
+    {
+        return Turn::CloseSaying(why);
     }
     let program = Arc::new(program);
     site.host.renew(Renewed::Plc(Arc::clone(&program)));
@@ -53,7 +57,7 @@ pub(super) fn open(site: &Site) -> Turn {
     let mut names = source::list(site);
     names.retain(|name| source::is_source(name));
     let main = source::main_file(site);
-    let at = names.iter().position(|name| name == main).unwrap_or(0);
+    let at = names.iter().position(|name| *name == main).unwrap_or(0);
     Turn::Open(Box::new(Menu::at(Programs { names }, at)))
 }
 
@@ -68,7 +72,7 @@ impl Items for Programs {
 
     fn items(&self, site: &Site) -> Vec<Item> {
         let main = source::main_file(site);
-        let runtime = |name: &String| match name == main {
+        let runtime = |name: &String| match *name == main {
             true => Item::new(name.clone(), format!("M {}", site.words("RUNTIME PGM"))),
             false => Item::new(name.clone(), ""),
         };

@@ -173,7 +173,7 @@ pub(super) struct Files {
 pub(super) fn open(site: &Site) -> Turn {
     let stopped = site.control().plc().stopped().map(|error| error.file.as_str());
     let wanted = stopped.or(site.plc.edited.as_deref());
-    let wanted = wanted.unwrap_or(source::main_file(site)).to_owned();
+    let wanted = wanted.map_or_else(|| source::main_file(site), str::to_owned);
     let mut panes = [Pane::default(), Pane::default()];
     for pane in &mut panes {
         pane.list(site);

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use bahn_host::files;
 use bahn_parameters::MessageId;
 
+use crate::pages::description;
 use crate::pages::external::Own;
 use crate::programs::is_name;
 use crate::site::Site;
@@ -136,10 +137,13 @@ fn folder(site: &Site) -> PathBuf {
     main.parent().map(Path::to_owned).unwrap_or_default()
 }
 
-/// The main file of the machine's program.
-pub(super) fn main_file<'a>(site: &'a Site<'_>) -> &'a str {
-    let path = &site.machine.folder.plc;
-    path.rsplit('/').next().unwrap_or(path)
+/// The entry of machine.toml that names the main file.
+pub(super) const MAIN: &str = "plc";
+
+/// The main file of the machine's program: COMPILE may have made another one of it since the machine was loaded.
+pub(super) fn main_file(site: &Site) -> String {
+    let path = description::value(MAIN, site).unwrap_or_else(|| site.machine.folder.plc.clone());
+    path.rsplit('/').next().unwrap_or(&path).to_owned()
 }
 
 /// How `machine.toml` names a file of the folder.

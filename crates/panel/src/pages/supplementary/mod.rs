@@ -279,11 +279,16 @@ pub(crate) fn nc_number() -> String {
     format!("BAHN {}", env!("CARGO_PKG_VERSION"))
 }
 
-/// Name of the PLC program and the day on which it was written.
+/// Name of the PLC program that runs and the day on which it was written.
 pub(crate) fn plc_number(site: &Site) -> String {
-    let name = &site.machine.folder.plc;
-    let file = name.rsplit('/').next().unwrap_or(name);
-    let written = std::fs::metadata(site.machine.root.join(name)).and_then(|file| file.modified());
+    let main = site.control().plc().program().files.first();
+    let file = main.map_or("", |main| main.name.as_str());
+    let path = site
+        .machine
+        .root
+        .join(&site.machine.folder.plc)
+        .with_file_name(file);
+    let written = std::fs::metadata(path).and_then(|file| file.modified());
     match written {
         Ok(written) => format!("{file} {}", day(written)),
         Err(_) => file.to_owned(),

@@ -3,6 +3,7 @@
 
 mod cells;
 mod editor;
+mod made;
 mod page;
 mod place;
 mod store;
@@ -10,6 +11,7 @@ mod store;
 use bahn_parameters::MessageId;
 
 use crate::page::Turn;
+use crate::pages::ask::Choice;
 use crate::site::Site;
 use editor::TableEditor;
 
@@ -21,12 +23,31 @@ pub(crate) use place::{is_disabled, is_of_machine, is_protected, is_table, of_ma
 
 /// The tool table: program 0, and the soft key TOOL TABLE [003:1897].
 pub(crate) fn tools(site: &mut Site) -> Turn {
-    open(TOOL_FILE, site)
+    match has_tools(site) && path_of(TOOL_FILE, site).is_none() {
+        true => ask_to_make(site),
+        false => open(TOOL_FILE, site),
+    }
 }
 
-/// The machine has a tool table that is not disabled.
+/// There should be a tool table, but the machine has no file of it.
+fn ask_to_make(site: &Site) -> Turn {
+    let ask = site.words("THE MACHINE HAS NO TOOL TABLE: MAKE IT = ENT / END = NO ENT");
+    Turn::Open(Choice::confirm(ask, "ENT".to_owned(), |site| {
+        match made::make(site) {
+            Ok(()) => match open(TOOL_FILE, site) {
+                Turn::Open(page) => Turn::Replace(page),
+                Turn::Say(why) => Turn::CloseSaying(why),
+                other => other,
+            },
+            Err(why) => Turn::CloseSaying(why),
+        }
+    }))
+}
+
+/// The machine has a tool table that is not disabled: MP7260 says so, also where its file is still to be made [000:9103].
 pub(crate) fn has_tools(site: &Site) -> bool {
-    is_open_to_all(TOOL_FILE, site)
+    let sizes = site.parameters().operation_parameters().tools;
+    sizes.table_size > 0 && !is_disabled(TOOL_FILE, site)
 }
 
 /// The pocket table.

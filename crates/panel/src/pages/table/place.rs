@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use bahn_host::TableForm;
 
+use crate::pages::description;
 use crate::programs::Entry;
 use crate::site::Site;
 
@@ -11,16 +12,28 @@ use crate::site::Site;
 pub(super) const TOOL_FILE: &str = "TOOL.T";
 pub(super) const POCKET_FILE: &str = "TOOL_P.TCH";
 
+/// The entry of machine.toml that names the file of the tool table.
+pub(super) const TOOLS: &str = "tools";
+
 /// Where a table lies.
 pub(super) fn path_of(name: &str, site: &Site) -> Option<PathBuf> {
+    let sizes = site.parameters().operation_parameters().tools;
+    let named = |own: &String| site.machine.root.join(own);
     let folder = &site.machine.folder;
-    let named = |own: &Option<String>| own.as_ref().map(|own| site.machine.root.join(own));
     match name {
-        TOOL_FILE => named(&folder.tools),
-        POCKET_FILE if site.parameters().operation_parameters().tools.pockets > 0 => named(&folder.pockets),
+        // Without tools in it there is no TOOL.T, and no pocket has one of it [000:9103].
+        TOOL_FILE | POCKET_FILE if sizes.table_size == 0 => None,
+        // It may have been made since the machine was loaded.
+        TOOL_FILE => folder.tools.as_ref().map(named).or_else(|| made(site)),
+        POCKET_FILE if sizes.pockets > 0 => folder.pockets.as_ref().map(named),
         POCKET_FILE => None,
         _ => site.programs.path(name).filter(|path| path.is_file()),
     }
+}
+
+fn made(site: &Site) -> Option<PathBuf> {
+    let name = description::value(TOOLS, site)?;
+    Some(site.machine.root.join(name))
 }
 
 /// The tables of the machine that lie beside the program memory, for the directory.
