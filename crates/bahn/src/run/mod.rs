@@ -499,7 +499,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             .as_ref()
             .map(|place| place.program.clone())
             .unwrap_or_default(),
-        block: at.block,
+        block: place.as_ref().map_or(at.block, |place| place.block),
         line: place.map_or(0, |place| place.line),
         detail,
         at,

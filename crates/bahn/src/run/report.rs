@@ -133,17 +133,20 @@ impl RunReport {
         let seconds = |us: u64| us as f64 * 1e-6;
         let (sum, count, longest) = session.measured.plc_percent;
         let cause = session.measured.deviation.cause;
+        let first = session.host.control().first();
         RunReport {
             machine: machine.to_owned(),
             model: model.id(),
             power_up_s: seconds(session.measured.power_up_us),
             reference_s: seconds(session.measured.reference_us),
             times: session.measured.times.shares(),
-            axes: axes(&session.measured.deviation),
+            axes: axes(&session.measured.deviation, first),
             contour_deviation_mm: tidy(session.measured.deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
-            contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
-            threads: named(&session.measured.threads, session.host.control().first()),
+            contour_deviation_block: cause
+                .and_then(|(_, block)| block)
+                .map(|block| first.number_of(block)),
+            threads: named(&session.measured.threads, first),
             threads_not_listed: session.measured.threads.not_listed,
             plc: PlcReport {
                 max_percent: tidy(longest),
@@ -292,10 +295,12 @@ impl ChannelReport {
         Some(ChannelReport {
             channel: beside.channel + 1,
             program: ProgramReport::Ran(Box::new(program)),
-            axes: axes(deviation),
+            axes: axes(deviation, channel),
             contour_deviation_mm: tidy(deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
-            contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
+            contour_deviation_block: cause
+                .and_then(|(_, block)| block)
+                .map(|block| channel.number_of(block)),
             threads: named(&beside.threads, channel),
             threads_not_listed: beside.threads.not_listed,
         })
@@ -335,14 +340,15 @@ fn threads(row: &mut impl FnMut(&str, &str), threads: &[Thread], not_listed: u64
 }
 
 /// What the axes of a channel did.
-fn axes(deviation: &Deviation) -> BTreeMap<char, AxisReport> {
+fn axes(deviation: &Deviation, channel: ChannelView) -> BTreeMap<char, AxisReport> {
     let axes = deviation.axes.iter().map(|axis| {
         let linear = axis.is_linear();
+        let deviation_block = axis.deviation_block.filter(|_| linear);
         let report = AxisReport {
             max_lag: tidy(axis.max_lag),
-            lag_block: axis.lag_block.map(|block| block.block),
+            lag_block: axis.lag_block.map(|block| channel.number_of(block)),
             max_deviation: linear.then(|| tidy(axis.max_deviation)),
-            deviation_block: axis.deviation_block.filter(|_| linear).map(|block| block.block),
+            deviation_block: deviation_block.map(|block| channel.number_of(block)),
         };
         (axis.letter, report)
     });

@@ -413,9 +413,9 @@ impl Session {
 
     /// Where a run stands of which nothing says what it waits for.
     fn standing_block(&self) -> String {
-        let block = self
-            .block()
-            .map_or("no block".to_owned(), |block| format!("block {}", block.block));
+        let block = self.block().map_or("no block".to_owned(), |block| {
+            format!("block {}", self.host.control().first().number_of(block))
+        });
         format!("{block} is executed, and nothing of control, PLC and machine changes")
     }
 }
