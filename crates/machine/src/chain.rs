@@ -30,7 +30,7 @@ pub enum ContactFault {
 
 impl ContactFault {
     /// So long a chattering contact stays as it is, µs.
-    pub(crate) const CHATTER_US: u64 = 17_000;
+    pub const CHATTER_US: u64 = 17_000;
 
     /// What is read of a contact at a time that would read `level`.
     pub(crate) fn level(self, time_us: u64, level: bool) -> bool {

@@ -60,7 +60,7 @@ pub enum KeyAction {
 
 impl KeyAction {
     /// So long lasts a tap, ms: several PLC scans.
-    pub(crate) const TAP_MS: u32 = 200;
+    pub const TAP_MS: u32 = 200;
 }
 
 /// What can fail.
