@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use bahn_parameters::technology::{self, Technology};
 use bahn_path::{
-    At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Placement,
-    Position, Synchronisation, TechnologyFunction,
+    At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, PathElement, Placement, Position,
+    Synchronisation, TechnologyFunction,
 };
 
 use crate::block_functions::BlockFunctions;
@@ -191,20 +191,9 @@ impl Pen {
     /// An element of the current block.
     #[inline]
     pub fn element(&self, curve: Curve, start: Position, end: Position, feed: FeedRate) -> PathElement {
-        PathElement {
-            block: self.block,
-            sequence: self.sequence,
-            curve,
-            start,
-            end,
-            feed,
-            override_law: OverrideLaw::Free,
-            constant_speed: false,
-            tangential_end: false,
-            dwell_s: 0.0,
-            placement: self.placement.clone(),
-            functions: None,
-        }
+        let mut element = PathElement::new(self.block, self.sequence, curve, [start, end], feed);
+        element.placement.clone_from(&self.placement);
+        element
     }
 
     /// Hands out what the contour stages hold back and takes over where the tool centre really stands.

@@ -101,6 +101,7 @@ pub struct PathElement {
 
 impl PathElement {
     /// A movement from a start to an end by itself: the feed override acts, corners are checked, no function goes out.
+    #[inline]
     pub fn new(
         block: BlockRef,
         sequence: u64,

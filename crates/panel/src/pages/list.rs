@@ -3,7 +3,7 @@
 use bahn_dialogue::Key;
 
 use crate::page::first_in_sight;
-use crate::screen::{Line, Window, WindowKind};
+use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
 
 /// Soft keys that move the cursor, by the names they have in every list, with the lines they go.
@@ -44,6 +44,29 @@ pub(crate) fn soft_keys(names: &[&'static str], site: &Site) -> Vec<String> {
 /// The name of the soft key at a place of its row.
 pub(crate) fn name_at(names: &[&'static str], place: usize) -> &'static str {
     names.get(place).copied().unwrap_or_default()
+}
+
+/// A line of a table: what it begins with, and its cells of one width. The current line has the cursor on one of them.
+pub(crate) fn cells<'a>(
+    head: String,
+    cells: impl Iterator<Item = &'a str>,
+    width: usize,
+    cursor: Option<usize>,
+) -> Line {
+    let mut text = head;
+    let mut marks = Vec::new();
+    for (column, cell) in cells.enumerate() {
+        let from = text.chars().count();
+        if cursor == Some(column) {
+            marks.push((from, from + width - 1, Mark::Cursor));
+        }
+        text += &format!("{cell:<width$}");
+    }
+    Line {
+        text: text.trim_end().to_owned(),
+        current: cursor.is_some(),
+        marks,
+    }
 }
 
 /// A window of so many lines, with the current one of all in sight.

@@ -11,7 +11,7 @@ use crate::page::{Page, Turn, View};
 use crate::pages::ask::Name;
 use crate::pages::{description, list};
 use crate::programs::NAME_MAX;
-use crate::screen::{Line, Mark, WindowKind};
+use crate::screen::{Line, WindowKind};
 use crate::site::Site;
 
 /// Its soft keys [000:3862], and those that make lines.
@@ -173,20 +173,9 @@ impl Assignment {
 
     fn line(&self, place: usize) -> Line {
         let active = if self.active == Some(place) { ">>" } else { "" };
-        let mut text = format!("{place:<4}{active:<4}");
-        let mut marks = Vec::new();
-        for (column, name) in self.rows.get(place).into_iter().flatten().enumerate() {
-            let from = text.chars().count();
-            if (place, column) == (self.row, self.column) {
-                marks.push((from, from + WIDTH - 1, Mark::Cursor));
-            }
-            text += &format!("{name:<WIDTH$}");
-        }
-        Line {
-            text: text.trim_end().to_owned(),
-            current: place == self.row,
-            marks,
-        }
+        let head = format!("{place:<4}{active:<4}");
+        let names = self.rows.get(place).into_iter().flatten().map(String::as_str);
+        list::cells(head, names, WIDTH, (place == self.row).then_some(self.column))
     }
 }
 

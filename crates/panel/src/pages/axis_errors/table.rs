@@ -12,7 +12,7 @@ use super::text::{AXES, lines, read, store};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
-use crate::screen::{Dialogue, Line, Mark, WindowKind};
+use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 
 /// Its soft keys [000:3829].
@@ -182,21 +182,12 @@ impl Table {
         let [number, position, width] = WIDTHS;
         let place = format!("{:.4}", self.position(point));
         let place = place.trim_end_matches('0').trim_end_matches('.');
-        let mut text = format!("{point:<number$}{place:<position$}");
-        let mut marks = Vec::new();
-        for (column, axis) in self.columns().iter().enumerate() {
-            let value = self.points.get(&point).and_then(|cells| cells.get(axis));
-            let from = text.chars().count();
-            if (point, column) == (self.row, self.column) {
-                marks.push((from, from + width - 1, Mark::Cursor));
-            }
-            text += &format!("{:<width$}", value.map_or("", String::as_str));
-        }
-        Line {
-            text: text.trim_end().to_owned(),
-            current: point == self.row,
-            marks,
-        }
+        let head = format!("{point:<number$}{place:<position$}");
+        let cells = self.points.get(&point);
+        let columns = self.columns();
+        let value = |axis| cells.and_then(|cells| cells.get(axis)).map_or("", String::as_str);
+        let values = columns.iter().map(value);
+        list::cells(head, values, width, (point == self.row).then_some(self.column))
     }
 }
 
