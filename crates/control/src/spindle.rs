@@ -102,7 +102,7 @@ impl SpindleUnit {
     pub fn new(wiring: SpindleWiring, parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
         SpindleUnit {
             wiring,
-            servo: Spindle::new(parameters.settings(), timing),
+            servo: Spindle::new(parameters.settings, timing),
             parameters,
             rotation: Rotation::M5,
             programmed_rpm: 0.0,
@@ -128,7 +128,7 @@ impl SpindleUnit {
 
     /// Takes changed machine parameters over.
     pub fn set_parameters(&mut self, parameters: SpindleParameters) {
-        self.servo.configure(parameters.settings());
+        self.servo.configure(parameters.settings);
         self.parameters = parameters;
     }
 
@@ -385,7 +385,7 @@ impl SpindleUnit {
             None => Ramp::Normal,
             Some(braking) => {
                 let flat = self.servo.programmed_volts() / (braking * 1000.0);
-                let own = self.parameters.ramps.tapping_v_ms;
+                let own = self.parameters.settings.ramps.tapping_v_ms;
                 if flat > 0.0 && (own == 0.0 || flat < own) {
                     Ramp::Volts(flat)
                 } else {
@@ -404,7 +404,7 @@ impl SpindleUnit {
     /// It stands in the window of its orientation.
     pub fn is_oriented(&self) -> bool {
         let missing = (self.servo.held_deg() - self.servo.turned_deg()).abs();
-        self.servo.in_position() && missing <= self.parameters.orientation.window_deg
+        self.servo.in_position() && missing <= self.parameters.settings.orientation.window_deg
     }
 
     /// The part of the programmed speed that override and limits leave, %.

@@ -360,7 +360,7 @@ fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Re
         report.check(unlimited, (3020, None, 63), rule, "000:5478-5480", || {
             format!("codes {} to {}, step {}", codes.min, codes.max, codes.step)
         });
-        let speeds: Vec<f64> = spindle.gears.map(|gear| gear.rated_rpm).to_vec();
+        let speeds: Vec<f64> = spindle.settings.gears.map(|gear| gear.rated_rpm).to_vec();
         let used = speeds
             .iter()
             .rposition(|speed| *speed > 0.0)
@@ -416,7 +416,7 @@ fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Re
             format!("{window} mm and {widest} mm")
         });
     }
-    let [least, greatest] = spindle.override_percent;
+    let [least, greatest] = spindle.settings.override_percent;
     let rule = "the least spindle override is above the greatest";
     report.check(
         least <= greatest,

@@ -223,12 +223,16 @@ fn the_spindle_of_every_model_turns() {
             "{model}"
         );
         assert!(
-            spindle.gears[0].rated_rpm > 0.0 && spindle.gears[0].rated_volts > 0.0,
+            spindle.settings.gears[0].rated_rpm > 0.0 && spindle.settings.gears[0].rated_volts > 0.0,
             "{model}"
         );
-        assert!(spindle.ramps.normal_v_ms > 0.0, "{model}");
+        assert!(spindle.settings.ramps.normal_v_ms > 0.0, "{model}");
         assert!(
-            spindle.gears.iter().all(|gear| gear.max_rpm >= gear.rated_rpm),
+            spindle
+                .settings
+                .gears
+                .iter()
+                .all(|gear| gear.max_rpm >= gear.rated_rpm),
             "{model}"
         );
     }
@@ -238,7 +242,7 @@ fn the_spindle_of_every_model_turns() {
 fn a_window_of_the_spindle_is_counted_in_increments() {
     // 10 increments of 360/4096 degree: 0.8789 degrees [000:5901-5907].
     let list = with(ControlModel::Tnc415b, &["3420=10"]);
-    assert!((list.spindle_parameters().orientation.window_deg - 0.878_906_25).abs() < 1e-12);
+    assert!((list.spindle_parameters().settings.orientation.window_deg - 0.878_906_25).abs() < 1e-12);
 }
 
 #[test]

@@ -184,19 +184,19 @@ Output of tool numbers (TOOL CALL) | operation.tools.call.what
 Output of spindle speed | spindle.output
 Limitation of RPM code | spindle.codes.max
 Memory function for axis direction buttons | operation.keys_latched
-Spindle voltage during gear change (oscillation) | spindle.jog_volts
+Spindle voltage during gear change (oscillation) | spindle.settings.jog_volts
 Inhibited axes (not servo controlled) | axis.0.controlled
 Override functions | operation.overrides.feed_steps
 Display and transducer supervision | axis.0.encoder.check_amplitude
-Maximum spindle speed gear * (S-override 100 %) | spindle.gears.#.rated_rpm
-Maximum spindle speed gear 5 (S-override 100 %) / comparator speed of gear 1 | spindle.gears.4.rated_rpm
-Maximum spindle speed gear 6 (S-override 100 %) / comparator speed of gear 2 | spindle.gears.5.rated_rpm
-Maximum spindle speed gear 7 (S-override 100 %) / comparator speed of gear 3 | spindle.gears.6.rated_rpm
-Maximum spindle speed gear 8 (S-override 100 %) / comparator speed of gear 4 | spindle.gears.7.rated_rpm
-S analogue voltage at S-override 100 % | spindle.gears.0.rated_volts
-S analogue voltage at maximum output (absolute limit) | spindle.max_volts
-S-override maximum | spindle.override_percent.1
-S-override minimum | spindle.override_percent.0
+Maximum spindle speed gear * (S-override 100 %) | spindle.settings.gears.#.rated_rpm
+Maximum spindle speed gear 5 (S-override 100 %) / comparator speed of gear 1 | spindle.settings.gears.4.rated_rpm
+Maximum spindle speed gear 6 (S-override 100 %) / comparator speed of gear 2 | spindle.settings.gears.5.rated_rpm
+Maximum spindle speed gear 7 (S-override 100 %) / comparator speed of gear 3 | spindle.settings.gears.6.rated_rpm
+Maximum spindle speed gear 8 (S-override 100 %) / comparator speed of gear 4 | spindle.settings.gears.7.rated_rpm
+S analogue voltage at S-override 100 % | spindle.settings.gears.0.rated_volts
+S analogue voltage at maximum output (absolute limit) | spindle.settings.max_volts
+S-override maximum | spindle.settings.override_percent.1
+S-override minimum | spindle.settings.override_percent.0
 Axis IV designation | axis.3.letter.0
 Corner angle for constant contouring speed (external corners) | corner_angle_deg
 Decimal character, dialogue language, switch-on test | operation.english
@@ -209,11 +209,11 @@ PLC: timer 15: gear change: spindle voltage MP70 polarity time (second direction
 Output of next tool number (TOOL DEF) | operation.tools.definition.what
 Automatic lubrication after traverse in * | axis.*.travel.lubrication_mm
 Feed rate for PLC positioning (MP126-156) * | axis.*.motion.plc_mm_min
-Ramp gradient of S analogue output | spindle.ramps.normal_v_ms
+Ramp gradient of S analogue output | spindle.settings.ramps.normal_v_ms
 Standstill supervision | axis.0.monitoring.standstill_mm
 Programming station | operation.station
 Handwheel and touch probe | operation.handwheel.kind
-Polarity of S analogue voltage | spindle.polarity
+Polarity of S analogue voltage | spindle.settings.polarity
 Cancel status display with M02, M30, program end | clearing.at_program_end
 Lag supervision, linear characteristic: EMERGENCY STOP | axis.0.lag.emergency_mm
 Lag supervision, linear characteristic: erasable | axis.0.lag.monitoring_mm
@@ -222,10 +222,10 @@ Kv factor * | axis.*.lag.kv
 Characteristic kink point | axis.0.lag.kink_percent
 Tapping: minimum feed override | spindle.tapping.override_percent.0
 Tapping: maximum feed override | spindle.tapping.override_percent.1
-Minimum voltage for S analogue output | spindle.min_volts
+Minimum voltage for S analogue output | spindle.settings.min_volts
 Delay before residual nominal voltage is cut off with POSITIONING ERROR | axis.0.monitoring.residual_voltage_s
 M92 tool change position * | axis.*.travel.m92_mm
-Programming S = 0 | spindle.zero_permitted
+Programming S = 0 | spindle.settings.zero_permitted
 Positioning window axis * | axis.*.monitoring.window_mm
 SCALING cycle | scaled_axes
 M06 stop, M89, axis standstill | m.axes_wait
@@ -235,14 +235,14 @@ Movement supervision | axis.0.monitoring.movement_volts
 Touch probe: safety distance before the point (automatic probing) | probe.clearance_mm
 Graphics projection, coordinate system rotation | graphics.third_angle
 Axis V | spindle.controlled
-Kv factor axis V | spindle.gears.0.kv
-Counting direction axis V | spindle.counts_negative
-Position value at the reference mark, axis V | spindle.orientation.reference_deg
+Kv factor axis V | spindle.settings.gears.0.kv
+Counting direction axis V | spindle.settings.counts_negative
+Position value at the reference mark, axis V | spindle.settings.orientation.reference_deg
 Variable contour pocket | pocket.clear_out_first
 Spacing of distance-coded reference marks * | axis.*.reference.kind
-Positioning window axis V | spindle.orientation.window_deg
+Positioning window axis V | spindle.settings.orientation.window_deg
 Handwheel hysteresis | operation.handwheel.threshold
-Spindle speed for orientation | spindle.orientation.speed_rpm
+Spindle speed for orientation | spindle.settings.orientation.speed_rpm
 Touch probe: rapid traverse | probe.rapid_mm_min
 Cycle time of automatic offset adjustment | axis.0.output.offset_interval_s
 Transducer input X assigned to | axis.1.encoder.input
@@ -250,7 +250,7 @@ Transducer input Y assigned to | axis.0.encoder.input
 Transducer input Z assigned to | axis.0.encoder.input
 Transducer input IV assigned to | axis.0.encoder.input
 Transducer input V assigned to | axis.0.encoder.input
-Spindle speed for orientation without encoder | spindle.orientation.jog_rpm";
+Spindle speed for orientation without encoder | spindle.settings.orientation.jog_rpm";
     const NEW: &str = "\
 Axis designation, * axis | axis.*.letter.0
 Measuring-system input assigned to axis, * axis | axis.*.encoder.input
@@ -300,14 +300,14 @@ Path-dependent lubrication distance, * axis | axis.*.travel.lubrication_mm
 Feed rate for leaving reference end position (rotary encoder, MP1350=2), * axis | axis.*.reference.leaving_mm_min
 Feed precontrol in MDI, single block, full sequence | axis.0.precontrol.in_automatic
 Feed precontrol in Manual and Handwheel | axis.0.precontrol.in_manual
-S-analogue voltage at rated speed, gear range * | spindle.gears.#.rated_volts
-Upper limit of spindle override | spindle.override_percent.1
-Lower limit of spindle override | spindle.override_percent.0
-Spindle ramp for rigid tapping | spindle.ramps.rigid_v_ms
-Rated spindle speed, gear range * | spindle.gears.#.rated_rpm
-Maximum spindle speed, gear range * | spindle.gears.#.max_rpm
-Spindle speed activated by M2501 | spindle.orientation.jog_rpm
-Spindle speed for orientation | spindle.orientation.speed_rpm
+S-analogue voltage at rated speed, gear range * | spindle.settings.gears.#.rated_volts
+Upper limit of spindle override | spindle.settings.override_percent.1
+Lower limit of spindle override | spindle.settings.override_percent.0
+Spindle ramp for rigid tapping | spindle.settings.ramps.rigid_v_ms
+Rated spindle speed, gear range * | spindle.settings.gears.#.rated_rpm
+Maximum spindle speed, gear range * | spindle.settings.gears.#.max_rpm
+Spindle speed activated by M2501 | spindle.settings.orientation.jog_rpm
+Spindle speed for orientation | spindle.settings.orientation.speed_rpm
 Activation level of input from MP4130 | plc.monitoring_input.0.active_high
 Number for PLC and feed rate for return to contour, W960; X axis | axis.0.motion.plc_mm_min
 Number for PLC and feed rate for return to contour, W962; Y axis | axis.1.motion.plc_mm_min
@@ -328,8 +328,8 @@ M90 in NC blocks of digitized data | digitizing.m90
 Rounding of decimal places in digitized data | digitizing.step_mm
 Minimum feed override when tapping | spindle.tapping.override_percent.0
 Maximum feed override when tapping | spindle.tapping.override_percent.1
-Spindle run-in characteristic (rigid tapping, like MP1520) | spindle.tapping.run_in_deg_min
-Transient response of spindle on acceleration | spindle.tapping.transient
+Spindle run-in characteristic (rigid tapping, like MP1520) | spindle.settings.lead.run_in_deg_min
+Transient response of spindle on acceleration | spindle.settings.lead.transient
 Dialogue language | operation.english
 Graphics display | graphics.third_angle
 Arc end-point tolerance | arc_tolerance_mm

@@ -284,7 +284,7 @@ proptest! {
             prop_assert!(!axis.active || index < model.limits().axes_max);
         }
         let spindle = list.spindle_parameters();
-        prop_assert!(spindle.gears.iter().all(|gear| gear.max_rpm.is_finite()));
+        prop_assert!(spindle.settings.gears.iter().all(|gear| gear.max_rpm.is_finite()));
         list.plc_parameters();
         list.operation_parameters();
         list.characteristics();

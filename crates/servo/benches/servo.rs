@@ -51,7 +51,7 @@ fn axis_step(bencher: Bencher, method: Method) {
 #[divan::bench]
 fn spindle_step(bencher: Bencher) {
     let model = ControlModel::Tnc415b;
-    let parameters = ParameterList::reference(model).spindle_parameters().settings();
+    let parameters = ParameterList::reference(model).spindle_parameters().settings;
     let timing = model.timing();
     let steps = CYCLES * timing.steps();
     bencher

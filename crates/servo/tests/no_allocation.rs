@@ -38,7 +38,7 @@ fn the_cycle_of_an_axis_does_not_allocate() {
 
 #[test]
 fn the_cycle_of_the_spindle_does_not_allocate() {
-    let parameters = ParameterList::reference(Tnc415b).spindle_parameters().settings();
+    let parameters = ParameterList::reference(Tnc415b).spindle_parameters().settings;
     let mut spindle = Spindle::new(parameters, Tnc415b.timing());
     let mut encoder = Encoder::default();
     let allocated = measure(|| {

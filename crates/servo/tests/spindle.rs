@@ -35,7 +35,7 @@ impl Bench {
         for index in 0..8 {
             list.set(3440, index, 1.0).unwrap();
         }
-        let parameters = list.spindle_parameters().settings();
+        let parameters = list.spindle_parameters().settings;
         let timing = Tnc415b.timing();
         let counts = if parameters.counts_negative { -TURN } else { TURN };
         Bench {

@@ -52,7 +52,7 @@ impl Bench {
         }
         let timing = Tnc415b.timing();
         let mut bench = Bench {
-            spindle: Spindle::new(list.spindle_parameters().settings(), timing),
+            spindle: Spindle::new(list.spindle_parameters().settings, timing),
             timing,
             drive: Drive::Sound,
             stuck: false,

@@ -148,9 +148,7 @@ fn merged(before: &[Change], after: Vec<Change>) -> Vec<Change> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bahn_path::{
-        Axis, Blank, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Plane, Position, ToolShape,
-    };
+    use bahn_path::{Axis, Blank, BlockRef, Curve, FeedRate, PathElement, Plane, Position, ToolShape};
     use bahn_workpiece::{Resolution, Workpiece};
 
     fn down(x: f64, y: f64, z: f64) -> PathElement {
@@ -159,20 +157,8 @@ mod tests {
             (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);
             position
         };
-        PathElement {
-            block: BlockRef::default(),
-            sequence: 0,
-            curve: Curve::Line,
-            start: at(1.0),
-            end: at(z),
-            feed: FeedRate::Programmed(100.0),
-            override_law: OverrideLaw::Free,
-            constant_speed: false,
-            tangential_end: false,
-            dwell_s: 0.0,
-            placement: None,
-            functions: None,
-        }
+        let feed = FeedRate::Programmed(100.0);
+        PathElement::new(BlockRef::default(), 0, Curve::Line, [at(1.0), at(z)], feed)
     }
 
     /// 5000 holes, one each tenth of a second, over and over the same places: what is kept of the moments is the part as it

@@ -403,7 +403,7 @@ fn off_line(point: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bahn_path::{OverrideLaw, Plane};
+    use bahn_path::Plane;
 
     fn at(x: f64, y: f64, z: f64) -> Position {
         let mut position = Position::UNKNOWN;
@@ -412,20 +412,8 @@ mod tests {
     }
 
     fn element(curve: Curve, start: Position, end: Position, block: u32) -> PathElement {
-        PathElement {
-            block: BlockRef { program: 0, block },
-            sequence: 0,
-            curve,
-            start,
-            end,
-            feed: FeedRate::Programmed(100.0),
-            override_law: OverrideLaw::Free,
-            constant_speed: false,
-            tangential_end: false,
-            dwell_s: 0.0,
-            placement: None,
-            functions: None,
-        }
+        let feed = FeedRate::Programmed(100.0);
+        PathElement::new(BlockRef { program: 0, block }, 0, curve, [start, end], feed)
     }
 
     /// A full circle of 50 mm in 31.4 s: chords keep within the tolerance and are no finer than that needs, and time

@@ -513,18 +513,11 @@ fn as_element(said: &Said) -> Option<PathElement> {
     else {
         return None;
     };
-    Some(PathElement {
-        block: BlockRef::default(),
-        sequence: 0,
-        curve: *curve,
-        start: *start,
-        end: *end,
-        feed: *feed,
-        override_law: OverrideLaw::Free,
-        constant_speed: false,
-        tangential_end: false,
-        dwell_s: 0.0,
-        placement: None,
-        functions: None,
-    })
+    Some(PathElement::new(
+        BlockRef::default(),
+        0,
+        *curve,
+        [*start, *end],
+        *feed,
+    ))
 }

@@ -109,7 +109,7 @@ fn blocks(machine: &LoadedMachine, list: &ParameterList) -> Result<(String, Vec<
     let zero = Some(machine.datum()[Axis::Z]).filter(|zero| zero.is_finite());
     let top = (least + greatest + depth) / 2.0 - zero.unwrap_or(0.0);
     let (mut text, mut gears, mut slower) = (String::new(), Vec::new(), 0.0);
-    for (gear, range) in (0_u8..).zip(list.spindle_parameters().gears) {
+    for (gear, range) in (0_u8..).zip(list.spindle_parameters().settings.gears) {
         let most = RAPID_PART * axis.motion.rapid_mm_min / PITCH_MM;
         let rpm = range.rated_rpm.min(most).floor();
         if rpm <= slower {
@@ -200,7 +200,7 @@ impl Assistant<'_> {
     fn ramp(&mut self) {
         let [flattest, steepest] = RAMP_RANGE;
         let rounded = |ramp: f64| (ramp.clamp(flattest, steepest) * 1e4).round() / 1e4;
-        let entry = self.list.spindle_parameters().ramps.rigid_v_ms;
+        let entry = self.list.spindle_parameters().settings.ramps.rigid_v_ms;
         // 0 is no ramp at all.
         let mut ramp = if entry > 0.0 { entry } else { steepest };
         let mut fails = None;
@@ -233,7 +233,7 @@ impl Assistant<'_> {
     }
 
     fn kv_of(&self, gear: u8) -> Option<f64> {
-        let gears = self.list.spindle_parameters().gears;
+        let gears = self.list.spindle_parameters().settings.gears;
         gears.get(usize::from(gear)).map(|gear| gear.kv)
     }
 

@@ -34,34 +34,11 @@ pub struct SpindleParameters {
     /// The axes do not halt when TOOL CALL gives a speed only: MP3030 = 1 (old MP214 + 4)
     /// [000:5645-5651] [001:1650-1652].
     pub axes_run_on: bool,
-    /// Speed 0 may be programmed: MP3120 = 0 (old MP190 = 0) [000:5566] [001:1573-1575].
-    pub zero_permitted: bool,
-    /// Polarity of the voltage: MP3130 (old MP172) [000:5502-5506].
-    pub polarity: SpindlePolarity,
-    /// The encoder counts negative with M03: MP3140 (old MP239) [000:5508-5511].
-    pub counts_negative: bool,
-    /// Check of the encoder's signal amplitude, letter A: MP31 bit 5; old: none [000:3310-3318].
-    pub check_amplitude: bool,
-    /// Check of the encoder's edge separation, letter B: MP32 bit 5; old: none [000:3320-3328].
-    pub check_edges: bool,
-    /// The gear ranges, speeds ascending; those that are not used have rated speed 0 [000:5522-5564].
-    pub gears: [Gear; GEARS],
     /// Speeds that M2504 compares with, rpm; TNC 151/155 only, when MP78 to MP85 do not ascend
     /// [001:1514-1536].
     pub comparator_rpm: Option<[f64; OLD_GEARS]>,
-    /// Least voltage, V: MP3240.1, 0 to 9.999 (old MP184) [000:5565].
-    pub min_volts: f64,
-    /// Greatest voltage, V: 10 (old MP87) [000:5258] [001:1502-1536].
-    pub max_volts: f64,
-    /// Voltage in which the spindle jogs while the gear changes, V: MP3240.2, 0 to 9.999 (old MP70)
-    /// [000:5636-5641].
-    pub jog_volts: f64,
-    /// Least and greatest override, %: MP3310.1 and .0, 0 to 150 (old MP89, MP88) [000:5585-5589].
-    pub override_percent: [f64; 2],
-    /// Ramps; a ramp of 0 V/ms is none.
-    pub ramps: SpindleRamps,
-    /// Orientation.
-    pub orientation: OrientationSettings,
+    /// What its loop is told.
+    pub settings: SpindleSettings,
     /// Tapping with a floating holder and rigid tapping.
     pub tapping: TappingParameters,
 }
@@ -121,10 +98,6 @@ pub struct TappingParameters {
     pub coded_lead_s: f64,
     /// Time that the spindle runs on after the depth, s: MP7120.2; old: 0.
     pub run_on_s: f64,
-    /// Rigid tapping: run-in of the spindle, degrees/min: MP7130, 0.001 to 10; old: none, 0.
-    pub run_in_deg_min: f64,
-    /// Rigid tapping: transient response on acceleration: MP7140, 0.001 to 1; old: none, 0.
-    pub transient: f64,
     /// Rigid tapping: positioning window of the tool axis, mm: MP7150, 0.0001 to 2; old: none, 0.
     pub window_mm: f64,
     /// The spindle is oriented before cycle 17: MP7160 = 0; old: never.
@@ -132,31 +105,10 @@ pub struct TappingParameters {
 }
 
 impl SpindleParameters {
-    /// What the loop of the spindle is told of them.
-    pub fn settings(&self) -> SpindleSettings {
-        SpindleSettings {
-            zero_permitted: self.zero_permitted,
-            polarity: self.polarity,
-            counts_negative: self.counts_negative,
-            check_amplitude: self.check_amplitude,
-            check_edges: self.check_edges,
-            gears: self.gears,
-            min_volts: self.min_volts,
-            max_volts: self.max_volts,
-            jog_volts: self.jog_volts,
-            override_percent: self.override_percent,
-            ramps: self.ramps,
-            orientation: self.orientation,
-            lead: LeadSettings {
-                run_in_deg_min: self.tapping.run_in_deg_min,
-                transient: self.tapping.transient,
-            },
-        }
-    }
-
     /// The gear range for a programmed speed, rpm: the smallest that reaches it.
     fn gear_for(&self, rpm: f64) -> Option<&Gear> {
-        self.gears
+        self.settings
+            .gears
             .iter()
             .find(|gear| gear.rated_rpm > 0.0 && rpm <= gear.rated_rpm)
     }
@@ -164,13 +116,13 @@ impl SpindleParameters {
     /// For each gear range its rated speed, rpm, and how fast the spindle changes its speed in rigid tapping,
     /// rpm/s: MP3410.3 in the voltage of the gear; 0 where there is no ramp or no gear.
     pub fn rigid_ramps(&self) -> [[f64; 2]; GEARS] {
-        self.gears.map(|gear| {
+        self.settings.gears.map(|gear| {
             let rpm_v = if gear.rated_volts > 0.0 {
                 gear.rated_rpm / gear.rated_volts
             } else {
                 0.0
             };
-            [gear.rated_rpm, self.ramps.rigid_v_ms * 1000.0 * rpm_v]
+            [gear.rated_rpm, self.settings.ramps.rigid_v_ms * 1000.0 * rpm_v]
         })
     }
 
@@ -185,7 +137,7 @@ impl SpindleParameters {
                 let volts = self
                     .gear_for(rpm)
                     .map_or(0.0, |gear| rpm * gear.rated_volts / gear.rated_rpm);
-                lead_s(volts, self.ramps.tapping_v_ms, self.tapping.run_on_s)
+                lead_s(volts, self.settings.ramps.tapping_v_ms, self.tapping.run_on_s)
             }
         }
     }
@@ -206,6 +158,7 @@ impl ParameterList {
         let kind = self.value((3010, 0), (62, 0)) as u8;
         let (gears, comparator_rpm) = self.gears();
         let old = self.has_old_numbers();
+        let rigid = |number| self.get_new(number, 0).unwrap_or_default();
         let encoder_bit = |number| bit_of(self.get_new(number, 0).unwrap_or_default(), ENCODER_BIT);
         SpindleParameters {
             output: output(kind),
@@ -217,28 +170,34 @@ impl ParameterList {
             free_output: self.free_output(kind),
             codes: codes(self.value((3020, 0), (63, 0))),
             axes_run_on: !self.m_functions().axes_wait_for_speed,
-            zero_permitted: self.spindle_zero_permitted(),
-            polarity: polarity(self.value((3130, 0), (172, 0))),
-            counts_negative: self.value((3140, 0), (239, 0)) == 1.0,
-            check_amplitude: encoder_bit(31),
-            check_edges: encoder_bit(32),
-            gears,
             comparator_rpm,
-            min_volts: self.value((3240, 1), (184, 0)),
-            max_volts: if old { self.old(87) } else { OUTPUT_VOLTS },
-            jog_volts: self.value((3240, 2), (70, 0)),
-            override_percent: self.spindle_override_percent(),
-            ramps: SpindleRamps {
-                normal_v_ms: self.value((3410, 0), (168, 0)),
-                orientation_v_ms: self.value((3410, 1), (168, 0)),
-                tapping_v_ms: self.value((3410, 2), (168, 0)),
-                rigid_v_ms: self.value((3410, 3), (168, 0)),
-            },
-            orientation: OrientationSettings {
-                window_deg: self.value((3420, 0), (246, 0)) * INCREMENT_DEG,
-                reference_deg: self.value((3430, 0), (240, 0)),
-                jog_rpm: self.value((3520, 0), (258, 0)),
-                speed_rpm: self.value((3520, 1), (248, 0)),
+            settings: SpindleSettings {
+                zero_permitted: self.spindle_zero_permitted(),
+                polarity: polarity(self.value((3130, 0), (172, 0))),
+                counts_negative: self.value((3140, 0), (239, 0)) == 1.0,
+                check_amplitude: encoder_bit(31),
+                check_edges: encoder_bit(32),
+                gears,
+                min_volts: self.value((3240, 1), (184, 0)),
+                max_volts: if old { self.old(87) } else { OUTPUT_VOLTS },
+                jog_volts: self.value((3240, 2), (70, 0)),
+                override_percent: self.spindle_override_percent(),
+                ramps: SpindleRamps {
+                    normal_v_ms: self.value((3410, 0), (168, 0)),
+                    orientation_v_ms: self.value((3410, 1), (168, 0)),
+                    tapping_v_ms: self.value((3410, 2), (168, 0)),
+                    rigid_v_ms: self.value((3410, 3), (168, 0)),
+                },
+                orientation: OrientationSettings {
+                    window_deg: self.value((3420, 0), (246, 0)) * INCREMENT_DEG,
+                    reference_deg: self.value((3430, 0), (240, 0)),
+                    jog_rpm: self.value((3520, 0), (258, 0)),
+                    speed_rpm: self.value((3520, 1), (248, 0)),
+                },
+                lead: LeadSettings {
+                    run_in_deg_min: rigid(7130),
+                    transient: rigid(7140),
+                },
             },
             tapping: self.tapping_parameters(),
         }
@@ -298,8 +257,6 @@ impl ParameterList {
             reversal_dwell_s: tapping.reversal_dwell_s,
             coded_lead_s: self.value((7120, 1), (73, 0)),
             run_on_s: self.get_new(7120, 2).unwrap_or_default(),
-            run_in_deg_min: rigid(7130),
-            transient: rigid(7140),
             window_mm: rigid(7150),
             orientation: tapping.orientation,
         }
@@ -458,10 +415,10 @@ mod tests {
             list.set(number, 0, rpm).unwrap();
         }
         let spindle = list.spindle_parameters();
-        assert_eq!(spindle.gears[3].rated_rpm, 4000.0);
-        assert_eq!(spindle.gears[4].rated_rpm, 0.0);
+        assert_eq!(spindle.settings.gears[3].rated_rpm, 4000.0);
+        assert_eq!(spindle.settings.gears[4].rated_rpm, 0.0);
         assert_eq!(spindle.comparator_rpm, Some([450.0, 900.0, 1800.0, 3600.0]));
         // 9 V at the rated speed, 9.999 V at most: 4000 / 9 * 9.999 = 4444 rpm.
-        assert!((spindle.gears[3].max_rpm - 4444.0).abs() < 1e-9);
+        assert!((spindle.settings.gears[3].max_rpm - 4444.0).abs() < 1e-9);
     }
 }

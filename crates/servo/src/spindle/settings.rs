@@ -6,25 +6,26 @@ pub const GEARS: usize = 8;
 /// The settings of a spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleSettings {
-    /// Speed 0 may be programmed: MP3120 = 0 [000:5566].
+    /// Speed 0 may be programmed: MP3120 = 0 (old MP190 = 0) [000:5566] [001:1573-1575].
     pub zero_permitted: bool,
-    /// Polarity of the voltage.
+    /// Polarity of the voltage: MP3130 (old MP172) [000:5502-5506].
     pub polarity: SpindlePolarity,
-    /// The encoder counts negative with M03: MP3140 [000:5508-5511].
+    /// The encoder counts negative with M03: MP3140 (old MP239) [000:5508-5511].
     pub counts_negative: bool,
-    /// Check of the encoder's signal amplitude, letter A: MP31 [000:3310-3318].
+    /// Check of the encoder's signal amplitude, letter A: MP31 bit 5; old: none [000:3310-3318].
     pub check_amplitude: bool,
-    /// Check of the encoder's edge separation, letter B: MP32 [000:3320-3328].
+    /// Check of the encoder's edge separation, letter B: MP32 bit 5; old: none [000:3320-3328].
     pub check_edges: bool,
     /// The gear ranges, speeds ascending; those that are not used have rated speed 0 [000:5522-5564].
     pub gears: [Gear; GEARS],
-    /// Least voltage, V: MP3240.1 [000:5565].
+    /// Least voltage, V: MP3240.1, 0 to 9.999 (old MP184) [000:5565].
     pub min_volts: f64,
-    /// Greatest voltage, V: 10 [000:5258].
+    /// Greatest voltage, V: 10 (old MP87) [000:5258] [001:1502-1536].
     pub max_volts: f64,
-    /// Voltage in which the spindle jogs while the gear changes, V: MP3240.2 [000:5636-5641].
+    /// Voltage in which the spindle jogs while the gear changes, V: MP3240.2, 0 to 9.999 (old MP70)
+    /// [000:5636-5641].
     pub jog_volts: f64,
-    /// Least and greatest override, %: MP3310 [000:5585-5589].
+    /// Least and greatest override, %: MP3310.1 and .0, 0 to 150 (old MP89, MP88) [000:5585-5589].
     pub override_percent: [f64; 2],
     /// Ramps; a ramp of 0 V/ms is none.
     pub ramps: SpindleRamps,
@@ -37,9 +38,9 @@ pub struct SpindleSettings {
 /// How the angle of a spindle is led in rigid tapping [000:6120-6141].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadSettings {
-    /// Run-in, degrees/min: MP7130; 0 rounds nothing.
+    /// Rigid tapping: run-in of the spindle, degrees/min: MP7130, 0.001 to 10; old: none, 0.
     pub run_in_deg_min: f64,
-    /// Transient response on acceleration: MP7140; 0 rounds nothing.
+    /// Rigid tapping: transient response on acceleration: MP7140, 0.001 to 1; old: none, 0.
     pub transient: f64,
 }
 
