@@ -72,6 +72,14 @@ pub(crate) fn without_tools(block: BlockRef, run: Option<&dyn Reader>) -> Progra
     error(MessageId::BlockNotSupported, why.to_owned(), block, run)
 }
 
+/// The error of a program that is to begin at a block in the plane of 3D ROT, or of the program before, and knows none: it
+/// would run upright.
+pub(crate) fn without_planes(block: u32, run: &dyn Reader) -> ProgramError {
+    let why = "3D ROT for program run is on: a program in this language does not run in a tilted plane";
+    let block = BlockRef { program: 0, block };
+    error(MessageId::BlockNotSupported, why.to_owned(), block, Some(run))
+}
+
 fn error(message: MessageId, detail: String, block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
     let program = run.and_then(|run| run.program(block.program));
     ProgramError {

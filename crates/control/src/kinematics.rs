@@ -133,6 +133,14 @@ impl Chain {
         self.placement.as_ref()
     }
 
+    /// The same kinematics and offsets, without a placement.
+    pub fn upright(&self) -> Chain {
+        Chain {
+            placement: None,
+            ..self.clone()
+        }
+    }
+
     /// What is added behind a placement, which has the tool in it.
     fn behind(&self) -> Offsets {
         Offsets {

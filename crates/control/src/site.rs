@@ -37,6 +37,11 @@ impl Site<'_> {
         self.chain.to_path(&self.axes.programmed_position())
     }
 
+    /// Where a program that begins finds the axes: it begins upright, however the path stands that was broken off before.
+    pub fn upright(&self) -> Position {
+        self.chain.upright().to_path(&self.axes.programmed_position())
+    }
+
     /// Outputs a function: its effect in the control, and what goes to the PLC. FN19 says whether its program is
     /// in inches.
     pub fn output(&mut self, function: &Function, inch: bool) {

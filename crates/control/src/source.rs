@@ -15,7 +15,7 @@ use bahn_servo::Rotation;
 use crate::axes::OwnAxes;
 use crate::beside::Loan;
 use crate::drip_feed::DripFeed;
-use crate::feeder::Feeder;
+use crate::feeder::{self, Feeder};
 use crate::kinematics::Chain;
 use crate::manual_probing::ManualProbing;
 use crate::message::Message;
@@ -51,7 +51,7 @@ impl Reading {
     /// What a program in another language begins with.
     pub fn begin(&self, site: &Site, basis: &Basis) -> Start {
         // Which axes its channel has the feeder knows.
-        Start::of(basis.list, self.functions.clone(), AxisSet::EMPTY, site.here())
+        Start::of(basis.list, self.functions.clone(), AxisSet::EMPTY, site.upright())
     }
 }
 
@@ -448,7 +448,7 @@ impl Source {
     /// The program of the next run.
     ///
     /// # Errors
-    /// The message why there is none.
+    /// The message why there is none, or why it cannot begin in the plane that is in force.
     pub fn open(
         &self,
         mdi: bool,
@@ -461,7 +461,14 @@ impl Source {
             return Ok(Opened::Program(program));
         }
         let reading = &self.reading;
-        selection.open(mdi, &*reading.programs, || reading.begin(site, basis))
+        let opened = selection.open(mdi, &*reading.programs, || reading.begin(site, basis))?;
+        match &opened {
+            Opened::Reader(reader) if self.plane().is_some() => {
+                let error = feeder::without_planes(selection.start_block, &**reader);
+                Err(Message::Program(Box::new(error)))
+            }
+            _ => Ok(opened),
+        }
     }
 
     /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
@@ -505,7 +512,7 @@ impl Source {
             Opened::Reader(reader) => reader,
             Opened::Program(program) => Box::new(self.interpreter_of(program, status, site, basis)),
         };
-        Feeder::new(reader, site.chain.clone(), limits)
+        Feeder::new(reader, site.chain.upright(), limits)
     }
 
     /// The interpreter of a program with what is in force before it.
@@ -529,7 +536,7 @@ impl Source {
             strict: self.reading.checking.strict,
             skip_unknown: self.reading.checking.skip_unknown,
             q_values: self.q.clone(),
-            start: site.here(),
+            start: site.upright(),
             tool_length_mm: Some(site.chain.offsets.tool_length),
             status,
             basic_rotation: basis.touch.basic_rotation(site.chain.offsets.tool_axis),

@@ -15,7 +15,7 @@ use bahn_path::{
 use bahn_program::Program;
 use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning};
 use stand::*;
-use support::Rig;
+use support::{Build, Rig, machine};
 
 /// Where X goes in each block, mm, and the M function that goes out before it.
 const BLOCKS: [(f64, Option<u16>); 2] = [(60.0, None), (70.0, Some(40))];
@@ -138,7 +138,14 @@ struct Shelf;
 impl Programs for Shelf {
     fn open(&self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
         let text = "BEGIN PGM 2 MM\nQ1 = +5\nL X+55 R0 F3000\nEND PGM 2 MM\n";
-        Ok((name == "2.H").then(|| Arc::new(Program::from_bytes(name, text.into()))))
+        let tilted = "BEGIN PGM 3 MM\nL X+300 Y+200 Z+300 B+30 R0 FMAX\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+30\n\
+                      L IX+100 F3000\nEND PGM 3 MM\n";
+        let text = match name {
+            "2.H" => text,
+            "3.H" => tilted,
+            _ => return Ok(None),
+        };
+        Ok(Some(Arc::new(Program::from_bytes(name, text.into()))))
     }
 
     fn reader(&self, name: &str, start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
@@ -267,4 +274,87 @@ fn test_run_and_q_parameters() {
     run(&mut rig, 3.0);
     let q = rig.control.remember().q;
     assert!(q.contains(&(1, 5.0)), "{q:?}");
+}
+
+/// The same on the mill with a head that swivels about B; behind the end of a program what is in force stays.
+fn swivelling() -> Rig {
+    let (mut setup, machine) = Build::swivelling_mill().mp("7300=3").setup();
+    setup.programs = Arc::new(Shelf);
+    let mut rig = Rig {
+        control: Control::new(setup),
+        machine,
+    };
+    rig.power_on();
+    rig.command("mode full");
+    rig
+}
+
+/// A program in the plane of B+30 is broken off; the places that run then are upright ones: X goes to 70 of the machine,
+/// Y and Z stay where they stand.
+#[test]
+fn it_begins_upright_where_a_tilted_program_was_broken_off() {
+    let mut rig = swivelling();
+    rig.command("select 3.H");
+    rig.start();
+    rig.until(60.0, "the way in the plane", |rig| machine(rig)[0] > 310.0);
+    rig.event("key NC_STOP tap");
+    rig.seconds(0.5);
+    rig.command("stop");
+    let stands = machine(&rig);
+    assert!(stands[2] < 299.0, "Z comes down in the plane: {stands:?}");
+    rig.command("select 1.H");
+    // TEST RUN begins upright, too.
+    rig.command("test 1.H");
+    rig.seconds(0.2);
+    let tested = rig.control.tested().map(|reader| reader.position());
+    let tested = tested.map(|position| [Axis::Y, Axis::Z].map(|axis| position[axis]));
+    assert!(
+        tested.is_some_and(|[y, z]| (y - stands[1]).abs() < 0.01 && (z - stands[2]).abs() < 0.01),
+        "{tested:?} {stands:?}"
+    );
+    rig.start();
+    rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+    rig.seconds(0.2);
+    assert_eq!(rig.messages(), [""; 0]);
+    let there = machine(&rig);
+    let expected = [70.0, stands[1], stands[2]];
+    assert!(
+        (0..3).all(|i| (there[i] - expected[i]).abs() < 0.01),
+        "{there:?} is not {expected:?}"
+    );
+}
+
+/// The plane in which programs begin is one of TNC programs: places that would run upright in spite of it are refused, with
+/// the program and the block, and run when it is off.
+#[test]
+fn the_plane_of_the_menu_is_not_passed_over() {
+    let mut rig = swivelling();
+    rig.command("mode mdi");
+    rig.command("mdi L X+300 Y+200 Z+300 B+30 R0 FMAX");
+    rig.start();
+    rig.until(60.0, "B+30", |rig| rig.control.snapshot().ended);
+    rig.command("mode manual");
+    rig.seconds(0.5);
+    rig.command("3d-rot run on");
+    rig.command("mode full");
+    rig.command("select 1.H");
+    let stands = machine(&rig);
+    rig.start();
+    rig.seconds(1.0);
+    let messages = rig.messages();
+    assert!(
+        messages.len() == 1
+            && messages[0].contains("FUNCTION NOT YET SUPPORTED")
+            && messages[0].contains("3D ROT"),
+        "{messages:?}"
+    );
+    assert!((machine(&rig)[0] - stands[0]).abs() < 0.01);
+    assert!(rig.control.snapshot().run != RunState::Running);
+    rig.command("ce");
+    rig.command("3d-rot run off");
+    rig.start();
+    rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+    rig.seconds(0.2);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert!((machine(&rig)[0] - 70.0).abs() < 0.01);
 }

@@ -6,24 +6,6 @@ mod support;
 use bahn_control::RunState;
 use support::*;
 
-/// The mill with a swivel head in place of its table: B turns 150 mm above the tool datum.
-fn swivelling() -> Build {
-    let head = ["410.3=1", "7500=1", "7510=%000100", "7512=150", "7520=%010000"];
-    let mill = Build::mill()
-        .plant("[axis.C]", "[axis.B]")
-        .plant("[axis.C.encoder]", "[axis.B.encoder]")
-        .plant("clamps = \"C\"", "clamps = \"B\"");
-    head.into_iter().fold(mill, Build::mp)
-}
-
-fn machine(rig: &Rig) -> [f64; 3] {
-    let axes = rig.control.snapshot().axes;
-    ['X', 'Y', 'Z'].map(|letter| {
-        let axis = axes.iter().find(|axis| axis.letter == letter).expect("an axis");
-        axis.machine
-    })
-}
-
 #[track_caller]
 fn assert_near(a: [f64; 3], b: [f64; 3]) {
     assert!((0..3).all(|i| (a[i] - b[i]).abs() < 0.01), "{a:?} is not {b:?}");
@@ -39,7 +21,7 @@ fn a_tilted_plane_moves_all_axes() {
     let blocks = format!(
         "{START}L B+30 FMAX\n{TILT}L IX+50 F5000\nL IZ+40 IY+10\nM0\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL IX+0 FMAX"
     );
-    let mut rig = swivelling().program("TILT.H", &blocks).rig();
+    let mut rig = Build::swivelling_mill().program("TILT.H", &blocks).rig();
     rig.power_on();
     rig.command("mode full");
     rig.command("select TILT.H");
@@ -87,7 +69,7 @@ fn a_tilted_plane_moves_all_axes() {
 fn limits_are_those_of_the_axes_behind_the_plane() {
     let run = |way: &str| {
         let blocks = format!("{START}L B+30 FMAX\n{TILT}L IX-{way} F5000");
-        let mut rig = swivelling().program("LIMIT.H", &blocks).rig();
+        let mut rig = Build::swivelling_mill().program("LIMIT.H", &blocks).rig();
         rig.power_on();
         rig.command("mode full");
         rig.command("select LIMIT.H");
@@ -168,7 +150,7 @@ fn a_cylinder_surface() {
 #[test]
 fn m114_keeps_the_tip_where_it_is() {
     let blocks = format!("{START}L B+90 F3000 M114\nL IX+10 FMAX");
-    let mut rig = swivelling().program("TIP.H", &blocks).rig();
+    let mut rig = Build::swivelling_mill().program("TIP.H", &blocks).rig();
     rig.power_on();
     rig.command("mode full");
     rig.command("select TIP.H");
@@ -209,7 +191,7 @@ fn m114_keeps_the_tip_where_it_is() {
 #[test]
 fn a_stop_in_the_plane() {
     let blocks = format!("{START}L B+30 FMAX\n{TILT}L IX+50 F1000\nL IX+0 FMAX");
-    let mut rig = swivelling().program("STOP.H", &blocks).rig();
+    let mut rig = Build::swivelling_mill().program("STOP.H", &blocks).rig();
     rig.power_on();
     rig.command("mode full");
     rig.command("select STOP.H");
@@ -236,7 +218,7 @@ fn the_plc_reads_that_the_plane_is_tilted() {
     let blocks = format!(
         "{START}L B+30 FMAX\n{TILT}L IX+50 F5000\nM0\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL IX+1 FMAX"
     );
-    let mut build = swivelling().program("READ.H", &blocks);
+    let mut build = Build::swivelling_mill().program("READ.H", &blocks);
     build.plc = build.plc.replacen(
         "       EM\n",
         "       PS    K+18\n       CM    9035\n       PL    W900\n       EM\n",
@@ -266,7 +248,7 @@ fn leaning_cycles_allocate_nothing() {
         "{START}L B+30 FMAX\n{TILT}L IX+50 F5000\nCC IX+0 IY+10\nC IX+0 IY+0 DR+\nCYCL DEF 19.0 WORKING PLANE\n\
          CYCL DEF 19.1\nL IX+1 FMAX\nL B+0 F3000 M114\nL IX+5 B+10\nL IX+1 M115\nL IX+1 FMAX"
     );
-    let mut rig = swivelling().program("QUIET.H", &blocks).rig();
+    let mut rig = Build::swivelling_mill().program("QUIET.H", &blocks).rig();
     rig.power_on();
     rig.command("mode full");
     rig.command("select QUIET.H");
@@ -293,7 +275,7 @@ fn leaning_cycles_allocate_nothing() {
 #[test]
 fn a_rotary_axis_makes_no_step_at_a_straight_joint() {
     let blocks = "L X+300 Y+200 Z+300 B+0 R0 FMAX\nL IX+5 B+10 F3000\nL IX+5";
-    let mut rig = swivelling()
+    let mut rig = Build::swivelling_mill()
         .mp("7460=10")
         .mp("1060.3=1")
         .program("JOINT.H", blocks)
@@ -347,7 +329,7 @@ const JOG: &str = "
 /// a software limit ends there with its message [000:8494-8556].
 #[test]
 fn jog_increments_lead_along_the_plane() {
-    let mut build = swivelling().mp("920.2=295");
+    let mut build = Build::swivelling_mill().mp("920.2=295");
     build.plc = build.plc.replacen("       EM\n", JOG, 1);
     let mut rig = by_hand(build);
     rig.command("mode handwheel");
@@ -408,7 +390,7 @@ fn shown(rig: &Rig) -> [f64; 3] {
 /// what it says and leaves the others. Off again, X is that of the machine.
 #[test]
 fn by_hand_in_the_plane() {
-    let mut build = swivelling();
+    let mut build = Build::swivelling_mill();
     build.plc = build.plc.replacen(
         "       EM\n",
         "       PS    K+18\n       CM    9035\n       PL    W900\n       EM\n",
@@ -465,7 +447,7 @@ fn by_hand_in_the_plane() {
 /// way back is free, and the message goes.
 #[test]
 fn by_hand_in_the_plane_up_to_the_limit() {
-    let mut rig = by_hand(swivelling());
+    let mut rig = by_hand(Build::swivelling_mill());
     rig.event("key X- press");
     rig.event("key RAPID press");
     rig.seconds(20.0);
@@ -499,7 +481,7 @@ fn by_hand_in_the_plane_up_to_the_limit() {
 fn the_wheel_in_the_plane() {
     let build = ["7640=2", "7650=1", "7660=0"]
         .into_iter()
-        .fold(swivelling(), Build::mp);
+        .fold(Build::swivelling_mill(), Build::mp);
     let mut rig = by_hand(build.program("UP.H", "L IX+10 R0 F5000\nL IX+0"));
     let (sin, cos) = 30f64.to_radians().sin_cos();
     let way = |turns: f64, rig: &mut Rig| {
@@ -551,7 +533,7 @@ fn go(rig: &mut Rig, block: &str) {
 /// [000:4269], the probe is calibrated upright.
 #[test]
 fn the_datum_is_probed_in_the_plane() {
-    let mut rig = by_hand(swivelling());
+    let mut rig = by_hand(Build::swivelling_mill());
     go(&mut rig, "L X+300 Y+150 Z+200");
     rig.event("probe insert");
     // The face of the block is at Z 40, the tip 120 mm below the axis.
@@ -602,7 +584,7 @@ fn the_datum_is_probed_in_the_plane() {
 /// which is selected [000:14933].
 #[test]
 fn program_run_in_the_plane_of_the_menu() {
-    let mut build = swivelling().program("1.H", "L IX+10 R0 F6000");
+    let mut build = Build::swivelling_mill().program("1.H", "L IX+10 R0 F6000");
     build.plc = build.plc.replacen(
         "       EM\n",
         "       PS    K+18\n       CM    9035\n       PL    W900\n       EM\n",
@@ -635,7 +617,7 @@ fn program_run_in_the_plane_of_the_menu() {
 /// The position of the swivel axis is edited [000:4256]: B stands at 30 degrees, X+ leads along the plane of 45.
 #[test]
 fn by_hand_in_a_plane_that_was_entered() {
-    let mut rig = by_hand(swivelling());
+    let mut rig = by_hand(Build::swivelling_mill());
     rig.command("3d-rot on B+45");
     rig.seconds(0.1);
     let start = machine(&rig);

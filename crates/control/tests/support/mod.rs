@@ -60,6 +60,12 @@ pub struct Build {
     pub functions: OwnFunctions,
 }
 
+/// Machine positions of X, Y and Z, mm.
+pub fn machine(rig: &Rig) -> [f64; 3] {
+    let axes = rig.control.snapshot().axes;
+    ['X', 'Y', 'Z'].map(|letter| axes.iter().find(|axis| axis.letter == letter).unwrap().machine)
+}
+
 pub fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../machines")
@@ -95,6 +101,16 @@ impl Build {
             files: NcFiles::default(),
             functions: OwnFunctions::default(),
         }
+    }
+
+    /// The mill with a swivel head in place of its table: B turns 150 mm above the tool datum.
+    pub fn swivelling_mill() -> Build {
+        let head = ["410.3=1", "7500=1", "7510=%000100", "7512=150", "7520=%010000"];
+        let mill = Build::mill()
+            .plant("[axis.C]", "[axis.B]")
+            .plant("[axis.C.encoder]", "[axis.B.encoder]")
+            .plant("clamps = \"C\"", "clamps = \"B\"");
+        head.into_iter().fold(mill, Build::mp)
     }
 
     /// Another of `machines`, with the tools of the mill.
