@@ -248,6 +248,7 @@ impl Channel {
         let exchange = machine.memory.of_mut(self.number);
         self.desk
             .count_handwheel(superimposes, &measured.operator.handwheel, &axes, exchange);
+        self.desk.follow_stop(&now, self.touch.is_chosen());
         let automatic = now.mode.is_automatic();
         let rigid = self.run.taps_rigidly();
         let ready = axes.choose_methods(automatic && !self.desk.runs_reference(), rigid);
@@ -303,9 +304,9 @@ impl Channel {
     }
 
     fn output_entered(&mut self, now: &Now, machine: &mut MachineSide) {
-        let (mut manual, model, ends) = (self.desk.manual, machine.model, self.desk.rules().stop_ends_m);
+        let (mut manual, model) = (self.desk.manual, machine.model);
         let (_, mut site, _) = self.parts(machine);
-        manual.output_entered(model, ends, now, &mut site);
+        manual.output_entered(model, now, &mut site);
         self.desk.manual = manual;
     }
 
@@ -433,7 +434,7 @@ impl Channel {
     pub fn inform(&self, machine: &mut MachineSide) {
         let (axes, link) = (machine.axes.owned(self.number), &mut machine.link);
         let spindle = machine.spindles.of(self.number);
-        status::coordinates(axes, &self.datums.chain, &self.run, &self.desk.manual, link);
+        status::coordinates(axes, &self.datums.chain, &self.run, &self.desk, link);
         let executed = self.run.selection.program.as_deref();
         let tested = self.test.as_ref().map(TestRun::program);
         status::items(self.desk.mode(), &self.desk.manual, executed, tested, link);

@@ -201,6 +201,9 @@ impl Desk {
         axes.release(|mover| matches!(mover, Mover::Reference | Mover::Manual));
         self.mode = mode;
         self.manual.stop();
+        if !self.is_by_hand() {
+            self.manual.leave();
+        }
     }
 
     /// The control voltage has come: with the first time the control asks for the reference run.
@@ -256,12 +259,22 @@ impl Desk {
         probe: &Probe,
         stand: impl FnOnce() -> bool,
     ) {
-        self.manual.deflection_mm = measured.probe.deflection_mm;
         let (keys, automatic) = (&self.panel.axis_keys, self.mode.is_automatic());
         self.stylus.watch(measured, guards, probe, || Guarded {
             rest: keys.iter().all(Option::is_none) && stand(),
             automatic,
         });
+    }
+
+    /// How far a measuring probe is deflected along its own axes, mm.
+    pub fn deflection_mm(&self) -> [f64; 3] {
+        self.stylus.deflection_mm
+    }
+
+    /// Follows NC stop, once in each contour cycle; in the TOUCH PROBE menu it is one of the probing alone.
+    pub fn follow_stop(&mut self, now: &Now, probes: bool) {
+        let ends = self.rules.stop_ends_m && self.is_by_hand() && !probes;
+        self.manual.follow_stop(now.stop, ends);
     }
 
     /// The handwheel moves an axis, with an interpolation factor.

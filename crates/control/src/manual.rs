@@ -50,8 +50,6 @@ pub(crate) struct Manual {
     ends: bool,
     /// 3D ROT is on.
     pub leans: bool,
-    /// How far a measuring probe is deflected along its own axes, mm.
-    pub deflection_mm: [f64; 3],
     /// OUTPUT of the oscilloscope: STEP with this feed, mm/min, or the RAMP [000:18737-18756].
     step_mm_min: Option<f64>,
 }
@@ -71,7 +69,6 @@ impl Default for Manual {
             stopped: false,
             ends: false,
             leans: false,
-            deflection_mm: [0.0; 3],
             step_mm_min: None,
         }
     }
@@ -114,13 +111,24 @@ impl Manual {
         possible
     }
 
-    /// Manual and Handwheel: NC start outputs what was entered. Where `stop_ends`, NC stop ends S and M: what waits is forgotten,
-    /// spindle and coolant are switched off by M5 and M9 (inferred) [003:7307-7315].
-    pub fn output_entered(&mut self, model: ControlModel, stop_ends: bool, now: &Now, site: &mut Site) {
-        if now.stop && !self.stopped && stop_ends {
+    /// Follows NC stop in every mode. Where it `ends` S and M in Manual and Handwheel, what waits is forgotten, and spindle and
+    /// coolant are to be switched off by M5 and M9 (inferred) [003:7307-7315]. A stop that another mode has seen first
+    /// ends nothing, and what is not yet switched off when the operator leaves stays on (inferred).
+    pub fn follow_stop(&mut self, stop: bool, ends: bool) {
+        let pressed = stop && !self.stopped;
+        self.stopped = stop;
+        if pressed && ends {
             (self.m, self.s, self.ends) = (None, None, true);
         }
-        self.stopped = now.stop;
+    }
+
+    /// Another operating mode is chosen than Manual and Handwheel.
+    pub fn leave(&mut self) {
+        self.ends = false;
+    }
+
+    /// Manual and Handwheel: NC start outputs what was entered, M5 and M9 go out where S and M are to be ended.
+    pub fn output_entered(&mut self, model: ControlModel, now: &Now, site: &mut Site) {
         if !site.handshakes.is_idle() {
             return;
         }

@@ -27,6 +27,8 @@ pub(crate) struct Stylus {
     probed: bool,
     /// NC stop.
     pub stops: bool,
+    /// How far a measuring probe is deflected along its own axes, mm.
+    pub deflection_mm: [f64; 3],
 }
 
 /// A probing movement on a straight line.
@@ -110,6 +112,7 @@ impl Stylus {
         probing: &Probe,
         guarded: impl FnOnce() -> Guarded,
     ) {
+        self.deflection_mm = measured.probe.deflection_mm;
         if !guards && !self.stops {
             return;
         }

@@ -10,6 +10,7 @@ use bahn_servo::Measured;
 use crate::axes::{OwnAxes, path_positions};
 use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
+use crate::desk::Desk;
 use crate::kinematics::Chain;
 use crate::manual::Manual;
 use crate::markers::{
@@ -171,7 +172,7 @@ pub(crate) fn coordinates<'a>(
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     chain: &Chain,
     run: &ProgramRun,
-    manual: &Manual,
+    desk: &Desk,
     link: &mut PlcLink,
 ) {
     /// Kinds of coordinates that each axis has, in the order of [`CoordinateKind`]: actual and nominal from the datum,
@@ -204,7 +205,7 @@ pub(crate) fn coordinates<'a>(
         link.set_coordinates(*kind, row);
     }
     let along =
-        |probe: MeasuringProbe| deflection_along_axes(&manual.deflection_mm, probe.axes, probe.reversed);
+        |probe: MeasuringProbe| deflection_along_axes(&desk.deflection_mm(), probe.axes, probe.reversed);
     let deflection = link.list().measuring_probe().map_or([0.0; 3], along);
     let deflection =
         PerPlcAxis::from_fn(|axis| deflection.get(usize::from(axis)).copied().unwrap_or_default());
@@ -221,7 +222,7 @@ pub(crate) fn coordinates<'a>(
     };
     link.set_status(
         StatusItem::WorkingPlane,
-        i32::from(tilted) | i32::from(manual.leans) << 1 | i32::from(by_program) << 2,
+        i32::from(tilted) | i32::from(desk.leaning.is_on()) << 1 | i32::from(by_program) << 2,
     );
 }
 

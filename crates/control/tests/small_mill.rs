@@ -56,6 +56,48 @@ fn the_small_mill_works() {
     close(rig.axis('X').actual, 90.0, 0.02);
 }
 
+/// MP7270 + 2: an NC stop ends S and M where it is pressed by hand. One that is held from another mode or from the TOUCH
+/// PROBE menu ends nothing, and one whose M5 still waits for the run-up of M3 is over when the operator has left.
+#[test]
+fn nc_stop_of_another_mode_ends_nothing() {
+    let turns = |rig: &Rig| rig.control.snapshot().spindle.rotation == Rotation::M3;
+    let on = |starts: &dyn Fn(&Rig) -> bool| {
+        let mut rig = small_mill().mp("7270=2").rig();
+        rig.power_on();
+        rig.command("s 500");
+        rig.command("m 3");
+        rig.start();
+        rig.until(20.0, "M3", starts);
+        rig
+    };
+    for [enter, leave] in [["mode mdi", "mode manual"], ["probe surface", "probe end"]] {
+        let mut rig = on(&turns);
+        rig.seconds(0.5);
+        rig.command(enter);
+        rig.event("key NC_STOP press");
+        rig.seconds(0.5);
+        rig.command(leave);
+        rig.seconds(0.5);
+        assert!(turns(&rig), "{leave}");
+        // Pressed once more it is one of manual operation.
+        rig.event("key NC_STOP release");
+        rig.seconds(0.2);
+        rig.event("key NC_STOP tap");
+        rig.seconds(1.0);
+        assert!(!turns(&rig), "{leave}");
+    }
+    let mut rig = on(&|rig| rig.bit("M2045"));
+    rig.event("key NC_STOP press");
+    rig.seconds(0.05);
+    assert!(rig.bit("M2045"), "M3 waits for the spindle");
+    rig.command("mode mdi");
+    rig.event("key NC_STOP release");
+    rig.seconds(3.0);
+    rig.command("mode manual");
+    rig.seconds(1.0);
+    assert!(turns(&rig));
+}
+
 /// MP7270 + 2: behind NC stop in manual operation S and M are no longer active [003:7307-7315]: the spindle that M3 has switched
 /// on by hand stops; without it turns on. What was entered and not yet output is forgotten, too.
 #[test]
