@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! BEGIN BACKUP 1 mill
-//! FILE 27 9AE0DAAF programs/15.H
+//! FILE 30 8AC76F6B programs/15.H
 //! BEGIN PGM 15 MM\n
 //! END PGM 15 MM\n
 //! END BACKUP 1
@@ -22,16 +22,18 @@ use bahn_control::unescaped;
 use thiserror::Error;
 
 use crate::HostError;
-use crate::files::{self, NewFile, cannot};
+use crate::files::{self, NewFile, WrittenFile, cannot};
 
-/// Name under which it is sent [000:435-441].
+/// Name under which it is sent [000:465-467].
 pub const BACKUP_NAME: &str = "$BACKUP";
 /// Characters of a line at most.
 const LINE: usize = 100;
 /// Bytes of a file at most: nothing that a machine keeps is longer.
 const FILE_MAX: u64 = 1 << 30;
-/// Folders in folders.
+/// Names of a path at most, with that of the file.
 const DEPTH_MAX: usize = 8;
+/// The file that says who has switched the machine on.
+const LOCK: &str = "lock";
 
 /// Why there is no backup, or why it is not restored.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -47,6 +49,14 @@ pub enum BackupError {
         /// What is wrong.
         what: &'static str,
     },
+    /// A file that no backup carries.
+    #[error("cannot back up {path}: {why}")]
+    NotCarried {
+        /// The file.
+        path: String,
+        /// What it has that cannot be carried.
+        why: &'static str,
+    },
     /// It ends before its END.
     #[error("the backup ends in the middle")]
     Incomplete,
@@ -54,10 +64,11 @@ pub enum BackupError {
 
 /// The lines of a backup of a folder, one after the other.
 ///
-/// Hidden files, other backups, symbolic links and folders in more than eight folders are left out.
+/// Hidden files, other backups, the file `lock` of whoever has the machine, and what is neither file nor folder, such as a
+/// symbolic link, are left out.
 ///
 /// # Errors
-/// When a file cannot be read, or the lines cannot be taken.
+/// [`BackupError::NotCarried`], when a file cannot be read, or the lines cannot be taken.
 pub fn back_up(
     folder: &Path,
     name: &str,
@@ -68,16 +79,18 @@ pub fn back_up(
     take(&format!("BEGIN BACKUP 1 {}", escaped(name.as_bytes())))?;
     for path in &paths {
         let whole = folder.join(path);
+        let length = fs::metadata(&whole)
+            .map_err(|error| cannot("read", &whole, &error))?
+            .len();
+        if length > FILE_MAX {
+            return Err(not_carried(path, "it is longer than 1 GiB"));
+        }
         let bytes = fs::read(&whole).map_err(|error| cannot("read", &whole, &error))?;
-        let shown: Vec<_> = path
-            .components()
-            .map(|part| part.as_os_str().to_string_lossy())
-            .collect();
         let head = format!(
             "FILE {} {:08X} {}",
             bytes.len(),
             crc32fast::hash(&bytes),
-            shown.join("/")
+            shown(path)
         );
         take(&head)?;
         for line in bytes.split_inclusive(|byte| *byte == b'\n') {
@@ -97,28 +110,43 @@ fn collect(folder: &Path, below: &Path, paths: &mut Vec<PathBuf>) -> Result<(), 
     let mut names: Vec<_> = Vec::new();
     for entry in fs::read_dir(&here).map_err(failed)? {
         let entry = entry.map_err(failed)?;
-        let kind = entry.file_type().map_err(failed)?;
-        if let (Ok(name), false) = (entry.file_name().into_string(), kind.is_symlink()) {
-            names.push((name, kind));
-        }
+        names.push((entry.file_name(), entry.file_type().map_err(failed)?));
     }
     names.sort_by(|one, other| one.0.cmp(&other.0));
     for (name, kind) in names {
-        // A backup that is on its way holds no other.
-        if name.starts_with(BACKUP_NAME) {
-            continue;
-        }
         let path = below.join(&name);
-        if relative(&path.to_string_lossy()).is_none() {
+        let name = name.to_string_lossy();
+        // A backup that is on its way holds no other.
+        if name.starts_with('.') || name.starts_with(BACKUP_NAME) {
             continue;
         }
         if kind.is_dir() {
+            if path.components().count() == DEPTH_MAX {
+                return Err(not_carried(&path, "no folder may be in seven others"));
+            }
             collect(folder, &path, paths)?;
-        } else if kind.is_file() {
+        } else if kind.is_file() && name != LOCK {
+            if relative(&path.to_string_lossy()).is_none() {
+                return Err(not_carried(
+                    &path,
+                    "its name has other characters than A to Z, digits, blanks inside and ._$#-+%(), or is lock",
+                ));
+            }
             paths.push(path);
         }
     }
     Ok(())
+}
+
+fn not_carried(path: &Path, why: &'static str) -> BackupError {
+    let path = shown(path);
+    BackupError::NotCarried { path, why }
+}
+
+/// A path as it is written in a backup.
+fn shown(path: &Path) -> String {
+    let names = path.iter().map(|name| name.to_string_lossy());
+    names.collect::<Vec<_>>().join("/")
 }
 
 /// A path that leads nowhere else, and to nothing hidden.
@@ -130,8 +158,9 @@ fn relative(path: &str) -> Option<PathBuf> {
             return None;
         };
         let name = name.to_str()?;
-        let fits = |c: char| c.is_ascii_alphanumeric() || "._$#-+ ()".contains(c);
-        if name.starts_with('.') || name == "lock" || !name.chars().all(fits) {
+        let fits = |c: char| c.is_ascii_alphanumeric() || "._$#-+% ()".contains(c);
+        // A blank at the end of a line would be lost on its way.
+        if name.starts_with('.') || name == LOCK || name.ends_with(' ') || !name.chars().all(fits) {
             return None;
         }
         count += 1;
@@ -163,8 +192,13 @@ fn pieces(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     std::iter::from_fn(move || {
         let mut length = 0;
         let fits = |byte: &&u8| {
-            length += if matches!(byte, b' '..=b'~') { 1 } else { 4 };
-            length <= LINE
+            length += match byte {
+                b'\\' | b'\n' => 2,
+                b' '..=b'~' => 1,
+                _ => 4,
+            };
+            // A blank at the end takes three more.
+            length + 3 <= LINE
         };
         let count = rest.iter().take_while(fits).count();
         let (piece, behind) = rest.split_at_checked(count)?;
@@ -180,7 +214,8 @@ pub struct Restore {
     line: u64,
     state: State,
     /// Files that are complete and have not their names yet.
-    files: Vec<NewFile>,
+    files: Vec<WrittenFile>,
+    /// Folders that were not there.
     made: Vec<PathBuf>,
 }
 
@@ -288,10 +323,17 @@ impl Restore {
         }
         let whole = self.folder.join(&path);
         self.make_folders(&path)?;
+        // Nor through a symbolic link, and not into a device at once.
+        if fs::symlink_metadata(&whole).is_ok_and(|found| !found.is_file()) {
+            return Err(BackupError::Damaged {
+                line: self.line,
+                what: "something that is no file stands in its place",
+            });
+        }
         let mut file = NewFile::create(&whole)?;
         file.write_all(&bytes)
             .map_err(|error| cannot("write", &whole, &error))?;
-        self.files.push(file);
+        self.files.push(file.complete()?);
         Ok(())
     }
 
@@ -331,12 +373,14 @@ impl Restore {
             return Err(BackupError::Incomplete);
         }
         let files = std::mem::take(&mut self.files);
-        self.made.clear();
         let count = files.len() as u64;
         for file in files {
-            file.finish()?;
+            file.put()?;
         }
-        files::sync_folder(&self.folder);
+        for folder in std::iter::once(&self.folder).chain(&self.made) {
+            files::sync_folder(folder);
+        }
+        self.made.clear();
         Ok(count)
     }
 }
@@ -425,7 +469,7 @@ mod tests {
         assert_eq!(lines[..5], expected);
         assert_eq!(lines.last().unwrap(), "END BACKUP 3");
         let fits =
-            |line: &String| line.len() <= LINE + 3 && line.bytes().all(|byte| (b' '..=b'~').contains(&byte));
+            |line: &String| line.len() <= LINE && line.bytes().all(|byte| (b' '..=b'~').contains(&byte));
         assert!(lines.iter().all(fits));
     }
 
@@ -490,6 +534,127 @@ mod tests {
         std::os::unix::fs::symlink(&outside.0, to.0.join("programs")).unwrap();
         assert!(restore(&machine().lines(), &to).is_err());
         assert_eq!(fs::read_dir(&outside.0).unwrap().count(), 0);
+    }
+
+    /// Nor through what stands in the place of a file: a link to another one, to nothing, or to a device that would be written
+    /// at once; or a folder.
+    #[test]
+    fn no_file_is_written_through_another_thing() {
+        let from = Folder::new();
+        from.write("A.A", b"new");
+        let (lines, outside) = (from.lines(), Folder::new());
+        outside.write("B.A", b"theirs");
+        for target in [outside.0.join("B.A"), outside.0.join("C.A"), "/dev/null".into()] {
+            let to = Folder::new();
+            std::os::unix::fs::symlink(&target, to.0.join("A.A")).unwrap();
+            let restored = restore(&lines, &to);
+            assert!(
+                matches!(restored, Err(BackupError::Damaged { line: 3, .. })),
+                "{target:?} {restored:?}"
+            );
+        }
+        assert_eq!(fs::read(outside.0.join("B.A")).unwrap(), b"theirs");
+        assert!(!outside.0.join("C.A").exists());
+        let to = Folder::new();
+        fs::create_dir(to.0.join("A.A")).unwrap();
+        let restored = restore(&lines, &to);
+        assert!(
+            matches!(restored, Err(BackupError::Damaged { line: 3, .. })),
+            "{restored:?}"
+        );
+    }
+
+    /// All that the panel takes for the name of a file is carried; what cannot be is said, and there is no backup.
+    #[test]
+    fn nothing_is_left_out_in_silence() {
+        let from = machine();
+        let names = ["50%.H", "$_#-.%+9.H", "A (2).H"];
+        for name in names {
+            from.write(&format!("programs/{name}"), name.as_bytes());
+        }
+        let to = Folder::new();
+        assert_eq!(restore(&from.lines(), &to), Ok(3 + 3));
+        for name in names {
+            assert_eq!(
+                fs::read(to.0.join("programs").join(name)).unwrap(),
+                name.as_bytes()
+            );
+        }
+        let other: &std::ffi::OsStr = std::os::unix::ffi::OsStrExt::from_bytes(b"\xE4.H");
+        let deep = "a/b/c/d/e/f/g/h/1.H";
+        for (path, said) in [
+            (Path::new("programs/\u{E4}.H"), "programs/\u{E4}.H:"),
+            (Path::new(other), "\u{FFFD}.H:"),
+            (Path::new(deep), "a/b/c/d/e/f/g/h:"),
+            (Path::new("A.A "), "A.A :"),
+            (Path::new("a/lock/B.A"), "a/lock/B.A:"),
+        ] {
+            let from = machine();
+            let whole = from.0.join(path);
+            fs::create_dir_all(whole.parent().unwrap()).unwrap();
+            fs::write(whole, "x").unwrap();
+            let refused = back_up(&from.0, "mill", |_| Ok(())).unwrap_err().to_string();
+            assert!(refused.contains(said), "{refused}");
+        }
+        // As deep as it may be.
+        let from = Folder::new();
+        from.write(&deep[2..], b"x");
+        assert_eq!(restore(&from.lines(), &Folder::new()), Ok(1));
+        // Longer than RESTORE takes; no block of it is on the medium.
+        let long = fs::File::create(from.0.join("LONG.A")).unwrap();
+        long.set_len(FILE_MAX + 1).unwrap();
+        let refused = back_up(&from.0, "mill", |_| Ok(())).unwrap_err().to_string();
+        assert!(refused.contains("LONG.A"), "{refused}");
+    }
+
+    /// A backslash takes two characters of a line, and a blank at its end four.
+    #[test]
+    fn no_line_is_longer_than_it_may_be() {
+        let from = Folder::new();
+        from.write("A.A", &[b'\\'; 300]);
+        let lines = from.lines();
+        assert!(lines.iter().all(|line| line.len() <= LINE), "{lines:?}");
+        assert_eq!(restore(&lines, &Folder::new()), Ok(1));
+        from.write("A.A", &[[b' '; 250].as_slice(), b"\n", &[0; 50]].concat());
+        let lines = from.lines();
+        assert!(lines.iter().all(|line| line.len() <= LINE), "{lines:?}");
+        let to = Folder::new();
+        assert_eq!(restore(&lines, &to), Ok(1));
+        assert_eq!(
+            fs::read(to.0.join("A.A")).unwrap(),
+            fs::read(from.0.join("A.A")).unwrap()
+        );
+    }
+
+    /// However many files a machine has, none of them is open while the others come: a process has 1024 descriptors.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn files_that_have_come_are_not_held_open() {
+        let (from, to) = (Folder::new(), Folder::new());
+        for number in 0..20 {
+            from.write(&format!("{number}.A"), b"x");
+        }
+        let mut restore = Restore::new(&to.0);
+        from.lines().iter().for_each(|line| restore.line(line).unwrap());
+        let open = fs::read_dir("/proc/self/fd").unwrap();
+        let open = open.filter_map(|entry| fs::read_link(entry.unwrap().path()).ok());
+        assert_eq!(open.filter(|path| path.starts_with(&to.0)).count(), 0);
+        // Nobody in this process sweeps them away for that.
+        files::sweep(&to.0);
+        assert_eq!(restore.commit(), Ok(20));
+    }
+
+    /// A file that cannot take its place leaves no folder behind that was made for the next ones.
+    #[test]
+    fn folders_that_nobody_needs_go() {
+        let (from, to) = (Folder::new(), Folder::new());
+        from.write("a/1.A", b"x");
+        from.write("b/2.A", b"x");
+        let mut restore = Restore::new(&to.0);
+        from.lines().iter().for_each(|line| restore.line(line).unwrap());
+        fs::create_dir(to.0.join("a/1.A")).unwrap();
+        assert!(restore.commit().is_err());
+        assert!(to.0.join("a").exists() && !to.0.join("b").exists());
     }
 
     proptest! {

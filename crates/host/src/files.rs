@@ -240,7 +240,9 @@ pub fn sweep(folder: &Path) {
         return;
     };
     for entry in entries.flatten() {
-        let is_ours = entry.file_name().to_str().is_some_and(is_temporary);
+        let name = entry.file_name();
+        let known = temporaries().iter().any(|known| known.file_name() == Some(&name));
+        let is_ours = !known && name.to_str().is_some_and(is_temporary);
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
         if is_ours && is_file && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok()) {
             // If it cannot be removed it stays hidden.
@@ -263,10 +265,17 @@ fn is_temporary(name: &str) -> bool {
 /// good when it is dropped before, whatever was there stays there.
 #[derive(Debug)]
 pub struct NewFile {
+    written: WrittenFile,
+    writer: BufWriter<Medium>,
+}
+
+/// A file that is complete, safe on the medium and no longer open, and has not its name yet. Dropped, it is as if it had never
+/// been begun.
+#[derive(Debug)]
+pub struct WrittenFile {
     path: PathBuf,
     /// Beside the path; `None` when the path is no regular file (`/dev/stdout`) and is written to directly.
     temporary: Option<PathBuf>,
-    writer: BufWriter<Medium>,
 }
 
 /// What a file is written on. In tests its room ends where they say.
@@ -333,11 +342,11 @@ impl NewFile {
         let old = fs::metadata(&path).ok();
         if old.as_ref().is_some_and(|old| !old.is_file()) {
             let file = OpenOptions::new().write(true).open(&path)?;
-            return Ok(NewFile {
+            let written = WrittenFile {
                 path,
                 temporary: None,
-                writer: BufWriter::with_capacity(1 << 16, Medium::new(file)),
-            });
+            };
+            return Ok(NewFile::on(file, written));
         }
         let name = path
             .file_name()
@@ -348,6 +357,10 @@ impl NewFile {
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let temporary = path.with_file_name(format!(".{name}.{}-{number}.tmp", std::process::id()));
         temporaries().push(temporary.clone());
+        let written = WrittenFile {
+            path,
+            temporary: Some(temporary.clone()),
+        };
         let create = || OpenOptions::new().write(true).create_new(true).open(&temporary);
         // What is there is what a killed process of the same number left, or a link that leads elsewhere.
         let file = create().or_else(|_| fs::remove_file(&temporary).and_then(|()| create()))?;
@@ -356,29 +369,53 @@ impl NewFile {
         if let Some(old) = old {
             file.set_permissions(old.permissions())?;
         }
-        Ok(NewFile {
-            path,
-            temporary: Some(temporary),
+        Ok(NewFile::on(file, written))
+    }
+
+    fn on(file: File, written: WrittenFile) -> NewFile {
+        NewFile {
+            written,
             writer: BufWriter::with_capacity(1 << 16, Medium::new(file)),
-        })
+        }
     }
 
     /// Puts the complete file in its place.
     ///
     /// # Errors
     /// When it cannot be written; what was there stays.
-    pub fn finish(mut self) -> Result<(), HostError> {
-        let path = self.path.clone();
-        self.try_finish().map_err(|error| cannot("write", &path, &error))
+    pub fn finish(self) -> Result<(), HostError> {
+        self.complete()?.put()
     }
 
-    fn try_finish(&mut self) -> io::Result<()> {
+    /// Closes the complete file, so that many can wait for their names and none is held open.
+    ///
+    /// # Errors
+    /// When it cannot be written; what was there stays.
+    pub fn complete(mut self) -> Result<WrittenFile, HostError> {
+        self.save()
+            .map_err(|error| cannot("write", &self.written.path, &error))?;
+        Ok(self.written)
+    }
+
+    fn save(&mut self) -> io::Result<()> {
         self.writer.flush()?;
+        match self.written.temporary {
+            Some(_) => self.writer.get_ref().sync(),
+            None => Ok(()),
+        }
+    }
+}
+
+impl WrittenFile {
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// When it cannot take it; what was there stays.
+    pub fn put(mut self) -> Result<(), HostError> {
         let Some(temporary) = &self.temporary else {
             return Ok(());
         };
-        self.writer.get_ref().sync()?;
-        fs::rename(temporary, &self.path)?;
+        fs::rename(temporary, &self.path).map_err(|error| cannot("write", &self.path, &error))?;
         temporaries().retain(|known| known != temporary);
         self.temporary = None;
         sync_folder(&self.path);
@@ -397,7 +434,7 @@ impl Write for NewFile {
     }
 }
 
-impl Drop for NewFile {
+impl Drop for WrittenFile {
     fn drop(&mut self) {
         if let Some(temporary) = &self.temporary {
             // It is of no use to anybody.
@@ -463,6 +500,16 @@ pub(crate) mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"one");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
         fs::remove_dir_all(&folder).unwrap();
+    }
+
+    /// A file that cannot be begun is not remembered as one that is being written.
+    #[test]
+    fn what_cannot_be_begun_is_forgotten() {
+        let name = format!("bahn-missing-{}", std::process::id());
+        let path = std::env::temp_dir().join(&name).join("1.H");
+        assert!(NewFile::create(&path).is_err());
+        let known = temporaries().iter().any(|known| known.parent() == path.parent());
+        assert!(!known);
     }
 
     /// The medium is full behind any byte: what was there stays, nothing half written is left, and the next try with
