@@ -18,8 +18,6 @@ pub(crate) struct Digitizing {
     /// The news that were looked at.
     seen: u64,
     text: Option<Text>,
-    /// Blocks are printed as they come, nothing is stored.
-    prints: bool,
 }
 
 /// What comes of a cycle.
@@ -44,6 +42,8 @@ struct Text {
     pieces: Vec<Arc<[u8]>>,
     last: String,
     points: u64,
+    /// Blocks are printed as they come, nothing is stored.
+    prints: bool,
 }
 
 impl Text {
@@ -57,6 +57,7 @@ impl Text {
             pieces: Vec::new(),
             last,
             points: 0,
+            prints,
         }
     }
 
@@ -84,27 +85,22 @@ impl Text {
 }
 
 impl Digitizing {
-    /// What begins from now on is printed, not stored.
-    pub fn print(&mut self, prints: bool) {
-        self.prints = prints;
-    }
-
-    /// Takes what a cycle of the channel said. A scan that is broken off leaves nothing in the memory; what is printed ends
-    /// there.
-    pub fn follow(&mut self, news: DigitizedNews) -> Option<Written> {
+    /// Takes what a cycle of the channel said; a scan that begins with it `prints` its blocks, or stores them. One that is broken
+    /// off leaves nothing in the memory; what is printed ends there.
+    pub fn follow(&mut self, news: DigitizedNews, prints: bool) -> Option<Written> {
         if news.number == self.seen {
             return None;
         }
         self.seen = news.number;
         let what = news.what?;
         match what {
-            Digitized::Begins(job) => self.text = Some(Text::new(job, self.prints)),
+            Digitized::Begins(job) => self.text = Some(Text::new(job, prints)),
             Digitized::Point(point) => self.text.as_mut()?.point(&point),
             Digitized::BrokenOff => self.text = None,
             Digitized::Complete => self.text.as_mut()?.end(),
         }
         let text = self.text.as_mut()?;
-        if self.prints {
+        if text.prints {
             return Some(Written::Printed(std::mem::take(&mut text.last)));
         }
         let over = matches!(what, Digitized::Complete);
@@ -143,10 +139,9 @@ mod tests {
         }
     }
 
-    /// What a scan of two points comes to.
-    fn scanned(prints: bool) -> Vec<Written> {
+    /// What a scan of two points comes to, while PRINT says this before the first point and that behind it.
+    fn scanned(prints: [bool; 2]) -> Vec<Written> {
         let mut digitizing = Digitizing::default();
-        digitizing.print(prints);
         let said = [
             Digitized::Begins(job()),
             Digitized::Point([1.0, 5.0, -2.0]),
@@ -157,19 +152,21 @@ mod tests {
             number,
             what: Some(what),
         });
-        news.filter_map(|news| digitizing.follow(news)).collect()
+        let at = |number: u64| prints[usize::from(number > 1)];
+        news.filter_map(|news| digitizing.follow(news, at(news.number)))
+            .collect()
     }
 
     /// The interface function PRINT decides where the blocks go: into the memory as a whole program, or to a data interface as
     /// the points come, the same blocks [003:6554-6557].
     #[test]
     fn printed_blocks_are_those_of_the_stored_program() {
-        let stored = scanned(false);
+        let stored = scanned([false; 2]);
         let [Written::Complete(complete)] = stored.as_slice() else {
             panic!("one program");
         };
         let stored: Vec<u8> = complete.pieces.iter().flat_map(|piece| piece.to_vec()).collect();
-        let printed: Vec<String> = scanned(true)
+        let printed: Vec<String> = scanned([true; 2])
             .into_iter()
             .map(|written| match written {
                 Written::Printed(blocks) => blocks,
@@ -182,5 +179,13 @@ mod tests {
             "{printed:?}"
         );
         assert_eq!(printed.concat().into_bytes(), stored);
+    }
+
+    /// PRINT holds for what begins: a scan that is on its way goes where it has begun to go.
+    #[test]
+    fn a_scan_goes_on_as_it_began() {
+        let [stored, printed] = [[false, true], [true, false]].map(scanned);
+        assert!(matches!(stored.as_slice(), [Written::Complete(complete)] if complete.points == 2));
+        assert!(printed.len() == 4 && printed.iter().all(|block| matches!(block, Written::Printed(_))));
     }
 }

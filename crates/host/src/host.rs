@@ -48,6 +48,8 @@ pub struct Host<P = Machine> {
     pub(crate) background: Background,
     /// What each channel digitizes, and where its programs are.
     pub(crate) digitizing: Vec<Digitizing>,
+    /// The interface function PRINT: of the interfaces, not of the machine.
+    prints: bool,
     programs: Vec<Arc<dyn Programs>>,
     /// Whoever follows looks at what programs have read, in every cycle.
     watched: bool,
@@ -169,6 +171,7 @@ impl<P: Operable> Host<P> {
             journal: Journal::default(),
             background: Background::default(),
             digitizing: vec![Digitizing::default(); all_programs.len()],
+            prints: false,
             programs: all_programs,
             watched: false,
             window: WindowView::default(),
@@ -379,7 +382,7 @@ impl<P: Operable> Host<P> {
     /// What is digitized from now on is printed block by block as [`Notice::Printed`], not stored: the interface function PRINT
     /// [003:6554-6557].
     pub fn print_digitized(&mut self, prints: bool) {
-        self.digitizing.iter_mut().for_each(|own| own.print(prints));
+        self.prints = prints;
     }
 
     /// Takes the points of channels that digitize, and stores a program whose range is scanned.
@@ -390,7 +393,7 @@ impl<P: Operable> Host<P> {
             let (Some(digitizing), Some(news)) = (self.digitizing.get_mut(number), news) else {
                 continue;
             };
-            let complete = match digitizing.follow(news).filter(|_| !self.repeats) {
+            let complete = match digitizing.follow(news, self.prints).filter(|_| !self.repeats) {
                 Some(Written::Complete(complete)) => complete,
                 Some(Written::Printed(blocks)) => {
                     for block in blocks.lines() {

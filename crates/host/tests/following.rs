@@ -4,7 +4,9 @@
 mod support;
 
 use bahn_control::{Mode, RunState};
-use bahn_host::{Answer, Clock, Deed, Next, Notice, Source, When};
+use bahn_host::{
+    Answer, Attendance, Clock, Deed, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source, When,
+};
 use support::*;
 
 fn deed(text: &str) -> Deed {
@@ -146,4 +148,58 @@ fn a_host_is_sent_to_a_thread() {
     let driven = std::thread::spawn(move || seconds(&mut host, 30.0));
     driven.join().unwrap();
     assert!(told(&mut reader).contains(&Notice::Ended));
+}
+
+/// The interface function PRINT belongs to the interfaces, not to the machine: another machine that takes the place of this
+/// one prints what it digitizes, too, block by block [003:6554-6557].
+#[test]
+fn another_machine_prints_what_it_digitizes() {
+    let copy = Copy::of("mill", "printing");
+    // The end of the ball is the reference point of the spindle, so that no tool has a length.
+    let plant = std::fs::read_to_string(copy.path().join("plant.toml")).unwrap();
+    let probe = plant.replace("length = 120 ", "inserted = true\nlength = 0 ");
+    assert_ne!(plant, probe);
+    std::fs::write(copy.path().join("plant.toml"), probe).unwrap();
+    let machine = LoadedMachine::load(copy.path()).unwrap().unwrap();
+    // The face of the block on the table is at Z 40 of the machine; the datum is at Z 120.
+    let scan = "TOOL CALL 0 Z S0\nL X+10 Y+10 R0 FMAX\nL Z-60 FMAX\nTCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: FACE\n\
+                TCH PROBE 5.2 Z X+10 Y+10 Z-85\nTCH PROBE 5.3 X+14 Y+12 Z-75\nTCH PROBE 5.4 HEIGHT: -70\n\
+                TCH PROBE 6.0 MEANDER\nTCH PROBE 6.1 DIRECTN: X\nTCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 1 P.P. INT: 1\nL Z+0 FMAX";
+    let mut host = host(&machine, PowerOn::fresh(&machine), scan);
+    host.print_digitized(true);
+    let operator = Operator::new(
+        Attendance::Full,
+        machine.folder.operator.clone(),
+        Some(Job::whole("1.H")),
+    );
+    host.replace(
+        &machine,
+        PowerOn::fresh(&machine),
+        Texts::new(&[("1.H", scan)]),
+        operator,
+    );
+    let mut reader = host.notices();
+    let (mut printed, mut ended) = (Vec::new(), false);
+    while !ended {
+        assert!(
+            host.control().time_us() < 300_000_000,
+            "{:?}",
+            host.control().snapshot()
+        );
+        host.step().unwrap();
+        for notice in told(&mut reader) {
+            match notice {
+                Notice::Printed(block) => printed.push(block),
+                Notice::Ended => ended = true,
+                _ => {}
+            }
+        }
+    }
+    let (first, last) = (printed.first().unwrap(), printed.last().unwrap());
+    assert!(
+        first.contains("BEGIN PGM FACE MM") && last.contains("END PGM FACE MM"),
+        "{printed:?}"
+    );
+    // Three lines of 4 mm with a point each millimetre.
+    assert!(printed.len() > 3 * 4, "{printed:?}");
 }
