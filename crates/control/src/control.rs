@@ -576,7 +576,7 @@ impl Control {
         self.kernel.channels.first().run.track.path.element()
     }
 
-    /// Path length to the end of that element, mm.
+    /// Path length to the end of that element, mm; below 0 where a thread waits behind its end.
     pub fn rest_mm(&self) -> f64 {
         self.kernel.channels.first().run.track.path.rest_mm()
     }

@@ -117,7 +117,7 @@ impl<'a> ChannelView<'a> {
         run.source.next_start(run.selection.start_block)
     }
 
-    /// Path length to the end of that element, mm.
+    /// Path length to the end of that element, mm; below 0 where a thread waits behind its end.
     pub fn rest_mm(&self) -> f64 {
         self.channel.run.track.path.rest_mm()
     }

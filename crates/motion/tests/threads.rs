@@ -284,8 +284,13 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
         here[Axis::Z] = here_z;
         bench.told.push(100.0);
         bench.path.couple_again(&here, 100.0);
-        // By the axis key it goes back to the nearer end at most, and nowhere from before its start.
+        // Two millimetres behind the end there is less than nothing to go, before the start more than all of it; covered is
+        // all or nothing.
         let beyond = (element == 0) == (here_z < 0.0);
+        let (rest, part) = if beyond { (-2.0, 1.0) } else { (DEPTH + 2.0, 0.0) };
+        assert!((bench.path.rest_mm() - rest).abs() < 1e-9, "{element} {here_z}");
+        assert_eq!(bench.path.part(), part, "{element} {here_z}");
+        // By the axis key it goes back to the nearer end at most, and nowhere from before its start.
         bench.drive.back = true;
         for _ in 0..10 {
             let cycle = bench.cycle();

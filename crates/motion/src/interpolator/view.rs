@@ -37,15 +37,16 @@ impl<E> Interpolator<E> {
         self.ring.following().map(|item| &item.element)
     }
 
-    /// Path length to the end of that element, mm.
+    /// Path length to the end of that element, mm. Where the spindle was turned by hand while a thread waited, the axis may stand
+    /// beyond: below 0 behind the end, and more than the length of the element before the start.
     pub fn rest_mm(&self) -> f64 {
         self.rest
     }
 
-    /// How much of that element is covered, 0 to 1.
+    /// How much of that element is covered, 0 to 1, also where the axis stands beyond its ends.
     pub fn part(&self) -> f64 {
         match self.ring.current() {
-            Some(item) if item.length > 0.0 => 1.0 - self.rest / item.length,
+            Some(item) if item.length > 0.0 => (1.0 - self.rest / item.length).clamp(0.0, 1.0),
             _ => 1.0,
         }
     }
