@@ -313,7 +313,6 @@ impl Desk {
         if was && angles.is_none() {
             Leaning::leave(chain);
         }
-        self.manual.leans = self.leaning.is_on();
         true
     }
 

@@ -48,8 +48,6 @@ pub(crate) struct Manual {
     stopped: bool,
     /// S and M are to be ended.
     ends: bool,
-    /// 3D ROT is on.
-    pub leans: bool,
     /// OUTPUT of the oscilloscope: STEP with this feed, mm/min, or the RAMP [000:18737-18756].
     step_mm_min: Option<f64>,
 }
@@ -68,7 +66,6 @@ impl Default for Manual {
             s: None,
             stopped: false,
             ends: false,
-            leans: false,
             step_mm_min: None,
         }
     }
@@ -183,7 +180,7 @@ impl Manual {
         self.handwheel.look(handwheel, reach);
         self.last_key = self.handwheel.take_highlight().unwrap_or(self.last_key);
         let keys = self.keys(reach, now);
-        let leans = self.leans && !now.mode.is_automatic();
+        let leans = leaning.is_on() && !now.mode.is_automatic();
         if leans {
             self.lean(&keys, handwheel, reach, now, leaning);
         } else {
