@@ -288,7 +288,7 @@ impl FromStr for Command {
             "restore-at" => number(name, rest, 0, u32::MAX).map(Command::RestoreAt),
             "code" => number(name, rest, 0, u32::MAX).map(Command::Code),
             "m" => number(name, rest, 0, 999).map(Command::MFunction),
-            "key" => number(name, rest, 0, 0xFF50).map(Command::of_key_code),
+            "key" => key_code(rest).map(Command::of_key_code),
             "s" => value(name, rest, 0.0, SPEED_MAX).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
             "oscilloscope" => oscilloscope(rest),
@@ -461,6 +461,13 @@ fn number<T: TryFrom<u32>>(name: &str, text: &str, min: u32, max: u32) -> Result
                 "`{name}` takes a number from {min} to {max}, not `{text}`"
             ))
         })
+}
+
+/// INTERNAL STOP, or what a table of codes has: the first is that of a key, the last one of the alphabetic keyboard
+/// [000:7338-7440].
+fn key_code(text: &str) -> Result<u16, CommandError> {
+    let code = text.parse().ok().filter(|code| matches!(code, 0 | 58..=0xFF50));
+    code.ok_or_else(|| CommandError::Wrong(format!("`key` takes 0 or a code from 58 to 65360, not `{text}`")))
 }
 
 fn value(name: &str, text: &str, min: f64, max: f64) -> Result<f64, CommandError> {
