@@ -274,12 +274,12 @@ impl AxisUnit {
 
     /// The place of its encoder among the inputs of the machine.
     pub fn input(&self) -> usize {
-        self.connectors + usize::from(self.parameters.encoder.input)
+        self.connectors + usize::from(self.parameters.wiring.input)
     }
 
     /// The place of its nominal value output among those of the machine.
     pub fn output(&self) -> usize {
-        self.connectors + usize::from(self.parameters.output.output)
+        self.connectors + usize::from(self.parameters.wiring.output)
     }
 
     /// Whether nothing is commanded to move.
@@ -300,11 +300,9 @@ impl AxisUnit {
     /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag, all others
     /// with pre-control in rigid tapping [000:6122].
     fn wanted_method(&self, automatic: bool, rigid: bool) -> Method {
-        let precontrol = &self.parameters.precontrol;
-        let wanted = if automatic {
-            precontrol.in_automatic
-        } else {
-            precontrol.in_manual
+        let wanted = match automatic {
+            true => self.parameters.precontrol_in_automatic,
+            false => self.parameters.precontrol_in_manual,
         };
         if (wanted || rigid) && !self.is_plc_axis() {
             Method::Precontrol

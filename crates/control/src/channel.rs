@@ -549,7 +549,7 @@ impl Channel {
         let mut axes = machine.axes.of(self.number);
         axes.set_parameters(list);
         self.datums.limit(&mut axes);
-        let intervals = axes.iter().map(|unit| unit.parameters.output.offset_interval_s);
+        let intervals = axes.iter().map(|unit| unit.parameters.offset_interval_s);
         let interval = intervals.last().unwrap_or(0.0);
         machine.offsets.set_interval(interval);
         self.run.track.limits_changed = true;

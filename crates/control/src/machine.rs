@@ -207,7 +207,7 @@ impl MachineSide {
         let interval_s = axes
             .iter()
             .next()
-            .map_or(0.0, |unit| unit.parameters.output.offset_interval_s);
+            .map_or(0.0, |unit| unit.parameters.offset_interval_s);
         MachineSide {
             model,
             timing: model.timing(),

@@ -177,7 +177,7 @@ fn lag(axis: &AxisParameters, report: &mut Reporter) {
     let rule = "pre-control needs a kv factor of 0.1 at least";
     let name = (1510, index, 32 + u16::from(axis.index));
     report.check(
-        !precontrol.in_automatic || precontrol.kv >= 0.1,
+        !axis.precontrol_in_automatic || precontrol.kv >= 0.1,
         name,
         rule,
         "000:4984-4991",
@@ -207,15 +207,12 @@ fn monitoring(axis: &AxisParameters, report: &mut Reporter) {
 }
 
 fn offset(axis: &AxisParameters, report: &mut Reporter) {
-    let output = axis.output;
-    let holds = output.integral_factor == 0.0 || output.offset_interval_s == 0.0;
+    let (factor, interval_s) = (axis.output.integral_factor, axis.offset_interval_s);
+    let holds = factor == 0.0 || interval_s == 0.0;
     let rule = "integral factor and automatic offset adjustment are both active";
     let name = (1080, Some(axis.index), 28 + u16::from(axis.index));
     report.check(holds, name, rule, "000:5012", || {
-        format!(
-            "factor {}, interval {} s",
-            output.integral_factor, output.offset_interval_s
-        )
+        format!("factor {factor}, interval {interval_s} s")
     });
 }
 
@@ -245,8 +242,8 @@ fn assignment(axes: &[AxisParameters], report: &mut Reporter) {
     for (at, axis) in axes.iter().enumerate() {
         let before = axes.get(..at).unwrap_or_default();
         let index = Some(axis.index);
-        let input = axis.encoder.input;
-        let free = before.iter().all(|other| other.encoder.input != input);
+        let input = axis.wiring.input;
+        let free = before.iter().all(|other| other.wiring.input != input);
         let rule = "two axes have the same encoder input";
         report.check(
             free,
@@ -255,8 +252,8 @@ fn assignment(axes: &[AxisParameters], report: &mut Reporter) {
             "000:3374-3391",
             || format!("X{}", input + 1),
         );
-        let output = axis.output.output;
-        let free = before.iter().all(|other| other.output.output != output);
+        let output = axis.wiring.output;
+        let free = before.iter().all(|other| other.wiring.output != output);
         let rule = "two axes have the same nominal value output";
         report.check(free, (120, index, 0), rule, "000:3393-3406", || {
             format!("output {}", output + 1)
@@ -386,7 +383,7 @@ fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Re
             "000:6094-6098",
             || format!("{least} to {greatest} %"),
         );
-        let taken = axes.iter().find(|axis| axis.output.output == 5);
+        let taken = axes.iter().find(|axis| axis.wiring.output == 5);
         let rule = "an axis has the output of the spindle";
         report.check(
             taken.is_none(),
@@ -397,7 +394,7 @@ fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Re
         );
     }
     if spindle.controlled {
-        let taken = axes.iter().find(|axis| axis.encoder.input == 5);
+        let taken = axes.iter().find(|axis| axis.wiring.input == 5);
         let rule = "an axis has the encoder input of the spindle";
         report.check(
             taken.is_none(),

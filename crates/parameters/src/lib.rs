@@ -75,6 +75,7 @@ pub use text::{Entry, ListText};
 pub mod axis {
     pub use crate::settings::{
         AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
+        WiringParameters,
     };
 }
 

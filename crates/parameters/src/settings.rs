@@ -22,6 +22,7 @@ mod tool_probe;
 
 pub use axis_parameters::{
     AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
+    WiringParameters,
 };
 pub use characteristics::Characteristics;
 pub use interfaces::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};

@@ -74,7 +74,7 @@ fn bits_belong_to_their_axis() {
         [false, true, false]
     );
     assert_eq!([0, 4].map(|i| axis(i).reference.negative), [false, true]);
-    assert_eq!([0, 1].map(|i| axis(i).precontrol.in_manual), [true, false]);
+    assert_eq!([0, 1].map(|i| axis(i).precontrol_in_manual), [true, false]);
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn the_old_list_answers_under_its_own_numbers() {
         ),
         (true, 8.0, 100.0)
     );
-    assert_eq!(y.output.offset_interval_s, 1.0, "50 times 20 ms");
+    assert_eq!(y.offset_interval_s, 1.0, "50 times 20 ms");
     assert_eq!(
         (y.compensation.backlash_mm, y.compensation.linear_mm_m),
         (0.02, -0.1)

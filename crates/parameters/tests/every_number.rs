@@ -179,7 +179,7 @@ Position supervision, erasable (square-root characteristic) | axis.0.precontrol.
 Position supervision, EMERGENCY STOP (square-root characteristic) | axis.0.precontrol.emergency_mm
 Positioning window X, Y, Z | axis.0.monitoring.window_mm
 Axis sequence for reference point approach | axis.0.reference.place.0
-Speed pre-control / ramp characteristic | axis.0.precontrol.in_automatic
+Speed pre-control / ramp characteristic | axis.0.precontrol_in_automatic
 Output of tool numbers (TOOL CALL) | operation.tools.call.what
 Output of spindle speed | spindle.output
 Limitation of RPM code | spindle.codes.max
@@ -244,17 +244,17 @@ Positioning window axis V | spindle.settings.orientation.window_deg
 Handwheel hysteresis | operation.handwheel.threshold
 Spindle speed for orientation | spindle.settings.orientation.speed_rpm
 Touch probe: rapid traverse | probe.rapid_mm_min
-Cycle time of automatic offset adjustment | axis.0.output.offset_interval_s
-Transducer input X assigned to | axis.1.encoder.input
-Transducer input Y assigned to | axis.0.encoder.input
-Transducer input Z assigned to | axis.0.encoder.input
-Transducer input IV assigned to | axis.0.encoder.input
-Transducer input V assigned to | axis.0.encoder.input
+Cycle time of automatic offset adjustment | axis.0.offset_interval_s
+Transducer input X assigned to | axis.1.wiring.input
+Transducer input Y assigned to | axis.0.wiring.input
+Transducer input Z assigned to | axis.0.wiring.input
+Transducer input IV assigned to | axis.0.wiring.input
+Transducer input V assigned to | axis.0.wiring.input
 Spindle speed for orientation without encoder | spindle.settings.orientation.jog_rpm";
     const NEW: &str = "\
 Axis designation, * axis | axis.*.letter.0
-Measuring-system input assigned to axis, * axis | axis.*.encoder.input
-Nominal-value output assigned to axis, * axis | axis.*.output.output
+Measuring-system input assigned to axis, * axis | axis.*.wiring.input
+Nominal-value output assigned to axis, * axis | axis.*.wiring.output
 Synchronized axes: master of this axis, * axis | axis.*.synchronization.master
 Software limit switch + , traverse range 3, *+ | axis.*.travel.ranges_mm.2.1
 Software limit switch - , traverse range 2, *- | axis.*.travel.ranges_mm.1.0
@@ -298,8 +298,8 @@ Multiplication factor for kv above kink point, * axis | axis.*.lag.kink_factor
 Kink point (% of rapid traverse), * axis | axis.*.lag.kink_percent
 Path-dependent lubrication distance, * axis | axis.*.travel.lubrication_mm
 Feed rate for leaving reference end position (rotary encoder, MP1350=2), * axis | axis.*.reference.leaving_mm_min
-Feed precontrol in MDI, single block, full sequence | axis.0.precontrol.in_automatic
-Feed precontrol in Manual and Handwheel | axis.0.precontrol.in_manual
+Feed precontrol in MDI, single block, full sequence | axis.0.precontrol_in_automatic
+Feed precontrol in Manual and Handwheel | axis.0.precontrol_in_manual
 S-analogue voltage at rated speed, gear range * | spindle.settings.gears.#.rated_volts
 Upper limit of spindle override | spindle.settings.override_percent.1
 Lower limit of spindle override | spindle.settings.override_percent.0

@@ -291,7 +291,10 @@ fn a_machine_runs_in_closed_loop() {
                 (0.9..=2.0).contains(&precontrol.kv) && lag.kv_m105 == lag.kv,
                 "{place}"
             );
-            assert!(precontrol.in_automatic && !precontrol.in_manual, "{place}");
+            assert!(
+                axis.precontrol_in_automatic && !axis.precontrol_in_manual,
+                "{place}"
+            );
             assert!(precontrol.monitoring_mm < precontrol.emergency_mm, "{place}");
             // What stands inside the window does not trip the monitoring of standstill or contour.
             let monitoring = axis.monitoring;
@@ -336,9 +339,9 @@ fn a_machine_runs_in_closed_loop() {
             "{model}"
         );
         // Integral factor and cyclic adjustment must not both be active [000:5012].
-        let output = list.axis_parameters(0).output;
+        let first = list.axis_parameters(0);
         assert!(
-            output.integral_factor == 0.0 || output.offset_interval_s == 0.0,
+            first.output.integral_factor == 0.0 || first.offset_interval_s == 0.0,
             "{model}"
         );
         let tapping = list.spindle_parameters().tapping;

@@ -18,12 +18,12 @@ fn axis_step(bencher: Bencher, method: Method) {
     let mut list = ParameterList::reference(model);
     let errors = list.read(b"710.0 : 0\n720.0 : 0");
     assert!(errors.is_empty());
-    let parameters = list.axis_parameters(0).settings();
+    let settings = list.axis_parameters(0).settings();
     let timing = model.timing();
     bencher
         .counter(ItemsCount::new(CYCLES * timing.steps()))
         .with_inputs(|| {
-            let mut axis = Axis::new(parameters, timing);
+            let mut axis = Axis::new(settings, timing);
             axis.measure(Encoder::default());
             axis.close();
             axis.set_method(method);
@@ -51,13 +51,13 @@ fn axis_step(bencher: Bencher, method: Method) {
 #[divan::bench]
 fn spindle_step(bencher: Bencher) {
     let model = ControlModel::Tnc415b;
-    let parameters = ParameterList::reference(model).spindle_parameters().settings;
+    let settings = ParameterList::reference(model).spindle_parameters().settings;
     let timing = model.timing();
     let steps = CYCLES * timing.steps();
     bencher
         .counter(ItemsCount::new(steps))
         .with_inputs(|| {
-            let mut spindle = Spindle::new(parameters, timing);
+            let mut spindle = Spindle::new(settings, timing);
             spindle.set_speed(1000.0, 0);
             spindle.rotate(Rotation::M3);
             spindle

@@ -96,7 +96,7 @@ pub struct Axis {
     residual_steps: u32,
 }
 
-/// What follows from parameters and method alone, so that no servo step has to find it again.
+/// What follows from settings and method alone, so that no servo step has to find it again.
 #[derive(Clone, Copy, Debug, Default)]
 struct Fixed {
     /// Voltage of a velocity, V/(mm/min).

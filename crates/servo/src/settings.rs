@@ -56,9 +56,6 @@ pub struct MarkSettings {
 /// Measuring system of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderSettings {
-    /// Input of the control, 0 to 5 for X1 to X6: MP110 (old: MP253-257, 0 = own input) [000:3374-3391]
-    /// [001:2434-2454].
-    pub input: u8,
     /// Signal period, µm or 1/1000 degree: MP330, 0.1 to 1000 (old: 20 or 10 by MP12+, 20-fold or 10-fold
     /// evaluation to 1 µm) [000:3188-3236] [001:1616-1625].
     pub signal_period_um: f64,
@@ -81,17 +78,12 @@ pub struct EncoderSettings {
 /// Nominal value output of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputSettings {
-    /// Output of the control, 0 to 4 for 1 to 5, 5 for S: MP120; old: its own [000:3393-3406].
-    pub output: u8,
     /// Positive traverse needs a negative voltage: MP1040 (old MP24+) [000:3267-3276].
     pub polarity_negative: bool,
     /// Voltage at rapid traverse, V: MP1050, 1 to 9, commissioning 9 (old MP52) [000:4842-4847].
     pub rapid_volts: f64,
     /// Integral factor at standstill: MP1080, 0 to 65 535, 0 with backlash (old MP28+) [000:5039-5072].
     pub integral_factor: f64,
-    /// Interval of the automatic offset adjustment, s, 0 without: MP1220 (old MP252, 20 ms)
-    /// [000:5022-5037] [001:2591-2606].
-    pub offset_interval_s: f64,
 }
 
 /// Operation with servo lag. Lag = feed / kv below the kink, above it the slope is kv times the factor
@@ -117,11 +109,6 @@ pub struct LagSettings {
 /// Operation with feed pre-control.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrecontrolSettings {
-    /// MDI, single block and full sequence run with pre-control, not with lag: MP1390 = 0 (old MP60 = 0)
-    /// [000:4721-4724] [001:1105-1121].
-    pub in_automatic: bool,
-    /// Manual and Handwheel run with pre-control: MP1391; old: never [000:4726-4733] [001:1105-1121].
-    pub in_manual: bool,
     /// kv, (m/min)/mm: MP1510, 0.1 to 20, commissioning 1 [000:4984-4991]. Old: from MP32+, output steps of
     /// 9 V/3686.4 for each µm of lag: kv = factor / 3.6864 * 9 V / MP52 * rapid traverse in m/min (inferred
     /// from the table [001:1746-1762]).

@@ -92,7 +92,7 @@ impl SpeedLoop {
         Some(new)
     }
 
-    /// Takes changed parameters over; what it has summed up stays.
+    /// Takes changed settings over; what it has summed up stays.
     pub fn configure(&mut self, settings: &AxisSettings, timing: &Timing) {
         let Some(digital) = settings.digital else {
             return;

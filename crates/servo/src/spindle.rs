@@ -141,7 +141,7 @@ impl Spindle {
         }
     }
 
-    /// Takes changed parameters over (those that the PLC may change).
+    /// Takes changed settings over (those that the PLC may change).
     pub fn configure(&mut self, settings: SpindleSettings) {
         self.settled = false;
         self.settings = settings;

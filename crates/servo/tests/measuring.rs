@@ -5,10 +5,10 @@ mod common;
 
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
 use bahn_servo::{Axis, DistanceCode, Encoder, EncoderFault, Fault};
-use common::{Bench, parameters};
+use common::{Bench, settings};
 
 fn axis(assignments: &[&str]) -> Axis {
-    let mut axis = Axis::new(parameters(Tnc415b, assignments), Tnc415b.timing());
+    let mut axis = Axis::new(settings(Tnc415b, assignments), Tnc415b.timing());
     axis.measure(Encoder::default());
     axis
 }
@@ -47,7 +47,7 @@ fn square_wave_inputs_are_evaluated_fourfold() {
         (Tnc415b, "110.0=4", false),
         (Tnc415b, "110.0=5", true),
     ] {
-        let mut axis = Axis::new(parameters(model, &["330.0=4", input]), model.timing());
+        let mut axis = Axis::new(settings(model, &["330.0=4", input]), model.timing());
         axis.measure(Encoder::default());
         for count in [-STEP - 1, -1, 1, STEP - 1, STEP, 1000 * STEP + 1] {
             axis.measure(at(count, None));
@@ -165,8 +165,8 @@ fn two_distance_coded_marks_give_the_position() {
 #[test]
 fn external_interpolation_is_taken_out_of_the_code() {
     // 20 µm grating, 5-fold EXE: signal period 4 µm; 501 gratings are 2505 signal periods.
-    let parameters = parameters(Tnc407, &["1350.0=3", "330.0=4", "340.0=5"]);
-    let mut axis = Axis::new(parameters, Tnc407.timing());
+    let settings = settings(Tnc407, &["1350.0=3", "330.0=4", "340.0=5"]);
+    let mut axis = Axis::new(settings, Tnc407.timing());
     axis.measure(at(0, Some(0)));
     axis.measure(at(2505 * 1024, Some(2505 * 1024)));
     let scale = axis.take_mark().unwrap().scale_mm.unwrap();

@@ -38,8 +38,8 @@ fn the_cycle_of_an_axis_does_not_allocate() {
 
 #[test]
 fn the_cycle_of_the_spindle_does_not_allocate() {
-    let parameters = ParameterList::reference(Tnc415b).spindle_parameters().settings;
-    let mut spindle = Spindle::new(parameters, Tnc415b.timing());
+    let settings = ParameterList::reference(Tnc415b).spindle_parameters().settings;
+    let mut spindle = Spindle::new(settings, Tnc415b.timing());
     let mut encoder = Encoder::default();
     let allocated = measure(|| {
         for round in 0..4 {

@@ -256,9 +256,9 @@ fn stiction_adds_what_the_manual_computes() {
         bench.axis.stiction_mm_min()
     );
     // MP1512: 10 steps of 20 µm/256 are 0.78 µm: 0.00078125/3000 · 2 · 6000 m/min = 3.125 mm/min.
-    let mut parameters = *bench.axis.settings();
-    parameters.compensation.stiction_limit_steps = 10.0;
-    bench.axis.configure(parameters);
+    let mut settings = *bench.axis.settings();
+    settings.compensation.stiction_limit_steps = 10.0;
+    bench.axis.configure(settings);
     bench.run(60.0, 0.03);
     assert!((bench.axis.stiction_mm_min() - 3.125).abs() < 1e-6);
     // From MP1513 on not at all, nor with lag.

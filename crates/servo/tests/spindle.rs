@@ -35,13 +35,13 @@ impl Bench {
         for index in 0..8 {
             list.set(3440, index, 1.0).unwrap();
         }
-        let parameters = list.spindle_parameters().settings;
+        let settings = list.spindle_parameters().settings;
         let timing = Tnc415b.timing();
-        let counts = if parameters.counts_negative { -TURN } else { TURN };
+        let counts = if settings.counts_negative { -TURN } else { TURN };
         Bench {
-            spindle: Spindle::new(parameters, timing),
+            spindle: Spindle::new(settings, timing),
             timing,
-            rpm_per_volt: parameters.gears[0].rated_rpm / parameters.gears[0].rated_volts,
+            rpm_per_volt: settings.gears[0].rated_rpm / settings.gears[0].rated_volts,
             turns: 0.0,
             mark_turns: 0.25,
             offset_volts: 0.0,

@@ -472,7 +472,7 @@ impl Assistant<'_> {
         }
         let first = self.subject.axes.first().map_or(0, |axis| axis.index);
         // Higher kv may bear what the mechanics spoiled before.
-        let what = match self.list.axis_parameters(first).precontrol.in_automatic {
+        let what = match self.list.axis_parameters(first).precontrol_in_automatic {
             true => Adjustment::KvPrecontrol,
             false => Adjustment::KvLag,
         };
@@ -487,7 +487,7 @@ impl Assistant<'_> {
             let now = self.list.axis_parameters(axis);
             let play = self.best.backlash_mm.get(place).map_or(0.0, |play| play.abs());
             let has_play = play > BACKLASH_MIN_MM || now.compensation.backlash_mm != 0.0;
-            if now.digital.is_some() || has_play || now.output.offset_interval_s > 0.0 {
+            if now.digital.is_some() || has_play || now.offset_interval_s > 0.0 {
                 continue;
             }
             for step in 1..=INTEGRAL_STEPS {

@@ -30,16 +30,26 @@ pub struct AxisParameters {
     pub shown: bool,
     /// The axis belongs to the PLC: MP60 [000:4094-4109]; not on the TNC 151/155.
     pub plc_axis: bool,
+    /// Where encoder and drive are connected.
+    pub wiring: WiringParameters,
     /// Measuring system.
     pub encoder: EncoderSettings,
     /// Nominal value output.
     pub output: OutputSettings,
+    /// Interval of the automatic offset adjustment, s, 0 without: MP1220 (old MP252, 20 ms)
+    /// [000:5022-5037] [001:2591-2606].
+    pub offset_interval_s: f64,
     /// Feed rates and acceleration.
     pub motion: MotionParameters,
     /// Operation with servo lag.
     pub lag: LagSettings,
     /// Operation with feed pre-control.
     pub precontrol: PrecontrolSettings,
+    /// MDI, single block and full sequence run with pre-control, not with lag: MP1390 = 0 (old MP60 = 0)
+    /// [000:4721-4724] [001:1105-1121].
+    pub precontrol_in_automatic: bool,
+    /// Manual and Handwheel run with pre-control: MP1391; old: never [000:4726-4733] [001:1105-1121].
+    pub precontrol_in_manual: bool,
     /// Monitoring that both kinds of operation share.
     pub monitoring: MonitoringSettings,
     /// Compensation of the mechanics' errors.
@@ -52,6 +62,16 @@ pub struct AxisParameters {
     pub synchronization: Synchronization,
     /// Digital speed controller, TNC 425 with MP1900 only.
     pub digital: Option<SpeedLoopSettings>,
+}
+
+/// Inputs and outputs of the control that belong to an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WiringParameters {
+    /// Encoder input, 0 to 5 for X1 to X6: MP110 (old: MP253-257, 0 = own input) [000:3374-3391]
+    /// [001:2434-2454].
+    pub input: u8,
+    /// Nominal value output, 0 to 4 for 1 to 5, 5 for S: MP120; old: its own [000:3393-3406].
+    pub output: u8,
 }
 
 /// Feed rates and acceleration of an axis.
@@ -197,6 +217,7 @@ impl ParameterList {
         let axis = AxisReader::new(self, index);
         let controlled = axis.exists() && self.is_controlled(&axis);
         let active = axis.exists() && axis.bit_or(10, || controlled || self.old_bit(76, 0));
+        let wiring = wiring(&axis);
         AxisParameters {
             index,
             letter: self.axis_letter(index),
@@ -204,11 +225,15 @@ impl ParameterList {
             controlled: active && controlled,
             shown: active && axis.bit_or(40, || true),
             plc_axis: active && axis.bit_or(60, || false),
-            encoder: encoder(&axis),
+            wiring,
+            encoder: encoder(&axis, wiring.input),
             output: output(&axis),
+            offset_interval_s: self.get(1220, 0).unwrap_or_else(|| self.old(252) * 0.02),
             motion: motion(&axis),
             lag: lag(&axis),
             precontrol: precontrol(&axis),
+            precontrol_in_automatic: self.feed_precontrol(),
+            precontrol_in_manual: axis.bit_or(1391, || false),
             monitoring: monitoring(&axis),
             compensation: compensation(&axis),
             reference: reference(&axis),
@@ -224,12 +249,17 @@ impl ParameterList {
     }
 }
 
-fn encoder(axis: &AxisReader) -> EncoderSettings {
+fn wiring(axis: &AxisReader) -> WiringParameters {
+    WiringParameters {
+        input: axis.new_or(110, || f64::from(old_input(axis))) as u8,
+        output: axis.new_or(120, || f64::from(axis.index())) as u8,
+    }
+}
+
+fn encoder(axis: &AxisReader, input: u8) -> EncoderSettings {
     // MP76: bit 0 concerns inhibited axes, bits 1 to 4 switch X to IV off.
     let checked = || !axis.list().old_bit(76, u32::from(axis.index()) + 1);
-    let input = axis.new_or(110, || f64::from(old_input(axis))) as u8;
     EncoderSettings {
-        input,
         square_wave: input >= axis.list().model().limits().square_wave_input,
         // 20-fold and 10-fold evaluation both make counting steps of 1 µm.
         signal_period_um: axis.new_or(330, || if axis.old(12) == 2.0 { 10.0 } else { 20.0 }),
@@ -250,14 +280,9 @@ fn old_input(axis: &AxisReader) -> u8 {
 
 fn output(axis: &AxisReader) -> OutputSettings {
     OutputSettings {
-        output: axis.new_or(120, || f64::from(axis.index())) as u8,
         polarity_negative: axis.flag(1040, 24),
         rapid_volts: axis.old_common(1050, 52),
         integral_factor: axis.value(1080, 28),
-        offset_interval_s: axis
-            .list()
-            .get(1220, 0)
-            .unwrap_or_else(|| axis.list().old(252) * 0.02),
     }
 }
 
@@ -297,8 +322,6 @@ fn precontrol(axis: &AxisReader) -> PrecontrolSettings {
     };
     let kv = axis.new_or(1510, old_kv);
     PrecontrolSettings {
-        in_automatic: axis.list().feed_precontrol(),
-        in_manual: axis.bit_or(1391, || false),
         kv,
         kv_m105: axis.new_or(1515, || kv),
         transient_m_min: axis.common(1520, 53),

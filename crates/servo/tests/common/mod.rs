@@ -9,8 +9,8 @@ use bahn_servo::{Axis, Encoder, Method, Timing};
 /// Mechanics without errors, and a drive without offset.
 const NO_ERRORS: [&str; 5] = ["710.0=0", "711.0=0", "715.0=0", "720.0=0", "1080.0=0"];
 
-/// The X axis of a model's reference list, without errors, with some parameters changed.
-pub fn parameters(model: ControlModel, assignments: &[&str]) -> AxisSettings {
+/// The settings of the X axis of a model's reference list, without errors, with some parameters changed.
+pub fn settings(model: ControlModel, assignments: &[&str]) -> AxisSettings {
     let mut list = ParameterList::reference(model);
     for assignment in NO_ERRORS.iter().chain(assignments) {
         list.assign(assignment).unwrap();
@@ -42,19 +42,19 @@ pub struct Bench {
 
 impl Bench {
     pub fn new(model: ControlModel, assignments: &[&str]) -> Bench {
-        let parameters = parameters(model, assignments);
+        let settings = settings(model, assignments);
         let timing = model.timing();
-        let polarity = if parameters.output.polarity_negative {
+        let polarity = if settings.output.polarity_negative {
             -1.0
         } else {
             1.0
         };
-        let direction = if parameters.encoder.counts_negative {
+        let direction = if settings.encoder.counts_negative {
             -1.0
         } else {
             1.0
         };
-        let mut axis = Axis::new(parameters, timing);
+        let mut axis = Axis::new(settings, timing);
         axis.measure(Encoder::default());
         axis.close();
         Bench {
@@ -66,8 +66,8 @@ impl Bench {
             drive_s: 0.0,
             velocity_mm_min: 0.0,
             blocked: false,
-            mm_min_per_volt: polarity * parameters.motion.rapid_mm_min / parameters.output.rapid_volts,
-            steps_per_mm: direction * Encoder::STEPS as f64 / (parameters.encoder.signal_period_um * 1e-3),
+            mm_min_per_volt: polarity * settings.motion.rapid_mm_min / settings.output.rapid_volts,
+            steps_per_mm: direction * Encoder::STEPS as f64 / (settings.encoder.signal_period_um * 1e-3),
         }
     }
 
