@@ -176,6 +176,24 @@ fn a_machine_is_backed_up_and_restored() {
     assert_eq!(run.code(), 2, "{}", run.err());
 }
 
+/// A machine that has digitized much comes back, too: the file of a backup is longer than any table.
+#[test]
+fn a_large_machine_comes_back() {
+    let folder = mill();
+    let block = "L X+123.456 Y+78.9 Z-12.345\n";
+    // 17 MiB and a bit.
+    let text = format!(
+        "BEGIN PGM LONG MM\n{}END PGM LONG MM\n",
+        block.repeat((17 << 20) / block.len() + 1)
+    );
+    folder.write("mill/programs/LONG.H", &text);
+    let run = folder.bahn("link backup --machine mill --output mill.anc");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let run = folder.bahn("link restore --machine again mill.anc");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert!(folder.read("again/programs/LONG.H") == text);
+}
+
 /// BACKUP DATA to a floppy disk unit, and RESTORE DATA from it.
 #[test]
 fn a_backup_goes_over_a_line() {

@@ -15,7 +15,7 @@
 //! anywhere else.
 
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, BufRead, Read as _, Write as _};
 use std::path::{Component, Path, PathBuf};
 
 use bahn_control::unescaped;
@@ -28,6 +28,8 @@ use crate::files::{self, NewFile, WrittenFile, cannot};
 pub const BACKUP_NAME: &str = "$BACKUP";
 /// Characters of a line at most.
 const LINE: usize = 100;
+/// Bytes of a line that are read at most: a path of eight names of 255, and what stands before it.
+const READ: u64 = 4096;
 /// Bytes of a file at most: nothing that a machine keeps is longer.
 const FILE_MAX: u64 = 1 << 30;
 /// Names of a path at most, with that of the file.
@@ -245,6 +247,25 @@ impl Restore {
         }
     }
 
+    /// Takes all lines of a backup, however long it is.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is not what it should be; nothing is restored then.
+    pub fn read(folder: &Path, mut text: impl BufRead) -> Result<Restore, BackupError> {
+        let mut restore = Restore::new(folder);
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            let read = text.by_ref().take(READ).read_until(b'\n', &mut line);
+            if read.map_err(|error| HostError::new(format!("cannot read the backup: {error}")))? == 0 {
+                return Ok(restore);
+            }
+            let line = line.strip_suffix(b"\n").unwrap_or(&line);
+            let line = line.strip_suffix(b"\r").unwrap_or(line);
+            restore.line(&String::from_utf8_lossy(line))?;
+        }
+    }
+
     /// Takes a line, without its end.
     ///
     /// # Errors
@@ -439,11 +460,7 @@ mod tests {
     }
 
     fn restore(lines: &[String], folder: &Folder) -> Result<u64, BackupError> {
-        let mut restore = Restore::new(&folder.0);
-        for line in lines {
-            restore.line(line)?;
-        }
-        restore.commit()
+        Restore::read(&folder.0, (lines.join("\r\n") + "\r\n").as_bytes())?.commit()
     }
 
     fn machine() -> Folder {
@@ -486,6 +503,27 @@ mod tests {
             );
         }
         assert_eq!(fs::read(to.0.join("programs/16.H")).unwrap(), b"stays");
+    }
+
+    /// What has no ends of lines is no backup, and is not taken into memory as a whole to find that out.
+    #[test]
+    fn what_has_no_lines_is_refused() {
+        struct Endless(u64);
+        impl io::Read for Endless {
+            fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+                bytes.fill(b'x');
+                self.0 += bytes.len() as u64;
+                Ok(bytes.len())
+            }
+        }
+        let mut endless = Endless(0);
+        let to = Folder::new();
+        let refused = Restore::read(&to.0, io::BufReader::new(&mut endless));
+        assert!(
+            matches!(refused, Err(BackupError::Damaged { line: 1, .. })),
+            "{refused:?}"
+        );
+        assert!(endless.0 <= 1 << 16, "{}", endless.0);
     }
 
     /// Whatever happens to a line, either all is as before, or all is restored.

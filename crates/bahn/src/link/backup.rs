@@ -1,5 +1,7 @@
 //! `bahn link backup` and `restore`: everything in the folder of a machine as one file.
 
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use bahn_host::backup::{BACKUP_NAME, BackupError, Restore, back_up};
@@ -114,10 +116,10 @@ pub(super) fn restore(options: &RestoreOptions) -> Result<Outcome, UsageError> {
     let folder = &options.machine;
     std::fs::create_dir_all(folder).map_err(|error| files::cannot("make", folder, &error))?;
     is_off(folder)?;
-    let text = match &options.file {
-        Some(file) => {
-            let bytes = files::read_table(file)?;
-            String::from_utf8_lossy(&bytes).into_owned()
+    let read = match &options.file {
+        Some(path) => {
+            let file = File::open(path).map_err(|error| files::cannot("read", path, &error))?;
+            Restore::read(folder, BufReader::new(file))
         }
         None => {
             let memory = Memory::default();
@@ -132,14 +134,12 @@ pub(super) fn restore(options: &RestoreOptions) -> Result<Outcome, UsageError> {
             let deed = transfer::Deed::Read(vec![Want::Selected(name())]);
             let outcome = transfer::run(&list_of(folder), memory.clone(), deed, &plan)?;
             match memory.get(&name()).filter(|_| outcome == Outcome::Fine) {
-                Some(text) => text,
+                Some(text) => Restore::read(folder, text.as_bytes()),
                 None => return Ok(outcome),
             }
         }
     };
-    let mut restore = Restore::new(folder);
-    let read = text.lines().try_for_each(|line| restore.line(line));
-    match read.and_then(|()| restore.commit()) {
+    match read.and_then(Restore::commit) {
         Ok(count) => {
             console::print(&format!("{count} files\n"))?;
             Ok(Outcome::Fine)

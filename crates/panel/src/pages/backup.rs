@@ -2,8 +2,12 @@
 //!
 //! While it is on its way the file lies in the program memory, which the data interfaces read and write.
 
+use std::fs::File;
+use std::io::BufReader;
+
 use bahn_control::RunState;
-use bahn_host::backup::{BACKUP_NAME, Restore, back_up};
+use bahn_host::backup::{BACKUP_NAME, BackupError, Restore, back_up};
+use bahn_host::files;
 use bahn_parameters::MessageId;
 
 use crate::page::Turn;
@@ -80,12 +84,12 @@ pub(crate) fn restored(site: &Site) -> Result<Restore, String> {
     if site.control().run_state() != RunState::Idle {
         return Err(site.message(MessageId::KeyNonFunctional));
     }
-    let text = site.programs.text(&name()).unwrap_or_default();
-    let mut restore = Restore::new(&site.machine.root);
-    let read = text.lines().try_for_each(|line| restore.line(line));
-    read.map_err(|error| error.to_string())?;
-    match restore.is_complete() {
+    let path = site.programs.path(&name()).unwrap_or_default();
+    let file = File::open(&path).map_err(|error| files::cannot("read", &path, &error).to_string())?;
+    let read = Restore::read(&site.machine.root, BufReader::new(file));
+    let complete = |restore: Restore| match restore.is_complete() {
         true => Ok(restore),
-        false => Err(bahn_host::backup::BackupError::Incomplete.to_string()),
-    }
+        false => Err(BackupError::Incomplete),
+    };
+    read.and_then(complete).map_err(|error| error.to_string())
 }
