@@ -91,7 +91,8 @@ impl Superimposed {
 
     /// Follows the wheels for a cycle, beside a path that leads the axes to `path` in it; `None` when it stands. Not while the
     /// path `holds` it. An axis without loop or feed enable stands at once, one that was taken over beside its path goes back
-    /// to that first, and what is turned meanwhile moves nothing later; none is led out of its traverse range.
+    /// to that first, and what is turned meanwhile moves nothing later; a fault stops all on their ramps, as the machine does
+    /// [000:5198]. None is led out of its traverse range.
     pub fn follow<'a>(
         &mut self,
         path: Option<&Position>,
@@ -110,9 +111,15 @@ impl Superimposed {
             if unit.enabled && unit.servo.closed() && unit.left_at.is_none() {
                 let was = unit.nominal - before;
                 let path = path.map(|path| path[axis]).filter(|path| !path.is_nan());
-                let turned = now.wheel_mm.get(unit.index).filter(|_| !holds);
-                self.turn(unit, turned.copied().unwrap_or(0.0), path.unwrap_or(was));
-                self.lead(unit, (path.unwrap_or(was) - was) / now.time_s, now);
+                let path_mm_s = (path.unwrap_or(was) - was) / now.time_s;
+                if now.fault {
+                    self.lead(unit, Aim::Feed(0.0), path_mm_s, now);
+                    self.target[axis] = self.of(axis);
+                } else {
+                    let turned = now.wheel_mm.get(unit.index).filter(|_| !holds);
+                    self.turn(unit, turned.copied().unwrap_or(0.0), path.unwrap_or(was));
+                    self.lead(unit, Aim::Position(self.target[axis]), path_mm_s, now);
+                }
             } else {
                 self.ramps[axis] = PointToPoint::new(before);
                 self.target[axis] = before;
@@ -138,12 +145,12 @@ impl Superimposed {
     /// Leads an axis on its ramp, as fast as the path leaves it of the rapid traverse. What the path takes of that faster than the
     /// ramp brakes, at a corner that it passes, the wheel gives way by at once (inferred): the axis then keeps the rapid
     /// traverse, and its own velocity changes by no more than that of the path does and the ramp allows.
-    fn lead(&mut self, unit: &AxisUnit, path_mm_s: f64, now: &Now) {
+    fn lead(&mut self, unit: &AxisUnit, aim: Aim, path_mm_s: f64, now: &Now) {
         let motion = &unit.parameters.motion;
         let limit = motion.rapid_mm_min.min(now.rapid_limit_mm_min);
         let feed = (limit - path_mm_s.abs() * 60.0).max(0.0);
         let ramp = &mut self.ramps[unit.axis];
-        let (before, aim) = (ramp.position(), Aim::Position(self.target[unit.axis]));
+        let before = ramp.position();
         let way = ramp.cycle(now.time_s, aim, feed, motion.acceleration_m_s2) - before;
         let rapid = motion.rapid_mm_min / 60.0;
         let (least, most) = ((-rapid - path_mm_s).min(0.0), (rapid - path_mm_s).max(0.0));

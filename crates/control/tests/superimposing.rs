@@ -4,7 +4,8 @@
 
 mod support;
 
-use bahn_control::{HANDWHEEL_STEPS, RunState};
+use bahn_control::{AxisWatch, HANDWHEEL_STEPS, RunState};
+use bahn_path::Axis;
 use support::bench::*;
 use support::*;
 
@@ -31,11 +32,18 @@ fn wheel_with(parameters: &str, blocks: &str) -> Rig {
     rig
 }
 
+/// Z as the kernel moves it.
+fn z_of(rig: &Rig) -> AxisWatch {
+    let mut watch = rig.control.first().watch();
+    watch.find(|watch| watch.axis == Axis::Z).unwrap()
+}
+
 /// Turns the wheel by so many mm of Z; what Z and X do meanwhile, and the greatest change of Z's way in a cycle.
 fn turn(rig: &mut Rig, mm: f64, seconds: f64) -> f64 {
     rig.event(&format!("handwheel {}", mm / 10.0 * HANDWHEEL_STEPS));
     let mut greatest = 0.0f64;
-    let mut before = [rig.axis('Z').nominal; 2];
+    let at = z_of(rig);
+    let mut before = [at.commanded, at.commanded - at.speed_mm_s * CYCLE_S];
     for _ in 0..(seconds / CYCLE_S) as usize {
         rig.cycle();
         let z = rig.axis('Z').nominal;
@@ -271,8 +279,7 @@ fn the_wheel_in_an_emergency_stop_moves_nothing_later() {
 fn together(rig: &mut Rig, mm: f64, cycles: usize) -> [f64; 3] {
     const RAPID: f64 = 12_000.0 / 60.0;
     let state = |rig: &Rig| {
-        let mut watch = rig.control.first().watch();
-        let z = watch.find(|watch| watch.axis == bahn_path::Axis::Z).unwrap();
+        let z = z_of(rig);
         assert!(z.speed_mm_s.abs() <= RAPID * (1.0 + 1e-9), "{z:?}");
         let ramp = z.acceleration_mm_s2 * CYCLE_S * (1.0 + 1e-6) + 1e-9;
         (z.commanded, z.superimposed, ramp)
@@ -360,4 +367,35 @@ fn at_a_corner_the_wheel_gives_way_to_the_path() {
         close(fastest[2], 200.0, 1e-6);
         close(rig.axis('Z').nominal, 90.0, 1e-9);
     }
+}
+
+/// POSITIONING ERROR stops the machine [000:5198]: the wheel leads no axis on. At full speed Z lags 200 mm/s / (2 m/min/mm) = 6 mm
+/// behind, where MP1710 allows 4; it stands within its braking distance of 200² / (2 · 5000) = 4 mm and three cycles, and
+/// what is turned meanwhile moves nothing later.
+#[test]
+fn a_positioning_error_stops_the_wheel() {
+    let mut rig = quick(
+        "1390=1 1710.2=4 1720.2=20",
+        "L X+120 Z+90 R0 FMAX M118 Z60\nL X+160 F600",
+    );
+    rig.start();
+    rig.until(20.0, "the second block", |rig| rig.axis('X').nominal > 121.0);
+    rig.event(&format!("handwheel {}", 50.0 / 10.0 * HANDWHEEL_STEPS));
+    rig.until(1.0, "a message", |rig| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["POSITIONING ERROR Z"]);
+    let from = rig.axis('Z').nominal;
+    let greatest = turn(&mut rig, 30.0, 0.5);
+    close(greatest, 5000.0 * CYCLE_S * CYCLE_S, 1e-6);
+    let stood = rig.axis('Z').nominal;
+    let bound = 200.0 * 200.0 / (2.0 * 5000.0) + 3.0 * 200.0 * CYCLE_S;
+    assert!((0.0..bound).contains(&(stood - from)), "{from} to {stood}");
+    rig.command("ce");
+    rig.start();
+    rig.seconds(1.0);
+    close(rig.axis('Z').nominal, stood, 1e-9);
+    assert!(turn(&mut rig, -5.0, 0.5) > 0.0);
+    close(rig.axis('Z').nominal, stood - 5.0, 1e-9);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    close(rig.axis('X').nominal, 160.0, 1e-9);
+    assert_eq!(rig.messages(), [""; 0]);
 }
