@@ -321,8 +321,8 @@ fn threads_and_scans_stay_where_they_are_led() {
 #[test]
 fn what_the_long_campaign_found_stays_mended() {
     for (machine, program, seed, what) in [
-        ("mill", "KNOB.H", 8_500_962, "handwheel -100"),
-        ("mill", "KNOB.H", 8_800_267, "handwheel -500"),
+        ("mill", "KNOB.H", 8_500_962, "handwheel Z 0, handwheel -100"),
+        ("mill", "KNOB.H", 8_800_267, "handwheel Z 0, handwheel -500"),
         ("dig425", "CIRCLE.H", 8_400_916, "key X- press"),
         ("mill-tnc360", "PLATE.H", 8_700_335, "force Y 4000"),
     ] {
