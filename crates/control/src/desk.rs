@@ -136,6 +136,7 @@ impl Desk {
             mode: self.mode,
             start: self.start_pressed,
             stop,
+            fault: facts.fault,
             stop_pressed: self.panel.stop,
             ready: facts.ready,
             loops_closed: facts.loops_closed,

@@ -159,11 +159,15 @@ impl Chain {
 
     /// The axis positions of a path position.
     pub fn to_axes(&self, path: &Position) -> Position {
-        let axes = match &self.placement {
+        self.superimposed.added(self.without_wheels(path), 1.0)
+    }
+
+    /// The axis positions of a path position, without what the handwheel adds to them.
+    pub fn without_wheels(&self, path: &Position) -> Position {
+        match &self.placement {
             None => self.kinematics.to_axes(path, &self.offsets),
             Some(placement) => self.kinematics.to_axes(&placement.to_nose(path), &self.behind()),
-        };
-        self.superimposed.added(axes, 1.0)
+        }
     }
 
     /// The path position of axis positions.

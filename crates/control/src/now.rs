@@ -31,6 +31,8 @@ pub(crate) struct Now {
     pub start: bool,
     /// NC stop is given by the PLC, the circuit, a flashing message or a fault of an axis.
     pub stop: bool,
+    /// A flashing message is shown, or a loop of the channel has a fault.
+    pub fault: bool,
     /// The PLC gives NC stop (M2488 = 0).
     pub stop_pressed: bool,
     /// The control voltage is on: nothing is stopped for good.

@@ -167,6 +167,12 @@ impl Probe {
         self.probing.is_some() || self.scanning.is_some()
     }
 
+    /// The straight way that is on its way: its start and its farthest end, path coordinates.
+    pub fn way(&self) -> Option<[Position; 2]> {
+        let probing = self.probing.map(|probing| [probing.from, probing.to]);
+        probing.or_else(|| self.tool.way())
+    }
+
     /// The path came to a digitizing cycle.
     pub fn scan(&mut self, block: BlockRef, job: ScanJob, site: &mut Site) {
         self.scanning = Some(Scanning::begin(block, job, site));

@@ -472,10 +472,8 @@ impl ProgramRun {
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);
         self.tapping.lead(cycle.lead, site.spindle);
-        let holds = self.track.path.is_coupled();
-        site.chain.superimposed.follow(site.axes.iter(), &site.now, holds);
         self.track
-            .follow(&cycle.position, &mut site.axes, site.chain, site.now.time_s);
+            .follow(&cycle.position, &mut site.axes, site.chain, &site.now);
         let inch = self.source.inch();
         self.track.output(site, &mut self.q_transfer, inch, settled);
         self.take_state(cycle.state, &drive, wear, site);

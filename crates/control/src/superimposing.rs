@@ -89,10 +89,17 @@ impl Superimposed {
         PerAxis::from_fn(|axis| axes[axis] + sign * self.of(axis)).into()
     }
 
-    /// Follows the wheels for a cycle, unless the path `holds` it. An axis without loop or feed enable stands at once, one that
-    /// was taken over beside its path goes back to that first, and what is turned meanwhile moves nothing later; none is led
-    /// out of its traverse range.
-    pub fn follow<'a>(&mut self, axes: impl Iterator<Item = &'a AxisUnit>, now: &Now, holds: bool) {
+    /// Follows the wheels for a cycle, beside a path that leads the axes to `path` in it; `None` when it stands. Not while the
+    /// path `holds` it. An axis without loop or feed enable stands at once, one that was taken over beside its path goes back
+    /// to that first, and what is turned meanwhile moves nothing later; a fault stops all on their ramps, as the machine does
+    /// [000:5198]. None is led out of its traverse range.
+    pub fn follow<'a>(
+        &mut self,
+        path: Option<&Position>,
+        axes: impl Iterator<Item = &'a AxisUnit>,
+        now: &Now,
+        holds: bool,
+    ) {
         if !self.on {
             return;
         }
@@ -100,32 +107,56 @@ impl Superimposed {
         self.ways = Position::ZERO;
         for unit in axes.filter(|unit| unit.is_free()) {
             let axis = unit.axis;
-            let ramp = &mut self.ramps[axis];
-            if !(unit.enabled && unit.servo.closed() && unit.left_at.is_none()) {
-                *ramp = PointToPoint::new(ramp.position());
-                self.target[axis] = ramp.position();
-                on |= ramp.position() != 0.0;
-                continue;
+            let before = self.ramps[axis].position();
+            if unit.enabled && unit.servo.closed() && unit.left_at.is_none() {
+                let was = unit.nominal - before;
+                let path = path.map(|path| path[axis]).filter(|path| !path.is_nan());
+                let path_mm_s = (path.unwrap_or(was) - was) / now.time_s;
+                if now.fault {
+                    self.lead(unit, Aim::Feed(0.0), path_mm_s, now);
+                    self.target[axis] = self.of(axis);
+                } else {
+                    let turned = now.wheel_mm.get(unit.index).filter(|_| !holds);
+                    self.turn(unit, turned.copied().unwrap_or(0.0), path.unwrap_or(was));
+                    self.lead(unit, Aim::Position(self.target[axis]), path_mm_s, now);
+                }
+            } else {
+                self.ramps[axis] = PointToPoint::new(before);
+                self.target[axis] = before;
             }
-            let turned = now.wheel_mm.get(unit.index).filter(|_| !holds).copied();
-            let most = self.range[axis];
-            let mut target = (self.target[axis] + turned.unwrap_or(0.0)).clamp(-most, most);
-            if let Some([least, greatest]) = unit.limited() {
-                let path = unit.nominal - ramp.position();
-                target = target
-                    .min((greatest - path).max(0.0))
-                    .max((least - path).min(0.0));
-            }
-            self.target[axis] = target;
-            let motion = &unit.parameters.motion;
-            // What the path leaves of the rapid traverse.
-            let by_path = (unit.speed - ramp.speed_mm_s()).abs() * 60.0;
-            let feed = (motion.rapid_mm_min.min(now.rapid_limit_mm_min) - by_path).max(0.0);
-            let before = ramp.position();
-            self.ways[axis] =
-                ramp.cycle(now.time_s, Aim::Position(target), feed, motion.acceleration_m_s2) - before;
-            on |= !ramp.is_at(0.0) || self.ways[axis] != 0.0;
+            self.ways[axis] = self.of(axis) - before;
+            on |= !self.ramps[axis].is_at(0.0) || self.ways[axis] != 0.0;
         }
         self.on = on;
+    }
+
+    /// Where the wheel leads an axis whose path is at `path`.
+    fn turn(&mut self, unit: &AxisUnit, turned: f64, path: f64) {
+        let most = self.range[unit.axis];
+        let mut target = (self.target[unit.axis] + turned).clamp(-most, most);
+        if let Some([least, greatest]) = unit.limited() {
+            target = target
+                .min((greatest - path).max(0.0))
+                .max((least - path).min(0.0));
+        }
+        self.target[unit.axis] = target;
+    }
+
+    /// Leads an axis on its ramp, as fast as the path leaves it of the rapid traverse. What the path takes of that faster than the
+    /// ramp brakes, at a corner that it passes, the wheel gives way by at once (inferred): the axis then keeps the rapid
+    /// traverse, and its own velocity changes by no more than that of the path does and the ramp allows.
+    fn lead(&mut self, unit: &AxisUnit, aim: Aim, path_mm_s: f64, now: &Now) {
+        let motion = &unit.parameters.motion;
+        let limit = motion.rapid_mm_min.min(now.rapid_limit_mm_min);
+        let feed = (limit - path_mm_s.abs() * 60.0).max(0.0);
+        let ramp = &mut self.ramps[unit.axis];
+        let before = ramp.position();
+        let way = ramp.cycle(now.time_s, aim, feed, motion.acceleration_m_s2) - before;
+        let rapid = motion.rapid_mm_min / 60.0;
+        let (least, most) = ((-rapid - path_mm_s).min(0.0), (rapid - path_mm_s).max(0.0));
+        let left = way.clamp(least * now.time_s, most * now.time_s);
+        if left != way {
+            *ramp = PointToPoint::moving(before + left, ramp.speed_mm_s().clamp(least, most));
+        }
     }
 }

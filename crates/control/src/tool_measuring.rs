@@ -88,6 +88,11 @@ impl ToolMeasurement {
         self.0.is_some()
     }
 
+    /// The movement on its way: its start and its farthest end, path coordinates.
+    pub fn way(&self) -> Option<[Position; 2]> {
+        self.0.as_ref().map(|run| [run.from, run.to])
+    }
+
     /// An axis of its way cannot move: the way stands at once.
     pub fn is_held(&mut self, axes: &OwnAxes) -> bool {
         let Some(run) = &mut self.0 else { return false };

@@ -14,6 +14,7 @@ use crate::handshake::LOOK_AHEAD;
 use crate::kinematics::{Chain, Kinematics, behind};
 use crate::markers::WAIT_OPEN_LOOP;
 use crate::message::Message;
+use crate::now::Now;
 use crate::panel::Direction;
 use crate::q_transfer::QTransfer;
 use crate::site::Site;
@@ -163,8 +164,8 @@ impl Track {
         }
     }
 
-    /// The nominal positions of the axes from that of the path.
-    pub fn follow(&mut self, position: &Position, axes: &mut OwnAxes, chain: &mut Chain, time_s: f64) {
+    /// The nominal positions of the axes from that of the path and what the handwheel adds to it.
+    pub fn follow(&mut self, position: &Position, axes: &mut OwnAxes, chain: &mut Chain, now: &Now) {
         let moved = self.last != Some(*position);
         self.last = Some(*position);
         let element = self.path.element();
@@ -174,8 +175,13 @@ impl Track {
                 self.feed = feed;
             }
         }
-        let nominal = chain.to_axes(position);
-        let superimposed = &chain.superimposed;
+        let path = chain.without_wheels(position);
+        let superimposed = &mut chain.superimposed;
+        // In a thread, which the spindle leads, no wheel does.
+        let led = moved.then_some(&path);
+        superimposed.follow(led, axes.iter(), now, self.path.is_coupled());
+        let nominal = superimposed.added(path, 1.0);
+        let time_s = now.time_s;
         for unit in axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_nan() || !matches!(unit.mover, Mover::None | Mover::Path) || unit.is_plc_axis() {

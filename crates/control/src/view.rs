@@ -232,6 +232,12 @@ impl<'a> ChannelView<'a> {
         self.channel.run.probe.seeks_surface()
     }
 
+    /// The straight way on which a probe leads the path now: from where, and how far if it touches nothing. In coordinates of
+    /// the path; `None` for a scan, which has its RANGE.
+    pub fn probing_way(&self) -> Option<[Position; 2]> {
+        self.channel.run.probe.way()
+    }
+
     /// A probe leads the path, and no element of it: a probing, a scan, or the measuring of a tool.
     pub fn is_led_by_probe(&self) -> bool {
         self.channel.run.probe.is_on()

@@ -4,7 +4,8 @@
 
 mod support;
 
-use bahn_control::{HANDWHEEL_STEPS, RunState};
+use bahn_control::{AxisWatch, HANDWHEEL_STEPS, RunState};
+use bahn_path::Axis;
 use support::bench::*;
 use support::*;
 
@@ -14,9 +15,14 @@ const CYCLE_S: f64 = 0.003;
 
 /// The bench with a handwheel on Z, a turn 10 mm; the program is selected.
 fn wheel(blocks: &str) -> Rig {
+    wheel_with("1710.0=8 1720.0=10 1060.2=0.5", blocks)
+}
+
+fn wheel_with(parameters: &str, blocks: &str) -> Rig {
     let mut rig = bench("")
         .plant("speed = 6000", "speed = 12000")
-        .mps("1710.0=8 1720.0=10 7640=2 7650=1 7660=0 7670.0=0 7460=10 1060.2=0.5")
+        .mps("7640=2 7650=1 7660=0 7670.0=0 7460=10")
+        .mps(parameters)
         .mps("1010.0=12000 1010.1=12000 1010.2=12000")
         .program("1.H", blocks)
         .ready();
@@ -26,11 +32,18 @@ fn wheel(blocks: &str) -> Rig {
     rig
 }
 
+/// Z as the kernel moves it.
+fn z_of(rig: &Rig) -> AxisWatch {
+    let mut watch = rig.control.first().watch();
+    watch.find(|watch| watch.axis == Axis::Z).unwrap()
+}
+
 /// Turns the wheel by so many mm of Z; what Z and X do meanwhile, and the greatest change of Z's way in a cycle.
 fn turn(rig: &mut Rig, mm: f64, seconds: f64) -> f64 {
     rig.event(&format!("handwheel {}", mm / 10.0 * HANDWHEEL_STEPS));
     let mut greatest = 0.0f64;
-    let mut before = [rig.axis('Z').nominal; 2];
+    let at = z_of(rig);
+    let mut before = [at.commanded, at.commanded - at.speed_mm_s * CYCLE_S];
     for _ in 0..(seconds / CYCLE_S) as usize {
         rig.cycle();
         let z = rig.axis('Z').nominal;
@@ -256,5 +269,133 @@ fn the_wheel_in_an_emergency_stop_moves_nothing_later() {
     rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
     close(rig.axis('X').nominal - x, 40.0, 1e-9);
     close(rig.axis('Z').nominal - z, 1.5, 1e-9);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// Runs to the end, and turns the wheel by so many mm to and fro, each for so many cycles; now and then it rests, since a block
+/// that ends in a stop waits until Z is in position. Z never is faster than MP1010; what the
+/// wheel adds keeps to the ramp of MP1060 by itself, but where both together are at rapid traverse it gives way to the path, and
+/// Z itself gains no more than path and ramp. How fast the path alone, the wheel alone and both were at most, mm/s.
+fn together(rig: &mut Rig, mm: f64, cycles: usize) -> [f64; 3] {
+    const RAPID: f64 = 12_000.0 / 60.0;
+    let state = |rig: &Rig| {
+        let z = z_of(rig);
+        assert!(z.speed_mm_s.abs() <= RAPID * (1.0 + 1e-9), "{z:?}");
+        let ramp = z.acceleration_mm_s2 * CYCLE_S * (1.0 + 1e-6) + 1e-9;
+        (z.commanded, z.superimposed, ramp)
+    };
+    let mut fastest = [0.0f64; 3];
+    let (mut before, mut was) = (state(rig), [0.0; 3]);
+    rig.start();
+    for cycle in 0.. {
+        if cycle % cycles == 0 && cycle % 400 < 200 {
+            let way = if cycle / cycles % 2 == 0 { mm } else { -mm };
+            rig.event(&format!("handwheel {}", way / 10.0 * HANDWHEEL_STEPS));
+        }
+        rig.cycle();
+        let now = state(rig);
+        let [sum, wheel] = [now.0 - before.0, now.1 - before.1].map(|way| way / CYCLE_S);
+        let speeds = [sum - wheel, wheel, sum];
+        let [path_step, wheel_step, step] = std::array::from_fn(|index| (speeds[index] - was[index]).abs());
+        let given = if sum.abs() >= RAPID * (1.0 - 1e-9) {
+            path_step
+        } else {
+            0.0
+        };
+        assert!(
+            wheel_step <= now.2 + given,
+            "{wheel_step} mm/s of the wheel in cycle {cycle}: {was:?}, {speeds:?}"
+        );
+        assert!(
+            step <= now.2 + path_step,
+            "{step} mm/s of Z in cycle {cycle}: {was:?}, {speeds:?}"
+        );
+        fastest = std::array::from_fn(|index| fastest[index].max(speeds[index].abs()));
+        (before, was) = (now, speeds);
+        if rig.control.snapshot().ended {
+            break;
+        }
+        assert!(
+            cycle < 20_000,
+            "{:?} {:?}",
+            rig.messages(),
+            rig.control.snapshot()
+        );
+    }
+    assert_eq!(rig.messages(), [""; 0]);
+    fastest
+}
+
+/// A bench whose Z is as quick as that of a small machine: MP1060.2 = 5 m/s².
+fn quick(parameters: &str, blocks: &str) -> Rig {
+    wheel_with(
+        &format!("1710.0=30 1710.2=30 1720.0=40 1720.2=40 1060.2=5 {parameters}"),
+        blocks,
+    )
+}
+
+/// In rapid traverse the path leaves the wheel nothing: what it was given while the path was slow it has given back when the path is
+/// fast. MP1010 is the rapid traverse of the axis, whatever moves it.
+#[test]
+fn path_and_wheel_together_keep_the_rapid_traverse() {
+    for cycles in [7, 11, 16, 23, 31] {
+        let mut rig = quick(
+            "",
+            "L Z+140 R0 FMAX M118 Z8\nLBL 1\nL IZ-80 FMAX\nL IZ+80 FMAX\nCALL LBL 1 REP 9/9\nL IX+9 F600 M118",
+        );
+        let fastest = together(&mut rig, 16.0, cycles);
+        close(fastest[0], 200.0, 1e-6);
+        close(fastest[2], 200.0, 1e-6);
+        assert!(fastest[1] > 20.0, "{fastest:?}");
+        close(rig.axis('Z').nominal, 140.0, 1e-9);
+    }
+}
+
+/// At a corner that is passed (M90, with servo lag: MP1390 = 1) the path takes its speed along Z at once, and the wheel gives way by as much.
+#[test]
+fn at_a_corner_the_wheel_gives_way_to_the_path() {
+    for cycles in [40, 47, 55, 71] {
+        let zigzag = "L IX+12 F12000 M90\nL IZ-12 M90\nL IX-12 M90\nL IZ+12 M90";
+        let mut rig = quick(
+            "1390=1",
+            &format!(
+                "L Z+90 X+40 R0 FMAX M118 Z60\nLBL 1\n{zigzag}\nCALL LBL 1 REP 20/20\nL IX+30 F600 M118"
+            ),
+        );
+        let fastest = together(&mut rig, 120.0, cycles);
+        assert!(fastest[0] > 60.0 && fastest[1] > 150.0, "{fastest:?}");
+        close(fastest[2], 200.0, 1e-6);
+        close(rig.axis('Z').nominal, 90.0, 1e-9);
+    }
+}
+
+/// POSITIONING ERROR stops the machine [000:5198]: the wheel leads no axis on. At full speed Z lags 200 mm/s / (2 m/min/mm) = 6 mm
+/// behind, where MP1710 allows 4; it stands within its braking distance of 200² / (2 · 5000) = 4 mm and three cycles, and
+/// what is turned meanwhile moves nothing later.
+#[test]
+fn a_positioning_error_stops_the_wheel() {
+    let mut rig = quick(
+        "1390=1 1710.2=4 1720.2=20",
+        "L X+120 Z+90 R0 FMAX M118 Z60\nL X+160 F600",
+    );
+    rig.start();
+    rig.until(20.0, "the second block", |rig| rig.axis('X').nominal > 121.0);
+    rig.event(&format!("handwheel {}", 50.0 / 10.0 * HANDWHEEL_STEPS));
+    rig.until(1.0, "a message", |rig| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["POSITIONING ERROR Z"]);
+    let from = rig.axis('Z').nominal;
+    let greatest = turn(&mut rig, 30.0, 0.5);
+    close(greatest, 5000.0 * CYCLE_S * CYCLE_S, 1e-6);
+    let stood = rig.axis('Z').nominal;
+    let bound = 200.0 * 200.0 / (2.0 * 5000.0) + 3.0 * 200.0 * CYCLE_S;
+    assert!((0.0..bound).contains(&(stood - from)), "{from} to {stood}");
+    rig.command("ce");
+    rig.start();
+    rig.seconds(1.0);
+    close(rig.axis('Z').nominal, stood, 1e-9);
+    assert!(turn(&mut rig, -5.0, 0.5) > 0.0);
+    close(rig.axis('Z').nominal, stood - 5.0, 1e-9);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    close(rig.axis('X').nominal, 160.0, 1e-9);
     assert_eq!(rig.messages(), [""; 0]);
 }

@@ -500,10 +500,10 @@ fn a_short_emergency_stop_does_not_leave_the_spindle_standing() {
     }
 }
 
-/// NC start in the same cycle in which CE closes the loops: the drives of the digital mill have no power yet, and Z would be
-/// GROSS POSITIONING ERROR 3F. Its PLC program waits with the start.
+/// NC start, or a direction key that is held, in the same cycle in which CE closes the loops: the drives of the digital mill
+/// have no power yet, and the axis would be GROSS POSITIONING ERROR 3F. Its PLC program waits with the feed enable.
 #[test]
-fn a_start_waits_for_the_drives() {
+fn what_is_held_when_the_loops_close_waits_for_the_drives() {
     let digital = machine("dig425");
     let mut host = host(&digital, PowerOn::fresh(&digital), "L Z+100 R0 FMAX");
     until(&mut host, "the loops", Control::loops_closed);
@@ -512,18 +512,29 @@ fn a_start_waits_for_the_drives() {
     give(&mut host, "voltage on");
     seconds(&mut host, 0.3);
     let begun = host.save();
-    for cycles in 0..16 {
+    let keys = ["NC_START", "X-", "X+", "Y-", "Y+", "Z-", "Z+"];
+    for (cycles, key) in (0..16).flat_map(|cycles| keys.map(|key| (cycles, key))) {
         host.restore(&begun).unwrap();
-        give(&mut host, "key NC_START press");
+        let was: Vec<f64> = host
+            .control()
+            .first()
+            .watch()
+            .map(|axis| axis.commanded)
+            .collect();
+        give(&mut host, &format!("key {key} press"));
         for _ in 0..cycles {
             host.step().unwrap();
         }
         give(&mut host, "ce");
         seconds(&mut host, 0.5);
         let shown = host.control().shown();
-        assert!(shown.iter().all(|shown| !shown.flashing), "{shown:?}");
-        give(&mut host, "key NC_START release");
-        until(&mut host, "the end", Control::has_ended);
+        assert!(shown.iter().all(|shown| !shown.flashing), "{key}: {shown:?}");
+        let now = host.control().first().watch().map(|axis| axis.commanded);
+        assert!(now.ne(was), "{key} moves an axis");
+        give(&mut host, &format!("key {key} release"));
+        until(&mut host, "the end", |control| {
+            key != "NC_START" || control.has_ended()
+        });
     }
 }
 

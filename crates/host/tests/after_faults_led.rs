@@ -94,6 +94,47 @@ fn a_measuring_axis_does_not_jump_behind_an_emergency_stop() {
     });
 }
 
+/// Y is pushed 145 mm away from the plate, which is 70 mm wide, while its encoder is stuck: where the axis stands, the control
+/// cannot know. The stylus meets nothing on its way down to Z = 0: MP6130 = 50 mm behind its start the way ends, with TOUCH POINT
+/// INACCESSIBLE [003:4410] [003:7250]; nothing moves beside it or beyond.
+#[test]
+fn a_stylus_beside_its_plate_goes_to_the_end_of_its_way() {
+    let mut host = shipped("mill-tnc360", "PLATE.H");
+    until(&mut host, "the way to the plate", |control| {
+        probes(control, Axis::Z)
+    });
+    let table = |host: &Host| host.plant().axis('Y').unwrap().position;
+    let stood = table(&host);
+    give(&mut host, "fault encoder Y stuck");
+    give(&mut host, "force Y 4000");
+    seconds(&mut host, 0.15);
+    give(&mut host, "force Y 0");
+    give(&mut host, "repair all");
+    assert!(table(&host) - stood > 70.0, "{stood} to {}", table(&host));
+    let [from, to] = host.control().first().probing_way().unwrap();
+    assert!(
+        (from[Axis::Z] - to[Axis::Z] - 50.0).abs() < 1e-9,
+        "{from:?} {to:?}"
+    );
+    until(&mut host, "the message", |control| {
+        let place = control.first().commanded();
+        let beside = |axis: Axis| (place[axis] - from[axis]).abs();
+        assert!(
+            beside(Axis::X).max(beside(Axis::Y)) < 1e-9 && place[Axis::Z] >= to[Axis::Z],
+            "{place:?}"
+        );
+        control.run_state() != RunState::Running
+    });
+    let control = host.control();
+    let shown: Vec<String> = control
+        .shown()
+        .iter()
+        .map(|shown| control.shown_text(shown))
+        .collect();
+    assert_eq!(shown, ["TOUCH POINT INACCESSIBLE"]);
+    assert_eq!(control.first().commanded()[Axis::Z], to[Axis::Z]);
+}
+
 const TAPPING: &str = "TOOL CALL 6 Z S320\nL Z+50 R0 FMAX M13\nCYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -3\n\
     CYCL DEF 17.2 DEPTH -15\nCYCL DEF 17.3 PITCH +1.25\nL X+0 Y+0 FMAX\nL Z+3 FMAX M99\nL Z+50 FMAX";
 

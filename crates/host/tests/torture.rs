@@ -316,6 +316,28 @@ fn threads_and_scans_stay_where_they_are_led() {
     }
 }
 
+/// Of a campaign of a million seconds: a handwheel that had been given the rapid traverse in the cycle before the path took it, a
+/// direction key that is held while the loops close, an encoder that sticks while its axis is pushed.
+#[test]
+fn what_the_long_campaign_found_stays_mended() {
+    for (machine, program, seed, what) in [
+        ("mill", "KNOB.H", 8_500_962, "handwheel Z 0, handwheel -100"),
+        ("mill", "KNOB.H", 8_800_267, "handwheel Z 0, handwheel -500"),
+        ("dig425", "CIRCLE.H", 8_400_916, "key X- press"),
+        ("mill-tnc360", "PLATE.H", 8_700_335, "force Y 4000"),
+    ] {
+        let campaign = campaign(machine);
+        let mut worker = campaign.worker().unwrap();
+        let plan = worker.plan(seed);
+        let happens = plan.happenings.iter().any(|happening| happening.what == what);
+        assert!(
+            happens && campaign.programs()[plan.program] == program,
+            "seed {seed} is another one now: {plan:?}"
+        );
+        assert_eq!(worker.run(&plan).violation, None, "seed {seed} on {machine}");
+    }
+}
+
 /// What a seed did is a script that a run repeats: each command has a line of its own.
 #[test]
 fn a_script_has_a_line_for_each_command() {

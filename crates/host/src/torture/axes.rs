@@ -282,9 +282,15 @@ impl Judge<'_> {
             );
             return self.breaks(Rule::Acceleration, values);
         }
-        // The handwheel has a ramp of its own, whose mean speeds in two cycles differ by no more than that of their ends.
+        // The handwheel has a ramp of its own, whose mean speeds in two cycles differ by no more than that of their ends. At
+        // rapid traverse it gives way to the path: then the axis keeps |path + wheel| = MP1010 whatever the path gains.
+        let given = if watch.speed_mm_s.abs() >= watch.rapid_mm_s * (1.0 - EPSILON) {
+            step
+        } else {
+            0.0
+        };
         let step = (self.wheel_mm_s - last.wheel_mm_s).abs();
-        let most = watch.acceleration_mm_s2 * cycle_s;
+        let most = watch.acceleration_mm_s2 * cycle_s + given;
         if step > most * (1.0 + 1e-3) + 1e-4 {
             let values = format!(
                 "led by the handwheel at {:.4} mm/s behind {:.4}, at most {most:.4} more",

@@ -117,7 +117,7 @@ impl Bench {
     fn learn(&mut self) {
         for (number, led) in self.led.iter_mut().enumerate() {
             if let Some(channel) = self.host.control().channel(number) {
-                led.learn(&channel);
+                led.learn(&channel, self.host.plant());
             }
         }
     }

@@ -3,12 +3,15 @@
 //!
 //! What is led stays where it was undisturbed, and beyond that no farther than it takes to stop there; a stylus that digitizes
 //! may be anywhere in its RANGE up to the clearance height, and where it looks for the surface at an outside corner beside it by
-//! P.P.INT [000:7803-7825]. What a probe has felt
+//! P.P.INT [000:7803-7825]. Where an axis has moved that its encoder hides from the control, stuck or wrong, the stylus is not where
+//! the control takes it to be, and what it is to touch may not be there: it goes on to the end of its way, which MP6130 sets.
+//! What a probe has felt
 //! elsewhere than undisturbed moves what the program does behind it by as much: no shipped program makes more of a touch.
 
 use std::collections::HashMap;
 
 use bahn_control::{AxisWatch, ChannelView, Digitized, Signal};
+use bahn_machine::Machine;
 use bahn_path::{Axis, BlockRef, PerAxis, Position, ScanJob};
 
 use super::axes::Moment;
@@ -19,6 +22,8 @@ const NUMBERS: u16 = 120;
 const STOP_CYCLES: f64 = 3.0;
 /// Contour cycles that a thread is behind its spindle at most: in one its angle is measured, in the next one it is led.
 const THREAD_CYCLES: f64 = 2.0;
+/// An axis that is so far from where its encoder says is somewhere else, mm or degrees: more than play and elasticity.
+const HIDDEN: f64 = 0.1;
 /// Steps of the spindle's encoder, mm of a thread.
 const ROUNDING_MM: f64 = 1e-3;
 
@@ -27,6 +32,10 @@ const ROUNDING_MM: f64 = 1e-3;
 struct Stretch {
     least: Position,
     greatest: Position,
+    /// How far it would have been led if it had touched nothing.
+    farthest: [Position; 2],
+    /// Where the tables are beside what their encoders say, mm or degrees.
+    beside: PerAxis<f64>,
     /// How fast each axis was, mm/s.
     fastest: PerAxis<f64>,
     numbers: Vec<f64>,
@@ -59,7 +68,7 @@ impl Default for Led {
 
 impl Led {
     /// A cycle of the undisturbed run.
-    pub fn learn(&mut self, channel: &ChannelView) {
+    pub fn learn(&mut self, channel: &ChannelView, plant: &Machine) {
         let Some(element) = channel.element() else {
             return;
         };
@@ -79,6 +88,8 @@ impl Led {
             let new = || Stretch {
                 least: place,
                 greatest: place,
+                farthest: [place; 2],
+                beside: beside(channel, plant),
                 fastest: PerAxis::splat(0.0),
                 numbers: Vec::new(),
             };
@@ -86,6 +97,11 @@ impl Led {
             for axis in Axis::ALL {
                 stretch.least[axis] = stretch.least[axis].min(place[axis]);
                 stretch.greatest[axis] = stretch.greatest[axis].max(place[axis]);
+                let [least, greatest] = &mut stretch.farthest;
+                for end in channel.probing_way().into_iter().flatten() {
+                    least[axis] = least[axis].min(end[axis]);
+                    greatest[axis] = greatest[axis].max(end[axis]);
+                }
             }
             grow(&mut stretch.fastest, channel);
             self.open = Some(block);
@@ -111,20 +127,33 @@ impl Led {
     }
 
     /// A place is where the block was led, or no farther beside that than it reaches.
-    fn holds(&self, block: BlockRef, place: &Position, reach: &PerAxis<f64>, tolerance: f64) -> bool {
+    fn holds(&self, block: BlockRef, place: &Position, leading: &Leading, tolerance: f64) -> bool {
         let scan = self.scans.get(&block);
-        scan.is_some_and(|job| is_scanned(job, place, reach)) || self.was_led(block, place, reach, tolerance)
-    }
-
-    fn was_led(&self, block: BlockRef, place: &Position, reach: &PerAxis<f64>, tolerance: f64) -> bool {
-        self.stretches.get(&block).is_some_and(|stretch| {
-            Axis::ALL.into_iter().all(|axis| {
-                let beside = (stretch.least[axis] - place[axis]).max(place[axis] - stretch.greatest[axis]);
-                // What was never programmed is NaN.
-                beside.is_nan() || beside <= reach[axis] + tolerance
+        let stretch = self.stretches.get(&block);
+        scan.is_some_and(|job| is_scanned(job, place, &leading.reach))
+            || stretch.is_some_and(|stretch| {
+                let [least, greatest] = match leading.hidden {
+                    true => &stretch.farthest,
+                    false => &[stretch.least, stretch.greatest],
+                };
+                Axis::ALL.into_iter().all(|axis| {
+                    let beside = (least[axis] - place[axis]).max(place[axis] - greatest[axis]);
+                    // What was never programmed is NaN.
+                    beside.is_nan() || beside <= leading.reach[axis] + tolerance
+                })
             })
-        })
     }
+}
+
+/// How far the tables are beside what their encoders say, mm or degrees.
+fn beside(channel: &ChannelView, plant: &Machine) -> PerAxis<f64> {
+    let mut beside = PerAxis::splat(0.0);
+    for watch in channel.watch() {
+        if let Some(axis) = plant.axes().find(|axis| axis.output == watch.output) {
+            beside[watch.axis] = axis.position - watch.actual;
+        }
+    }
+    beside
 }
 
 /// Where the axes are commanded that a path may move; what the PLC or a master moves is of no path.
@@ -177,6 +206,8 @@ pub(super) struct Leading {
     fastest: PerAxis<f64>,
     /// How far an axis may be beside where it was led, mm or degrees.
     reach: PerAxis<f64>,
+    /// A table is somewhere else than its encoder says.
+    hidden: bool,
     /// What its touches move the program by, mm.
     pub moved: f64,
     thread: Option<Thread>,
@@ -189,6 +220,7 @@ impl Default for Leading {
             led: None,
             fastest: PerAxis::splat(0.0),
             reach: PerAxis::splat(0.0),
+            hidden: false,
             moved: 0.0,
             thread: None,
         }
@@ -205,7 +237,7 @@ struct Thread {
 
 impl Leading {
     /// A cycle of the disturbed run.
-    pub fn cycle(&mut self, channel: &ChannelView, undisturbed: &Led, moment: &Moment) {
+    pub fn cycle(&mut self, channel: &ChannelView, plant: &Machine, undisturbed: &Led, moment: &Moment) {
         let Some(block) = channel.element().map(|element| element.block) else {
             return;
         };
@@ -223,6 +255,11 @@ impl Leading {
         }
         if channel.is_led_by_probe() {
             self.led = Some(block);
+            self.hidden = undisturbed.stretches.get(&block).is_some_and(|stretch| {
+                let now = beside(channel, plant);
+                let hidden = |axis: Axis| (now[axis] - stretch.beside[axis]).abs() > HIDDEN;
+                channel.watch().any(|watch| hidden(watch.axis))
+            });
         }
         grow(&mut self.fastest, channel);
         for watch in channel.watch().filter(|watch| watch.free) {
@@ -235,7 +272,7 @@ impl Leading {
 
     /// A place where no curve is, is one to which the probe was led.
     pub fn holds(&self, undisturbed: &Led, block: BlockRef, place: &Position, tolerance: f64) -> bool {
-        undisturbed.holds(block, place, &self.reach, tolerance)
+        undisturbed.holds(block, place, self, tolerance)
     }
 
     /// So far a thread may go on beyond its ends, mm: until its spindle stands.

@@ -267,14 +267,14 @@ impl Course<'_> {
 
     /// As long as the run of the undisturbed program goes on, its path is on that program's contour.
     fn follow_contours(&mut self, moment: &Moment) -> Result<(), Violation> {
-        let control = self.bench.host.control();
+        let (control, plant) = (self.bench.host.control(), self.bench.host.plant());
         let undisturbed = self.bench.contours.iter().zip(&self.bench.led);
         let own = self.contours.iter_mut().zip(&mut self.leading);
         for (number, ((contour, undisturbed), ((same, hint), leading))) in undisturbed.zip(own).enumerate() {
             let Some(channel) = control.channel(number) else {
                 continue;
             };
-            leading.cycle(&channel, undisturbed, moment);
+            leading.cycle(&channel, plant, undisturbed, moment);
             if let Some((off, most)) = leading
                 .out_of_step(&channel, moment)
                 .filter(|(off, most)| off > most)
