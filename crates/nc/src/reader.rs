@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bahn_din::{BlockFault, Command, Decoder, Section, Shelf, Unit};
+use bahn_din::{BlockFault, Command, Decoder, Motion, Section, Shelf, Unit};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step,
@@ -44,8 +44,6 @@ struct Run {
     sequence: u64,
     /// End of the last element that was handed out.
     position: Position,
-    /// The axes stand elsewhere than the block before has led them.
-    stands: Option<Position>,
     /// `#VECTOR LIMIT`: the greatest velocity of the path, mm/min.
     limit_mm_min: f64,
     queue: VecDeque<Item>,
@@ -83,7 +81,6 @@ impl NcReader {
             program: 0,
             sequence: 0,
             position: start.position,
-            stands: None,
             limit_mm_min: f64::INFINITY,
             queue: VecDeque::new(),
             waiting: None,
@@ -204,7 +201,10 @@ impl NcReader {
         let unit = match decoder.next(&mut model) {
             bahn_din::Step::Unit(unit) => unit,
             bahn_din::Step::Fault(fault) => return Err(of_text(&fault, &model)),
-            bahn_din::Step::End => return self.end(),
+            bahn_din::Step::End => {
+                self.end();
+                return Ok(());
+            }
         };
         self.texts.take(decoder.files());
         if !is_end_of_text(&unit) {
@@ -212,24 +212,22 @@ impl NcReader {
         }
         self.take(&unit, at)?;
         if unit.ends {
-            self.end()?;
+            self.end();
         }
         Ok(())
     }
 
-    /// A program of the file is over; the next one begins.
-    fn end(&mut self) -> Result<(), Refusal> {
-        let last = self.run.queue.iter().rev().find_map(|item| match item {
-            Item::Element(element) => Some(element.end),
-            Item::Barrier(_) => None,
-        });
-        let handed = self.run.position;
-        self.run.position = last.unwrap_or(handed);
-        if !self.open(self.run.program + 1) {
-            self.run.ended = Some(Ended::Finished);
+    /// A program of the file is over; the next one begins, with new modal data, where the path is (inferred).
+    fn end(&mut self) {
+        let next = self.run.program + 1;
+        match (self.file.mains().nth(next), &mut self.run.decoder) {
+            (Some(main), Some(decoder)) => {
+                decoder.begin_program(main);
+                self.run.program = next;
+                self.run.limit_mm_min = f64::INFINITY;
+            }
+            _ => self.run.ended = Some(Ended::Finished),
         }
-        self.run.position = handed;
-        Ok(())
     }
 
     /// Makes elements of a block.
@@ -275,24 +273,25 @@ impl NcReader {
     }
 
     /// The motion of a block, from where the axes stand.
-    fn motion(&mut self, unit: &Unit, at: BlockRef) -> Result<Option<PathElement>, Refusal> {
+    fn motion(&self, unit: &Unit, at: BlockRef) -> Result<Option<PathElement>, Refusal> {
         let Some(motion) = &unit.motion else {
             return Ok(None);
         };
-        let onward = match self.run.stands.take() {
-            None => None,
-            Some(stands) => Some(onward::from(motion, &stands).map_err(|detail| Refusal {
+        let Motion {
+            begin, start, end, ..
+        } = motion;
+        let curve = match &motion.curve {
+            Curve::Arc(arc) => onward::rest(arc, begin, start, end).map_err(|detail| Refusal {
                 message: MessageId::CircleEndPosIncorrect,
                 detail: detail.to_owned(),
-            })?),
+            })?,
+            other => *other,
         };
-        if let (Some(onward), Some(decoder)) = (&onward, &mut self.run.decoder) {
-            decoder.set_position(onward.end);
+        if curve.length(start, end) == 0.0 && curve.rotary_length(start, end) == 0.0 {
+            return Ok(None);
         }
-        let motion = onward.as_ref().unwrap_or(motion);
         let feed = motion.feed().up_to(self.run.limit_mm_min);
-        let ends = [motion.start, motion.end];
-        let element = PathElement::new(at, self.run.sequence, motion.curve, ends, feed);
+        let element = PathElement::new(at, self.run.sequence, curve, [*start, *end], feed);
         if let Some(axis) = self.start.absent.iter().find(|axis| element.moves(*axis)) {
             return Err(Refusal {
                 message: MessageId::WrongAxisProgrammed,
@@ -454,8 +453,10 @@ impl Reader for NcReader {
     fn relocate(&mut self, position: &Position) {
         self.run.queue.clear();
         self.run.waiting = None;
-        self.run.stands = Some(*position);
         self.run.position = *position;
+        if let Some(decoder) = &mut self.run.decoder {
+            decoder.relocate(*position);
+        }
     }
 
     fn stand_at(&mut self, position: &Position) {
