@@ -163,7 +163,8 @@ impl Decoder {
         next.unwrap_or_else(|| self.main.last_unit().place)
     }
 
-    /// Goes on at a line of the program itself, out of all subroutines, with everything else as it is.
+    /// Goes on at a line of the program itself, or the nearest one of it, out of all subroutines, with everything else as it
+    /// is.
     pub fn goto(&mut self, line: u32) {
         let Frame { line: first, end, .. } = self.main;
         let line = line.clamp(first, end);
@@ -185,7 +186,8 @@ impl Decoder {
         };
     }
 
-    /// The path goes on from elsewhere, with its incremental coordinates, too: whoever follows it has moved axes.
+    /// The path goes on from elsewhere: whoever follows it has moved axes. Incremental coordinates count from there, unless
+    /// the path was [left](Decoder::relocate) before.
     pub fn set_position(&mut self, position: Position) {
         self.state.position = position;
     }

@@ -23,6 +23,14 @@ pub(crate) struct Refusal {
 }
 
 impl Refusal {
+    /// What a text says wrongly.
+    pub fn of_data(detail: &str) -> Refusal {
+        Refusal {
+            message: MessageId::WrongProgramData,
+            detail: detail.to_owned(),
+        }
+    }
+
     /// What only the channel of a TF5200 has.
     pub fn of_channel(what: impl std::fmt::Display) -> Refusal {
         Refusal {

@@ -450,6 +450,85 @@ fn a_block_to_begin_with() {
     assert_eq!((path.len(), x(&path[0])), (1, (0.0, 40.0)));
 }
 
+/// A subroutine of the file is run by its calls alone: a run that shall begin in it, at its head or behind it, is refused,
+/// and stays so. Only a start elsewhere goes on.
+#[test]
+fn no_start_in_a_subroutine() {
+    // Lines and blocks 1 %A, 2 N10, 3 N20, 4 %L SUB, 5 N10, 6 N30, 7 %B, 8 N10.
+    let text = "%A\nN10 LL SUB\nN20 M30\n%L SUB\nN10 G00 X5\nN30 M17\n%B\nN10 G00 X30\n";
+    for kept in [false, true] {
+        for block in 4..=6 {
+            let mut run = reader(text);
+            if kept {
+                run.keep_checkpoints();
+            }
+            run.goto(block);
+            for _ in 0..2 {
+                assert_eq!(run.at().block, block);
+                let Step::Error(error) = run.next() else {
+                    panic!("block {block} is begun with")
+                };
+                assert_eq!(error.message.text(MODEL), "WRONG PROGRAM DATA");
+                assert_eq!(error.detail, "the block stands in a subroutine");
+                assert_eq!(error.block.block, block);
+                run.retry();
+            }
+            run.goto(8);
+            assert_eq!(x(&elements(&mut run)[0]), (0.0, 30.0));
+        }
+    }
+    // What stands before the first head belongs to no subroutine.
+    let mut run = reader("(of 1997)\n%L SUB\nN10 M17\n%B\nN10 G00 X30\n");
+    run.goto(1);
+    assert_eq!(x(&elements(&mut run)[0]), (0.0, 30.0));
+}
+
+/// Whoever begins elsewhere in a run leaves what was before: its stop, the elements on their way, and its states.
+#[test]
+fn a_new_start_leaves_the_run_before() {
+    let text = "N10 G00 X10\nN20 M0\nN30 X20\nN40 G01 X30 F100\n";
+    let mut run = reader(text);
+    run.keep_checkpoints();
+    assert!(matches!(run.next(), Step::Element(_)));
+    assert!(matches!(run.next(), Step::Element(_)));
+    let Step::Barrier(Barrier::Stop { block }) = run.next() else {
+        panic!("M0 stops")
+    };
+    assert_eq!(run.stop_function(block), Some("M0"));
+    run.goto(4);
+    assert_eq!(run.stop_function(block), None);
+    // No state of the run before is left: nothing is gone back to.
+    run.go_back(&|_| true);
+    assert_eq!(run.at().block, 4);
+    assert_eq!(x(&elements(&mut run)[0]), (10.0, 30.0));
+}
+
+/// Without states the block that failed is not tried again, and the error stays: the run has not done what stands there.
+#[test]
+fn an_error_is_not_passed_over() {
+    for text in [
+        "N10 G00 X10\nN20 X5 H5\nN30 X20\n",
+        "N10 G00 X10\nN20 X=\nN30 X20\n",
+    ] {
+        let mut run = reader(text);
+        assert!(matches!(run.next(), Step::Element(_)));
+        for _ in 0..2 {
+            assert!(matches!(run.next(), Step::Error(error) if error.block.block == 2));
+            assert_eq!(run.at().block, 2, "{text}");
+            run.retry();
+        }
+    }
+    // Nor does a file without a program end as if it had run.
+    let mut run = reader("%L SUB\nN10 M17\n");
+    for _ in 0..2 {
+        let Step::Error(error) = run.next() else {
+            panic!("there is no program")
+        };
+        assert_eq!(error.detail, "the file has no program, only subroutines");
+        run.retry();
+    }
+}
+
 /// Work is counted, and a flag ends it: the run goes on later.
 #[test]
 fn work() {
