@@ -122,7 +122,7 @@ impl NcReader {
 
     /// The program in which a block stands, from this block on with new modal data, where the path is (inferred), and
     /// which of the file it is.
-    fn from_block(&self, block: u32) -> Result<(usize, Decoder), Refusal> {
+    fn beginning_at(&self, block: u32) -> Result<(usize, Decoder), Refusal> {
         let line = self.texts.line(block);
         if self.file.is_in_subroutine(line) {
             return Err(Refusal::of_data("the block stands in a subroutine"));
@@ -400,7 +400,7 @@ impl Reader for NcReader {
     }
 
     fn goto(&mut self, block: u32) {
-        let begun = self.from_block(block);
+        let begun = self.beginning_at(block);
         let (program, decoder) = match begun {
             Ok((program, decoder)) => (program, Ok(decoder)),
             Err(refusal) => (
