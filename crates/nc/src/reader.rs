@@ -11,7 +11,7 @@ use bahn_path::{
     Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step,
 };
 use bahn_program::Program;
-use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning};
+use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning, synchronisation_point};
 
 use crate::functions::{self, Ordered, Refusal};
 use crate::onward;
@@ -226,7 +226,7 @@ impl NcReader {
         let mut waits = false;
         for command in &unit.commands {
             match command {
-                Command::ExplicitSynchronisation => functions.push(functions::explicit_place()),
+                Command::ExplicitSynchronisation => functions.push(synchronisation_point()),
                 Command::Flush { wait } => waits |= self.flush(*wait)?,
                 Command::VectorLimit {
                     velocity_mm_min,
