@@ -21,7 +21,7 @@
 //!   `lsp`: the language server;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
-//! - `paragraph`: labelled text in 80 columns, `style`: its colours; `junit`: expectations for build servers;
+//! - `paragraph`: labelled text in 80 columns, `count`: how many, `style`: its colours; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close;
 //!   `refused` and `reports`: what cannot be done, as JSON.
 //!
@@ -35,6 +35,7 @@ mod compensate;
 mod conformance;
 mod console;
 mod convert;
+mod count;
 mod cutting;
 mod diagnostics;
 mod explain;

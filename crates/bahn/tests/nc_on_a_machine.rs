@@ -152,6 +152,29 @@ fn a_start_in_the_middle() {
     );
 }
 
+/// N10 of the subroutine that stands first is not that of the program; N20 stands in the subroutine alone, where no run begins.
+#[test]
+fn a_start_beside_a_subroutine() {
+    let folder = Folder::new();
+    folder.write(
+        "a.nc",
+        "%L SUB\nN10 G01 Y7 F3000\nN20 M17\n%A\nN5 G01 X10 F3000\nN10 G91 G01 Y30 F3000\nN40 M30\n",
+    );
+    let gantry = machines().join("gantry");
+    let run = |from: &str| {
+        folder.bahn(&format!(
+            "run a.nc --machine {} --fresh --format json --start-block {from}",
+            gantry.display()
+        ))
+    };
+    assert_near(number(&run("10").json(), "/path_mm/feed"), 30.0);
+    let refused = run("20");
+    assert_eq!(refused.code(), 1);
+    let said = format!("{}{}", refused.out(), refused.err());
+    assert!(said.contains("WRONG PROGRAM DATA"), "{said}");
+    assert!(said.contains("the block stands in a subroutine"), "{said}");
+}
+
 /// A program of the control calls none of these, whatever its blocks would mean in plain language: M30 alone is one there.
 #[test]
 fn called_from_plain_language() {

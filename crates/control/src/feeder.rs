@@ -6,13 +6,12 @@ use std::sync::Arc;
 
 use bahn_interpreter::{AbsentAxes, Interpreter, Rules};
 use bahn_parameters::MessageId;
-use bahn_parameters::technology::AxisHalts;
 use bahn_path::{
     Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, PerAxis,
     Placement, Position, Step,
 };
 use bahn_plc::ToolCallBlock;
-use bahn_reader::{Cause, MachineRules, Message, ProgramError, Reader};
+use bahn_reader::{Cause, Message, ProgramError, Reader};
 
 use crate::axis::AxisUnit;
 use crate::kinematics::{Box2, Chain};
@@ -174,15 +173,7 @@ impl Feeder {
 
     /// The rules of machine parameters, for the blocks that are read from now on.
     pub fn set_rules(&mut self, rules: Rules) {
-        let m = &rules.m_functions;
-        let common = MachineRules {
-            halts: AxisHalts {
-                at_m_functions: m.axes_wait,
-                at_speeds: m.axes_wait_for_speed,
-            },
-            m6_stops: m.m6_stops,
-            speed_max_rpm: rules.speed_max_rpm,
-        };
+        let common = rules.machine;
         match self.interpreter_mut() {
             Some(interpreter) => interpreter.set_rules(rules),
             None => self.reader.set_machine_rules(common),

@@ -280,8 +280,8 @@ impl Place {
 
     fn number(&self, parameter: &CycleParameter, need: Need) -> Field {
         let ask = match parameter.sign {
-            Sign::Signed | Sign::Working | Sign::Positive => SIGNED,
-            Sign::Minus => Ask::Number {
+            Sign::Signed | Sign::Working | Sign::NotNegative => SIGNED,
+            Sign::PlusOmitted => Ask::Number {
                 signs: Signs::Minus,
                 incremental: false,
             },

@@ -282,6 +282,8 @@ fn entries_keep_to_the_limits_of_the_model() {
         ("L X 1 . 2 .", KeyNonFunctional),
         ("LBL_SET Q", KeyNonFunctional),
         ("RND SIGN", KeyNonFunctional),
+        // Lines of MEANDER lie in the positive direction [003:6667]; those of contour lines in both [003:6758-6761].
+        ("TOUCH_PROBE 6 ENT X ENT .5 ENT SIGN", KeyNonFunctional),
         ("PGM_CALL A B C D E F G H J", EntryValueIncorrect),
         ("5", KeyNonFunctional),
         ("RL", KeyNonFunctional),

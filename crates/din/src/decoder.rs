@@ -6,8 +6,8 @@ use std::sync::Arc;
 use bahn_path::Position;
 
 use crate::block::{self, Block, WordKind};
-use crate::execute::{self, Modal, State};
-use crate::line::{LineFault, Macros};
+use crate::execute::{self, State};
+use crate::line::LineFault;
 use crate::program::{Program, Section, not_found};
 use crate::unit::{Command, Place, Shelf, Unit, Variables};
 
@@ -78,12 +78,7 @@ impl Decoder {
             main: frame.clone(),
             files: BTreeMap::new(),
             stack: vec![frame],
-            state: State {
-                modal: Modal::default(),
-                position: start,
-                parameters: BTreeMap::new(),
-                macros: Macros::default(),
-            },
+            state: State::at(start),
             has_waited: false,
             is_over: false,
         }
@@ -168,7 +163,8 @@ impl Decoder {
         next.unwrap_or_else(|| self.main.last_unit().place)
     }
 
-    /// Goes on at a line of the program itself, out of all subroutines, with everything else as it is.
+    /// Goes on at a line of the program itself, or the nearest one of it, out of all subroutines, with everything else as it
+    /// is.
     pub fn goto(&mut self, line: u32) {
         let Frame { line: first, end, .. } = self.main;
         let line = line.clamp(first, end);
@@ -179,8 +175,27 @@ impl Decoder {
         (self.has_waited, self.is_over) = (false, false);
     }
 
-    /// The path goes on from elsewhere: whoever follows it has moved axes.
+    /// Begins another program of the file, where the path is; nothing else is in force.
+    pub fn begin_program(&mut self, main: &Section) {
+        self.main = Frame::of(Arc::clone(&self.main.program), main);
+        self.goto(self.main.line);
+        self.files.clear();
+        self.state = State {
+            increments_from: self.state.increments_from,
+            ..State::at(self.state.position)
+        };
+    }
+
+    /// The path goes on from elsewhere: whoever follows it has moved axes. Incremental coordinates count from there, unless
+    /// the path was [left](Decoder::relocate) before.
     pub fn set_position(&mut self, position: Position) {
+        self.state.position = position;
+    }
+
+    /// The next motion begins elsewhere: the path was left, or the axes were moved. It ends where it would have: incremental
+    /// coordinates, and an arc with its centre, count from where it would [begin](crate::Motion::begin).
+    pub fn relocate(&mut self, position: Position) {
+        self.state.increments_from.get_or_insert(self.state.position);
         self.state.position = position;
     }
 

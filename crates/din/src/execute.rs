@@ -15,9 +15,31 @@ use crate::unit::{Command, Function, Independent, Kind, Motion, SpindleOrder, Ta
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub modal: Modal,
+    /// Where the axes stand behind the blocks that were executed.
     pub position: Position,
+    /// Where the path would stand, when the axes were moved since: incremental coordinates and arcs of the next motion
+    /// count from there.
+    pub increments_from: Option<Position>,
     pub parameters: BTreeMap<u32, f64>,
     pub macros: Macros,
+}
+
+impl State {
+    /// At the beginning of a program.
+    pub fn at(position: Position) -> State {
+        State {
+            modal: Modal::default(),
+            position,
+            increments_from: None,
+            parameters: BTreeMap::new(),
+            macros: Macros::default(),
+        }
+    }
+
+    /// Where the next motion would begin, had nobody moved the axes.
+    pub fn begin(&self) -> Position {
+        self.increments_from.unwrap_or(self.position)
+    }
 }
 
 /// What is in force until another block changes it. A program begins with G00, G90, G17 and without feed (inferred: so
@@ -351,12 +373,15 @@ fn axis_bracket(
         None => return Err(format!("{axis}[INDP] needs FEED").into()),
     };
     let from = if is_incremental {
-        known(&state.position, axis)
+        known(&state.begin(), axis)
     } else {
         0.0
     };
     let end = from + place;
     state.position[axis] = end;
+    if let Some(increments_from) = &mut state.increments_from {
+        increments_from[axis] = end;
+    }
     unit.commands.push(Command::Independent(Independent {
         axis,
         end,
@@ -424,12 +449,12 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
             WordKind::Axis(..) | WordKind::Centre(..) | WordKind::Radius(_)
         )
     });
-    let mut start = state.position;
+    let (mut begin, mut start) = (state.begin(), state.position);
     let mut end = start;
     for (axis, value) in programmed {
         start[axis] = known(&start, axis);
         end[axis] = if modal.is_incremental {
-            start[axis] + value
+            known(&begin, axis) + value
         } else {
             value
         };
@@ -442,7 +467,10 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
         Path::Circle { counter_clockwise } => {
             for axis in [modal.plane.first, modal.plane.second] {
                 start[axis] = known(&start, axis);
-                end[axis] = known(&end, axis);
+                begin[axis] = known(&begin, axis);
+                if draft.axes[axis].is_none() {
+                    end[axis] = begin[axis];
+                }
             }
             let centre = match (draft.centre, draft.radius) {
                 (Some(ijk), None) => Centre::FromStart(ijk),
@@ -450,7 +478,7 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
                 (Some(_), Some(_)) => return wrong(centre_word, "R beside I, J, K".into()),
                 (None, None) => return wrong(first, "G02 and G03 need I, J, K or R".into()),
             };
-            let curve = circle::arc(modal.plane, &start, &end, centre, counter_clockwise);
+            let curve = circle::arc(modal.plane, &begin, &end, centre, counter_clockwise);
             match curve {
                 Ok(curve) => curve,
                 Err(message) => return wrong(centre_word, message),
@@ -458,6 +486,7 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
         }
     };
     state.position = end;
+    state.increments_from = None;
     let moves = curve.length(&start, &end) > 0.0 || curve.rotary_length(&start, &end) > 0.0;
     if !moves {
         return Ok(None);
@@ -470,6 +499,7 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
     };
     Ok(Some(Motion {
         curve,
+        begin,
         start,
         end,
         rapid,

@@ -228,6 +228,12 @@ impl Program {
         self.sections.iter().filter(|section| !section.is_subroutine)
     }
 
+    /// Whether a line, from 1, stands in a subroutine of the file, which begins with its head.
+    pub fn is_in_subroutine(&self, line: u32) -> bool {
+        let section = self.sections.iter().rfind(|section| section.line <= line);
+        section.is_some_and(|section| section.is_subroutine)
+    }
+
     /// A subroutine of the file.
     pub fn subroutine(&self, name: &str) -> Option<&Section> {
         self.sections

@@ -38,9 +38,11 @@ pub struct Place {
 /// A motion of the path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Shape between start and end.
+    /// Shape between begin and end.
     pub curve: Curve,
-    /// Start, mm.
+    /// Where the block before has led the path, mm.
+    pub begin: Position,
+    /// Start, where the axes stand, mm: `begin` unless they were [moved](crate::Decoder::relocate).
     pub start: Position,
     /// End, mm.
     pub end: Position,

@@ -1,8 +1,7 @@
 //! Miscellaneous functions: when they act and what they do in the control.
 
-use bahn_parameters::own_functions::OwnFunction;
 use bahn_parameters::technology::{Deed, Output, Technology};
-use bahn_path::{At, Axis, ControlFunction, Function, SpindleOrder, Synchronisation, TechnologyFunction};
+use bahn_path::{Axis, ControlFunction, Function, SpindleOrder};
 use bahn_program::{Compensation, MFunctions};
 
 use crate::availability::Feature;
@@ -43,8 +42,8 @@ fn take_m_function(
     let Some(technology) = Technology::of_m(c.settings.model, code) else {
         return Ok(());
     };
-    let rules = &c.settings.rules.m_functions;
-    if technology.does(Deed::ModalCycleCall) && rules.m89_calls_cycle {
+    let rules = &c.settings.rules;
+    if technology.does(Deed::ModalCycleCall) && rules.m_functions.m89_calls_cycle {
         c.modal.cycle_after_each_block = true;
         block.cycle_call = true;
         return Ok(());
@@ -68,21 +67,11 @@ fn take_m_function(
             ),
             _ => continue,
         };
-        block.output.push(rules.output(function, technology));
+        block.output.push(rules.machine.output(function, technology));
     }
     if technology.output == Output::Plc {
-        block.output.push(match c.settings.functions.get(code) {
-            Some(OwnFunction::Out { at, synchronisation }) => {
-                TechnologyFunction::new(Function::M(code), at, synchronisation)
-            }
-            Some(OwnFunction::Point) => {
-                TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)
-            }
-            None => TechnologyFunction {
-                spindle: technology.spindle(),
-                ..rules.output(Function::M(code), technology)
-            },
-        });
+        let own = c.settings.functions.get(code);
+        block.output.push(rules.machine.m_output(code, own, technology));
     }
     Ok(())
 }
@@ -106,7 +95,7 @@ fn act(c: &mut Context<'_>, deed: Deed, block: &mut BlockFunctions) {
     let q = &mut c.numbers.q;
     match deed {
         Deed::ProgramStop => block.stop = true,
-        Deed::ToolChange => block.stop = c.settings.rules.m_functions.m6_stops,
+        Deed::ToolChange => block.stop |= c.settings.rules.machine.m6_stops,
         Deed::ProgramEnd => {
             block.end = true;
             if c.at.in_called_program() {

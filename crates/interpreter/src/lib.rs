@@ -296,7 +296,8 @@ impl Interpreter {
     pub fn relocate(&mut self, position: &Position) {
         self.run.pen.contour = Contour::default();
         self.run.pen.out = Output::default();
-        self.run.modal.increments_from = Some(self.run.modal.nominal);
+        let nominal = self.run.modal.nominal;
+        self.run.modal.increments_from.get_or_insert(nominal);
         self.run.modal.nominal = *position;
         self.run.modal.actual = *position;
         self.run.modal.last_move = None;

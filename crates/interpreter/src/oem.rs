@@ -244,7 +244,7 @@ pub(crate) fn permit(
 ) -> Result<(), Fault> {
     let Some(running) = running else { return Ok(()) };
     let stops = |m: &MFunctions| {
-        let m6 = settings.rules.m_functions.m6_stops && m.contains(6);
+        let m6 = settings.rules.machine.m6_stops && m.contains(6);
         let ends = [0, 2, 30].into_iter().any(|number| m.contains(number));
         (ends || m6).then_some("M00, M02, M30, or M06 with program stop,")
     };

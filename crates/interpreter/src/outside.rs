@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use bahn_path::{Axis, BlockRef, Placement, Position};
 use bahn_program::{MotionKind, Operation, Value};
-use bahn_reader::MachineRules;
 
 use crate::Interpreter;
 use crate::checkpoints::{Checkpoint, Kept};
@@ -37,15 +36,6 @@ impl Interpreter {
             machine_zero,
             ..rules
         };
-    }
-
-    /// The rules that programs of every language have, for the blocks that are read from now on.
-    pub(crate) fn set_common_rules(&mut self, rules: MachineRules) {
-        let own = &mut self.settings.rules;
-        own.m_functions.m6_stops = rules.m6_stops;
-        own.m_functions.axes_wait = rules.halts.at_m_functions;
-        own.m_functions.axes_wait_for_speed = rules.halts.at_speeds;
-        own.speed_max_rpm = rules.speed_max_rpm;
     }
 
     /// The tools, and those that must not be called or are replaced, for the blocks that are read from now on.

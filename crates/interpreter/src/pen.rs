@@ -75,7 +75,7 @@ impl Pen {
             return Ok(());
         };
         let functions = BlockFunctions {
-            output: vec![settings.rules.m_functions.output(function, technology)],
+            output: vec![settings.rules.machine.output(function, technology)],
             ..Default::default()
         };
         self.hold(modal, functions)?;

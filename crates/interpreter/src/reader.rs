@@ -90,7 +90,7 @@ impl Reader for Interpreter {
     }
 
     fn set_machine_rules(&mut self, rules: MachineRules) {
-        self.set_common_rules(rules);
+        self.settings.rules.machine = rules;
     }
 
     fn set_interrupt(&mut self, flag: Arc<AtomicBool>) {

@@ -6,12 +6,10 @@ use std::sync::Arc;
 use bahn_parameters::machining::ScaledAxes;
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
-use bahn_parameters::technology::{AxisHalts, Technology};
+use bahn_parameters::technology::AxisHalts;
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
-use bahn_path::{
-    Axis, Function, MeasuringRules, PerAxis, Plane, Position, ScanRules, Swivels, TechnologyFunction,
-    ToolShape,
-};
+use bahn_path::{Axis, MeasuringRules, PerAxis, Plane, Position, ScanRules, Swivels, ToolShape};
+use bahn_reader::MachineRules;
 
 use crate::absent::AbsentAxes;
 use crate::status::Status;
@@ -197,6 +195,8 @@ pub struct Rules {
     pub contour_pocket: ContourPocketRules,
     /// MP7430: stepover of pocket milling is this times the tool radius [003:7385-7394].
     pub overlap: f64,
+    /// What they rule in programs of any language.
+    pub machine: MachineRules,
     /// MP7440: bits of the M functions [000:7298-7305].
     pub m_functions: MFunctionRules,
     /// Tapping.
@@ -220,8 +220,6 @@ pub struct Rules {
     pub probe: ProbeRules,
     /// Digitizing: MP6120 to MP6270.
     pub scan: ScanRules,
-    /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
-    pub speed_max_rpm: f64,
     /// MP7245: bit n inhibits cycle n [000:6655-6698].
     pub inhibited_cycles: u32,
     /// MP3011 = 3: M200 to M204 set output S, M202 by these characteristics [000:9841-9898].
@@ -263,11 +261,9 @@ impl Rules {
                 stay_at_clearance: pocket.end_at_clearance,
             },
             overlap: list.pocket_overlap(),
+            machine: MachineRules::of(list),
             m_functions: MFunctionRules {
-                m6_stops: m.m6_stops,
                 m89_calls_cycle: m.m89_calls_cycle,
-                axes_wait: m.axes_wait,
-                axes_wait_for_speed: m.axes_wait_for_speed,
                 m105_enabled: m.m105_works,
                 m103_enabled: m.m103_works,
             },
@@ -290,7 +286,6 @@ impl Rules {
                 ..ProbeRules::default()
             },
             scan: scan_rules(list),
-            speed_max_rpm: list.spindle_speed_max_rpm(),
             inhibited_cycles: (1..=31)
                 .filter(|cycle| list.cycle_inhibited(*cycle))
                 .fold(0, |bits, cycle| bits | 1 << cycle),
@@ -353,6 +348,14 @@ impl Default for Rules {
             probe_keeps_tool: true,
             contour_pocket: ContourPocketRules::default(),
             overlap: 1.0,
+            machine: MachineRules {
+                halts: AxisHalts {
+                    at_m_functions: true,
+                    at_speeds: true,
+                },
+                m6_stops: true,
+                speed_max_rpm: 99_999.0,
+            },
             m_functions: MFunctionRules::default(),
             tapping: TappingRules::default(),
             spindle_orientation_deg: 0.0,
@@ -363,7 +366,6 @@ impl Default for Rules {
             radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),
             scan: ScanRules::default(),
-            speed_max_rpm: 99_999.0,
             inhibited_cycles: 0,
             voltages: None,
             paraxial_inhibited: false,
@@ -428,17 +430,11 @@ impl ContourPocketRules {
     }
 }
 
-/// MP7440: what M functions do [000:7298-7305].
+/// MP7440: which M functions work in programs of a TNC [000:7298-7305].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MFunctionRules {
-    /// Bit 0 clear: M6 stops the program.
-    pub m6_stops: bool,
     /// Bit 1: M89 is the modal cycle call.
     pub m89_calls_cycle: bool,
-    /// Bit 2 clear: axes wait for the acknowledgement of M functions.
-    pub axes_wait: bool,
-    /// MP3030 = 0: axes wait for a spindle speed without a tool [000:5645-5651].
-    pub axes_wait_for_speed: bool,
     /// Bit 3: M105 and M106 choose the second and first set of kv [000:7251-7305].
     pub m105_enabled: bool,
     /// Bit 4: M103 reduces the plunging feed.
@@ -448,10 +444,7 @@ pub struct MFunctionRules {
 impl Default for MFunctionRules {
     fn default() -> Self {
         MFunctionRules {
-            m6_stops: true,
             m89_calls_cycle: true,
-            axes_wait: true,
-            axes_wait_for_speed: true,
             m105_enabled: true,
             m103_enabled: true,
         }
@@ -462,22 +455,10 @@ impl MFunctionRules {
     /// From the value of MP7440.
     pub fn from_bits(bits: u32) -> Self {
         MFunctionRules {
-            m6_stops: bits & 1 == 0,
             m89_calls_cycle: bits & 2 != 0,
-            axes_wait: bits & 4 == 0,
-            axes_wait_for_speed: true,
             m105_enabled: bits & 8 != 0,
             m103_enabled: bits & 16 != 0,
         }
-    }
-
-    /// A function with its place and synchronisation.
-    pub(crate) fn output(&self, function: Function, technology: &Technology) -> TechnologyFunction {
-        let halts = AxisHalts {
-            at_m_functions: self.axes_wait,
-            at_speeds: self.axes_wait_for_speed,
-        };
-        TechnologyFunction::new(function, technology.at, technology.synchronisation(halts))
     }
 }
 
@@ -561,6 +542,7 @@ mod tests {
         let rules = Rules::of(&list);
         assert_eq!(rules.contour_pocket, ContourPocketRules::from_bits(0b01101));
         assert_eq!(rules.m_functions, MFunctionRules::from_bits(0b00001));
+        assert!(!rules.machine.m6_stops && rules.machine.halts.at_m_functions);
         assert_eq!(rules.overlap, 0.9);
         assert!(rules.scaling_in_plane_only);
         assert_eq!(rules.tapping.override_percent[0], 80.0);

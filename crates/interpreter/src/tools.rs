@@ -285,7 +285,7 @@ fn checked_speed(numbers: &Numbers, speed: Value, settings: &Settings) -> Result
     let max = if settings.machine {
         entry
     } else {
-        entry.min(settings.rules.speed_max_rpm)
+        entry.min(settings.rules.machine.speed_max_rpm)
     };
     if !(0.0..=max).contains(&speed) {
         return Err(Fault::new(MessageId::WrongRpm, format!("S takes 0 to {max} rpm")));

@@ -109,6 +109,22 @@ fn the_state_before_an_element_on_its_way_is_kept() {
     );
 }
 
+/// Incremental coordinates count from where the block would have begun, X10, however often the axes are moved before it.
+#[test]
+fn increments_count_from_the_path() {
+    let mut run = run("L X+10 R0 F100\nL IX+5");
+    assert!(matches!(run.next(), Step::Element(_)));
+    for x in [12.0, 13.0] {
+        let mut here = Position::ZERO;
+        here[Axis::X] = x;
+        run.relocate(&here);
+    }
+    let Step::Element(element) = run.next() else {
+        panic!("the second block runs")
+    };
+    assert_eq!((element.start[Axis::X], element.end[Axis::X]), (13.0, 15.0));
+}
+
 /// A hundred jumps are a hundred units of work and more: they need several turns.
 #[test]
 fn work_is_bounded() {

@@ -44,7 +44,7 @@ fn inner_functions() {
 #[test]
 fn without_waiting() {
     let run = Job::new(program("L X+1 FMAX M3\nL X+2 FMAX M0"))
-        .with(|s| s.rules.m_functions.axes_wait = false)
+        .with(|s| s.rules.machine.halts.at_m_functions = false)
         .run();
     let all = run
         .elements
@@ -79,8 +79,12 @@ fn stops() {
     // M1 is free [000:7080].
     assert_eq!(stops(&run), [2, 3, 4]);
     assert!(run.functions().contains(&(2, &Function::M(5))));
-    let run = Job::new(text).with(|s| s.rules.m_functions = m6_goes_on()).run();
+    let run = Job::new(text).with(|s| s.rules.machine.m6_stops = false).run();
     assert_eq!(stops(&run), [2, 3]);
+    // M6 that does not stop takes nothing from M0 before it.
+    let text = program("L X+1 FMAX M0 M6\nL X+2 FMAX");
+    let run = Job::new(text).with(|s| s.rules.machine.m6_stops = false).run();
+    assert_eq!(stops(&run), [1]);
 }
 
 /// TOOL CALL hands out tool, axis and speed; a call with S alone only the speed [003:1917-1952] [003:2188].

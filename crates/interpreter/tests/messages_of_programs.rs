@@ -260,7 +260,7 @@ fn wrong_rpm() {
     ]);
     // A machine with a slower spindle.
     let run = Job::new(program("TOOL CALL 0 Z S6001"))
-        .with(|s| s.rules.speed_max_rpm = 6000.0)
+        .with(|s| s.rules.machine.speed_max_rpm = 6000.0)
         .run();
     assert_eq!(run.message(), Some((MessageId::WrongRpm, 1)));
 }

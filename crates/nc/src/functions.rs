@@ -2,7 +2,6 @@
 
 use bahn_din::{Command, Kind, Target, Unit};
 use bahn_parameters::MessageId;
-use bahn_parameters::own_functions::OwnFunction;
 use bahn_parameters::technology::{Block, Deed, Output, Technology};
 use bahn_path::{At, Function, Synchronisation, TechnologyFunction};
 use bahn_reader::Start;
@@ -23,6 +22,14 @@ pub(crate) struct Refusal {
 }
 
 impl Refusal {
+    /// What a text says wrongly.
+    pub fn of_data(detail: &str) -> Refusal {
+        Refusal {
+            message: MessageId::WrongProgramData,
+            detail: detail.to_owned(),
+        }
+    }
+
     /// What only the channel of a TF5200 has.
     pub fn of_channel(what: impl std::fmt::Display) -> Refusal {
         Refusal {
@@ -81,17 +88,8 @@ fn speed(rpm: f64, start: &Start) -> Result<TechnologyFunction, Refusal> {
     let technology = Technology::of_block(start.model, Block::SpindleSpeed);
     Ok(technology.map_or_else(
         || TechnologyFunction::new(function.clone(), At::Start, Synchronisation::MvsSvs),
-        |technology| by_table(function.clone(), technology, start),
+        |technology| start.rules.output(function.clone(), technology),
     ))
-}
-
-/// A function where the table of the model has it.
-fn by_table(function: Function, technology: &Technology, start: &Start) -> TechnologyFunction {
-    TechnologyFunction::new(
-        function,
-        technology.at,
-        technology.synchronisation(start.rules.halts),
-    )
 }
 
 fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(), Refusal> {
@@ -113,7 +111,7 @@ fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(),
             }
             Deed::SpindleOrientation => {
                 let function = Function::SpindleOrientation(orientation(unit));
-                ordered.functions.push(by_table(function, technology, start));
+                ordered.functions.push(start.rules.output(function, technology));
             }
             Deed::ToolChange
             | Deed::ProgramEnd
@@ -126,22 +124,11 @@ fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(),
     if technology.output != Output::Plc {
         return Err(of_a_tnc(code));
     }
-    ordered.functions.push(match start.functions.get(code) {
-        Some(OwnFunction::Out { at, synchronisation }) => {
-            TechnologyFunction::new(Function::M(code), at, synchronisation)
-        }
-        Some(OwnFunction::Point) => explicit_place(),
-        None => TechnologyFunction {
-            spindle: technology.spindle(),
-            ..by_table(Function::M(code), technology, start)
-        },
-    });
+    let own = start.functions.get(code);
+    ordered
+        .functions
+        .push(start.rules.m_output(code, own, technology));
     Ok(())
-}
-
-/// `#EXPL SYN`: what waits for it is to be acknowledged here [004:75].
-pub(crate) fn explicit_place() -> TechnologyFunction {
-    TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)
 }
 
 /// The angle that a spindle bracket gives M19.

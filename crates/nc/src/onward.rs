@@ -1,59 +1,46 @@
-//! A motion that does not begin where the block before it has ended: the axes were moved meanwhile, or the run was stopped
+//! An arc that does not begin where the block before it has ended: the axes were moved meanwhile, or the run was stopped
 //! inside it.
 
-use bahn_din::Motion;
-use bahn_path::{Arc, Axis, Curve, Position, sweep_deg};
+use bahn_path::{Arc, Curve, Point2, Position, sweep_deg};
 
-/// The axes stand on the circle when they are no farther from it than its end may be, mm (inferred).
+/// The axes stand on the circle, at its start or at its end, when they are no farther from there than the end of an arc may
+/// lie beside it, mm (inferred).
 const ON_CIRCLE_MM: f64 = 0.01;
 
-/// The same motion from where the axes stand to its end. Axes that it does not move stay where they stand.
+/// What is left of an arc that begins at `start`, from where the axes stand to its `end`. At the start all of it is left,
+/// also of a full circle, which ends there, too: it is rather cut twice than not at all (inferred). At the end a straight
+/// line is left, as long as the tolerance at most.
 ///
 /// # Errors
-/// When an arc does not lead through there.
-pub(crate) fn from(motion: &Motion, stands: &Position) -> Result<Motion, &'static str> {
-    let mut end = motion.end;
-    for axis in Axis::ALL.into_iter().filter(|axis| !turns(motion, *axis)) {
-        if motion.start[axis] == motion.end[axis] || motion.end[axis].is_nan() {
-            end[axis] = stands[axis];
-        }
-    }
-    let curve = match motion.curve {
-        Curve::Arc(arc) => Curve::Arc(rest(&arc, motion, stands)?),
-        other => other,
-    };
-    Ok(Motion {
-        curve,
-        start: *stands,
-        end,
-        ..motion.clone()
-    })
-}
-
-/// An arc moves both axes of its plane, also where it ends at its start.
-fn turns(motion: &Motion, axis: Axis) -> bool {
-    matches!(&motion.curve, Curve::Arc(arc) if axis == arc.plane.first || axis == arc.plane.second)
-}
-
-/// What is left of an arc.
-fn rest(arc: &Arc, motion: &Motion, stands: &Position) -> Result<Arc, &'static str> {
+/// When the arc does not lead through there.
+pub(crate) fn rest(
+    arc: &Arc,
+    start: &Position,
+    stands: &Position,
+    end: &Position,
+) -> Result<Curve, &'static str> {
     let at = arc.plane.point(stands);
-    let start = arc.plane.point(&motion.start);
-    let (radius, _) = arc.radii(&motion.start, &motion.end);
-    let away = (at[0] - arc.centre[0]).hypot(at[1] - arc.centre[1]) - radius;
-    if away.abs() > ON_CIRCLE_MM {
+    let (radius, _) = arc.radii(start, end);
+    if (distance(at, arc.centre) - radius).abs() > ON_CIRCLE_MM {
         return Err("the arc does not lead through where the axes stand");
     }
-    if at == start {
-        return Ok(*arc);
+    let from = arc.plane.point(start);
+    let turn = 360.0_f64.copysign(arc.sweep_deg);
+    let mut passed = sweep_deg(arc.centre, from, at, turn > 0.0);
+    // Before the start, not nearly a turn behind it.
+    if distance(at, from) <= ON_CIRCLE_MM && 2.0 * passed.abs() > 360.0 {
+        passed -= turn;
     }
-    let passed = sweep_deg(arc.centre, start, at, arc.sweep_deg > 0.0);
-    let left = arc.sweep_deg - passed;
-    if left * arc.sweep_deg < 0.0 {
-        return Err("the axes stand behind the end of the arc");
+    let sweep_deg = arc.sweep_deg - passed;
+    if sweep_deg * turn > 0.0 {
+        return Ok(Curve::Arc(Arc { sweep_deg, ..*arc }));
     }
-    Ok(Arc {
-        sweep_deg: left,
-        ..*arc
-    })
+    if distance(at, arc.plane.point(end)) <= ON_CIRCLE_MM {
+        return Ok(Curve::Line);
+    }
+    Err("the axes stand behind the end of the arc")
+}
+
+fn distance(from: Point2, to: Point2) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1])
 }

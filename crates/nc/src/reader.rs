@@ -5,13 +5,13 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bahn_din::{BlockFault, Command, Decoder, Section, Shelf, Unit};
+use bahn_din::{BlockFault, Command, Decoder, Motion, Shelf, Unit};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step,
 };
 use bahn_program::Program;
-use bahn_reader::{Cause, MachineRules, Mark, Message, ProgramError, Reader, Start, Warning};
+use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning, synchronisation_point};
 
 use crate::functions::{self, Ordered, Refusal};
 use crate::onward;
@@ -36,16 +36,14 @@ pub struct NcReader {
 /// All that changes while it runs: a state to go back to is a copy.
 #[derive(Clone)]
 struct Run {
-    /// `None` in a file without a program.
-    decoder: Option<Decoder>,
+    /// Or why there is nothing to go on with, until a run begins elsewhere.
+    decoder: Result<Decoder, Box<ProgramError>>,
     /// Which of the programs of the file it is.
     program: usize,
     /// Executed blocks.
     sequence: u64,
     /// End of the last element that was handed out.
     position: Position,
-    /// The axes stand elsewhere than the block before has led them.
-    stands: Option<Position>,
     /// `#VECTOR LIMIT`: the greatest velocity of the path, mm/min.
     limit_mm_min: f64,
     queue: VecDeque<Item>,
@@ -67,48 +65,48 @@ enum Ended {
     Failed(Box<ProgramError>),
 }
 
-/// What to do about a text that is wrong.
-const CORRECT: &str = "Correct the block; `bahn check` tells all that is wrong in the file.";
+/// Why a file cannot be run.
+const NO_PROGRAM: &str = "the file has no program, only subroutines";
 
 /// What a block costs whose state is kept.
 const STATE_COST: u32 = 4;
+
+impl Run {
+    /// Before the first block of a program.
+    fn at(position: Position, decoder: Result<Decoder, Box<ProgramError>>) -> Run {
+        Run {
+            decoder,
+            program: 0,
+            sequence: 0,
+            position,
+            limit_mm_min: f64::INFINITY,
+            queue: VecDeque::new(),
+            waiting: None,
+            stopped: None,
+            ended: None,
+        }
+    }
+}
 
 impl NcReader {
     /// Prepares the run of the programs of a file; `name` is its path, `shelf` finds the subroutines beside it.
     pub fn new(name: &str, bytes: &[u8], start: Start, shelf: Arc<dyn Shelf>) -> NcReader {
         let file = Arc::new(bahn_din::Program::from_bytes(name, bytes));
         let texts = Texts::new(name, bytes);
-        let run = Run {
-            decoder: None,
-            program: 0,
-            sequence: 0,
-            position: start.position,
-            stands: None,
-            limit_mm_min: f64::INFINITY,
-            queue: VecDeque::new(),
-            waiting: None,
-            stopped: None,
-            ended: None,
+        let decoder = match file.mains().next() {
+            Some(main) => Ok(Decoder::new(file.clone(), main, start.position, shelf.clone())),
+            None => Err(texts.failure(Refusal::of_data(NO_PROGRAM), BlockRef::default())),
         };
-        let mut reader = NcReader {
+        NcReader {
+            run: Run::at(start.position, decoder),
             start,
             texts,
             file,
             shelf,
-            run,
             kept: None,
             work: None,
             interrupt: None,
-        };
-        reader.open(0);
-        if reader.run.decoder.is_none() {
-            let refusal = Refusal {
-                message: MessageId::WrongProgramData,
-                detail: "the file has no program, only subroutines".to_owned(),
-            };
-            reader.run.ended = Some(Ended::Failed(reader.error(refusal, BlockRef::default())));
         }
-        reader
     }
 
     /// The reader as one of these programs; `None` for a program in another language.
@@ -122,35 +120,22 @@ impl NcReader {
         stopped.map(|(_, function)| function)
     }
 
-    /// Begins a program of the file, with new modal data, where the path is (inferred). `false` when there is none.
-    fn open(&mut self, program: usize) -> bool {
-        let Some(main) = self.file.mains().nth(program) else {
-            return false;
+    /// The program in which a block stands, from this block on with new modal data, where the path is (inferred), and
+    /// which of the file it is.
+    fn beginning_at(&self, block: u32) -> Result<(usize, Decoder), Refusal> {
+        let line = self.texts.line(block);
+        if self.file.is_in_subroutine(line) {
+            return Err(Refusal::of_data("the block stands in a subroutine"));
+        }
+        let mains = || self.file.mains().enumerate();
+        let main = mains().take_while(|(_, main)| main.line <= line).last();
+        let Some((program, main)) = main.or_else(|| mains().next()) else {
+            return Err(Refusal::of_data(NO_PROGRAM));
         };
-        self.run.decoder = Some(self.decoder(main));
-        self.run.program = program;
-        self.run.limit_mm_min = f64::INFINITY;
-        true
-    }
-
-    fn decoder(&self, main: &Section) -> Decoder {
         let file = Arc::clone(&self.file);
-        Decoder::new(file, main, self.run.position, Arc::clone(&self.shelf))
-    }
-
-    fn error(&self, refusal: Refusal, block: BlockRef) -> Box<ProgramError> {
-        let program = self.texts.get(block.program);
-        Box::new(ProgramError {
-            message: Message::Control(refusal.message),
-            program: program.map_or_else(String::new, |program| program.name().to_owned()),
-            block,
-            detail: refusal.detail,
-            cause: match refusal.message {
-                // The remedy of the message speaks of the cassette unit.
-                MessageId::WrongProgramData => Cause::Written(CORRECT),
-                _ => Cause::default(),
-            },
-        })
+        let mut decoder = Decoder::new(file, main, self.run.position, Arc::clone(&self.shelf));
+        decoder.goto(line);
+        Ok((program, decoder))
     }
 
     /// Takes work from what is allowed; `false` when nothing is left.
@@ -171,65 +156,68 @@ impl NcReader {
         flag.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
-    /// Executes the next block. One that fails leaves everything as it was before it.
+    /// Executes the next block. One that fails leaves everything as it was before it; where no state before it is kept,
+    /// nothing goes on behind it.
     fn step(&mut self) {
+        let at = self.at();
         let mark = Mark {
             sequence: self.run.sequence + 1,
-            at: self.at(),
+            at,
         };
         let before = self.kept.is_some().then(|| self.run.clone());
-        let done = self.execute(mark.at);
-        match (done, before) {
+        match (self.execute(at), before) {
             (Ok(()), Some(before)) if !self.run.queue.is_empty() => {
                 if let Some(kept) = &mut self.kept {
                     kept.push_back((mark, before));
                 }
             }
             (Ok(()), _) => {}
-            (Err(refusal), before) => {
-                if let Some(before) = before {
-                    self.run = before;
+            (Err(error), before) => {
+                match before {
+                    Some(before) => self.run = before,
+                    None => self.run.decoder = Err(error.clone()),
                 }
-                self.run.ended = Some(Ended::Failed(self.error(refusal, mark.at)));
+                self.run.ended = Some(Ended::Failed(error));
             }
         }
     }
 
-    fn execute(&mut self, at: BlockRef) -> Result<(), Refusal> {
-        let Some(decoder) = &mut self.run.decoder else {
-            self.run.ended = Some(Ended::Finished);
-            return Ok(());
-        };
+    fn execute(&mut self, at: BlockRef) -> Result<(), Box<ProgramError>> {
+        let decoder = self.run.decoder.as_mut().map_err(|error| error.clone())?;
         let mut model = Model::of(self.start.model);
         let unit = match decoder.next(&mut model) {
             bahn_din::Step::Unit(unit) => unit,
-            bahn_din::Step::Fault(fault) => return Err(of_text(&fault, &model)),
-            bahn_din::Step::End => return self.end(),
+            bahn_din::Step::Fault(fault) => {
+                return Err(self.texts.failure(of_text(&fault, &model), at));
+            }
+            bahn_din::Step::End => {
+                self.end();
+                return Ok(());
+            }
         };
         self.texts.take(decoder.files());
         if !is_end_of_text(&unit) {
             self.run.sequence += 1;
         }
-        self.take(&unit, at)?;
+        self.take(&unit, at)
+            .map_err(|refusal| self.texts.failure(refusal, at))?;
         if unit.ends {
-            self.end()?;
+            self.end();
         }
         Ok(())
     }
 
-    /// A program of the file is over; the next one begins.
-    fn end(&mut self) -> Result<(), Refusal> {
-        let last = self.run.queue.iter().rev().find_map(|item| match item {
-            Item::Element(element) => Some(element.end),
-            Item::Barrier(_) => None,
-        });
-        let handed = self.run.position;
-        self.run.position = last.unwrap_or(handed);
-        if !self.open(self.run.program + 1) {
-            self.run.ended = Some(Ended::Finished);
+    /// A program of the file is over; the next one begins, with new modal data, where the path is (inferred).
+    fn end(&mut self) {
+        let next = self.run.program + 1;
+        match (self.file.mains().nth(next), &mut self.run.decoder) {
+            (Some(main), Ok(decoder)) => {
+                decoder.begin_program(main);
+                self.run.program = next;
+                self.run.limit_mm_min = f64::INFINITY;
+            }
+            _ => self.run.ended = Some(Ended::Finished),
         }
-        self.run.position = handed;
-        Ok(())
     }
 
     /// Makes elements of a block.
@@ -238,7 +226,7 @@ impl NcReader {
         let mut waits = false;
         for command in &unit.commands {
             match command {
-                Command::ExplicitSynchronisation => functions.push(functions::explicit_place()),
+                Command::ExplicitSynchronisation => functions.push(synchronisation_point()),
                 Command::Flush { wait } => waits |= self.flush(*wait)?,
                 Command::VectorLimit {
                     velocity_mm_min,
@@ -275,24 +263,25 @@ impl NcReader {
     }
 
     /// The motion of a block, from where the axes stand.
-    fn motion(&mut self, unit: &Unit, at: BlockRef) -> Result<Option<PathElement>, Refusal> {
+    fn motion(&self, unit: &Unit, at: BlockRef) -> Result<Option<PathElement>, Refusal> {
         let Some(motion) = &unit.motion else {
             return Ok(None);
         };
-        let onward = match self.run.stands.take() {
-            None => None,
-            Some(stands) => Some(onward::from(motion, &stands).map_err(|detail| Refusal {
+        let Motion {
+            begin, start, end, ..
+        } = motion;
+        let curve = match &motion.curve {
+            Curve::Arc(arc) => onward::rest(arc, begin, start, end).map_err(|detail| Refusal {
                 message: MessageId::CircleEndPosIncorrect,
                 detail: detail.to_owned(),
-            })?),
+            })?,
+            other => *other,
         };
-        if let (Some(onward), Some(decoder)) = (&onward, &mut self.run.decoder) {
-            decoder.set_position(onward.end);
+        if curve.length(start, end) == 0.0 && curve.rotary_length(start, end) == 0.0 {
+            return Ok(None);
         }
-        let motion = onward.as_ref().unwrap_or(motion);
         let feed = motion.feed().up_to(self.run.limit_mm_min);
-        let ends = [motion.start, motion.end];
-        let element = PathElement::new(at, self.run.sequence, motion.curve, ends, feed);
+        let element = PathElement::new(at, self.run.sequence, curve, [*start, *end], feed);
         if let Some(axis) = self.start.absent.iter().find(|axis| element.moves(*axis)) {
             return Err(Refusal {
                 message: MessageId::WrongAxisProgrammed,
@@ -392,8 +381,10 @@ impl Reader for NcReader {
     }
 
     fn at(&self) -> BlockRef {
-        let decoder = self.run.decoder.as_ref();
-        decoder.map_or_else(BlockRef::default, |decoder| self.texts.block(&decoder.at()))
+        match &self.run.decoder {
+            Ok(decoder) => self.texts.block(&decoder.at()),
+            Err(error) => error.block,
+        }
     }
 
     fn blocks_executed(&self) -> u64 {
@@ -409,15 +400,22 @@ impl Reader for NcReader {
     }
 
     fn goto(&mut self, block: u32) {
-        let line = self.texts.line(block);
-        let before = |main: &&Section| main.line <= line;
-        let program = self.file.mains().take_while(before).count().saturating_sub(1);
-        self.open(program);
-        if let Some(decoder) = &mut self.run.decoder {
-            decoder.goto(line);
+        let begun = self.beginning_at(block);
+        let (program, decoder) = match begun {
+            Ok((program, decoder)) => (program, Ok(decoder)),
+            Err(refusal) => (
+                0,
+                Err(self.texts.failure(refusal, BlockRef { program: 0, block })),
+            ),
+        };
+        self.run = Run {
+            program,
+            sequence: self.run.sequence,
+            ..Run::at(self.run.position, decoder)
+        };
+        if let Some(kept) = &mut self.kept {
+            kept.clear();
         }
-        self.run.queue.clear();
-        (self.run.waiting, self.run.ended) = (None, None);
     }
 
     fn keep_checkpoints(&mut self) {
@@ -454,8 +452,10 @@ impl Reader for NcReader {
     fn relocate(&mut self, position: &Position) {
         self.run.queue.clear();
         self.run.waiting = None;
-        self.run.stands = Some(*position);
         self.run.position = *position;
+        if let Ok(decoder) = &mut self.run.decoder {
+            decoder.relocate(*position);
+        }
     }
 
     fn stand_at(&mut self, position: &Position) {
@@ -465,7 +465,7 @@ impl Reader for NcReader {
         for axis in Axis::ALL.into_iter().filter(|axis| !position[*axis].is_nan()) {
             self.run.position[axis] = position[axis];
         }
-        if let Some(decoder) = &mut self.run.decoder {
+        if let Ok(decoder) = &mut self.run.decoder {
             decoder.set_position(self.run.position);
         }
     }

@@ -3,8 +3,15 @@
 use std::sync::Arc;
 
 use bahn_din::Place;
+use bahn_parameters::MessageId;
 use bahn_path::BlockRef;
 use bahn_program::Program;
+use bahn_reader::{Cause, Message, ProgramError};
+
+use crate::functions::Refusal;
+
+/// What to do about a text that is wrong.
+const CORRECT: &str = "Correct the block; `bahn check` tells all that is wrong in the file.";
 
 /// The main program and the files whose subroutines were called, in the order of their calls.
 #[derive(Clone)]
@@ -43,6 +50,22 @@ impl Texts {
             program: u16::try_from(index).unwrap_or(u16::MAX),
             block,
         }
+    }
+
+    /// A refusal with the block that causes it.
+    pub fn failure(&self, refusal: Refusal, block: BlockRef) -> Box<ProgramError> {
+        let program = self.get(block.program);
+        Box::new(ProgramError {
+            message: Message::Control(refusal.message),
+            program: program.map_or_else(String::new, |program| program.name().to_owned()),
+            block,
+            detail: refusal.detail,
+            cause: match refusal.message {
+                // The remedy of the message speaks of the cassette unit.
+                MessageId::WrongProgramData => Cause::Written(CORRECT),
+                _ => Cause::default(),
+            },
+        })
     }
 
     /// The line of a block of the main program.

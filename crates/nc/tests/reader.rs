@@ -269,31 +269,162 @@ fn back_to_a_block() {
     assert_eq!((path[0].end[Axis::Z], path[1].end[Axis::Z]), (7.0, 7.0));
 }
 
+/// A run of a program that is read to its end and goes back to its first block, with the axes at a place in X and Y.
+fn gone_back(text: &str, [x, y]: [f64; 2]) -> NcReader {
+    let mut run = reader(text);
+    run.keep_checkpoints();
+    elements(&mut run);
+    run.go_back(&|mark| mark.sequence == 1);
+    run.retry();
+    let mut stands = Position::ZERO;
+    (stands[Axis::X], stands[Axis::Y]) = (x, y);
+    run.relocate(&stands);
+    run
+}
+
+/// Degrees of the arc with which a run goes on; `None` where it is refused.
+fn sweep(run: &mut NcReader) -> Option<f64> {
+    match run.next() {
+        Step::Element(element) => match element.curve {
+            Curve::Arc(arc) => Some(arc.sweep_deg),
+            other => panic!("{other:?}"),
+        },
+        Step::Error(error) => {
+            assert_eq!(error.message.text(MODEL), "ARC END-POINT INCORRECT");
+            None
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
 /// A half circle from X0 to X20 about X10, left after a quarter of it: 90 degrees are left. Beside the circle there is no way.
 #[test]
 fn back_into_an_arc() {
     for (y, left) in [(-10.0, Some(90.0)), (-9.0, None)] {
-        let mut run = reader("N10 G03 X20 I10 J0 F100\n");
-        run.keep_checkpoints();
-        assert_eq!(elements(&mut run).len(), 1);
-        run.go_back(&|mark| mark.sequence == 1);
-        run.retry();
-        let mut stands = Position::ZERO;
-        (stands[Axis::X], stands[Axis::Y]) = (10.0, y);
-        run.relocate(&stands);
-        let sweep = match run.next() {
-            Step::Element(element) => match element.curve {
-                Curve::Arc(arc) => Some(arc.sweep_deg),
-                other => panic!("{other:?}"),
-            },
-            Step::Error(error) => {
-                assert_eq!(error.message.text(MODEL), "ARC END-POINT INCORRECT");
-                None
-            }
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(sweep.map(f64::round), left);
+        let mut run = gone_back("N10 G03 X20 I10 J0 F100\n", [10.0, y]);
+        assert_eq!(sweep(&mut run).map(f64::round), left);
     }
+}
+
+/// Where the axes stand at the start of an arc, all of it is left: coordinates that come back from the machine are rounded,
+/// and axes stop within a tolerance. 0.005 mm of a radius of 10 mm are 0.005 / 10 radians.
+#[test]
+fn back_to_the_start_of_an_arc() {
+    let before_deg = (0.005_f64 / 10.0).to_degrees();
+    let half = ("N10 G03 X20 I10 J0 F100\n", 180.0);
+    let half_clockwise = ("N10 G02 X20 I10 J0 F100\n", -180.0);
+    let full = ("N10 G03 X0 Y0 I10 J0 F100\n", 360.0);
+    // No coordinate says the end: it is the start of the block, not where the axes stand.
+    let of_centre = ("N10 G02 I10 J0 F100\n", -360.0);
+    for (text, whole) in [half, half_clockwise, full, of_centre] {
+        for place in [[0.0, 0.0], [1e-12, 0.0], [-1e-12, 1e-12], [0.0, -1e-12]] {
+            let left = sweep(&mut gone_back(text, place)).unwrap();
+            assert!((left - whole).abs() < 1e-9, "{text} from {place:?}: {left}");
+        }
+        // G03 begins towards Y-, G02 towards Y+: what is before the start lies on the other side.
+        let before = 0.005 * f64::signum(whole);
+        let mut run = gone_back(text, [0.0, before]);
+        let left = sweep(&mut run).unwrap();
+        let expected = whole + before_deg.copysign(whole);
+        assert!((left - expected).abs() < 1e-4, "{text}: {left}");
+    }
+}
+
+/// Where the axes stand at the end of an arc, nothing of it is left, even a rounding behind it: the next block begins.
+#[test]
+fn back_to_the_end_of_an_arc() {
+    for y in [0.0, 1e-12, 0.005] {
+        let mut run = gone_back("N10 G03 X20 I10 J0 F100\nN20 G01 X30\n", [20.0, y]);
+        let path = elements(&mut run);
+        let turns: f64 = path.iter().map(PathElement::length).sum();
+        assert!((turns - 10.0).abs() <= 0.01, "Y{y}: {turns} mm");
+        assert!(
+            path.iter().all(|element| element.length() > 0.0),
+            "Y{y}: {path:?}"
+        );
+        let end = path.last().unwrap().end;
+        assert_eq!((end[Axis::X], end[Axis::Y]), (30.0, 0.0));
+    }
+}
+
+/// What a block programs is executed, also where it says the place at which the axes stood before they were moved by hand:
+/// Z is raised again to 50, and Y goes back to 0.
+#[test]
+fn a_programmed_place_is_reached_from_anywhere() {
+    let mut run = reader("N10 G00 Z50\nN20 Z50\nN30 G01 X20 Y0 F100\n");
+    run.keep_checkpoints();
+    elements(&mut run);
+    run.go_back(&|mark| mark.sequence == 1);
+    run.retry();
+    assert!(matches!(run.next(), Step::Element(_)));
+    let mut stands = Position::ZERO;
+    (stands[Axis::X], stands[Axis::Y], stands[Axis::Z]) = (3.0, 5.0, 10.0);
+    run.relocate(&stands);
+    let path = elements(&mut run);
+    assert_eq!(path.len(), 2);
+    assert_eq!((path[0].start[Axis::Z], path[0].end[Axis::Z]), (10.0, 50.0));
+    assert_eq!((path[0].end[Axis::X], path[0].end[Axis::Y]), (3.0, 5.0));
+    assert_eq!((path[1].end[Axis::X], path[1].end[Axis::Y]), (20.0, 0.0));
+}
+
+/// Incremental coordinates count from where the block would have begun, X10, however often the axes are moved before it,
+/// and in the next program of the file, too.
+#[test]
+fn increments_count_from_the_path() {
+    for text in [
+        "N10 G00 X10\nN20 G91 X5\n",
+        "%A\nN10 G00 X10\nN20 M30\n%B\nN10 G91 X5\n",
+    ] {
+        let mut run = reader(text);
+        assert!(matches!(run.next(), Step::Element(_)));
+        for x in [12.0, 13.0] {
+            let mut stands = Position::ZERO;
+            stands[Axis::X] = x;
+            run.relocate(&stands);
+        }
+        let path = elements(&mut run);
+        assert!(
+            path.iter().any(|element| x(element) == (13.0, 15.0)),
+            "{text}: {path:?}"
+        );
+    }
+}
+
+/// An axis without a position stands at 0, also when it is moved by hand before the first block.
+#[test]
+fn an_arc_from_an_unknown_place() {
+    let unknown = Start {
+        position: bahn_path::PerAxis::splat(f64::NAN).into(),
+        ..start(OwnFunctions::default())
+    };
+    let text = b"N10 G03 X20 I10 J0 F100\n";
+    let mut run = NcReader::new("a.nc", text, unknown, Arc::new(Beside(BTreeMap::new())));
+    let mut untouched = run.clone();
+    assert_eq!(sweep(&mut untouched), Some(180.0));
+    let mut stands = Position::ZERO;
+    (stands[Axis::X], stands[Axis::Y]) = (10.0, -10.0);
+    run.relocate(&stands);
+    assert_eq!(sweep(&mut run).map(f64::round), Some(90.0));
+}
+
+/// At a stop behind the place where the axes were moved to, the PLC moves them again: the next block begins where they stand
+/// then.
+#[test]
+fn moved_at_a_stop() {
+    let mut run = reader("N10 G00 X10\nN20 M0\nN30 G01 X20 F100\n");
+    assert!(matches!(run.next(), Step::Element(_)));
+    let mut stands = Position::ZERO;
+    stands[Axis::X] = 12.0;
+    run.relocate(&stands);
+    assert!(matches!(run.next(), Step::Element(element) if element.curve == Curve::Hold));
+    assert!(matches!(run.next(), Step::Barrier(Barrier::Stop { .. })));
+    stands[Axis::X] = 15.0;
+    run.stand_at(&stands);
+    run.resume(LiveData::default());
+    assert_eq!(
+        elements(&mut run).iter().map(x).collect::<Vec<_>>(),
+        [(15.0, 20.0)]
+    );
 }
 
 /// A block that was refused stays the next one, with everything as it was before it.
@@ -317,6 +448,85 @@ fn a_block_to_begin_with() {
     assert_eq!(run.at().block, 6);
     let path = elements(&mut run);
     assert_eq!((path.len(), x(&path[0])), (1, (0.0, 40.0)));
+}
+
+/// A subroutine of the file is run by its calls alone: a run that shall begin in it, at its head or behind it, is refused,
+/// and stays so. Only a start elsewhere goes on.
+#[test]
+fn no_start_in_a_subroutine() {
+    // Lines and blocks 1 %A, 2 N10, 3 N20, 4 %L SUB, 5 N10, 6 N30, 7 %B, 8 N10.
+    let text = "%A\nN10 LL SUB\nN20 M30\n%L SUB\nN10 G00 X5\nN30 M17\n%B\nN10 G00 X30\n";
+    for kept in [false, true] {
+        for block in 4..=6 {
+            let mut run = reader(text);
+            if kept {
+                run.keep_checkpoints();
+            }
+            run.goto(block);
+            for _ in 0..2 {
+                assert_eq!(run.at().block, block);
+                let Step::Error(error) = run.next() else {
+                    panic!("block {block} is begun with")
+                };
+                assert_eq!(error.message.text(MODEL), "WRONG PROGRAM DATA");
+                assert_eq!(error.detail, "the block stands in a subroutine");
+                assert_eq!(error.block.block, block);
+                run.retry();
+            }
+            run.goto(8);
+            assert_eq!(x(&elements(&mut run)[0]), (0.0, 30.0));
+        }
+    }
+    // What stands before the first head belongs to no subroutine.
+    let mut run = reader("(of 1997)\n%L SUB\nN10 M17\n%B\nN10 G00 X30\n");
+    run.goto(1);
+    assert_eq!(x(&elements(&mut run)[0]), (0.0, 30.0));
+}
+
+/// Whoever begins elsewhere in a run leaves what was before: its stop, the elements on their way, and its states.
+#[test]
+fn a_new_start_leaves_the_run_before() {
+    let text = "N10 G00 X10\nN20 M0\nN30 X20\nN40 G01 X30 F100\n";
+    let mut run = reader(text);
+    run.keep_checkpoints();
+    assert!(matches!(run.next(), Step::Element(_)));
+    assert!(matches!(run.next(), Step::Element(_)));
+    let Step::Barrier(Barrier::Stop { block }) = run.next() else {
+        panic!("M0 stops")
+    };
+    assert_eq!(run.stop_function(block), Some("M0"));
+    run.goto(4);
+    assert_eq!(run.stop_function(block), None);
+    // No state of the run before is left: nothing is gone back to.
+    run.go_back(&|_| true);
+    assert_eq!(run.at().block, 4);
+    assert_eq!(x(&elements(&mut run)[0]), (10.0, 30.0));
+}
+
+/// Without states the block that failed is not tried again, and the error stays: the run has not done what stands there.
+#[test]
+fn an_error_is_not_passed_over() {
+    for text in [
+        "N10 G00 X10\nN20 X5 H5\nN30 X20\n",
+        "N10 G00 X10\nN20 X=\nN30 X20\n",
+    ] {
+        let mut run = reader(text);
+        assert!(matches!(run.next(), Step::Element(_)));
+        for _ in 0..2 {
+            assert!(matches!(run.next(), Step::Error(error) if error.block.block == 2));
+            assert_eq!(run.at().block, 2, "{text}");
+            run.retry();
+        }
+    }
+    // Nor does a file without a program end as if it had run.
+    let mut run = reader("%L SUB\nN10 M17\n");
+    for _ in 0..2 {
+        let Step::Error(error) = run.next() else {
+            panic!("there is no program")
+        };
+        assert_eq!(error.detail, "the file has no program, only subroutines");
+        run.retry();
+    }
 }
 
 /// Work is counted, and a flag ends it: the run goes on later.

@@ -105,7 +105,19 @@ impl ParameterError {
     /// The parameter whose value it is that cannot be read; none of a line that names no parameter of the control, or one
     /// that has its value in another line.
     pub fn entry_id(&self) -> Option<ParameterId> {
-        self.id().filter(|_| matches!(self.number(), 2 | 3 | 6))
+        match *self {
+            ParameterError::NoSeparator(id, _)
+            | ParameterError::NotANumber(id, _)
+            | ParameterError::OutOfRange { id, .. }
+            | ParameterError::NotWhole(id, _)
+            | ParameterError::NoChoice(id, _)
+            | ParameterError::NotStorable(id, _) => Some(id),
+            ParameterError::NoNumber
+            | ParameterError::UnknownNumber(_)
+            | ParameterError::IndexMissing(_)
+            | ParameterError::NotDefined(_)
+            | ParameterError::DoublyDefined { .. } => None,
+        }
     }
 }
 

@@ -7,11 +7,13 @@
 //! - [`Definition`]: what the manual's list says of each machine parameter; [`Advice`]: what it does;
 //! - [`chapters`]: the chapters of the manuals that a citation means;
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
-//!   model, grouped by who reads them: [`axis`], [`spindle`], [`operation`], [`machining`], [`plc`];
+//!   model, grouped by who reads them: [`axis`], [`spindle`], [`operation`], [`machining`], [`interfaces`],
+//!   [`tables`], [`plc`];
 //! - [`PerPlcAxis`]: what there is of each axis of a list, by its index;
 //! - [`space`]: what machine parameters have in common with other kinds, as the system and channel parameters of a
 //!   System 900;
 //! - [`ListText`]: the text of a list, whose values change in their places;
+//! - [`fault`]: what the control does about each fault;
 //! - [`conformance`]: what each function of a control does here, and what it does not;
 //! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them;
 //!   [`own_functions`]: those that a machine builder synchronises otherwise.
@@ -29,7 +31,8 @@
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits/models.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
 //! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `002` the parameter manual of the System 900, `003` the user's manual
-//! of the TNC 360. Nothing here knows what the values are used for.
+//! of the TNC 360. A getter says what values mean: numbers with units, or the settings of a loop of `bahn_servo`. Nothing
+//! here acts on them.
 
 #![allow(
     rustdoc::broken_intra_doc_links,

@@ -180,17 +180,18 @@ impl ListText {
         }
     }
 
-    /// A line that cannot be read becomes one that sets a parameter; its comment stays.
+    /// A line that cannot be read becomes one that sets a parameter; its comment and its end stay to the byte.
     fn mend(&mut self, number: usize, definition: &Definition, value: &str) {
         let Some(at) = self.line_at(number) else { return };
-        let old = self.line(number);
-        let new = match old.split_once(';') {
-            Some((_, comment)) => format!("{:<9}: {value:<12} ;{comment}", definition.id.to_string()),
-            None => definition.line(value),
+        let old = self.bytes.get(at.clone()).unwrap_or_default();
+        let (length, new) = match old.iter().position(|byte| *byte == b';') {
+            Some(comment) => (comment, format!("{:<9}: {value:<12} ", definition.id.to_string())),
+            None => {
+                let text = old.iter().rposition(|byte| !matches!(byte, b'\r' | b'\n'));
+                (text.map_or(0, |last| last + 1), definition.line(value))
+            }
         };
-        let end = self.line_end();
-        self.bytes.splice(at, format!("{new}{end}").into_bytes());
-        self.read();
+        self.bytes.splice(at.start..at.start + length, new.into_bytes());
     }
 
     /// The bytes of a line, from 1, with its end.

@@ -85,6 +85,34 @@ fn a_line_that_cannot_be_read_is_mended() {
     assert_eq!(mended, "; mill\nMP7430   : 1.2          ;overlap\nMP7410 : 1\n");
 }
 
+/// What is mended is the value: comment and line end stay to the byte, in whatever code an editor of 1990 has written them.
+#[test]
+fn a_mended_line_keeps_its_bytes() {
+    for (text, mended) in [
+        (
+            &b"MP7430 : x ;\xDCberlappung\n"[..],
+            &b"MP7430   : 1.2          ;\xDCberlappung\n"[..],
+        ),
+        (
+            b"MP7430 : \xDC;\x81 ;; \xC3\xBC\r\nMP7410 : 1\n",
+            b"MP7430   : 1.2          ;\x81 ;; \xC3\xBC\r\nMP7410 : 1\n",
+        ),
+        (b"MP7430 : x ;last", b"MP7430   : 1.2          ;last"),
+    ] {
+        let mut list = ListText::from_bytes(MODEL, text);
+        list.set(id(7430, None), 1.2).unwrap();
+        let found = list.to_bytes();
+        assert_eq!(found, mended, "{}", found.escape_ascii());
+    }
+    // Without a comment the line gets its name, and keeps its end.
+    let mut list = ListText::from_bytes(MODEL, b"MP7430 : \xDC\r\nMP7410 : 1\n");
+    list.set(id(7430, None), 1.2).unwrap();
+    let found = list.to_bytes();
+    let behind = found.strip_prefix(b"MP7430   : 1.2          ;").unwrap();
+    assert!(behind.ends_with(b"\r\nMP7410 : 1\n"), "{}", found.escape_ascii());
+    assert_eq!(list.faults(), []);
+}
+
 #[test]
 fn a_list_that_lacks_parameters_is_refused_with_all_of_them() {
     let faults = ParameterList::load(MODEL, b"MP10 : %00111\nMP7430 : 1.2\n").unwrap_err();

@@ -3,7 +3,7 @@
 
 use crate::assigned_parameters;
 use CycleFunction::{Definition, Probe};
-use Sign::{Minus, Positive, Signed, Unsigned, Working};
+use Sign::{NotNegative, PlusOmitted, Signed, Unsigned, Working};
 
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
@@ -84,23 +84,23 @@ pub enum Sign {
     Signed,
     /// The sign of the working direction, the same for all such parameters of a cycle [003:4902].
     Working,
-    /// None that is negative, and it is always printed.
-    Positive,
+    /// `+` alone, and it is printed.
+    NotNegative,
     /// None; `+` is not printed.
     Unsigned,
     /// Any; `+` is not printed.
-    Minus,
+    PlusOmitted,
 }
 
 impl Sign {
     /// Whether `+` is printed before a number.
     pub(crate) fn prints_plus(self) -> bool {
-        !matches!(self, Sign::Unsigned | Sign::Minus)
+        !matches!(self, Sign::Unsigned | Sign::PlusOmitted)
     }
 
     /// Whether a number may be negative.
     pub fn may_be_negative(self) -> bool {
-        !matches!(self, Sign::Positive | Sign::Unsigned)
+        !matches!(self, Sign::NotNegative | Sign::Unsigned)
     }
 }
 
@@ -182,14 +182,19 @@ const DWELL: CycleParameter = parameter("DWELL", Quantity::Dwell, Unsigned);
 const FEED: CycleParameter = parameter("F", Quantity::Feed, Unsigned);
 const SIDE: CycleParameter = parameter("", Quantity::Side, Signed);
 /// [003:5250]
-const POCKET_SIDE: CycleParameter = parameter("", Quantity::Side, Positive);
+const POCKET_SIDE: CycleParameter = parameter("", Quantity::Side, NotNegative);
 const TURN: CycleParameter = optional(parameter("DR", Quantity::Turn, Signed));
 /// [003:5510]
-const ALLOW: CycleParameter = parameter("ALLOW", Quantity::Length, Positive);
+const ALLOW: CycleParameter = parameter("ALLOW", Quantity::Length, NotNegative);
 const RADIUS: CycleParameter = parameter("RADIUS", Quantity::Length, Unsigned);
 const TRAVEL: CycleParameter = parameter("TRAVEL:", Quantity::Length, Unsigned);
-/// That of CONTOUR LINES may be negative [003:6745].
-const SPACING: CycleParameter = parameter("L.SPAC:", Quantity::Length, Minus);
+/// From line to line in the positive direction [003:6667].
+const SPACING: CycleParameter = parameter("L.SPAC:", Quantity::Length, Unsigned);
+/// From contour line to contour line, up or down [003:6758-6761] [003:6802].
+const SIGNED_SPACING: CycleParameter = CycleParameter {
+    sign: PlusOmitted,
+    ..SPACING
+};
 const INTERVAL: CycleParameter = parameter("P.P. INT:", Quantity::Length, Unsigned);
 const HEIGHT: CycleParameter = parameter("HEIGHT:", Quantity::Length, Signed);
 const CHECK: CycleParameter = parameter("CHECK:", Quantity::Choice, Unsigned);
@@ -307,7 +312,7 @@ pub const CYCLES: &[Cycle] = &[
     probe(7, "CONTOUR LINES", &[
         &[parameter("TIME:", Quantity::Milliseconds, Unsigned), POINT],
         &[parameter("ORDER", Quantity::Directions, Signed)],
-        &[TRAVEL, SPACING, INTERVAL],
+        &[TRAVEL, SIGNED_SPACING, INTERVAL],
     ]),
     // Tool measurement [000:7960-8058]; words of later controls
     probe(30, "TT CALIBRATION", &[&[HEIGHT]]),

@@ -99,6 +99,14 @@ impl Language for DinLanguage {
         digits.parse().ok()
     }
 
+    /// A head begins with `%` [004:60], that of a subroutine with `%L` (public).
+    fn begins_subroutine(&self, text: BlockText<'_>) -> Option<bool> {
+        let head = text.bytes.trim_ascii().strip_prefix(b"%")?;
+        let name = head.split(|byte| b";(".contains(byte)).next()?.trim_ascii();
+        let word = name.split(u8::is_ascii_whitespace).next()?;
+        Some(word.eq_ignore_ascii_case(b"L"))
+    }
+
     fn has_numbers(&self) -> bool {
         true
     }

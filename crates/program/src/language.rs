@@ -76,6 +76,12 @@ pub trait Language: fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether a block begins a subroutine of the file, in which no run begins; `false` where it begins a program, `None`
+    /// where it begins nothing.
+    fn begins_subroutine(&self, _text: BlockText<'_>) -> Option<bool> {
+        None
+    }
+
     /// Most characters of a block, where the control counts them.
     fn characters_max(&self, _limits: &Limits) -> Option<u32> {
         None

@@ -272,7 +272,7 @@ impl Program {
     }
 
     /// The first block that reports call so: [`Program::number_of`] backwards. A block that is programmed with the number
-    /// is before one that is only called by its place.
+    /// is before one that is only called by its place, and one with which a run may begin before one of a subroutine.
     ///
     /// ```
     /// use bahn_program::Program;
@@ -289,17 +289,24 @@ impl Program {
         own.or_else(|| (number < self.block_count() && self.own_number(number).is_none()).then_some(number))
     }
 
-    /// The first block that is programmed with a number.
+    /// The first block that is programmed with a number; one of a subroutine in which no run begins only where no other is.
     fn programmed_with(&self, number: u32) -> Option<u32> {
+        let (mut is_subroutine, mut in_subroutine) = (false, None);
         let pieces = self.rope.pieces().iter().enumerate();
-        pieces
-            .filter(|(_, piece)| piece.blocks > 0)
-            .find_map(|(index, piece)| {
-                let (first, line) = self.rope.start(index);
-                let raws = self.places(piece, line);
-                let is_it = |raw: &RawBlock| self.language.number(raw.text(piece.text())) == Some(number);
-                Some(first + raws.iter().position(is_it)? as u32)
-            })
+        for (index, piece) in pieces.filter(|(_, piece)| piece.blocks > 0) {
+            let (first, line) = self.rope.start(index);
+            for (block, raw) in (first..).zip(self.places(piece, line)) {
+                let text = raw.text(piece.text());
+                is_subroutine = self.language.begins_subroutine(text).unwrap_or(is_subroutine);
+                if self.language.number(text) == Some(number) {
+                    match is_subroutine {
+                        true => in_subroutine = in_subroutine.or(Some(block)),
+                        false => return Some(block),
+                    }
+                }
+            }
+        }
+        in_subroutine
     }
 
     /// What stands before a block on a screen: `12`, or in a language whose blocks have numbers of their own `N120`, and

@@ -12,7 +12,7 @@ fn part() -> Program {
 }
 
 /// A block is called by its N; one without number by its place among the lines that are not empty, from 1. Of two with one
-/// number the first is found.
+/// number the first is found; one in a subroutine of the file only where no program has the number, since no run begins there.
 #[test]
 fn numbers() {
     let program = part();
@@ -21,12 +21,23 @@ fn numbers() {
     let called: Vec<u32> = (1..=6).map(|block| program.number_of(block)).collect();
     assert_eq!(called, [1, 20, 3, 30, 5, 20]);
     let found = [20, 30, 5, 3].map(|number| program.block_of(number));
-    assert_eq!(found, [Some(2), Some(4), Some(5), Some(3)]);
+    assert_eq!(found, [Some(6), Some(4), Some(5), Some(3)]);
     // Block 4 has a number of its own, and none has 40.
     assert_eq!([4, 40].map(|number| program.block_of(number)), [None, None]);
     let shown: Vec<String> = (1..=6).map(|block| program.shown_number(block)).collect();
     assert_eq!(shown, ["", "N20", "", "N30", "", "N20"]);
     assert_eq!(program.line_of(4), 5);
+    // N7 stands in the subroutine alone, whose head may have blanks and a comment; N8 in the program behind it.
+    let text = "N5 X1\n  %l  SUB ;N8\nN5 X2\nN7 X3\nN8 X4\n%LINE\nN8 X5\n";
+    let several = Program::from_bytes("1.nc", text.into());
+    let found = [5, 7, 8].map(|number| several.block_of(number));
+    assert_eq!(found, [Some(1), Some(4), Some(7)]);
+    // In a long file, too, which is read in pieces of 256 blocks.
+    let long = Program::from_bytes(
+        "1.nc",
+        ["%L S\n", &"N1 X1\n".repeat(1000), "%M\nN1 X2\n"].concat().into(),
+    );
+    assert_eq!(long.block_of(1), Some(1003));
     // A number that no counter holds is none.
     let long = Program::from_bytes("1.nc", "N99999999999 X1\n".into());
     assert_eq!(long.number_of(1), 1);

@@ -4,7 +4,8 @@
 //! - [`Reader`]: an [`ElementSource`](bahn_path::ElementSource) that can go back to a block, go on at one, and say
 //!   which block it is at;
 //! - [`Mark`]: a state before a block to which it can go back;
-//! - [`Start`]: what a program finds on a machine when it begins;
+//! - [`Start`]: what a program finds on a machine when it begins; [`MachineRules`]: what machine parameters rule there,
+//!   and with them where functions go out;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it.
 //!
 //! What only some languages have (Q parameters, a tool table, cycles of the machine builder) is not asked here: whoever
@@ -34,4 +35,4 @@ mod start;
 
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use reader::{Mark, Reader};
-pub use start::{MachineRules, Start};
+pub use start::{MachineRules, Start, synchronisation_point};

@@ -45,7 +45,9 @@ pub trait Reader: ElementSource<Error = Box<ProgramError>> + Any + Send + Sync {
     /// Takes the warnings that came up since the last call.
     fn take_warnings(&mut self) -> Vec<Warning>;
 
-    /// Goes on at a block of the main program, with everything else as it is.
+    /// Goes on at a block of the main program, outside of all calls; executed blocks count on. What is in force there says
+    /// the language: in a program of a TNC all that is in force now, in one of DIN 66025 nothing but where the path stands,
+    /// and a block of a subroutine is refused by the next step.
     fn goto(&mut self, block: u32);
 
     /// Keeps the state before each block whose elements are on their way.
@@ -60,7 +62,8 @@ pub trait Reader: ElementSource<Error = Box<ProgramError>> + Any + Send + Sync {
     /// The block to which a run goes back for a sequence.
     fn block_at(&self, sequence: u64) -> BlockRef;
 
-    /// After an error: the run goes on with the block that failed.
+    /// After an error: the run goes on with the block that failed. A reader that [keeps no
+    /// checkpoints](Reader::keep_checkpoints) may have no way to: the error comes again.
     fn retry(&mut self);
 
     /// The axes stand elsewhere than the path has led them, workpiece coordinates: after a stop inside a block, or after

@@ -1,9 +1,9 @@
 //! What a program begins with.
 
-use bahn_parameters::own_functions::OwnFunctions;
-use bahn_parameters::technology::AxisHalts;
+use bahn_parameters::own_functions::{OwnFunction, OwnFunctions};
+use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_path::{AxisSet, Position};
+use bahn_path::{At, AxisSet, Function, Position, Synchronisation, TechnologyFunction};
 
 /// What machine parameters rule in programs of any language.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +29,35 @@ impl MachineRules {
             speed_max_rpm: list.spindle_speed_max_rpm(),
         }
     }
+
+    /// A function where the table of the model has it.
+    pub fn output(&self, function: Function, technology: &Technology) -> TechnologyFunction {
+        TechnologyFunction::new(function, technology.at, technology.synchronisation(self.halts))
+    }
+
+    /// An M function that goes to the PLC: where the machine builder has it, else where the table of the model has it.
+    pub fn m_output(
+        &self,
+        code: u16,
+        own: Option<OwnFunction>,
+        technology: &Technology,
+    ) -> TechnologyFunction {
+        match own {
+            Some(OwnFunction::Out { at, synchronisation }) => {
+                TechnologyFunction::new(Function::M(code), at, synchronisation)
+            }
+            Some(OwnFunction::Point) => synchronisation_point(),
+            None => TechnologyFunction {
+                spindle: technology.spindle(),
+                ..self.output(Function::M(code), technology)
+            },
+        }
+    }
+}
+
+/// `#EXPL SYN`: what waits for it is to be acknowledged here [004:75].
+pub fn synchronisation_point() -> TechnologyFunction {
+    TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)
 }
 
 /// What a program finds on a machine when it begins, whatever language it is in.

@@ -71,6 +71,7 @@ impl Blocks for Decoded {
         };
         let motion = Motion {
             curve: Curve::Line,
+            begin: at(self.block - 1),
             start: at(self.block - 1),
             end: at(self.block),
             rapid: false,

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 
 use super::faults::{Report, faults};
 use super::options::CheckOptions;
+use crate::count::count;
 use crate::options::Format;
 use crate::reports::Reports;
 use crate::{Outcome, UsageError, console, diagnostics, files};
@@ -53,10 +54,6 @@ impl Serialize for Named<'_> {
 
 fn print(path: &Path, list: &ChannelList) {
     diagnostics::print_faults(&faults(list, path));
-    let count = |number: usize, what: &str| match number {
-        1 => format!("1 {what}"),
-        _ => format!("{number} {what}s"),
-    };
     diagnostics::print_text(&format!(
         "{}: {}, {}, {}",
         path.display(),

@@ -2,6 +2,7 @@
 
 use bahn_interpreter::Complete;
 
+use crate::count::count;
 use crate::diagnostics;
 
 /// What is wrong with one file.
@@ -30,10 +31,6 @@ pub(super) struct Entry {
 }
 
 pub(super) fn summary(report: &CheckReport, complete: Complete) {
-    let count = |number: usize, what: &str| match number {
-        1 => format!("1 {what}"),
-        _ => format!("{number} {what}s"),
-    };
     let all = report.errors + report.warnings;
     let printed = report.diagnostics.len().min(diagnostics::PRINTED_MAX);
     let more = match all - printed {

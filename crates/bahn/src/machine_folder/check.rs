@@ -12,6 +12,7 @@ use bahn_parameters::ParameterList;
 use super::load;
 use super::options::CheckOptions;
 use crate::check::{self, Check, CheckReport};
+use crate::count::count;
 use crate::diagnostics::{self, FileFault, Severity};
 use crate::interrupt::Interrupt;
 use crate::options::Format;
@@ -68,8 +69,6 @@ fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report,
             .map_or("cannot be switched on".to_owned(), |machine| {
                 format!("{}, {}", machine.folder.name, machine.parameters.model())
             });
-        let count =
-            |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
         diagnostics::print_text(&format!(
             "{}: {what}, {}, {}",
             folder.display(),

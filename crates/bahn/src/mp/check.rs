@@ -8,7 +8,8 @@ use bahn_parameters::{Inconsistency, ListError, ListText, ParameterError, Parame
 use serde::Serialize;
 
 use super::options::CheckOptions;
-use super::{count, source};
+use super::source;
+use crate::count::count;
 use crate::diagnostics::{self, FileFault};
 use crate::options::Format;
 use crate::reports::Reports;

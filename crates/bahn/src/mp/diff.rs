@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::list::Row;
 use super::options::DiffOptions;
-use super::{count, explain, source};
+use super::{explain, source};
+use crate::count::count;
 use crate::options::Format;
 use crate::style::Style;
 use crate::{Outcome, UsageError, console};

@@ -5,7 +5,6 @@
 //! - `check`, `list`, `explain`, `diff`, `new`: the subcommands.
 
 mod check;
-mod count;
 mod diff;
 mod explain;
 mod list;
@@ -17,8 +16,6 @@ pub(crate) use options::MpOptions;
 
 use crate::{Outcome, UsageError};
 use options::MpCommand;
-
-use count::count;
 
 /// Executes a subcommand of `bahn mp`.
 pub(crate) fn command(options: &MpOptions) -> Result<Outcome, UsageError> {

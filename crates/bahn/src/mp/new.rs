@@ -5,7 +5,8 @@ use std::io::Write;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 
 use super::options::NewOptions;
-use super::{count, source};
+use super::source;
+use crate::count::count;
 use crate::files::{self, NewFile};
 use crate::{Outcome, UsageError, console, diagnostics};
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use bahn_machine::MachineFolder;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 
-use super::count;
 use super::options::ValueOptions;
+use crate::count::count;
 use crate::{UsageError, files};
 
 /// Reads a list for the given control, otherwise for that of the machine in whose folder it lies, otherwise for

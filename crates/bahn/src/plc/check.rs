@@ -4,6 +4,7 @@ use bahn_plc::Diagnostic as Fault;
 
 use super::options::CheckOptions;
 use super::source::Source;
+use crate::count::count;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 
@@ -27,10 +28,6 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
             for what in &report.load {
                 diagnostics::print_text(&format!("warning: {what}"));
             }
-            let count = |number: usize, what: &str| match number {
-                1 => format!("1 {what}"),
-                _ => format!("{number} {what}s"),
-            };
             diagnostics::print_text(&format!(
                 "{}: {}, {}{}, {} bytes, nominal cycle time {:.2} %",
                 options.program.file.display(),

@@ -14,6 +14,7 @@ use super::options::RunOptions;
 use super::record::Record;
 use super::source::Source;
 use super::trace::{Line, Trace};
+use crate::count::count;
 use crate::diagnostics::{self, PRINTED_MAX};
 use crate::interrupt::Interrupt;
 use crate::junit;
@@ -280,10 +281,11 @@ impl Report {
             .iter()
             .map(|(operand, content)| format!("{operand} = {content}\n"))
             .collect();
-        let plural = if self.cycles == 1 { "" } else { "s" };
         text += &format!(
-            "{} cycle{plural}, processing time {:.2} %, maximum {:.2} %\n",
-            self.cycles, self.processing_percent.current, self.processing_percent.maximum
+            "{}, processing time {:.2} %, maximum {:.2} %\n",
+            count(self.cycles, "cycle"),
+            self.processing_percent.current,
+            self.processing_percent.maximum
         );
         text
     }

@@ -3,6 +3,8 @@
 use bahn_path::Position;
 use bahn_technology::{Event, EventKind, Report, Skipped, Value, Wait};
 
+use crate::count::count;
+
 /// Events that are printed; the others are counted.
 const PRINTED_MAX: usize = 400;
 
@@ -137,10 +139,7 @@ fn rounded(value: f64) -> f64 {
 
 fn end(report: &Report) -> String {
     let stands = position(&report.path_end.0);
-    let count = |kind: EventKind, what: &str| {
-        let number = report.events.iter().filter(|event| event.kind == kind).count();
-        format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-    };
+    let events = |kind: EventKind| report.events.iter().filter(|event| event.kind == kind).count();
     let waited: f64 = stood(&report.waits, report.time_s);
     let what = if report.completed {
         "completed"
@@ -153,8 +152,8 @@ fn end(report: &Report) -> String {
         "{what} in {:.3} s (cycle {} ms), {}, {}, path stood {waited:.3} s for functions{}\n",
         report.time_s,
         rounded(report.cycle_s * 1e3),
-        count(EventKind::Output, "output"),
-        count(EventKind::Acknowledge, "acknowledgement"),
+        count(events(EventKind::Output), "output"),
+        count(events(EventKind::Acknowledge), "acknowledgement"),
         if stands.is_empty() {
             String::new()
         } else {

@@ -47,7 +47,6 @@ const ROOMS: &[(&str, &[&str])] = &[
             "exchange",
             "plc",
             "din",
-            "technology",
             "convert",
         ],
     ),
@@ -139,6 +138,9 @@ const ROOMS: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// The crate of the shipped machines, data alone: it uses no room.
+const DATA: &str = "machines";
+
 /// Longer files hold more than one idea.
 const LINES_MAX: usize = 700;
 
@@ -222,6 +224,9 @@ fn is_this_check(file: &Path) -> bool {
 
 #[test]
 fn arrows_point_down() {
+    let disorder = disorder(ROOMS);
+    assert!(disorder.is_empty(), "{}", disorder.join("\n"));
+    assert_eq!(dependencies(&root().join(DATA)), [""; 0]);
     for entry in fs::read_dir(root().join("crates")).unwrap() {
         let folder = entry.unwrap().path();
         let room = folder.file_name().unwrap().to_string_lossy().into_owned();
@@ -250,6 +255,45 @@ fn arrows_point_down() {
             unused.is_empty(),
             "{room} depends on {unused:?}, and does not use it"
         );
+    }
+}
+
+/// What is wrong with the order of rooms: one that uses a room which does not stand before it, or a name that stands twice.
+fn disorder(rooms: &[(&str, &[&str])]) -> Vec<String> {
+    let mut before = BTreeSet::from([DATA]);
+    let mut faults = Vec::new();
+    for (room, allowed) in rooms {
+        let above = allowed.iter().filter(|used| !before.contains(**used));
+        faults.extend(above.map(|used| format!("{used} does not stand before {room}, which uses it")));
+        let mut named = BTreeSet::new();
+        let twice = allowed.iter().filter(|used| !named.insert(**used));
+        faults.extend(twice.map(|used| format!("{used} stands twice behind {room}")));
+        if !before.insert(room) {
+            faults.push(format!("{room} stands twice"));
+        }
+    }
+    faults
+}
+
+#[test]
+fn disorder_is_found() {
+    assert_eq!(disorder(&[("path", &[]), ("motion", &["path", DATA])]), [""; 0]);
+    for (rooms, fault) in [
+        (
+            &[("motion", &["path"][..]), ("path", &[])][..],
+            "path does not stand before motion, which uses it",
+        ),
+        (
+            &[("path", &["path"][..])],
+            "path does not stand before path, which uses it",
+        ),
+        (
+            &[("path", &[][..]), ("motion", &["path", "path"])],
+            "path stands twice behind motion",
+        ),
+        (&[("path", &[][..]), ("path", &[])], "path stands twice"),
+    ] {
+        assert_eq!(disorder(rooms), [fault]);
     }
 }
 

@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, Library, MFunctionRules, Message, ProgramError, Settings, Warning};
+use bahn_interpreter::{Interpreter, Library, Message, ProgramError, Settings, Warning};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, Barrier, Blank, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Position, Step,
@@ -468,12 +468,4 @@ pub fn shapes(run: &Run) -> Vec<Shape> {
             feed: e.feed,
         })
         .collect()
-}
-
-/// Rules in which M6 does not stop.
-pub fn m6_goes_on() -> MFunctionRules {
-    MFunctionRules {
-        m6_stops: false,
-        ..MFunctionRules::default()
-    }
 }

@@ -392,7 +392,7 @@ fn quantity(program: &PartProgram, parameter: &bahn_program::CycleParameter) -> 
     };
     let sign = match parameter.sign {
         Sign::Working => ", sign of the working direction",
-        Sign::Signed | Sign::Positive | Sign::Unsigned | Sign::Minus => "",
+        Sign::Signed | Sign::NotNegative | Sign::Unsigned | Sign::PlusOmitted => "",
     };
     match unit {
         "" => String::new(),

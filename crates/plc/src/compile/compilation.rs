@@ -63,12 +63,13 @@ impl Compilation {
 }
 
 /// Logic commands for which a PLC run has time [000:11185].
-pub(super) const COMMANDS_MAX: usize = 8000;
+const COMMANDS_MAX: usize = 8000;
 
-/// Load up to which the control keeps its block processing speed, and that which should not occur [000:12038], %.
-pub(super) const KEPT_PERCENT: f64 = 100.0;
+/// Load up to which the control keeps its block processing speed [000:12038], %.
+const KEPT_PERCENT: f64 = 100.0;
 
-pub(super) const RESERVE_PERCENT: f64 = 150.0;
+/// Load up to which there is a reserve for data transfer and handwheel: more should not occur [000:12038], %.
+const RESERVE_PERCENT: f64 = 150.0;
 
 /// 10 ms, which stop the control [000:11245], %.
-pub(super) const TIME_OUT_PERCENT: f64 = 200.0;
+const TIME_OUT_PERCENT: f64 = 200.0;
