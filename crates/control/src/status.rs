@@ -203,8 +203,9 @@ pub(crate) fn coordinates<'a>(
     for (kind, row) in CoordinateKind::ALL.iter().zip(rows) {
         link.set_coordinates(*kind, row);
     }
-    let along =
-        |probe: MeasuringProbe| deflection_along_axes(&manual.deflection_mm, probe.axes, probe.reversed);
+    let along = |probe: MeasuringProbe| {
+        deflection_along_axes(&manual.touch.deflection_mm, probe.axes, probe.reversed)
+    };
     let deflection = link.list().measuring_probe().map_or([0.0; 3], along);
     let deflection =
         PerPlcAxis::from_fn(|axis| deflection.get(usize::from(axis)).copied().unwrap_or_default());
