@@ -137,6 +137,9 @@ pub enum Command {
     Screen(ScreenCommand),
     /// `handwheel AXIS FACTOR`: axis of the handwheel and its interpolation factor 0 to 10.
     Handwheel(Axis, u8),
+    /// `pnt on`, `pnt off`: in POSITIONING WITH MDI the axes follow the stylus of a measuring probe, or do so no more
+    /// [000:7907].
+    Pnt(bool),
     /// `axis-key AXIS`: an axis key of the keyboard: the axis is highlighted (M2096 ff.), and with MP7640 = 2 it is that of
     /// the handwheel, too [000:6425] [000:8139-8151].
     AxisKey(Axis),
@@ -322,6 +325,7 @@ impl FromStr for Command {
             "3d-rot" => parsed(PlaneCommand::parse(rest), Command::WorkingPlane),
             "screen" => parsed(ScreenCommand::parse(rest), Command::Screen),
             "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
+            "pnt" => switch(name, rest, "on").map(Command::Pnt),
             "power" => switch(name, rest, "on").map(Command::Power),
             _ if DataLineEvent::WORDS.contains(&name) => data_line(name, rest),
             "select" | "test" | "mdi" => {
@@ -517,6 +521,7 @@ impl fmt::Display for Command {
             Command::WorkingPlane(plane) => write!(f, "3d-rot {plane}"),
             Command::Screen(screen) => write!(f, "screen {screen}"),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
+            Command::Pnt(on) => write!(f, "pnt {}", if *on { "on" } else { "off" }),
             Command::AxisKey(axis) => write!(f, "axis-key {axis}"),
             Command::Dnc(dnc) => write!(f, "dnc {dnc}"),
             Command::ManualOperation => write!(f, "manual-operation"),
@@ -571,6 +576,8 @@ mod tests {
             "oscilloscope stop",
             "handwheel C 3",
             "3d-rot on",
+            "pnt on",
+            "pnt off",
             "manual-operation",
             "restore-position",
             "restore-at 7",
@@ -627,6 +634,7 @@ mod tests {
             ("rs232 ready", "happens at `rs232`"),
             ("lsv2 message", "happens at `lsv2`"),
             ("3d-rot B", "`on` or `off`"),
+            ("pnt", "`on` or `off`"),
             ("power up", "`on` or `off`"),
         ] {
             let error = text.parse::<Command>().map_err(|error| error.to_string());

@@ -1,6 +1,7 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
 use bahn_exchange::{Exchange, Image, signal};
+use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, BlockRef, Position};
@@ -77,6 +78,8 @@ impl Desk {
             self.spindle_override = Override::spindle(rules.overrides.spindle_steps);
         }
         self.rules = rules;
+        // It is of the parameters that were.
+        self.manual.lead_by(None);
     }
 
     pub fn rules(&self) -> &OperationParameters {
@@ -85,6 +88,16 @@ impl Desk {
 
     pub fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// PNT on or off: with a measuring probe, in POSITIONING WITH MDI.
+    pub fn switch_pnt(&mut self, on: bool, probe: Option<MeasuringProbe>) -> bool {
+        let probe = probe.filter(|_| on && self.mode == Mode::Mdi);
+        let possible = probe.is_some() || !on && self.manual.follows_stylus();
+        if possible {
+            self.manual.lead_by(probe);
+        }
+        possible
     }
 
     /// Axes are moved by hand: Manual and Handwheel.
@@ -261,7 +274,8 @@ impl Desk {
         stand: impl FnOnce() -> bool,
     ) {
         let (keys, automatic) = (&self.panel.axis_keys, self.mode.is_automatic());
-        self.stylus.watch(measured, guards, probe, || Guarded {
+        let may_touch = probe.touches() || self.manual.is_led();
+        self.stylus.watch(measured, guards, may_touch, || Guarded {
             rest: keys.iter().all(Option::is_none) && stand(),
             automatic,
         });
@@ -269,7 +283,7 @@ impl Desk {
 
     /// How far a measuring probe is deflected along its own axes, mm.
     pub fn deflection_mm(&self) -> [f64; 3] {
-        self.stylus.deflection_mm
+        self.stylus.touch.deflection_mm
     }
 
     /// Follows NC stop, once in each contour cycle; in the TOUCH PROBE menu it is one of the probing alone.
@@ -406,7 +420,10 @@ impl Desk {
             messages,
             block,
         };
-        self.manual.moves(handwheel, &mut reach, now, &mut self.leaning);
+        match self.manual.is_led() {
+            true => self.manual.follow_stylus(&self.stylus.touch, &mut reach, now),
+            false => self.manual.moves(handwheel, &mut reach, now, &mut self.leaning),
+        }
     }
 
     /// Moves the axes over their reference marks for a cycle; at the end the mode is Manual.

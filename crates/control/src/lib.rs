@@ -134,6 +134,7 @@ mod spindle;
 mod status;
 mod strobe_form;
 mod strobes;
+mod stylus_lead;
 mod superimposing;
 mod tables;
 mod test_command;

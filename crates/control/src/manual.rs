@@ -2,11 +2,12 @@
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
+use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::HandwheelParameters;
 use bahn_parameters::technology::Technology;
 use bahn_parameters::{ControlModel, PerPlcAxis};
 use bahn_plc::JogLimit;
-use bahn_servo::HandwheelInputs;
+use bahn_servo::{HandwheelInputs, Probe as Touch};
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -19,6 +20,7 @@ use crate::panel::Direction;
 use crate::plc_link::StatusChanges;
 use crate::reach::{Reach, within};
 use crate::site::Site;
+use crate::stylus_lead::StylusLead;
 
 /// M functions that end what was entered: spindle and coolant off.
 const SWITCHED_OFF: [u16; 2] = [5, 9];
@@ -48,6 +50,10 @@ pub(crate) struct Manual {
     stopped: bool,
     /// S and M are to be ended.
     ends: bool,
+    /// PNT: the stylus leads the axes.
+    stylus: Option<StylusLead>,
+    /// The stylus leads them, or those that it has led run out.
+    led: bool,
     /// OUTPUT of the oscilloscope: STEP with this feed, mm/min, or the RAMP [000:18737-18756].
     step_mm_min: Option<f64>,
 }
@@ -66,6 +72,8 @@ impl Default for Manual {
             s: None,
             stopped: false,
             ends: false,
+            stylus: None,
+            led: false,
             step_mm_min: None,
         }
     }
@@ -78,6 +86,23 @@ impl Manual {
         self.jogging = PerPlcAxis::splat(None);
         self.pushed = PerPlcAxis::splat(None);
         self.handwheel.stop();
+        self.stylus = None;
+    }
+
+    /// PNT: the stylus of a measuring probe leads the axes from now on, or does so no more.
+    pub fn lead_by(&mut self, probe: Option<MeasuringProbe>) {
+        self.stylus = probe.map(StylusLead::of);
+        self.led |= self.stylus.is_some();
+    }
+
+    /// PNT is on.
+    pub fn follows_stylus(&self) -> bool {
+        self.stylus.is_some()
+    }
+
+    /// PNT is on, or axes that it has moved are not at a standstill.
+    pub fn is_led(&self) -> bool {
+        self.led
     }
 
     /// An axis key of the keyboard highlights its axis. With a handwheel that shares the highlight its symbol goes with it
@@ -195,7 +220,34 @@ impl Manual {
                 continue;
             };
             let key = keys.get(index).copied().flatten();
+            let key = key.and_then(|key| Some((key, self.key_feed(reach.axes.get(place)?, reach, now))));
             self.move_by_hand(place, index, key, reach, now);
+        }
+    }
+
+    /// PNT: moves the axes for a cycle as the stylus leads them, on the ways of direction keys. Everything that stops axes
+    /// ends it (inferred).
+    pub fn follow_stylus(&mut self, touch: &Touch, reach: &mut Reach, now: &Now) {
+        if now.stop {
+            self.stop();
+        }
+        let feeds = self.stylus.map(|stylus| stylus.feeds_mm_min(touch));
+        let feeds = feeds.unwrap_or(Ok([0.0; 3])).unwrap_or_else(|message| {
+            self.stop();
+            reach.messages.show(Message::Plain(message), reach.block);
+            [0.0; 3]
+        });
+        self.led = self.stylus.is_some();
+        for place in reach.axes.places() {
+            let led = reach.axes.get(place).and_then(|unit| {
+                let along = MAIN.iter().position(|axis| *axis == unit.axis)?;
+                Some((unit.index, feeds.get(along).copied()?))
+            });
+            let Some((index, feed)) = led else { continue };
+            let led = Direction::of(feed).map(|direction| (direction, feed.abs() * now.feed_percent / 100.0));
+            self.move_by_hand(place, index, led, reach, now);
+            let unit = reach.axes.get(place);
+            self.led |= unit.is_some_and(|unit| unit.mover == Mover::Manual);
         }
     }
 
@@ -292,20 +344,16 @@ impl Manual {
         keys
     }
 
-    /// Moves one axis by its key, its jog increment or the handwheel.
+    /// Moves one axis by its key, in a direction with a feed, mm/min, by its jog increment or the handwheel.
     fn move_by_hand(
         &mut self,
         place: usize,
         index: usize,
-        key: Option<Direction>,
+        key: Option<(Direction, f64)>,
         reach: &mut Reach,
         now: &Now,
     ) {
         let feed_percent = now.feed_percent;
-        let key_feed = reach
-            .axes
-            .get(place)
-            .map_or(0.0, |unit| self.key_feed(unit, reach, now));
         let jog = self.jog_target(place, index, reach, now);
         let wheel = self.handwheel.target(index);
         let Some(unit) = reach.axes.get_mut(place) else {
@@ -324,7 +372,7 @@ impl Manual {
             return;
         }
         let step = self.step_mm_min.filter(|_| now.mode == Mode::Manual && !now.stop);
-        if let (Some(feed), Some(direction)) = (step, key)
+        if let (Some(feed), Some(direction)) = (step, key.map(|(direction, _)| direction))
             && along(unit, direction, feed) != Aim::Feed(0.0)
             && unit.step(direction.sign() * feed)
         {
@@ -335,7 +383,7 @@ impl Manual {
         let motion = unit.parameters.motion;
         let (aim, feed) = match (key, jog.or(wheel)) {
             _ if now.stop => (Aim::Feed(0.0), motion.rapid_mm_min),
-            (Some(direction), _) => (along(unit, direction, key_feed), key_feed),
+            (Some((direction, feed)), _) => (along(unit, direction, feed), feed),
             (None, Some(target)) => {
                 let feed = if jog.is_some() {
                     motion.manual_mm_min * feed_percent / 100.0
@@ -354,7 +402,7 @@ impl Manual {
             unit.mover = Mover::None;
         }
         let pushed = self.pushed.get(index).copied().flatten();
-        self.note_limit(place, key.or(pushed), reach);
+        self.note_limit(place, key.map(|(direction, _)| direction).or(pushed), reach);
     }
 
     /// Message and marker at a software limit switch; they go when the axis leaves it (inferred).

@@ -131,6 +131,15 @@ pub(crate) enum Direction {
 }
 
 impl Direction {
+    /// The direction of a value's sign; `None` for 0.
+    pub fn of(value: f64) -> Option<Direction> {
+        match value {
+            value if value > 0.0 => Some(Direction::Plus),
+            value if value < 0.0 => Some(Direction::Minus),
+            _ => None,
+        }
+    }
+
     /// +1 or -1.
     pub fn sign(self) -> f64 {
         match self {

@@ -7,7 +7,7 @@ use bahn_parameters::machining::ProbeSettings;
 use bahn_path::{
     Axis, Barrier, BlockRef, LiveData, PerAxis, Position, ScanFault, ScanJob, Scanned, ToolMeasuring, Touch,
 };
-use bahn_servo::Measured;
+use bahn_servo::{Measured, Probe as ProbeState};
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -27,8 +27,8 @@ pub(crate) struct Stylus {
     probed: bool,
     /// NC stop.
     pub stops: bool,
-    /// How far a measuring probe is deflected along its own axes, mm.
-    pub deflection_mm: [f64; 3],
+    /// What the probe says.
+    pub touch: ProbeState,
 }
 
 /// A probing movement on a straight line.
@@ -101,23 +101,23 @@ pub(crate) struct Guarded {
 }
 
 impl Stylus {
-    /// M2502: the machine stops when the stylus is deflected, in all modes, but where a probing deflects it, until it
-    /// has left the workpiece again; not with a TS 511, which is on standby otherwise [000:7652]. The stop stays
+    /// M2502: the machine stops when the stylus is deflected, in all modes, but where it may be, by a probing or where it leads
+    /// the axes, until it has left the workpiece again; not with a TS 511, which is on standby otherwise [000:7652]. The stop stays
     /// until all axes stand and no key moves them: by hand the stylus can then be freed; a program goes on only
     /// when it is free (inferred).
     pub fn watch(
         &mut self,
         measured: &Measured,
         guards: bool,
-        probing: &Probe,
+        may_touch: bool,
         guarded: impl FnOnce() -> Guarded,
     ) {
-        self.deflection_mm = measured.probe.deflection_mm;
+        self.touch = measured.probe;
         if !guards && !self.stops {
             return;
         }
         let touches = guards && measured.probe.deflected;
-        self.probed = touches && (probing.touches() || self.probed);
+        self.probed = touches && (may_touch || self.probed);
         let deflected = touches && !self.probed;
         let rises = deflected && !self.deflected;
         self.deflected = deflected;
@@ -189,7 +189,7 @@ impl Probe {
     }
 
     /// The stylus may touch the workpiece.
-    fn touches(&self) -> bool {
+    pub fn touches(&self) -> bool {
         self.probing.is_some_and(|probing| probing.phase != Phase::Enable)
             || self.scanning.as_ref().is_some_and(Scanning::touches)
     }

@@ -192,6 +192,11 @@ impl<'a> ChannelView<'a> {
         (axis, handwheel.factors().get(axis).copied().unwrap_or_default())
     }
 
+    /// PNT is on: the stylus of a measuring probe leads the axes.
+    pub fn follows_stylus(&self) -> bool {
+        self.channel.desk().manual.follows_stylus()
+    }
+
     /// A function of the TOUCH PROBE menu is chosen.
     pub fn probe_is_chosen(&self) -> bool {
         self.channel.touch.is_chosen()

@@ -343,7 +343,8 @@ L X+25 FMAX"
         assert_on_the_thread(&seen);
         let depth = seen[0].z - seen.iter().map(|s| s.z).fold(f64::MAX, f64::min);
         assert!((depth - DEPTH).abs() < 0.1, "{depth}");
-        assert!(observe(&rig, "S.rpm").abs() < 3.0, "the spindle stands");
+        // To a step of its encoder in a cycle of 3 ms: 60 / 4096 / 0.003 = 4.9 rpm.
+        assert!(observe(&rig, "S.rpm").abs() < 5.0, "the spindle stands");
         seen
     });
     // Where Z is when the spindle is at 0 degrees: the same groove, or one that is whole pitches away.

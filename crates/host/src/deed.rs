@@ -91,8 +91,8 @@ impl Deed {
                 let first = rest.split_whitespace().next().unwrap_or_default();
                 first.len() == 1 && first.starts_with(|first: char| first.is_ascii_alphabetic())
             }
-            // The probe is put into the spindle and taken out; what it does there are commands.
-            "probe" => !matches!(rest, "insert" | "remove"),
+            // The probe is put into the spindle and taken out, its stylus is pushed; what it does there are commands.
+            "probe" => !matches!(rest.split_whitespace().next(), Some("insert" | "remove" | "push")),
             _ => false,
         };
         if Event::WORDS.contains(&word) && !is_command {

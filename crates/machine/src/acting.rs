@@ -55,6 +55,7 @@ impl Machine {
                 let angle = self.mechanism.spindle_deg();
                 self.probe()?.insert(*inserted, angle);
             }
+            Event::Stylus(letter, force) => self.probe()?.push(*letter, *force),
             Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
             Event::Temperature(input, celsius) => set(&mut self.temperatures, *input, *celsius),
             Event::Force(letter, force) => self.axis_mut(*letter)?.push(*force),
@@ -270,6 +271,7 @@ impl Machine {
                 probe.ready = true;
                 probe.battery_low = false;
                 probe.early = false;
+                probe.let_go();
             }
             "S" => {
                 let spindle = self.spindle_mut()?;

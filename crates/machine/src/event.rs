@@ -33,6 +33,9 @@ pub enum Event {
     Voltage(bool),
     /// The touch probe is put into the spindle or taken out.
     Probe(bool),
+    /// A hand pushes the stylus of the touch probe along an axis X, Y or Z of the machine with a force, N, until the next such
+    /// event.
+    Stylus(char, f64),
     /// A tool is put into the spindle by hand; 0 takes it out.
     Tool(u32),
     /// A voltage at an analogue input, V.
@@ -153,6 +156,7 @@ switch THING STATE                  moves a thing by hand, as a door
 emergency press|release             the EMERGENCY STOP button
 voltage on|off                      the supply of the control voltage
 probe insert|remove                 the touch probe in the spindle
+probe push X|Y|Z NEWTON             a hand pushes its stylus; 0 lets go
 tool NUMBER                         a tool put into the spindle by hand; 0 takes it out
 analogue INPUT VOLTS                an analogue input 0 to 7
 temperature INPUT CELSIUS           a Pt 100 input 0 to 7
@@ -207,7 +211,7 @@ repair AXIS|S|THING|gear|magazine|I12|relay|probe|battery|all
                 either(rest, "press", "release", "emergency press|release").map(Event::EmergencyStop)
             }
             "voltage" => either(rest, "on", "off", "voltage on|off").map(Event::Voltage),
-            "probe" => either(rest, "insert", "remove", "probe insert|remove").map(Event::Probe),
+            "probe" => probe(rest),
             "tool" => match rest {
                 [tool] => Ok(Event::Tool(number(tool, 0, 32_767)? as u32)),
                 _ => Err(EventError::Form("tool NUMBER")),
@@ -245,6 +249,18 @@ fn key(rest: &[&str]) -> Result<Event, EventError> {
     match rest {
         [name] => Ok(Event::Key((*name).to_owned(), KeyAction::Tap)),
         [name, action] => Ok(Event::Key((*name).to_owned(), key_action(action, FORM)?)),
+        _ => Err(EventError::Form(FORM)),
+    }
+}
+
+fn probe(rest: &[&str]) -> Result<Event, EventError> {
+    const FORM: &str = "probe insert|remove | push X|Y|Z NEWTON";
+    match rest {
+        ["insert"] => Ok(Event::Probe(true)),
+        ["remove"] => Ok(Event::Probe(false)),
+        ["push", axis @ ("X" | "Y" | "Z"), newton] => {
+            Ok(Event::Stylus(letter(axis, FORM)?, number(newton, -20, 20)?))
+        }
         _ => Err(EventError::Form(FORM)),
     }
 }

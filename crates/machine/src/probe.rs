@@ -4,6 +4,9 @@ use std::sync::Arc;
 
 use crate::reader::Section;
 
+/// So much force deflects the stylus of a TM 110 by 1 mm, N [000:7919].
+const NEWTON_PER_MM: f64 = 4.0;
+
 /// A solid on the table that is more than boxes and rings: whoever has the workpiece gives it to the machine.
 pub trait Solid: Send + Sync + std::fmt::Debug {
     /// Whether the ball with its end at a position of the axes X, Y and Z, mm, touches it.
@@ -147,6 +150,8 @@ pub(crate) struct Probe {
     pub battery_low: bool,
     /// It says that it is deflected whatever it touches.
     pub early: bool,
+    /// What a hand pushes the stylus with along the axes X, Y, Z, N.
+    pushed: [f64; 3],
 }
 
 impl Probe {
@@ -204,6 +209,7 @@ impl Probe {
             ready: true,
             battery_low: false,
             early: false,
+            pushed: [0.0; 3],
         };
         section.finish();
         probe
@@ -219,6 +225,20 @@ impl Probe {
     pub fn turned_deg(&self, spindle_deg: f64) -> Option<f64> {
         self.inserted
             .then(|| (spindle_deg - self.inserted_at_deg).rem_euclid(360.0))
+    }
+
+    /// A hand pushes the stylus along an axis with a force, N.
+    pub fn push(&mut self, axis: char, force: f64) {
+        for (letter, pushed) in ['X', 'Y', 'Z'].into_iter().zip(&mut self.pushed) {
+            if letter == axis {
+                *pushed = force;
+            }
+        }
+    }
+
+    /// No hand pushes the stylus.
+    pub fn let_go(&mut self) {
+        self.pushed = [0.0; 3];
     }
 
     /// A tool is in the spindle at an angle, degrees: the probe comes and goes as the tool whose number it has.
@@ -259,10 +279,14 @@ impl Probe {
         [x + beside[0], y + beside[1], z - self.length]
     }
 
-    /// Whether the ball touches a solid with the axes X, Y, Z at a position and the spindle at an angle, degrees.
+    /// Whether a hand pushes the stylus, or the ball touches a solid with the axes X, Y, Z at a position and the spindle at an
+    /// angle, degrees.
     pub fn deflected(&self, axes: [f64; 3], spindle_deg: f64) -> bool {
         if !self.inserted {
             return false;
+        }
+        if self.pushed != [0.0; 3] {
+            return true;
         }
         let [x, y, z] = self.end(axes, spindle_deg);
         let centre = [x, y, z + self.radius];
@@ -280,7 +304,8 @@ impl Probe {
                 .is_some_and(|solid| solid.touches([x, y, z]))
     }
 
-    /// How far a measuring probe is deflected along its own axes, mm. Boxes and rings deflect it as the workpiece does.
+    /// How far a measuring probe is deflected along its own axes, mm. Boxes and rings deflect it as the workpiece does, a hand
+    /// beside them.
     pub fn deflection(&self, axes: [f64; 3], spindle_deg: f64) -> [f64; 3] {
         let Some(mounting) = self.mounting.filter(|_| self.inserted) else {
             return [0.0; 3];
@@ -296,6 +321,9 @@ impl Probe {
             if length(&other) > length(&pushed) {
                 pushed = other;
             }
+        }
+        for (pushed, force) in pushed.iter_mut().zip(self.pushed) {
+            *pushed += force / NEWTON_PER_MM;
         }
         mounting.map(|axis| {
             let along = pushed.get(axis.abs() as usize - 1).copied().unwrap_or(0.0);

@@ -80,6 +80,7 @@ const PROBE: Faults = &[
     ("fault probe not-ready", "the touch probe does not answer"),
     ("fault probe battery", "the battery of the touch probe is low"),
     ("fault probe early", "the touch probe is always deflected"),
+    ("probe push X 4", "a hand pushes the stylus in X"),
 ];
 const BATTERY: Faults = &[("fault battery", "the buffer battery is low")];
 const MAGAZINE: Faults = &[("fault magazine lost", "the arm drops its tools")];

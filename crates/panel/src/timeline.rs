@@ -256,6 +256,7 @@ fn is_telling(deed: &Deed) -> bool {
                 | Event::Force(..)
                 | Event::Tool(_)
                 | Event::Probe(_)
+                | Event::Stylus(..)
         ),
     }
 }

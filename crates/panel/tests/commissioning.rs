@@ -327,3 +327,38 @@ fn everything_is_backed_up_and_restored() {
     assert_eq!(trainee.file("parameters.mp"), list);
     assert!(!trainee.station.control().is_off());
 }
+
+/// The lists of further channels are machine parameters as well: one that is missing or has faults is presented, the first one
+/// first, and the control goes on when all are whole [000:10011] [000:10050-10066].
+#[test]
+fn a_faulty_list_of_a_further_channel_is_presented() {
+    // Damages a line of a list, and mends it.
+    let damage = |list: &str| list.replacen("MP1020.1 :", "MP1020.1 : fast ;", 1);
+    for both in [false, true] {
+        let mut whole = String::new();
+        let mut trainee = Trainee::with("twin", |folder| {
+            for name in if both { &["left.mp", "right.mp"][..] } else { &["right.mp"] } {
+                let text = std::fs::read_to_string(folder.join(name)).unwrap();
+                assert_ne!(text, damage(&text), "{name}");
+                std::fs::write(folder.join(name), damage(&text)).unwrap();
+            }
+            whole = std::fs::read_to_string(folder.join("machine.toml")).unwrap();
+        });
+        trainee.wait(0.1);
+        assert!(trainee.station.control().is_off());
+        if both {
+            assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+            trainee.number("600").press("ENT END").wait(0.1);
+            assert!(trainee.station.control().is_off(), "{:?}", trainee.messages());
+        }
+        assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS  right.mp");
+        assert!(current(&mut trainee).contains("fast"), "{:#?}", trainee.screen().program);
+        trainee.press("END");
+        assert!(trainee.messages()[0].contains("3 Entry value incorrect"));
+        trainee.press("CE").number("600").press("ENT END");
+        assert_eq!(trainee.station.control().channels(), 2);
+        trainee.until(5.0, |screen| !screen.messages.is_empty());
+        assert_eq!(trainee.messages(), ["POWER INTERRUPTED"]);
+        assert_eq!(trainee.file("machine.toml"), whole);
+    }
+}

@@ -291,3 +291,60 @@ fn m_and_s_that_are_none_are_refused() {
         trainee.press("CE END");
     }
 }
+
+/// A TM 110 in the spindle of dig425, which is no measuring probe as it is shipped.
+fn with_measuring_probe() -> Trainee {
+    Trainee::with("dig425", |folder| {
+        let change = |name: &str, from: &str, to: &str| {
+            let path = folder.join(name);
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(text.contains(from), "{name} has no {from}");
+            std::fs::write(&path, text.replace(from, to)).unwrap();
+        };
+        let list = "MP6200 : 1\nMP6310 : 0.5\nMP6330 : 2\nMP6350 : 200\nMP6360 : 600\nMP6361 : 3000\n;";
+        change("parameters.mp", "MP6200", list);
+        change("plant.toml", "tool = 5", "measuring = true\ninserted = true");
+    })
+}
+
+/// The soft key PNT of POSITIONING WITH MDI: the machine moves in the direction in which the stylus is deflected until it is
+/// pressed again [000:7907]. Without measuring probe there is none.
+#[test]
+fn pnt_lets_the_machine_follow_the_stylus() {
+    let keys = |trainee: &mut Trainee| {
+        let rows = trainee.press("MDI").wait(0.1).screen().soft_keys.rows;
+        let mut keys = Vec::new();
+        for _ in 0..rows {
+            keys.extend(trainee.screen().soft_keys.keys);
+            trainee.press("SK_RIGHT");
+        }
+        keys.retain(|key| key.starts_with("PNT"));
+        keys
+    };
+    let mut trainee = Trainee::at("dig425");
+    trainee.ready();
+    assert_eq!(keys(&mut trainee), [""; 0]);
+    let mut trainee = with_measuring_probe();
+    trainee.ready();
+    assert_eq!(keys(&mut trainee), ["PNT ON"]);
+    let x = |trainee: &mut Trainee| trainee.position('X').parse::<f64>().unwrap();
+    let from = x(&mut trainee);
+    trainee.soft("PNT ON");
+    // 2 N deflect it by MP6310: MP6360, 10 mm/s.
+    trainee.give(r#"{"deed":"probe push X 2"}"#).wait(1.0);
+    let way = x(&mut trainee) - from;
+    assert!((9.0..10.5).contains(&way), "{way}");
+    trainee.soft("PNT OFF");
+    trainee.wait(0.5);
+    let at = x(&mut trainee);
+    trainee.wait(1.0);
+    assert!((x(&mut trainee) - at).abs() < 0.002);
+    // The keys of the editor are there behind it.
+    assert_eq!(keys(&mut trainee), ["PNT ON"]);
+    trainee.soft("PNT ON");
+    trainee.press("MANUAL").wait(0.5);
+    let at = x(&mut trainee);
+    trainee.wait(0.5);
+    assert!((x(&mut trainee) - at).abs() < 0.002, "the mode is left");
+    assert_eq!(trainee.messages(), [""; 0]);
+}

@@ -1,5 +1,6 @@
 //! The position loop of an axis.
 
+mod faults;
 mod torque;
 
 use crate::settings::AxisSettings;
@@ -215,7 +216,7 @@ impl Axis {
     /// One servo step: the voltage for the nominal value output, V.
     pub fn step(&mut self) -> f64 {
         if self.is_released() || self.speed_step_mm_min().is_some() {
-            self.transfer();
+            self.follow_actual();
         }
         let rough_now = self.interpolation.now();
         let smooth_now = self.transient.now();
@@ -396,16 +397,6 @@ impl Axis {
         self.closed() && self.enabled && !self.is_released()
     }
 
-    #[inline]
-    fn is_sound(&self) -> bool {
-        self.fault.is_none_or(|fault| !fault.opens_loop())
-    }
-
-    /// Whether the residual voltage after POSITIONING ERROR is switched off.
-    fn is_released(&self) -> bool {
-        self.fault == Some(Fault::Positioning) && self.residual_steps == 0
-    }
-
     /// Closes the loop. The nominal position stays what it was: see [`Axis::transfer`].
     pub fn close(&mut self) {
         if let Some(speed_loop) = &mut self.speed_loop
@@ -433,6 +424,12 @@ impl Axis {
 
     /// Makes the actual position the nominal one [000:5423-5434].
     pub fn transfer(&mut self) {
+        self.monitor.transfer();
+        self.follow_actual();
+    }
+
+    /// The nominal position goes where the axis is.
+    fn follow_actual(&mut self) {
         self.interpolation.set(self.actual_mm);
         self.transient.set(self.actual_mm);
         self.reversal.clear();
@@ -598,32 +595,6 @@ impl Axis {
     /// Sets the compensation, V; 0 switches it off (NO ENT) [000:5018].
     pub fn set_offset_compensation(&mut self, volts: f64) {
         self.offset.set_compensation(volts);
-    }
-
-    /// Enters a fault: what monitoring found, or a slave too far from its master.
-    pub(crate) fn raise(&mut self, fault: Fault) {
-        match self.fault {
-            None => {
-                self.fault = Some(fault);
-                self.residual_steps = self.timing.steps_of(self.settings.monitoring.residual_voltage_s);
-            }
-            Some(known) if !known.opens_loop() && fault.opens_loop() => self.fault = Some(fault),
-            Some(_) => {}
-        }
-    }
-
-    /// The key CE: clears a fault that can be cleared, switches the residual voltage off and makes the
-    /// actual position the nominal one [000:5240-5242].
-    pub fn acknowledge(&mut self) {
-        if self.fault.is_some_and(|fault| !fault.opens_loop()) {
-            self.fault = None;
-            self.transfer();
-        }
-    }
-
-    /// The fault that monitoring has found and that was not cleared.
-    pub fn fault(&self) -> Option<Fault> {
-        self.fault
     }
 
     /// The count of the last reading.

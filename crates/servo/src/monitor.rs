@@ -52,6 +52,8 @@ pub(crate) struct Monitor {
     steps: u32,
     calculated_mm: f64,
     origin_mm: f64,
+    /// Where the nominal position was when the drive lost its voltage.
+    left_mm: Option<f64>,
 }
 
 impl Monitor {
@@ -63,13 +65,20 @@ impl Monitor {
             steps: 0,
             calculated_mm: 0.0,
             origin_mm: 0.0,
+            left_mm: None,
         }
+    }
+
+    /// The actual position became the nominal one.
+    pub(crate) fn transfer(&mut self) {
+        self.left_mm = None;
     }
 
     /// Begins anew, as when the loop is closed.
     pub(crate) fn reset(&mut self) {
         self.phase = Phase::Arrival { side: 0.0 };
         self.steps = 0;
+        self.left_mm = None;
     }
 
     /// The axis has reached its window before.
@@ -79,6 +88,9 @@ impl Monitor {
 
     pub(crate) fn shift(&mut self, way: f64) {
         self.origin_mm += way;
+        if let Some(left) = &mut self.left_mm {
+            *left += way;
+        }
         if let Phase::Start { origin_mm, .. } = &mut self.phase {
             *origin_mm += way;
         }
@@ -92,14 +104,16 @@ impl Monitor {
         timing: &Timing,
     ) -> Option<Fault> {
         if !sample.enabled {
-            // With 0 V nothing is pre-controlled: the axis runs on by as much as its drive needs to stop (inferred).
-            self.limits = Method::Lag;
-        }
-        let deviation = self.deviation(sample, method, settings);
-        if !sample.enabled {
+            // With 0 V nothing is pre-controlled: the axis runs on by as much as its drive needs to stop, from where it was
+            // held last, also behind POSITIONING ERROR, where one transfer of the actual value follows MP1150 [000:5240-5242]
+            // and the position monitoring goes on [000:5192-5206] (inferred).
+            let left = *self.left_mm.get_or_insert(sample.actual_mm + sample.lag_mm);
             self.reset();
-            return deviation;
+            (self.limits, self.left_mm) = (Method::Lag, Some(left));
+            return self.deviation(left - sample.actual_mm, method, settings);
         }
+        self.left_mm = None;
+        let deviation = self.deviation(sample.lag_mm, method, settings);
         let voltage = (method == Method::Precontrol && sample.volts.abs() > OUTPUT_VOLTS)
             .then_some(Fault::Gross(GrossFault::Voltage));
         let gross = |fault: bool, gross| fault.then_some(Fault::Gross(gross));
@@ -117,9 +131,9 @@ impl Monitor {
 
     /// The lag against the limits of the method. After a change from lag to pre-control, and after the feed enable
     /// was withdrawn, those of the lag hold until it is run down (inferred).
-    fn deviation(&mut self, sample: &Sample, method: Method, settings: &AxisSettings) -> Option<Fault> {
+    fn deviation(&mut self, lag_mm: f64, method: Method, settings: &AxisSettings) -> Option<Fault> {
         let (lag, precontrol) = (&settings.lag, &settings.precontrol);
-        let amount = sample.lag_mm.abs();
+        let amount = lag_mm.abs();
         if method == Method::Lag || amount <= precontrol.monitoring_mm {
             self.limits = method;
         }

@@ -171,7 +171,8 @@ impl Encoder {
     pub const STEPS: i64 = 1024;
     /// Counting steps of a grating period of a motor's encoder at X15 to X19 [000:18299] [000:18345].
     pub const MOTOR_STEPS: i64 = 256;
-    /// Counting steps of a measuring step at a square-wave input, which evaluates the signals fourfold [000:3214].
+    /// Counting steps of a measuring step at a square-wave input, which evaluates the signals fourfold [000:3214]: of some axes,
+    /// and that of the spindle [000:18316].
     pub const SQUARE_WAVE_STEPS: i64 = Encoder::STEPS / 4;
 
     /// What a square-wave input sees of it: whole measuring steps.

@@ -4,6 +4,7 @@ mod encoder;
 mod lead;
 mod movement;
 mod orientation;
+mod pace;
 pub mod settings;
 mod speed;
 mod speed_code;
@@ -590,7 +591,7 @@ impl Spindle {
         }
     }
 
-    /// Speed over the last contour cycle, rpm; negative as M04. W322 is its amount.
+    /// Speed over the last contour cycles in which it turned evenly, rpm; negative as M04. W322 is its amount.
     pub fn actual_rpm(&self) -> f64 {
         self.encoder.rpm()
     }

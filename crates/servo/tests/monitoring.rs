@@ -262,6 +262,48 @@ fn the_residual_voltage_goes_after_mp1150() {
     assert_eq!((bench.axis.volts(), bench.axis.fault()), (0.0, None));
 }
 
+/// Without residual voltage POSITIONING ERROR leaves the drive 0 V. The actual position becomes the nominal one once, and the
+/// position monitoring goes on from there [000:5192-5206] [000:5240-5242]: an axis that its drive needs to stop in may be
+/// acknowledged, one that runs farther than MP1720 has a gross positioning error.
+#[test]
+fn an_axis_that_does_not_stop_at_0_v_is_found() {
+    // 10 V of offset are 10 / 9 of rapid traverse; POSITIONING ERROR comes 2 mm beside the place, the gross one 3 mm farther.
+    let limits = &["1710.0=2", "1720.0=3", "1410.0=2", "1420.0=3", "1150=0"];
+    for method in [Method::Lag, Method::Precontrol] {
+        let mut bench = bench(method, limits);
+        bench.offset_volts = 10.0;
+        let mut found = None;
+        for _ in 0..1000 {
+            if bench.axis.fault().is_some_and(Fault::opens_loop) {
+                break;
+            }
+            if bench.axis.fault() == Some(Fault::Positioning) {
+                found.get_or_insert(bench.table_mm);
+                assert_eq!(bench.axis.volts(), 0.0);
+            }
+            bench.cycle(0.0);
+            assert!(bench.table_mm.abs() < 100.0, "{method:?}: nothing stops it");
+        }
+        assert_eq!(bench.axis.fault(), Some(Fault::Gross(GrossFault::Deviation)));
+        // In a cycle of 3 ms it goes 0.56 mm.
+        let farther = (bench.table_mm - found.unwrap()).abs();
+        assert!((2.4..=4.2).contains(&farther), "{method:?}: {farther}");
+    }
+    // A drive of 20 ms, which the voltage has left at 6 m/min, stops within 2 mm: CE clears the error, and where the axis stands it is held.
+    let mut bench = bench(Method::Lag, limits);
+    bench.drive_s = 0.020;
+    bench.run(6000.0, 0.5);
+    assert_eq!(bench.axis.fault(), Some(Fault::Positioning));
+    bench.stand(1.0);
+    assert_eq!(bench.axis.fault(), Some(Fault::Positioning));
+    bench.axis.acknowledge();
+    let stands = bench.table_mm;
+    bench.cycle(bench.axis.target_mm());
+    bench.stand(0.5);
+    assert_eq!(bench.axis.fault(), None);
+    assert!((bench.table_mm - stands).abs() < 0.01);
+}
+
 #[test]
 fn ce_before_switches_the_residual_voltage_off_at_once() {
     let mut bench = bench(Method::Lag, &["1710.0=0.5", "1150=60"]);

@@ -39,6 +39,7 @@ jog MM                              jog increment
 output step FEED, output ramp       what direction keys put out on axes with digital speed controller
 oscilloscope start|stop             recording of --oscilloscope by hand, behind `code 688379`
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
+pnt on|off                          the axes follow the stylus of a measuring probe in MDI
 axis-key AXIS                       an axis key of the keyboard in the modes by hand: the axis is highlighted, M2096 ff.
 3d-rot [run] on [B+30], 3d-rot [run] off   the plane of the swivel axes, by hand or for program run; several angles: B+30 C+10
 screen EDITING MACHINE WINDOWS FILE UNITS   items 2 to 5 and 17 of module 9035

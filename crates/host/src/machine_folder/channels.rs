@@ -62,6 +62,10 @@ impl Loader<'_> {
             let Some(parameters) = self.list_at(line, &channel.parameters, model) else {
                 continue;
             };
+            if self.to_be_entered.as_ref() == Some(&channel.parameters) {
+                // Nothing is known of it yet.
+                continue;
+            }
             let loaded = LoadedChannel {
                 folder: channel.clone(),
                 parameters,
@@ -75,6 +79,14 @@ impl Loader<'_> {
             let message = "`program` is for machines with several channels: `bahn run` names it with one";
             self.fault_at_key("program", message);
         }
+        if self.to_be_entered.is_some() || channels.len() < folder.channels.len() {
+            // Which axes go from one to another shows when all lists are whole.
+            let complete = self.to_be_entered.is_some() && self.faults.len() == before;
+            return complete.then_some(Channels {
+                channels,
+                hand_overs: Vec::new(),
+            });
+        }
         let mut owners = vec![self::owners(first, PerPlcAxis::from_fn(AxisId::new))];
         owners.extend(
             channels
@@ -85,7 +97,7 @@ impl Loader<'_> {
         let hand_overs =
             hand_overs.filter_map(|one| self.hand_over(one, folder.channels.len() + 1, &taken, &owners));
         let hand_overs = hand_overs.collect();
-        let complete = channels.len() == folder.channels.len() && self.faults.len() == before;
+        let complete = self.faults.len() == before;
         complete.then_some(Channels { channels, hand_overs })
     }
 

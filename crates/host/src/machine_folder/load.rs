@@ -51,8 +51,9 @@ pub struct LoadedMachine {
     pub functions: OwnFunctions,
     /// What is accepted, but looks wrong.
     pub warnings: Vec<FileFault>,
-    /// Its list of machine parameters is empty or has faults, and is to be entered before the control goes on.
-    pub is_to_be_entered: bool,
+    /// The first list of machine parameters, of it or of a channel, that is empty or has faults: it is to be entered before the
+    /// control goes on.
+    pub to_be_entered: Option<String>,
     /// Faults of files that are refused when they are used: they come from outside, so that none of them keeps a machine
     /// from being switched on.
     pub refused: Vec<FileFault>,
@@ -204,7 +205,7 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
         root,
         file: instead.file,
         enters: instead.enters,
-        is_to_be_entered: false,
+        to_be_entered: None,
         faults: Vec::new(),
         warnings: Vec::new(),
         refused: Vec::new(),
@@ -217,7 +218,7 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
     Ok(match machine {
         Some(mut machine) if loader.faults.is_empty() => {
             machine.warnings = loader.warnings;
-            machine.is_to_be_entered = loader.is_to_be_entered;
+            machine.to_be_entered = loader.to_be_entered;
             machine.refused = loader.refused;
             Ok(machine)
         }
@@ -245,9 +246,9 @@ pub(super) struct Loader<'a> {
     pub root: &'a Path,
     /// The bytes of a file that are taken in place of its own.
     file: Option<(&'a str, &'a [u8])>,
-    /// The list of machine parameters can be entered, and is to be.
+    /// Lists of machine parameters can be entered, and the first that is to be.
     enters: bool,
-    is_to_be_entered: bool,
+    pub to_be_entered: Option<String>,
     pub faults: Vec<FileFault>,
     pub warnings: Vec<FileFault>,
     /// See [`LoadedMachine::refused`].
@@ -268,7 +269,7 @@ impl Loader<'_> {
         let parameters = model.and_then(|model| self.parameters(&folder, model));
         let mut none = NcFiles::default();
         // Tables fit the list that is entered, when it is.
-        let sizes = parameters.as_ref().filter(|_| !self.is_to_be_entered);
+        let sizes = parameters.as_ref().filter(|_| self.to_be_entered.is_none());
         let tools = self.tool_files(&folder, sizes, files.as_mut().unwrap_or(&mut none));
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
@@ -302,7 +303,7 @@ impl Loader<'_> {
             hand_overs,
             functions,
             warnings: Vec::new(),
-            is_to_be_entered: false,
+            to_be_entered: None,
             refused: Vec::new(),
             folder,
         })
@@ -377,10 +378,6 @@ impl Loader<'_> {
 
     fn parameters(&mut self, folder: &MachineFolder, model: ControlModel) -> Option<ParameterList> {
         let line = self.line_of("parameters").unwrap_or(1);
-        if self.enters && !folder.parameters.is_empty() && self.stays_inside("parameters", &folder.parameters)
-        {
-            return Some(self.list_to_enter(&folder.parameters, model));
-        }
         self.list_at(line, &folder.parameters, model)
     }
 
@@ -393,9 +390,11 @@ impl Loader<'_> {
         list.take(&text);
         let found = lists::machine_list(&text, &list, &path);
         let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
-        self.is_to_be_entered = faulty || text.entries().is_empty();
-        if !self.is_to_be_entered {
-            self.warnings.extend(found);
+        match faulty || text.entries().is_empty() {
+            true => {
+                self.to_be_entered.get_or_insert_with(|| name.to_owned());
+            }
+            false => self.warnings.extend(found),
         }
         match list.inconsistencies().iter().any(|found| found.impossible) {
             true => ParameterList::reference(model),
@@ -405,6 +404,9 @@ impl Loader<'_> {
 
     /// A list of machine parameters that a line of `machine.toml` names.
     pub(super) fn list_at(&mut self, line: usize, name: &str, model: ControlModel) -> Option<ParameterList> {
+        if self.enters && !name.is_empty() && self.stays_inside("parameters", name) {
+            return Some(self.list_to_enter(name, model));
+        }
         let (path, bytes) = self.read_at(line, name, files::read_table)?;
         let text = ListText::from_bytes(model, &bytes);
         let mut list = ParameterList::reference(model);

@@ -10,8 +10,10 @@ use bahn_program::{Block, Edit, MotionKind, Operation, Program};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
+use crate::pages::row_behind::RowBehind;
 use crate::screen::SoftKeys;
 use crate::site::Site;
+use crate::texts;
 
 /// The frame in which blocks are entered.
 const EMPTY: &[u8] = b"BEGIN PGM $MDI MM\nEND PGM $MDI MM\n";
@@ -20,6 +22,10 @@ const EMPTY: &[u8] = b"BEGIN PGM $MDI MM\nEND PGM $MDI MM\n";
 #[derive(Default)]
 pub(crate) struct Mdi {
     editor: Option<Editor>,
+    /// The row with PNT.
+    keys: RowBehind,
+    /// PNT is on; `None` where the machine has no measuring probe.
+    pnt: Option<bool>,
 }
 
 impl Mdi {
@@ -52,6 +58,16 @@ impl Mdi {
         }
     }
 
+    /// A key of the row with PNT: the axes follow the stylus of a measuring probe, or do so no more [000:7907].
+    fn key_behind(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
+        let (editor, on) = (self.editor.as_ref()?, self.pnt?);
+        match self.keys.place(key, editor) {
+            Some(0) if site.command(Command::Pnt(!on)) => Some(Turn::Done),
+            Some(_) => Some(Turn::Refused),
+            None => self.keys.turn(key, editor),
+        }
+    }
+
     /// The next block is entered into an empty frame.
     fn clear(&mut self, site: &Site) {
         let editor = self.editor(site);
@@ -78,6 +94,9 @@ fn is_of_one_axis(block: &Block) -> bool {
 
 impl Page for Mdi {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(turn) = self.key_behind(key, site) {
+            return turn;
+        }
         let opens = matches!(
             key.group(),
             bahn_dialogue::KeyGroup::Contour | bahn_dialogue::KeyGroup::Tool | bahn_dialogue::KeyGroup::Axis
@@ -104,7 +123,13 @@ impl Page for Mdi {
     }
 
     fn own_soft_keys(&self) -> Option<SoftKeys> {
-        self.editor.as_ref().map(editing::soft_keys)
+        let editor = self.editor.as_ref()?;
+        let Some(on) = self.pnt else {
+            return Some(editing::soft_keys(editor));
+        };
+        let text = if on { "PNT OFF" } else { "PNT ON" };
+        let words = || vec![texts::words(editor.setting().tongue, text).to_owned()];
+        Some(self.keys.show(editor, words))
     }
 
     fn show(&self, _site: &Site, lines: usize) -> View {
@@ -116,6 +141,8 @@ impl Page for Mdi {
 
     fn tick(&mut self, site: &mut Site) -> Turn {
         self.editor(site);
+        let on = site.control().first().follows_stylus();
+        self.pnt = site.parameters().measuring_probe().map(|_| on);
         Turn::Done
     }
 }

@@ -24,6 +24,7 @@ mod plc;
 mod probe;
 mod programming;
 mod q_parameters;
+mod row_behind;
 mod run;
 mod supplementary;
 mod table;

@@ -13,6 +13,7 @@ use serde_json::Value;
 use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose, is_same};
+use crate::pages::row_behind::RowBehind;
 use crate::pages::{editing, table};
 use crate::screen::SoftKeys;
 use crate::site::Site;
@@ -33,8 +34,8 @@ struct Drawn {
     auto: bool,
     /// The program and its last block as they were drawn; the whole program without.
     last: Option<(Arc<Program>, Option<u32>)>,
-    /// The soft keys of the graphics are shown.
-    keys: bool,
+    /// The soft keys of the graphics.
+    keys: RowBehind,
     /// Cycles are drawn while their words are asked for: beside the dialogue where the screen has room. HELP switches.
     cycles: bool,
 }
@@ -84,27 +85,11 @@ impl Programming {
     }
 
     /// A key of the graphics: GRAPHICS switches AUTO DRAW on and off, START draws the whole program. Their soft keys
-    /// stand in a row behind those of the editor (inferred).
+    /// stand in a row of their own.
     fn graphics_key(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
         let editor = &self.open.as_ref()?.editor;
         match key {
-            Key::SkLeft | Key::SkRight if editor.is_open() => return None,
-            Key::SkLeft | Key::SkRight => {
-                let (row, rows) = editor.view(0, 0).soft_row;
-                let (first, last) = (row == 0, row + 1 >= rows);
-                let (leaves, arrived) = match key {
-                    Key::SkRight => (last, first),
-                    _ => (first, last),
-                };
-                // Behind the last row comes the first one, where the editor may stand already.
-                if std::mem::take(&mut self.drawn.keys) {
-                    return arrived.then_some(Turn::Done);
-                }
-                self.drawn.keys = leaves;
-                if !leaves {
-                    return None;
-                }
-            }
+            Key::SkLeft | Key::SkRight => return self.drawn.keys.turn(key, editor),
             Key::Graphics => self.switch(!self.drawn.auto, site),
             Key::Start => self.draw(None, site),
             Key::Help => {
@@ -112,7 +97,7 @@ impl Programming {
                 self.drawn.cycles = !self.drawn.cycles;
             }
             Key::Magn => return site.graphics.key(Subject::Programmed, key).then_some(Turn::Done),
-            _ => match key.soft_key().filter(|_| self.drawn.keys && !editor.is_open()) {
+            _ => match self.drawn.keys.place(key, editor) {
                 Some(0) => self.switch(!self.drawn.auto, site),
                 Some(1) => self.draw(None, site),
                 Some(2) => return Some(self.draw_next(site)),
@@ -281,23 +266,16 @@ impl Page for Programming {
 
     fn own_soft_keys(&self) -> Option<SoftKeys> {
         let editor = &self.open.as_ref()?.editor;
-        let mut keys = editing::soft_keys(editor);
-        if !editor.is_open() {
-            if self.drawn.keys {
-                let words = |english| texts::words(editor.setting().tongue, english).to_owned();
-                let auto = match self.drawn.auto {
-                    true => "AUTO DRAW OFF",
-                    false => "AUTO DRAW ON",
-                };
-                keys.keys = ["RESET + START", "START SINGLE", "CLEAR GRAPHICS"]
-                    .map(words)
-                    .to_vec();
-                keys.keys.insert(0, words(auto));
-                keys.row = keys.rows;
-            }
-            keys.rows += 1;
-        }
-        Some(keys)
+        let auto = match self.drawn.auto {
+            true => "AUTO DRAW OFF",
+            false => "AUTO DRAW ON",
+        };
+        Some(self.drawn.keys.show(editor, || {
+            let words = |english| texts::words(editor.setting().tongue, english).to_owned();
+            [auto, "RESET + START", "START SINGLE", "CLEAR GRAPHICS"]
+                .map(words)
+                .to_vec()
+        }))
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {

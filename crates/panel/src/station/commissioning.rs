@@ -26,7 +26,7 @@ pub(super) struct Commissioning {
 impl Commissioning {
     /// Takes what the control kept out of its hands, when the list of a machine is to be entered.
     pub fn of(machine: &LoadedMachine, power_on: &mut PowerOn) -> Option<Commissioning> {
-        machine.is_to_be_entered.then(|| Commissioning {
+        machine.to_be_entered.as_ref().map(|_| Commissioning {
             _state: power_on.state.take(),
         })
     }

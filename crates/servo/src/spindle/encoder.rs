@@ -1,5 +1,6 @@
 //! The angle of the spindle.
 
+use super::pace::Pace;
 use super::settings::SpindleSettings;
 
 use crate::fault::EncoderFault;
@@ -11,13 +12,14 @@ const LINES: i64 = 1024;
 /// Counting steps of a turn.
 const TURN_STEPS: i64 = LINES * Encoder::STEPS;
 
-/// Counts and speed of the spindle's encoder; positive is M03.
+/// Counts and speed of the spindle's encoder at its square-wave input, which evaluates it fourfold: 4096 steps of a turn
+/// [000:5877] [001:450-454]; positive is M03.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SpindleEncoder {
     count: i64,
     mark: Option<i64>,
     steps: u32,
-    cycle_count: i64,
+    pace: Pace,
     rpm: f64,
     read_once: bool,
 }
@@ -31,19 +33,18 @@ impl SpindleEncoder {
         timing: &Timing,
     ) -> Option<EncoderFault> {
         let sign = if settings.counts_negative { -1 } else { 1 };
+        let encoder = encoder.fourfold();
         self.count = encoder.count.wrapping_mul(sign);
         if !self.read_once {
             self.read_once = true;
-            self.cycle_count = self.count;
+            self.pace = Pace::at(self.count);
         }
         // The first mark is kept until it is asked for again [000:5881].
         let mark = encoder.mark.map(|mark| mark.wrapping_mul(sign));
         self.mark = self.mark.or(mark);
         self.steps += 1;
         if self.steps >= timing.steps() {
-            let turns = self.count.wrapping_sub(self.cycle_count) as f64 / TURN_STEPS as f64;
-            self.rpm = turns / timing.contour_min();
-            self.cycle_count = self.count;
+            self.rpm = self.pace.next(self.count) / TURN_STEPS as f64 / timing.contour_min();
             self.steps = 0;
         }
         if encoder.amplitude_low && settings.check_amplitude {

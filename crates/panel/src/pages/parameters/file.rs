@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use bahn_control::Renewed;
-use bahn_host::{LoadedMachine, files};
+use bahn_host::{FileFault, LoadedMachine, files};
 use bahn_parameters::{ListError, ListText, ParameterId, ParameterList};
 
 use crate::site::Site;
@@ -123,17 +123,20 @@ impl ListFile {
         if let Some(found) = list.inconsistencies().iter().find(|found| found.impossible) {
             return Err(Refused::Words(format!("{}: {}", found.id, found.rule)));
         }
-        // Another list than the usual one is read as the usual one: whether the machine can be with it.
-        let (root, usual) = (&site.machine.root, &site.machine.folder.parameters);
-        let loaded = LoadedMachine::load_with_file(root, usual, &text.to_bytes());
-        match loaded.map_err(|error| Refused::Words(error.to_string()))? {
-            Ok(_) => Ok(list),
-            Err(faults) => {
-                let fault = faults
-                    .first()
-                    .map(|fault| format!("{}: {}", fault.title, fault.label));
-                Err(Refused::Words(fault.unwrap_or_default()))
-            }
+        // Another list than that of a channel is read as the usual one: whether the machine can be with it. What is wrong with
+        // a list of another channel is entered there.
+        let (root, folder) = (&site.machine.root, &site.machine.folder);
+        let further = folder.channels.iter().map(|channel| &channel.parameters);
+        let mut lists: Vec<&String> = further.chain([&folder.parameters]).collect();
+        let own = lists.iter().position(|name| **name == self.name);
+        let own = lists.swap_remove(own.unwrap_or(lists.len() - 1));
+        let loaded = LoadedMachine::load_with_file(root, own, &text.to_bytes());
+        let faults = loaded.map_err(|error| Refused::Words(error.to_string()))?.err();
+        let is_elsewhere = |fault: &FileFault| lists.iter().any(|name| root.join(name) == fault.path);
+        let mut faults = faults.into_iter().flatten();
+        match faults.find(|fault| !is_elsewhere(fault)) {
+            Some(fault) => Err(Refused::Words(format!("{}: {}", fault.title, fault.label))),
+            None => Ok(list),
         }
     }
 
