@@ -1,13 +1,14 @@
 //! What the interpolator may do in a cycle of a program run.
 
+use bahn_exchange::Image;
+use bahn_kernel::{OwnAxes, Progress, Track};
 use bahn_motion::Drive;
-use bahn_path::PathElement;
+use bahn_path::{AxisSet, PathElement};
 
 use crate::command::Mode;
-use crate::progress::Progress;
+use crate::markers::WAIT_OPEN_LOOP;
 use crate::site::Site;
 use crate::thread::{self, Tapping};
-use crate::track::{self, Track};
 
 /// What it depends on beside the site.
 pub(crate) struct Driving<'a> {
@@ -53,8 +54,17 @@ impl Driving<'_> {
             stop_before: self.stop_before,
             acknowledged: self.track.has_output_all() && site.handshakes.is_idle(),
             in_position: self.settled,
-            clamped: track::clamped_axes(&site.axes),
-            clamping: track::clamping_axes(&site.axes, site.exchange.nc()),
+            clamped: site.axes.clamped(),
+            clamping: clamping_axes(&site.axes, site.exchange.nc()),
         }
     }
+}
+
+/// Axes that the PLC wants to clamp after their block (M2492 ff.), and whose loop is still closed.
+fn clamping_axes(axes: &OwnAxes, nc: &Image) -> AxisSet {
+    let wanted = axes.iter().filter(|unit| {
+        let marker = WAIT_OPEN_LOOP.get(unit.index);
+        unit.servo.closed() && marker.is_some_and(|marker| nc.bit(*marker))
+    });
+    wanted.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
 }

@@ -1,10 +1,9 @@
 //! Loops and feed enable: whether an axis may move at all.
 
 use bahn_exchange::{Image, signal};
+use bahn_kernel::{AxisId, AxisUnit, Mover, OwnAxes};
 use bahn_parameters::fault::FaultId;
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::markers::{MONITORING_OFF, OPEN_LOOP};
 use crate::message::{Message, Messages};
 use crate::spindle::SpindleUnit;

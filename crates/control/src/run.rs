@@ -1,6 +1,7 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
 use bahn_exchange::{Image, signal};
+use bahn_kernel::{AxisUnit, BlockTime, Chain, Feeder, Mover, Progress, RunFault, RunState, Track, Wheels};
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
@@ -8,24 +9,19 @@ use bahn_path::{Barrier, BlockRef, Frame, LiveData, PathElement};
 use bahn_reader::Reader;
 use bahn_servo::Measured;
 
-use crate::axis::{AxisUnit, Mover};
-use crate::block_time::BlockTime;
 use crate::command::Mode;
 use crate::driving::Driving;
-use crate::feeder::{self, Feeder, RunFault};
-use crate::kinematics::Chain;
+use crate::language::{self, OwnLanguage};
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
 use crate::programs::Selection;
-use crate::progress::{Progress, RunState};
 use crate::q_transfer::QTransfer;
 use crate::reference;
 use crate::replacement::{Replacement, Wear};
 use crate::restore::{Restoration, ScanEnd};
-use crate::site::Site;
+use crate::site::{PathOutputs, Site};
 use crate::source::{Basis, Resume, Source, machine_zero};
 use crate::thread::{self, Preparation, Tapping};
-use crate::track::{self, Track};
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
@@ -149,7 +145,7 @@ impl ProgramRun {
                 self.progress.enter(RunState::Running);
                 self.restoration.return_to_path(&mut site.axes);
                 if !self.restoration.is_on() {
-                    self.track.regain(site);
+                    self.track.regain(&site.axes, site.chain);
                 }
             }
         }
@@ -345,7 +341,7 @@ impl ProgramRun {
                 }
             }
         } else if let Some(feeder) = self.source.feeder() {
-            site.chain.place(feeder.placement());
+            site.chain.place(feeder.reader().placement());
         }
         self.track.begin_at(site.here(), site.chain);
         self.progress.enter(RunState::Running);
@@ -473,11 +469,23 @@ impl ProgramRun {
         self.track.set_speed(cycle.speed_mm_s);
         self.tapping.lead(cycle.lead, site.spindle);
         let holds = self.track.path.is_coupled();
-        site.chain.superimposed.follow(site.axes.iter(), &site.now, holds);
+        let wheels = Wheels {
+            turned_mm: &site.now.wheel_mm,
+            rapid_limit_mm_min: site.now.rapid_limit_mm_min,
+            time_s: site.now.time_s,
+        };
+        let superimposed = &mut site.chain.superimposed;
+        superimposed.follow(site.axes.iter(), &wheels, holds);
         self.track
             .follow(&cycle.position, &mut site.axes, site.chain, site.now.time_s);
         let inch = self.source.inch();
-        self.track.output(site, &mut self.q_transfer, inch, settled);
+        let q_transfer = &mut self.q_transfer;
+        let outputs = &mut PathOutputs {
+            site,
+            q_transfer,
+            inch,
+        };
+        self.track.output(outputs, settled);
         self.take_state(cycle.state, &drive, wear, site);
     }
 
@@ -488,7 +496,7 @@ impl ProgramRun {
         match state {
             State::Gate(_) if all_output && !site.positioning.is_on() => {
                 self.track.path.release();
-                self.track.regain(site);
+                self.track.regain(&site.axes, site.chain);
             }
             State::Master if self.tapping.prepare(&self.track, site) == Preparation::Refused => {
                 // No manual names the message of a spindle without analogue output or encoder (inferred).
@@ -518,7 +526,7 @@ impl ProgramRun {
         if self.track.path.is_coupled() {
             return thread::is_in_position(&self.track, site);
         }
-        track::are_in_position(&site.axes)
+        site.axes.are_in_position()
     }
 
     /// The axes stand as far as the loops may be opened: those of a thread as far as they can.
@@ -599,11 +607,11 @@ impl ProgramRun {
                 block,
                 ..
             } => {
-                let message = track::limit_message(&mut site.axes, axis, direction);
+                let message = site.limit_message(axis, direction);
                 site.messages.show(message, Some(block));
             }
             RunFault::Absent { axis, block, .. } => {
-                let error = feeder::absent(axis, site.axes.at(axis), block, self.source.reader());
+                let error = language::absent(axis, site.axes.at(axis), block, self.source.reader());
                 self.show(Message::Program(Box::new(error)), site);
             }
         }

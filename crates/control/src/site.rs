@@ -1,17 +1,17 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
+use bahn_kernel::{AxisId, Chain, Direction, Outputs, OwnAxes};
 use bahn_parameters::technology::{Deed, Output, Technology};
-use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall};
+use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall, Voltage};
 
-use crate::axes::OwnAxes;
 use crate::handshake::{Handshakes, Transfer};
-use crate::kinematics::Chain;
 use crate::magazine::Magazine;
 use crate::markers::TOOL_AXIS;
-use crate::message::Messages;
+use crate::message::{Message, Messages};
 use crate::now::Now;
 use crate::positioning::Positioning;
+use crate::q_transfer::QTransfer;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
 
@@ -146,5 +146,36 @@ impl Site<'_> {
         if let Some(transfer) = self.spindle.program(rpm, tool_call, self.exchange) {
             self.handshakes.push(transfer);
         }
+    }
+
+    /// The message of an axis that a block would lead beyond its limit.
+    pub fn limit_message(&mut self, axis: Axis, direction: Direction) -> Message {
+        let id = self.axes.iter_mut().find(|unit| unit.axis == axis).map(|unit| {
+            unit.at_limit = Some(direction);
+            unit.id
+        });
+        Message::limit(id.unwrap_or(AxisId::FIRST), direction)
+    }
+}
+
+/// Where the functions of the path go: to a site, with a strobe for each block.
+pub(crate) struct PathOutputs<'a, 'b> {
+    pub site: &'a mut Site<'b>,
+    pub q_transfer: &'a mut QTransfer,
+    /// The program is in inches.
+    pub inch: bool,
+}
+
+impl Outputs for PathOutputs<'_, '_> {
+    fn begin(&mut self) {
+        self.q_transfer.strobe();
+    }
+
+    fn output(&mut self, function: &Function) {
+        self.site.output(function, self.inch);
+    }
+
+    fn voltage(&mut self, order: Voltage, sequence: u64) {
+        self.site.spindle.set_voltage(order, sequence);
     }
 }

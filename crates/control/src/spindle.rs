@@ -2,6 +2,7 @@
 //! [000:5438-5945].
 
 use bahn_exchange::{Bit, Exchange, Image, signal};
+use bahn_kernel::{Along, VoltageOutput};
 use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::spindle::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_path::Voltage;
@@ -13,7 +14,6 @@ use crate::marker_codes;
 use crate::panel::PlcFaultCode;
 use crate::plc_link::Requests;
 use crate::strobe_form::{Form, ORIENTATION};
-use crate::voltage::{Along, VoltageOutput};
 
 /// Range of the analogue outputs, V.
 const OUTPUT_VOLTS: f64 = 10.0;

@@ -13,15 +13,12 @@
 //! and the axis key (inferred).
 
 use bahn_exchange::signal;
+use bahn_kernel::{Direction, Mover, OwnAxes, Track};
 use bahn_motion::{Lead, Master};
 use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Thread};
 
-use crate::axes::OwnAxes;
-use crate::axis::Mover;
-use crate::panel::Direction;
 use crate::site::Site;
 use crate::spindle::SpindleUnit;
-use crate::track::Track;
 
 /// Slower than this a tool axis that follows the spindle counts as standing, mm/s (inferred).
 const STANDS_MM_S: f64 = 0.05;

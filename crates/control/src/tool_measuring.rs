@@ -2,22 +2,19 @@
 //! backwards or is oriented, and probes it, once or at each of its places [000:7960-8058].
 
 use bahn_exchange::{Exchange, signal};
+use bahn_kernel::{AxisUnit, Chain, Mover, OwnAxes};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
 use bahn_path::{Axis, LiveData, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
 use crate::handshake::Transfer;
-use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::probing_speed::{feed_mm_min, speed_rpm};
 use crate::site::Site;
 use crate::tool::{MeasuredTool, ToolCondition};
 use crate::tool_contacts::{Contact, Contacts};
-use crate::track::has_arrived;
 
 /// Turn against the cutting direction: M4 for a tool that cuts with M3, and stop (inferred: the edges do not cut).
 const BACKWARDS: [u8; 2] = [4, 3];
@@ -409,7 +406,7 @@ impl Sequence {
             Phase::Brake => self.way.speed_mm_s() == 0.0,
             _ => self.length == 0.0 || self.way.is_at(self.length),
         };
-        if !arrived || !has_arrived(&site.axes) {
+        if !arrived || !site.axes.have_arrived() {
             return Measuring::Moves;
         }
         match self.phase {

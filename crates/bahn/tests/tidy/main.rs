@@ -52,6 +52,7 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("machine", &["servo"]),
+    ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
     (
         "control",
         &[
@@ -64,6 +65,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "exchange",
             "plc",
             "servo",
+            "kernel",
         ],
     ),
     (

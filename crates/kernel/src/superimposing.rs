@@ -1,15 +1,15 @@
 //! M118: handwheel movements on top of the path of a program [000:742].
 
 use bahn_motion::{Aim, PointToPoint};
+use bahn_parameters::PerPlcAxis;
 use bahn_path::{Axis, PerAxis, Position};
 
 use crate::axis::AxisUnit;
-use crate::now::Now;
 
 /// How far the axes may be led beside the path, how far they are to be, and where they are on the way there. In
 /// coordinates of the axes, whatever the path stands in (inferred).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Superimposed {
+pub struct Superimposed {
     /// To either side of the path, mm or degrees; 0 where there is nothing.
     range: Position,
     /// Where the wheels lead.
@@ -20,6 +20,17 @@ pub(crate) struct Superimposed {
     ways: Position,
     /// Anything of it is not 0.
     on: bool,
+}
+
+/// What leads the axes beside the path in a contour cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Wheels<'a> {
+    /// By how much each was turned in this cycle, by axis index, mm or degrees.
+    pub turned_mm: &'a PerPlcAxis<f64>,
+    /// Path and wheel together are no faster, mm/min.
+    pub rapid_limit_mm_min: f64,
+    /// The contour cycle, s.
+    pub time_s: f64,
 }
 
 impl Default for Superimposed {
@@ -92,7 +103,7 @@ impl Superimposed {
     /// Follows the wheels for a cycle, unless the path `holds` it. An axis without loop or feed enable stands at once, one that
     /// was taken over beside its path goes back to that first, and what is turned meanwhile moves nothing later; none is led
     /// out of its traverse range.
-    pub fn follow<'a>(&mut self, axes: impl Iterator<Item = &'a AxisUnit>, now: &Now, holds: bool) {
+    pub fn follow<'a>(&mut self, axes: impl Iterator<Item = &'a AxisUnit>, wheels: &Wheels, holds: bool) {
         if !self.on {
             return;
         }
@@ -107,7 +118,7 @@ impl Superimposed {
                 on |= ramp.position() != 0.0;
                 continue;
             }
-            let turned = now.wheel_mm.get(unit.index).filter(|_| !holds).copied();
+            let turned = wheels.turned_mm.get(unit.index).filter(|_| !holds).copied();
             let most = self.range[axis];
             let mut target = (self.target[axis] + turned.unwrap_or(0.0)).clamp(-most, most);
             if let Some([least, greatest]) = unit.limited() {
@@ -120,10 +131,14 @@ impl Superimposed {
             let motion = &unit.parameters.motion;
             // What the path leaves of the rapid traverse.
             let by_path = (unit.speed - ramp.speed_mm_s()).abs() * 60.0;
-            let feed = (motion.rapid_mm_min.min(now.rapid_limit_mm_min) - by_path).max(0.0);
+            let feed = (motion.rapid_mm_min.min(wheels.rapid_limit_mm_min) - by_path).max(0.0);
             let before = ramp.position();
-            self.ways[axis] =
-                ramp.cycle(now.time_s, Aim::Position(target), feed, motion.acceleration_m_s2) - before;
+            self.ways[axis] = ramp.cycle(
+                wheels.time_s,
+                Aim::Position(target),
+                feed,
+                motion.acceleration_m_s2,
+            ) - before;
             on |= !ramp.is_at(0.0) || self.ways[axis] != 0.0;
         }
         self.on = on;
