@@ -544,7 +544,7 @@ impl Channel {
         self.datums.each_range = operation.datums.datum_for_each_range;
         self.desk.set_rules(operation);
         let spindle = machine.spindles.of_mut(self.number);
-        spindle.set_parameters(list.spindle_parameters());
+        spindle.drive.set_parameters(list.spindle_parameters());
         let mut axes = machine.core.axes.of(self.number);
         axes.set_parameters(list);
         self.datums.limit(&mut axes);

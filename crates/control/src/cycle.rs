@@ -25,7 +25,7 @@ impl Family for Cycle<'_, '_> {
 
     fn begin_step(&mut self, measured: &Measured) {
         for spindle in self.machine.spindles.iter_mut() {
-            spindle.measure(measured);
+            spindle.drive.measure(measured);
         }
         for channel in self.channels.iter_mut() {
             channel.watch_probe(self.machine, measured);

@@ -1,7 +1,10 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
 use bahn_exchange::{Image, signal};
-use bahn_kernel::{AxisUnit, BlockTime, Chain, Feeder, Mover, Progress, RunFault, RunState, Track, Wheels};
+use bahn_kernel::{
+    AxisUnit, BlockTime, Chain, Feeder, Mover, Preparation, Progress, RunFault, RunState, Tapping, Track,
+    Wheels, is_floating, is_rigid, thread,
+};
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
@@ -21,7 +24,6 @@ use crate::replacement::{Replacement, Wear};
 use crate::restore::{Restoration, ScanEnd};
 use crate::site::{PathOutputs, Site};
 use crate::source::{Basis, Resume, Source, machine_zero};
-use crate::thread::{self, Preparation, Tapping};
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
@@ -90,12 +92,12 @@ impl ProgramRun {
 
     /// A path that follows the spindle is executed, or begins.
     pub fn taps_rigidly(&self) -> bool {
-        thread::is_rigid(self.element())
+        is_rigid(self.element())
     }
 
     /// Cycle 2 taps.
     pub fn taps_floating(&self) -> bool {
-        thread::is_floating(self.element())
+        is_floating(self.element())
     }
 
     /// Spindle and axis have come apart.
@@ -106,7 +108,10 @@ impl ProgramRun {
 
     /// Once in each contour cycle: what tapping tells the PLC, the axes and the spindle.
     pub fn follow_tapping(&mut self, site: &mut Site) {
-        self.tapping.follow(&self.track, self.progress.is_active(), site);
+        let active = self.progress.is_active();
+        let taps = self.tapping.follow(&self.track, active, &mut site.leading());
+        site.exchange.nc_put(signal::TAPPING_CALLED, taps.called);
+        site.exchange.nc_put(signal::RIGID_TAPPING_ACTIVE, taps.rigid);
     }
 
     /// Shows a message of the run.
@@ -160,7 +165,7 @@ impl ProgramRun {
     pub fn internal_stop(&mut self, site: &mut Site) -> bool {
         if self.progress.is_running()
             || !self.track.stands(&site.axes)
-            || thread::is_in_thread(&self.track, site)
+            || thread::is_in_thread(&self.track, &site.standing())
         {
             return false;
         }
@@ -440,7 +445,7 @@ impl ProgramRun {
             return;
         }
         let runs = self.progress.goes_on();
-        if self.probe.is_held(&site.axes) || self.tapping.holds(&mut self.track, runs, site) {
+        if self.probe.is_held(&site.axes) || self.tapping.holds(&mut self.track, runs, &mut site.leading()) {
             // Without feed enable the axes stand at once [000:5352].
             site.chain.superimposed.stand();
             self.track.halt();
@@ -467,7 +472,7 @@ impl ProgramRun {
         .drive(site);
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);
-        self.tapping.lead(cycle.lead, site.spindle);
+        self.tapping.lead(cycle.lead, &mut site.spindle.drive);
         let holds = self.track.path.is_coupled();
         let wheels = Wheels {
             turned_mm: &site.now.wheel_mm,
@@ -498,7 +503,7 @@ impl ProgramRun {
                 self.track.path.release();
                 self.track.regain(&site.axes, site.chain);
             }
-            State::Master if self.tapping.prepare(&self.track, site) == Preparation::Refused => {
+            State::Master if self.prepare_thread(site) == Preparation::Refused => {
                 // No manual names the message of a spindle without analogue output or encoder (inferred).
                 self.show(Message::Plain(MessageId::WrongRpm), site);
                 let block = self.track.path.element().map_or(0, |element| element.sequence);
@@ -522,9 +527,15 @@ impl ProgramRun {
         }
     }
 
+    /// The path waits for its spindle, whose loop the PLC may keep open (M2499).
+    fn prepare_thread(&mut self, site: &mut Site) -> Preparation {
+        let open = site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP);
+        self.tapping.prepare(&self.track, open, &mut site.leading())
+    }
+
     fn is_in_position(&self, site: &Site) -> bool {
         if self.track.path.is_coupled() {
-            return thread::is_in_position(&self.track, site);
+            return thread::is_in_position(&self.track, &site.standing());
         }
         site.axes.are_in_position()
     }

@@ -12,9 +12,9 @@ use bahn_plc::PlcProgram;
 
 use crate::plc_link::{NcFiles, WrittenElement};
 use crate::programs::Programs;
-use crate::spindle::SpindleWiring;
 use crate::tool::{MovedTool, Tool};
 use crate::window::Window;
+use bahn_kernel::SpindleWiring;
 
 /// How programs are taken that use what is not executed here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

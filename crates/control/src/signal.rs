@@ -285,7 +285,7 @@ impl Signal {
             }
             Signal::SpindleRpm => spindle.state().actual_rpm,
             Signal::SpindleVolts => spindle.state().volts,
-            Signal::SpindleAngle => spindle.turned_deg(),
+            Signal::SpindleAngle => spindle.drive.turned_deg(),
             Signal::Mode => channel.desk().mode().code().into(),
             Signal::Run => match run.progress().state() {
                 RunState::Idle => 0.0,

@@ -1,7 +1,7 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_kernel::{AxisId, Chain, Direction, Outputs, OwnAxes};
+use bahn_kernel::{AxisId, Chain, Direction, Leading, Moment, Outputs, OwnAxes, Standing};
 use bahn_parameters::technology::{Deed, Output, Technology};
 use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall, Voltage};
 
@@ -30,7 +30,18 @@ pub(crate) struct Site<'a> {
     pub messages: &'a mut Messages,
 }
 
-impl Site<'_> {
+impl<'a> Site<'a> {
+    /// Axes and spindle, to be led along a thread.
+    pub fn leading(&mut self) -> Leading<'_, 'a> {
+        let moment = self.moment();
+        Leading {
+            axes: &mut self.axes,
+            chain: self.chain,
+            spindle: &mut self.spindle.drive,
+            moment,
+        }
+    }
+
     /// The path position at which the axes stand: no program knows the slave of a gantry or an axis of the PLC, which would
     /// count as parallel axes.
     pub fn here(&self) -> Position {
@@ -145,6 +156,25 @@ impl Site<'_> {
     pub fn speed(&mut self, rpm: f64, tool_call: bool) {
         if let Some(transfer) = self.spindle.program(rpm, tool_call, self.exchange) {
             self.handshakes.push(transfer);
+        }
+    }
+
+    /// What holds now for a thread.
+    fn moment(&self) -> Moment {
+        Moment {
+            time_s: self.now.time_s,
+            ready: self.now.ready,
+            loops_closed: self.now.loops_closed,
+        }
+    }
+
+    /// Axes and spindle, to be looked at.
+    pub fn standing(&self) -> Standing<'_> {
+        Standing {
+            axes: &self.axes,
+            chain: self.chain,
+            spindle: &self.spindle.drive,
+            moment: self.moment(),
         }
     }
 

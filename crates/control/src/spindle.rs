@@ -2,12 +2,12 @@
 //! [000:5438-5945].
 
 use bahn_exchange::{Bit, Exchange, Image, signal};
-use bahn_kernel::{Along, VoltageOutput};
+use bahn_kernel::{Along, SpindleLoop, SpindleWiring, VoltageOutput};
 use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::spindle::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_path::Voltage;
 use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
-use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
+use bahn_servo::{AxisCommand, Commands, Rotation, SpeedCode, Timing, Way};
 
 use crate::handshake::Transfer;
 use crate::marker_codes;
@@ -46,7 +46,7 @@ pub struct SpindleState {
 /// The spindle.
 #[derive(Clone, Debug)]
 pub(crate) struct SpindleUnit {
-    pub turning: SpindleLoop,
+    pub drive: SpindleLoop,
     rotation: Rotation,
     programmed_rpm: f64,
     code: Option<u8>,
@@ -79,7 +79,7 @@ pub(crate) struct SpindleUnit {
 impl SpindleUnit {
     pub fn new(wiring: SpindleWiring, parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
         SpindleUnit {
-            turning: SpindleLoop::new(wiring, parameters, timing),
+            drive: SpindleLoop::new(wiring, parameters, timing),
             rotation: Rotation::M5,
             programmed_rpm: 0.0,
             code: None,
@@ -102,13 +102,13 @@ impl SpindleUnit {
     }
 
     fn is_analogue(&self) -> bool {
-        matches!(self.turning.parameters.output, SpindleOutput::Analogue { .. })
+        matches!(self.drive.parameters.output, SpindleOutput::Analogue { .. })
     }
 
     /// Markers and words at power-on.
     pub fn preset(&self, exchange: &mut Exchange) {
         exchange.nc_set(signal::SPINDLE_IS_ANALOGUE, self.is_analogue());
-        let codes = self.turning.parameters.codes;
+        let codes = self.drive.parameters.codes;
         exchange.nc_set_number(signal::MINIMUM_S_CODE, codes.min.into());
         marker_codes::LOWEST_SPEED.put(codes.min.into(), exchange);
         marker_codes::SPEED_STEP.put(codes.step.into(), exchange);
@@ -116,18 +116,22 @@ impl SpindleUnit {
 
     /// One servo step.
     pub fn output(&mut self, commands: &mut Commands) {
-        let volts = self.turning.servo.step();
+        let volts = self.drive.servo.step();
         let (enabled, volts, speed) = if self.is_analogue() {
-            (self.turning.servo.is_enabled(), volts, self.turning.servo.output_rpm())
+            (
+                self.drive.servo.is_enabled(),
+                volts,
+                self.drive.servo.output_rpm(),
+            )
         } else {
-            match self.turning.parameters.free_output {
+            match self.drive.parameters.free_output {
                 FreeOutput::Plc => (false, self.plc_volts, 0.0),
                 FreeOutput::Feed { .. } => (false, self.feed_volts, 0.0),
                 FreeOutput::MFunctions => (false, self.by_program.volts(), 0.0),
                 FreeOutput::None => return,
             }
         };
-        if let Some(output) = commands.axes.get_mut(self.turning.wiring.output) {
+        if let Some(output) = commands.axes.get_mut(self.drive.wiring.output) {
             *output = AxisCommand {
                 enabled,
                 volts,
@@ -141,7 +145,7 @@ impl SpindleUnit {
     /// Where output S follows the path: in proportion to its feed, 10 V at MP3012 [000:9835-9839], or as M200 to
     /// M204 say.
     pub fn follow(&mut self, along: Along) {
-        match self.turning.parameters.free_output {
+        match self.drive.parameters.free_output {
             FreeOutput::Feed { full_mm_min } => {
                 let volts = along.mm_min / full_mm_min * OUTPUT_VOLTS;
                 self.feed_volts = if volts.is_finite() {
@@ -167,10 +171,10 @@ impl SpindleUnit {
 
     /// Whether the spindle has a speed.
     pub fn has_speed(&self, rpm: f64) -> bool {
-        match self.turning.parameters.output {
+        match self.drive.parameters.output {
             SpindleOutput::None => true,
             SpindleOutput::Coded { .. } => self.speed_code(rpm).is_some(),
-            SpindleOutput::Analogue { .. } => self.turning.servo.gear_for(rpm).is_some(),
+            SpindleOutput::Analogue { .. } => self.drive.servo.gear_for(rpm).is_some(),
         }
     }
 
@@ -185,7 +189,7 @@ impl SpindleUnit {
 
     /// The S code of a speed, where MP3020 permits it.
     fn speed_code(&self, rpm: f64) -> Option<SpeedCode> {
-        SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.turning.parameters.codes))
+        SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.drive.parameters.codes))
     }
 
     /// A programmed speed: the gear range or the S code that goes to the PLC, when one does. A speed that
@@ -195,7 +199,7 @@ impl SpindleUnit {
             return None;
         }
         self.programmed_rpm = rpm;
-        match self.turning.parameters.output {
+        match self.drive.parameters.output {
             SpindleOutput::None => None,
             SpindleOutput::Coded { always } => {
                 let code = self.speed_code(rpm)?.number();
@@ -203,7 +207,7 @@ impl SpindleUnit {
                 (changed || always && tool_call).then_some(Transfer::SCode(code))
             }
             SpindleOutput::Analogue { gear: when } => {
-                let gear = self.turning.servo.gear_for(rpm)?;
+                let gear = self.drive.servo.gear_for(rpm)?;
                 self.choose_gear(rpm, gear, when, tool_call, exchange)
             }
         }
@@ -219,15 +223,15 @@ impl SpindleUnit {
     ) -> Option<Transfer> {
         let speed = (rpm * PER_RPM).round() as i32;
         let signal = match when {
-            GearSignal::OnChange => gear != self.turning.servo.gear_range(),
-            GearSignal::Always => tool_call || gear != self.turning.servo.gear_range(),
+            GearSignal::OnChange => gear != self.drive.servo.gear_range(),
+            GearSignal::Always => tool_call || gear != self.drive.servo.gear_range(),
             GearSignal::Never => false,
         };
         if signal {
             self.pending = Some((gear, rpm));
             return Some(Transfer::Gear { code: gear, speed });
         }
-        self.turning.servo.set_speed(rpm, gear);
+        self.drive.servo.set_speed(rpm, gear);
         exchange.nc_set_number(signal::PROGRAMMED_SPINDLE_SPEED, speed);
         exchange.nc_set_number(signal::SPINDLE_SPEED_FROM_PLC, speed);
         None
@@ -236,7 +240,7 @@ impl SpindleUnit {
     /// The PLC acknowledged the gear: from now on the speed is that of it.
     pub fn gear_changed(&mut self) {
         if let Some((gear, rpm)) = self.pending.take() {
-            self.turning.servo.set_speed(rpm, gear);
+            self.drive.servo.set_speed(rpm, gear);
         }
     }
 
@@ -263,7 +267,7 @@ impl SpindleUnit {
             OrientationDirection::Shortest => Way::Shortest,
             OrientationDirection::Positive => Way::In(Rotation::M3),
         };
-        self.turning
+        self.drive
             .servo
             .orient(orientation.angle + added, orientation.speed, way);
         self.orienting = true;
@@ -281,13 +285,13 @@ impl SpindleUnit {
     /// Opens the loop and takes the voltage away: EMERGENCY STOP, M2830. An orientation ends as what the PLC positions does
     /// [000:4013-4019]: the spindle does not go on with it by itself when the voltage is back (inferred).
     pub fn open(&mut self, exchange: &mut Exchange) {
-        self.turning.lead(None);
+        self.drive.lead(None);
         self.asked = None;
         if std::mem::take(&mut self.orienting) {
             self.end_orientation(exchange);
         }
-        self.turning.servo.rotate(Rotation::M5);
-        self.turning.servo.set_enabled(false);
+        self.drive.servo.rotate(Rotation::M5);
+        self.drive.servo.set_enabled(false);
         self.by_program.switch_off();
     }
 
@@ -298,7 +302,7 @@ impl SpindleUnit {
 
     /// Turns it by a way from where it stands, degrees: M2712 until it is there. `false` when it cannot be.
     pub fn turn_by(&mut self, way_deg: f64, exchange: &mut Exchange) -> bool {
-        let turns = self.turning.can_be_led() && self.turning.servo.turn_by(way_deg);
+        let turns = self.drive.can_be_led() && self.drive.servo.turn_by(way_deg);
         if turns {
             self.orienting = true;
             exchange.nc_set(signal::ORIENT_SPINDLE, true);
@@ -319,20 +323,22 @@ impl SpindleUnit {
         for ((now, before), rotation) in shown.iter().zip(self.shown).zip(rotations) {
             if *now && !before {
                 self.rotation = rotation;
-                if !self.turning.is_led() {
-                    self.turning.servo.rotate(rotation);
+                if !self.drive.is_led() {
+                    self.drive.servo.rotate(rotation);
                     self.orienting = false;
                 }
             }
         }
         self.shown = shown;
-        self.turning.servo.set_inverted(nc.bit(signal::INVERT_SPINDLE_DIRECTION));
+        self.drive
+            .servo
+            .set_inverted(nc.bit(signal::INVERT_SPINDLE_DIRECTION));
         let closed = !nc.bit(signal::NC_STOP_AND_OPEN_LOOPS);
-        self.turning
+        self.drive
             .servo
             .set_enabled(closed && !nc.bit(signal::SPINDLE_DISPLAY_INVERSE));
-        self.turning.servo.set_opens(nc.bit(signal::OPEN_SPINDLE_LOOP));
-        if self.turning.is_led() {
+        self.drive.servo.set_opens(nc.bit(signal::OPEN_SPINDLE_LOOP));
+        if self.drive.is_led() {
             return None;
         }
         self.take_jog(
@@ -355,7 +361,7 @@ impl SpindleUnit {
             } else {
                 Rotation::M3
             };
-            self.turning.servo.turn(if turn { direction } else { Rotation::M5 });
+            self.drive.servo.turn(if turn { direction } else { Rotation::M5 });
         }
     }
 
@@ -363,14 +369,14 @@ impl SpindleUnit {
     fn take_jog(&mut self, left: bool, right: bool) {
         if left || right {
             self.jogging = true;
-            self.turning.servo.jog(match (left, right) {
+            self.drive.servo.jog(match (left, right) {
                 (true, false) => Rotation::M4,
                 (false, true) => Rotation::M3,
                 _ => Rotation::M5,
             });
         } else if self.jogging {
             self.jogging = false;
-            self.turning.servo.rotate(self.rotation);
+            self.drive.servo.rotate(self.rotation);
         }
     }
 
@@ -381,7 +387,7 @@ impl SpindleUnit {
         numbers: &PlcParameters,
     ) -> Result<(), PlcFaultCode> {
         if exchange.nc().bit(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN) {
-            self.turning.servo.forget_mark();
+            self.drive.servo.forget_mark();
             exchange.nc_set(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN, false);
         }
         if let Some(orientation) = self.asked.take() {
@@ -398,7 +404,7 @@ impl SpindleUnit {
             ORIENTATION.check(exchange.nc())?;
         }
         let nc = exchange.nc();
-        if self.orienting || !self.turning.parameters.controlled {
+        if self.orienting || !self.drive.parameters.controlled {
             return Ok(());
         }
         let Some(angle) = self.ordered_angle(form, nc, numbers) else {
@@ -409,7 +415,7 @@ impl SpindleUnit {
         } else {
             Rotation::M3
         };
-        self.turning.servo.orient(angle, 0.0, Way::In(direction));
+        self.drive.servo.orient(angle, 0.0, Way::In(direction));
         self.orienting = true;
         self.by_markers = form == Form::Markers;
         Ok(())
@@ -436,14 +442,14 @@ impl SpindleUnit {
         }
         let gear = u8::try_from(exchange.nc().number(signal::GEAR_CODE)).unwrap_or(0);
         let rpm = f64::from(exchange.nc().number(signal::SPINDLE_SPEED_FROM_PLC)) / PER_RPM;
-        self.turning.servo.set_speed(rpm, gear.min(7));
+        self.drive.servo.set_speed(rpm, gear.min(7));
         exchange.nc_set(signal::GEAR_AND_SPEED_FROM_PLC, false);
     }
 
     /// Once in each contour cycle.
     pub fn cycle(&mut self, exchange: &mut Exchange, override_percent: f64) {
-        self.turning.servo.set_override(override_percent);
-        if self.orienting && self.turning.servo.in_position() {
+        self.drive.servo.set_override(override_percent);
+        if self.orienting && self.drive.servo.in_position() {
             self.orienting = false;
             self.end_orientation(exchange);
         }
@@ -464,13 +470,13 @@ impl SpindleUnit {
                 exchange.nc_set(marker, value);
             }
         };
-        put(signal::SPINDLE_VOLTAGE_NOT_ON_RAMP, !self.turning.servo.on_ramp());
-        put(signal::SPINDLE_VOLTAGE_ZERO, self.turning.servo.at_zero());
-        put(signal::SPINDLE_IN_POSITION, self.turning.servo.in_position());
-        put(signal::SPINDLE_IN_MOTION, self.turning.servo.orienting());
+        put(signal::SPINDLE_VOLTAGE_NOT_ON_RAMP, !self.drive.servo.on_ramp());
+        put(signal::SPINDLE_VOLTAGE_ZERO, self.drive.servo.at_zero());
+        put(signal::SPINDLE_IN_POSITION, self.drive.servo.in_position());
+        put(signal::SPINDLE_IN_MOTION, self.drive.servo.orienting());
         let words = [
-            (signal::NOMINAL_SPINDLE_SPEED, self.turning.servo.nominal_rpm()),
-            (signal::ACTUAL_SPINDLE_SPEED, self.turning.servo.actual_rpm().abs()),
+            (signal::NOMINAL_SPINDLE_SPEED, self.drive.servo.nominal_rpm()),
+            (signal::ACTUAL_SPINDLE_SPEED, self.drive.servo.actual_rpm().abs()),
         ];
         for (word, rpm) in words {
             let value = rpm.round().min(32_767.0) as i32;
@@ -482,15 +488,19 @@ impl SpindleUnit {
 
     /// What module 9042 reads, in degrees.
     pub fn position(&self) -> SpindlePosition {
-        let angle = self.turning.servo.angle_deg().unwrap_or(0.0);
+        let angle = self.drive.servo.angle_deg().unwrap_or(0.0);
         SpindlePosition {
             actual: angle,
             reference: angle,
-            closed_loop: self.turning.servo.lag_and_way_deg().map(|[lag, way]| ControlledSpindle {
-                nominal: angle + lag,
-                trailing_error: lag,
-                distance_to_go: way,
-            }),
+            closed_loop: self
+                .drive
+                .servo
+                .lag_and_way_deg()
+                .map(|[lag, way]| ControlledSpindle {
+                    nominal: angle + lag,
+                    trailing_error: lag,
+                    distance_to_go: way,
+                }),
         }
     }
 
@@ -502,12 +512,12 @@ impl SpindleUnit {
     pub fn state(&self) -> SpindleState {
         SpindleState {
             programmed_rpm: self.programmed_rpm,
-            nominal_rpm: self.turning.servo.nominal_rpm(),
-            actual_rpm: self.turning.servo.actual_rpm(),
-            volts: self.turning.servo.volts(),
-            gear: self.turning.servo.gear_range() + 1,
+            nominal_rpm: self.drive.servo.nominal_rpm(),
+            actual_rpm: self.drive.servo.actual_rpm(),
+            volts: self.drive.servo.volts(),
+            gear: self.drive.servo.gear_range() + 1,
             rotation: self.rotation,
-            angle_deg: self.turning.servo.angle_deg(),
+            angle_deg: self.drive.servo.angle_deg(),
         }
     }
 }

@@ -17,8 +17,9 @@ use crate::message::Message;
 use crate::plc_link::{PalletSelection, PlcLink};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::source::Reading;
-use crate::spindle::{SpindleUnit, SpindleWiring};
+use crate::spindle::SpindleUnit;
 use crate::tables::LoadedTables;
+use bahn_kernel::SpindleWiring;
 
 /// What runs while the supply is on.
 #[derive(Clone)]

@@ -242,7 +242,7 @@ impl ToolMeasurement {
 fn may_be_oriented(parameters: &ToolProbeParameters, site: &Site) -> bool {
     match parameters.orientation {
         ProbeOrientation::None => false,
-        ProbeOrientation::Nc => site.spindle.can_be_led(),
+        ProbeOrientation::Nc => site.spindle.drive.can_be_led(),
         ProbeOrientation::Plc(_) => true,
     }
 }
@@ -323,19 +323,19 @@ impl Sequence {
         if by_nc && site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP) {
             return;
         }
-        if !self.asked || by_nc && !site.spindle.holds_orientation() {
+        if !self.asked || by_nc && !site.spindle.drive.holds_orientation() {
             (self.asked, self.turned) = (true, true);
             match self.parameters.orientation {
                 ProbeOrientation::Plc(code) => {
                     site.spindle.set_cycle_angle(angle, site.exchange);
                     site.handshakes.push(Transfer::M(code));
                 }
-                _ => site.spindle.orient_shortest(angle),
+                _ => site.spindle.drive.orient_shortest(angle),
             }
             return;
         }
         let oriented = match by_nc {
-            true => site.spindle.is_oriented(),
+            true => site.spindle.drive.is_oriented(),
             false => site.handshakes.is_idle() && !site.spindle.is_orienting(),
         };
         if oriented {

@@ -204,7 +204,8 @@ impl Tapping {
         let thread = track.path.element().and_then(PathElement::thread);
         if let Some(thread) = thread.filter(|_| self.held) {
             self.held = at.spindle.actual_rpm().abs() >= STANDS_RPM;
-            self.apart |= !self.held && missing_mm(thread, at) > window_mm(at);
+            let at = at.standing();
+            self.apart |= !self.held && missing_mm(thread, &at) > window_mm(&at);
         }
         if self.held {
             return true;
@@ -239,15 +240,15 @@ impl Tapping {
             here[unit.axis] = unit.servo.actual_mm();
         }
         let here = at.chain.to_path(&here);
-        let mut at = track.path.position();
+        let mut place = track.path.position();
         for unit in at.axes.iter().filter(|unit| element.moves_axis(unit.axis)) {
-            at[unit.axis] = here[unit.axis];
+            place[unit.axis] = here[unit.axis];
         }
-        at[tool_axis] = at[tool_axis].min(top(element, tool_axis));
+        place[tool_axis] = place[tool_axis].min(top(element, tool_axis));
         let [_, now] = at.spindle.angles_deg(0.0);
         let own = at.axes.iter().map(|unit| unit.axis);
         let moved: AxisSet = own.filter(|axis| element.moves_axis(*axis)).collect();
-        track.path.couple_again(&at, now);
+        track.path.couple_again(&place, now);
         at.spindle.lead_from_here();
         // In a tilted plane axes that ran on are beside the thread, too. A run that waits for its feed enable only leads
         // them back to it before it goes on, an interrupted one with NC start.
@@ -279,8 +280,8 @@ impl Tapping {
             };
             at.spindle.lead(None);
         }
-        at.spindle.monitor_movement(beside_max_deg(track, at));
-        let window = rigid.then(|| window_mm(at));
+        at.spindle.monitor_movement(beside_max_deg(track, &at.standing()));
+        let window = rigid.then(|| window_mm(&at.standing()));
         let element = track.path.element();
         for unit in at.axes.iter_mut() {
             let moves = element.is_some_and(|element| element.moves_axis(unit.axis));
