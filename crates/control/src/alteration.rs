@@ -4,7 +4,7 @@
 use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_parameters::{Change, Definition, ParameterList, Reaction};
 
-use crate::kernel::Kernel;
+use crate::tnc::Tnc;
 
 /// What came of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,40 +18,40 @@ pub(crate) enum Altered {
 }
 
 /// Sets an operand, or a machine parameter of a channel.
-pub(crate) fn set(kernel: &mut Kernel, channel: usize, assignment: &Assignment) -> Altered {
+pub(crate) fn set(tnc: &mut Tnc, channel: usize, assignment: &Assignment) -> Altered {
     match assignment {
         // There is one memory; the lists of the channels beside the first one are the machine builder's.
         _ if channel > 0 => Altered::Refused,
         Assignment::Operand(Operand::Bit(bit), _) if bit.area() == BitArea::I => Altered::Refused,
         Assignment::Operand(operand, content) => {
-            operand.write(kernel.machine.memory.first_mut(), content);
+            operand.write(tnc.machine.memory.first_mut(), content);
             Altered::Done
         }
-        Assignment::Parameter(text) => alter(kernel, text),
+        Assignment::Parameter(text) => alter(tnc, text),
     }
 }
 
 /// Changes a machine parameter as the editor of the list does when it is left.
-fn alter(kernel: &mut Kernel, text: &str) -> Altered {
-    let mut list = kernel.machine.link.edited_list().clone();
+fn alter(tnc: &mut Tnc, text: &str) -> Altered {
+    let mut list = tnc.machine.link.edited_list().clone();
     let Ok(id) = list.assign(text) else {
         return Altered::Refused;
     };
     let Ok(definition) = Definition::named(list.model(), id) else {
         return Altered::Refused;
     };
-    let runs = kernel.channels.iter().any(|channel| channel.run.is_active());
+    let runs = tnc.channels.iter().any(|channel| channel.run.is_active());
     if runs && (definition.change != Change::PlcRun || definition.reaction != Reaction::None) {
         return Altered::Refused;
     }
     if definition.reaction == Reaction::Reset {
         return Altered::Reset(Box::new(list));
     }
-    kernel.machine.link.edit(&list, id);
-    kernel.machine.take_parameters();
-    kernel.channels.first_mut().take_parameters(&mut kernel.machine);
+    tnc.machine.link.edit(&list, id);
+    tnc.machine.take_parameters();
+    tnc.channels.first_mut().take_parameters(&mut tnc.machine);
     if definition.reaction == Reaction::ReferenceMarks {
-        let units = kernel.machine.axes.iter_mut();
+        let units = tnc.machine.core.axes.iter_mut();
         let of_axis = |index: usize| id.index.is_none_or(|own| usize::from(own) == index);
         for unit in units.filter(|unit| unit.channel == 0 && of_axis(unit.index)) {
             unit.referenced = false;

@@ -1,8 +1,9 @@
 //! Part programs that are read ahead beside the control: on a thread of whoever drives it.
 
 use bahn_interpreter::Rules;
+use bahn_kernel::Feeder;
 
-use crate::feeder::Feeder;
+use crate::language::OwnLanguage;
 
 /// The program of a channel, lent by [`Control::lend_reading`](crate::Control::lend_reading) to be read ahead
 /// elsewhere. The cycles go on meanwhile with what was read before.

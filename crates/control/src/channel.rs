@@ -5,24 +5,22 @@ mod moves;
 
 use bahn_exchange::signal;
 use bahn_interpreter::Rules;
+use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Track};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 use bahn_servo::{Measured, OperatorInputs};
 
-use crate::axes::Axes;
-use crate::axis::AxisUnit;
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
 use crate::desk::{self, Desk};
-use crate::feeder::Feeder;
 use crate::handshake::{Handshakes, Transfer};
-use crate::kinematics::{Chain, Kinematics};
 use crate::life::{self, LifeCount};
 use crate::loops::{self, Permission};
 use crate::machine::MachineSide;
 use crate::manual_probing::{Answer, ManualProbing, tilted};
 use crate::message::Message;
 use crate::now::Now;
+use crate::path_limits::path_limits;
 use crate::plc_link::PalletRequest;
 use crate::positioning::Positioning;
 use crate::probe_command::ProbeCommand;
@@ -33,7 +31,6 @@ use crate::site::Site;
 use crate::source::{self, Basis, Reading, Source};
 use crate::test_run::TestRun;
 use crate::tools::Tools;
-use crate::track::{Track, path_limits};
 use crate::{inserted_call, run_command, status, strobes, tables, upkeep};
 
 /// A channel.
@@ -73,7 +70,7 @@ impl Channel {
     pub fn new(parts: Parts, remembered: &Remembered, machine: &mut MachineSide) -> Channel {
         let list = parts.own_list.as_ref().unwrap_or(machine.link.list());
         let operation = list.operation_parameters();
-        let limits = path_limits(list, machine.axes.owned(parts.number), &*parts.kinematics);
+        let limits = path_limits(list, machine.core.axes.owned(parts.number), &*parts.kinematics);
         let selection = Selection {
             program: remembered.program.clone(),
             ..Selection::default()
@@ -99,10 +96,10 @@ impl Channel {
             test: None,
             desk: Desk::new(operation),
         };
-        let mut axes = machine.axes.of(channel.number);
+        let mut axes = machine.core.axes.of(channel.number);
         channel.datums.select_range(0, &mut axes);
         let exchange = machine.memory.of_mut(channel.number);
-        let axes = machine.axes.owned(channel.number);
+        let axes = machine.core.axes.owned(channel.number);
         status::preset(axes, channel.desk.rules().english, exchange);
         machine.spindles.of(channel.number).preset(exchange);
         channel
@@ -127,7 +124,7 @@ impl Channel {
 
     /// What holds now.
     fn now(&self, machine: &MachineSide) -> Now {
-        let mut axes = machine.axes.owned(self.number);
+        let mut axes = machine.core.axes.owned(self.number);
         let fault = axes.any(|unit| unit.servo.fault().is_some());
         let probe_mm_min = || self.list(machine).probe().rapid_mm_min;
         let nc = machine.memory.of(self.number).nc();
@@ -139,7 +136,7 @@ impl Channel {
         let now = self.now(machine);
         let site = Site {
             now,
-            axes: machine.axes.of(self.number),
+            axes: machine.core.axes.of(self.number),
             spindle: machine.spindles.of_mut(self.number),
             tools: &mut self.tools,
             magazine: &machine.magazine,
@@ -196,13 +193,13 @@ impl Channel {
     /// Loops, feed enable and faults of a contour cycle.
     pub fn follow_loops(&mut self, monitoring_off: bool, machine: &mut MachineSide) {
         let permission = Permission {
-            loops_closed: machine.loops_closed,
+            loops_closed: machine.core.loops_closed,
             feed_enable: self.desk.panel().feed_enable,
             monitoring_off,
             runs: self.run.progress().goes_on(),
         };
         let nc = machine.memory.of(self.number).nc();
-        loops::follow(&mut machine.axes.of(self.number), nc, permission);
+        loops::follow(&mut machine.core.axes.of(self.number), nc, permission);
         if nc.bit(signal::NC_STOP_AND_OPEN_LOOPS) {
             self.run.part_thread();
             let exchange = machine.memory.of_mut(self.number);
@@ -214,7 +211,7 @@ impl Channel {
     /// New faults of loops and spindle stop the channel.
     pub fn take_faults(&mut self, machine: &mut MachineSide) {
         let block = self.run.running_block();
-        let axes = machine.axes.of(self.number);
+        let axes = machine.core.axes.of(self.number);
         let spindle = machine.spindles.of(self.number);
         if loops::show_faults(&axes, spindle, machine.messages.of_channel(self.number), block) {
             self.run.part_thread();
@@ -228,7 +225,7 @@ impl Channel {
     pub fn watch_probe(&mut self, machine: &MachineSide, measured: &Measured) {
         let nc = machine.memory.of(self.number).nc();
         let guards = nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION) && !self.list(machine).probe().on_standby;
-        let axes = || machine.axes.owned(self.number);
+        let axes = || machine.core.axes.owned(self.number);
         self.desk
             .watch_stylus(measured, guards, &self.run.probe, || axes().all(AxisUnit::stands));
         self.run.probe.watch(measured, axes(), &self.datums.chain);
@@ -247,7 +244,7 @@ impl Channel {
         let barred = barred.or_else(|| tilted(command, leans, basis.list, &site.axes));
         let answer = touch.execute(command, basis.list.probe().turn, barred, &mut site);
         self.touch = touch;
-        let axes = machine.axes.of(self.number);
+        let axes = machine.core.axes.of(self.number);
         let [done, kept] = match answer {
             Answer::Refused => [false; 2],
             Answer::Done => [true, false],
@@ -271,7 +268,7 @@ impl Channel {
         let exchange = machine.memory.of_mut(self.number);
         let runs = self.run.is_active() && matches!(self.desk.mode(), Mode::SingleBlock | Mode::FullSequence);
         let counting = life::Counting {
-            cycle_us: machine.timing.contour_us(),
+            cycle_us: machine.core.timing.contour_us(),
             runs,
         };
         let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
@@ -289,7 +286,10 @@ impl Channel {
         let (run, mut site, _) = self.parts(machine);
         run.follow_tapping(&mut site);
         self.follow_spindle(machine);
-        upkeep::lubricate(&machine.axes.of(self.number), machine.memory.of_mut(self.number));
+        upkeep::lubricate(
+            &machine.core.axes.of(self.number),
+            machine.memory.of_mut(self.number),
+        );
     }
 
     fn follow_spindle(&mut self, machine: &mut MachineSide) {
@@ -316,14 +316,14 @@ impl Channel {
     pub fn publish(&mut self, operator: &OperatorInputs, machine: &mut MachineSide) {
         let exchange = machine.memory.of_mut(self.number);
         self.desk.publish(operator, exchange);
-        status::axes(self.desk.mode(), &mut machine.axes.of(self.number), exchange);
+        status::axes(self.desk.mode(), &mut machine.core.axes.of(self.number), exchange);
         status::run(&self.run, !self.handshakes.is_idle(), exchange);
         machine.spindles.of(self.number).publish(exchange);
     }
 
     /// What modules read of the channel in the next scan.
     pub fn inform(&self, machine: &mut MachineSide) {
-        let (axes, link) = (machine.axes.owned(self.number), &mut machine.link);
+        let (axes, link) = (machine.core.axes.owned(self.number), &mut machine.link);
         let spindle = machine.spindles.of(self.number);
         status::coordinates(axes, &self.datums.chain, &self.run, &self.desk, link);
         let executed = self.run.selection.program.as_deref();
@@ -351,7 +351,7 @@ impl Channel {
             self.show(Message::PlcMarkers(code), machine);
             return;
         }
-        let mut axes = machine.axes.of(self.number);
+        let mut axes = machine.core.axes.of(self.number);
         let at_strobe = self.handshakes.lets_plc_move(self.desk.rules().axes_wait_at_m);
         let keys = now.axis_keys.iter().any(Option::is_some);
         let may = !self.run.progress().is_running() || at_strobe;
@@ -377,7 +377,7 @@ impl Channel {
             strobes::end_key(done, machine.memory.of_mut(self.number));
         }
         let exchange = machine.memory.of_mut(self.number);
-        let mut axes = machine.axes.of(self.number);
+        let mut axes = machine.core.axes.of(self.number);
         strobes::take_lubrication(&mut axes, exchange);
         strobes::take_lag_tracking(machine.plc_parameters.tracking_step_mm, &mut axes, exchange.nc());
         let offsets = &mut self.datums.chain.offsets;
@@ -436,8 +436,8 @@ impl Channel {
         self.datums.each_range = operation.datums.datum_for_each_range;
         self.desk.set_rules(operation);
         let spindle = machine.spindles.of_mut(self.number);
-        spindle.set_parameters(list.spindle_parameters());
-        let mut axes = machine.axes.of(self.number);
+        spindle.drive.set_parameters(list.spindle_parameters());
+        let mut axes = machine.core.axes.of(self.number);
         axes.set_parameters(list);
         self.datums.limit(&mut axes);
         let intervals = axes.iter().map(|unit| unit.parameters.offset_interval_s);
@@ -448,11 +448,12 @@ impl Channel {
 
     /// Its axes are others from now on: the path has their limits, the datum their corrections.
     pub fn take_axes(&mut self, machine: &mut MachineSide) {
-        let (list, axes) = (self.list(machine), machine.axes.owned(self.number));
+        let (list, axes) = (self.list(machine), machine.core.axes.owned(self.number));
         let limits = path_limits(list, axes, self.datums.chain.kinematics());
         self.run.track.change_limits(&limits, self.run.is_active());
         let range = self.datums.range();
-        self.datums.select_range(range, &mut machine.axes.of(self.number));
+        self.datums
+            .select_range(range, &mut machine.core.axes.of(self.number));
     }
 
     /// Interprets and plans ahead; may allocate. `datums_changed`: blocks that are read from now on find other
@@ -460,7 +461,7 @@ impl Channel {
     pub fn prepare(&mut self, datums_changed: bool, machine: &mut MachineSide) {
         if self.run.track.limits_changed && !self.run.is_active() {
             let list = self.own_list.as_ref().unwrap_or(machine.link.list());
-            let axes = machine.axes.owned(self.number);
+            let axes = machine.core.axes.owned(self.number);
             let limits = path_limits(list, axes, self.datums.chain.kinematics());
             self.run.track.take_limits(&limits);
         }
@@ -486,7 +487,7 @@ impl Channel {
 
     fn prepare_test(&mut self, machine: &MachineSide) {
         if let Some(test) = &mut self.test {
-            let axes = machine.axes.owned(self.number);
+            let axes = machine.core.axes.owned(self.number);
             test.prepare(machine.spindles.of(self.number), axes);
         }
     }
@@ -514,10 +515,13 @@ impl Channel {
             Command::Probe(command) => self.desk.is_by_hand() && self.probe_menu(command, machine),
             Command::Mode(mode) => {
                 self.touch.leave();
-                let mut axes = machine.axes.of(self.number);
+                let mut axes = machine.core.axes.of(self.number);
                 self.desk.choose_mode(mode, self.run.progress(), &mut axes)
             }
-            Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
+            Command::Output(feed) => self
+                .desk
+                .manual
+                .set_step(feed, &machine.core.axes.of(self.number)),
             Command::Pnt(on) => {
                 let probe = self.list(machine).measuring_probe();
                 self.desk.switch_pnt(on, probe.filter(|_| !self.run.is_active()))
@@ -525,16 +529,16 @@ impl Channel {
             Command::WorkingPlane(plane) if !plane.run => {
                 self.touch.leave();
                 let list = self.own_list.as_ref().unwrap_or(machine.link.list());
-                let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
+                let (axes, chain) = (machine.core.axes.of(self.number), &mut self.datums.chain);
                 self.desk.switch_plane(&plane, list, &axes, chain)
             }
             ref entered if entered.is_by_hand() => {
-                let axes = &machine.axes.of(self.number);
+                let axes = &machine.core.axes.of(self.number);
                 self.desk.enter(&command, machine.model, axes)
             }
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
             Command::AxisLimit(axis, range, limits) if !self.run.is_active() => {
-                let axes = &mut machine.axes.of(self.number);
+                let axes = &mut machine.core.axes.of(self.number);
                 let done = self.datums.set_limit(axis, range, limits, axes);
                 machine.unsaved |= done;
                 done
@@ -545,7 +549,7 @@ impl Channel {
             }
             Command::Key(code) => self.desk.press_key(code, machine.memory.of_mut(self.number)),
             Command::Test(name) => {
-                let axes = machine.axes.iter().map(|unit| unit.axis).collect();
+                let axes = machine.core.axes.iter().map(|unit| unit.axis).collect();
                 let (run, site, basis) = self.parts(machine);
                 let feeder = run.source.feeder_for_test(&name, axes, &site, &basis);
                 feeder
@@ -566,7 +570,7 @@ impl Channel {
 
     /// DATUM SET: the actual position becomes a value.
     fn set_datum(&mut self, axis: Axis, value: f64, machine: &mut MachineSide) -> bool {
-        let axes = machine.axes.of(self.number);
+        let axes = machine.core.axes.of(self.number);
         let done = self.desk.is_by_hand() && self.desk.set_datum(axis, value, &mut self.datums, &axes);
         machine.unsaved |= done;
         done

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use bahn_kernel::Axes;
 use bahn_servo::ErrorTable;
 
-use crate::axes::Axes;
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
 use crate::correction_tables::CorrectionTables;
 use crate::plc_link::NcFiles;

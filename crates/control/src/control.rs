@@ -1,9 +1,10 @@
-//! The control as others see it: commands in, state and messages out; and its supply, which makes the kernel anew.
+//! The control as others see it: commands in, state and messages out; and its supply, which makes the TNC anew.
 
 use std::sync::Arc;
 
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Work};
+use bahn_kernel::{AxisUnit, Feeder, RunState, ServoSampler, ServoView};
 use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::PathElement;
@@ -12,27 +13,24 @@ use bahn_reader::{Reader, Warning};
 use bahn_servo::Plant;
 
 use crate::alteration::{self, Altered};
-use crate::axis::AxisUnit;
 use crate::beside::ReadAhead;
 use crate::channel::Channel;
 use crate::command::{Command, Mode};
 use crate::data_line::{DataLineOrder, OrderedLines};
-use crate::feeder::Feeder;
 use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
-use crate::kernel::Kernel;
 use crate::key_code::KeyCode;
+use crate::language::OwnLanguage;
 use crate::message::{Message, Shown};
 use crate::oscilloscope::OscilloscopeKeys;
-use crate::progress::RunState;
+use crate::path_limits::path_limits;
 use crate::renewal::{self, Renewed};
-use crate::sampling::{ServoSampler, ServoView};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::spindle::SpindleState;
 use crate::test_run::{TestReport, TestRun};
-use crate::track::path_limits;
+use crate::tnc::Tnc;
 use crate::upkeep::by_index;
 use crate::view::{ChannelView, offsets_volts};
 
@@ -46,7 +44,7 @@ const LOG_MAX: usize = 100_000;
 /// as the control would have done.
 #[derive(Clone)]
 pub struct Control {
-    kernel: Kernel,
+    tnc: Tnc,
     /// The commands with their channels, when somebody wants them.
     log: Option<Vec<(u64, usize, Command)>>,
     supply: Supply,
@@ -66,8 +64,8 @@ struct Supply {
 impl Control {
     /// A control of one channel at power-on. The PLC does not run yet, and the loops are open.
     pub fn new(setup: Setup) -> Control {
-        let kernel = Kernel::new(setup.clone());
-        Control::around(kernel, (setup, Vec::new()))
+        let tnc = Tnc::new(setup.clone());
+        Control::around(tnc, (setup, Vec::new()))
     }
 
     /// A control of several channels at power-on: the first one and those beside it. All run under one clock, with
@@ -76,13 +74,13 @@ impl Control {
     /// # Errors
     /// Why the channels cannot be put together.
     pub fn with_channels(setup: Setup, others: Vec<ChannelSetup>) -> Result<Control, ChannelError> {
-        let kernel = Kernel::with_channels(setup.clone(), others.clone())?;
-        Ok(Control::around(kernel, (setup, others)))
+        let tnc = Tnc::with_channels(setup.clone(), others.clone())?;
+        Ok(Control::around(tnc, (setup, others)))
     }
 
-    fn around(kernel: Kernel, made_of: (Setup, Vec<ChannelSetup>)) -> Control {
+    fn around(tnc: Tnc, made_of: (Setup, Vec<ChannelSetup>)) -> Control {
         Control {
-            kernel,
+            tnc,
             log: None,
             supply: Supply {
                 made_of: Arc::new(made_of),
@@ -112,11 +110,11 @@ impl Control {
         if on {
             self.supply.off = false;
             self.supply.starts += 1;
-            self.kernel.show_power_interrupted();
+            self.tnc.show_power_interrupted();
         } else {
-            let list = self.kernel.machine.link.edited_list().clone();
+            let list = self.tnc.machine.link.edited_list().clone();
             self.begin_anew(list);
-            self.kernel.machine.messages.forget();
+            self.tnc.machine.messages.forget();
             self.supply.off = true;
         }
         true
@@ -125,11 +123,11 @@ impl Control {
     /// Takes over what an editor of the machine builder has written; `false` when that is not possible now.
     pub fn renew(&mut self, renewed: Renewed) -> bool {
         let setup = &mut Arc::make_mut(&mut self.supply.made_of).0;
-        match renewal::take(renewed, setup, &mut self.kernel, self.supply.off) {
+        match renewal::take(renewed, setup, &mut self.tnc, self.supply.off) {
             Altered::Reset(list) => {
                 self.begin_anew(*list);
                 self.supply.starts += 1;
-                self.kernel.machine.unsaved = true;
+                self.tnc.machine.unsaved = true;
                 true
             }
             altered => altered == Altered::Done,
@@ -138,11 +136,11 @@ impl Control {
 
     /// Time, messages and connections go on from those of a control that was in its place.
     pub fn follow_on(&mut self, before: &Control) {
-        self.kernel.follow_on(&before.kernel);
+        self.tnc.follow_on(&before.tnc);
         self.supply.starts = before.supply.starts + 1;
     }
 
-    /// The kernel begins anew with what it has kept, at the time that it is.
+    /// The TNC begins anew with what it has kept, at the time that it is.
     fn begin_anew(&mut self, parameters: ParameterList) {
         let (mut setup, mut others) = (*self.supply.made_of).clone();
         setup.parameters = parameters;
@@ -155,9 +153,9 @@ impl Control {
             }
         }
         // They were put together once.
-        if let Ok(kernel) = Kernel::with_channels(setup, others) {
-            let before = std::mem::replace(&mut self.kernel, kernel);
-            self.kernel.follow_on(&before);
+        if let Ok(tnc) = Tnc::with_channels(setup, others) {
+            let before = std::mem::replace(&mut self.tnc, tnc);
+            self.tnc.follow_on(&before);
         }
     }
 
@@ -180,29 +178,29 @@ impl Control {
         tracer: Option<&mut (dyn Tracer + '_)>,
         sampler: Option<&mut (dyn ServoSampler + '_)>,
     ) {
-        self.kernel.cycle(self.supply.off, plant, tracer, sampler);
-        if std::mem::take(&mut self.kernel.machine.reset_wanted) {
-            let list = self.kernel.machine.link.list().clone();
+        self.tnc.cycle(self.supply.off, plant, tracer, sampler);
+        if std::mem::take(&mut self.tnc.machine.reset_wanted) {
+            let list = self.tnc.machine.link.list().clone();
             self.begin_anew(list);
             self.supply.starts += 1;
             self.supply.reset = true;
-            self.kernel.machine.unsaved = true;
+            self.tnc.machine.unsaved = true;
         }
     }
 
     /// What was pressed of the oscilloscope.
     pub fn oscilloscope(&self) -> OscilloscopeKeys {
-        self.kernel.machine.oscilloscope
+        self.tnc.machine.oscilloscope
     }
 
     /// The axes as the last servo step left them.
     pub fn servo_view(&self) -> ServoView<'_> {
-        ServoView(&self.kernel.machine.axes)
+        ServoView(&self.tnc.machine.core.axes)
     }
 
     /// Interprets and plans ahead; may allocate. To be called after every cycle.
     pub fn prepare(&mut self) {
-        self.kernel.prepare();
+        self.tnc.prepare();
     }
 
     fn give(&mut self, channel: usize, command: Command) -> bool {
@@ -210,7 +208,7 @@ impl Control {
             (Command::Power(on), _) => return self.switch(on),
             // Nobody is there to say that it is not possible.
             (_, true) => return false,
-            (Command::Set(assignment), _) => match alteration::set(&mut self.kernel, channel, &assignment) {
+            (Command::Set(assignment), _) => match alteration::set(&mut self.tnc, channel, &assignment) {
                 Altered::Reset(list) => {
                     self.begin_anew(*list);
                     self.supply.starts += 1;
@@ -218,30 +216,26 @@ impl Control {
                 }
                 altered => altered == Altered::Done,
             },
-            (Command::DataLine(event), _) => return self.kernel.machine.link.happen(event),
-            (command, _) => self.kernel.execute(channel, command),
+            (Command::DataLine(event), _) => return self.tnc.machine.link.happen(event),
+            (command, _) => self.tnc.execute(channel, command),
         };
         done || self.refuse(channel)
     }
 
     /// Channels that it has; they are numbered from 0.
     pub fn channels(&self) -> usize {
-        self.kernel.channels.count()
+        self.tnc.channels.count()
     }
 
     /// A channel as of now, by its number from 0.
     pub fn channel(&self, number: usize) -> Option<ChannelView<'_>> {
-        let channel = self.kernel.channels.get(number)?;
-        Some(ChannelView::new(channel, &self.kernel.machine, &self.kernel.seam))
+        let channel = self.tnc.channels.get(number)?;
+        Some(ChannelView::new(channel, &self.tnc.machine, &self.tnc.clock))
     }
 
     /// The first channel as of now.
     pub fn first(&self) -> ChannelView<'_> {
-        ChannelView::new(
-            self.kernel.channels.first(),
-            &self.kernel.machine,
-            &self.kernel.seam,
-        )
+        ChannelView::new(self.tnc.channels.first(), &self.tnc.machine, &self.tnc.clock)
     }
 
     /// The state of a channel as of now.
@@ -251,36 +245,36 @@ impl Control {
 
     /// From now on the PLC orders by these markers that axes go to other channels.
     pub fn hand_over_by(&mut self, hand_overs: Vec<HandOver>) {
-        self.kernel.ordered = hand_overs.into_iter().map(Ordered::new).collect();
+        self.tnc.ordered = hand_overs.into_iter().map(Ordered::new).collect();
     }
 
     /// Time since power-on, µs.
     pub fn time_us(&self) -> u64 {
-        self.kernel.now_us
+        self.tnc.clock.now_us()
     }
 
     /// The contour cycle, µs.
     pub fn cycle_us(&self) -> u32 {
-        self.kernel.machine.timing.contour_us()
+        self.tnc.machine.core.timing.contour_us()
     }
 
     /// Leaves computations that take long, as those of an SL contour, to whoever drives the control: runs that
     /// begin from now on wait for [`Control::finish_work`], while everything else goes on.
     pub fn defer_work(&mut self) {
-        for channel in self.kernel.channels.iter_mut() {
+        for channel in self.tnc.channels.iter_mut() {
             channel.run.source.defers = true;
         }
     }
 
     /// A computation to be done beside.
     pub fn take_work(&mut self) -> Option<Work> {
-        let mut feeders = self.kernel.channels.iter_mut().flat_map(Channel::feeders);
+        let mut feeders = self.tnc.channels.iter_mut().flat_map(Channel::feeders);
         feeders.find_map(|feeder| feeder.interpreter_mut()?.take_work())
     }
 
     /// What a computation came to. It has no effect when what needed it was given up.
     pub fn finish_work(&mut self, done: Done) {
-        let feeders = self.kernel.channels.iter_mut().flat_map(Channel::feeders);
+        let feeders = self.tnc.channels.iter_mut().flat_map(Channel::feeders);
         let mut interpreters = feeders.filter_map(Feeder::interpreter_mut);
         if let Some(interpreter) = interpreters.find(|interpreter| interpreter.waits_for(&done)) {
             interpreter.finish_work(done);
@@ -290,7 +284,7 @@ impl Control {
     /// Part programs are read by [`ReadAhead::read`] alone from now on, wherever it is called, or by
     /// [`Control::prepare`] again.
     pub fn read_beside(&mut self, on: bool) {
-        for channel in self.kernel.channels.iter_mut() {
+        for channel in self.tnc.channels.iter_mut() {
             channel.run.source.read_beside(on);
         }
     }
@@ -300,7 +294,7 @@ impl Control {
     /// and [`Control::interpreter`] and [`Control::remember`] do not know what it came to.
     pub fn lend_reading(&mut self) -> Option<ReadAhead> {
         (0..)
-            .zip(self.kernel.channels.iter_mut())
+            .zip(self.tnc.channels.iter_mut())
             .find_map(|(channel, lender)| {
                 let (feeder, loan) = lender.lend()?;
                 Some(ReadAhead {
@@ -313,8 +307,8 @@ impl Control {
 
     /// A program is back that was lent.
     pub fn take_back(&mut self, read: ReadAhead) {
-        if read.channel < self.kernel.channels.count() {
-            let source = &mut self.kernel.channels.of_mut(read.channel).run.source;
+        if read.channel < self.tnc.channels.count() {
+            let source = &mut self.tnc.channels.of_mut(read.channel).run.source;
             source.end_loan(read.feeder, read.loan);
         }
     }
@@ -322,7 +316,7 @@ impl Control {
     /// Simulates the block processing time: no more elements of the path are read than the control has time
     /// for, each taking so long, µs. 0 for no time.
     pub fn set_block_time(&mut self, time_us: u32) {
-        for channel in self.kernel.channels.iter_mut() {
+        for channel in self.tnc.channels.iter_mut() {
             channel.run.block_time.set(time_us);
         }
     }
@@ -335,24 +329,20 @@ impl Control {
     /// Gives a command of the operator to a channel; it is logged with the time when a log is kept. `false` when it is
     /// not possible now, or there is no such channel.
     pub fn command_to(&mut self, channel: usize, command: Command) -> bool {
-        if channel >= self.kernel.channels.count() {
+        if channel >= self.tnc.channels.count() {
             return false;
         }
         if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
-            log.push((self.kernel.now_us, channel, command.clone()));
+            log.push((self.tnc.clock.now_us(), channel, command.clone()));
         }
         self.give(channel, command)
     }
 
     /// A command is not possible now.
     fn refuse(&mut self, channel: usize) -> bool {
-        let block = self.kernel.channels.of(channel).run.running_block();
+        let block = self.tnc.channels.of(channel).run.running_block();
         let refused = Message::Plain(MessageId::KeyNonFunctional);
-        self.kernel
-            .machine
-            .messages
-            .of_channel(channel)
-            .show(refused, block);
+        self.tnc.machine.messages.of_channel(channel).show(refused, block);
         false
     }
 
@@ -372,33 +362,33 @@ impl Control {
     /// [`Control::test_report`]. `false` when there is no such program.
     pub fn test(&mut self, name: &str) -> bool {
         let command = Command::Test(name.to_owned());
-        self.kernel
+        self.tnc
             .channels
             .first_mut()
-            .execute(command, &mut self.kernel.machine)
+            .execute(command, &mut self.tnc.machine)
     }
 
     /// The test run that was started last.
     pub fn test_report(&self) -> Option<TestReport> {
-        self.kernel.channels.first().test().map(TestRun::report)
+        self.tnc.channels.first().test().map(TestRun::report)
     }
 
     /// A Q parameter of the test run; 0 without one.
     pub fn tested_q(&self, number: u16) -> f64 {
-        let test = self.kernel.channels.first().test();
+        let test = self.tnc.channels.first().test();
         test.map_or(0.0, |test| test.q_value(number))
     }
 
     /// The program of the test run as it stands there, to be gone on with beside: for the graphics. Long computations are
     /// left to whoever drives it when they are here.
     pub fn tested(&self) -> Option<Box<dyn Reader>> {
-        self.kernel.channels.first().test().map(TestRun::reader)
+        self.tnc.channels.first().test().map(TestRun::reader)
     }
 
     /// The limits within which a path is planned.
     pub fn path_limits(&self) -> Limits {
-        let channel = self.kernel.channels.first();
-        let axes = self.kernel.machine.axes.owned(0);
+        let channel = self.tnc.channels.first();
+        let axes = self.tnc.machine.core.axes.owned(0);
         path_limits(
             self.first().edited_list(),
             axes,
@@ -408,106 +398,106 @@ impl Control {
 
     /// What the NC sees of the PLC's memory.
     pub fn memory(&self) -> &Image {
-        self.kernel.machine.memory.first().nc()
+        self.tnc.machine.memory.first().nc()
     }
 
     /// The exchanged memory, for the journal of retained markers and bytes.
     pub fn exchange(&self) -> &Exchange {
-        self.kernel.machine.memory.first()
+        self.tnc.machine.memory.first()
     }
 
     /// Lets the end of a tool change wait until what survives power-off is stored: whoever calls
     /// [`Control::prepare`] asks [`Control::unsaved`], writes, and says [`Control::stored`].
     pub fn keep_state(&mut self, keep: bool) {
-        self.kernel.keeps = keep;
+        self.tnc.keeps = keep;
     }
 
     /// What survives power-off when it has changed since it was stored.
     pub fn unsaved(&self) -> Option<Remembered> {
-        self.kernel.machine.unsaved.then(|| self.remember())
+        self.tnc.machine.unsaved.then(|| self.remember())
     }
 
     /// What survives power-off is on the medium.
     pub fn stored(&mut self) {
-        self.kernel.machine.unsaved = false;
+        self.tnc.machine.unsaved = false;
     }
 
     /// The name of the list of machine parameters that module 9033 has selected, when the control was reset for it since
     /// this was asked last.
     pub fn take_restart(&mut self) -> Option<String> {
-        let selected = &self.kernel.machine.link.selected_list;
+        let selected = &self.tnc.machine.link.selected_list;
         std::mem::take(&mut self.supply.reset).then(|| selected.clone())?
     }
 
     /// What survives power-off, as of now.
     pub fn remember(&self) -> Remembered {
-        let link = &self.kernel.machine.link;
+        let link = &self.tnc.machine.link;
         Remembered {
-            pockets: self.kernel.machine.magazine.moved(),
-            written: self.kernel.machine.loaded_tables.written(&link.files),
-            offsets_volts: offsets_volts(&self.kernel.machine, 0),
+            pockets: self.tnc.machine.magazine.moved(),
+            written: self.tnc.machine.loaded_tables.written(&link.files),
+            offsets_volts: offsets_volts(&self.tnc.machine, 0),
             parameter_list: link.selected_list.clone(),
             pallet_line: link.pallet.line,
             datum_table: link.pallet.datum_table.clone(),
-            written_datums: self.kernel.machine.loaded_datums.written(link),
-            compensation_line: self.kernel.machine.compensation.selected(&link.files),
-            ..self.kernel.channels.first().remember()
+            written_datums: self.tnc.machine.loaded_datums.written(link),
+            compensation_line: self.tnc.machine.compensation.selected(&link.files),
+            ..self.tnc.channels.first().remember()
         }
     }
 
     /// The offsets that code number 75 368 shows while its dialogue is open, by axis index, in units of
     /// 0.15 mV [000:5014-5016].
     pub fn offsets_shown(&self) -> Option<PerPlcAxis<i32>> {
-        let axes = self.kernel.machine.axes.owned(0);
+        let axes = self.tnc.machine.core.axes.owned(0);
         let units = by_index(axes, |unit| unit.index, |unit| unit.servo.offset_units());
-        self.kernel.machine.offsets.shown.then_some(units)
+        self.tnc.machine.offsets.shown.then_some(units)
     }
 
     /// Texts of the PLC dialogues, from 0.
     pub fn plc_dialogues(&self) -> &[String] {
-        self.kernel.machine.link.dialogues()
+        self.tnc.machine.link.dialogues()
     }
 
     /// The line of the compensation assignment that is active: it survives power-off [000:15547-15580].
     pub fn compensation_line(&self) -> Option<usize> {
-        self.kernel.machine.compensation.line
+        self.tnc.machine.compensation.line
     }
 
     /// The state as of now.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot::of(self.kernel.channels.first(), &self.kernel.machine, None)
+        Snapshot::of(self.tnc.channels.first(), &self.tnc.machine, None)
     }
 
     /// The state as of now, in the memory of an earlier one: it does not allocate unless another program or
     /// message is shown.
     pub fn snapshot_again(&self, earlier: Snapshot) -> Snapshot {
-        Snapshot::of(self.kernel.channels.first(), &self.kernel.machine, Some(earlier))
+        Snapshot::of(self.tnc.channels.first(), &self.tnc.machine, Some(earlier))
     }
 
     /// Messages came up since the last call of [`Control::take_messages`].
     pub fn has_news(&self) -> bool {
-        self.kernel.machine.messages.has_news()
+        self.tnc.machine.messages.has_news()
     }
 
     /// What the PLC wants of the data interfaces since `ordered` was asked last.
     pub fn line_orders(&self, ordered: &mut OrderedLines, tell: impl FnMut(DataLineOrder)) {
-        ordered.news(&self.kernel.machine.link.interfaces, tell);
+        ordered.news(&self.tnc.machine.link.interfaces, tell);
     }
 
     /// The message of the PLC to a host that waits longest [000:15835-15857].
     pub fn message_to_host(&self) -> Option<&HostMessage> {
-        self.kernel.machine.link.host.as_ref()?.outgoing.front()
+        self.tnc.machine.link.host.as_ref()?.outgoing.front()
     }
 
     /// The messages that came up since the last call, in their order.
     pub fn take_messages(&mut self) -> Vec<Shown> {
-        self.kernel.machine.messages.take_news()
+        self.tnc.machine.messages.take_news()
     }
 
     /// What FN15 has printed since the last call, with the channel whose program did so; how many lines more there were
     /// that nobody took in time.
     pub fn take_printed(&mut self, take: impl FnMut((usize, Arc<str>))) -> u32 {
-        self.kernel.machine.messages.take_printed(take)
+        self.tnc.machine.messages.take_printed(take)
     }
 
     /// The text of a message that is or was shown, with the number of its channel where there are several.
@@ -521,13 +511,13 @@ impl Control {
 
     /// The text of a message as this control shows it.
     pub fn message_text(&self, message: &Message) -> String {
-        let machine = &self.kernel.machine;
+        let machine = &self.tnc.machine;
         message.text(machine.model, &machine.letters(), machine.link.messages())
     }
 
     /// Keeps the path elements of runs of all channels that begin from now on, for [`Control::take_path`].
     pub fn keep_path(&mut self, keep: bool) {
-        for channel in self.kernel.channels.iter_mut() {
+        for channel in self.tnc.channels.iter_mut() {
             channel.run.source.tap = keep;
         }
     }
@@ -535,150 +525,146 @@ impl Control {
     /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
     /// is replaced before them. To be asked for before it.
     pub fn take_dropped_path(&mut self, channel: usize) -> Option<u64> {
-        let feeder = self.kernel.channels.of_mut(channel).run.source.feeder_mut();
+        let feeder = self.tnc.channels.of_mut(channel).run.source.feeder_mut();
         feeder.and_then(|feeder| feeder.take_dropped())
     }
 
     /// The path elements of a channel that were prepared since the last call, in workpiece coordinates.
     pub fn take_path(&mut self, channel: usize) -> Vec<PathElement> {
-        let feeder = self.kernel.channels.of_mut(channel).run.source.feeder_mut();
+        let feeder = self.tnc.channels.of_mut(channel).run.source.feeder_mut();
         feeder.map(|feeder| feeder.take_tap()).unwrap_or_default()
     }
 
     /// The warnings of a channel's program since the last call.
     pub fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
-        let reader = self.kernel.channels.of_mut(channel).run.source.reader_mut();
+        let reader = self.tnc.channels.of_mut(channel).run.source.reader_mut();
         reader.map(Reader::take_warnings).unwrap_or_default()
     }
 
     /// Operating mode.
     pub fn mode(&self) -> Mode {
-        self.kernel.channels.first().desk().mode()
+        self.tnc.channels.first().desk().mode()
     }
 
     /// State of the run.
     pub fn run_state(&self) -> RunState {
-        self.kernel.channels.first().run.progress().state()
+        self.tnc.channels.first().run.progress().state()
     }
 
     /// A fault has interrupted the run: nothing of it is on its way, and NC start tries its block again.
     pub fn is_broken(&self) -> bool {
-        self.kernel.channels.first().run.progress().is_broken()
+        self.tnc.channels.first().run.progress().is_broken()
     }
 
     /// The run came to its end since it was started.
     pub fn has_ended(&self) -> bool {
-        self.kernel.channels.first().run.progress().has_ended()
+        self.tnc.channels.first().run.progress().has_ended()
     }
 
     /// The element of the path that is executed, or was last.
     pub fn element(&self) -> Option<&PathElement> {
-        self.kernel.channels.first().run.track.path.element()
+        self.tnc.channels.first().run.track.path.element()
     }
 
     /// Path length to the end of that element, mm; below 0 where a thread waits behind its end.
     pub fn rest_mm(&self) -> f64 {
-        self.kernel.channels.first().run.track.path.rest_mm()
+        self.tnc.channels.first().run.track.path.rest_mm()
     }
 
     /// The program that runs, or ran last; `None` while it is [lent](Control::lend_reading).
     pub fn reader(&self) -> Option<&dyn Reader> {
-        self.kernel.channels.first().run.source.reader()
+        self.tnc.channels.first().run.source.reader()
     }
 
     /// The same as a program of a TNC; `None` when it is in another language.
     pub fn interpreter(&self) -> Option<&Interpreter> {
-        self.kernel.channels.first().run.source.interpreter()
+        self.tnc.channels.first().run.source.interpreter()
     }
 
     /// Handshake that the run waits for.
     pub fn waiting(&self) -> Option<Waiting> {
-        let nc = self.kernel.machine.memory.first().nc();
-        self.kernel.channels.first().handshakes.waiting(nc)
+        let nc = self.tnc.machine.memory.first().nc();
+        self.tnc.channels.first().handshakes.waiting(nc)
     }
 
     /// Messages that are shown, the oldest first.
     pub fn shown(&self) -> &[Shown] {
-        self.kernel.machine.messages.shown()
+        self.tnc.machine.messages.shown()
     }
 
     /// Tool in the spindle.
     pub fn tool(&self) -> u32 {
-        self.kernel.channels.first().tools.number
+        self.tnc.channels.first().tools.number
     }
 
     /// The loops are closed: the control voltage is there.
     pub fn loops_closed(&self) -> bool {
-        self.kernel.machine.loops_closed
+        self.tnc.machine.core.loops_closed
     }
 
     /// Feed override in force, %.
     pub fn feed_override_percent(&self) -> f64 {
-        self.kernel.channels.first().desk().feed_percent()
+        self.tnc.channels.first().desk().feed_percent()
     }
 
     /// Spindle.
     pub fn spindle(&self) -> SpindleState {
-        self.kernel.machine.spindles.first().state()
+        self.tnc.machine.spindles.first().state()
     }
 
     /// No axis is commanded to move.
     pub fn stands(&self) -> bool {
-        self.kernel.machine.axes.iter().all(AxisUnit::stands)
+        self.tnc.machine.core.axes.iter().all(AxisUnit::stands)
     }
 
     /// The letters of the axes in the order of their indices.
     pub fn axis_letters(&self) -> impl Iterator<Item = char> {
-        self.kernel.machine.axes.owned(0).map(|unit| unit.axis.letter())
+        self.tnc.machine.core.axes.owned(0).map(|unit| unit.axis.letter())
     }
 
     /// Nominal processing time of the latest PLC scan, %.
     pub fn plc_percent(&self) -> f64 {
-        self.kernel.machine.plc.machine.time().current_percent()
+        self.tnc.machine.plc.machine.time().current_percent()
     }
 
     /// The value of a signal now; an axis that the machine does not have reads 0.
     pub fn observe(&self, signal: &Signal) -> f64 {
-        signal.value(
-            self.kernel.channels.first(),
-            &self.kernel.machine,
-            &self.kernel.seam,
-        )
+        signal.value(self.tnc.channels.first(), &self.tnc.machine, &self.tnc.clock)
     }
 
     /// The model.
     pub fn model(&self) -> ControlModel {
-        self.kernel.machine.model
+        self.tnc.machine.model
     }
 
     /// Scans of the PLC that were started since the control began.
     pub fn plc_scans(&self) -> u64 {
-        self.kernel.machine.plc.scans
+        self.tnc.machine.plc.scans
     }
 
     /// The PLC: its program, accumulators, processing times, and the error that stopped it.
     pub fn plc(&self) -> &bahn_plc::Machine {
-        &self.kernel.machine.plc.machine
+        &self.tnc.machine.plc.machine
     }
 
     /// Takes the key of the keyboard that the PLC has simulated and nobody inhibits: it is for whoever has
     /// the keyboard [000:7406-7440].
     pub fn take_key(&mut self) -> Option<KeyCode> {
-        self.kernel.channels.first_mut().desk.take_key()
+        self.tnc.channels.first_mut().desk.take_key()
     }
 
     /// The window of the PLC on the screen [000:6603-6617].
     pub fn plc_window(&self) -> &bahn_plc::PlcWindow {
-        &self.kernel.machine.link.window
+        &self.tnc.machine.link.window
     }
 
     /// Whether that window is to be seen, as module 9081 tells the PLC [000:15262-15275].
     pub fn show_plc_window(&mut self, view: bahn_plc::WindowView) {
-        self.kernel.machine.link.window_view = view;
+        self.tnc.machine.link.window_view = view;
     }
 
     /// The program that is selected for single block and full sequence.
     pub fn selected_program(&self) -> Option<&str> {
-        self.kernel.channels.first().run.selection.program.as_deref()
+        self.tnc.channels.first().run.selection.program.as_deref()
     }
 }

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
+use bahn_kernel::{Chain, Kinematics, Offsets, OwnAxes};
 use bahn_parameters::PerPlcAxis;
 use bahn_path::{Axis, Position};
 
-use crate::axes::OwnAxes;
-use crate::kinematics::{Chain, Kinematics, Offsets};
 use crate::leaning::MAIN;
 use crate::setup::{AxisLimit, Remembered};
 

@@ -1,18 +1,16 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
 use bahn_exchange::{Exchange, Image, signal};
+use bahn_kernel::{Chain, Mover, OwnAxes, Progress, RunState};
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, BlockRef, Position};
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
-use crate::axes::OwnAxes;
-use crate::axis::Mover;
 use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
 use crate::key_code::KeyCode;
-use crate::kinematics::Chain;
 use crate::leaning::{self, Leaning};
 use crate::manual::Manual;
 use crate::marker_codes;
@@ -22,7 +20,6 @@ use crate::overrides::Override;
 use crate::panel::{Panel, PlcFaultCode};
 use crate::plane_command::PlaneCommand;
 use crate::probing::{Guarded, Probe, Stylus};
-use crate::progress::{Progress, RunState};
 use crate::reach::Reach;
 use crate::reference::ReferenceRun;
 use crate::status;

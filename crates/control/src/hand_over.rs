@@ -6,15 +6,13 @@
 //! the M functions.
 
 use bahn_exchange::Bit;
+use bahn_kernel::{AxisId, PerChannel, RunState};
 use bahn_motion::Stop;
 use bahn_path::{Axis, Barrier};
 
-use crate::axis::AxisId;
 use crate::channel::Channel;
 use crate::machine::MachineSide;
 use crate::message::{HandOverError, Message};
-use crate::per_channel::PerChannel;
-use crate::progress::RunState;
 use crate::status;
 
 /// An axis that goes to another channel when the PLC orders it.
@@ -82,7 +80,7 @@ impl Ordered {
 
     /// The channel that has the axis, and the one that gets it.
     fn channels(&self, machine: &MachineSide) -> impl Iterator<Item = usize> + use<> {
-        let mut axes = machine.axes.iter();
+        let mut axes = machine.core.axes.iter();
         let from = axes
             .find(|unit| unit.id == self.what.axis)
             .map(|unit| unit.channel);
@@ -99,17 +97,21 @@ pub(crate) fn hand_over(
     channels: &mut PerChannel<Channel>,
     machine: &mut MachineSide,
 ) -> Result<(), HandOverError> {
-    let unit = machine.axes.iter().find(|unit| unit.id == what.axis);
+    let unit = machine.core.axes.iter().find(|unit| unit.id == what.axis);
     let unit = unit.ok_or(HandOverError::Unknown)?;
     let (from, before) = (unit.channel, unit.index);
     let to = channels.get(what.to).ok_or(HandOverError::Unknown)?;
     if !rests(to) || !rests(channels.of(from)) {
         return Err(HandOverError::Running);
     }
-    if !machine.axes.may_leave(what.axis) {
+    if !machine.core.axes.may_leave(what.axis) {
         return Err(HandOverError::Moving);
     }
-    if !machine.axes.give(what.axis, what.to, what.letter, what.index) {
+    if !machine
+        .core
+        .axes
+        .give(what.axis, what.to, what.letter, what.index)
+    {
         return Err(HandOverError::Taken);
     }
     status::leave(before, machine.memory.of_mut(from));

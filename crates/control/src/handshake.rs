@@ -7,11 +7,9 @@
 use std::collections::VecDeque;
 
 use bahn_exchange::{Bit, Exchange, Image, signal};
+use bahn_kernel::LOOK_AHEAD;
 
 use crate::marker_codes;
-
-/// Elements of the path that are prepared ahead at most.
-pub(crate) const LOOK_AHEAD: usize = 512;
 
 /// A function on its way to the PLC.
 #[derive(Clone, Copy, Debug, PartialEq)]

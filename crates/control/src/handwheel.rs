@@ -1,16 +1,15 @@
 //! The electronic handwheel: which axis its wheels lead and how far, and where its keys go [000:8060-8446].
 
 use bahn_exchange::{Image, signal};
+use bahn_kernel::{Direction, OwnAxes};
 use bahn_parameters::operation::{Handwheel as Kind, HandwheelParameters};
 use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
 
-use crate::axes::OwnAxes;
 use crate::command::Mode;
 use crate::markers::AXES;
 use crate::message::Message;
 use crate::now::Now;
-use crate::panel::Direction;
 use crate::reach::{Reach, within};
 
 /// Counting steps of a turn of the handwheel (inferred).

@@ -2,7 +2,8 @@
 
 use bahn_plc::ToolCallBlock;
 
-use crate::feeder;
+// FIX feeder
+use crate::language;
 use crate::message::Message;
 use crate::run::ProgramRun;
 use crate::site::Site;
@@ -15,7 +16,7 @@ pub(crate) fn take(call: ToolCallBlock, run: &mut ProgramRun, site: &mut Site) {
         return;
     }
     let block = run.running_block();
-    let error = feeder::without_tools(block.unwrap_or_default(), run.source.reader());
+    let error = language::without_tools(block.unwrap_or_default(), run.source.reader());
     site.messages.show(Message::Program(Box::new(error)), block);
     if !run.refuse_block(site) {
         run.stop();

@@ -3,16 +3,13 @@
 
 use std::sync::Arc;
 
+use bahn_kernel::{AxisUnit, Chain, Direction, Mover, Offsets, OwnAxes};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::axis::AxisParameters;
 use bahn_path::{Axis, Placement, Position, Swivels};
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
-use crate::kinematics::{Chain, Offsets};
 use crate::message::Message;
 use crate::now::Now;
-use crate::panel::Direction;
 use crate::plane_command::{PlaneCommand, ROTARY};
 use crate::reach::Reach;
 

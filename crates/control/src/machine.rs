@@ -2,27 +2,24 @@
 //! survives power-off.
 
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
+use bahn_kernel::{Axes, AxisId, Circuit, CircuitOrder, Core, EmergencyStop, PerChannel};
 use bahn_parameters::fault::{FaultId, Reaction};
 use bahn_parameters::operation::{HandwheelParameters, Station};
 use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::BlockRef;
 use bahn_plc::{Machine, PlcProgram, Start, TableKind, Tracer, mirror_parameters};
-use bahn_servo::{Commands, Measured, Timing};
+use bahn_servo::{Commands, Measured};
 
-use crate::axes::Axes;
-use crate::axis::AxisId;
 use crate::command::Command;
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
-use crate::emergency::{Circuit, EmergencyStop};
 use crate::handwheel;
 use crate::life;
 use crate::magazine::Magazine;
 use crate::message::{Message, Messages};
 use crate::now::Facts;
 use crate::oscilloscope::OscilloscopeKeys;
-use crate::per_channel::PerChannel;
 use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
@@ -37,7 +34,8 @@ const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop)
 #[derive(Clone)]
 pub(crate) struct MachineSide {
     pub model: ControlModel,
-    pub timing: Timing,
+    /// Axes and EMERGENCY STOP, which the kernel moves and watches.
+    pub core: Core,
     station: Station,
     pub plc_parameters: PlcParameters,
     handwheel: HandwheelParameters,
@@ -47,13 +45,9 @@ pub(crate) struct MachineSide {
     pub windows: Vec<Window>,
     pub link: PlcLink,
     pub plc: PlcUnit,
-    pub emergency: EmergencyStop,
     pub messages: Messages,
-    pub axes: Axes,
     pub spindles: PerChannel<SpindleUnit>,
     pub magazine: Magazine,
-    /// The loops were closed since the control voltage came on.
-    pub loops_closed: bool,
     pub offsets: DriveOffsets,
     pub oscilloscope: OscilloscopeKeys,
     pub compensation: Compensation,
@@ -101,20 +95,6 @@ struct Wiring {
     /// I160 to I175, where a handwheel has its keys.
     handwheel_bits: Vec<(usize, Bit)>,
     output_bits: Vec<(usize, Bit)>,
-}
-
-/// What the "control is ready" circuit asks of all channels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CircuitOrder {
-    Nothing,
-    /// The control voltage has come: the axes are held where they are, M2000 ff. are set [000:5341-5350].
-    CloseLoops,
-    OpenLoops,
-    /// The acknowledgement was lost: as an external stop, a moving axis is ramped down under control
-    /// [000:6155-6157]. Then the loops are opened (inferred).
-    Stop,
-    /// With M2827 nothing is reported and the loops open at once [000:5403-5421].
-    StopSilently,
 }
 
 impl PlcUnit {
@@ -182,7 +162,7 @@ impl MachineSide {
 
     /// The answer to the dialogue of the offset adjustment; `false` when it is not open.
     pub fn adjust_offsets(&mut self, adjust: bool) -> bool {
-        let done = self.offsets.answer(adjust, &mut self.axes);
+        let done = self.offsets.answer(adjust, &mut self.core.axes);
         self.unsaved |= done;
         done
     }
@@ -210,7 +190,15 @@ impl MachineSide {
             .map_or(0.0, |unit| unit.parameters.offset_interval_s);
         MachineSide {
             model,
-            timing: model.timing(),
+            core: Core {
+                timing: model.timing(),
+                axes,
+                emergency: EmergencyStop::new(
+                    model.limits().emergency_stop_test,
+                    operation.power_interrupted,
+                ),
+                loops_closed: false,
+            },
             station: operation.station,
             plc_parameters: parameters.plc_parameters(),
             handwheel: operation.handwheel,
@@ -220,12 +208,9 @@ impl MachineSide {
             windows,
             link,
             plc,
-            emergency: EmergencyStop::new(model, operation.power_interrupted),
             messages: Messages::default(),
-            axes,
             spindles: PerChannel::new(spindle, Vec::new()),
             magazine,
-            loops_closed: false,
             offsets: DriveOffsets::new(interval_s),
             oscilloscope: OscilloscopeKeys::default(),
             loaded_tables,
@@ -239,10 +224,10 @@ impl MachineSide {
     /// What holds now for a channel whose loops have a fault, or not.
     pub fn facts(&self, fault: bool) -> Facts {
         Facts {
-            time_s: f64::from(self.timing.contour_us()) * 1e-6,
+            time_s: f64::from(self.core.timing.contour_us()) * 1e-6,
             us: self.messages.time_us(),
-            ready: self.emergency.circuit() == Circuit::Ready,
-            loops_closed: self.loops_closed,
+            ready: self.core.emergency.circuit() == Circuit::Ready,
+            loops_closed: self.core.loops_closed,
             fault: fault || self.messages.is_fatal(),
         }
     }
@@ -250,7 +235,7 @@ impl MachineSide {
     /// Letters of the axes, by their numbers.
     pub fn letters(&self) -> Vec<char> {
         let mut letters = vec!['X', 'Y', 'Z', '4', '5', 'S'];
-        for unit in self.axes.iter() {
+        for unit in self.core.axes.iter() {
             let place = usize::from(unit.id.number());
             if letters.len() <= place {
                 letters.resize(place + 1, ' ');
@@ -262,31 +247,13 @@ impl MachineSide {
         letters
     }
 
-    /// What a servo step begins with: "control is ready", encoders.
-    pub fn begin_step(&mut self, now_us: u64, measured: &Measured, commands: &mut Commands) {
-        self.emergency.step(now_us, measured.control_ready);
-        commands.control_ready = self.emergency.output();
-        self.axes.measure(measured);
-        for spindle in self.spindles.iter_mut() {
-            spindle.measure(measured);
-        }
-    }
-
-    /// What the machine is to do in a servo step.
-    pub fn output(&mut self, commands: &mut Commands) {
-        self.axes.output(commands);
-        for spindle in self.spindles.iter_mut() {
-            spindle.output(commands);
-        }
-    }
-
     /// Whether a PLC scan is due. The PLC runs from the end of `POWER INTERRUPTED` on [000:7033-7040].
     pub fn scan_is_due(&mut self, now_us: u64) -> bool {
         if self.station == Station::WithoutPlc || self.plc.machine.stopped().is_some() {
             return false;
         }
         let runs = !matches!(
-            self.emergency.circuit(),
+            self.core.emergency.circuit(),
             Circuit::PowerInterrupted | Circuit::Defective
         );
         if runs && self.plc.scans == 0 && self.plc.due_us < now_us {
@@ -370,23 +337,23 @@ impl MachineSide {
         }
     }
 
-    /// Follows the "control is ready" circuit.
-    pub fn follow_circuit(&mut self, block: Option<BlockRef>) -> CircuitOrder {
+    /// What the "control is ready" circuit asks for, with its messages.
+    pub fn circuit_order(&mut self, block: Option<BlockRef>) -> CircuitOrder {
         if self.station != Station::Machine {
             // A programming station has no machine: its loops stay open [000:6951].
             return CircuitOrder::Nothing;
         }
         if self.messages.is_fatal() {
-            self.emergency.fail();
+            self.core.emergency.fail();
         }
-        let circuit = self.emergency.circuit();
+        let circuit = self.core.emergency.circuit();
         if circuit == Circuit::VoltageMissing {
             self.messages.of_machine().show(VOLTAGE_MISSING, block);
         } else if self.messages.contains(&VOLTAGE_MISSING) {
             self.messages.remove(&VOLTAGE_MISSING);
         }
         let fault = match circuit {
-            Circuit::Ready if !self.loops_closed => return CircuitOrder::CloseLoops,
+            Circuit::Ready if !self.core.loops_closed => return CircuitOrder::CloseLoops,
             Circuit::PowerInterrupted | Circuit::VoltageMissing | Circuit::Testing | Circuit::Ready => {
                 return CircuitOrder::Nothing;
             }
@@ -418,23 +385,6 @@ impl MachineSide {
         self.messages.of_machine().show(EMERGENCY_STOP, block);
     }
 
-    /// The silent stop of M2827 is over with the control voltage.
-    pub fn end_silent_stop(&mut self) {
-        if self.emergency.circuit() == Circuit::VoltageBack {
-            self.emergency.clear();
-        }
-    }
-
-    pub fn close_loops(&mut self) {
-        self.loops_closed = true;
-        self.axes.close_loops();
-    }
-
-    pub fn open_loops(&mut self) {
-        self.loops_closed = false;
-        self.axes.open_loops();
-    }
-
     /// W522 bit 0 lets the input MP4130, sampled in each control cycle, switch the monitoring off
     /// [000:5178-5188].
     pub fn monitoring_is_off(&self, measured: &Measured) -> bool {
@@ -455,20 +405,23 @@ impl MachineSide {
     /// CE: clears a message, and what it stands for.
     pub fn clear_message(&mut self) -> bool {
         // EMERGENCY STOP only when the control voltage is back [000:6203-6204].
-        let back = matches!(self.emergency.circuit(), Circuit::VoltageBack | Circuit::Ready);
+        let back = matches!(
+            self.core.emergency.circuit(),
+            Circuit::VoltageBack | Circuit::Ready
+        );
         let Some(message) = self.messages.clear(self.memory.first_mut(), back) else {
             return false;
         };
         match message {
             Message::Plain(MessageId::PowerInterrupted | MessageId::ExternalEmergencyStop) => {
-                self.emergency.clear();
+                self.core.emergency.clear();
             }
             Message::Axis {
                 id: MessageId::PositioningError,
                 axis,
                 ..
             } => {
-                let unit = AxisId::new(axis).and_then(|id| self.axes.with_id_mut(id));
+                let unit = AxisId::new(axis).and_then(|id| self.core.axes.with_id_mut(id));
                 // A reference run of the PLC may have cancelled it already.
                 if let Some(unit) = unit.filter(|unit| unit.servo.fault().is_some()) {
                     unit.servo.acknowledge();
@@ -486,9 +439,9 @@ impl MachineSide {
             .watch(measured.buffer_battery_low, &mut self.messages);
         let off = self.spindles.iter().all(|spindle| spindle.state().volts == 0.0);
         self.offsets
-            .adjust_cyclically(self.timing.contour_us(), off, &mut self.axes);
-        self.compensation.correct(&mut self.axes);
-        upkeep::leave_limits(&mut self.axes, &self.messages);
+            .adjust_cyclically(self.core.timing.contour_us(), off, &mut self.core.axes);
+        self.compensation.correct(&mut self.core.axes);
+        upkeep::leave_limits(&mut self.core.axes, &self.messages);
     }
 
     /// Goes over to the machine parameters that module 9031 has changed.

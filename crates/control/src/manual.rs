@@ -1,6 +1,7 @@
 //! Manual operation: axis direction keys, jog increment, electronic handwheel.
 
 use bahn_exchange::signal;
+use bahn_kernel::{AxisUnit, Direction, Mover, OwnAxes};
 use bahn_motion::Aim;
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::HandwheelParameters;
@@ -9,14 +10,11 @@ use bahn_parameters::{ControlModel, PerPlcAxis};
 use bahn_plc::JogLimit;
 use bahn_servo::{HandwheelInputs, Probe as Touch};
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::handwheel::Handwheel;
 use crate::leaning::{Leaning, MAIN, Wish};
 use crate::message::Message;
 use crate::now::Now;
-use crate::panel::Direction;
 use crate::plc_link::StatusChanges;
 use crate::reach::{Reach, within};
 use crate::site::Site;

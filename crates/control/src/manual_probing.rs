@@ -2,15 +2,14 @@
 //! datums. NC start probes in the chosen direction and goes back in rapid traverse to where it started.
 
 use bahn_interpreter::{BasicRotation, Rules};
+use bahn_kernel::{Offsets, OwnAxes};
 use bahn_parameters::machining::{ProbeSettings, ProbeTurn};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, PerAxis, Plane, Position};
 use bahn_servo::Measured;
 
-use crate::axes::OwnAxes;
 use crate::datums::NewDatum;
 use crate::handshake::Transfer;
-use crate::kinematics::Offsets;
 use crate::message::Message;
 use crate::probe_command::{ProbeCommand, ProbeFunction, sign};
 use crate::probing::{Probe, Probed};
@@ -333,7 +332,7 @@ impl ManualProbing {
         if let Some(job) = &mut self.job {
             job.left = 0;
         }
-        site.axes.release(|mover| mover == crate::axis::Mover::Path);
+        site.axes.release(|mover| mover == bahn_kernel::Mover::Path);
     }
 
     /// A touch. Whether something changed that survives power-off.
@@ -346,7 +345,7 @@ impl ManualProbing {
     ) -> bool {
         let calibration = self.calibration();
         let Some(job) = &mut self.job else { return false };
-        site.axes.release(|mover| mover == crate::axis::Mover::Path);
+        site.axes.release(|mover| mover == bahn_kernel::Mover::Path);
         job.note(touch, &calibration, &site.chain.offsets);
         job.left = job.left.saturating_sub(1);
         if job.left > 0 {

@@ -7,12 +7,10 @@ use std::sync::Arc;
 
 use bahn_exchange::{Exchange, signal};
 use bahn_interpreter::ProgramError;
+use bahn_kernel::{AxisId, Direction};
 use bahn_parameters::fault::{Clearing, FaultId, Reaction};
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
-
-use crate::axis::AxisId;
-use crate::panel::Direction;
 
 /// An axis cannot go to another channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! What holds for all that is done in a contour cycle.
 
 use crate::command::Mode;
-use crate::panel::Direction;
+use bahn_kernel::Direction;
 use bahn_parameters::PerPlcAxis;
 
 /// What the machine side says of now.

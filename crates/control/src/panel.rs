@@ -6,6 +6,7 @@
 use bahn_exchange::{Bit, Image, signal};
 
 use crate::markers::AXES;
+use bahn_kernel::Direction;
 use bahn_parameters::PerPlcAxis;
 
 /// The letters behind `ERROR IN PLC-PROGRAM`.
@@ -121,32 +122,6 @@ pub(crate) fn complements() -> impl Iterator<Item = Bit> {
     let single = [&START, &RAPID, &MEMORY, &FEED];
     let keys = AXIS_KEYS.iter().chain(&JOG_KEYS).flatten();
     single.into_iter().chain(keys).map(|command| command.complement)
-}
-
-/// A direction of traverse.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Direction {
-    Plus,
-    Minus,
-}
-
-impl Direction {
-    /// The direction of a value's sign; `None` for 0.
-    pub fn of(value: f64) -> Option<Direction> {
-        match value {
-            value if value > 0.0 => Some(Direction::Plus),
-            value if value < 0.0 => Some(Direction::Minus),
-            _ => None,
-        }
-    }
-
-    /// +1 or -1.
-    pub fn sign(self) -> f64 {
-        match self {
-            Direction::Plus => 1.0,
-            Direction::Minus => -1.0,
-        }
-    }
 }
 
 /// The state of the panel after a PLC scan.

@@ -1,13 +1,12 @@
 //! Movements that the PLC commands: PLC positioning of NC axes, PLC axes, free rotation.
 
 use bahn_exchange::{Exchange, Image, signal};
+use bahn_kernel::{AxisUnit, Mover, OwnAxes};
 use bahn_motion::Aim;
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::plc::PlcParameters;
 use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
 use crate::markers::{AXES, POSITIONING_FEED, TRANSFER};
 use crate::now::Now;
 use crate::panel::PlcFaultCode;

@@ -2,9 +2,8 @@
 
 use std::fmt;
 
+use bahn_kernel::Direction;
 use bahn_path::Axis;
-
-use crate::panel::Direction;
 
 /// An input of the TOUCH PROBE menu [003:1226-1405]; in commands it stands behind `probe`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Probing in the program: the axes move until the stylus is deflected [000:7613-7718].
 
 use bahn_exchange::signal;
+use bahn_kernel::{AxisUnit, Chain, Direction, Mover, OwnAxes};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::ProbeSettings;
@@ -9,15 +10,10 @@ use bahn_path::{
 };
 use bahn_servo::{Measured, Probe as ProbeState};
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
-use crate::kinematics::Chain;
 use crate::message::Message;
-use crate::panel::Direction;
 use crate::scanning::{Digitized, DigitizedNews, ScanCycle, Scanning};
 use crate::site::Site;
 use crate::tool_measuring::{Measuring, ToolMeasurement};
-use crate::track::{has_arrived, limit_message};
 
 /// What M2502 makes of the stylus.
 #[derive(Clone, Copy, Debug, Default)]
@@ -339,9 +335,9 @@ impl Probe {
             }
         }
         match (answer, probing.limit) {
-            (Some(touched), limit) if stands && has_arrived(&site.axes) => match (touched, limit) {
+            (Some(touched), limit) if stands && site.axes.have_arrived() => match (touched, limit) {
                 (None, Some((axis, direction))) => {
-                    let message = limit_message(&mut site.axes, axis, direction);
+                    let message = site.limit_message(axis, direction);
                     Probed::Refused(message, probing.block)
                 }
                 _ => self.finish(touched, site),

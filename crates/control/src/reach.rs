@@ -1,13 +1,12 @@
 //! What the operator's hands reach, and how far they lead an axis.
 
 use bahn_exchange::Image;
+use bahn_kernel::{AxisUnit, Direction, OwnAxes};
 use bahn_parameters::operation::OperationParameters;
 use bahn_path::BlockRef;
 
-use crate::axes::OwnAxes;
-use crate::axis::AxisUnit;
 use crate::message::Messages;
-use crate::panel::{Direction, Panel};
+use crate::panel::Panel;
 
 /// What the operator's hands reach.
 pub(crate) struct Reach<'a, 'b> {

@@ -5,16 +5,13 @@
 //! ff. that the PLC copies from its input.
 
 use bahn_exchange::Image;
+use bahn_kernel::{AxisUnit, Mover, OwnAxes, Progress, gantry};
 use bahn_motion::Aim;
 use bahn_servo::settings::MarkKind;
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
-use crate::gantry;
 use crate::markers::REFERENCE_CAM;
 use crate::now::Now;
-use crate::progress::Progress;
 use crate::site::Site;
 
 /// The reference run.

@@ -11,8 +11,8 @@ use crate::alteration::Altered;
 use crate::compensation::Compensation;
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
 use crate::correction_tables::CorrectionTables;
-use crate::kernel::Kernel;
 use crate::setup::Setup;
+use crate::tnc::Tnc;
 
 /// What was written anew.
 #[derive(Clone, Debug)]
@@ -45,27 +45,27 @@ pub struct CompensationFiles {
 }
 
 /// Takes it over: into what the control is made of when it begins anew, and into what runs.
-pub(crate) fn take(renewed: Renewed, setup: &mut Setup, kernel: &mut Kernel, off: bool) -> Altered {
+pub(crate) fn take(renewed: Renewed, setup: &mut Setup, tnc: &mut Tnc, off: bool) -> Altered {
     match renewed {
         Renewed::Plc(program) => setup.plc = program,
         Renewed::Texts { messages, dialogues } => {
             setup.plc_messages.clone_from(&messages);
             setup.plc_dialogues.clone_from(&dialogues);
-            kernel.machine.link.take_texts(messages, dialogues);
+            tnc.machine.link.take_texts(messages, dialogues);
         }
         Renewed::Compensation(own) => {
-            for files in [&mut setup.files, &mut kernel.machine.link.files] {
+            for files in [&mut setup.files, &mut tnc.machine.link.files] {
                 files.compensation.clone_from(&own.assignment);
                 files.compensation_tables.clone_from(&own.tables);
                 files.correction_tables.clone_from(&own.correction_tables);
             }
             // The line that the file names; module 9095 selects another one again.
             let line = own.assignment.as_ref().and_then(|assignment| assignment.active);
-            kernel.machine.compensation = Compensation::of(&kernel.machine.link.files, line);
-            kernel.machine.unsaved = true;
+            tnc.machine.compensation = Compensation::of(&tnc.machine.link.files, line);
+            tnc.machine.unsaved = true;
         }
         Renewed::List(name, list) => {
-            if off || kernel.channels.iter().any(|channel| channel.run.is_active()) {
+            if off || tnc.channels.iter().any(|channel| channel.run.is_active()) {
                 return Altered::Refused;
             }
             if let Some(name) = &name {
@@ -73,7 +73,7 @@ pub(crate) fn take(renewed: Renewed, setup: &mut Setup, kernel: &mut Kernel, off
                 let lists = &mut setup.files.parameter_lists;
                 lists.insert(name.clone(), Some((*list).clone()));
             }
-            kernel.machine.link.selected_list = name;
+            tnc.machine.link.selected_list = name;
             return Altered::Reset(list);
         }
     }

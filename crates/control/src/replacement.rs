@@ -1,12 +1,12 @@
 //! M101: a tool whose life is over is replaced between two blocks [000:9175-9177].
 
+use bahn_kernel::{Feeder, Track};
 use bahn_parameters::MessageId;
 
-use crate::feeder::Feeder;
+use crate::language::OwnLanguage;
 use crate::magazine::Magazine;
 use crate::site::Site;
 use crate::tools::Tools;
-use crate::track::Track;
 
 /// Radii that differ by less are the same, mm.
 const SAME_RADIUS_MM: f64 = 1e-6;

@@ -7,19 +7,15 @@
 use std::collections::VecDeque;
 
 use bahn_exchange::{Exchange, signal};
+use bahn_kernel::{AxisUnit, Feeder, Mover, Offsets, OwnAxes, RunFault, Track};
 use bahn_motion::Aim;
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
 use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
-use crate::feeder::{Feeder, RunFault};
-use crate::kinematics::Offsets;
 use crate::message::Message;
 use crate::q_transfer::QTransfer;
 use crate::site::Site;
-use crate::track::Track;
 
 /// Elements that one call of prepare passes at most.
 const BUDGET: usize = 1000;
@@ -235,7 +231,7 @@ impl Restoration {
             site.axes.release(|mover| mover == Mover::Positioning);
             self.0 = None;
             site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, false);
-            track.regain(site);
+            track.regain(&site.axes, site.chain);
         } else if stopped && site.axes.stand() {
             self.0 = Some(Restore::Armed { target });
         }

@@ -1,6 +1,10 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
 use bahn_exchange::{Image, signal};
+use bahn_kernel::{
+    AxisUnit, BlockTime, Chain, Feeder, Mover, Preparation, Progress, RunFault, RunState, Tapping, Track,
+    Wheels, is_floating, is_rigid, thread,
+};
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
@@ -8,24 +12,18 @@ use bahn_path::{Barrier, BlockRef, Frame, LiveData, PathElement};
 use bahn_reader::Reader;
 use bahn_servo::Measured;
 
-use crate::axis::{AxisUnit, Mover};
-use crate::block_time::BlockTime;
 use crate::command::Mode;
 use crate::driving::Driving;
-use crate::feeder::{self, Feeder, RunFault};
-use crate::kinematics::Chain;
+use crate::language::{self, OwnLanguage};
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
 use crate::programs::Selection;
-use crate::progress::{Progress, RunState};
 use crate::q_transfer::QTransfer;
 use crate::reference;
 use crate::replacement::{Replacement, Wear};
 use crate::restore::{Restoration, ScanEnd};
-use crate::site::Site;
+use crate::site::{PathOutputs, Site};
 use crate::source::{Basis, Resume, Source, machine_zero};
-use crate::thread::{self, Preparation, Tapping};
-use crate::track::{self, Track};
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
@@ -94,12 +92,12 @@ impl ProgramRun {
 
     /// A path that follows the spindle is executed, or begins.
     pub fn taps_rigidly(&self) -> bool {
-        thread::is_rigid(self.element())
+        is_rigid(self.element())
     }
 
     /// Cycle 2 taps.
     pub fn taps_floating(&self) -> bool {
-        thread::is_floating(self.element())
+        is_floating(self.element())
     }
 
     /// Spindle and axis have come apart.
@@ -110,7 +108,10 @@ impl ProgramRun {
 
     /// Once in each contour cycle: what tapping tells the PLC, the axes and the spindle.
     pub fn follow_tapping(&mut self, site: &mut Site) {
-        self.tapping.follow(&self.track, self.progress.is_active(), site);
+        let active = self.progress.is_active();
+        let taps = self.tapping.follow(&self.track, active, &mut site.leading());
+        site.exchange.nc_put(signal::TAPPING_CALLED, taps.called);
+        site.exchange.nc_put(signal::RIGID_TAPPING_ACTIVE, taps.rigid);
     }
 
     /// Shows a message of the run.
@@ -149,7 +150,7 @@ impl ProgramRun {
                 self.progress.enter(RunState::Running);
                 self.restoration.return_to_path(&mut site.axes);
                 if !self.restoration.is_on() {
-                    self.track.regain(site);
+                    self.track.regain(&site.axes, site.chain);
                 }
             }
         }
@@ -164,7 +165,7 @@ impl ProgramRun {
     pub fn internal_stop(&mut self, site: &mut Site) -> bool {
         if self.progress.is_running()
             || !self.track.stands(&site.axes)
-            || thread::is_in_thread(&self.track, site)
+            || thread::is_in_thread(&self.track, &site.standing())
         {
             return false;
         }
@@ -345,7 +346,7 @@ impl ProgramRun {
                 }
             }
         } else if let Some(feeder) = self.source.feeder() {
-            site.chain.place(feeder.placement());
+            site.chain.place(feeder.reader().placement());
         }
         self.track.begin_at(site.here(), site.chain);
         self.progress.enter(RunState::Running);
@@ -444,7 +445,7 @@ impl ProgramRun {
             return;
         }
         let runs = self.progress.goes_on();
-        if self.probe.is_held(&site.axes) || self.tapping.holds(&mut self.track, runs, site) {
+        if self.probe.is_held(&site.axes) || self.tapping.holds(&mut self.track, runs, &mut site.leading()) {
             // Without feed enable the axes stand at once [000:5352].
             site.chain.superimposed.stand();
             self.track.halt();
@@ -471,11 +472,23 @@ impl ProgramRun {
         .drive(site);
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);
-        self.tapping.lead(cycle.lead, site.spindle);
+        self.tapping.lead(cycle.lead, &mut site.spindle.drive);
+        let wheels = Wheels {
+            turned_mm: &site.now.wheel_mm,
+            rapid_limit_mm_min: site.now.rapid_limit_mm_min,
+            time_s: site.now.time_s,
+            fault: site.now.fault,
+        };
         self.track
-            .follow(&cycle.position, &mut site.axes, site.chain, &site.now);
+            .follow(&cycle.position, &mut site.axes, site.chain, &wheels);
         let inch = self.source.inch();
-        self.track.output(site, &mut self.q_transfer, inch, settled);
+        let q_transfer = &mut self.q_transfer;
+        let outputs = &mut PathOutputs {
+            site,
+            q_transfer,
+            inch,
+        };
+        self.track.output(outputs, settled);
         self.take_state(cycle.state, &drive, wear, site);
     }
 
@@ -486,9 +499,9 @@ impl ProgramRun {
         match state {
             State::Gate(_) if all_output && !site.positioning.is_on() => {
                 self.track.path.release();
-                self.track.regain(site);
+                self.track.regain(&site.axes, site.chain);
             }
-            State::Master if self.tapping.prepare(&self.track, site) == Preparation::Refused => {
+            State::Master if self.prepare_thread(site) == Preparation::Refused => {
                 // No manual names the message of a spindle without analogue output or encoder (inferred).
                 self.show(Message::Plain(MessageId::WrongRpm), site);
                 let block = self.track.path.element().map_or(0, |element| element.sequence);
@@ -512,11 +525,17 @@ impl ProgramRun {
         }
     }
 
+    /// The path waits for its spindle, whose loop the PLC may keep open (M2499).
+    fn prepare_thread(&mut self, site: &mut Site) -> Preparation {
+        let open = site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP);
+        self.tapping.prepare(&self.track, open, &mut site.leading())
+    }
+
     fn is_in_position(&self, site: &Site) -> bool {
         if self.track.path.is_coupled() {
-            return thread::is_in_position(&self.track, site);
+            return thread::is_in_position(&self.track, &site.standing());
         }
-        track::are_in_position(&site.axes)
+        site.axes.are_in_position()
     }
 
     /// The axes stand as far as the loops may be opened: those of a thread as far as they can.
@@ -597,11 +616,11 @@ impl ProgramRun {
                 block,
                 ..
             } => {
-                let message = track::limit_message(&mut site.axes, axis, direction);
+                let message = site.limit_message(axis, direction);
                 site.messages.show(message, Some(block));
             }
             RunFault::Absent { axis, block, .. } => {
-                let error = feeder::absent(axis, site.axes.at(axis), block, self.source.reader());
+                let error = language::absent(axis, site.axes.at(axis), block, self.source.reader());
                 self.show(Message::Program(Box::new(error)), site);
             }
         }

@@ -1,14 +1,13 @@
 //! Commands that act on the program run.
 
+use bahn_kernel::{Feeder, RunState};
 use bahn_parameters::operation::RestartParameters;
 
 use crate::command::Command;
 use crate::drip_feed::{Dnc, DripFeed};
-use crate::feeder::Feeder;
 use crate::leaning;
 use crate::message::Message;
 use crate::plane_command::PlaneCommand;
-use crate::progress::RunState;
 use crate::run::ProgramRun;
 use crate::site::Site;
 use crate::source::{Basis, Resume};
@@ -91,7 +90,7 @@ fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bo
         if run.source.go_on(site)
             && let Some(feeder) = run.source.feeder()
         {
-            site.chain.place(feeder.placement());
+            site.chain.place(feeder.reader().placement());
         }
         run.track.begin_at(site.here(), site.chain);
     }

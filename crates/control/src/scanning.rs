@@ -1,16 +1,14 @@
 //! Digitizing in the program: the stylus scans a surface with the axes [003:6532-6882] [000:7722-7880].
 
 use bahn_exchange::signal;
+use bahn_kernel::{AxisUnit, Chain, Mover};
 use bahn_motion::{Scan, ScanStep, Sense};
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, BlockRef, Position, ScanFault, ScanJob, ScanPoint, Scanned};
 use bahn_servo::Measured;
 
-use crate::axis::{AxisUnit, Mover};
-use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::site::Site;
-use crate::track::has_arrived;
 
 /// The axes of a scan.
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
@@ -170,7 +168,7 @@ impl Scanning {
                 news.tell(Digitized::Point(point));
                 ScanCycle::Moves
             }
-            ScanStep::Over(scanned) if has_arrived(&site.axes) => {
+            ScanStep::Over(scanned) if site.axes.have_arrived() => {
                 news.tell(match scanned.fault {
                     None => Digitized::Complete,
                     Some(_) => Digitized::BrokenOff,

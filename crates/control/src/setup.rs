@@ -4,18 +4,17 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_exchange::Exchange;
+use bahn_kernel::{AxisId, Kinematics};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{InchFeed, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::PlcProgram;
 
-use crate::axis::AxisId;
-use crate::kinematics::Kinematics;
 use crate::plc_link::{NcFiles, WrittenElement};
 use crate::programs::Programs;
-use crate::spindle::SpindleWiring;
 use crate::tool::{MovedTool, Tool};
 use crate::window::Window;
+use bahn_kernel::SpindleWiring;
 
 /// How programs are taken that use what is not executed here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,15 +4,13 @@ use std::fmt;
 use std::str::FromStr;
 
 use bahn_exchange::{Bit, Number};
+use bahn_kernel::{AxisUnit, RunState, path_positions};
 use bahn_servo::NOMINALS;
 
-use crate::axes::path_positions;
-use crate::axis::AxisUnit;
 use crate::channel::Channel;
 use crate::machine::MachineSide;
-use crate::progress::RunState;
-use crate::seam::Seam;
 use crate::setup::ChannelError;
+use bahn_kernel::Clock;
 
 /// What of an axis is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -268,14 +266,14 @@ impl Signal {
 
 impl Signal {
     /// Its value now; an axis that the channel does not have reads 0.
-    pub(crate) fn value(&self, channel: &Channel, machine: &MachineSide, seam: &Seam) -> f64 {
+    pub(crate) fn value(&self, channel: &Channel, machine: &MachineSide, seam: &Clock) -> f64 {
         let (run, track) = (&channel.run, &channel.run.track);
         let plc = machine.memory.of(channel.number()).plc();
         let spindle = machine.spindles.of(channel.number());
         let bit = |bit: bool| f64::from(u8::from(bit));
         match self {
             Signal::Axis(letter, signal) => {
-                let mut axes = machine.axes.owned(channel.number());
+                let mut axes = machine.core.axes.owned(channel.number());
                 axes.find(|unit| unit.axis.letter() == *letter)
                     .map_or(0.0, |unit| signal.value(unit, channel, machine))
             }
@@ -287,7 +285,7 @@ impl Signal {
             }
             Signal::SpindleRpm => spindle.state().actual_rpm,
             Signal::SpindleVolts => spindle.state().volts,
-            Signal::SpindleAngle => spindle.turned_deg(),
+            Signal::SpindleAngle => spindle.drive.turned_deg(),
             Signal::Mode => channel.desk().mode().code().into(),
             Signal::Run => match run.progress().state() {
                 RunState::Idle => 0.0,
@@ -351,7 +349,7 @@ impl AxisSignal {
             AxisSignal::NominalMotorSpeed => unit.servo.speed().map_or(0.0, |speed| speed.nominal_mm_min),
             AxisSignal::SpeedDifference => unit.servo.speed().map_or(0.0, |speed| speed.difference_mm_min),
             AxisSignal::Displayed => {
-                let [actual, _] = path_positions(machine.axes.owned(channel.number()), channel.chain());
+                let [actual, _] = path_positions(machine.core.axes.owned(channel.number()), channel.chain());
                 unit.shown(actual[unit.axis])
             }
             AxisSignal::Ref => unit.shown(unit.servo.actual_mm()),

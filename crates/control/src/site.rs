@@ -1,17 +1,17 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
+use bahn_kernel::{AxisId, Chain, Direction, Leading, Moment, Outputs, OwnAxes, Standing};
 use bahn_parameters::technology::{Deed, Output, Technology};
-use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall};
+use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall, Voltage};
 
-use crate::axes::OwnAxes;
 use crate::handshake::{Handshakes, Transfer};
-use crate::kinematics::Chain;
 use crate::magazine::Magazine;
 use crate::markers::TOOL_AXIS;
-use crate::message::Messages;
+use crate::message::{Message, Messages};
 use crate::now::Now;
 use crate::positioning::Positioning;
+use crate::q_transfer::QTransfer;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
 
@@ -30,7 +30,18 @@ pub(crate) struct Site<'a> {
     pub messages: &'a mut Messages,
 }
 
-impl Site<'_> {
+impl<'a> Site<'a> {
+    /// Axes and spindle, to be led along a thread.
+    pub fn leading(&mut self) -> Leading<'_, 'a> {
+        let moment = self.moment();
+        Leading {
+            axes: &mut self.axes,
+            chain: self.chain,
+            spindle: &mut self.spindle.drive,
+            moment,
+        }
+    }
+
     /// The path position at which the axes stand: no program knows the slave of a gantry or an axis of the PLC, which would
     /// count as parallel axes.
     pub fn here(&self) -> Position {
@@ -151,5 +162,55 @@ impl Site<'_> {
         if let Some(transfer) = self.spindle.program(rpm, tool_call, self.exchange) {
             self.handshakes.push(transfer);
         }
+    }
+
+    /// What holds now for a thread.
+    fn moment(&self) -> Moment {
+        Moment {
+            time_s: self.now.time_s,
+            ready: self.now.ready,
+            loops_closed: self.now.loops_closed,
+        }
+    }
+
+    /// Axes and spindle, to be looked at.
+    pub fn standing(&self) -> Standing<'_> {
+        Standing {
+            axes: &self.axes,
+            chain: self.chain,
+            spindle: &self.spindle.drive,
+            moment: self.moment(),
+        }
+    }
+
+    /// The message of an axis that a block would lead beyond its limit.
+    pub fn limit_message(&mut self, axis: Axis, direction: Direction) -> Message {
+        let id = self.axes.iter_mut().find(|unit| unit.axis == axis).map(|unit| {
+            unit.at_limit = Some(direction);
+            unit.id
+        });
+        Message::limit(id.unwrap_or(AxisId::FIRST), direction)
+    }
+}
+
+/// Where the functions of the path go: to a site, with a strobe for each block.
+pub(crate) struct PathOutputs<'a, 'b> {
+    pub site: &'a mut Site<'b>,
+    pub q_transfer: &'a mut QTransfer,
+    /// The program is in inches.
+    pub inch: bool,
+}
+
+impl Outputs for PathOutputs<'_, '_> {
+    fn begin(&mut self) {
+        self.q_transfer.strobe();
+    }
+
+    fn output(&mut self, function: &Function) {
+        self.site.output(function, self.inch);
+    }
+
+    fn voltage(&mut self, order: Voltage, sequence: u64) {
+        self.site.spindle.set_voltage(order, sequence);
     }
 }

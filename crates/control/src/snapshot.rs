@@ -1,15 +1,13 @@
 //! The state of the control for a display, a report or a test.
 
+use bahn_kernel::{AxisUnit, RunState, path_positions};
 use bahn_path::{BlockRef, Position};
 
-use crate::axes::path_positions;
-use crate::axis::AxisUnit;
 use crate::channel::Channel;
 use crate::command::Mode;
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::message::Shown;
-use crate::progress::RunState;
 use crate::run::ProgramRun;
 use crate::spindle::SpindleState;
 
@@ -92,7 +90,7 @@ impl AxisState {
         machine: &MachineSide,
     ) -> AxisState {
         let [actual, nominal] = at;
-        let leads = machine.axes.master(unit).unwrap_or(unit);
+        let leads = machine.core.axes.master(unit).unwrap_or(unit);
         let offsets = &channel.chain().offsets;
         AxisState {
             letter: unit.axis.letter(),
@@ -125,7 +123,7 @@ impl Snapshot {
             None => Default::default(),
         };
         axes.clear();
-        let units = machine.axes.owned(channel.number());
+        let units = machine.core.axes.owned(channel.number());
         let at = path_positions(units.clone(), channel.chain());
         axes.extend(units.map(|unit| AxisState::of(unit, &at, run, channel, machine)));
         if messages != machine.messages.shown() {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
+use bahn_kernel::{Chain, Feeder, OwnAxes};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
 use bahn_path::{AxisSet, BlockRef, Frame, PerAxis, Plane, Position};
@@ -12,11 +13,9 @@ use bahn_program::Program;
 use bahn_reader::{Reader, Start};
 use bahn_servo::Rotation;
 
-use crate::axes::OwnAxes;
 use crate::beside::Loan;
 use crate::drip_feed::DripFeed;
-use crate::feeder::{self, Feeder};
-use crate::kinematics::Chain;
+use crate::language::{self, OwnLanguage};
 use crate::manual_probing::ManualProbing;
 use crate::message::Message;
 use crate::plc_link::PlcLink;
@@ -464,7 +463,7 @@ impl Source {
         let opened = selection.open(mdi, &*reading.programs, || reading.begin(site, basis))?;
         match &opened {
             Opened::Reader(reader) if self.plane().is_some() => {
-                let error = feeder::without_planes(selection.start_block, &**reader);
+                let error = language::without_planes(selection.start_block, &**reader);
                 Err(Message::Program(Box::new(error)))
             }
             _ => Ok(opened),

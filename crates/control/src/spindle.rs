@@ -2,25 +2,23 @@
 //! [000:5438-5945].
 
 use bahn_exchange::{Bit, Exchange, Image, signal};
+use bahn_kernel::{Along, SpindleLoop, SpindleWiring, VoltageOutput};
 use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::spindle::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_path::Voltage;
 use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
-use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
+use bahn_servo::{AxisCommand, Commands, Rotation, SpeedCode, Timing, Way};
 
 use crate::handshake::Transfer;
 use crate::marker_codes;
 use crate::panel::PlcFaultCode;
 use crate::plc_link::Requests;
 use crate::strobe_form::{Form, ORIENTATION};
-use crate::voltage::{Along, VoltageOutput};
 
 /// Range of the analogue outputs, V.
 const OUTPUT_VOLTS: f64 = 10.0;
 /// D356, D756 and module 9171 count in 1/1000 rpm.
 const PER_RPM: f64 = 1000.0;
-/// Degrees per second of one rpm.
-const DEG_S_PER_RPM: f64 = 6.0;
 /// D592 counts in 1/10 000 degree (inferred).
 const PER_DEGREE: f64 = 10_000.0;
 /// D592 with bit 31 alone: the angle of cycle 13.
@@ -45,28 +43,10 @@ pub struct SpindleState {
     pub angle_deg: Option<f64>,
 }
 
-/// Where a spindle is connected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SpindleWiring {
-    /// Its analogue output.
-    pub output: usize,
-    /// Its encoder input.
-    pub input: usize,
-}
-
-impl Default for SpindleWiring {
-    /// Output S [000:3393-3406] and encoder input X6 [000:3376].
-    fn default() -> SpindleWiring {
-        SpindleWiring { output: 5, input: 5 }
-    }
-}
-
 /// The spindle.
 #[derive(Clone, Debug)]
 pub(crate) struct SpindleUnit {
-    wiring: SpindleWiring,
-    parameters: SpindleParameters,
-    servo: Spindle,
+    pub drive: SpindleLoop,
     rotation: Rotation,
     programmed_rpm: f64,
     code: Option<u8>,
@@ -89,8 +69,6 @@ pub(crate) struct SpindleUnit {
     by_markers: bool,
     /// M2527 was set in the last scan.
     ordered: bool,
-    /// The path of a thread leads it.
-    led: bool,
     plc_volts: f64,
     feed_volts: f64,
     by_program: VoltageOutput,
@@ -101,9 +79,7 @@ pub(crate) struct SpindleUnit {
 impl SpindleUnit {
     pub fn new(wiring: SpindleWiring, parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
         SpindleUnit {
-            wiring,
-            servo: Spindle::new(parameters.settings, timing),
-            parameters,
+            drive: SpindleLoop::new(wiring, parameters, timing),
             rotation: Rotation::M5,
             programmed_rpm: 0.0,
             code: None,
@@ -118,7 +94,6 @@ impl SpindleUnit {
             asked: None,
             by_markers: false,
             ordered: false,
-            led: false,
             plc_volts: 0.0,
             feed_volts: 0.0,
             by_program: VoltageOutput::default(),
@@ -126,43 +101,37 @@ impl SpindleUnit {
         }
     }
 
-    /// Takes changed machine parameters over.
-    pub fn set_parameters(&mut self, parameters: SpindleParameters) {
-        self.servo.configure(parameters.settings);
-        self.parameters = parameters;
-    }
-
     fn is_analogue(&self) -> bool {
-        matches!(self.parameters.output, SpindleOutput::Analogue { .. })
+        matches!(self.drive.parameters.output, SpindleOutput::Analogue { .. })
     }
 
     /// Markers and words at power-on.
     pub fn preset(&self, exchange: &mut Exchange) {
         exchange.nc_set(signal::SPINDLE_IS_ANALOGUE, self.is_analogue());
-        let codes = self.parameters.codes;
+        let codes = self.drive.parameters.codes;
         exchange.nc_set_number(signal::MINIMUM_S_CODE, codes.min.into());
         marker_codes::LOWEST_SPEED.put(codes.min.into(), exchange);
         marker_codes::SPEED_STEP.put(codes.step.into(), exchange);
     }
 
-    pub fn measure(&mut self, measured: &Measured) {
-        self.servo.measure(measured.encoder(self.wiring.input));
-    }
-
     /// One servo step.
     pub fn output(&mut self, commands: &mut Commands) {
-        let volts = self.servo.step();
+        let volts = self.drive.servo.step();
         let (enabled, volts, speed) = if self.is_analogue() {
-            (self.servo.is_enabled(), volts, self.servo.output_rpm())
+            (
+                self.drive.servo.is_enabled(),
+                volts,
+                self.drive.servo.output_rpm(),
+            )
         } else {
-            match self.parameters.free_output {
+            match self.drive.parameters.free_output {
                 FreeOutput::Plc => (false, self.plc_volts, 0.0),
                 FreeOutput::Feed { .. } => (false, self.feed_volts, 0.0),
                 FreeOutput::MFunctions => (false, self.by_program.volts(), 0.0),
                 FreeOutput::None => return,
             }
         };
-        if let Some(output) = commands.axes.get_mut(self.wiring.output) {
+        if let Some(output) = commands.axes.get_mut(self.drive.wiring.output) {
             *output = AxisCommand {
                 enabled,
                 volts,
@@ -176,7 +145,7 @@ impl SpindleUnit {
     /// Where output S follows the path: in proportion to its feed, 10 V at MP3012 [000:9835-9839], or as M200 to
     /// M204 say.
     pub fn follow(&mut self, along: Along) {
-        match self.parameters.free_output {
+        match self.drive.parameters.free_output {
             FreeOutput::Feed { full_mm_min } => {
                 let volts = along.mm_min / full_mm_min * OUTPUT_VOLTS;
                 self.feed_volts = if volts.is_finite() {
@@ -202,10 +171,10 @@ impl SpindleUnit {
 
     /// Whether the spindle has a speed.
     pub fn has_speed(&self, rpm: f64) -> bool {
-        match self.parameters.output {
+        match self.drive.parameters.output {
             SpindleOutput::None => true,
             SpindleOutput::Coded { .. } => self.speed_code(rpm).is_some(),
-            SpindleOutput::Analogue { .. } => self.servo.gear_for(rpm).is_some(),
+            SpindleOutput::Analogue { .. } => self.drive.servo.gear_for(rpm).is_some(),
         }
     }
 
@@ -220,7 +189,7 @@ impl SpindleUnit {
 
     /// The S code of a speed, where MP3020 permits it.
     fn speed_code(&self, rpm: f64) -> Option<SpeedCode> {
-        SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.parameters.codes))
+        SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.drive.parameters.codes))
     }
 
     /// A programmed speed: the gear range or the S code that goes to the PLC, when one does. A speed that
@@ -230,7 +199,7 @@ impl SpindleUnit {
             return None;
         }
         self.programmed_rpm = rpm;
-        match self.parameters.output {
+        match self.drive.parameters.output {
             SpindleOutput::None => None,
             SpindleOutput::Coded { always } => {
                 let code = self.speed_code(rpm)?.number();
@@ -238,7 +207,7 @@ impl SpindleUnit {
                 (changed || always && tool_call).then_some(Transfer::SCode(code))
             }
             SpindleOutput::Analogue { gear: when } => {
-                let gear = self.servo.gear_for(rpm)?;
+                let gear = self.drive.servo.gear_for(rpm)?;
                 self.choose_gear(rpm, gear, when, tool_call, exchange)
             }
         }
@@ -254,15 +223,15 @@ impl SpindleUnit {
     ) -> Option<Transfer> {
         let speed = (rpm * PER_RPM).round() as i32;
         let signal = match when {
-            GearSignal::OnChange => gear != self.servo.gear_range(),
-            GearSignal::Always => tool_call || gear != self.servo.gear_range(),
+            GearSignal::OnChange => gear != self.drive.servo.gear_range(),
+            GearSignal::Always => tool_call || gear != self.drive.servo.gear_range(),
             GearSignal::Never => false,
         };
         if signal {
             self.pending = Some((gear, rpm));
             return Some(Transfer::Gear { code: gear, speed });
         }
-        self.servo.set_speed(rpm, gear);
+        self.drive.servo.set_speed(rpm, gear);
         exchange.nc_set_number(signal::PROGRAMMED_SPINDLE_SPEED, speed);
         exchange.nc_set_number(signal::SPINDLE_SPEED_FROM_PLC, speed);
         None
@@ -271,7 +240,7 @@ impl SpindleUnit {
     /// The PLC acknowledged the gear: from now on the speed is that of it.
     pub fn gear_changed(&mut self) {
         if let Some((gear, rpm)) = self.pending.take() {
-            self.servo.set_speed(rpm, gear);
+            self.drive.servo.set_speed(rpm, gear);
         }
     }
 
@@ -298,7 +267,8 @@ impl SpindleUnit {
             OrientationDirection::Shortest => Way::Shortest,
             OrientationDirection::Positive => Way::In(Rotation::M3),
         };
-        self.servo
+        self.drive
+            .servo
             .orient(orientation.angle + added, orientation.speed, way);
         self.orienting = true;
     }
@@ -315,24 +285,14 @@ impl SpindleUnit {
     /// Opens the loop and takes the voltage away: EMERGENCY STOP, M2830. An orientation ends as what the PLC positions does
     /// [000:4013-4019]: the spindle does not go on with it by itself when the voltage is back (inferred).
     pub fn open(&mut self, exchange: &mut Exchange) {
-        self.led = false;
+        self.drive.lead(None);
         self.asked = None;
         if std::mem::take(&mut self.orienting) {
             self.end_orientation(exchange);
         }
-        self.servo.rotate(Rotation::M5);
-        self.servo.set_enabled(false);
+        self.drive.servo.rotate(Rotation::M5);
+        self.drive.servo.set_enabled(false);
         self.by_program.switch_off();
-    }
-
-    /// A fault of its encoder, or of its movement in a thread.
-    pub fn fault(&self) -> Option<Fault> {
-        self.servo.fault()
-    }
-
-    /// It can be led by a path: analogue output and an encoder [000:6056] [000:5444-5472].
-    pub fn can_be_led(&self) -> bool {
-        self.is_analogue() && self.parameters.controlled
     }
 
     /// The angle that D592 = $80000000 stands for, degrees.
@@ -340,86 +300,14 @@ impl SpindleUnit {
         self.cycle_deg
     }
 
-    /// Orients for a thread or the tool probe: from standstill by the shorter way [000:623].
-    pub fn orient_shortest(&mut self, angle_deg: f64) {
-        self.servo.orient(angle_deg, 0.0, Way::Shortest);
-    }
-
-    /// An orientation is on its way, or holds the spindle: nothing has ended it since it was asked for.
-    pub fn holds_orientation(&self) -> bool {
-        self.servo.orienting() || self.servo.in_position()
-    }
-
     /// Turns it by a way from where it stands, degrees: M2712 until it is there. `false` when it cannot be.
     pub fn turn_by(&mut self, way_deg: f64, exchange: &mut Exchange) -> bool {
-        let turns = self.can_be_led() && self.servo.turn_by(way_deg);
+        let turns = self.drive.can_be_led() && self.drive.servo.turn_by(way_deg);
         if turns {
             self.orienting = true;
             exchange.nc_set(signal::ORIENT_SPINDLE, true);
         }
         turns
-    }
-
-    /// Leads it for a contour cycle along a thread; `None` when the thread is over: it stays where it is.
-    pub fn lead(&mut self, angle_deg: Option<f64>) {
-        self.led = angle_deg.is_some();
-        if let Some(angle) = angle_deg {
-            self.servo.lead(angle);
-        }
-    }
-
-    /// A thread goes on from where it stands.
-    pub fn lead_from_here(&mut self) {
-        self.servo.lead_from_here();
-    }
-
-    /// In a thread it may turn so far beside what it is led, degrees; `None` where nothing follows it.
-    pub fn monitor_movement(&mut self, most_deg: Option<f64>) {
-        self.servo.monitor_movement(most_deg);
-    }
-
-    /// The ramp of M03, M04 and M05 while cycle 2 taps, `None` otherwise: MP3410.2, or flatter, so that it stands
-    /// with a feed that takes `braking_s` to brake [000:6068-6079].
-    pub fn set_tapping(&mut self, braking_s: Option<f64>) {
-        self.servo.set_ramp(match braking_s {
-            None => Ramp::Normal,
-            Some(braking) => {
-                let flat = self.servo.programmed_volts() / (braking * 1000.0);
-                let own = self.parameters.settings.ramps.tapping_v_ms;
-                if flat > 0.0 && (own == 0.0 || flat < own) {
-                    Ramp::Volts(flat)
-                } else {
-                    Ramp::Tapping
-                }
-            }
-        });
-    }
-
-    /// Angle with all turns, degrees: where it is held, and where it will be after a time, s.
-    pub fn angles_deg(&self, after_s: f64) -> [f64; 2] {
-        let will_be = self.servo.turned_deg() + self.servo.actual_rpm() * DEG_S_PER_RPM * after_s;
-        [self.servo.held_deg(), will_be]
-    }
-
-    /// It stands in the window of its orientation.
-    pub fn is_oriented(&self) -> bool {
-        let missing = (self.servo.held_deg() - self.servo.turned_deg()).abs();
-        self.servo.in_position() && missing <= self.parameters.settings.orientation.window_deg
-    }
-
-    /// The part of the programmed speed that override and limits leave, %.
-    pub fn effective_percent(&self) -> f64 {
-        100.0 * self.servo.effective_override()
-    }
-
-    /// The PLC gives the spindle enable: M2608 [000:5500].
-    pub fn is_enabled(&self) -> bool {
-        self.servo.is_enabled()
-    }
-
-    /// Positioning window of the tool axis in a thread, mm: MP7150.
-    pub fn thread_window_mm(&self) -> f64 {
-        self.parameters.tapping.window_mm
     }
 
     /// After a PLC scan: direction, jog, orientation, gear and speed by the PLC. The code of the fault when
@@ -435,19 +323,22 @@ impl SpindleUnit {
         for ((now, before), rotation) in shown.iter().zip(self.shown).zip(rotations) {
             if *now && !before {
                 self.rotation = rotation;
-                if !self.led {
-                    self.servo.rotate(rotation);
+                if !self.drive.is_led() {
+                    self.drive.servo.rotate(rotation);
                     self.orienting = false;
                 }
             }
         }
         self.shown = shown;
-        self.servo.set_inverted(nc.bit(signal::INVERT_SPINDLE_DIRECTION));
+        self.drive
+            .servo
+            .set_inverted(nc.bit(signal::INVERT_SPINDLE_DIRECTION));
         let closed = !nc.bit(signal::NC_STOP_AND_OPEN_LOOPS);
-        self.servo
+        self.drive
+            .servo
             .set_enabled(closed && !nc.bit(signal::SPINDLE_DISPLAY_INVERSE));
-        self.servo.set_opens(nc.bit(signal::OPEN_SPINDLE_LOOP));
-        if self.led {
+        self.drive.servo.set_opens(nc.bit(signal::OPEN_SPINDLE_LOOP));
+        if self.drive.is_led() {
             return None;
         }
         self.take_jog(
@@ -470,7 +361,7 @@ impl SpindleUnit {
             } else {
                 Rotation::M3
             };
-            self.servo.turn(if turn { direction } else { Rotation::M5 });
+            self.drive.servo.turn(if turn { direction } else { Rotation::M5 });
         }
     }
 
@@ -478,14 +369,14 @@ impl SpindleUnit {
     fn take_jog(&mut self, left: bool, right: bool) {
         if left || right {
             self.jogging = true;
-            self.servo.jog(match (left, right) {
+            self.drive.servo.jog(match (left, right) {
                 (true, false) => Rotation::M4,
                 (false, true) => Rotation::M3,
                 _ => Rotation::M5,
             });
         } else if self.jogging {
             self.jogging = false;
-            self.servo.rotate(self.rotation);
+            self.drive.servo.rotate(self.rotation);
         }
     }
 
@@ -496,7 +387,7 @@ impl SpindleUnit {
         numbers: &PlcParameters,
     ) -> Result<(), PlcFaultCode> {
         if exchange.nc().bit(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN) {
-            self.servo.forget_mark();
+            self.drive.servo.forget_mark();
             exchange.nc_set(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN, false);
         }
         if let Some(orientation) = self.asked.take() {
@@ -513,7 +404,7 @@ impl SpindleUnit {
             ORIENTATION.check(exchange.nc())?;
         }
         let nc = exchange.nc();
-        if self.orienting || !self.parameters.controlled {
+        if self.orienting || !self.drive.parameters.controlled {
             return Ok(());
         }
         let Some(angle) = self.ordered_angle(form, nc, numbers) else {
@@ -524,7 +415,7 @@ impl SpindleUnit {
         } else {
             Rotation::M3
         };
-        self.servo.orient(angle, 0.0, Way::In(direction));
+        self.drive.servo.orient(angle, 0.0, Way::In(direction));
         self.orienting = true;
         self.by_markers = form == Form::Markers;
         Ok(())
@@ -551,14 +442,14 @@ impl SpindleUnit {
         }
         let gear = u8::try_from(exchange.nc().number(signal::GEAR_CODE)).unwrap_or(0);
         let rpm = f64::from(exchange.nc().number(signal::SPINDLE_SPEED_FROM_PLC)) / PER_RPM;
-        self.servo.set_speed(rpm, gear.min(7));
+        self.drive.servo.set_speed(rpm, gear.min(7));
         exchange.nc_set(signal::GEAR_AND_SPEED_FROM_PLC, false);
     }
 
     /// Once in each contour cycle.
     pub fn cycle(&mut self, exchange: &mut Exchange, override_percent: f64) {
-        self.servo.set_override(override_percent);
-        if self.orienting && self.servo.in_position() {
+        self.drive.servo.set_override(override_percent);
+        if self.orienting && self.drive.servo.in_position() {
             self.orienting = false;
             self.end_orientation(exchange);
         }
@@ -579,13 +470,13 @@ impl SpindleUnit {
                 exchange.nc_set(marker, value);
             }
         };
-        put(signal::SPINDLE_VOLTAGE_NOT_ON_RAMP, !self.servo.on_ramp());
-        put(signal::SPINDLE_VOLTAGE_ZERO, self.servo.at_zero());
-        put(signal::SPINDLE_IN_POSITION, self.servo.in_position());
-        put(signal::SPINDLE_IN_MOTION, self.servo.orienting());
+        put(signal::SPINDLE_VOLTAGE_NOT_ON_RAMP, !self.drive.servo.on_ramp());
+        put(signal::SPINDLE_VOLTAGE_ZERO, self.drive.servo.at_zero());
+        put(signal::SPINDLE_IN_POSITION, self.drive.servo.in_position());
+        put(signal::SPINDLE_IN_MOTION, self.drive.servo.orienting());
         let words = [
-            (signal::NOMINAL_SPINDLE_SPEED, self.servo.nominal_rpm()),
-            (signal::ACTUAL_SPINDLE_SPEED, self.servo.actual_rpm().abs()),
+            (signal::NOMINAL_SPINDLE_SPEED, self.drive.servo.nominal_rpm()),
+            (signal::ACTUAL_SPINDLE_SPEED, self.drive.servo.actual_rpm().abs()),
         ];
         for (word, rpm) in words {
             let value = rpm.round().min(32_767.0) as i32;
@@ -595,27 +486,21 @@ impl SpindleUnit {
         }
     }
 
-    /// Angle of the spindle, degrees, once its reference mark was crossed.
-    pub fn angle_deg(&self) -> Option<f64> {
-        self.servo.angle_deg()
-    }
-
-    /// Angle since power-on with all turns, degrees.
-    pub fn turned_deg(&self) -> f64 {
-        self.servo.turned_deg()
-    }
-
     /// What module 9042 reads, in degrees.
     pub fn position(&self) -> SpindlePosition {
-        let angle = self.angle_deg().unwrap_or(0.0);
+        let angle = self.drive.servo.angle_deg().unwrap_or(0.0);
         SpindlePosition {
             actual: angle,
             reference: angle,
-            closed_loop: self.servo.lag_and_way_deg().map(|[lag, way]| ControlledSpindle {
-                nominal: angle + lag,
-                trailing_error: lag,
-                distance_to_go: way,
-            }),
+            closed_loop: self
+                .drive
+                .servo
+                .lag_and_way_deg()
+                .map(|[lag, way]| ControlledSpindle {
+                    nominal: angle + lag,
+                    trailing_error: lag,
+                    distance_to_go: way,
+                }),
         }
     }
 
@@ -627,12 +512,12 @@ impl SpindleUnit {
     pub fn state(&self) -> SpindleState {
         SpindleState {
             programmed_rpm: self.programmed_rpm,
-            nominal_rpm: self.servo.nominal_rpm(),
-            actual_rpm: self.servo.actual_rpm(),
-            volts: self.servo.volts(),
-            gear: self.servo.gear_range() + 1,
+            nominal_rpm: self.drive.servo.nominal_rpm(),
+            actual_rpm: self.drive.servo.actual_rpm(),
+            volts: self.drive.servo.volts(),
+            gear: self.drive.servo.gear_range() + 1,
             rotation: self.rotation,
-            angle_deg: self.angle_deg(),
+            angle_deg: self.drive.servo.angle_deg(),
         }
     }
 }

@@ -1,24 +1,20 @@
 //! What the NC tells the PLC of itself: markers and words of state, before every scan.
 
 use bahn_exchange::{Exchange, signal};
+use bahn_kernel::{AxisUnit, Chain, Direction, Mover, OwnAxes, RunState, path_positions};
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_path::{Position, deflection_along_axes};
 use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 
-use crate::axes::{OwnAxes, path_positions};
-use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::desk::Desk;
-use crate::kinematics::Chain;
 use crate::manual::Manual;
 use crate::markers::{
     ANALOGUE, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
 };
-use crate::panel::Direction;
 use crate::plc_link::PlcLink;
-use crate::progress::RunState;
 use crate::run::ProgramRun;
 use crate::strobe_form;
 

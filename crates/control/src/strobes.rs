@@ -3,11 +3,10 @@
 //! that set it, and reset, but for M2809 of the TNC 355, which the PLC resets itself [000:16286].
 
 use bahn_exchange::{Exchange, Image, signal};
+use bahn_kernel::{Mover, OwnAxes};
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::plc::PlcParameters;
 
-use crate::axes::OwnAxes;
-use crate::axis::Mover;
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
 use crate::marker_codes;

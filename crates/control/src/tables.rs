@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
+use bahn_kernel::Offsets;
 use bahn_path::{Oversize, ToolShape};
 use bahn_plc::{MemoryTable, TableFile, TableKind};
 
-use crate::kinematics::Offsets;
 use crate::magazine::Magazine;
 use crate::plc_link::{NcFiles, Pocket, WrittenElement, differences};
 use crate::tool::{Edges, MeasuredTool, Tool, ToolCondition, ToolLife, in_table_steps};

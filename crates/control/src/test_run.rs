@@ -2,12 +2,12 @@
 //! wrong with it [003:1514-1535]. Nothing goes to the PLC.
 
 use bahn_interpreter::Interpreter;
+use bahn_kernel::{AxisId, AxisUnit, Feeder, RunFault};
 use bahn_parameters::MessageId;
 use bahn_path::{Barrier, BlockRef, ElementSource, Function, LiveData, Step, Touch};
 use bahn_reader::Reader;
 
-use crate::axis::{AxisId, AxisUnit};
-use crate::feeder::{self, Feeder, RunFault};
+use crate::language::{self, OwnLanguage};
 use crate::message::Message;
 use crate::spindle::SpindleUnit;
 use crate::test_command::TestCommand;
@@ -197,7 +197,7 @@ fn message<'a>(fault: RunFault, mut axes: impl Iterator<Item = &'a AxisUnit>) ->
         }
         RunFault::Absent { axis, block, .. } => {
             let unit = axes.find(|unit| unit.axis == axis);
-            Message::Program(Box::new(feeder::absent(axis, unit, block, None)))
+            Message::Program(Box::new(language::absent(axis, unit, block, None)))
         }
     }
 }

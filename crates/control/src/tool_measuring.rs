@@ -2,22 +2,19 @@
 //! backwards or is oriented, and probes it, once or at each of its places [000:7960-8058].
 
 use bahn_exchange::{Exchange, signal};
+use bahn_kernel::{AxisUnit, Chain, Mover, OwnAxes};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
 use bahn_path::{Axis, LiveData, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
-use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
 use crate::handshake::Transfer;
-use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::probing_speed::{feed_mm_min, speed_rpm};
 use crate::site::Site;
 use crate::tool::{MeasuredTool, ToolCondition};
 use crate::tool_contacts::{Contact, Contacts};
-use crate::track::has_arrived;
 
 /// Turn against the cutting direction: M4 for a tool that cuts with M3, and stop (inferred: the edges do not cut).
 const BACKWARDS: [u8; 2] = [4, 3];
@@ -250,7 +247,7 @@ impl ToolMeasurement {
 fn may_be_oriented(parameters: &ToolProbeParameters, site: &Site) -> bool {
     match parameters.orientation {
         ProbeOrientation::None => false,
-        ProbeOrientation::Nc => site.spindle.can_be_led(),
+        ProbeOrientation::Nc => site.spindle.drive.can_be_led(),
         ProbeOrientation::Plc(_) => true,
     }
 }
@@ -331,19 +328,19 @@ impl Sequence {
         if by_nc && site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP) {
             return;
         }
-        if !self.asked || by_nc && !site.spindle.holds_orientation() {
+        if !self.asked || by_nc && !site.spindle.drive.holds_orientation() {
             (self.asked, self.turned) = (true, true);
             match self.parameters.orientation {
                 ProbeOrientation::Plc(code) => {
                     site.spindle.set_cycle_angle(angle, site.exchange);
                     site.handshakes.push(Transfer::M(code));
                 }
-                _ => site.spindle.orient_shortest(angle),
+                _ => site.spindle.drive.orient_shortest(angle),
             }
             return;
         }
         let oriented = match by_nc {
-            true => site.spindle.is_oriented(),
+            true => site.spindle.drive.is_oriented(),
             false => site.handshakes.is_idle() && !site.spindle.is_orienting(),
         };
         if oriented {
@@ -414,7 +411,7 @@ impl Sequence {
             Phase::Brake => self.way.speed_mm_s() == 0.0,
             _ => self.length == 0.0 || self.way.is_at(self.length),
         };
-        if !arrived || !has_arrived(&site.axes) {
+        if !arrived || !site.axes.have_arrived() {
             return Measuring::Moves;
         }
         match self.phase {

@@ -1,13 +1,13 @@
 //! Tools: what TOOL CALL and TOOL DEF hand to the PLC (MP7480).
 
 use bahn_exchange::{Exchange, signal};
+use bahn_kernel::Offsets;
 use bahn_parameters::machining::ToolProbeParameters;
 use bahn_parameters::operation::{ToolOutput, ToolOutputKind, ToolParameters};
 use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
 
 use crate::handshake::{Handshakes, Transfer};
-use crate::kinematics::Offsets;
 use crate::magazine::{Kind, Magazine, NO_POCKET};
 use crate::setup::{Remembered, ToolProbeCalibration};
 use crate::tool::MeasuredTool;

@@ -2,14 +2,12 @@
 //! have left, the buffer battery.
 
 use bahn_exchange::Exchange;
+use bahn_kernel::{Axes, AxisUnit, Direction, OwnAxes};
 use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_servo::OffsetInterval;
 
-use crate::axes::{Axes, OwnAxes};
-use crate::axis::AxisUnit;
 use crate::markers::LUBRICATION_PULSE;
 use crate::message::{Message, Messages};
-use crate::panel::Direction;
 
 /// The buffer battery of the memory. A low one is said once since power-on, so that CE clears the message until the
 /// control is switched on again; when it is looked at, and that it is at all while the control is on, no manual says

@@ -1,26 +1,25 @@
 //! A channel to be looked at.
 
 use bahn_interpreter::Interpreter;
+use bahn_kernel::{RunState, machine_position};
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Frame, PathElement, Position};
 use bahn_reader::Reader;
 
-use crate::axes::machine_position;
 use crate::channel::Channel;
 use crate::command::Mode;
 use crate::drip_feed::{DripFeed, DripFeedState};
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
-use crate::progress::RunState;
 use crate::reference;
 use crate::scanning::DigitizedNews;
 use crate::screen_command::ScreenCommand;
-use crate::seam::Seam;
 use crate::setup::{AxisLimit, Remembered};
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::upkeep::by_index;
 use crate::watch::AxisWatch;
+use bahn_kernel::Clock;
 
 /// What the status display shows of a program beside positions [003:1297].
 #[derive(Clone, Debug, PartialEq)]
@@ -44,11 +43,11 @@ pub struct InForce {
 pub struct ChannelView<'a> {
     channel: &'a Channel,
     machine: &'a MachineSide,
-    seam: &'a Seam,
+    seam: &'a Clock,
 }
 
 impl<'a> ChannelView<'a> {
-    pub(crate) fn new(channel: &'a Channel, machine: &'a MachineSide, seam: &'a Seam) -> ChannelView<'a> {
+    pub(crate) fn new(channel: &'a Channel, machine: &'a MachineSide, seam: &'a Clock) -> ChannelView<'a> {
         ChannelView {
             channel,
             machine,
@@ -75,6 +74,7 @@ impl<'a> ChannelView<'a> {
     /// An axis has not passed its reference mark: PASS OVER REFERENCE MARKS can be chosen [000:4581].
     pub fn misses_marks(&self) -> bool {
         self.machine
+            .core
             .axes
             .owned(self.channel.number())
             .any(reference::waits)
@@ -145,7 +145,7 @@ impl<'a> ChannelView<'a> {
         let frame = self.channel.run.frame()?;
         let basic = self.channel.touch.memory.basic_rotation_deg;
         let axes = |is: fn(&Frame, Axis) -> bool| {
-            let units = self.machine.axes.owned(self.channel.number());
+            let units = self.machine.core.axes.owned(self.channel.number());
             units
                 .map(|unit| unit.axis)
                 .filter(|axis| is(&frame, *axis))
@@ -267,6 +267,7 @@ impl<'a> ChannelView<'a> {
     /// The letters of the axes that it has now.
     pub fn axis_letters(&self) -> impl Iterator<Item = char> + use<'a> {
         self.machine
+            .core
             .axes
             .owned(self.channel.number())
             .map(|unit| unit.axis.letter())
@@ -274,19 +275,19 @@ impl<'a> ChannelView<'a> {
 
     /// Axes whose reference marks are evaluated have not passed them: until then no program starts.
     pub fn lacks_reference(&self) -> bool {
-        reference::is_due(self.machine.axes.owned(self.channel.number()))
+        reference::is_due(self.machine.core.axes.owned(self.channel.number()))
     }
 
     /// The axes that it has now, as the kernel moves them.
     pub fn watch(&self) -> impl Iterator<Item = AxisWatch> + use<'a> {
         let superimposed = &self.channel.chain().superimposed;
-        let axes = self.machine.axes.owned(self.channel.number());
+        let axes = self.machine.core.axes.owned(self.channel.number());
         axes.map(|unit| AxisWatch::of(unit, superimposed))
     }
 
     /// Where its axes are commanded to be, in the coordinates of its path: without what the handwheel adds to it (M118).
     pub fn commanded(&self) -> Position {
-        let axes = machine_position(self.machine.axes.owned(self.number()));
+        let axes = machine_position(self.machine.core.axes.owned(self.number()));
         self.channel.chain().to_path(&axes)
     }
 
@@ -327,7 +328,7 @@ impl<'a> ChannelView<'a> {
 
 /// The adjusted offsets of the axes that the list of a channel describes, whichever channel has them now, V.
 pub(crate) fn offsets_volts(machine: &MachineSide, channel: usize) -> PerPlcAxis<f64> {
-    let axes = machine.axes.iter().filter(|unit| unit.home.0 == channel);
+    let axes = machine.core.axes.iter().filter(|unit| unit.home.0 == channel);
     by_index(
         axes,
         |unit| unit.home.1,

@@ -1,10 +1,8 @@
 //! What can be held against an axis after every contour cycle: what it is told, what it may, what it has found.
 
+use bahn_kernel::{AxisId, AxisUnit, Mover, Superimposed};
 use bahn_parameters::fault::FaultId;
 use bahn_path::Axis;
-
-use crate::axis::{AxisId, AxisUnit, Mover};
-use crate::superimposing::Superimposed;
 
 /// An axis as the kernel moves it; positions in machine coordinates, mm or degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]

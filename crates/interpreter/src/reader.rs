@@ -4,7 +4,7 @@ use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_path::{BlockRef, Position};
+use bahn_path::{Axis, BlockRef, LiveData, Placement, Position};
 use bahn_program::Program;
 use bahn_reader::{MachineRules, Mark, Reader, Warning};
 
@@ -83,6 +83,44 @@ impl Reader for Interpreter {
 
     fn stand_at(&mut self, position: &Position) {
         self.stand_at(position);
+    }
+
+    fn placement(&self) -> Option<&Arc<Placement>> {
+        self.placement()
+    }
+
+    /// The range that a block digitizes, with the height at which the stylus is lifted.
+    fn range(&self, block: BlockRef) -> Option<[Position; 2]> {
+        let (_, job) = self.scan().filter(|(by, _)| *by == block)?;
+        let mut range = [Position::UNKNOWN; 2];
+        let axes = [Axis::X, Axis::Y, Axis::Z]
+            .into_iter()
+            .zip(job.min.iter().zip(&job.max));
+        for ((axis, (min, max)), beside) in axes.zip(job.beside) {
+            let [least, greatest] = &mut range;
+            least[axis] = min - beside;
+            let lifted = if axis == job.tool_axis {
+                job.clearance_mm
+            } else {
+                f64::NEG_INFINITY
+            };
+            greatest[axis] = max.max(lifted) - beside;
+        }
+        Some(range)
+    }
+
+    fn set_machine_zero(&mut self, zero: &Position) {
+        self.set_machine_zero(*zero);
+    }
+
+    fn take_values(&mut self, live: &LiveData) {
+        for (number, value) in &live.q_values {
+            self.set_q(*number, *value);
+        }
+    }
+
+    fn is_computing(&self) -> bool {
+        self.is_computing()
     }
 
     fn allow(&mut self, work: u32) {

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_path::{BlockRef, ElementSource, LiveData, Position, Step};
-use bahn_program::Program;
+use bahn_path::{BlockRef, ElementSource, LiveData, Placement, Position, Step};
+use bahn_program::{Program, Unit};
 
 use crate::{MachineRules, ProgramError, Warning};
 
@@ -73,6 +73,34 @@ pub trait Reader: ElementSource<Error = Box<ProgramError>> + Any + Send + Sync {
     /// The axes were moved at a barrier: the next block begins where they stand now, workpiece coordinates. Axes whose
     /// place is unknown stay.
     fn stand_at(&mut self, position: &Position);
+
+    /// The program that is executed next is in inches.
+    fn is_in_inches(&self) -> bool {
+        let program = self.program(self.at().program);
+        program.is_some_and(|program| program.unit() == Unit::Inch)
+    }
+
+    /// How the coordinates of the path stand in the machine at the block that comes next; `None` for upright.
+    fn placement(&self) -> Option<&Arc<Placement>> {
+        None
+    }
+
+    /// A block moves the axes beside the path: least and greatest place of the tool's tip, workpiece coordinates, mm; unknown
+    /// where it does not. `None` for all other blocks.
+    fn range(&self, _block: BlockRef) -> Option<[Position; 2]> {
+        None
+    }
+
+    /// Where the machine has its zero, workpiece coordinates; unknown for axes whose place is not known.
+    fn set_machine_zero(&mut self, _zero: &Position) {}
+
+    /// Takes the values that the PLC has given, without going on.
+    fn take_values(&mut self, _live: &LiveData) {}
+
+    /// A long computation of the next step is done elsewhere, or is to be: nothing can be read meanwhile.
+    fn is_computing(&self) -> bool {
+        false
+    }
 
     /// Machine parameters were changed by the PLC: their rules count for the blocks that are read from now on.
     fn set_machine_rules(&mut self, rules: MachineRules);

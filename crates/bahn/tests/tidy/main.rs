@@ -51,6 +51,7 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("machine", &["servo"]),
+    ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
     (
         "control",
         &[
@@ -63,6 +64,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "exchange",
             "plc",
             "servo",
+            "kernel",
         ],
     ),
     (

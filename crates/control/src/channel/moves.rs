@@ -14,7 +14,7 @@ impl Channel {
     /// operating mode waits for axes to come to a standstill.
     pub fn move_axes(&mut self, machine: &mut MachineSide, measured: &Measured) {
         let now = self.now(machine);
-        let mut axes = machine.axes.of(self.number);
+        let mut axes = machine.core.axes.of(self.number);
         reference::count_display_axes(&mut axes);
         let superimposes = self.datums.chain.superimposed.is_on();
         let exchange = machine.memory.of_mut(self.number);
@@ -30,7 +30,7 @@ impl Channel {
             self.move_by_mode(&now, machine, measured);
         }
         self.move_for_plc(&now, machine);
-        machine.axes.of(self.number).slow_down(now.time_s);
+        machine.core.axes.of(self.number).slow_down(now.time_s);
         if !waits {
             self.desk.forget_start();
         }
@@ -50,7 +50,7 @@ impl Channel {
                 self.move_manually(handwheel, now, machine);
             }
             Mode::Reference => {
-                let mut axes = machine.axes.of(self.number);
+                let mut axes = machine.core.axes.of(self.number);
                 let nc = machine.memory.of(self.number).nc();
                 self.desk.move_reference(&mut axes, nc, now);
             }
@@ -94,7 +94,7 @@ impl Channel {
     }
 
     fn move_manually(&mut self, handwheel: &HandwheelInputs, now: &Now, machine: &mut MachineSide) {
-        let mut axes = machine.axes.of(self.number);
+        let mut axes = machine.core.axes.of(self.number);
         let nc = machine.memory.of(self.number).nc();
         let block = self.run.running_block();
         let messages = machine.messages.of_channel(self.number);
@@ -110,7 +110,7 @@ impl Channel {
             restores: self.run.restores(),
         };
         let exchange = machine.memory.of_mut(self.number);
-        let mut axes = machine.axes.of(self.number);
+        let mut axes = machine.core.axes.of(self.number);
         self.positioning.moves(&mut axes, exchange, &moving);
         if self.number == 0 {
             // Modules know the axes of the first channel.

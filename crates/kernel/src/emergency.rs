@@ -4,7 +4,7 @@
 //! voltage, drops the output, and the acknowledgement must fall in time; then the output comes on again.
 //! The TNC 415 and 425 have three processors that do so in turn, the others one [000:6175-6228].
 
-use bahn_parameters::{ControlModel, EmergencyStopTest};
+use bahn_parameters::EmergencyStopTest;
 use bahn_servo::{Measured, Step};
 
 /// How finely the test times the acknowledgement, µs (inferred).
@@ -12,7 +12,7 @@ const LOOK_US: u32 = 1000;
 
 /// What the circuit says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Circuit {
+pub enum Circuit {
     /// `POWER INTERRUPTED` is shown; CE goes on [000:7033-7040].
     PowerInterrupted,
     /// `RELAY EXT. DC VOLTAGE MISSING`: waiting for the control voltage.
@@ -31,7 +31,7 @@ pub(crate) enum Circuit {
 
 /// The circuit, step by step.
 #[derive(Clone, Debug)]
-pub(crate) struct EmergencyStop {
+pub struct EmergencyStop {
     test: EmergencyStopTest,
     state: State,
 }
@@ -75,9 +75,10 @@ const WAITING: State = State::Waiting {
 };
 
 impl EmergencyStop {
-    pub fn new(model: ControlModel, power_interrupted: bool) -> EmergencyStop {
+    /// The circuit at power-on, with the test of a control; `power_interrupted`: that is shown first.
+    pub fn new(test: EmergencyStopTest, power_interrupted: bool) -> EmergencyStop {
         EmergencyStop {
-            test: model.limits().emergency_stop_test,
+            test,
             state: if power_interrupted {
                 State::PowerInterrupted
             } else {
@@ -86,6 +87,7 @@ impl EmergencyStop {
         }
     }
 
+    /// What the circuit says now.
     pub fn circuit(&self) -> Circuit {
         match self.state {
             State::PowerInterrupted => Circuit::PowerInterrupted,
@@ -191,11 +193,13 @@ impl EmergencyStop {
 
 #[cfg(test)]
 mod tests {
+    use bahn_parameters::ControlModel;
+
     use super::*;
 
     /// A relay that follows the output after a delay; the operator switches the voltage on at 1 s.
     fn power_on(model: ControlModel, relay_us: u64) -> (Circuit, u32) {
-        let mut stop = EmergencyStop::new(model, false);
+        let mut stop = EmergencyStop::new(model.limits().emergency_stop_test, false);
         let (mut relay, mut changed, mut falls) = (false, 0, 0);
         for step in 0..10_000u64 {
             let now = step * 600;
@@ -244,7 +248,7 @@ mod tests {
             (2001, None),
             (5999, None),
         ] {
-            let mut stop = EmergencyStop::new(ControlModel::Tnc155, false);
+            let mut stop = EmergencyStop::new(ControlModel::Tnc155.limits().emergency_stop_test, false);
             stop.state = State::Dropped { tested: 0, until };
             let measured = Measured {
                 control_ready_changed_at: Some(at),
@@ -257,7 +261,7 @@ mod tests {
             });
             assert_eq!(stop.state, expected, "{at} us");
         }
-        let mut stop = EmergencyStop::new(ControlModel::Tnc155, false);
+        let mut stop = EmergencyStop::new(ControlModel::Tnc155.limits().emergency_stop_test, false);
         stop.state = State::Dropped { tested: 0, until };
         let held = Measured {
             control_ready: true,
@@ -269,7 +273,7 @@ mod tests {
 
     #[test]
     fn the_voltage_must_come_back_before_ce() {
-        let mut stop = EmergencyStop::new(ControlModel::Tnc407, true);
+        let mut stop = EmergencyStop::new(ControlModel::Tnc407.limits().emergency_stop_test, true);
         stop.step(0, true);
         assert_eq!(stop.circuit(), Circuit::PowerInterrupted, "waits for CE");
         assert!(stop.clear());

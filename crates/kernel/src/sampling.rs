@@ -94,7 +94,7 @@ pub trait ServoSampler {
 }
 
 /// The axes of the machine in a servo step.
-pub struct ServoView<'a>(pub(crate) &'a Axes);
+pub struct ServoView<'a>(pub &'a Axes);
 
 impl ServoView<'_> {
     /// A value of the first axis of a letter; 0 where there is none.

@@ -7,7 +7,7 @@ use bahn_path::{Axis, Curve, Function, PathElement, PerAxis, Placement, Position
 use crate::superimposing::Superimposed;
 
 /// The least and greatest machine position of each axis; infinite where there is no limit.
-pub(crate) type Box2 = [Position; 2];
+pub type Box2 = [Position; 2];
 
 /// What is added between path and axes: the workpiece datum with its correction by the PLC and, in the tool
 /// axis, the length of the tool.
@@ -33,7 +33,7 @@ impl Offsets {
     }
 
     /// Takes the tool of a call.
-    pub(crate) fn take(&mut self, function: &Function) {
+    pub fn take(&mut self, function: &Function) {
         if let Function::Tool(call) = function {
             self.tool_axis = call.axis;
             self.tool_length = call.shape.length;
@@ -66,7 +66,7 @@ pub type Shares = PerAxis<PerAxis<f64>>;
 
 /// What each slot of the path may have of something of which each axis has a limit, so that all slots together leave no
 /// axis more than its limit.
-pub(crate) fn behind(shares: &Shares, limits: &PerAxis<f64>) -> PerAxis<f64> {
+pub fn along_path(shares: &Shares, limits: &PerAxis<f64>) -> PerAxis<f64> {
     PerAxis::from_fn(|slot| {
         let rows = shares.iter().zip(limits.iter());
         let moved = rows.filter(|(row, _)| row[slot] != 0.0);
@@ -97,8 +97,9 @@ impl Kinematics for Cartesian {
 
 /// The kinematics of a channel with what is superimposed on it now.
 #[derive(Clone, Debug)]
-pub(crate) struct Chain {
+pub struct Chain {
     kinematics: Arc<dyn Kinematics>,
+    /// Datum and tool.
     pub offsets: Offsets,
     /// What the handwheel adds to the axes.
     pub superimposed: Superimposed,
@@ -107,6 +108,7 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
+    /// A kinematics upright, with nothing superimposed.
     pub fn new(kinematics: Arc<dyn Kinematics>, offsets: Offsets) -> Chain {
         Chain {
             kinematics,

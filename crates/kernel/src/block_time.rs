@@ -2,7 +2,7 @@
 
 /// A simulated processing time: elements of the path are read only as fast as it allows.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct BlockTime {
+pub struct BlockTime {
     /// Time for an element, µs; 0 for none.
     time_us: u32,
     /// Time that is not spent, µs.
@@ -12,6 +12,7 @@ pub(crate) struct BlockTime {
 }
 
 impl BlockTime {
+    /// An element takes so long from now on, µs; 0 for no time.
     pub fn set(&mut self, time_us: u32) {
         *self = BlockTime {
             time_us,

@@ -2,28 +2,33 @@
 
 /// One for each channel.
 #[derive(Clone, Debug)]
-pub(crate) struct PerChannel<T> {
+pub struct PerChannel<T> {
     first: T,
     more: Vec<T>,
 }
 
 impl<T> PerChannel<T> {
+    /// That of the first channel, and those of the others.
     pub fn new(first: T, more: Vec<T>) -> PerChannel<T> {
         PerChannel { first, more }
     }
 
+    /// How many channels there are.
     pub fn count(&self) -> usize {
         1 + self.more.len()
     }
 
+    /// That of one more channel.
     pub fn push(&mut self, more: T) {
         self.more.push(more);
     }
 
+    /// That of the first channel.
     pub fn first(&self) -> &T {
         &self.first
     }
 
+    /// That of the first channel, to be changed.
     pub fn first_mut(&mut self) -> &mut T {
         &mut self.first
     }
@@ -54,10 +59,12 @@ impl<T> PerChannel<T> {
         }
     }
 
+    /// That of each channel, the first one first.
     pub fn iter(&self) -> impl Iterator<Item = &T> {
         std::iter::once(&self.first).chain(&self.more)
     }
 
+    /// That of each channel, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         std::iter::once(&mut self.first).chain(&mut self.more)
     }

@@ -18,7 +18,7 @@ pub enum RunState {
 
 /// The progress of a run.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Progress {
+pub struct Progress {
     state: RunState,
     /// A fault has interrupted it: it is not on its way, and the next start tries the block again.
     broken: bool,
@@ -29,14 +29,17 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
+    /// What the run does now.
     pub fn state(&self) -> RunState {
         self.state
     }
 
+    /// A fault has interrupted it.
     pub fn is_broken(&self) -> bool {
         self.broken
     }
 
+    /// The program came to its end since it was started.
     pub fn has_ended(&self) -> bool {
         self.ended
     }

@@ -2,32 +2,39 @@
 
 use std::collections::VecDeque;
 
-use bahn_exchange::Image;
 use bahn_motion::{FunctionOutput, Interpolator, Limits};
-use bahn_parameters::ParameterList;
-use bahn_path::{Axis, AxisSet, Curve, FeedRate, Function, PathElement, PerAxis, Position};
+use bahn_path::{Axis, AxisSet, Curve, FeedRate, Function, PathElement, Position, Voltage};
 
 use crate::axes::OwnAxes;
-use crate::axis::{AxisId, AxisUnit, Mover};
+use crate::axis::{AxisUnit, Mover};
 use crate::feeder::RunFault;
-use crate::handshake::LOOK_AHEAD;
-use crate::kinematics::{Chain, Kinematics, behind};
-use crate::markers::WAIT_OPEN_LOOP;
-use crate::message::Message;
-use crate::now::Now;
-use crate::panel::Direction;
-use crate::q_transfer::QTransfer;
-use crate::site::Site;
+use crate::kinematics::Chain;
+use crate::superimposing::Wheels;
 use crate::voltage::Along;
 
+/// Elements of the path that are prepared ahead at most.
+pub const LOOK_AHEAD: usize = 512;
 /// So near is no other place, mm or degrees.
 const SAME_MM: f64 = 1e-6;
 /// Outputs of functions that wait at most.
 const OUTPUTS: usize = 64;
 
+/// Who takes the functions of the path, once the axes are where the functions act.
+pub trait Outputs {
+    /// A block gives its functions now; they follow in their order.
+    fn begin(&mut self);
+
+    /// A function of it.
+    fn output(&mut self, function: &Function);
+
+    /// An order for the voltage along the path, by the block with a sequence.
+    fn voltage(&mut self, order: Voltage, sequence: u64);
+}
+
 /// The path of a run with what follows it.
 #[derive(Clone, Debug)]
-pub(crate) struct Track {
+pub struct Track {
+    /// The path, sampled in each contour cycle.
     pub path: Interpolator<RunFault>,
     /// Functions on the path that wait for the axes to be in position.
     waiting: VecDeque<FunctionOutput>,
@@ -44,6 +51,7 @@ pub(crate) struct Track {
 }
 
 impl Track {
+    /// A path within limits, with nothing on it.
     pub fn new(limits: &Limits) -> Track {
         Track {
             path: Interpolator::new(limits, LOOK_AHEAD),
@@ -165,7 +173,7 @@ impl Track {
     }
 
     /// The nominal positions of the axes from that of the path and what the handwheel adds to it.
-    pub fn follow(&mut self, position: &Position, axes: &mut OwnAxes, chain: &mut Chain, now: &Now) {
+    pub fn follow(&mut self, position: &Position, axes: &mut OwnAxes, chain: &mut Chain, wheels: &Wheels) {
         let moved = self.last != Some(*position);
         self.last = Some(*position);
         let element = self.path.element();
@@ -179,9 +187,9 @@ impl Track {
         let superimposed = &mut chain.superimposed;
         // In a thread, which the spindle leads, no wheel does.
         let led = moved.then_some(&path);
-        superimposed.follow(led, axes.iter(), now, self.path.is_coupled());
+        superimposed.follow(led, axes.iter(), wheels, self.path.is_coupled());
         let nominal = superimposed.added(path, 1.0);
-        let time_s = now.time_s;
+        let time_s = wheels.time_s;
         for unit in axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_nan() || !matches!(unit.mover, Mover::None | Mover::Path) || unit.is_plc_axis() {
@@ -223,9 +231,9 @@ impl Track {
 
     /// The axes stand elsewhere than the path: the PLC has moved them, corrected the datum or changed the
     /// tool length. The path then goes on from where they are, within the traverse range as it is now.
-    pub fn regain(&mut self, site: &Site) {
+    pub fn regain(&mut self, axes: &OwnAxes, chain: &Chain) {
         // Axes that were taken over from where an EMERGENCY STOP left them go back to the path with NC start.
-        if self.path.is_coupled() || site.axes.are_away() {
+        if self.path.is_coupled() || axes.are_away() {
             return;
         }
         // A tool call lets the tip stand elsewhere without a movement.
@@ -234,9 +242,9 @@ impl Track {
             _ => self.path.position(),
         };
         let at = self.path.position();
-        let here = site.here();
+        let here = chain.to_path(&axes.programmed_position());
         let differs = |a: f64, b: f64| (a - b).abs() > SAME_MM;
-        let elsewhere = site.axes.iter().map(|unit| unit.axis).any(|axis| {
+        let elsewhere = axes.iter().map(|unit| unit.axis).any(|axis| {
             differs(here[axis], at[axis]) && (differs(here[axis], end[axis]) || end[axis].is_nan())
         });
         let needed = elsewhere || self.range_changed;
@@ -249,27 +257,27 @@ impl Track {
     }
 
     /// Outputs the functions of the path in their order, once the axes are in position.
-    pub fn output(&mut self, site: &mut Site, q_transfer: &mut QTransfer, inch: bool, settled: bool) {
+    pub fn output(&mut self, outputs: &mut dyn Outputs, settled: bool) {
         while let Some(output) = self.path.next_output() {
             // Behind a function that waits there is none before it is acknowledged.
             debug_assert!(self.waiting.len() < OUTPUTS, "the path waits at its gate");
             self.waiting.push_back(output);
-            self.output_waiting(site, q_transfer, inch, settled);
+            self.output_waiting(outputs, settled);
         }
-        self.output_waiting(site, q_transfer, inch, settled);
+        self.output_waiting(outputs, settled);
     }
 
-    fn output_waiting(&mut self, site: &mut Site, q_transfer: &mut QTransfer, inch: bool, settled: bool) {
+    fn output_waiting(&mut self, outputs: &mut dyn Outputs, settled: bool) {
         while let Some(output) = self.waiting.front().copied() {
             if output.waits && !settled {
                 return;
             }
             self.waiting.pop_front();
-            q_transfer.strobe();
+            outputs.begin();
             for function in self.path.functions(&output) {
                 match function.function {
-                    Function::Voltage(order) => site.spindle.set_voltage(order, output.sequence),
-                    _ => site.output(&function.function, inch),
+                    Function::Voltage(order) => outputs.voltage(order, output.sequence),
+                    _ => outputs.output(&function.function),
                 }
             }
         }
@@ -292,44 +300,6 @@ impl Track {
     }
 }
 
-/// Axes whose loop is open: no block may move them.
-pub(crate) fn clamped_axes(axes: &OwnAxes) -> AxisSet {
-    let open = axes
-        .iter()
-        .filter(|unit| unit.parameters.controlled && !unit.servo.closed());
-    open.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
-}
-
-/// Axes that the PLC wants to clamp after their block (M2492 ff.), and whose loop is still closed.
-pub(crate) fn clamping_axes(axes: &OwnAxes, nc: &Image) -> AxisSet {
-    let wanted = axes.iter().filter(|unit| {
-        let marker = WAIT_OPEN_LOOP.get(unit.index);
-        unit.servo.closed() && marker.is_some_and(|marker| nc.bit(*marker))
-    });
-    wanted.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
-}
-
-/// The axes of the path stand within their windows.
-pub(crate) fn are_in_position(axes: &OwnAxes) -> bool {
-    axes.iter()
-        .filter(|unit| unit.mover == Mover::Path && unit.servo.closed())
-        .all(|unit| unit.stands() && unit.servo.in_position())
-}
-
-/// The axes of a probing movement stand where it has led them: none was taken over from somewhere else.
-pub(crate) fn has_arrived(axes: &OwnAxes) -> bool {
-    are_in_position(axes) && !axes.are_away()
-}
-
-/// The message of an axis that a block would lead beyond its limit.
-pub(crate) fn limit_message(axes: &mut OwnAxes, axis: Axis, direction: Direction) -> Message {
-    let id = axes.iter_mut().find(|unit| unit.axis == axis).map(|unit| {
-        unit.at_limit = Some(direction);
-        unit.id
-    });
-    Message::limit(id.unwrap_or(AxisId::FIRST), direction)
-}
-
 /// Whether an axis moves on the circle of an element, where reversal peaks are compensated.
 fn is_circular(element: &PathElement, axis: Axis) -> bool {
     let cylinder = element
@@ -349,33 +319,5 @@ fn is_circular(element: &PathElement, axis: Axis) -> bool {
         Curve::Arc(arc) => axis == arc.plane.first || axis == arc.plane.second,
         Curve::Corner(_) => element.moves(axis) && axis.main() == Some(axis),
         Curve::Line | Curve::Hold => false,
-    }
-}
-
-/// The limits of a path: those of the axes, behind the kinematics.
-pub(crate) fn path_limits<'a>(
-    parameters: &ParameterList,
-    axes: impl Iterator<Item = &'a AxisUnit> + Clone,
-    kinematics: &dyn Kinematics,
-) -> Limits {
-    let shares = kinematics.shares();
-    let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
-        let limits = PerAxis::from_fn(|axis| {
-            let mut axes = axes.clone();
-            axes.find(|unit| unit.axis == axis).map_or(otherwise, value)
-        });
-        behind(&shares, &limits)
-    };
-    Limits {
-        max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),
-        acceleration_m_s2: of(|unit| unit.parameters.motion.acceleration_m_s2, 1.0),
-        radial_acceleration_m_s2: parameters.radial_acceleration_m_s2(),
-        corner_angle_deg: parameters.corner_angle_deg(),
-        servo_lag: !parameters.feed_precontrol(),
-        cycle_s: f64::from(parameters.model().timing().contour_us()) * 1e-6,
-        servo_window_s: bahn_motion::SERVO_WINDOW_S,
-        spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
-        feed_override_percent: 100.0,
-        rapid_override_percent: 100.0,
     }
 }

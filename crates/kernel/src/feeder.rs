@@ -2,20 +2,16 @@
 //! refuses what leaves the traverse range.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 
-use bahn_interpreter::{AbsentAxes, Interpreter, Rules};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, PerAxis,
-    Placement, Position, Step,
+    Position, Step,
 };
-use bahn_plc::ToolCallBlock;
 use bahn_reader::{Cause, Message, ProgramError, Reader};
 
-use crate::axis::AxisUnit;
+use crate::axis::Direction;
 use crate::kinematics::{Box2, Chain};
-use crate::panel::Direction;
 
 /// Work of the reader in one preparation at most, as [`Reader::allow`] counts it: some ms.
 const WORK: u32 = 4096;
@@ -26,60 +22,39 @@ const AHEAD: usize = 1024;
 
 /// Why a run cannot go on.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum RunFault {
+pub enum RunFault {
     /// The program is wrong.
     Program(Box<ProgramError>),
     /// A block would leave the traverse range [000:3522].
     Limit {
+        /// Which axis.
         axis: Axis,
+        /// At which of its limits.
         direction: Direction,
-        /// Which block, and its place in the order of execution.
+        /// Which block.
         block: BlockRef,
+        /// Its place in the order of execution.
         sequence: u64,
     },
     /// A block would move an axis that the channel does not have: it has gone to another one, or never was there, or a
     /// master or the PLC moves it.
     Absent {
+        /// Which axis.
         axis: Axis,
-        /// Which block, and its place in the order of execution.
+        /// Which block.
         block: BlockRef,
+        /// Its place in the order of execution.
         sequence: u64,
     },
 }
 
-/// The error of a block that would move an axis that the channel does not have, or not for programs.
-pub(crate) fn absent(
-    axis: Axis,
-    unit: Option<&AxisUnit>,
+/// An error of a block of a program that is read; `None` while it is read elsewhere.
+pub fn program_error(
+    message: MessageId,
+    detail: String,
     block: BlockRef,
     run: Option<&dyn Reader>,
 ) -> ProgramError {
-    let only = AxisSet::EMPTY.with(axis);
-    let mut reasons = AbsentAxes::default();
-    match unit {
-        None => reasons.missing = only,
-        Some(unit) if unit.is_plc_axis() => reasons.plc = only,
-        Some(_) => reasons.slaves = only,
-    }
-    let why = reasons.reason(only).unwrap_or_default();
-    error(MessageId::WrongAxisProgrammed, why, block, run)
-}
-
-/// The error of a program into which the PLC inserts a TOOL CALL and that has no tools.
-pub(crate) fn without_tools(block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
-    let why = "module 9150 inserts a TOOL CALL: a program in this language has no tools";
-    error(MessageId::BlockNotSupported, why.to_owned(), block, run)
-}
-
-/// The error of a program that is to begin at a block in the plane of 3D ROT, or of the program before, and knows none: it
-/// would run upright.
-pub(crate) fn without_planes(block: u32, run: &dyn Reader) -> ProgramError {
-    let why = "3D ROT for program run is on: a program in this language does not run in a tilted plane";
-    let block = BlockRef { program: 0, block };
-    error(MessageId::BlockNotSupported, why.to_owned(), block, Some(run))
-}
-
-fn error(message: MessageId, detail: String, block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
     let program = run.and_then(|run| run.program(block.program));
     ProgramError {
         message: Message::Control(message),
@@ -109,7 +84,7 @@ impl Ahead {
 
 /// Feeds the interpolator from a program.
 #[derive(Clone)]
-pub(crate) struct Feeder {
+pub struct Feeder {
     reader: Box<dyn Reader>,
     /// What the reader was read ahead by, beside the control.
     ahead: Ahead,
@@ -135,6 +110,7 @@ pub(crate) struct Feeder {
 }
 
 impl Feeder {
+    /// A feeder of a program, with the kinematics as the axes stand, the software limits and the axes that there are.
     pub fn new(mut reader: Box<dyn Reader>, chain: Chain, (limits, axes): (Box2, AxisSet)) -> Feeder {
         reader.keep_checkpoints();
         Feeder {
@@ -153,41 +129,19 @@ impl Feeder {
         }
     }
 
+    /// The program that is read.
     pub fn reader(&self) -> &dyn Reader {
         &*self.reader
     }
 
+    /// The same, to be changed.
     pub fn reader_mut(&mut self) -> &mut dyn Reader {
         &mut *self.reader
     }
 
-    /// The program as one of a TNC; `None` when it is in another language.
-    pub fn interpreter(&self) -> Option<&Interpreter> {
-        Interpreter::of(&*self.reader)
-    }
-
-    /// The program as one of a TNC; `None` when it is in another language.
-    pub fn interpreter_mut(&mut self) -> Option<&mut Interpreter> {
-        Interpreter::of_mut(&mut *self.reader)
-    }
-
-    /// The rules of machine parameters, for the blocks that are read from now on.
-    pub fn set_rules(&mut self, rules: Rules) {
-        let common = rules.machine;
-        match self.interpreter_mut() {
-            Some(interpreter) => interpreter.set_rules(rules),
-            None => self.reader.set_machine_rules(common),
-        }
-    }
-
-    /// How the coordinates of the path stand in the machine at the block that comes next, when not upright.
-    pub fn placement(&self) -> Option<&Arc<Placement>> {
-        self.interpreter().and_then(Interpreter::placement)
-    }
-
     /// A long computation of it is done, or to be done, beside.
     fn is_computing(&self) -> bool {
-        self.interpreter().is_some_and(Interpreter::is_computing)
+        self.reader.is_computing()
     }
 
     /// The program is read beside the control from now on, by [`Feeder::read_ahead`], or no more.
@@ -231,17 +185,14 @@ impl Feeder {
 
     /// The program that is executed is in inches.
     pub fn inch(&self) -> bool {
-        let program = self.reader.program(self.reader.at().program);
-        program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
+        self.reader.is_in_inches()
     }
 
     /// Datum, machine zero in workpiece coordinates, traverse range and axes as they are now.
     pub fn set_datum(&mut self, datum: Position, machine_zero: Position, (limits, axes): (Box2, AxisSet)) {
         (self.limits, self.axes) = (limits, axes);
         self.chain.offsets.datum = datum;
-        if let Some(interpreter) = self.interpreter_mut() {
-            interpreter.set_machine_zero(machine_zero);
-        }
+        self.reader.set_machine_zero(&machine_zero);
     }
 
     /// These axes may come to the channel before a block moves them.
@@ -249,24 +200,9 @@ impl Feeder {
         self.axes = axes;
     }
 
-    /// Inserts a TOOL CALL of module 9150 before the next block.
-    pub fn insert(&mut self, call: &ToolCallBlock) {
-        let axis = call.axis.and_then(crate::tools::inserted_axis);
-        let tool = call.tool.map(f64::from);
-        let oversize = [call.length_oversize, call.radius_oversize];
-        if let Some(interpreter) = self.interpreter_mut() {
-            interpreter.insert_tool_call(tool, axis, call.speed, oversize);
-        }
-    }
-
-    /// The first block that was read behind a sequence before which the tool may be replaced.
-    pub fn next_replacement(&mut self, behind: u64, tool: u32) -> Option<u64> {
-        self.interpreter_mut()?.next_replacement(behind, tool)
-    }
-
-    /// Replaces the tool before such a block: what was read from there on is read again. With the kinematics and offsets of where
-    /// the path stands.
-    pub fn replace_tool_before(&mut self, sequence: u64, tool: u32, chain: &Chain) {
+    /// Goes back before a block that was read ahead and is not executed: what was read from there on is read again, with the
+    /// kinematics and offsets of where the path stands.
+    pub fn read_again_from(&mut self, sequence: u64, chain: &Chain) {
         self.reader.go_back(&|mark| mark.sequence == sequence);
         self.ahead.clear();
         self.found.clear();
@@ -277,21 +213,11 @@ impl Feeder {
             tap.retain(|element| element.sequence < sequence);
             self.dropped_from = Some(sequence);
         }
-        if let Some(interpreter) = self.interpreter_mut() {
-            interpreter.replace_tool(tool);
-        }
     }
 
-    /// Replaces the tool in the spindle before the next block, if it may be.
-    pub fn replace_tool(&mut self, worn: u32, tool: u32) {
-        let next = self.ahead.steps.is_empty() && self.found.is_empty();
-        if next
-            && self.refused.is_none()
-            && let Some(interpreter) = self.interpreter_mut()
-            && interpreter.may_replace_tool(worn)
-        {
-            interpreter.replace_tool(tool);
-        }
+    /// All that was read was handed out: the reader is where the path is.
+    pub fn is_drained(&self) -> bool {
+        self.ahead.steps.is_empty() && self.found.is_empty() && self.refused.is_none()
     }
 
     /// Gives elements back, to come again before all others.
@@ -382,8 +308,7 @@ impl Feeder {
         self.limits = limits;
         self.beside = Position::ZERO;
         self.reader.retry();
-        let placement = Interpreter::of(&*self.reader).and_then(Interpreter::placement);
-        self.chain.place(placement);
+        self.chain.place(self.reader.placement());
         self.reader.relocate(&self.chain.to_path(machine));
     }
 
@@ -426,25 +351,23 @@ impl Feeder {
         Step::Error(fault)
     }
 
-    /// A block that digitizes a range which reaches beyond the software limits [003:8047-8051].
+    /// A block that moves the axes beside the path, and whose range reaches beyond the software limits [003:8047-8051].
     fn range_fault(&self, block: BlockRef) -> Option<Box<ProgramError>> {
-        let (_, job) = self.interpreter()?.scan().filter(|(by, _)| *by == block)?;
+        let [min, max] = self.reader.range(block)?;
         let [least, greatest] = &self.limits;
-        let axes = [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate();
-        let outside = |(place, axis): &(usize, Axis)| {
-            let offset = self.chain.offsets.of(*axis) - job.beside.get(*place).copied().unwrap_or(0.0);
-            let of = |point: &[f64; 3]| point.get(*place).map_or(f64::NAN, |at| at + offset);
-            let high = of(&job.max).max(if *axis == job.tool_axis {
-                job.clearance_mm + offset
-            } else {
-                f64::NEG_INFINITY
-            });
-            of(&job.min) < least[*axis] || high > greatest[*axis]
+        let outside = |axis: &Axis| {
+            let offset = self.chain.offsets.of(*axis);
+            min[*axis] + offset < least[*axis] || max[*axis] + offset > greatest[*axis]
         };
-        let (_, axis) = axes.into_iter().find(outside)?;
+        let axis = Axis::ALL.into_iter().find(outside)?;
         let why = format!("the range leaves the traverse range of {}", axis.letter());
         let run = Some(&*self.reader);
-        Some(Box::new(error(MessageId::FaultyRangeData, why, block, run)))
+        Some(Box::new(program_error(
+            MessageId::FaultyRangeData,
+            why,
+            block,
+            run,
+        )))
     }
 
     /// Behind a barrier or the end the reader says the same again; what is not read yet is waited for.
@@ -544,11 +467,7 @@ impl ElementSource for Feeder {
         match &mut self.refused {
             Some((_, last)) => {
                 *last = true;
-                for (number, value) in live.q_values {
-                    if let Some(interpreter) = Interpreter::of_mut(&mut *self.reader) {
-                        interpreter.set_q(number, value);
-                    }
-                }
+                self.reader.take_values(&live);
             }
             None => {
                 self.ahead.dammed = false;
@@ -561,7 +480,9 @@ impl ElementSource for Feeder {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-    use bahn_interpreter::{NoLibrary, Settings};
+    use std::sync::Arc;
+
+    use bahn_interpreter::{Interpreter, NoLibrary, Settings};
     use bahn_program::Program;
 
     use super::*;
@@ -648,7 +569,7 @@ mod tests {
         machine[Axis::X] = 112.0;
         let (chain, limits) = (feeder.chain.clone(), feeder.limits);
         feeder.return_to(third.unwrap(), &machine, &chain, limits);
-        assert_eq!(feeder.interpreter().unwrap().q_values()[1], 5.0);
+        assert_eq!(Interpreter::of(feeder.reader()).unwrap().q_values()[1], 5.0);
         let Step::Element(again) = feeder.next() else {
             panic!("block 3 runs again")
         };

@@ -1,15 +1,15 @@
 //! M118: handwheel movements on top of the path of a program [000:742].
 
 use bahn_motion::{Aim, PointToPoint};
+use bahn_parameters::PerPlcAxis;
 use bahn_path::{Axis, PerAxis, Position};
 
 use crate::axis::AxisUnit;
-use crate::now::Now;
 
 /// How far the axes may be led beside the path, how far they are to be, and where they are on the way there. In
 /// coordinates of the axes, whatever the path stands in (inferred).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Superimposed {
+pub struct Superimposed {
     /// To either side of the path, mm or degrees; 0 where there is nothing.
     range: Position,
     /// Where the wheels lead.
@@ -20,6 +20,19 @@ pub(crate) struct Superimposed {
     ways: Position,
     /// Anything of it is not 0.
     on: bool,
+}
+
+/// What leads the axes beside the path in a contour cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Wheels<'a> {
+    /// By how much each was turned in this cycle, by axis index, mm or degrees.
+    pub turned_mm: &'a PerPlcAxis<f64>,
+    /// Path and wheel together are no faster, mm/min.
+    pub rapid_limit_mm_min: f64,
+    /// The contour cycle, s.
+    pub time_s: f64,
+    /// A loop has a fault: the machine stops.
+    pub fault: bool,
 }
 
 impl Default for Superimposed {
@@ -97,7 +110,7 @@ impl Superimposed {
         &mut self,
         path: Option<&Position>,
         axes: impl Iterator<Item = &'a AxisUnit>,
-        now: &Now,
+        wheels: &Wheels,
         holds: bool,
     ) {
         if !self.on {
@@ -111,14 +124,14 @@ impl Superimposed {
             if unit.enabled && unit.servo.closed() && unit.left_at.is_none() {
                 let was = unit.nominal - before;
                 let path = path.map(|path| path[axis]).filter(|path| !path.is_nan());
-                let path_mm_s = (path.unwrap_or(was) - was) / now.time_s;
-                if now.fault {
-                    self.lead(unit, Aim::Feed(0.0), path_mm_s, now);
+                let path_mm_s = (path.unwrap_or(was) - was) / wheels.time_s;
+                if wheels.fault {
+                    self.lead(unit, Aim::Feed(0.0), path_mm_s, wheels);
                     self.target[axis] = self.of(axis);
                 } else {
-                    let turned = now.wheel_mm.get(unit.index).filter(|_| !holds);
+                    let turned = wheels.turned_mm.get(unit.index).filter(|_| !holds);
                     self.turn(unit, turned.copied().unwrap_or(0.0), path.unwrap_or(was));
-                    self.lead(unit, Aim::Position(self.target[axis]), path_mm_s, now);
+                    self.lead(unit, Aim::Position(self.target[axis]), path_mm_s, wheels);
                 }
             } else {
                 self.ramps[axis] = PointToPoint::new(before);
@@ -145,16 +158,16 @@ impl Superimposed {
     /// Leads an axis on its ramp, as fast as the path leaves it of the rapid traverse. What the path takes of that faster than the
     /// ramp brakes, at a corner that it passes, the wheel gives way by at once (inferred): the axis then keeps the rapid
     /// traverse, and its own velocity changes by no more than that of the path does and the ramp allows.
-    fn lead(&mut self, unit: &AxisUnit, aim: Aim, path_mm_s: f64, now: &Now) {
+    fn lead(&mut self, unit: &AxisUnit, aim: Aim, path_mm_s: f64, wheels: &Wheels) {
         let motion = &unit.parameters.motion;
-        let limit = motion.rapid_mm_min.min(now.rapid_limit_mm_min);
+        let limit = motion.rapid_mm_min.min(wheels.rapid_limit_mm_min);
         let feed = (limit - path_mm_s.abs() * 60.0).max(0.0);
         let ramp = &mut self.ramps[unit.axis];
         let before = ramp.position();
-        let way = ramp.cycle(now.time_s, aim, feed, motion.acceleration_m_s2) - before;
+        let way = ramp.cycle(wheels.time_s, aim, feed, motion.acceleration_m_s2) - before;
         let rapid = motion.rapid_mm_min / 60.0;
         let (least, most) = ((-rapid - path_mm_s).min(0.0), (rapid - path_mm_s).max(0.0));
-        let left = way.clamp(least * now.time_s, most * now.time_s);
+        let left = way.clamp(least * wheels.time_s, most * wheels.time_s);
         if left != way {
             *ramp = PointToPoint::moving(before + left, ramp.speed_mm_s().clamp(least, most));
         }

@@ -1,19 +1,18 @@
 //! The servo axes of the machine, and those of them that a channel moves.
 
 use bahn_motion::Aim;
-use bahn_parameters::{ParameterList, PerPlcAxis};
+use bahn_parameters::{PLC_AXES, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, AxisSet, PerAxis, Position};
 use bahn_servo::{Commands, Measured, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::gantry;
 use crate::kinematics::{Box2, Chain};
-use crate::markers::AXES;
 
 /// All axes of the machine. Each belongs to one channel, which gives it a slot of its path and an index of
 /// its markers.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Axes {
+pub struct Axes {
     units: Vec<AxisUnit>,
 }
 
@@ -43,26 +42,32 @@ impl Axes {
         self.units.get(slave.coupling.as_ref()?.master)
     }
 
+    /// All of them, in the order of their outputs.
     pub fn iter(&self) -> std::slice::Iter<'_, AxisUnit> {
         self.units.iter()
     }
 
+    /// All of them, to be changed.
     pub fn iter_mut(&mut self) -> std::slice::IterMut<'_, AxisUnit> {
         self.units.iter_mut()
     }
 
+    /// How many there are.
     pub fn count(&self) -> usize {
         self.units.len()
     }
 
+    /// The axis at a place among all of the machine.
     pub fn get(&self, place: usize) -> Option<&AxisUnit> {
         self.units.get(place)
     }
 
+    /// The same, to be changed.
     pub fn get_mut(&mut self, place: usize) -> Option<&mut AxisUnit> {
         self.units.get_mut(place)
     }
 
+    /// The axis of a number on the machine.
     pub fn with_id_mut(&mut self, id: AxisId) -> Option<&mut AxisUnit> {
         self.units.iter_mut().find(|unit| unit.id == id)
     }
@@ -71,7 +76,7 @@ impl Axes {
     /// has.
     pub fn give(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
         let taken = |unit: &AxisUnit| unit.id != id && (unit.axis == slot || unit.index == index);
-        if index >= AXES || self.owned(channel).any(taken) {
+        if index >= PLC_AXES || self.owned(channel).any(taken) {
             return false;
         }
         let Some(unit) = self.with_id_mut(id) else {
@@ -164,12 +169,12 @@ impl Axes {
 }
 
 /// The numbers of the axes of the first channel.
-pub(crate) fn first_ids() -> PerPlcAxis<Option<AxisId>> {
+pub fn first_ids() -> PerPlcAxis<Option<AxisId>> {
     PerPlcAxis::from_fn(AxisId::new)
 }
 
 /// The axes that a list of machine parameters gives to a channel, whose connectors count from a place on the machine.
-pub(crate) fn units(
+pub fn units(
     parameters: &ParameterList,
     of: (usize, usize),
     ids: PerPlcAxis<Option<AxisId>>,
@@ -181,17 +186,19 @@ pub(crate) fn units(
 }
 
 /// The axes of a channel.
-pub(crate) struct OwnAxes<'a> {
+pub struct OwnAxes<'a> {
     units: &'a mut [AxisUnit],
     channel: usize,
 }
 
 impl OwnAxes<'_> {
+    /// Those of the channel.
     pub fn iter(&self) -> impl Iterator<Item = &AxisUnit> + Clone {
         let channel = self.channel;
         self.units.iter().filter(move |unit| unit.channel == channel)
     }
 
+    /// Those of the channel, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut AxisUnit> {
         let channel = self.channel;
         self.units.iter_mut().filter(move |unit| unit.channel == channel)
@@ -206,10 +213,12 @@ impl OwnAxes<'_> {
         (0..self.units.len()).filter(move |place| own >> place & 1 != 0)
     }
 
+    /// The axis at a place among all of the machine.
     pub fn get(&self, place: usize) -> Option<&AxisUnit> {
         self.units.get(place)
     }
 
+    /// The same, to be changed.
     pub fn get_mut(&mut self, place: usize) -> Option<&mut AxisUnit> {
         self.units.get_mut(place)
     }
@@ -288,6 +297,26 @@ impl OwnAxes<'_> {
         !self.iter().any(moves)
     }
 
+    /// Those whose loop is open: no block may move them.
+    pub fn clamped(&self) -> AxisSet {
+        let open = self
+            .iter()
+            .filter(|unit| unit.parameters.controlled && !unit.servo.closed());
+        open.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
+    }
+
+    /// Those of the path stand within their windows.
+    pub fn are_in_position(&self) -> bool {
+        self.iter()
+            .filter(|unit| unit.mover == Mover::Path && unit.servo.closed())
+            .all(|unit| unit.stands() && unit.servo.in_position())
+    }
+
+    /// Those of a probing movement stand where it has led them: none was taken over from somewhere else.
+    pub fn have_arrived(&self) -> bool {
+        self.are_in_position() && !self.are_away()
+    }
+
     /// Chooses lag or feed pre-control for a kind of operation; whether all have it.
     pub fn choose_methods(&mut self, automatic: bool, rigid: bool) -> bool {
         let mut ready = true;
@@ -351,10 +380,7 @@ impl OwnAxes<'_> {
 }
 
 /// Where axes stand, as path positions: the actual one, and the nominal one.
-pub(crate) fn path_positions<'a>(
-    axes: impl Iterator<Item = &'a AxisUnit> + Clone,
-    chain: &Chain,
-) -> [Position; 2] {
+pub fn path_positions<'a>(axes: impl Iterator<Item = &'a AxisUnit> + Clone, chain: &Chain) -> [Position; 2] {
     let mut actual = Position::UNKNOWN;
     for unit in axes.clone() {
         actual[unit.axis] = unit.servo.actual_mm();
@@ -363,7 +389,7 @@ pub(crate) fn path_positions<'a>(
 }
 
 /// Where axes stand, machine coordinates; unknown where there is none.
-pub(crate) fn machine_position<'a>(axes: impl Iterator<Item = &'a AxisUnit>) -> Position {
+pub fn machine_position<'a>(axes: impl Iterator<Item = &'a AxisUnit>) -> Position {
     let mut position = Position::UNKNOWN;
     for unit in axes {
         position[unit.axis] = unit.nominal;

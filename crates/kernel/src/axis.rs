@@ -5,7 +5,6 @@ use bahn_parameters::axis::AxisParameters;
 use bahn_path::Axis;
 use bahn_servo::{Axis as Servo, Gantry, Mark, Method, Timing};
 
-use crate::panel::Direction;
 use crate::way_back::WayBack;
 
 /// A servo axis of the machine: 0 to 4 are those of the first channel by their index in markers and machine
@@ -16,9 +15,10 @@ pub struct AxisId(u8);
 impl AxisId {
     /// Axes that a machine has at most, the place of the spindle among them.
     pub const COUNT: u8 = 38;
-    pub(crate) const FIRST: AxisId = AxisId(0);
+    /// The first axis of the first channel.
+    pub const FIRST: AxisId = AxisId(0);
     /// The spindle among the axes of messages.
-    pub(crate) const SPINDLE: AxisId = AxisId(5);
+    pub const SPINDLE: AxisId = AxisId(5);
 
     /// The axis of a number; `None` for the spindle's, and beyond the greatest.
     pub fn new(number: u8) -> Option<AxisId> {
@@ -31,9 +31,37 @@ impl AxisId {
     }
 }
 
+/// A direction of traverse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Towards greater positions.
+    Plus,
+    /// Towards lesser ones.
+    Minus,
+}
+
+impl Direction {
+    /// The direction of a value's sign; `None` for 0.
+    pub fn of(value: f64) -> Option<Direction> {
+        match value {
+            value if value > 0.0 => Some(Direction::Plus),
+            value if value < 0.0 => Some(Direction::Minus),
+            _ => None,
+        }
+    }
+
+    /// +1 or -1.
+    pub fn sign(self) -> f64 {
+        match self {
+            Direction::Plus => 1.0,
+            Direction::Minus => -1.0,
+        }
+    }
+}
+
 /// What moves an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Mover {
+pub enum Mover {
     /// Nothing: it is held where it is.
     #[default]
     None,
@@ -53,9 +81,10 @@ pub(crate) enum Mover {
 
 /// The coupling of a slave.
 #[derive(Clone, Debug)]
-pub(crate) struct Coupling {
+pub struct Coupling {
     /// Place of its master.
     pub master: usize,
+    /// How it is held beside its master.
     pub gantry: Gantry,
     /// The relation of the two at switch-on was taken.
     pub switched_on: bool,
@@ -63,7 +92,8 @@ pub(crate) struct Coupling {
 
 /// An axis.
 #[derive(Clone, Debug)]
-pub(crate) struct AxisUnit {
+pub struct AxisUnit {
+    /// Its number on the machine.
     pub id: AxisId,
     /// The channel and the index that its machine parameters are of.
     pub home: (usize, usize),
@@ -75,10 +105,13 @@ pub(crate) struct AxisUnit {
     pub index: usize,
     /// Its slot in that channel: its place in positions of the path.
     pub axis: Axis,
+    /// What the machine builder says of it.
     pub parameters: AxisParameters,
+    /// Its loop.
     pub servo: Servo,
     /// Its reference mark was passed.
     pub referenced: bool,
+    /// What moves it now.
     pub mover: Mover,
     /// Nominal position at the end of the contour cycle, machine coordinates, mm or degrees.
     pub nominal: f64,

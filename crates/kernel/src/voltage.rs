@@ -4,7 +4,7 @@ use bahn_path::{Characteristic, Voltage};
 
 /// Where the path is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Along {
+pub struct Along {
     /// Count of executed blocks: that of the element that is executed.
     pub sequence: u64,
     /// How much of it is covered, 0 to 1.
@@ -15,7 +15,7 @@ pub(crate) struct Along {
 
 /// What the output gives, and how it goes on.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct VoltageOutput {
+pub struct VoltageOutput {
     volts: f64,
     course: Course,
 }

@@ -5,7 +5,7 @@ use bahn_motion::{Aim, PointToPoint};
 /// How far the loop of an axis is commanded beside its nominal position: what the axis ran on when its feed enable was
 /// withdrawn, driven back on the ramp of MP1060 when the enable is back (inferred). The path waits for it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct WayBack(Option<PointToPoint>);
+pub struct WayBack(Option<PointToPoint>);
 
 impl WayBack {
     /// The axis is so far beside its nominal position, mm or degrees; behind a short dip of the enable it still runs, mm/s.

@@ -6,7 +6,7 @@ use crate::axis::{AxisUnit, Coupling};
 
 /// Couples the slaves among the axes (MP850) to their masters. A slave whose master does not exist stays an
 /// axis of its own (inferred).
-pub(crate) fn couple(mut axes: Vec<AxisUnit>, timing: Timing) -> Vec<AxisUnit> {
+pub fn couple(mut axes: Vec<AxisUnit>, timing: Timing) -> Vec<AxisUnit> {
     for place in 0..axes.len() {
         let wanted = axes.get(place).and_then(|unit| {
             let master = unit.parameters.synchronization.master?;
@@ -49,7 +49,7 @@ fn pair(axes: &mut [AxisUnit], slave: usize) -> Option<(&mut AxisUnit, &mut Axis
 
 /// The loops were closed: with the first time the relation of masters and slaves is what it shall be, unless
 /// reference marks say better (MP860) [000:4492-4502].
-pub(crate) fn switch_on(axes: &mut [AxisUnit]) {
+pub fn switch_on(axes: &mut [AxisUnit]) {
     for place in 0..axes.len() {
         if let Some((master, slave)) = pair(axes, place)
             && let Some(coupling) = &mut slave.coupling
@@ -61,7 +61,7 @@ pub(crate) fn switch_on(axes: &mut [AxisUnit]) {
 }
 
 /// The nominal positions of the slaves for the end of the contour cycle.
-pub(crate) fn command(axes: &mut [AxisUnit]) {
+pub fn command(axes: &mut [AxisUnit]) {
     for place in 0..axes.len() {
         let Some((master, slave)) = pair(axes, place) else {
             continue;
@@ -77,7 +77,7 @@ pub(crate) fn command(axes: &mut [AxisUnit]) {
 }
 
 /// A position of an axis was shifted: the slaves know.
-pub(crate) fn shifted(axes: &mut [AxisUnit], place: usize, shift_mm: f64) {
+pub fn shifted(axes: &mut [AxisUnit], place: usize, shift_mm: f64) {
     for unit in 0..axes.len() {
         let Some(coupling) = axes.get_mut(unit).and_then(|unit| unit.coupling.as_mut()) else {
             continue;
@@ -91,7 +91,7 @@ pub(crate) fn shifted(axes: &mut [AxisUnit], place: usize, shift_mm: f64) {
 }
 
 /// How far the slaves of a master are in its reference run.
-pub(crate) struct Slaves {
+pub struct Slaves {
     /// All have crossed their marks, those that need one.
     pub found: bool,
     /// All are beside their master.
@@ -101,7 +101,7 @@ pub(crate) struct Slaves {
 /// Goes on with the reference run of the slaves of a master, while marks count and a slave is not on its
 /// cam. A slave without marks (MP860 = 0) gets the position of its master; others cross their mark and drive
 /// out what offset is left [000:4492-4504].
-pub(crate) fn reference(
+pub fn reference(
     axes: &mut [AxisUnit],
     master: usize,
     marks_count: bool,

@@ -12,15 +12,13 @@
 //! not turn: it is refused, and INTERNAL STOP leaves the tap to the operator, who turns it out by hand with M03 or M04
 //! and the axis key (inferred).
 
-use bahn_exchange::signal;
 use bahn_motion::{Lead, Master};
 use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Thread};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
-use crate::panel::Direction;
-use crate::site::Site;
-use crate::spindle::SpindleUnit;
+use crate::kinematics::Chain;
+use crate::spindle::SpindleLoop;
 use crate::track::Track;
 
 /// Slower than this a tool axis that follows the spindle counts as standing, mm/s (inferred).
@@ -32,9 +30,66 @@ const STANDS_RPM: f64 = 2.0;
 /// An axis no farther off is where the thread is, mm: what rounding leaves.
 const BESIDE_MM: f64 = 1e-6;
 
+/// What holds in a contour cycle for a thread.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// The contour cycle, s.
+    pub time_s: f64,
+    /// The control voltage is on.
+    pub ready: bool,
+    /// The loops were closed since it came on.
+    pub loops_closed: bool,
+}
+
+/// Axes and spindle of a channel, to be looked at.
+#[derive(Clone, Copy)]
+pub struct Standing<'a> {
+    /// The axes.
+    pub axes: &'a OwnAxes<'a>,
+    /// The kinematics with datum and tool.
+    pub chain: &'a Chain,
+    /// The spindle.
+    pub spindle: &'a SpindleLoop,
+    /// What holds now.
+    pub moment: Moment,
+}
+
+/// Axes and spindle of a channel, to be led.
+pub struct Leading<'a, 'b> {
+    /// The axes.
+    pub axes: &'a mut OwnAxes<'b>,
+    /// The kinematics with datum and tool.
+    pub chain: &'a Chain,
+    /// The spindle.
+    pub spindle: &'a mut SpindleLoop,
+    /// What holds now.
+    pub moment: Moment,
+}
+
+impl Leading<'_, '_> {
+    /// The same, to be looked at.
+    fn standing(&self) -> Standing<'_> {
+        Standing {
+            axes: self.axes,
+            chain: self.chain,
+            spindle: self.spindle,
+            moment: self.moment,
+        }
+    }
+}
+
+/// What taps now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Taps {
+    /// A tap is in its hole: cycle 2, or a thread that goes back as well.
+    pub called: bool,
+    /// The path follows the spindle.
+    pub rigid: bool,
+}
+
 /// What tapping remembers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Tapping {
+pub struct Tapping {
     /// The orientation before the thread was asked for.
     oriented: bool,
     /// The spindle may be led.
@@ -48,12 +103,12 @@ pub(crate) struct Tapping {
 }
 
 /// A path that follows the spindle.
-pub(crate) fn is_rigid(element: Option<&PathElement>) -> bool {
+pub fn is_rigid(element: Option<&PathElement>) -> bool {
     element.is_some_and(|element| element.thread().is_some())
 }
 
 /// Cycle 2 taps.
-pub(crate) fn is_floating(element: Option<&PathElement>) -> bool {
+pub fn is_floating(element: Option<&PathElement>) -> bool {
     matches!(
         element.map(|element| element.override_law),
         Some(OverrideLaw::Tapping { .. })
@@ -62,7 +117,7 @@ pub(crate) fn is_floating(element: Option<&PathElement>) -> bool {
 
 /// What a thread comes to before its spindle is led.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Preparation {
+pub enum Preparation {
     /// It goes on.
     Waits,
     /// The spindle cannot be led.
@@ -72,24 +127,20 @@ pub(crate) enum Preparation {
 impl Tapping {
     /// NC stop does not stop the feed of cycle 2 while the spindle turns in the thread: it acts when the tool is
     /// out (inferred). Everything that stops the drives does.
-    pub fn runs_out(&self, element: Option<&PathElement>, site: &Site) -> bool {
-        is_floating(element)
-            && !self.lost
-            && site.now.ready
-            && !site.exchange.nc().bit(signal::NC_STOP_AND_OPEN_LOOPS)
-            && !site.messages.is_fatal()
-            && site.axes.iter().all(|unit| unit.servo.fault().is_none())
+    pub fn runs_out(&self, element: Option<&PathElement>, axes: &OwnAxes, drives_stopped: bool) -> bool {
+        let sound = || axes.iter().all(|unit| unit.servo.fault().is_none());
+        is_floating(element) && !self.lost && !drives_stopped && sound()
     }
 
     /// The spindle as the interpolator follows it: where it will be when the axis is at its next position.
-    pub fn master(&self, track: &Track, site: &Site) -> Master {
+    pub fn master(&self, track: &Track, at: &Standing) -> Master {
         let element = track.path.element();
-        let moved = site
+        let moved = at
             .axes
             .iter()
             .find(|unit| element.is_some_and(|element| element.moves_axis(unit.axis)));
         let delay = moved.map_or(0.0, |unit| unit.servo.delay_s());
-        let [nominal_deg, actual_deg] = site.spindle.angles_deg(site.now.time_s + delay);
+        let [nominal_deg, actual_deg] = at.spindle.angles_deg(at.moment.time_s + delay);
         Master {
             nominal_deg,
             actual_deg,
@@ -98,32 +149,33 @@ impl Tapping {
     }
 
     /// The path waits for the spindle: M2499 closed, oriented (M2127), the axes in pre-control [000:6122].
-    pub fn prepare(&mut self, track: &Track, site: &mut Site) -> Preparation {
+    /// `open`: the PLC keeps the loop of the spindle open.
+    pub fn prepare(&mut self, track: &Track, open: bool, at: &mut Leading) -> Preparation {
         let Some(thread) = track.path.element().and_then(PathElement::thread).copied() else {
             return Preparation::Waits;
         };
-        if !site.spindle.can_be_led() {
+        if !at.spindle.can_be_led() {
             return Preparation::Refused;
         }
-        if site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP) {
+        if open {
             return Preparation::Waits;
         }
         // What EMERGENCY STOP has ended begins anew with NC start.
-        let asked = self.oriented && site.spindle.holds_orientation();
+        let asked = self.oriented && at.spindle.holds_orientation();
         if let Some(angle) = thread.orientation_deg.filter(|_| !asked) {
-            site.spindle.orient_shortest(angle);
+            at.spindle.orient_shortest(angle);
             self.oriented = true;
             return Preparation::Waits;
         }
-        let oriented = thread.orientation_deg.is_none() || site.spindle.is_oriented();
-        let methods = site.axes.iter().all(|unit| unit.has_method(true, true));
-        let stands = site.spindle.state().actual_rpm.abs() < STANDS_RPM;
+        let oriented = thread.orientation_deg.is_none() || at.spindle.is_oriented();
+        let methods = at.axes.iter().all(|unit| unit.has_method(true, true));
+        let stands = at.spindle.actual_rpm().abs() < STANDS_RPM;
         self.ready = oriented && stands && methods;
         Preparation::Waits
     }
 
     /// What the path wants of the spindle.
-    pub fn lead(&mut self, lead: Option<Lead>, spindle: &mut SpindleUnit) {
+    pub fn lead(&mut self, lead: Option<Lead>, spindle: &mut SpindleLoop) {
         spindle.lead(lead.map(|lead| lead.angle_deg));
         if lead.is_some() {
             (self.ready, self.oriented) = (false, false);
@@ -144,21 +196,22 @@ impl Tapping {
     /// The axes cannot move along the path; or they can again, and in a thread wait for their spindle to stand, too. One that
     /// stands where the path has led it goes on; one that ran out without its drive has come apart from the axis
     /// (inferred): to go after it would be a jump.
-    pub fn holds(&mut self, track: &mut Track, runs: bool, site: &mut Site) -> bool {
-        if !track.is_able(&site.axes) {
+    pub fn holds(&mut self, track: &mut Track, runs: bool, at: &mut Leading) -> bool {
+        if !track.is_able(&at.axes) {
             self.held = track.path.is_coupled();
             return true;
         }
         let thread = track.path.element().and_then(PathElement::thread);
         if let Some(thread) = thread.filter(|_| self.held) {
-            self.held = site.spindle.state().actual_rpm.abs() >= STANDS_RPM;
-            self.apart |= !self.held && missing_mm(thread, site) > window_mm(site);
+            self.held = at.spindle.actual_rpm().abs() >= STANDS_RPM;
+            let at = at.standing();
+            self.apart |= !self.held && missing_mm(thread, &at) > window_mm(&at);
         }
         if self.held {
             return true;
         }
-        self.couple(track, runs, site);
-        runs && self.apart || !track.is_able(&site.axes)
+        self.couple(track, runs, at);
+        runs && self.apart || !track.is_able(&at.axes)
     }
 
     /// The axis goes where the spindle turns.
@@ -168,39 +221,39 @@ impl Tapping {
 
     /// Couples them as they stand, once they can move again and the spindle does not: the tool axis does not go back to where the path has left
     /// it. A tool that is out of the thread goes back to where that begins: nothing couples it there.
-    fn couple(&mut self, track: &mut Track, runs: bool, site: &mut Site) {
-        let sound = site
+    fn couple(&mut self, track: &mut Track, runs: bool, at: &mut Leading) {
+        let sound = at
             .axes
             .iter()
             .all(|unit| unit.servo.fault().is_none() && unit.servo.closed());
-        let stands = site.spindle.state().actual_rpm.abs() < STANDS_RPM;
-        if !self.apart || !site.now.loops_closed || !sound || !stands {
+        let stands = at.spindle.actual_rpm().abs() < STANDS_RPM;
+        if !self.apart || !at.moment.loops_closed || !sound || !stands {
             return;
         }
         self.apart = false;
         let Some(element) = track.path.element() else {
             return;
         };
-        let tool_axis = site.chain.offsets.tool_axis;
-        let mut here = site.axes.programmed_position();
-        for unit in site.axes.iter().filter(|unit| unit.is_free()) {
+        let tool_axis = at.chain.offsets.tool_axis;
+        let mut here = at.axes.programmed_position();
+        for unit in at.axes.iter().filter(|unit| unit.is_free()) {
             here[unit.axis] = unit.servo.actual_mm();
         }
-        let here = site.chain.to_path(&here);
-        let mut at = track.path.position();
-        for unit in site.axes.iter().filter(|unit| element.moves_axis(unit.axis)) {
-            at[unit.axis] = here[unit.axis];
+        let here = at.chain.to_path(&here);
+        let mut place = track.path.position();
+        for unit in at.axes.iter().filter(|unit| element.moves_axis(unit.axis)) {
+            place[unit.axis] = here[unit.axis];
         }
-        at[tool_axis] = at[tool_axis].min(top(element, tool_axis));
-        let [_, now] = site.spindle.angles_deg(0.0);
-        let own = site.axes.iter().map(|unit| unit.axis);
+        place[tool_axis] = place[tool_axis].min(top(element, tool_axis));
+        let [_, now] = at.spindle.angles_deg(0.0);
+        let own = at.axes.iter().map(|unit| unit.axis);
         let moved: AxisSet = own.filter(|axis| element.moves_axis(*axis)).collect();
-        track.path.couple_again(&at, now);
-        site.spindle.lead_from_here();
+        track.path.couple_again(&place, now);
+        at.spindle.lead_from_here();
         // In a tilted plane axes that ran on are beside the thread, too. A run that waits for its feed enable only leads
         // them back to it before it goes on, an interrupted one with NC start.
-        let nominal = site.chain.to_axes(&track.path.position());
-        for unit in site.axes.iter_mut().filter(|unit| moved.contains(unit.axis)) {
+        let nominal = at.chain.to_axes(&track.path.position());
+        for unit in at.axes.iter_mut().filter(|unit| moved.contains(unit.axis)) {
             let actual = unit.servo.actual_mm();
             if runs {
                 unit.stand(nominal[unit.axis]);
@@ -214,25 +267,23 @@ impl Tapping {
     }
 
     /// Once in each contour cycle: M2048 and M2095, window and ramp [000:6066] [000:6124-6135].
-    pub fn follow(&mut self, track: &Track, active: bool, site: &mut Site) {
+    pub fn follow(&mut self, track: &Track, active: bool, at: &mut Leading) -> Taps {
         let tapped = track.path.element().filter(|_| active);
         let (rigid, floating) = (is_rigid(tapped), is_floating(tapped));
         let taps = tapped
             .and_then(PathElement::thread)
             .is_some_and(|thread| thread.retracts);
-        site.exchange.nc_put(signal::TAPPING_CALLED, taps || floating);
-        site.exchange.nc_put(signal::RIGID_TAPPING_ACTIVE, rigid);
         if !rigid {
             *self = Tapping {
                 lost: self.lost && floating,
                 ..Tapping::default()
             };
-            site.spindle.lead(None);
+            at.spindle.lead(None);
         }
-        site.spindle.monitor_movement(beside_max_deg(track, site));
-        let window = rigid.then(|| window_mm(site));
+        at.spindle.monitor_movement(beside_max_deg(track, &at.standing()));
+        let window = rigid.then(|| window_mm(&at.standing()));
         let element = track.path.element();
-        for unit in site.axes.iter_mut() {
+        for unit in at.axes.iter_mut() {
             let moves = element.is_some_and(|element| element.moves_axis(unit.axis));
             unit.servo.set_window(window.filter(|_| moves));
         }
@@ -243,30 +294,21 @@ impl Tapping {
             });
             if brakes { track.path.braking_s() } else { 0.0 }
         });
-        site.spindle.set_tapping(braking);
+        at.spindle.set_tapping(braking);
+        Taps {
+            called: taps || floating,
+            rigid,
+        }
     }
 }
 
-/// The path is led back, or on, out of the thread by the axis key plus of the tool axis.
-pub(crate) fn way_out(track: &Track, site: &Site) -> [bool; 2] {
-    let axis = site.chain.offsets.tool_axis;
-    let unit = site.axes.at(axis);
-    let key = unit.and_then(|unit| site.now.axis_keys.get(unit.index).copied().flatten());
-    let ascends = track
-        .path
-        .element()
-        .is_some_and(|element| element.end[axis] > element.start[axis]);
-    let wanted = key == Some(Direction::Plus) && !site.now.stop;
-    [wanted && !ascends, wanted && ascends]
-}
-
 /// The tool that follows the spindle is not yet, or no more, above the thread.
-pub(crate) fn is_in_thread(track: &Track, site: &Site) -> bool {
-    let axis = site.chain.offsets.tool_axis;
+pub fn is_in_thread(track: &Track, at: &Standing) -> bool {
+    let axis = at.chain.offsets.tool_axis;
     let Some(element) = track.path.element().filter(|_| track.path.is_coupled()) else {
         return false;
     };
-    track.path.position()[axis] < top(element, axis) - window_mm(site)
+    track.path.position()[axis] < top(element, axis) - window_mm(at)
 }
 
 /// Where the tool is out of the thread.
@@ -276,16 +318,16 @@ fn top(element: &PathElement, tool_axis: Axis) -> f64 {
 
 /// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128]. While the loops are
 /// open neither is held anywhere: the end of the thread is not reached.
-pub(crate) fn is_in_position(track: &Track, site: &Site) -> bool {
+pub fn is_in_position(track: &Track, at: &Standing) -> bool {
     let Some(thread) = track.path.element().and_then(PathElement::thread) else {
         return true;
     };
-    if !site.now.loops_closed {
+    if !at.moment.loops_closed {
         return false;
     }
-    let missing = missing_mm(thread, site);
-    let window = window_mm(site);
-    let mut axes = site.axes.iter().filter(|unit| unit.mover == Mover::Path);
+    let missing = missing_mm(thread, at);
+    let window = window_mm(at);
+    let mut axes = at.axes.iter().filter(|unit| unit.mover == Mover::Path);
     missing <= window
         && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
 }
@@ -293,22 +335,22 @@ pub(crate) fn is_in_position(track: &Track, site: &Site) -> bool {
 /// So far the spindle may turn beside what it is led, degrees, before that is a fault: as far as takes the tool axis out of its
 /// place by MP1110. In an EMERGENCY STOP it runs out, and where the PLC suppresses the monitoring of the tool axis there is
 /// none (inferred).
-fn beside_max_deg(track: &Track, site: &Site) -> Option<f64> {
+fn beside_max_deg(track: &Track, at: &Standing) -> Option<f64> {
     let element = track.path.element().filter(|_| track.path.is_coupled())?;
-    let unit = site.axes.at(site.chain.offsets.tool_axis)?;
-    let monitored = site.now.ready && site.now.loops_closed && unit.servo.is_monitored();
+    let unit = at.axes.at(at.chain.offsets.tool_axis)?;
+    let monitored = at.moment.ready && at.moment.loops_closed && unit.servo.is_monitored();
     let pitch = element.thread().filter(|_| monitored)?.pitch_mm;
     Some(unit.parameters.monitoring.standstill_mm / pitch * 360.0)
 }
 
 /// How far the spindle is from where it is held, in mm of the thread.
-fn missing_mm(thread: &Thread, site: &Site) -> f64 {
-    let [held, now] = site.spindle.angles_deg(0.0);
+fn missing_mm(thread: &Thread, at: &Standing) -> f64 {
+    let [held, now] = at.spindle.angles_deg(0.0);
     (held - now).abs() / 360.0 * thread.pitch_mm
 }
 
 /// The axes of the thread have come to a standstill as far as they can: what stands or cannot follow.
-pub(crate) fn stands(track: &Track, axes: &OwnAxes) -> bool {
+pub fn stands(track: &Track, axes: &OwnAxes) -> bool {
     track.path.speed_mm_s() == 0.0
         && axes
             .iter()
@@ -316,9 +358,9 @@ pub(crate) fn stands(track: &Track, axes: &OwnAxes) -> bool {
 }
 
 /// MP7150; the TNC 151/155 have none, there MP1030 of the tool axis counts (inferred).
-fn window_mm(site: &Site) -> f64 {
-    let own = site.spindle.thread_window_mm();
-    let axis = site.axes.at(site.chain.offsets.tool_axis);
+fn window_mm(at: &Standing) -> f64 {
+    let own = at.spindle.thread_window_mm();
+    let axis = at.axes.at(at.chain.offsets.tool_axis);
     if own > 0.0 {
         own
     } else {

@@ -1,0 +1,48 @@
+//! What every contouring control has in common, whatever family it is of: axes in their loops, and the way of a path from a
+//! program to them. It knows no marker of a PLC, no operating mode and no number of a machine parameter.
+//!
+//! - [`Clock`] orders what happens in servo step and contour cycle; a [`Family`] of controls is what decides in it, and
+//!   [`Core`] what it gives to the kernel: axes and circuit.
+//! - [`AxisUnit`] is an axis of the machine, [`Axes`] all of them, [`OwnAxes`] those that a channel moves; [`gantry`] couples
+//!   slaves to their masters; [`EmergencyStop`] is the circuit that lets them move at all.
+//! - [`Feeder`] pulls a program from its [`Reader`](bahn_reader::Reader) and refuses what leaves the traverse range; [`Track`]
+//!   moves the axes along the path and says when a function is to be output ([`Outputs`]).
+//! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
+//!   [`Superimposed`] by hand.
+//! - [`Progress`] is how far a run is, [`BlockTime`] how fast blocks are read, [`VoltageOutput`] a voltage along the path.
+
+mod axes;
+mod axis;
+mod block_time;
+mod clock;
+mod emergency;
+mod feeder;
+pub mod gantry;
+mod kinematics;
+pub mod loops;
+mod per_channel;
+mod progress;
+mod sampling;
+mod spindle;
+mod superimposing;
+pub mod thread;
+mod track;
+mod voltage;
+mod way_back;
+
+pub use axes::{Axes, OwnAxes, first_ids, machine_position, path_positions, units};
+pub use axis::{AxisId, AxisUnit, Coupling, Direction, Mover};
+pub use block_time::BlockTime;
+pub use clock::{CircuitOrder, Clock, Core, Family};
+pub use emergency::{Circuit, EmergencyStop};
+pub use feeder::{Feeder, RunFault, program_error};
+pub use kinematics::{Box2, Cartesian, Chain, Kinematics, Offsets, Shares, along_path};
+pub use per_channel::PerChannel;
+pub use progress::{Progress, RunState};
+pub use sampling::{ServoSampler, ServoSignal, ServoView};
+pub use spindle::{SpindleLoop, SpindleWiring};
+pub use superimposing::{Superimposed, Wheels};
+pub use thread::{Leading, Moment, Preparation, Standing, Tapping, Taps, is_floating, is_rigid};
+pub use track::{LOOK_AHEAD, Outputs, Track};
+pub use voltage::{Along, VoltageOutput};
+pub use way_back::WayBack;
