@@ -15,11 +15,11 @@ const CYCLE_S: f64 = 0.003;
 
 /// The bench with a handwheel on Z, a turn 10 mm; the program is selected.
 fn wheel(blocks: &str) -> Rig {
-    wheel_with("1710.0=8 1720.0=10 1060.2=0.5", blocks)
+    wheel_with("", "1710.0=8 1720.0=10 1060.2=0.5", blocks)
 }
 
-fn wheel_with(parameters: &str, blocks: &str) -> Rig {
-    let mut rig = bench("")
+fn wheel_with(plc: &str, parameters: &str, blocks: &str) -> Rig {
+    let mut rig = bench(plc)
         .plant("speed = 6000", "speed = 12000")
         .mps("7640=2 7650=1 7660=0 7670.0=0 7460=10")
         .mps(parameters)
@@ -329,6 +329,7 @@ fn together(rig: &mut Rig, mm: f64, cycles: usize) -> [f64; 3] {
 /// A bench whose Z is as quick as that of a small machine: MP1060.2 = 5 m/s².
 fn quick(parameters: &str, blocks: &str) -> Rig {
     wheel_with(
+        "",
         &format!("1710.0=30 1710.2=30 1720.0=40 1720.2=40 1060.2=5 {parameters}"),
         blocks,
     )
@@ -397,5 +398,53 @@ fn a_positioning_error_stops_the_wheel() {
     close(rig.axis('Z').nominal, stood - 5.0, 1e-9);
     rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
     close(rig.axis('X').nominal, 160.0, 1e-9);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// An M function lets the PLC take Z from 90 to 110 mm (M2706, D536 from the machine datum, W564 [000:4005-4053]). What is turned
+/// meanwhile moves nothing, neither then nor later: Z stands at 110 when it is there, and the wheel leads on from there.
+#[test]
+fn the_wheel_moves_nothing_that_the_plc_positions() {
+    let plc = "
+       L     M2045
+       AN    M0
+       = M1
+       L     M2045
+       = M0
+       L     M1
+       IFT
+         L     K+1100000
+         = D536
+         L     K+3000
+         = W564
+       ENDI
+       L     M1
+       S     M2706
+       L     M2045
+       AN    M2706
+       = M2482
+";
+    let blocks = "L X+120 Z+90 R0 FMAX M118 Z60\nL X+122 F3000 M70\nL X+160 F600";
+    let mut rig = wheel_with(plc, "1710.2=30 1720.2=40 1060.2=5", blocks);
+    rig.start();
+    rig.until(20.0, "the PLC positions Z", |rig| {
+        rig.bit("M2706") && rig.axis('Z').nominal > 91.0
+    });
+    let mut cycles = 0;
+    while rig.axis('Z').nominal < 109.9 {
+        rig.event(&format!("handwheel {}", 0.3 / 10.0 * HANDWHEEL_STEPS));
+        rig.cycle();
+        cycles += 1;
+    }
+    assert!(cycles > 100, "{cycles}");
+    rig.until(1.0, "Z is there", |rig| !rig.bit("M2706"));
+    close(rig.axis('Z').nominal, 110.0, 1e-9);
+    let greatest = turn(&mut rig, 0.0, 0.5);
+    assert_eq!(greatest, 0.0);
+    close(rig.axis('Z').nominal, 110.0, 1e-9);
+    assert!(turn(&mut rig, 5.0, 0.3) > 0.0);
+    close(rig.axis('Z').nominal, 115.0, 1e-9);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    close(rig.axis('Z').nominal, 115.0, 1e-9);
     assert_eq!(rig.messages(), [""; 0]);
 }

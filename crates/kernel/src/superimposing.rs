@@ -4,7 +4,7 @@ use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::PerPlcAxis;
 use bahn_path::{Axis, PerAxis, Position};
 
-use crate::axis::AxisUnit;
+use crate::axis::{AxisUnit, Mover};
 
 /// How far the axes may be led beside the path, how far they are to be, and where they are on the way there. In
 /// coordinates of the axes, whatever the path stands in (inferred).
@@ -104,8 +104,8 @@ impl Superimposed {
 
     /// Follows the wheels for a cycle, beside a path that leads the axes to `path` in it; `None` when it stands. Not while the
     /// path `holds` it. An axis without loop or feed enable stands at once, one that was taken over beside its path goes back
-    /// to that first, and what is turned meanwhile moves nothing later; a fault stops all on their ramps, as the machine does
-    /// [000:5198]. None is led out of its traverse range.
+    /// to that first, one that the PLC positions goes where it is to: what is turned meanwhile moves nothing later. A fault stops
+    /// all on their ramps, as the machine does [000:5198]. None is led out of its traverse range.
     pub fn follow<'a>(
         &mut self,
         path: Option<&Position>,
@@ -121,7 +121,8 @@ impl Superimposed {
         for unit in axes.filter(|unit| unit.is_free()) {
             let axis = unit.axis;
             let before = self.ramps[axis].position();
-            if unit.enabled && unit.servo.closed() && unit.left_at.is_none() {
+            let on_path = matches!(unit.mover, Mover::None | Mover::Path) && unit.left_at.is_none();
+            if on_path && unit.enabled && unit.servo.closed() {
                 let was = unit.nominal - before;
                 let path = path.map(|path| path[axis]).filter(|path| !path.is_nan());
                 let path_mm_s = (path.unwrap_or(was) - was) / wheels.time_s;
