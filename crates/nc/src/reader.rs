@@ -124,7 +124,8 @@ impl NcReader {
     /// which of the file it is.
     fn beginning_at(&self, block: u32) -> Result<(usize, Decoder), Refusal> {
         let line = self.texts.line(block);
-        if self.file.is_in_subroutine(line) {
+        // Block 0 is the begin that no such program writes.
+        if block > 0 && self.file.is_in_subroutine(line) {
             return Err(Refusal::of_data("the block stands in a subroutine"));
         }
         let mains = || self.file.mains().enumerate();

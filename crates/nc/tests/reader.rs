@@ -477,10 +477,15 @@ fn no_start_in_a_subroutine() {
             assert_eq!(x(&elements(&mut run)[0]), (0.0, 30.0));
         }
     }
-    // What stands before the first head belongs to no subroutine.
-    let mut run = reader("(of 1997)\n%L SUB\nN10 M17\n%B\nN10 G00 X30\n");
-    run.goto(1);
-    assert_eq!(x(&elements(&mut run)[0]), (0.0, 30.0));
+    // Neither what stands before the first head nor block 0, the begin that nobody writes, belongs to a subroutine.
+    for (text, block) in [
+        ("(of 1997)\n%L SUB\nN10 M17\n%B\nN10 G00 X30\n", 1),
+        ("%L SUB\nN10 M17\n%B\nN10 G00 X30\n", 0),
+    ] {
+        let mut run = reader(text);
+        run.goto(block);
+        assert_eq!(x(&elements(&mut run)[0]), (0.0, 30.0));
+    }
 }
 
 /// Whoever begins elsewhere in a run leaves what was before: its stop, the elements on their way, and its states.
