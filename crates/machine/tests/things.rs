@@ -283,6 +283,45 @@ fn the_probe_touches_a_block_beside_and_from_above() {
     assert!(!machine.touch_probe().deflected);
 }
 
+/// A hand pushes the stylus: 4 N deflect that of a TM 110 by 1 mm [000:7919], along its own axes as it is mounted; that of a
+/// triggering probe is deflected. In no spindle it says nothing.
+#[test]
+fn a_hand_pushes_the_stylus() {
+    let with_probe = |more: &str| {
+        running(&with(&format!(
+            "[axis.Y]\noutput = \"2\"\nspeed = 15000\nvolts = 9\n\
+             [axis.Z]\noutput = \"3\"\nspeed = 15000\nvolts = 9\nstart = 120\n\
+             [probe]\nlength = 100\nradius = 2\n{more}\n"
+        )))
+    };
+    // Its X lies along Y of the machine, its Y against X.
+    let mut machine = with_probe("measuring = true\nmounting = [2, -1, 3]");
+    machine.apply("probe push X 2").unwrap();
+    assert_eq!(
+        machine.touch_probe().deflection_mm,
+        [0.0; 3],
+        "it is in no spindle"
+    );
+    machine.apply("probe insert").unwrap();
+    machine.apply("probe push Z -4").unwrap();
+    let touch = machine.touch_probe();
+    assert!(touch.deflected);
+    assert_eq!(touch.deflection_mm, [0.0, -0.5, -1.0]);
+    machine.apply("probe push X 0").unwrap();
+    assert_eq!(machine.touch_probe().deflection_mm, [0.0, 0.0, -1.0]);
+    machine.apply("repair probe").unwrap();
+    assert!(!machine.touch_probe().deflected);
+    let mut machine = with_probe("");
+    machine.apply("probe insert").unwrap();
+    machine.apply("probe push Y 1").unwrap();
+    let touch = machine.touch_probe();
+    assert!(touch.deflected);
+    assert_eq!(touch.deflection_mm, [0.0; 3]);
+    for wrong in ["probe push", "probe push C 1", "probe push X 21"] {
+        assert!(machine.apply(wrong).is_err(), "{wrong}");
+    }
+}
+
 #[test]
 fn wrong_events_say_what_is_right() {
     let mut machine = running(&with(""));

@@ -337,7 +337,11 @@ fn a_faulty_list_of_a_further_channel_is_presented() {
     for both in [false, true] {
         let mut whole = String::new();
         let mut trainee = Trainee::with("twin", |folder| {
-            for name in if both { &["left.mp", "right.mp"][..] } else { &["right.mp"] } {
+            for name in if both {
+                &["left.mp", "right.mp"][..]
+            } else {
+                &["right.mp"]
+            } {
                 let text = std::fs::read_to_string(folder.join(name)).unwrap();
                 assert_ne!(text, damage(&text), "{name}");
                 std::fs::write(folder.join(name), damage(&text)).unwrap();
@@ -352,7 +356,11 @@ fn a_faulty_list_of_a_further_channel_is_presented() {
             assert!(trainee.station.control().is_off(), "{:?}", trainee.messages());
         }
         assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS  right.mp");
-        assert!(current(&mut trainee).contains("fast"), "{:#?}", trainee.screen().program);
+        assert!(
+            current(&mut trainee).contains("fast"),
+            "{:#?}",
+            trainee.screen().program
+        );
         trainee.press("END");
         assert!(trainee.messages()[0].contains("3 Entry value incorrect"));
         trainee.press("CE").number("600").press("ENT END");

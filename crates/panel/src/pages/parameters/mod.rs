@@ -86,7 +86,11 @@ struct Parameters {
 /// In words: the file cannot be read.
 pub(crate) fn commission(site: &Site) -> Result<Box<dyn Page>, String> {
     let machine = site.machine;
-    let name = machine.to_be_entered.as_ref().unwrap_or(&machine.folder.parameters).clone();
+    let name = machine
+        .to_be_entered
+        .as_ref()
+        .unwrap_or(&machine.folder.parameters)
+        .clone();
     let rows = Definition::all(site.control().model()).iter().map(Row::of);
     let mut editor = Parameters::new(rows.collect(), ListFile::new(name, site), site);
     editor.commissions = true;
