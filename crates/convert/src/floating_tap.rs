@@ -17,7 +17,7 @@ pub(crate) enum Part {
 
 /// A whole tap, along its way.
 pub(crate) struct Tap {
-    pub way_in: PathElement,
+    pub plunge: PathElement,
     /// Between turning back and the way out, s.
     pub dwell_s: f64,
     /// mm/min.
@@ -29,17 +29,17 @@ pub(crate) struct Tap {
 pub(crate) struct FloatingTaps {
     open: Option<Open>,
     /// Orders to the spindle that still belong to the last tap.
-    orders_behind: u8,
+    orders_after: u8,
 }
 
 struct Open {
-    way_in: PathElement,
+    plunge: PathElement,
     dwell_s: f64,
     turns_back: bool,
 }
 
 /// Behind the way out the spindle stops and turns as before.
-const ORDERS_BEHIND: u8 = 2;
+const ORDERS_AFTER: u8 = 2;
 
 impl FloatingTaps {
     /// Takes the next element of a run.
@@ -50,11 +50,11 @@ impl FloatingTaps {
         let taps = matches!(element.override_law, OverrideLaw::Tapping { .. });
         let ordered =
             element.curve == Curve::Hold && matches!(element.functions(), [of] if is_order(&of.function));
-        if self.orders_behind > 0 {
+        if self.orders_after > 0 {
             if !ordered || element.dwell_s > 0.0 {
                 return Err("a tap that ends otherwise than cycle 2".to_owned());
             }
-            self.orders_behind -= 1;
+            self.orders_after -= 1;
             return Ok(Part::Inside);
         }
         match (&mut self.open, taps) {
@@ -66,7 +66,7 @@ impl FloatingTaps {
                     return Err("a tap that begins otherwise than cycle 2".to_owned());
                 }
                 self.open = Some(Open {
-                    way_in: element.clone(),
+                    plunge: element.clone(),
                     dwell_s: 0.0,
                     turns_back: false,
                 });
@@ -86,15 +86,15 @@ impl FloatingTaps {
     fn whole(&mut self, out: &PathElement) -> Result<Part, String> {
         let same = |open: &Open| {
             open.turns_back
-                && open.way_in.start == out.end
-                && open.way_in.end == out.start
-                && open.way_in.feed == out.feed
+                && open.plunge.start == out.end
+                && open.plunge.end == out.start
+                && open.plunge.feed == out.feed
         };
         match (self.open.take().filter(same), out.feed) {
             (Some(open), FeedRate::Programmed(feed_mm_min)) => {
-                self.orders_behind = ORDERS_BEHIND;
+                self.orders_after = ORDERS_AFTER;
                 Ok(Part::Whole(Box::new(Tap {
-                    way_in: open.way_in,
+                    plunge: open.plunge,
                     dwell_s: open.dwell_s,
                     feed_mm_min,
                 })))

@@ -310,8 +310,8 @@ impl Entry {
             (Place::Word(at) | Place::Signed(at), true) => Some(at + 1),
             (Place::Word(at) | Place::Signed(at), false) => at.checked_sub(1),
             (Place::At(at), true) if at < self.text.len() => {
-                let behind = words.iter().position(|word| word.span.start >= at);
-                Some(behind.unwrap_or(words.len()))
+                let after = words.iter().position(|word| word.span.start >= at);
+                Some(after.unwrap_or(words.len()))
             }
             (Place::At(_), true) => None,
             (Place::At(at), false) => words.iter().rposition(|word| word.span.start < at),

@@ -282,8 +282,8 @@ impl Ask {
                 rest.literal(address)?;
                 word.address = address.to_owned();
                 let found = choices.iter().find(|choice| {
-                    let mut behind = rest.clone();
-                    behind.literal(choice.value).is_some() && behind.ends_word()
+                    let mut after = rest.clone();
+                    after.literal(choice.value).is_some() && after.ends_word()
                 })?;
                 rest.literal(found.value)?;
                 word.value = found.value.to_owned();
@@ -551,11 +551,11 @@ impl Field {
         let several = ask.is_list() || matches!(ask, Ask::Coordinates { .. } | Ask::Axes(_) | Ask::M);
         while several
             && let Some(rest) = text.get(length..)
-            && let Some(behind) = rest.strip_prefix(ask.separator())
-            && let Some((word, more)) = ask.scan(address, behind)
+            && let Some(after) = rest.strip_prefix(ask.separator())
+            && let Some((word, more)) = ask.scan(address, after)
         {
             words.push(word);
-            length += rest.len() - behind.len() + more;
+            length += rest.len() - after.len() + more;
         }
         if ask == Ask::Repeat
             && let Some(left) = text.get(length..).filter(|rest| rest.starts_with('/'))

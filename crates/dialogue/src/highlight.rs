@@ -190,8 +190,8 @@ impl Highlight {
         }
         if self.place.is_some() && self.line.word(self.place).is_none() {
             let places = self.line.places();
-            let behind = places.iter().find(|place| **place >= self.place);
-            self.place = behind.or(places.last()).copied().flatten();
+            let after = places.iter().find(|place| **place >= self.place);
+            self.place = after.or(places.last()).copied().flatten();
             self.typing = self
                 .place
                 .map_or_else(Typing::default, |(_, word)| Typing::over(word));

@@ -315,7 +315,7 @@ impl Editor {
         };
         let digits = text.get(word.value.clone()).unwrap_or_default();
         let number: u32 = digits.parse().map_err(|_| EntryValueIncorrect)?;
-        let (before, behind) = match replaces {
+        let (before, after) = match replaces {
             Some(block) => (block.saturating_sub(1), block + 1),
             None => (self.cursor, self.cursor + 1),
         };
@@ -323,10 +323,7 @@ impl Editor {
             .program
             .own_number(before)
             .is_none_or(|before| before < number);
-        let below = self
-            .program
-            .own_number(behind)
-            .is_none_or(|behind| number < behind);
+        let below = self.program.own_number(after).is_none_or(|after| number < after);
         match number > 0 && above && below {
             true => Ok(Some(number)),
             false => Err(EntryValueIncorrect),
@@ -342,9 +339,9 @@ impl Editor {
             return self.insert_blocks(&texts.join("\n"));
         }
         let before = self.program.own_number(self.cursor).unwrap_or(0);
-        let behind = self.program.own_number(self.cursor + 1).unwrap_or(u32::MAX);
+        let after = self.program.own_number(self.cursor + 1).unwrap_or(u32::MAX);
         let count = texts.len() as u32;
-        let room = behind.saturating_sub(before);
+        let room = after.saturating_sub(before);
         let apart = match count.saturating_mul(step) < room {
             true => step,
             false => room / count.saturating_add(1),

@@ -93,8 +93,8 @@ impl Editor {
             Key::NoEnt => {
                 let line = self.line_of(block).ok_or(KeyNonFunctional)?;
                 let places = line.places();
-                let behind = places.iter().find(|place| **place >= highlight.place);
-                self.highlight(block, behind.or(places.last()).copied().flatten())?;
+                let after = places.iter().find(|place| **place >= highlight.place);
+                self.highlight(block, after.or(places.last()).copied().flatten())?;
             }
             Key::Up | Key::Down => self.same_word(&highlight, key == Key::Down)?,
             Key::Ent => {
@@ -390,7 +390,7 @@ impl Editor {
         let found = match wanted.is_empty() {
             true => None,
             false => {
-                let behind = self.search(self.cursor, true, holds);
+                let after = self.search(self.cursor, true, holds);
                 // The first block comes behind none.
                 let first = || {
                     self.program
@@ -400,7 +400,7 @@ impl Editor {
                         .and_then(holds)
                         .map(|()| (0, ()))
                 };
-                behind.or_else(first).or_else(|| self.search(0, true, holds))
+                after.or_else(first).or_else(|| self.search(0, true, holds))
             }
         };
         let (block, ()) = found.ok_or(MessageId::EntryValueIncorrect)?;

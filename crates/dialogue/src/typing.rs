@@ -225,17 +225,17 @@ impl Typing {
             _ => word.value.clear(),
         }
         // Words that belong to an M function stand behind it, each with its letter.
-        let (behind_m, number) = match word.value.rsplit_once(' ').filter(|_| m) {
+        let (after_m, number) = match word.value.rsplit_once(' ').filter(|_| m) {
             Some((_, last)) => (true, last.trim_start_matches(is_address)),
             None => (false, word.value.trim_start_matches('-')),
         };
         let full = match number.strip_prefix('Q') {
             Some(_) if digit == '.' => return Err(KeyNonFunctional),
             Some(digits) => digits.len() >= Q_DIGITS_MAX,
-            None if digit == '.' && (number.contains('.') || whole || m != behind_m) => {
+            None if digit == '.' && (number.contains('.') || whole || m != after_m) => {
                 return Err(KeyNonFunctional);
             }
-            None if m && !behind_m => number.len() >= M_DIGITS_MAX,
+            None if m && !after_m => number.len() >= M_DIGITS_MAX,
             None => number.len() >= NUMBER_MAX,
         };
         if full {

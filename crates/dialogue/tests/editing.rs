@@ -31,7 +31,7 @@ fn word(desk: &Desk) -> String {
 }
 
 #[test]
-fn blocks_are_inserted_behind_the_cursor() {
+fn blocks_are_inserted_after_the_cursor() {
     let mut desk = desk("L X+1\nL X+2");
     desk.enter("DOWN STOP END LBL_SET 3 END");
     assert_eq!(desk.blocks(), ["L X+1", "STOP", "LBL 3", "L X+2"]);

@@ -360,7 +360,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn areas_lie_one_behind_the_other() {
+    fn areas_lie_one_after_the_other() {
         let mut next = 0;
         for area in BitArea::ALL {
             assert_eq!(area.first_cell(), next, "{area:?}");

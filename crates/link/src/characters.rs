@@ -9,7 +9,7 @@ pub const DC3: u8 = 0x13;
 /// Starts it again: XON.
 pub const DC1: u8 = 0x11;
 /// Characters that may still come behind a DC3 [000:17045-17050].
-pub const BEHIND_DC3: usize = 12;
+pub const AFTER_DC3: usize = 12;
 
 /// Parity of a character [000:16636-16665].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

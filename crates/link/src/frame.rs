@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn the_character_behind_etb_is_a_check_character_whatever_it_is() {
+    fn the_character_after_etb_is_a_check_character_whatever_it_is() {
         let settings = settings(false);
         // Check characters DC1, DC3, ETX, EOT, ACK, SOH and 0.
         for wanted in [0x11, 0x13, 0x03, 0x04, 0x06, 0x01, 0x00] {

@@ -35,8 +35,8 @@ pub(crate) fn beginning(line: &[u8]) -> Option<Beginning> {
         "PGM" => of_name(words.next()?, FileType::of_extension("H")),
         name => {
             let (stem, kind) = name.split_once('.').unwrap_or((name, ""));
-            let behind = words.next().and_then(|word| word.strip_prefix('.'));
-            of_name(stem, FileType::of_extension(behind.unwrap_or(kind)))
+            let after = words.next().and_then(|word| word.strip_prefix('.'));
+            of_name(stem, FileType::of_extension(after.unwrap_or(kind)))
         }
     }
 }

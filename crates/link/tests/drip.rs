@@ -89,7 +89,7 @@ struct Model {
     executed: Vec<u8>,
     most: usize,
     complete: bool,
-    ends_behind: usize,
+    ends_after: usize,
     blocks: usize,
     broken: u32,
 }
@@ -102,7 +102,7 @@ impl Model {
             executed: Vec::new(),
             most: 0,
             complete: false,
-            ends_behind: usize::MAX,
+            ends_after: usize::MAX,
             blocks: 0,
             broken: 0,
         }
@@ -122,7 +122,7 @@ impl Machine for Model {
     }
 
     fn has_ended(&self) -> bool {
-        self.blocks >= self.ends_behind
+        self.blocks >= self.ends_after
     }
 
     fn take(&mut self, text: &[u8]) -> bool {
@@ -211,7 +211,7 @@ fn a_full_machine_holds_the_line() {
     machine.execute();
     assert!(drip.turn(&mut line, &mut machine, Duration::ZERO));
     assert_eq!(drip.blocks(), 11);
-    machine.ends_behind = 1;
+    machine.ends_after = 1;
     // What stands behind M30 is acknowledged, if it is no more than some blocks.
     for _ in 0..17 {
         assert_eq!((line.given_up, drip.state()), (false, &DripState::Running));

@@ -539,7 +539,7 @@ impl Axis {
     /// The motor's encoder counts again: what it lost stays lost.
     pub fn find_motor(&mut self) {
         if let (Some(seen), Some(drive)) = (self.motor_lost.take(), &self.current) {
-            self.motor_start = self.motor - drive.way(seen);
+            self.motor_start = self.motor - drive.travel(seen);
         }
     }
 

@@ -83,12 +83,12 @@ impl CurrentDrive {
     }
 
     /// The way of the motor at which its encoder has counted so much, mm or degrees.
-    pub fn way(&self, count: i64) -> f64 {
+    pub fn travel(&self, count: i64) -> f64 {
         count as f64 / self.steps_per_unit
     }
 
     /// What the motor's encoder has counted at a way of the motor, mm or degrees.
-    pub fn count(&self, way: f64) -> i64 {
-        floor_to_i64(way * self.steps_per_unit)
+    pub fn count(&self, travel: f64) -> i64 {
+        floor_to_i64(travel * self.steps_per_unit)
     }
 }

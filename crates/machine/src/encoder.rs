@@ -174,10 +174,10 @@ impl Counter {
     fn enclose(&mut self, position: f64) {
         [self.below, self.above] = self.enclosing(position);
         if self.fault == Some(EncoderFault::Twice) {
-            let behind = self.again();
-            let [below, above] = self.enclosing(position - behind);
-            self.below = self.below.max(below + behind);
-            self.above = self.above.min(above + behind);
+            let offset = self.again();
+            let [below, above] = self.enclosing(position - offset);
+            self.below = self.below.max(below + offset);
+            self.above = self.above.min(above + offset);
         }
     }
 

@@ -44,9 +44,9 @@ impl Cuboid {
                 (2, self.max[2] - at[2]),
             ];
             let nearest = faces.into_iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-            let (axis, way) = nearest.unwrap_or((2, 0.0));
-            let sign = if way < 0.0 { -1.0 } else { 1.0 };
-            std::array::from_fn(|k| if k == axis { way + sign * radius } else { 0.0 })
+            let (axis, distance) = nearest.unwrap_or((2, 0.0));
+            let sign = if distance < 0.0 { -1.0 } else { 1.0 };
+            std::array::from_fn(|k| if k == axis { distance + sign * radius } else { 0.0 })
         };
         let [x, y, z] = pushed;
         [x * cos - y * sin, x * sin + y * cos, z]

@@ -180,8 +180,8 @@ impl Corner {
         let (limit, half) = (self.limit, 0.5 * self.limit * self.window);
         let both = (0.5 * limit * (self.before + after)).sqrt();
         // v = limit · (W/2 + way / 2v): v² - half·v = limit·way/2
-        let way = self.before.min(after);
-        let shorter = 0.5 * (half + (half * half + 2.0 * limit * way).sqrt());
+        let distance = self.before.min(after);
+        let shorter = 0.5 * (half + (half * half + 2.0 * limit * distance).sqrt());
         self.speed.min(2.0 * half).min(both).min(shorter)
     }
 }

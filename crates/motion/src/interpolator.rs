@@ -454,7 +454,7 @@ impl<E> Interpolator<E> {
         let thread = self.ring.current().and_then(|item| item.element.thread());
         self.coupling = self.coupling.and_then(|coupling| coupling.go_on(length, thread));
         self.backward = false;
-        if self.ring.stop_is_behind() {
+        if self.ring.stop_is_passed() {
             self.seek_stop();
         }
         None
@@ -649,9 +649,9 @@ impl<E> Interpolator<E> {
         let Some((item, coupling)) = self.ring.current().zip(self.coupling.as_mut()) else {
             return;
         };
-        let (way, place) = coupling.renew(item, position, angle_deg);
+        let (distance, place) = coupling.renew(item, position, angle_deg);
         // Beyond its ends, too: what is told the spindle begins where it stands.
-        let rest = item.length - way;
+        let rest = item.length - distance;
         // Its end was reached in nominal values alone, the axis that follows the spindle is elsewhere.
         let ended = matches!(self.phase, Phase::Dwell(_) | Phase::Finish) || self.phase.is_executed();
         if ended && rest != 0.0 {

@@ -93,11 +93,11 @@ impl Motion {
     fn placed(self, element: &PathElement, dynamics: &Dynamics) -> Motion {
         match &element.placement {
             None => self,
-            Some(placement) => self.behind(placement, element, dynamics),
+            Some(placement) => self.transformed(placement, element, dynamics),
         }
     }
 
-    fn behind(self, placement: &Placement, element: &PathElement, dynamics: &Dynamics) -> Motion {
+    fn transformed(self, placement: &Placement, element: &PathElement, dynamics: &Dynamics) -> Motion {
         let per_square = dynamics.radial / (self.radial_speed * self.radial_speed);
         let ends = [*self.start(), *self.end()];
         let placed = Placed::new(placement, element, ends, per_square, dynamics);
@@ -184,8 +184,8 @@ impl Motion {
     fn corner(element: &PathElement, arc: &CornerArc, dynamics: &Dynamics) -> Option<Motion> {
         let circle = arc.circle(&element.start, &element.end);
         let mut delta = known_delta(&element.start, &element.end);
-        for (axis, way) in MAIN.into_iter().zip([circle.length_mm, 0.0, 0.0]) {
-            delta[axis] = way;
+        for (axis, length) in MAIN.into_iter().zip([circle.length_mm, 0.0, 0.0]) {
+            delta[axis] = length;
         }
         let (length, rotary) = path_length(&delta)?;
         let around = circle.length_mm / length;

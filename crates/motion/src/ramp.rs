@@ -77,9 +77,9 @@ impl Ramp {
             let rest = (rest - 0.5 * (v + to) * time).clamp(0.0, rest);
             return Driven::OnTheWay { speed: to, rest };
         }
-        let last_way = 0.5 * (peak + exit) * last;
+        let last_distance = 0.5 * (peak + exit) * last;
         let after_first = rest - 0.5 * (v + peak) * first;
-        let steady = (after_first - last_way).max(0.0);
+        let steady = (after_first - last_distance).max(0.0);
         if peak <= 0.0 {
             // It stands where it is, unless it just arrived.
             return if steady <= ROUNDING * rest {

@@ -263,8 +263,8 @@ impl Ring {
     }
 
     /// Whether the stop at the end of an item is passed, or there is none.
-    pub(crate) fn stop_is_behind(&self) -> bool {
-        self.envelope.stop_is_behind()
+    pub(crate) fn stop_is_passed(&self) -> bool {
+        self.envelope.stop_is_passed()
     }
 
     /// Greatest path speed on the current item with the overrides as they are, mm/s.

@@ -7,13 +7,13 @@
 mod course;
 mod follow;
 mod glide;
-mod way;
+mod stylus;
 
 use bahn_path::{ScanFault, ScanJob, ScanPoint, Scanned};
 
 use course::Course;
 use follow::Follower;
-use way::{Felt, Wish};
+use stylus::{Felt, Wish};
 
 /// Points of a scan at most; a program of more is refused by every control (inferred).
 const POINTS_MAX: u64 = 10_000_000;
@@ -235,13 +235,13 @@ impl Scan {
 }
 
 /// The greatest speed of a cycle, mm/s, from which an axis that loses `step` mm/s in each of the next ones stands behind
-/// `way` mm: n cycles of v, v - step, v - 2 step and so on, the last of them no faster than a step.
-fn landing_speed(way: f64, step: f64, time_s: f64) -> f64 {
-    if way <= 0.0 {
+/// `distance` mm: n cycles of v, v - step, v - 2 step and so on, the last of them no faster than a step.
+fn landing_speed(distance: f64, step: f64, time_s: f64) -> f64 {
+    if distance <= 0.0 {
         return 0.0;
     }
     // n (n - 1) / 2 < way / (step time) <= n (n + 1) / 2
-    let steps = way / (step * time_s);
+    let steps = distance / (step * time_s);
     let n = (((8.0 * steps + 1.0).sqrt() - 1.0) / 2.0).ceil().max(1.0);
     step * (steps / n + (n - 1.0) / 2.0)
 }

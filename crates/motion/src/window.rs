@@ -289,7 +289,7 @@ mod tests {
     /// while the path accelerates even sooner: the first of the segments of 1 mm is final at its end,
     /// for the next one lets the path stop from sqrt(2 · 1000 · 1) mm/s.
     #[test]
-    fn the_window_is_as_long_as_the_way_of_braking() {
+    fn the_window_is_as_long_as_the_braking_distance() {
         let mut window = Window::new();
         let mut longest = 0;
         let mut count = 0;

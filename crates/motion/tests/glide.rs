@@ -99,11 +99,11 @@ fn a_slope_is_scanned_in_contact() {
         assert!((point[2] - height).abs() < 0.01, "{point:?}");
     }
     for pair in points.windows(2) {
-        let way = (0..3)
+        let distance = (0..3)
             .map(|k| (pair[0][k] - pair[1][k]).powi(2))
             .sum::<f64>()
             .sqrt();
-        assert!(way <= 0.51, "{pair:?}");
+        assert!(distance <= 0.51, "{pair:?}");
     }
     assert!(points.len() > 3 * 46, "{}", points.len());
     assert!((0.45..0.6).contains(&deepest), "{deepest}");

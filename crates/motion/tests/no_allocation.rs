@@ -27,7 +27,7 @@ fn path() -> Path {
             path.last().functions = Some(Box::new([
                 function(At::Start, Synchronisation::Mos),
                 function(At::Length(0.05), Synchronisation::Mos),
-                function(At::Ahead(Ahead::Way(0.3)), Synchronisation::MvsSvs),
+                function(At::Ahead(Ahead::Distance(0.3)), Synchronisation::MvsSvs),
                 function(At::Start, Synchronisation::MvsSns),
                 function(At::End, Synchronisation::MnsSns),
             ]));

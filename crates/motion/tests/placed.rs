@@ -85,7 +85,7 @@ fn axes(elements: &[PathElement], limits: &Limits) -> Vec<Position> {
 /// A rapid movement along X of a plane that B+30 has tilted: X of the machine has cos 30° of the way and Z sin 30°. Z is
 /// the slow one here: it takes sin 30° of it at 3 m/min, so the path runs at 6 m/min.
 #[test]
-fn the_slowest_axis_behind_the_plane_decides() {
+fn the_slowest_real_axis_of_a_tilted_plane_decides() {
     let mut slow = limits();
     slow.max_feed_mm_min[Axis::Z] = 3000.0;
     let mut path = Path::new(0.0);

@@ -126,7 +126,7 @@ fn manual(synchronisation: Synchronisation) -> Vec<PathElement> {
 /// `MVS_SNS`: out at X50, the movement goes on at once; acknowledged in time nobody sees it, otherwise the path
 /// stops at X75 [004:63].
 #[test]
-fn before_the_block_and_behind_it() {
+fn before_the_block_and_after_it() {
     let undisturbed = Bench::new(&manual(Synchronisation::Mos), &limits(), 0)
         .run()
         .cycle;
@@ -214,15 +214,19 @@ fn ahead(lead: Ahead, synchronisation: Synchronisation) -> Vec<PathElement> {
 
 /// `MEP_SVS` with 25 mm: out at X15, wherever blocks end; not acknowledged, the path stands at X40 [004:81-87].
 #[test]
-fn ahead_by_a_way() {
-    let way = 5000.0 / 60.0 * T;
+fn ahead_by_a_distance() {
+    let distance = 5000.0 / 60.0 * T;
     for (synchronisation, delay, stops) in [
         (Synchronisation::MvsSvs, 60, vec![]),
         (Synchronisation::MvsSvs, 1000, vec![40.0]),
         (Synchronisation::Mos, 1000, vec![]),
     ] {
-        let run = Bench::new(&ahead(Ahead::Way(25.0), synchronisation), &limits(), delay).run();
-        assert!((15.0..=15.0 + way).contains(&run.out(96)), "{:?}", run.outputs);
+        let run = Bench::new(&ahead(Ahead::Distance(25.0), synchronisation), &limits(), delay).run();
+        assert!(
+            (15.0..=15.0 + distance).contains(&run.out(96)),
+            "{:?}",
+            run.outputs
+        );
         assert_eq!(
             run.stops.iter().map(|stop| stop.0).collect::<Vec<_>>(),
             stops,
@@ -230,8 +234,8 @@ fn ahead_by_a_way() {
         );
     }
     // More than there is: at the start of the path.
-    let run = Bench::new(&ahead(Ahead::Way(100.0), Synchronisation::Mos), &limits(), 0).run();
-    assert!(run.out(96) <= way, "in the first cycle");
+    let run = Bench::new(&ahead(Ahead::Distance(100.0), Synchronisation::Mos), &limits(), 0).run();
+    assert!(run.out(96) <= distance, "in the first cycle");
 }
 
 /// `MET_SVS` with 0.3 s: the way v T - v²/2a, as if the path stopped at X40, so X18.47; `MET_MOS` v T, X15
@@ -255,7 +259,11 @@ fn ahead_by_a_time() {
 /// The axes were moved away while a function is out: what is given again has it not any more, and waits for it.
 #[test]
 fn a_recalled_path_goes_on_waiting() {
-    let mut bench = Bench::new(&ahead(Ahead::Way(25.0), Synchronisation::MvsSvs), &limits(), 5000);
+    let mut bench = Bench::new(
+        &ahead(Ahead::Distance(25.0), Synchronisation::MvsSvs),
+        &limits(),
+        5000,
+    );
     while bench.outputs.is_empty() {
         bench.step();
     }
@@ -294,7 +302,7 @@ proptest! {
                 match kind {
                     0 => vec![m(code, At::Start, Synchronisation::MvsSns)],
                     1 => vec![m(code, At::Start, Synchronisation::MvsSlp)],
-                    2 => vec![m(code, At::Ahead(Ahead::Way(7.0)), Synchronisation::MvsSvs)],
+                    2 => vec![m(code, At::Ahead(Ahead::Distance(7.0)), Synchronisation::MvsSvs)],
                     3 => vec![m(code, At::Ahead(Ahead::Time(0.2)), Synchronisation::Mos)],
                     4 => vec![TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)],
                     _ => vec![],

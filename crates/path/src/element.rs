@@ -237,7 +237,7 @@ pub enum At {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ahead {
     /// By a way along the path, mm.
-    Way(f64),
+    Distance(f64),
     /// By a time, s.
     Time(f64),
 }

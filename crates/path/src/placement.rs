@@ -171,8 +171,8 @@ impl Placement {
                     }
                     self.swing(&beside)
                 };
-                let (before, behind) = (beside(-h), beside(h));
-                let swing = [0, 1, 2].map(|i| (behind[i] - before[i]) / (2.0 * h));
+                let (before, after) = (beside(-h), beside(h));
+                let swing = [0, 1, 2].map(|i| (after[i] - before[i]) / (2.0 * h));
                 sum([x, y, z], swing)
             }
         };
@@ -239,7 +239,7 @@ impl Placement {
                 [Axis::A, Axis::B, Axis::C]
                     .map(|axis| (end[axis] - start[axis]).abs())
                     .into_iter()
-                    .filter(|way| way.is_finite())
+                    .filter(|distance| distance.is_finite())
                     .sum(),
             ),
         };
@@ -322,9 +322,9 @@ impl Placement {
     }
 }
 
-fn along(position: &Position, axis: Axis, way: f64) -> Position {
+fn along(position: &Position, axis: Axis, distance: f64) -> Position {
     let mut position = *position;
-    position[axis] += way;
+    position[axis] += distance;
     position
 }
 

@@ -77,7 +77,7 @@ fn emergency_stop_comes_between_cycles_that_are_asked_for() {
 
 /// Everybody else asks for what takes longest, at once and again and again.
 #[test]
-fn emergency_stop_does_not_wait_behind_others() {
+fn emergency_stop_waits_for_no_other_input() {
     let panel = Panel::start();
     panel.to_manual();
     let lessons = panel.get("/api/lessons");
@@ -127,7 +127,7 @@ fn emergency_stop_does_not_wait_for_a_slow_cycle() {
 
 /// Time that stood is not made up for.
 #[test]
-fn behind_a_pause_time_goes_on_as_fast_as_before() {
+fn after_a_pause_time_goes_on_as_fast_as_before() {
     let panel = Panel::start();
     panel.until(|screen| screen["messages"][0]["text"] == "POWER INTERRUPTED");
     answer(&panel, &json!({"pause": true}));

@@ -161,9 +161,9 @@ fn a_viewer_that_does_not_read_gets_the_newest() {
     );
     // What was under way is kept for him: what the system holds, twice the bytes that the server asks of it, and the part that was
     // being sent; then comes the newest. How many parts another one sees meanwhile depends on the processor.
-    let under_way = 2 * (256 << 10) + 2 * (8 << 10);
+    let in_transit = 2 * (256 << 10) + 2 * (8 << 10);
     assert!(
-        late.bytes <= under_way + 2 * late.longest && late.parts <= quick.parts,
+        late.bytes <= in_transit + 2 * late.longest && late.parts <= quick.parts,
         "{} parts, {} bytes, the longest {}; of {} parts",
         late.parts,
         late.bytes,

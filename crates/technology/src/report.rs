@@ -208,7 +208,7 @@ pub struct Sample {
     /// When, s.
     pub t: f64,
     /// Way along the path, mm.
-    pub way_mm: f64,
+    pub distance_mm: f64,
     /// Path velocity, mm/min.
     pub v: f64,
 }

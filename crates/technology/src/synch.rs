@@ -222,11 +222,11 @@ impl Synch {
         if let Some((second, ..)) = kinds.next() {
             return Err(SynchError::SeveralTypes(kind, *second));
         }
-        let way = [("BWD_SYNCH", Synch::BACKWARD), ("FWD_SYNCH", Synch::FORWARD)];
-        let of_way = way.iter().find(|(_, bit)| value & bit != 0);
+        let direction = [("BWD_SYNCH", Synch::BACKWARD), ("FWD_SYNCH", Synch::FORWARD)];
+        let of_direction = direction.iter().find(|(_, bit)| value & bit != 0);
         // PLC_INFO and FAW_SYNCH say themselves that the function is output.
         let is_output = value & (Synch::PLC_INFO | Synch::FLUSH_AND_WAIT) != 0;
-        if let Some((bit, _)) = of_way.filter(|_| kind == SynchType::NoSynch && !is_output) {
+        if let Some((bit, _)) = of_direction.filter(|_| kind == SynchType::NoSynch && !is_output) {
             return Err(SynchError::NoType(bit));
         }
         Ok(Synch {

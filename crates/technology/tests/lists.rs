@@ -121,11 +121,11 @@ fn the_later_line_counts() {
         b"m_synch[5] MOS\n\nspindel[0].m3_sync 2\nm_synch[5] 2\nspindle[0].m3_synch 4\n",
     );
     let warnings = list.warnings().iter();
-    let told: Vec<(usize, &str)> = warnings
+    let reported: Vec<(usize, &str)> = warnings
         .map(|fault| (fault.line, fault.message.as_str()))
         .collect();
     assert_eq!(
-        told,
+        reported,
         [
             (4, "m_synch[5] stands in line 1, too: this line counts"),
             (5, "spindel[0].m3_synch stands in line 3, too: this line counts"),

@@ -138,7 +138,7 @@ fn fastest(report: &Report, from: f64, to: f64) -> f64 {
     let within = report
         .samples
         .iter()
-        .filter(|one| (from..=to).contains(&one.way_mm));
+        .filter(|one| (from..=to).contains(&one.distance_mm));
     within.map(|one| one.v).fold(0.0, f64::max)
 }
 
@@ -181,7 +181,7 @@ fn limited(more: &str, blocks: u32) -> Report {
 
 #[test]
 fn t34_joints_under_a_vector_limit() {
-    for (more, behind) in [("", 500.0), ("VECTOR_LIMIT_OFF", 750.0)] {
+    for (more, after) in [("", 500.0), ("VECTOR_LIMIT_OFF", 750.0)] {
         for blocks in [12, 20] {
             let report = limited(more, blocks);
             assert!(report.completed, "{:?}", report.error);
@@ -194,7 +194,7 @@ fn t34_joints_under_a_vector_limit() {
             assert!((fastest(-24.0, 99.0) - 1500.0).abs() < 1e-6);
             assert!((fastest(101.0, 174.0) - 1000.0).abs() < 1e-6);
             assert!((fastest(176.0, 199.0) - 750.0).abs() < 1e-6);
-            assert!((fastest(201.0, 499.0) - behind).abs() < 1e-6, "{more}");
+            assert!((fastest(201.0, 499.0) - after).abs() < 1e-6, "{more}");
             assert!((fastest(501.0, 699.0) - 500.0).abs() < 1e-6);
         }
     }

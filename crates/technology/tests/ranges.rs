@@ -27,7 +27,7 @@ fn delivered(report: &Report) -> Vec<String> {
 }
 
 #[test]
-fn t07_mne_sns_behind_the_measuring_event() {
+fn t07_mne_sns_after_the_measuring_event() {
     let program = "%T7\nN05 X0 Y0\nN10 G108\nN15 V.G.RW = 5\nN20 G01 X90 Y90 F2000\nN30 G01 X150 Y150 M33 F800\nN40 G107\n\
                    N50 G00 X200 Y200\nM30\n";
     let report = Bench::new(program, "m_synch[33] 0x20")

@@ -154,7 +154,7 @@ fn faw_synch_alone_is_output_and_holds_decoding() {
 
 /// BWD_SYNCH and FWD_SYNCH say when a type counts [004:54] [004:207]: without one they are refused where they stand.
 #[test]
-fn bits_of_the_way_back_need_a_type() {
+fn bits_of_backward_motion_need_a_type() {
     for bit in ["BWD_SYNCH", "FWD_SYNCH", "0x00400000", "BWD_SYNCH | FWD_SYNCH"] {
         let list = ChannelList::from_bytes(format!("m_synch[7] MOS\nm_synch[8] {bit}\n").as_bytes());
         let errors = list.errors();
@@ -260,10 +260,10 @@ fn there_is_no_way_back_before_the_first_motion() {
 #[test]
 fn scripts_say_what_is_wrong() {
     let (_, errors) = Script::from_text("M25 akc 1\nM26 ack 1\nhold 1\novreride 50 at 1\n");
-    let told = errors
+    let reported = errors
         .iter()
         .map(|error| (error.line, error.column, error.length));
-    assert_eq!(told.collect::<Vec<_>>(), [(1, 5, 3), (3, 6, 1), (4, 1, 8)]);
+    assert_eq!(reported.collect::<Vec<_>>(), [(1, 5, 3), (3, 6, 1), (4, 1, 8)]);
     let help: Vec<_> = errors.iter().filter_map(|error| error.help.as_deref()).collect();
     assert_eq!(help, ["did you mean `ack`?", "did you mean `override`?"]);
     for (text, line, column) in [

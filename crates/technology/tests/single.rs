@@ -208,7 +208,7 @@ fn subroutines_and_flushes() {
 
 /// On the way back the path stops at the same places.
 #[test]
-fn the_way_back_is_block_by_block_too() {
+fn backward_motion_is_block_by_block_too() {
     let program = "%T\nN10 G01 X20 F6000\nN20 X40\nN30 X60\nM30\n";
     let report = Bench::new(program, "")
         .script("backward 0.5..5\nsingle 0.55..4\nstart 2\nstart 3\n")

@@ -172,8 +172,8 @@ pub(crate) const COMMANDS: &[Command] = &[
         "deed",
         "TEXT",
         "what scripts do (docs/scripts.md)",
-        Takes::Text(|deed| InputText {
-            deed: Some(deed),
+        Takes::Text(|action| InputText {
+            deed: Some(action),
             ..InputText::default()
         }),
     ),

@@ -133,7 +133,7 @@ mod tests {
 
     /// What a module imports stands before it, or the one script would miss it.
     #[test]
-    fn modules_stand_behind_those_that_they_import() {
+    fn modules_stand_after_those_that_they_import() {
         let mut before: Vec<&str> = Vec::new();
         for file in FILES.iter().filter(|file| file.mime == "text/javascript") {
             for line in file.text.lines().filter(|line| line.starts_with("import ")) {

@@ -228,21 +228,21 @@ pub(crate) fn tools(tools: &[TrackTool], cutters: &[CutBy]) -> Vec<Value> {
         let cutter = cutters.iter().find(|cutter| cutter.tool == number);
         cutter.map(|cutter| cutter.colours[0])
     };
-    let told = |tool: &TrackTool| {
+    let described = |tool: &TrackTool| {
         json!({
             "number": tool.number, "axis": tool.axis.to_string(), "radius": tool.shape.radius,
             "corner": tool.shape.corner_radius, "length": tool.shape.length,
             "point": tool.shape.point_angle_deg, "colour": colour_of(tool.number),
         })
     };
-    tools.iter().map(told).collect()
+    tools.iter().map(described).collect()
 }
 
 /// The marks of cells with their colours.
 pub(crate) fn marks(cutters: &[CutBy]) -> Vec<Value> {
-    let told =
+    let described =
         |cutter: &CutBy| json!({ "tool": cutter.tool, "marks": cutter.marks, "colours": cutter.colours });
-    cutters.iter().map(told).collect()
+    cutters.iter().map(described).collect()
 }
 
 /// A line for each block, in the order of the rows.

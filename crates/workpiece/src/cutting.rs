@@ -94,7 +94,7 @@ pub struct Cutting {
     /// Tools that cut with M4.
     left_hand: BTreeSet<u32>,
     /// What was said of a tool already.
-    told: HashSet<(Option<u32>, EventKind)>,
+    reported: HashSet<(Option<u32>, EventKind)>,
     /// Where each tool was below the blank: first and last block, elements.
     below: BTreeMap<Option<u32>, (BlockRef, BlockRef, u64)>,
 }
@@ -176,7 +176,7 @@ impl Cutting {
             spindle: Spindle::default(),
             seen: None,
             left_hand,
-            told: HashSet::new(),
+            reported: HashSet::new(),
             below: BTreeMap::new(),
         }
     }
@@ -257,7 +257,7 @@ impl Cutting {
             .seen
             .unwrap_or(self.spindle)
             .fault(left_hand)
-            .filter(|kind| !self.told.contains(&(self.tool, *kind)));
+            .filter(|kind| !self.reported.contains(&(self.tool, *kind)));
         if let Some((_, workpiece)) = &mut self.workpiece {
             workpiece.note_cut(fault);
         }
@@ -282,7 +282,7 @@ impl Cutting {
                 | EventKind::SpindleWithoutSpeed
                 | EventKind::SpindleWrongWay
                 | EventKind::NoRadius => {
-                    if self.told.insert((self.tool, event.kind)) {
+                    if self.reported.insert((self.tool, event.kind)) {
                         let tool = self.tool;
                         hears.hear(
                             event.block,

@@ -64,12 +64,12 @@ impl Feeler {
         let straight = [0.0, 0.0, up];
         let shorter = |a: [f64; 3], b: [f64; 3]| if length(a) < length(b) { a } else { b };
         let best = shorter(slope.unwrap_or(straight), straight);
-        let way = shorter(
+        let delta = shorter(
             self.beside(at, length(best).min(FARTHEST_MM)).unwrap_or(best),
             best,
         );
         let mut along = [0.0; 3];
-        for (axis, part) in self.part.setup.axes.iter().zip(way) {
+        for (axis, part) in self.part.setup.axes.iter().zip(delta) {
             if let Some(place) = along.get_mut(axis.index()) {
                 *place = part;
             }
@@ -85,8 +85,8 @@ impl Feeler {
             let missing = self.height([at[0], at[1]])? - at[2];
             let rise = |step: [f64; 2]| {
                 let ahead = self.height([at[0] + step[0], at[1] + step[1]])?;
-                let behind = self.height([at[0] - step[0], at[1] - step[1]])?;
-                Some((ahead - behind) / (2.0 * (step[0] + step[1])))
+                let back = self.height([at[0] - step[0], at[1] - step[1]])?;
+                Some((ahead - back) / (2.0 * (step[0] + step[1])))
             };
             let (u, v) = (rise([dx, 0.0])?, rise([0.0, dy])?);
             let part = missing / (1.0 + u * u + v * v);
@@ -226,8 +226,8 @@ impl Feeler {
     }
 }
 
-fn length(way: [f64; 3]) -> f64 {
-    way.iter().map(|part| part * part).sum::<f64>().sqrt()
+fn length(delta: [f64; 3]) -> f64 {
+    delta.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

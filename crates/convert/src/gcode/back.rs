@@ -60,12 +60,12 @@ impl Stand {
     ///
     /// The tool axis comes last, down to where the way begins. A way that retracts it begins with that: the tool does not go
     /// back to where it was in the workpiece first.
-    pub fn back(&mut self, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, Position) {
-        let [start, end] = way;
+    pub fn back(&mut self, ends: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, Position) {
+        let [start, end] = ends;
         let mut lines = Vec::new();
         let known = self.at.known();
         let counted = self.counted_from(start, curve);
-        if !std::mem::take(&mut self.away) && counted == known && !self.is_left_behind(start) {
+        if !std::mem::take(&mut self.away) && counted == known && !self.is_elsewhere(start) {
             return (lines, *start);
         }
         let tool = self.tool_axis;
@@ -106,7 +106,7 @@ impl Stand {
 
     /// Whether the path goes on elsewhere than where the text stands: a tool call puts the tip of another tool there, and the
     /// text may change the tool only later, at an M6.
-    fn is_left_behind(&self, start: &Position) -> bool {
+    fn is_elsewhere(&self, start: &Position) -> bool {
         let apart = |axis: Axis| (self.at[axis] - start[axis]).abs() > TOLERANCE_MM;
         self.at.known().iter().any(apart)
     }

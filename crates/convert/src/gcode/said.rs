@@ -263,13 +263,13 @@ impl Sayer {
     fn brought_back(
         &mut self,
         block: BlockRef,
-        way: [&Position; 2],
+        ends: [&Position; 2],
         curve: &Curve,
         feed: FeedRate,
     ) -> Position {
-        let (lines, begins) = self.stand.back(way, curve, feed);
+        let (lines, begins) = self.stand.back(ends, curve, feed);
         lines.into_iter().for_each(|line| self.say(block, line));
-        self.stand.goes(way[0], way[1]);
+        self.stand.goes(ends[0], ends[1]);
         begins
     }
 
@@ -288,21 +288,21 @@ impl Sayer {
         };
         let mut order = order;
         if thread.retracts {
-            let Some((from, bottom, way_in)) = self.tap.take() else {
+            let Some((from, bottom, plunge)) = self.tap.take() else {
                 self.tap = Some((start, end, thread));
                 return;
             };
             if from != end || bottom != start {
                 return self.ends(element.block, "the way out of a thread is not the way into it");
             }
-            order = match way_in.clockwise {
+            order = match plunge.clockwise {
                 true => SpindleOrder::Clockwise,
                 false => SpindleOrder::CounterClockwise,
             };
             said = Said::Thread {
                 start: from,
                 end: bottom,
-                pitch_mm: way_in.pitch_mm,
+                pitch_mm: plunge.pitch_mm,
                 returns: true,
             };
         }
@@ -481,8 +481,8 @@ pub(super) fn deviation_mm(one: &Said, other: &Said) -> Result<f64, String> {
         ) if returns == other_returns => {
             let (mut start, mut end) = (*start, *end);
             forget_unwritten((&mut start, &mut end), (other_start, other_end));
-            let ways = proof::between(&start, other_start)?.max(proof::between(&end, other_end)?);
-            Ok(ways.max((pitch_mm - other_pitch).abs()))
+            let apart = proof::between(&start, other_start)?.max(proof::between(&end, other_end)?);
+            Ok(apart.max((pitch_mm - other_pitch).abs()))
         }
         (Said::Dwell(a), Said::Dwell(b)) if (a - b).abs() < 1e-5 => Ok(0.0),
         (Said::Speed(a), Said::Speed(b)) if (a - b).abs() < 1e-5 => Ok(0.0),

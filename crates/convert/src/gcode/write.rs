@@ -150,7 +150,7 @@ impl Writer {
         self.line(&text);
     }
 
-    fn movement(&mut self, curve: &Curve, way: [&Position; 2], feed: FeedRate) -> String {
+    fn movement(&mut self, curve: &Curve, ends: [&Position; 2], feed: FeedRate) -> String {
         let mut text = String::new();
         let arc = match curve {
             Curve::Arc(arc) => Some(arc),
@@ -174,12 +174,12 @@ impl Writer {
             self.motion = motion;
             text.push_str(motion);
         }
-        self.axes(&mut text, way, arc);
+        self.axes(&mut text, ends, arc);
         if let Some(arc) = arc {
             self.centre(&mut text, arc);
         }
         if let FeedRate::Programmed(feed) = feed {
-            let unit = if turns_only(&self.at, &self.behind(way)) {
+            let unit = if turns_only(&self.at, &self.after(ends)) {
                 1.0
             } else {
                 self.unit_mm
@@ -192,14 +192,14 @@ impl Writer {
                 self.feed = Some(word);
             }
         }
-        self.goes_to(way);
+        self.goes_to(ends);
         text.trim_start().to_owned()
     }
 
     /// The words of axes that move, and those of the plane of an arc.
-    fn axes(&self, text: &mut String, way: [&Position; 2], arc: Option<&Arc>) {
-        for axis in self.written(way) {
-            let to = way[1][axis];
+    fn axes(&self, text: &mut String, ends: [&Position; 2], arc: Option<&Arc>) {
+        for axis in self.written(ends) {
+            let to = ends[1][axis];
             let in_plane = arc.is_some_and(|arc| arc.plane.contains(axis));
             if in_plane || self.at[axis] != to {
                 let unit = if axis.is_rotary() { 1.0 } else { self.unit_mm };
@@ -233,17 +233,17 @@ impl Writer {
         Axis::ALL.into_iter().filter(known).collect()
     }
 
-    fn goes_to(&mut self, way: [&Position; 2]) {
-        self.at = self.behind(way);
+    fn goes_to(&mut self, ends: [&Position; 2]) {
+        self.at = self.after(ends);
     }
 
     /// Where the text stands behind a way.
-    fn behind(&self, way: [&Position; 2]) -> Position {
-        let mut behind = self.at;
-        for axis in self.written(way) {
-            behind[axis] = way[1][axis];
+    fn after(&self, ends: [&Position; 2]) -> Position {
+        let mut after = self.at;
+        for axis in self.written(ends) {
+            after[axis] = ends[1][axis];
         }
-        behind
+        after
     }
 }
 

@@ -97,7 +97,7 @@ impl Channel {
             pace: paced.map(|baud| Pace::new(characters.time(baud))),
             faults: spec
                 .fault
-                .map(|seed| [0, 1].map(|way| Faults::of_seed(seed, way))),
+                .map(|seed| [0, 1].map(|direction| Faults::of_seed(seed, direction))),
             start: Instant::now(),
             incoming: VecDeque::new(),
             outgoing: Vec::new(),

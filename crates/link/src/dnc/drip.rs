@@ -29,12 +29,12 @@ pub struct Drip {
     come_print: Fingerprint,
     waiting: Option<Vec<u8>>,
     /// Blocks that have come behind the end of the run.
-    behind: u32,
+    after_end: u32,
 }
 
 /// Blocks behind M2 or M30 that are acknowledged before the other side is told that no more is wanted: END PGM is among them
 /// *(inferred)*.
-const BEHIND_MAX: u32 = 16;
+const AFTER_END_MAX: u32 = 16;
 
 impl Drip {
     /// Asks for a program.
@@ -48,7 +48,7 @@ impl Drip {
             come: 0,
             come_print: Fingerprint::default(),
             waiting: None,
-            behind: 0,
+            after_end: 0,
         }
     }
 
@@ -117,9 +117,9 @@ impl Drip {
         };
         match arrival {
             Arrival::Nothing => return false,
-            Arrival::Block(_) if self.behind < BEHIND_MAX => {
+            Arrival::Block(_) if self.after_end < AFTER_END_MAX => {
                 line.acknowledge();
-                self.behind += 1;
+                self.after_end += 1;
                 self.taken += 1;
                 return true;
             }

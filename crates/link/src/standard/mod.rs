@@ -68,7 +68,7 @@ impl Outgoing {
     /// Not more than may still come behind a DC3, so that one is seen in time.
     fn take(&mut self, room: usize, into: &mut Vec<u8>) {
         if !self.stopped {
-            let count = room.min(crate::BEHIND_DC3).min(self.bytes.len());
+            let count = room.min(crate::AFTER_DC3).min(self.bytes.len());
             into.extend(self.bytes.drain(..count));
         }
     }

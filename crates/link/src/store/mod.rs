@@ -261,8 +261,8 @@ impl Store {
     }
 
     /// A deed of the medium is on it, and counted.
-    fn done(&self, deed: std::io::Result<()>, path: &Path, place: &Place) -> Result<(), StoreError> {
-        deed.map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
+    fn done(&self, result: std::io::Result<()>, path: &Path, place: &Place) -> Result<(), StoreError> {
+        result.map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
         bahn_host::files::sync_folder(path);
         self.medium.changed();
         Ok(())

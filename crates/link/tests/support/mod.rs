@@ -60,17 +60,17 @@ pub fn bytes(line: &str) -> Vec<u8> {
     let mut block = 0;
     let mut rest = line.trim();
     while !rest.is_empty() {
-        let (word, behind, quoted) = match rest.strip_prefix('"') {
+        let (word, after, quoted) = match rest.strip_prefix('"') {
             Some(text) => {
-                let (text, behind) = text.split_once('"').unwrap();
-                (text, behind, true)
+                let (text, after) = text.split_once('"').unwrap();
+                (text, after, true)
             }
             None => {
-                let (word, behind) = rest.split_once(' ').unwrap_or((rest, ""));
-                (word, behind, false)
+                let (word, after) = rest.split_once(' ').unwrap_or((rest, ""));
+                (word, after, false)
             }
         };
-        rest = behind.trim_start();
+        rest = after.trim_start();
         let (name, count) = match word.split_once('*') {
             Some((name, count)) if !quoted => (name, count.parse().unwrap()),
             _ => (word, 1),
@@ -106,7 +106,7 @@ pub fn shown(bytes: &[u8]) -> String {
 }
 
 /// What a protocol tells, as words.
-pub fn told(event: &Event, model: ControlModel) -> String {
+pub fn described(event: &Event, model: ControlModel) -> String {
     match event {
         Event::Received(name) => format!("received {name}"),
         Event::Sent(name) => format!("sent {name}"),
@@ -188,6 +188,6 @@ pub fn converse(role: Role, protocol: &mut dyn Protocol, script: &str) -> Vec<St
         shown(&pending)
     );
     std::iter::from_fn(|| protocol.event())
-        .map(|event| told(&event, model))
+        .map(|event| described(&event, model))
         .collect()
 }

@@ -45,9 +45,9 @@ impl ChannelText {
         let line = self.text.line_at(at);
         let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '[' | ']' | '-');
         let before = self.text.get(line.start..at);
-        let behind = self.text.get(at..line.end);
+        let after = self.text.get(at..line.end);
         let start = before.trim_end_matches(is_part).len();
-        let length = behind.len() - behind.trim_start_matches(is_part).len();
+        let length = after.len() - after.trim_start_matches(is_part).len();
         line.start + start..at + length
     }
 

@@ -94,13 +94,13 @@ impl DinProgram {
             for (range, kind) in &words {
                 let word = self.text.get(range.clone());
                 let rest = self.text.get(range.end..line.end);
-                let behind = rest.trim_start();
-                let blanks = rest.len() - behind.len();
+                let after = rest.trim_start();
+                let blanks = rest.len() - after.len();
                 match kind {
                     SpanKind::Variable => found.push(Mention {
                         range: range.clone(),
                         thing: Thing::Variable(word.to_ascii_uppercase()),
-                        role: if behind.starts_with('=') {
+                        role: if after.starts_with('=') {
                             Role::Sets
                         } else {
                             Role::Uses
@@ -117,7 +117,7 @@ impl DinProgram {
                         }
                     }
                     SpanKind::Address if matches!(word, "L" | "l" | "LL" | "ll") => {
-                        let name = first_word(behind);
+                        let name = first_word(after);
                         let start = range.end + blanks;
                         let is_here = subroutines.iter().any(|landmark| landmark.name == name);
                         if is_here {
@@ -278,7 +278,7 @@ impl Analysis for DinProgram {
         }
         let (range, kind) = self.word_at(at)?;
         Some(Hover {
-            text: words::told(self.text.get(range.clone()), kind)?,
+            text: words::meaning(self.text.get(range.clone()), kind)?,
             range,
         })
     }

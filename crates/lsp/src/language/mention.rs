@@ -46,11 +46,11 @@ pub(crate) struct Mention {
 /// The name at a place; the cursor may stand behind it.
 pub(crate) fn at(mentions: &[Mention], offset: usize) -> Option<&Mention> {
     let inside = |mention: &&Mention| mention.range.contains(&offset);
-    let behind = |mention: &&Mention| mention.range.end == offset;
+    let after = |mention: &&Mention| mention.range.end == offset;
     mentions
         .iter()
         .find(inside)
-        .or_else(|| mentions.iter().find(behind))
+        .or_else(|| mentions.iter().find(after))
 }
 
 /// All places of a thing.

@@ -140,9 +140,9 @@ mod tests {
     fn filled(snippet: &str) -> String {
         let mut text = String::new();
         let mut rest = snippet;
-        while let Some((before, behind)) = rest.split_once("${") {
+        while let Some((before, open)) = rest.split_once("${") {
             text += before;
-            let (place, after) = behind.split_once('}').unwrap();
+            let (place, after) = open.split_once('}').unwrap();
             text += place.split_once(':').unwrap().1;
             rest = after;
         }

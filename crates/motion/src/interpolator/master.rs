@@ -39,14 +39,14 @@ impl Coupling {
     }
 
     /// The angle that belongs to a place so far along the element, mm.
-    fn angle_deg(&self, way_mm: f64) -> f64 {
-        self.origin_deg + self.deg_per_mm * way_mm
+    fn angle_deg(&self, distance_mm: f64) -> f64 {
+        self.origin_deg + self.deg_per_mm * distance_mm
     }
 
     /// What is told the spindle so far along the element, mm, at a speed, mm/s, negative backwards.
-    pub(super) fn lead(&self, way_mm: f64, speed: f64) -> Lead {
+    pub(super) fn lead(&self, distance_mm: f64, speed: f64) -> Lead {
         Lead {
-            angle_deg: self.angle_deg(way_mm),
+            angle_deg: self.angle_deg(distance_mm),
             rpm: self.deg_per_mm * speed / DEG_S,
         }
     }
@@ -59,9 +59,9 @@ impl Coupling {
     /// From now on this position belongs to that angle of the spindle, degrees. How far along the element it lies,
     /// mm, and where that is.
     pub(super) fn renew(&mut self, item: &Item, position: &Position, angle_deg: f64) -> (f64, Position) {
-        let way = way(item, position);
-        self.origin_deg = angle_deg - self.deg_per_mm * way;
-        (way, place(item, way))
+        let distance = distance(item, position);
+        self.origin_deg = angle_deg - self.deg_per_mm * distance;
+        (distance, place(item, distance))
     }
 }
 
@@ -82,9 +82,13 @@ pub(super) fn go_back(item: &Item, speed: f64, covered: f64, limit: f64, time: f
 }
 
 /// The place so far along an item, mm; beyond its ends straight on.
-fn place(item: &Item, way: f64) -> Position {
+fn place(item: &Item, distance: f64) -> Position {
     let (start, end) = (&item.element.start, &item.element.end);
-    let fraction = if item.length > 0.0 { way / item.length } else { 0.0 };
+    let fraction = if item.length > 0.0 {
+        distance / item.length
+    } else {
+        0.0
+    };
     let mut position = *end;
     for axis in start.known().iter() {
         position[axis] = start[axis] + (end[axis] - start[axis]) * fraction;
@@ -93,7 +97,7 @@ fn place(item: &Item, way: f64) -> Position {
 }
 
 /// How far along an item a position lies, mm.
-fn way(item: &Item, position: &Position) -> f64 {
+fn distance(item: &Item, position: &Position) -> f64 {
     let (start, end) = (&item.element.start, &item.element.end);
     let along = start
         .known()

@@ -114,6 +114,6 @@ pub(super) fn at(
 /// to brake, for in tapping the spindle follows a feed ramp that is flatter than its own [000:6070].
 fn place_before_end(item: &Item, feed: f64, time_s: f64) -> f64 {
     let braking = item.braking_s(feed);
-    let way = item.peak(feed) * (0.5 * braking + (time_s - braking).max(0.0));
-    (item.length - way).max(0.0)
+    let distance = item.peak(feed) * (0.5 * braking + (time_s - braking).max(0.0));
+    (item.length - distance).max(0.0)
 }

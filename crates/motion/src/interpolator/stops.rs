@@ -86,11 +86,11 @@ impl Stops {
         }
         let last = ring.last()?;
         let mut first = self.sought.max(ring.number());
-        while first < last && !self.stops_behind(ring, first) {
+        while first < last && !self.stops_after(ring, first) {
             first += 1;
         }
         self.sought = first;
-        if !self.stops_behind(ring, first) {
+        if !self.stops_after(ring, first) {
             return None;
         }
         let squared = speed * speed * (1.0 - 1e-9);
@@ -98,7 +98,7 @@ impl Stops {
         let mut length = rest;
         for (number, item) in (ring.number()..).zip(ring.ahead()) {
             possible += 2.0 * item.acceleration * length;
-            if squared <= possible && (number < first || self.stops_behind(ring, number)) {
+            if squared <= possible && (number < first || self.stops_after(ring, number)) {
                 return Some(number.max(first));
             }
             length = ring.get(number + 1).map_or(0.0, |next| next.length);
@@ -108,7 +108,7 @@ impl Stops {
 
     /// Whether the path is to stop at the end of an element. What is not so stays so, but for the last element: it
     /// depends on the one after it.
-    fn stops_behind(&self, ring: &Ring, number: u64) -> bool {
+    fn stops_after(&self, ring: &Ring, number: u64) -> bool {
         let next = ring.get(number + 1);
         let ends = |item: &Item| self.is_block_end(item, next) || self.is_to_be_clamped(item);
         ring.get(number).is_some_and(ends)

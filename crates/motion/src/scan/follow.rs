@@ -6,7 +6,7 @@
 use bahn_path::{ScanJob, ScanPoint};
 
 use super::glide::Glide;
-use super::way::{Felt, Followed, Tracking, Wish};
+use super::stylus::{Felt, Followed, Tracking, Wish};
 
 /// Part of an oscillation that the stylus leaves the surface (inferred): two fifths, so that points lie nearer than the
 /// interval also where the surface falls away.
@@ -180,8 +180,8 @@ impl Follower {
         if let Some(touch) = felt.touch.filter(|_| self.waits_for_touch()) {
             return self.touched(touch);
         }
-        let way = minus(felt.at, self.last);
-        let (along, height) = (dot(way, self.direction()), dot(way, self.normal()));
+        let offset = minus(felt.at, self.last);
+        let (along, height) = (dot(offset, self.direction()), dot(offset, self.normal()));
         let advance = self.advance(felt);
         match self.phase {
             Phase::Rise { for_s } => {
@@ -258,8 +258,8 @@ impl Follower {
 
     /// Part of the feed along: none any more where the interval is used up, by the nominal position, which leads.
     fn advance(&self, felt: &Felt) -> f64 {
-        let way = minus(felt.nominal, self.last);
-        let left = self.reach() - dot(way, self.direction());
+        let offset = minus(felt.nominal, self.last);
+        let left = self.reach() - dot(offset, self.direction());
         let greatest = match felt.deflected {
             true => self.along_mm_s.min(RESULTANT * self.across_mm_s),
             false => self.along_mm_s,
@@ -293,8 +293,8 @@ impl Follower {
 
     /// A new point: the direction of the scan is that from the last one to it.
     fn touched(&mut self, touch: ScanPoint) -> Followed {
-        let way = minus(touch, self.last);
-        let plane = [dot(way, self.tracking.along), dot(way, self.tracking.off)];
+        let offset = minus(touch, self.last);
+        let plane = [dot(offset, self.tracking.along), dot(offset, self.tracking.off)];
         let length = plane[0].hypot(plane[1]);
         if length > NEAR_MM {
             self.direction = plane.map(|part| part / length);

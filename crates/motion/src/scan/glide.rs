@@ -2,7 +2,7 @@
 
 use bahn_path::{MeasuringRules, ScanPoint};
 
-use super::way::{Felt, Followed, Tracking, Wish};
+use super::stylus::{Felt, Followed, Tracking, Wish};
 
 /// How fast a wrong depth of deflection is put right, 1/s: slower than position loops are with a kv factor of 1
 /// (inferred).
@@ -54,8 +54,8 @@ impl Glide {
             false => full,
         };
         let tip: ScanPoint = std::array::from_fn(|k| felt.at[k] + felt.deflection[k]);
-        let way = (0..3).map(|k| (tip[k] - last[k]).powi(2)).sum::<f64>().sqrt();
-        if in_plane > 0.0 && way + full * felt.time_s > interval_mm {
+        let distance = (0..3).map(|k| (tip[k] - last[k]).powi(2)).sum::<f64>().sqrt();
+        if in_plane > 0.0 && distance + full * felt.time_s > interval_mm {
             return Followed::Touched(tip, self.wish(tracking, feed, missing, full));
         }
         Followed::Moves(self.wish(tracking, feed, missing, full))

@@ -96,8 +96,8 @@ impl Faces {
         // Tangents put nearly all in order.
         let mut sorted: Vec<(f64, Segment, usize)> = Vec::with_capacity(leaving.len());
         for candidate in leaving {
-            let behind = sorted.iter().rev();
-            let before = behind.take_while(|other| is_before(&candidate.1, &other.1, reference));
+            let after = sorted.iter().rev();
+            let before = after.take_while(|other| is_before(&candidate.1, &other.1, reference));
             sorted.insert(sorted.len() - before.count(), candidate);
         }
         sorted.into_iter().map(|(_, _, h)| h).collect()

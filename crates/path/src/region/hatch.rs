@@ -226,15 +226,15 @@ impl Area<'_> {
                     if done.get(line + 1).and_then(|d| d.get(i)) != Some(&false) {
                         continue;
                     }
-                    if let Some(way) = self.link(end, s.entry(!forward), stepover, effort)? {
-                        let length = way.iter().map(Segment::length).sum();
+                    if let Some(path) = self.link(end, s.entry(!forward), stepover, effort)? {
+                        let length = path.iter().map(Segment::length).sum();
                         if best.as_ref().is_none_or(|(least, ..)| length < *least) {
-                            best = Some((length, i, way));
+                            best = Some((length, i, path));
                         }
                     }
                 }
-                let Some((_, next, way)) = best else { break };
-                (line, index, forward, link) = (line + 1, next, !forward, Some(way));
+                let Some((_, next, path)) = best else { break };
+                (line, index, forward, link) = (line + 1, next, !forward, Some(path));
             }
         }
         Ok(passes)
@@ -269,15 +269,15 @@ impl Area<'_> {
         for (contour, place) in starts {
             for forward in [true, false] {
                 let segments = self.contours.get(contour).map_or(&[][..], Contour::segments);
-                let found = way_along(segments, place, [from, to], forward, longest);
-                effort.spend(found.as_ref().map_or(1, |(_, way)| way.len()))?;
+                let found = path_along(segments, place, [from, to], forward, longest);
+                effort.spend(found.as_ref().map_or(1, |(_, path)| path.len()))?;
                 let shorter = |(length, _): &(f64, _)| best.as_ref().is_none_or(|(least, _)| length < least);
                 if let Some(found) = found.filter(shorter) {
                     best = Some(found);
                 }
             }
         }
-        Ok(best.map(|(_, way)| way))
+        Ok(best.map(|(_, path)| path))
     }
 
     /// Whether a line between two points of the region stays in it; it may run along the boundary.
@@ -300,7 +300,7 @@ impl Area<'_> {
 
 /// The way along a closed contour between two of its points, in its sense or against it, from the segment
 /// at a place; `None` when it is longer than `longest`.
-fn way_along(
+fn path_along(
     segments: &[Segment],
     place: usize,
     [from, to]: [Point2; 2],
@@ -309,7 +309,7 @@ fn way_along(
 ) -> Option<(f64, Vec<Segment>)> {
     let count = segments.len();
     let mut length = 0.0;
-    let mut way: Vec<Segment> = Vec::new();
+    let mut path: Vec<Segment> = Vec::new();
     // The segment of the start may be the one of the end too, and come again behind all others.
     for step in 0..=count {
         let at = if forward {
@@ -328,13 +328,13 @@ fn way_along(
             return None;
         }
         if part.is_proper() {
-            match way.last().and_then(|last| last.joined(&part)) {
-                Some(joined) => *way.last_mut()? = joined,
-                None => way.push(part),
+            match path.last().and_then(|last| last.joined(&part)) {
+                Some(joined) => *path.last_mut()? = joined,
+                None => path.push(part),
             }
         }
         if arrives {
-            return Some((length, way));
+            return Some((length, path));
         }
     }
     None

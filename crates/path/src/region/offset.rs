@@ -288,12 +288,12 @@ fn strayed_length<E: Effort>(
 /// missing between two faces.
 fn free_faces(faces: &Faces, granted: f64) -> (Vec<bool>, f64) {
     #[derive(Clone, Copy, Default)]
-    struct Told {
+    struct Evidence {
         free: f64,
         covered: f64,
         area: f64,
     }
-    let mut told = vec![Told::default(); faces.count()];
+    let mut evidence = vec![Evidence::default(); faces.count()];
     // Areas far from the datum lose no digits.
     let origin = faces
         .edges()
@@ -302,24 +302,26 @@ fn free_faces(faces: &Faces, granted: f64) -> (Vec<bool>, f64) {
     for (place, edge) in faces.edges().iter().enumerate() {
         let length = edge.segment.length();
         let area = edge.segment.moved(scale(origin, -1.0)).area_to_origin();
-        if let Some(left) = told.get_mut(faces.left_of(2 * place)) {
+        if let Some(left) = evidence.get_mut(faces.left_of(2 * place)) {
             left.free += length;
             left.area += area;
         }
-        if let Some(right) = told.get_mut(faces.left_of(2 * place + 1)) {
+        if let Some(right) = evidence.get_mut(faces.left_of(2 * place + 1)) {
             right.covered += length;
             right.area -= area;
         }
     }
     let width = SLIVER * granted;
-    let doubtful = told.iter().filter(|told| {
-        let around = told.free + told.covered;
-        told.area.abs() > 0.5 * width * around && around > 25.0 * width
+    let doubtful = evidence.iter().filter(|evidence| {
+        let around = evidence.free + evidence.covered;
+        evidence.area.abs() > 0.5 * width * around && around > 25.0 * width
     });
     let doubtful = doubtful
-        .map(|told| f64::min(told.free, told.covered))
+        .map(|evidence| f64::min(evidence.free, evidence.covered))
         .fold(0.0, f64::max);
-    let free = told.iter().map(|told| told.free > 2.0 * told.covered);
+    let free = evidence
+        .iter()
+        .map(|evidence| evidence.free > 2.0 * evidence.covered);
     (free.collect(), doubtful)
 }
 

@@ -38,7 +38,7 @@ impl Ahead {
     /// Way along the path to where it is output, mm, for a lead along the path.
     pub(super) fn place(&self) -> f64 {
         match self.lead {
-            Lead::Way(way) => (self.point - way).max(self.earliest),
+            Lead::Distance(distance) => (self.point - distance).max(self.earliest),
             Lead::None => self.point,
             Lead::Time(_) => self.earliest,
         }
@@ -59,7 +59,7 @@ pub(super) struct Promise {
 pub(super) struct Watched {
     pub(super) promises: VecDeque<Promise>,
     /// What was told: a block that comes again is told once.
-    pub(super) told: BTreeSet<(String, Arc<str>, u32)>,
+    pub(super) reported: BTreeSet<(String, Arc<str>, u32)>,
 }
 
 impl Watched {
@@ -89,16 +89,16 @@ pub(super) struct Leads {
 
 impl Leads {
     /// A block with a movement begins at a way, mm; so many blocks are looked at.
-    pub(super) fn block(&mut self, way: f64, most: usize) {
-        self.blocks.push_back(way);
+    pub(super) fn block(&mut self, distance: f64, most: usize) {
+        self.blocks.push_back(distance);
         while self.blocks.len() > most {
             self.blocks.pop_front();
         }
     }
 
     /// Nothing is output across this place, mm.
-    pub(super) fn bar(&mut self, way: f64) {
-        self.barrier = way;
+    pub(super) fn bar(&mut self, distance: f64) {
+        self.barrier = distance;
         self.blocks.clear();
     }
 
@@ -159,10 +159,10 @@ impl Leads {
     }
 
     /// One that is output does so at this place of the path, mm.
-    pub(super) fn output_at(&mut self, id: OrderId, way: f64) {
-        self.floor = way;
+    pub(super) fn output_at(&mut self, id: OrderId, distance: f64) {
+        self.floor = distance;
         if let Some(ahead) = self.taken.iter_mut().rev().find(|ahead| ahead.id == id) {
-            ahead.output = way;
+            ahead.output = distance;
         }
     }
 
@@ -173,12 +173,12 @@ impl Leads {
     }
 
     /// The functions that were output and belong to a place, mm.
-    pub(super) fn of_place(&self, way: f64) -> impl Iterator<Item = OrderId> {
-        let first = self.taken.partition_point(|ahead| ahead.point < way - SAME);
+    pub(super) fn of_place(&self, distance: f64) -> impl Iterator<Item = OrderId> {
+        let first = self.taken.partition_point(|ahead| ahead.point < distance - SAME);
         let here = self
             .taken
             .range(first..)
-            .take_while(move |ahead| ahead.point <= way + SAME);
+            .take_while(move |ahead| ahead.point <= distance + SAME);
         here.map(|ahead| ahead.id)
     }
 
@@ -208,16 +208,16 @@ impl Leads {
     }
 
     /// Nobody goes back to what lies before this way, mm; the first order that may still be asked for.
-    pub(super) fn forget_before(&mut self, way: f64) -> Option<OrderId> {
-        self.taken.retain(|ahead| ahead.point >= way);
+    pub(super) fn forget_before(&mut self, distance: f64) -> Option<OrderId> {
+        self.taken.retain(|ahead| ahead.point >= distance);
         self.taken.iter().map(|ahead| ahead.id).min()
     }
 
     /// The path begins anew.
-    pub(super) fn begin(&mut self, way: f64) {
+    pub(super) fn begin(&mut self, distance: f64) {
         *self = Leads {
-            barrier: way,
-            floor: way,
+            barrier: distance,
+            floor: distance,
             ..Leads::default()
         };
     }

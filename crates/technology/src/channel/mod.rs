@@ -122,21 +122,21 @@ impl<'a> Channel<'a> {
     }
 
     /// Way along the path, mm.
-    fn way(&self) -> f64 {
-        self.way_of(&self.motion.path)
+    fn distance(&self) -> f64 {
+        self.distance_of(&self.motion.path)
     }
 
     /// Way along the path of an interpolator on it, mm.
-    fn way_of(&self, path: &Interpolator<()>) -> f64 {
-        if let Some(way) = self.way_back(path) {
-            return way;
+    fn distance_of(&self, path: &Interpolator<()>) -> f64 {
+        if let Some(distance) = self.backward_distance(path) {
+            return distance;
         }
         let Some(element) = path.element() else {
-            return self.plan.track.way(self.motion.reached);
+            return self.plan.track.distance(self.motion.reached);
         };
         match self.plan.track.leg(element.sequence) {
             Some(leg) => leg.to() - path.rest_mm(),
-            None => self.plan.track.way(self.motion.reached),
+            None => self.plan.track.distance(self.motion.reached),
         }
     }
 

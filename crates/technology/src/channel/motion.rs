@@ -27,7 +27,7 @@ pub(super) struct Motion<'a> {
     /// The place that the path has come to or stands at.
     pub(super) reached: u64,
     /// Way along the path before the last cycle, mm.
-    pub(super) way_before: f64,
+    pub(super) distance_before: f64,
     /// The path stood still in the last cycle.
     pub(super) still: bool,
     /// That was said.
@@ -91,7 +91,7 @@ impl<'a> Motion<'a> {
             part: None,
             acceleration: f64::INFINITY,
             reached: 1,
-            way_before: 0.0,
+            distance_before: 0.0,
             still: true,
             stands: true,
             held: false,

@@ -26,7 +26,7 @@ pub(crate) enum Letter {
 pub(crate) enum Lead {
     None,
     /// Along the path, mm.
-    Way(f64),
+    Distance(f64),
     /// s.
     Time(f64),
 }

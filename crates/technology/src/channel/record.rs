@@ -130,7 +130,7 @@ impl Record {
         }
     }
 
-    pub(super) fn sample(&mut self, t: f64, way_mm: f64, speed_mm_s: f64) {
+    pub(super) fn sample(&mut self, t: f64, distance_mm: f64, speed_mm_s: f64) {
         self.skipped += 1;
         if self.skipped < self.every {
             return;
@@ -146,7 +146,7 @@ impl Record {
         }
         self.samples.push(Sample {
             t: time(t),
-            way_mm,
+            distance_mm,
             v: speed_mm_s * PER_MIN,
         });
     }

@@ -29,10 +29,10 @@ pub(super) fn split(text: &str) -> Option<Line<'_>> {
     }
     let end = end_of_name(trimmed);
     let name = trimmed.get(..end).unwrap_or(trimmed);
-    let behind = trimmed.get(end..).unwrap_or_default();
-    let value = behind.trim_start();
+    let rest_of_line = trimmed.get(end..).unwrap_or_default();
+    let value = rest_of_line.trim_start();
     let name_column = text.chars().count() - trimmed.chars().count() + 1;
-    let blanks = behind.chars().count() - value.chars().count();
+    let blanks = rest_of_line.chars().count() - value.chars().count();
     let is_missing = value.is_empty() || value.starts_with(['#', ';']);
     Some(Line {
         name,
@@ -97,9 +97,9 @@ fn indices(line: &Line) -> Result<Vec<(u32, usize, usize)>, Fault> {
     let mut found = Vec::new();
     let mut rest = line.name;
     let mut column = line.name_column;
-    while let Some((before, behind)) = rest.split_once('[') {
+    while let Some((before, rest_of_line)) = rest.split_once('[') {
         column += before.chars().count() + 1;
-        let Some((inside, after)) = behind.split_once(']') else {
+        let Some((inside, after)) = rest_of_line.split_once(']') else {
             let message = format!("{} lacks a closing bracket", line.name);
             return Err((column, 1, message));
         };

@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn all_types_and_bits_are_told() {
+    fn all_types_and_bits_are_named() {
         for kind in SynchType::all() {
             let row = SynchRow::find(kind.name()).unwrap();
             assert!(!row.is_bit && row.is_for(Owner::M), "{kind}");

@@ -320,7 +320,7 @@ mod tests {
                     (main_spindle_axis, main_spindle_name),
                     flags,
                     ahead,
-                    ways,
+                    distances,
                     joint_blocks,
                 )| {
                     let mut settings = ChannelSettings {
@@ -339,11 +339,11 @@ mod tests {
                         micro_joint: MicroJoint {
                             enabled: flags[5],
                             blocks: joint_blocks,
-                            distance: ways[0],
-                            tolerance: ways[1],
+                            distance: distances[0],
+                            tolerance: distances[1],
                         },
                         edge_banding: EdgeBanding {
-                            residual_path: ways[2] / 2,
+                            residual_path: distances[2] / 2,
                         },
                         ..ChannelSettings::default()
                     };

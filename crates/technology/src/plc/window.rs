@@ -36,7 +36,7 @@ const COUNTED: Id = 1 << 15;
 /// While the path stands, an answer of a PLC is waited for so long, s.
 const PATIENCE_S: f64 = 60.0;
 /// So often the PLC runs through behind the end of the path.
-const RUNS_BEHIND: u64 = 2;
+const RUNS_AFTER: u64 = 2;
 
 /// A PLC that runs beside the channel, and the bytes in which both see the functions.
 pub trait PlcMemory {
@@ -209,7 +209,7 @@ impl<'a> Window<'a> {
 
     /// The path has ended: what was output last is still fetched.
     pub(crate) fn end(&mut self) {
-        self.end = Some(self.runs + RUNS_BEHIND);
+        self.end = Some(self.runs + RUNS_AFTER);
     }
 
     /// Drops all that stands in it: the PLC sees free slots.

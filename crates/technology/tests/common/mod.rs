@@ -220,10 +220,10 @@ pub fn when(t: f64, expected: f64) {
 }
 
 /// Time of a way from standstill to standstill, s.
-pub fn ramp_s(way: f64, v: f64) -> f64 {
-    if v * v / A >= way {
-        2.0 * (way / A).sqrt()
+pub fn ramp_s(distance: f64, v: f64) -> f64 {
+    if v * v / A >= distance {
+        2.0 * (distance / A).sqrt()
     } else {
-        way / v + v / A
+        distance / v + v / A
     }
 }

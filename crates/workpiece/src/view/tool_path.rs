@@ -87,12 +87,12 @@ impl Pen<'_> {
     /// Whether the middle of a piece lies before the part, or on it.
     fn is_seen(&self, [a, b]: &[Seen; 2]) -> bool {
         /// The tip moves on the surface that it leaves: so far behind it is still seen, pixels.
-        const BEHIND: f64 = 3.0;
+        const DEPTH: f64 = 3.0;
         let middle = [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]));
         let (x, y) = (middle[0].max(0.0) as usize, middle[1].max(0.0) as usize);
         self.spots
             .get(y * self.columns + x.min(self.columns.saturating_sub(1)))
-            .is_none_or(|spot| middle[2] < f64::from(spot.distance()) + BEHIND)
+            .is_none_or(|spot| middle[2] < f64::from(spot.distance()) + DEPTH)
     }
 }
 
