@@ -215,7 +215,7 @@ impl Page {
 
 const STEPS: usize = 12;
 
-/// The places of a straight movement behind its first.
+/// The places of a straight movement after its first.
 fn steps(from: [f64; 2], to: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
     (1..=STEPS).map(move |step| {
         let t = step as f64 / STEPS as f64;

@@ -1,4 +1,4 @@
-//! What the browser is told of each key.
+//! What is sent to the browser for each key.
 
 /// A key as the protocol wants it.
 #[derive(Clone, Debug, PartialEq, Eq)]

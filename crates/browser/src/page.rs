@@ -266,7 +266,7 @@ impl Page {
         &self.complaints
     }
 
-    /// What scripts told the console otherwise.
+    /// What scripts wrote to the console otherwise.
     pub fn said(&mut self) -> &[String] {
         self.listen();
         &self.said
@@ -280,7 +280,7 @@ impl Page {
 
     /// Takes events that have come and were not read yet.
     fn listen(&mut self) {
-        // Whoever asks next is told that the connection is lost.
+        // Whoever asks next gets the error that the connection is lost.
         while let Ok(Some(event)) = self.connection.event(Duration::ZERO) {
             self.take(&event);
         }

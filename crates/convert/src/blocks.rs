@@ -200,7 +200,7 @@ struct Writer<'a> {
     made: Converted,
 }
 
-/// Characters that stand before and behind the text of a comment in a block of its own.
+/// Characters that stand before and after the text of a comment in a block of its own.
 const COMMENT_FRAME: u32 = 16;
 
 impl Writer<'_> {

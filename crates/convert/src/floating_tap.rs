@@ -1,6 +1,6 @@
 //! A tap with a floating holder: what cycle 2 does, gathered from its elements to be written as the cycle again.
 //!
-//! The way in on which the spindle is stopped before its end, the turning back, a dwell, the way out, and the spindle as it turned
+//! The plunge on which the spindle is stopped before its end, the turning back, a dwell, the retraction, and the spindle as it turned
 //! before [003:5005-5035]. The wait before the turning back belongs to the machine (MP7120.0), not to the cycle.
 
 use bahn_path::{At, Curve, FeedRate, Function, OverrideLaw, PathElement};
@@ -11,14 +11,14 @@ pub(crate) enum Part {
     None,
     /// It is in one.
     Inside,
-    /// It is the way out.
+    /// It is the retraction.
     Whole(Box<Tap>),
 }
 
-/// A whole tap, along its way.
+/// A whole tap.
 pub(crate) struct Tap {
     pub plunge: PathElement,
-    /// Between turning back and the way out, s.
+    /// Between turning back and the retraction, s.
     pub dwell_s: f64,
     /// mm/min.
     pub feed_mm_min: f64,
@@ -38,7 +38,7 @@ struct Open {
     turns_back: bool,
 }
 
-/// Behind the way out the spindle stops and turns as before.
+/// After the retraction the spindle stops and turns as before.
 const ORDERS_AFTER: u8 = 2;
 
 impl FloatingTaps {
@@ -59,7 +59,7 @@ impl FloatingTaps {
         }
         match (&mut self.open, taps) {
             (None, false) => return Ok(Part::None),
-            (Some(_), false) => return Err("a movement between both ways of a tap".to_owned()),
+            (Some(_), false) => return Err("a movement between plunge and retraction of a tap".to_owned()),
             (None, true) => {
                 let early = |of: &bahn_path::TechnologyFunction| !matches!(of.at, At::BeforeEnd(_));
                 if element.curve != Curve::Line || element.functions().iter().any(early) {
@@ -82,7 +82,7 @@ impl FloatingTaps {
         Ok(Part::Inside)
     }
 
-    /// The element is the way out.
+    /// The element is the retraction.
     fn whole(&mut self, out: &PathElement) -> Result<Part, String> {
         let same = |open: &Open| {
             open.turns_back
@@ -99,7 +99,7 @@ impl FloatingTaps {
                     feed_mm_min,
                 })))
             }
-            _ => Err("the way out of a tap is not the way into it".to_owned()),
+            _ => Err("the retraction of a tap is not its plunge".to_owned()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Which G functions may be in force before each block of a program, wherever it is reached from.
 //!
-//! What a subprogram leaves behind is found once, relative to what is in force at its call: a subprogram that says nothing
+//! What a subprogram leaves in force is found once, relative to what is in force at its call: a subprogram that says nothing
 //! of G90 leaves it to each of its calls as it was there.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -113,7 +113,7 @@ impl States {
     }
 }
 
-/// Where the run goes behind a block.
+/// Where the run goes after a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Successor {
     Next,
@@ -139,7 +139,7 @@ pub(crate) struct Flow {
 
 impl Flow {
     /// Follows a program that begins with `entry`; `foreign` says of a program that it may leave other functions in
-    /// force behind its call.
+    /// force after its call.
     pub fn of(program: &Program, entry: States, foreign: &dyn Fn(&str) -> bool) -> Flow {
         let mut analysis = Analysis::of(program, foreign);
         analysis.find_effects();
@@ -246,7 +246,7 @@ impl Analysis {
         }
     }
 
-    /// From a label to the LBL 0 behind it.
+    /// From a label to the LBL 0 after it.
     fn effect(&self, label: u16) -> States {
         let Some(&start) = self.labels.get(&label) else {
             return States::default();
@@ -264,7 +264,7 @@ impl Analysis {
         before.last().copied().unwrap_or_default()
     }
 
-    /// Carries all states of a range one way along it; `true` if any was new. The states of a call go into its
+    /// Carries all states of a range in one direction along it; `true` if any was new. The states of a call go into its
     /// subprogram where that is wanted.
     fn sweep(&self, before: &mut [States], range: std::ops::Range<usize>, enter: bool) -> bool {
         let mut changed = false;

@@ -1,4 +1,4 @@
-//! What people are told of a conversion.
+//! The report of a conversion for people.
 
 use bahn_program::{IsoLanguage, PlainLanguage};
 use serde::Serialize;

@@ -134,7 +134,7 @@ enum Action {
     Over(Option<String>),
 }
 
-/// A run deed by deed.
+/// A run action by action.
 struct Flat {
     run: Interpreter,
     model: ControlModel,
@@ -231,7 +231,7 @@ struct Writer {
     define_tools: bool,
     /// Tools with the data that were written last.
     defined: BTreeSet<(u32, u64, u64)>,
-    /// The way into a thread whose way out comes next.
+    /// The plunge into a thread whose retraction comes next.
     tap: Option<PathElement>,
     floating: FloatingTaps,
 }
@@ -250,7 +250,7 @@ impl Writer {
     fn element(&mut self, element: &PathElement) -> Result<(), String> {
         let is_retraction = matches!(element.thread(), Some(thread) if thread.retracts);
         if self.tap.is_some() && !is_retraction {
-            return Err("a movement between both ways of a tap".to_owned());
+            return Err("a movement between plunge and retraction of a tap".to_owned());
         }
         match self.floating.take(element)? {
             Part::None => {}
@@ -278,7 +278,7 @@ impl Writer {
         let by_m = [0, 1, 6].iter().any(|code| m.contains(*code));
         match &element.curve {
             Curve::Hold if stops && !by_m => self.block(Operation::Stop(m)),
-            _ if stops && !by_m => return Err("a stop on the way".to_owned()),
+            _ if stops && !by_m => return Err("a stop within a tap".to_owned()),
             Curve::Hold if m.is_empty() => {}
             Curve::Hold => self.block(Operation::Miscellaneous(m)),
             Curve::Line if element.thread().is_some() => {
@@ -395,7 +395,7 @@ impl Writer {
                 .any(|axis| !arc.plane.contains(axis));
             motion.kind = MotionKind::Circle;
             if helix || arc.sweep_deg.abs() > 360.0 {
-                // By its angle: the way in the plane follows from the start.
+                // By its angle: the path in the plane follows from the start.
                 motion.kind = MotionKind::CirclePolar;
                 motion.polar_angle = Some(Word {
                     value: number(arc.sweep_deg),
@@ -426,7 +426,7 @@ impl Writer {
         Ok(())
     }
 
-    /// A way with the spindle, from where the tool stands: cycle 18, and cycle 17 with the way back.
+    /// A movement with the spindle, from where the tool stands: cycle 18, and cycle 17 with the retraction.
     fn thread(&mut self, element: &PathElement) -> Result<(), String> {
         let Some(thread) = element.thread().copied() else {
             return Ok(());
@@ -437,7 +437,7 @@ impl Writer {
                 return Ok(());
             }
             (true, Some(plunge)) if plunge.start == element.end && plunge.end == element.start => plunge,
-            (true, Some(_)) => return Err("the way out of a thread is not the way into it".to_owned()),
+            (true, Some(_)) => return Err("the retraction from a thread is not its plunge".to_owned()),
             (false, _) => element.clone(),
         };
         let travel = along_one_axis(&plunge)?;
@@ -503,7 +503,7 @@ impl Writer {
     }
 }
 
-/// The way of a thread, mm, with its sign.
+/// The travel of a thread, mm, with its sign.
 fn along_one_axis(element: &PathElement) -> Result<f64, String> {
     let mut moved = moved(&element.start, &element.end).axes().iter();
     match (moved.next(), moved.next()) {

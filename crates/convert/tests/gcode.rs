@@ -10,7 +10,7 @@ use bahn_parameters::ControlModel;
 use bahn_path::{Axis, Position};
 use support::*;
 
-/// The lines of the text without comments, behind its first four, and the reasons of what is refused.
+/// The lines of the text without comments, after its first four, and the reasons of what is refused.
 fn lines(blocks: &str) -> (Vec<String>, Vec<String>) {
     let source = program(
         &format!("BEGIN PGM A MM\n{blocks}\nEND PGM A MM\n"),
@@ -243,7 +243,7 @@ fn every_axis_is_brought_back_after_what_may_move_the_machine() {
     assert_eq!(after, ["G0 Z50", "X30 Y20", "M2"]);
     let after = lines_after("M0", "L Z+50 FMAX M17");
     assert_eq!(after, ["G0 Z50", "X10 Y20", "M2"]);
-    // Up by feed is up by feed: behind a stop the tool may stand where it was.
+    // Up by feed is up by feed: after a stop the tool may stand where it was.
     let after = lines_after("M0", "STOP\nL Z+50 F300");
     assert_eq!(after, ["Z50 F300", "G0 X10 Y20", "M2"]);
 }
@@ -290,7 +290,7 @@ fn an_arc_begins_where_the_text_has_brought_its_axes() {
     );
 }
 
-/// A line that leaves an axis out behind a tool change is found: the machine stands elsewhere there.
+/// A line that leaves an axis out after a tool change is found: the machine stands elsewhere there.
 #[test]
 fn the_proof_finds_an_axis_that_is_left_out_after_a_tool_change() {
     let text =

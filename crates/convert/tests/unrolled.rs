@@ -126,7 +126,7 @@ fn taps_that_follow_the_spindle_become_cycles_of_their_path() {
     }
 }
 
-/// A tap with a floating holder is the same from where the tool stands: the way in, the spindle back, the dwell and the way out,
+/// A tap with a floating holder is the same from where the tool stands: the plunge, the spindle back, the dwell and the retraction,
 /// whichever way the spindle turns, scaled or not.
 #[test]
 fn taps_with_a_floating_holder_become_cycles_of_their_path() {

@@ -109,7 +109,7 @@ impl Dialogue {
         dialogue.go_on(0, field).then_some(dialogue)
     }
 
-    /// Goes to a question, or to the next that is asked behind it; whether there is one.
+    /// Goes to a question, or to the next that is asked after it; whether there is one.
     fn go_on(&mut self, line: usize, field: usize) -> bool {
         let mut from = field;
         for (index, candidate) in self.lines.iter().enumerate().skip(line) {
@@ -185,8 +185,8 @@ impl Dialogue {
         Ok(Step::Stay)
     }
 
-    /// The block that a key makes of one in which nothing is entered yet: P the polar one, N behind L that with surface
-    /// normals, and a number without an axis behind L is a chamfer [003:2685].
+    /// The block that a key makes of one in which nothing is entered yet: P the polar one, N after L that with surface
+    /// normals, and a number without an axis after L is a chamfer [003:2685].
     fn other_block(&self, key: Key, setting: &Setting) -> Option<Dialogue> {
         let Source::Row(row) = self.source else {
             return None;
@@ -240,7 +240,7 @@ impl Dialogue {
         Ok(())
     }
 
-    /// Goes to the comment behind the block.
+    /// Goes to the comment after the block.
     pub(crate) fn comment(&mut self, context: Context<'_>) -> Result<(), MessageId> {
         self.confirm(context)?;
         let line = self.lines.get(self.line).ok_or(KeyNonFunctional)?;

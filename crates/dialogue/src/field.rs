@@ -84,7 +84,7 @@ pub(crate) enum Ask {
         signs: Signs,
         incremental: bool,
         most: Most,
-        /// A line of a datum table may stand in their place, behind `#` [000:6898-6904].
+        /// A line of a datum table may stand in their place, after `#` [000:6898-6904].
         table: bool,
     },
     /// Axes alone.
@@ -167,7 +167,7 @@ impl Ask {
         }
     }
 
-    /// Whether ENT behind one word asks for the next.
+    /// Whether ENT after one word asks for the next.
     pub(crate) fn is_list(self) -> bool {
         matches!(self, Ask::Labels | Ask::Items | Ask::Texts)
     }
@@ -359,7 +359,7 @@ impl<'a> Rest<'a> {
         value
     }
 
-    /// The words behind an M function that belong to it.
+    /// The words after an M function that belong to it.
     fn arguments(&mut self) -> &'a str {
         let rest = self.rest();
         let length = rest.find(" M").unwrap_or(rest.len());
@@ -516,7 +516,7 @@ impl Field {
         {
             return Some(glue + length);
         }
-        // The words before a value vary with the language of the control, and listings have a colon behind some.
+        // The words before a value vary with the language of the control, and listings have a colon after some.
         if glue < 2 || !self.glue.ends_with(' ') {
             return None;
         }

@@ -47,7 +47,7 @@ impl Highlight {
         *self = Highlight::new(self.block, original, place);
     }
 
-    /// Goes to the comment behind the block, or begins one.
+    /// Goes to the comment after the block, or begins one.
     pub(crate) fn comment(&mut self) -> Result<(), MessageId> {
         let index = self.line.comment_field().ok_or(KeyNonFunctional)?;
         let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;

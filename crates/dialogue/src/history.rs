@@ -10,7 +10,7 @@ const STEPS_MAX: usize = 1000;
 /// A version of a program with the block at the cursor.
 type Version = (Arc<Program>, u32);
 
-/// Versions before and behind the one at hand.
+/// Versions before and after the one at hand.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct History {
     before: Vec<Version>,

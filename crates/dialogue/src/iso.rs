@@ -230,7 +230,7 @@ impl Editor {
         max.map_or(usize::MAX, |max| max as usize)
     }
 
-    /// What is wrong with the words of a text, whatever comes behind them, and where.
+    /// What is wrong with the words of a text, whatever comes after them, and where.
     fn certain(&self, text: &str) -> Option<(MessageId, u32)> {
         let read = self.program.language().parse_block(text);
         let last = read.words.last()?.span.start;
@@ -330,7 +330,7 @@ impl Editor {
         }
     }
 
-    /// Puts blocks behind the cursor with the numbers of the control: in steps of MP7220, closer where there is less
+    /// Puts blocks after the cursor with the numbers of the control: in steps of MP7220, closer where there is less
     /// room; without room all blocks get new ones *(inferred)*.
     pub(crate) fn insert_numbered(&mut self, texts: &[String]) -> Result<Reaction, MessageId> {
         let step = self.setting.iso_step;
@@ -419,7 +419,7 @@ impl Editor {
         Ok(done)
     }
 
-    /// The comment behind the block at the cursor, or behind that which is entered.
+    /// The comment after the block at the cursor, or after that which is entered.
     pub(crate) fn iso_comment(&mut self) -> Result<Reaction, MessageId> {
         let mut entry = match std::mem::replace(&mut self.open, Open::Nothing) {
             Open::Entry(entry) => entry,

@@ -13,11 +13,11 @@ pub(crate) struct Line {
     skip: bool,
     head: String,
     fields: Vec<Field>,
-    /// The comment behind the block, the field behind all others.
+    /// The comment after the block, the field after all others.
     comment: Field,
 }
 
-/// What stands behind a block of any kind. It is never asked for, but can be entered.
+/// What stands after a block of any kind. It is never asked for, but can be entered.
 const COMMENT: Slot = Slot {
     glue: " ; ",
     address: "",

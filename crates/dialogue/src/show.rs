@@ -16,7 +16,7 @@ use crate::typing::Typing;
 use crate::view::{List, Question, Row, ShownWord, View};
 
 impl Editor {
-    /// What is to be shown, with so many blocks before and behind the cursor.
+    /// What is to be shown, with so many blocks before and after the cursor.
     pub fn view(&self, before: u32, after: u32) -> View {
         let (words, rows) = match &self.open {
             Open::Dialogue(dialogue) => self.with_dialogue(dialogue, before, after),
@@ -116,7 +116,7 @@ impl Editor {
                 }
             })
             .collect();
-        // A blank behind the last word, before the next one.
+        // A blank after the last word, before the next one.
         if let Some(rest) = entry.text.get(shown..).filter(|rest| !rest.is_empty()) {
             words.push(ShownWord {
                 text: rest.to_owned(),

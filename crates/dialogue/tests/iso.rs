@@ -109,7 +109,7 @@ fn a_star_closes_a_block_and_several_can_be_pasted() {
 
 #[test]
 fn numbers_are_the_controls() {
-    // Behind the last in steps; between two in the middle.
+    // After the last in steps; between two in the middle.
     let mut desk = at("N10 M3 *\nN20 M5 *\n", Tnc415b, 10);
     desk.enter("GOTO 2 0 ENT M 8 END");
     desk.enter("GOTO 1 0 ENT X 1 END X 2 END X 3 END X 4 END");

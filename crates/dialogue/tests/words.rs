@@ -16,7 +16,7 @@ fn at_first(blocks: &str, model: ControlModel) -> Desk {
     desk
 }
 
-/// Behind a highlighted word the key of an address adds its word where it belongs [003:1779-1780].
+/// After a highlighted word the key of an address adds its word where it belongs [003:1779-1780].
 #[test]
 fn keys_of_addresses_add_words_at_their_place() {
     for (block, keys, made) in [

@@ -51,7 +51,7 @@ impl BitArea {
         }
     }
 
-    /// The first number behind the area.
+    /// The first number after the area.
     pub const fn count(self) -> u16 {
         AREAS[self as usize].2
     }
@@ -94,7 +94,7 @@ pub struct Bit {
 }
 
 impl Bit {
-    /// The operand of a number, also in the gaps between the input and output boards; `None` behind the end
+    /// The operand of a number, also in the gaps between the input and output boards; `None` beyond the end
     /// of the area.
     pub const fn new(area: BitArea, number: u16) -> Option<Bit> {
         if number < area.count() {
@@ -114,7 +114,7 @@ impl Bit {
         self.area
     }
 
-    /// The number behind the letter.
+    /// The number after the letter.
     pub const fn number(self) -> u16 {
         self.number
     }
@@ -197,7 +197,7 @@ pub struct Number {
 }
 
 impl Number {
-    /// The operand of an address; `None` when it is not a multiple of the size, or behind the end of the
+    /// The operand of an address; `None` when it is not a multiple of the size, or beyond the end of the
     /// memory.
     pub const fn new(size: Size, address: u16) -> Option<Number> {
         if address < BYTES && address.is_multiple_of(size.bytes()) {
@@ -217,7 +217,7 @@ impl Number {
         self.size
     }
 
-    /// The number behind the letter.
+    /// The number after the letter.
     pub const fn address(self) -> u16 {
         self.address
     }

@@ -217,7 +217,7 @@ impl Assignment {
     }
 }
 
-/// The number of a machine parameter, behind `MP`.
+/// The number of a machine parameter, after `MP`.
 fn parameter(name: &str) -> Option<&str> {
     let (prefix, number) = name.split_at_checked(2)?;
     let number = number.trim();
@@ -235,7 +235,7 @@ pub fn parts(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Decimal, or hexadecimal behind `$`.
+/// Decimal, or hexadecimal after `$`.
 fn integer(text: &str) -> Option<i64> {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(digits) => (true, digits),

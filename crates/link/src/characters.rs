@@ -8,7 +8,7 @@ use bahn_parameters::interfaces::TransferFormat;
 pub const DC3: u8 = 0x13;
 /// Starts it again: XON.
 pub const DC1: u8 = 0x11;
-/// Characters that may still come behind a DC3 [000:17045-17050].
+/// Characters that may still come after a DC3 [000:17045-17050].
 pub const AFTER_DC3: usize = 12;
 
 /// Parity of a character [000:16636-16665].

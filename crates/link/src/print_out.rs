@@ -26,7 +26,7 @@ pub struct PrintOut {
     bytes: Vec<u8>,
     at: usize,
     stopped: bool,
-    /// It is told that it is over, and whether all was sent.
+    /// The end is reported to it, and whether all was sent.
     ended: Option<bool>,
     over: bool,
 }

@@ -14,7 +14,7 @@ pub(crate) const LINE_MAX: usize = 1000;
 pub(crate) struct Beginning {
     /// Name, without extension.
     pub name: String,
-    /// Type of file, when the line tells.
+    /// Type of file, when the line names it.
     pub kind: Option<FileType>,
 }
 

@@ -40,7 +40,7 @@ fn device(settings: Settings, files: &Memory) -> Peripheral {
     Peripheral::new(settings, Box::new(files.clone()), Rights::ALL)
 }
 
-/// A conversation in which the control reads in, in both roles; returns what each told and what the control has then.
+/// A conversation in which the control reads in, in both roles; returns what each reported and what the control has then.
 fn reads(want: Want, there: &[(&str, &str)], script: &str) -> (Vec<String>, Vec<String>, Memory) {
     let settings = settings(Mode::Fe2);
     let stored = Memory::default();
@@ -187,7 +187,7 @@ const READ_ALL: &str = r#"T: SOH HE ETB BCC DC1
     quiet-for-a-moment
     T: SOH HE ETB BCC DC1"#;
 
-/// The last nameless header may be answered ETX, ACK ETX or EOT; ETX may stand between files or not, and an EOT behind it.
+/// The last nameless header may be answered ETX, ACK ETX or EOT; ETX may stand between files or not, and an EOT after it.
 #[test]
 fn read_all() {
     let moment = "quiet-for-a-moment";
@@ -219,7 +219,7 @@ fn read_all() {
             );
         }
     }
-    // The device sends ETX behind each file, and alone when there is no more; EOT goes back to the first.
+    // The device sends ETX after each file, and alone when there is no more; EOT goes back to the first.
     let there = files(&[
         ("2.H", TWO),
         ("1.H", ONE),
@@ -234,7 +234,7 @@ fn read_all() {
     }
 }
 
-/// Behind the first block of each file the next one is asked for [000:17455-17458].
+/// After the first block of each file the next one is asked for [000:17455-17458].
 #[test]
 fn directory() {
     let (control, device, stored) = reads(
@@ -329,7 +329,7 @@ fn read_offered() {
         control,
         ["offered 1.H?", "offered 2.H?", "received 2.H", "complete"]
     );
-    // Whoever is quiet behind ETX has it.
+    // Whoever is quiet after ETX has it.
     assert_eq!(device, ["sent 2.H", "complete", "complete"]);
     assert_eq!(
         (stored.get("1.H"), stored.get("2.H").unwrap()),
@@ -620,7 +620,7 @@ fn freely_configured() {
     assert_eq!(said, b"&");
 }
 
-/// The TNC 155 knows programs by their number only: % stands before it, and it tells no letter behind its messages
+/// The TNC 155 knows programs by their number only: % stands before it, and it shows no letter after its messages
 /// [001:2080-2126] [001:2036-2052].
 #[test]
 fn a_tnc_155() {

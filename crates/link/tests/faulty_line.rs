@@ -15,7 +15,7 @@ use support::{ext, settings};
 
 /// Time of a character.
 const CHARACTER: Duration = Duration::from_micros(260);
-/// How long a character is under way.
+/// How long a character is in transit.
 const DELAY: Duration = Duration::from_micros(100);
 
 /// One direction of the line.
@@ -191,7 +191,7 @@ fn campaign(blocks: u64, one_in: u64) -> Tally {
                 tally.blocks += count;
             }
             (Some(false) | None, Some(true)) => {
-                // Only the answer to the last block, or what stands behind it, may be what was lost.
+                // Only the answer to the last block, or what stands after it, may be what was lost.
                 assert!(has.is_some(), "transfer {number}");
                 tally.doubted += 1;
             }
@@ -223,7 +223,7 @@ fn a_million_blocks_over_a_line_with_faults() {
     assert!(tally.doubted * 20 < tally.transfers, "{tally:?}");
 }
 
-/// FE fills its line: what goes over it one way is 95 % of what could, with all that frames it.
+/// FE fills its line: what goes over it in one direction is 95 % of what could, with all that frames it.
 #[test]
 fn a_good_line_is_full() {
     let settings = settings(Mode::Fe2).on(Some(38_400), Duration::from_secs(3));

@@ -26,7 +26,7 @@ fn kind() -> FileType {
     FileType::of_code('H').unwrap()
 }
 
-/// It waits for the header, acknowledges it, and sends each line with CR LF in its block and no DC1 behind it; its ETX is
+/// It waits for the header, acknowledges it, and sends each line with CR LF in its block and no DC1 after it; its ETX is
 /// answered with EOT. A block that comes wrong it sends again.
 #[test]
 fn drips_over_ext1() {
@@ -69,7 +69,7 @@ fn device(settings: Settings, stored: &Memory) -> standard::Peripheral {
     standard::Peripheral::new(settings, Box::new(stored.clone()), Rights::ALL)
 }
 
-/// Told not to wait it sends to a port that obeys, and waits for EOT all the same.
+/// With the option not to wait it sends to a port that obeys, and waits for EOT all the same.
 #[test]
 fn sends_unasked() {
     for (settings, end) in [(ext1(0.0), "P: EOT"), (settings(Mode::Me), "quiet")] {

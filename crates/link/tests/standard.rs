@@ -97,7 +97,7 @@ fn output_with_confirmation() {
     assert_eq!(reported, ["output 1.H?", "output 2.H?", "sent 2.H", "complete"]);
 }
 
-/// Behind DC3 come 12 characters at most, and DC1 lets it go on where it stopped [000:17045-17050].
+/// After DC3 come 12 characters at most, and DC1 lets it go on where it stopped [000:17045-17050].
 #[test]
 fn a_sender_stops_at_dc3() {
     use bahn_link::{AFTER_DC3, DC1, DC3, Protocol as _};
@@ -107,7 +107,7 @@ fn a_sender_stops_at_dc3() {
     let mut turns = 0;
     while control.has_output() {
         let before = all.len();
-        // A channel that takes everything; DC3 comes while it is under way.
+        // A channel that takes everything; DC3 comes while it is in transit.
         control.send(10_000, now, &mut all);
         control.receive(DC3, now);
         assert!(all.len() - before <= AFTER_DC3);
@@ -147,7 +147,7 @@ fn read_selected() {
     assert_eq!(reported, ["received 1.H", "complete"]);
 }
 
-/// The control reads every program and looks for the name; ETX behind the last one ends without a message and nothing is
+/// The control reads every program and looks for the name; ETX after the last one ends without a message and nothing is
 /// stored [000:17326-17334].
 #[test]
 fn another_name() {
@@ -184,7 +184,7 @@ fn another_name() {
     );
 }
 
-/// DC1 again only behind ETX; several programs before one ETX need none [000:17336-17343].
+/// DC1 again only after ETX; several programs before one ETX need none [000:17336-17343].
 #[test]
 fn read_all() {
     for (script, role) in [

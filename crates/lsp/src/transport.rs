@@ -42,7 +42,7 @@ pub fn read(input: &mut impl BufRead) -> Frame {
     let mut bytes = Vec::new();
     match input.by_ref().take(length).read_to_end(&mut bytes) {
         Ok(count) if count as u64 == length => message(&bytes),
-        Ok(count) => Frame::End(Some(format!("a message of {length} bytes ends behind {count}"))),
+        Ok(count) => Frame::End(Some(format!("a message of {length} bytes ends after {count}"))),
         Err(error) => Frame::End(Some(error.to_string())),
     }
 }
@@ -75,7 +75,7 @@ fn head(input: &mut impl BufRead) -> Result<Option<u64>, Frame> {
         }
         match line.split_once(':') {
             Some((name, value)) if name.trim().eq_ignore_ascii_case("Content-Length") => {
-                // Behind a length that is none nobody knows where the next message begins.
+                // After a length that is none nobody knows where the next message begins.
                 let number = value.trim().parse().ok().filter(|length| *length <= MESSAGE_MAX);
                 length = Some(number.ok_or_else(|| {
                     let value = value.trim();

@@ -10,14 +10,14 @@ pub(crate) fn path_of(uri: &Uri) -> PathBuf {
     let text = uri.as_str();
     let (scheme, rest) = text.split_once(':').unwrap_or(("", text));
     let rest = rest.strip_prefix("//").map_or(rest, |after| {
-        // Behind the two strokes stands the host, mostly none.
+        // After the two strokes stands the host, mostly none.
         after.find('/').and_then(|at| after.get(at..)).unwrap_or(after)
     });
     let path = decoded(rest);
     if scheme != "file" {
         return PathBuf::from(format!("{scheme}:{path}"));
     }
-    // A drive letter stands behind a stroke of its own: /C:/parts.
+    // A drive letter stands after a stroke of its own: /C:/parts.
     match path.as_bytes() {
         [b'/', drive, b':', ..] if drive.is_ascii_alphabetic() => {
             PathBuf::from(path.get(1..).unwrap_or_default())

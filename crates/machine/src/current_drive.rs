@@ -82,12 +82,12 @@ impl CurrentDrive {
         self.force
     }
 
-    /// The way of the motor at which its encoder has counted so much, mm or degrees.
+    /// The travel of the motor at which its encoder has counted so much, mm or degrees.
     pub fn travel(&self, count: i64) -> f64 {
         count as f64 / self.steps_per_unit
     }
 
-    /// What the motor's encoder has counted at a way of the motor, mm or degrees.
+    /// What the motor's encoder has counted at a travel of the motor, mm or degrees.
     pub fn count(&self, travel: f64) -> i64 {
         floor_to_i64(travel * self.steps_per_unit)
     }

@@ -47,7 +47,7 @@ pub(crate) struct Device {
     /// A second output that moves it back; without one a spring does.
     output_back: Option<Coil>,
     inputs: [Option<Contact>; 2],
-    /// Way in a millisecond, back and forth.
+    /// Share of the travel in a millisecond, forth and back.
     speed: [f64; 2],
     /// The axis that it clamps in its second state.
     pub clamps: Option<char>,
@@ -185,5 +185,5 @@ impl Device {
     }
 }
 
-/// So near the end counts as there: the steps of the way do not add up to 1 exactly.
+/// So near the end counts as there: the steps of the travel do not add up to 1 exactly.
 const END: f64 = 1e-9;

@@ -226,7 +226,7 @@ impl Probe {
         let before = std::mem::replace(&mut self.held, tool);
         let is_probe = |tool| self.as_tool == Some(tool);
         let changes = before != tool && (is_probe(before) || is_probe(tool));
-        // One that is there already, as behind power-off, stays as it was put in.
+        // One that is there already, as after power-off, stays as it was put in.
         if changes && is_probe(tool) != self.inserted {
             self.insert(is_probe(tool), spindle_deg);
         }

@@ -1,7 +1,7 @@
 //! How fast the ends of the elements to come may be passed, so that braking is always in time.
 //!
 //! There are two envelopes of squared speed over the path. One is of what machine and path [*allow*](Allowed).
-//! The end of what is known is a stop, and elements that are put behind it only raise it. The other is of what is
+//! The end of what is known is a stop, and elements that are put after it only raise it. The other is of what is
 //! [*wanted*](Wanted) and may be lowered at any time, even below the speed of the path. The path then brakes with
 //! all that it has, and so stays below the envelope of what is allowed: it was below it before, and no path within the
 //! acceleration can fall faster.

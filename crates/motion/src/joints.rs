@@ -1,7 +1,7 @@
 //! The joints between elements: where the path stops, passes or waits for more to be known.
 //!
-//! One state machine for planning and for running. It is shown the path element by element and tells
-//! whoever keeps the joints ([`Caps`]) how fast each may be passed: that of a corner only when the way to
+//! One state machine for planning and for running. It gets the path element by element and decides
+//! whoever keeps the joints ([`Caps`]) how fast each may be passed: that of a corner only when the distance to
 //! the next corner is known, since its speed depends on it.
 
 use bahn_path::PathElement;
@@ -32,9 +32,9 @@ pub(crate) struct Joints {
     last: Option<Motion>,
     /// Which angle the joint after `last` may have to be passed.
     passing: Passing,
-    /// Way since the last corner or stop, mm.
+    /// Distance since the last corner or stop, mm.
     distance: f64,
-    /// The last corner while the way after it is too short to say how fast it may be passed.
+    /// The last corner while the distance after it is too short to say how fast it may be passed.
     corner: Option<Corner>,
 }
 
@@ -115,7 +115,7 @@ impl Joints {
         self.distance = 0.0;
     }
 
-    /// Decides the corner that waits for the way after it.
+    /// Decides the corner that waits for the distance after it.
     #[inline]
     pub(crate) fn settle(&mut self, caps: &mut impl Caps) {
         if let Some(corner) = self.corner.take() {

@@ -20,7 +20,7 @@ impl Awaits {
 }
 
 /// The functions of the path as far as it is known that still have their place to wait ahead of them: each the number
-/// behind the last element that has one.
+/// after the last element that has one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Late {
     /// At the end of the block with this sequence.

@@ -118,7 +118,7 @@ impl Motion {
             swings,
             deg_per_mm: cylinder.map_or(0.0, |cylinder| cylinder.deg_per_mm),
             main_axes: self.main_axes && cylinder.is_none(),
-            // Straight lines behind swivel axes that turn are none; a direction is then not of length 1.
+            // Straight lines are none in the machine where swivel axes turn; a direction is then not of length 1.
             end_direction: (self.end_direction.is_some() || swings).then_some(end_direction),
             ..self
         }

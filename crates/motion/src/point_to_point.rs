@@ -19,7 +19,7 @@ pub struct PointToPoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
     /// To a position, mm or degrees, and stand there. Without overshoot, unless the axis is already
-    /// too fast for its way: then it comes back.
+    /// too fast for its distance: then it comes back.
     Position(f64),
     /// On and on at a feed, mm/min or degrees/min, negative backwards; 0 stops.
     Feed(f64),

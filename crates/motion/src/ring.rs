@@ -110,7 +110,7 @@ impl Ring {
         self.awaiting > 0
     }
 
-    /// Whether what is known, or comes behind it, waits for functions to be acknowledged.
+    /// Whether what is known, or comes after it, waits for functions to be acknowledged.
     pub(crate) fn is_late(&self) -> bool {
         self.awaits() || self.late.is_any()
     }

@@ -1,7 +1,7 @@
 //! Digitizing: the stylus of a triggering probe taps along the surface, in lines or in levels [000:7722-7880]; that of a
 //! measuring one stays deflected [000:7882-7958].
 //!
-//! A [`Scan`] wants a velocity in every cycle and is told what the stylus feels; how far the axes have come and where the
+//! A [`Scan`] wants a velocity in every cycle and gets what the stylus feels; how far the axes have come and where the
 //! stylus was deflected it learns, too. So it is the same on a machine and on a height map.
 
 mod course;
@@ -19,7 +19,7 @@ use stylus::{Felt, Wish};
 const POINTS_MAX: u64 = 10_000_000;
 /// How far the surface may lie below the range, mm: the stylus overshoots (inferred).
 const BELOW_MM: f64 = 0.1;
-/// What rounding leaves of the way to an end, mm.
+/// What rounding leaves of the distance to an end, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
 /// What the stylus feels in a cycle.
@@ -46,7 +46,7 @@ pub enum ScanStep {
     Over(Scanned),
 }
 
-/// A scan on its way.
+/// A scan that runs.
 #[derive(Clone, Debug)]
 pub struct Scan {
     job: ScanJob,
@@ -234,13 +234,13 @@ impl Scan {
     }
 }
 
-/// The greatest speed of a cycle, mm/s, from which an axis that loses `step` mm/s in each of the next ones stands behind
+/// The greatest speed of a cycle, mm/s, from which an axis that loses `step` mm/s in each of the next ones stops after
 /// `distance` mm: n cycles of v, v - step, v - 2 step and so on, the last of them no faster than a step.
 fn landing_speed(distance: f64, step: f64, time_s: f64) -> f64 {
     if distance <= 0.0 {
         return 0.0;
     }
-    // n (n - 1) / 2 < way / (step time) <= n (n + 1) / 2
+    // n (n - 1) / 2 < distance / (step time) <= n (n + 1) / 2
     let steps = distance / (step * time_s);
     let n = (((8.0 * steps + 1.0).sqrt() - 1.0) / 2.0).ceil().max(1.0);
     step * (steps / n + (n - 1.0) / 2.0)

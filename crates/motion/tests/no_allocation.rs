@@ -119,7 +119,7 @@ fn many_feeds() -> VecDeque<PathElement> {
     path.elements.into()
 }
 
-/// Whatever the path is asked for at any moment: other overrides and limits, axes to be clamped, the way back in a
+/// Whatever the path is asked for at any moment: other overrides and limits, axes to be clamped, a movement back in a
 /// thread, and to be taken back.
 #[test]
 fn whatever_is_done_no_cycle_allocates() {

@@ -202,7 +202,7 @@ fn gates_wait_for_release() {
     assert_eq!((output.place, output.waits), (Place::End, false));
 }
 
-/// 10 mm, 0.5 s of dwell, 10 mm: two ways of 0.2 s (0.1 s up, 0.1 s down).
+/// 10 mm, 0.5 s of dwell, 10 mm: two movements of 0.2 s (0.1 s up, 0.1 s down).
 #[test]
 fn dwell_takes_its_time_and_is_held() {
     let mut path = Path::new(6000.0);

@@ -106,7 +106,7 @@ proptest! {
         prop_assert!(cycles * T >= whole - 1e-6, "{} s of {whole}", cycles * T);
     }
 
-    /// Whatever is asked of it: speed changes with the acceleration only, way is that of the speed, the
+    /// Whatever is asked of it: speed changes with the acceleration only, the distance is that of the speed, the
     /// limit is kept once it is reached, and at last it lands.
     #[test]
     fn it_keeps_its_limits_whatever_comes(

@@ -207,7 +207,7 @@ fn the_override_slows_the_stylus() {
     assert_eq!(held.position(), job().begin());
 }
 
-/// Contour lines around a round boss of radius 4 [003:6716-6766]: plunge, approach, orbits, levels and the way home keep
+/// Contour lines around a round boss of radius 4 [003:6716-6766]: plunge, approach, orbits, levels and the return keep
 /// the acceleration, and the scan ends at the starting point to the bit.
 #[test]
 fn levels_of_a_boss_end_at_the_starting_point() {

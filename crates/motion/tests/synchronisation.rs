@@ -110,7 +110,7 @@ fn blocks(blocks: &[(f64, f64, &[TechnologyFunction])]) -> Vec<PathElement> {
     path.elements
 }
 
-/// The program of the manual: X25, X50, X75 with M25, X100, and here X125 behind it.
+/// The program of the manual: X25, X50, X75 with M25, X100, and here X125 after it.
 fn manual(synchronisation: Synchronisation) -> Vec<PathElement> {
     let m25 = [m(25, At::Start, synchronisation)];
     let f = 5000.0;
@@ -238,7 +238,7 @@ fn ahead_by_a_distance() {
     assert!(run.out(96) <= distance, "in the first cycle");
 }
 
-/// `MET_SVS` with 0.3 s: the way v T - v²/2a, as if the path stopped at X40, so X18.47; `MET_MOS` v T, X15
+/// `MET_SVS` with 0.3 s: the distance v T - v²/2a, as if the path stopped at X40, so X18.47; `MET_MOS` v T, X15
 /// [004:87-90].
 #[test]
 fn ahead_by_a_time() {
@@ -273,7 +273,7 @@ fn a_recalled_path_goes_on_waiting() {
     assert_eq!(
         elements.len(),
         5,
-        "what is left of the second block, and the four behind it"
+        "what is left of the second block, and the four after it"
     );
     assert!(elements.iter().all(|element| element.functions.is_none()));
     bench.source = list(elements.into_iter().map(Step::Element).collect());

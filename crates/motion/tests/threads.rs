@@ -46,7 +46,7 @@ fn thread() -> Path {
     path
 }
 
-/// A spindle that does what it is told, some cycles later.
+/// A spindle that follows its command, some cycles later.
 struct Bench {
     path: Interpolator<&'static str>,
     source: List,
@@ -114,7 +114,7 @@ fn height(angle_deg: f64) -> f64 {
 }
 
 /// F = S · p: 900 mm/min are 15 mm/s; the ramp of gear 1 is 2000 rpm/s · 1.5 mm / 60 = 50 mm/s², so each of
-/// the four ramps takes 0.3 s. Each way: 30 mm / 15 mm/s + 0.3 s; and the orientation of 1 s. The feed override
+/// the four ramps takes 0.3 s. Plunge and retraction each: 30 mm / 15 mm/s + 0.3 s; and the orientation of 1 s. The feed override
 /// has no effect.
 #[test]
 fn the_ramp_of_the_spindle_takes_its_time() {
@@ -135,7 +135,7 @@ fn the_ramp_of_the_spindle_takes_its_time() {
     assert!((time_s(&plan(&fast.elements, &limits())) - expected).abs() < 1e-9);
 }
 
-/// Online the path takes as long as planned, and what the spindle is told is that path.
+/// Online the path takes as long as planned, and the command to the spindle is that path.
 #[test]
 fn online_it_takes_as_long_as_planned() {
     let mut bench = Bench::new(&thread(), 0);
@@ -270,7 +270,7 @@ fn coupled_again_as_they_stand() {
 }
 
 /// Spindle and axis have come to stand beyond an end of the thread: the path goes back to it as they are coupled, on the ramp of
-/// the spindle, and on from there. Nothing is told the spindle that is elsewhere than it stands: 50 mm/s² over a cycle of
+/// the spindle, and on from there. The spindle gets no command elsewhere than it stands: 50 mm/s² over a cycle of
 /// 3 ms are 0.15 mm/s, and 0.0002 mm of the thread.
 #[test]
 fn beyond_its_ends_a_thread_begins_where_it_stands() {
@@ -330,8 +330,8 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
     }
 }
 
-/// Stopped between the two ways of a thread, with single block, too: coupled again elsewhere it begins where spindle and axis
-/// stand, and goes on to the end of the way that it stands before or behind.
+/// Stopped between plunge and retraction of a thread, with single block, too: coupled again elsewhere it begins where spindle and axis
+/// stand, and goes on to the end of the pass that it stands before or behind.
 #[test]
 fn between_its_passes_a_thread_begins_where_it_stands() {
     for single_block in [false, true] {

@@ -24,9 +24,9 @@ pub struct Circle {
     ahead: [f64; 3],
     /// Unit vector from the start to the centre.
     inward: [f64; 3],
-    /// Radius, mm; infinite where the way is straight.
+    /// Radius, mm; infinite where the path is straight.
     pub radius_mm: f64,
-    /// Sweep, rad; 0 where the way is straight.
+    /// Sweep, rad; 0 where the path is straight.
     pub sweep_rad: f64,
     /// Length, mm.
     pub length_mm: f64,
@@ -111,7 +111,7 @@ impl Circle {
         [0, 1, 2].map(|i| cos * self.ahead[i] + sin * self.inward[i])
     }
 
-    /// The centre of the circle, mm; `None` where the way is straight.
+    /// The centre of the circle, mm; `None` where the path is straight.
     pub fn centre(&self) -> Option<[f64; 3]> {
         (self.sweep_rad > 0.0).then(|| [0, 1, 2].map(|i| self.start[i] + self.radius_mm * self.inward[i]))
     }

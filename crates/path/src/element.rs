@@ -57,7 +57,7 @@ pub enum OverrideLaw {
 /// A path that follows the angle of the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thread {
-    /// Way along the path to a turn of the spindle, mm; positive.
+    /// Distance along the path for a turn of the spindle, mm; positive.
     pub pitch_mm: f64,
     /// Along the path the spindle turns as with M03.
     pub clockwise: bool,
@@ -139,7 +139,7 @@ impl PathElement {
             Curve::Arc(arc) => {
                 to.is_finite() && (from != to || axis == arc.plane.first || axis == arc.plane.second)
             }
-            // Where an axis stands at the corner as at both ends, it stands on the whole way.
+            // Where an axis stands at the corner as at both ends, it stands on the whole corner.
             Curve::Corner(arc) => {
                 let at_corner = arc.corner.get(axis.index()).copied();
                 to.is_finite() && (from != to || at_corner.is_some_and(|corner| corner != from))
@@ -147,7 +147,7 @@ impl PathElement {
         }
     }
 
-    /// Whether an axis of the machine moves: behind a placement those are others than on the path.
+    /// Whether an axis of the machine moves: with a placement those are others than on the path.
     pub fn moves_axis(&self, axis: Axis) -> bool {
         match &self.placement {
             None => self.moves(axis),
@@ -236,7 +236,7 @@ pub enum At {
 /// How far ahead of its place a function goes out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ahead {
-    /// By a way along the path, mm.
+    /// By a distance along the path, mm.
     Distance(f64),
     /// By a time, s.
     Time(f64),

@@ -20,7 +20,7 @@ pub struct ScanJob {
     pub clearance_mm: f64,
     /// How the range is scanned.
     pub pattern: ScanPattern,
-    /// TRAVEL: farthest way off the surface and back, mm.
+    /// TRAVEL: greatest distance off the surface and back, mm.
     pub travel_mm: f64,
     /// L.SPAC: from line to line, mm; of contour lines with its sign.
     pub spacing_mm: f64,

@@ -235,7 +235,7 @@ proptest! {
         }
     }
 
-    /// What the velocities say is what the positions do, and the bounds hold all positions of the way.
+    /// What the velocities say is what the positions do, and the bounds hold all positions of the movement.
     #[test]
     fn velocities_and_bounds(start in place(), end in place(), datum in place(), t in 0.01..0.99f64) {
         for placement in placements(&end, &datum, &Position::ZERO, 120.0) {

@@ -1,8 +1,8 @@
 //! Who may come in, and what he may do there.
 //!
 //! On loopback the page itself and programs of this computer; a page of somebody else's, opened in the same browser,
-//! may not: its requests name their origin. Names that lead to loopback by a false answer of the name service are
-//! refused by the host that requests name. Elsewhere everybody needs a token, once in the address, then as a
+//! may not: its requests name their origin. DNS rebinding, a name of somebody else's that leads to loopback, is refused
+//! by the Host header. Elsewhere everybody needs a token, once in the address, then as a
 //! cookie: one is for operating, another for looking.
 
 use std::net::{IpAddr, SocketAddr};
@@ -135,7 +135,7 @@ impl Access {
     }
 }
 
-/// Compares without telling by its time how much is right.
+/// Compares in constant time.
 fn same(given: &str, token: &str) -> bool {
     let differences = given
         .bytes()

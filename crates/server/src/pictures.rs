@@ -1,4 +1,4 @@
-//! Pictures that programs ask for: one is drawn at a time, and behind it the processor rests as long as it took.
+//! Pictures that programs ask for: one is drawn at a time, and after it the processor rests as long as it took.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -28,7 +28,7 @@ use crate::shared::Shared;
 const MESSAGE: usize = 16 << 10;
 /// Messages of a viewer in a second.
 const RATE: u32 = 400;
-/// A viewer that asks for the part again is sent all of it behind this time (inferred).
+/// A viewer that asks for the part again is sent all of it after this time (inferred).
 const AGAIN: Duration = Duration::from_millis(500);
 /// Length of a name, and of a key.
 const NAME: usize = 64;
@@ -209,7 +209,7 @@ impl Viewer {
             return refused("this is no input");
         };
         if let Some(looks) = sent.part {
-            // Whoever asks again is sent all of it anew, which takes its time: soon again he has what he gets.
+            // Each request sends all of it anew, which is expensive: one that follows soon after another is ignored.
             let again = looks && self.look.is_on() && self.looked.elapsed() < AGAIN;
             if !again {
                 self.look = match looks {

@@ -77,7 +77,7 @@ fn the_time_line_leads_back_and_on() {
     );
     let on = "[...document.querySelectorAll('[data-region=timeline] button')].find(button => button.textContent === 'Go on')";
     until(&mut page, &format!("!{on}.disabled"));
-    // To the newest moment, back again, and on from there: another way, and the old one can still be gone to.
+    // To the newest moment, back again, and on from there: another branch, and the old one can still be gone to.
     let newest = "[...document.querySelectorAll('[data-region=timeline] button')].find(button => button.textContent === 'Newest')";
     until(&mut page, &format!("!{newest}.disabled"));
     page.evaluate(&format!("{newest}.click()")).unwrap();

@@ -56,7 +56,7 @@ export class Connection {
   }
 
   taken(number) {
-    // A page that was opened anew under its old name goes on behind what was taken.
+    // A page that was opened anew under its old name goes on after what was taken.
     this.number = Math.max(this.number, number);
     this.waiting = this.waiting.filter((input) => input.n > number);
     this.keep();

@@ -30,7 +30,7 @@ pub struct Report {
     pub programs: Vec<ProgramEnd>,
     /// What was done otherwise than ordered.
     pub warnings: Vec<Warning>,
-    /// The velocity over time and way, for pictures.
+    /// The velocity over time and distance, for pictures.
     #[serde(skip)]
     pub samples: Vec<Sample>,
 }
@@ -163,7 +163,7 @@ impl Value {
 /// What is left to the point where a function is waited for that was output ahead [004:81].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ToGo {
-    /// Way along the path, 0.1 µm.
+    /// Distance along the path, 0.1 µm.
     pub path: i64,
     /// Time as planned, µs.
     pub time: i64,
@@ -207,7 +207,7 @@ pub struct Skipped {
 pub struct Sample {
     /// When, s.
     pub t: f64,
-    /// Way along the path, mm.
+    /// Distance along the path, mm.
     pub distance_mm: f64,
     /// Path velocity, mm/min.
     pub v: f64,

@@ -41,7 +41,7 @@ fn t13_mep_svs_is_output_a_distance_ahead() {
     assert_eq!((go.t, go.block.as_deref()), (to, Some("N55")));
 }
 
-/// Longer than the way that is known: where the path begins.
+/// Longer than the path that is known: where the path begins.
 #[test]
 fn t13_a_lead_beyond_the_start_is_output_at_the_start() {
     let report = run("MEP_SVS", 990_000, "");
@@ -129,7 +129,7 @@ fn one_place_after_the_other() {
                 m_h_pre_outp_calc_value_to_go 1\n";
     let report = Bench::new(program, list).run();
     at(x(report.output("M96")), 35.0);
-    // In the cycle in which the path is behind X40.
+    // In the cycle in which the path is past X40.
     let place = x(report.output("M97"));
     assert!((40.0..=40.0 + V * T).contains(&place), "{place}");
     let held = Bench::new(program, list).script("M96 ack 1").run();

@@ -19,12 +19,12 @@ const TYPES: [&str; 12] = [
 const FIRST: usize = 50;
 /// More late ones may not be open.
 const LATE: usize = 12;
-/// What rounding of the programmed coordinates may add to a way, mm.
+/// What rounding of the programmed coordinates may add to a distance, mm.
 const ROUNDING: f64 = 1e-4;
 
 #[derive(Clone, Debug)]
 struct Block {
-    /// Rapid, and the way in X and Y, mm.
+    /// Rapid, and the distance in X and Y, mm.
     motion: Option<(bool, f64, f64)>,
     functions: Vec<Switch>,
     synchronise: bool,
@@ -76,9 +76,9 @@ fn block() -> impl Strategy<Value = Block> {
 struct Known {
     kind: &'static str,
     range: &'static str,
-    /// Place in the program: block, before or behind its motion, place in the text.
+    /// Place in the program: block, before or after its motion, place in the text.
     order: (usize, bool, usize),
-    /// The way that the path may not leave before the acknowledgement, mm.
+    /// The distance that the path may not pass before the acknowledgement, mm.
     gate: Option<f64>,
     /// Where it is output, mm.
     place: Option<f64>,
@@ -90,7 +90,7 @@ struct Case {
     known: HashMap<String, Known>,
     /// Length of the path, mm.
     distance: f64,
-    /// Ways to the ends of the blocks with a motion, mm, and how many blocks there are up to each.
+    /// Distances to the ends of the blocks with a motion, mm, and how many blocks there are up to each.
     ends: Vec<(f64, usize)>,
 }
 
@@ -206,7 +206,7 @@ fn hold_single(case: &Case, single: &Single, report: &Report) -> Result<(), Test
     Ok(())
 }
 
-/// Where a function of a block between two ways is output; not known of one that is output ahead.
+/// Where a function of a block between two movements is output; not known of one that is output ahead.
 fn place(kind: &str, start: f64, end: f64) -> Option<f64> {
     match kind {
         "MNS_SNS" => Some(end),
@@ -397,7 +397,7 @@ fn hold_laws(case: &Case, single: Option<&Single>, report: &Report) -> Result<()
             }
             EventKind::Output => {
                 let known = &case.known[event.function.as_deref().unwrap()];
-                // Where an output lies is asked where the way is known: without a way in Y.
+                // Where an output lies is asked where the path is known: without a movement in Y.
                 let x = event.position.0[bahn_path::Axis::X];
                 let y = event.position.0[bahn_path::Axis::Y];
                 if let Some(place) = known.place.filter(|_| y == 0.0) {

@@ -110,7 +110,7 @@ fn every_lead_is_kept_before_a_stop() {
     }
 }
 
-/// A dwell on the way is part of it.
+/// A dwell on the path is part of it.
 #[test]
 fn a_dwell_on_the_path_counts() {
     let program = "%T\nG01 F5000\nX40\nG04 0.25\nX50\nN50 M96 M25\nN55 X80\nM30\n";
@@ -130,7 +130,7 @@ fn a_dwell_on_the_path_counts() {
     }
 }
 
-/// What the end velocity of 0 takes from a lead is told: 83.3 mm/s with 1 m/s² are v/2a = 41.7 ms [004:87].
+/// What the end velocity of 0 takes from a lead is reported: 83.3 mm/s with 1 m/s² are v/2a = 41.7 ms [004:87].
 #[test]
 fn a_lead_that_is_not_kept_is_reported() {
     let program = straight(10.0);
@@ -161,7 +161,7 @@ fn a_lead_that_is_not_kept_is_reported() {
         "{}",
         beyond.warnings[0].message
     );
-    // So it is with a way.
+    // So it is with a distance.
     let distance = Bench::new(
         &program,
         "m_synch[96] MEP_MOS\nm_pre_outp[96] 990000\nm_synch[25] MOS\n",

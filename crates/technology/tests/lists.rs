@@ -63,7 +63,7 @@ fn spindles_in_both_languages() {
     assert_eq!(read.spindle_called("S2"), None);
 }
 
-/// Lines of the axis list behind `spindel[i].`, and without it, where they say nothing [004:162-171].
+/// Lines of the axis list after `spindel[i].`, and without it, where they say nothing [004:162-171].
 #[test]
 fn lines_of_the_axis_list() {
     let read = settings(
@@ -114,7 +114,7 @@ fn configuration_of_the_channel() {
     }
 }
 
-/// Of two lines for the same the later one counts, and is told of.
+/// Of two lines for the same the later one counts, and is reported.
 #[test]
 fn the_later_line_counts() {
     let list = ChannelList::from_bytes(

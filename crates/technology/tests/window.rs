@@ -62,12 +62,12 @@ fn times(report: &Report, kind: EventKind, function: &str) -> Vec<f64> {
     report.events.iter().filter(of).map(|event| event.t).collect()
 }
 
-/// The first run that begins at a time or behind it.
+/// The first run that begins at a time or after it.
 fn next_run(t: f64) -> f64 {
     (t / RUN_S - 1e-6).ceil() * RUN_S
 }
 
-/// The first cycle at a time or behind it.
+/// The first cycle at a time or after it.
 fn next_cycle(t: f64) -> f64 {
     (t / T - 1e-6).ceil() * T
 }
@@ -128,7 +128,7 @@ fn answers_are_seen_in_the_cycle_after_the_run_that_gives_them() {
     )
     .run_beside(&mut plc);
     let output = times(&report, EventKind::Output, "M25")[0];
-    // What is output in a cycle the PLC sees when it runs through next, behind that cycle.
+    // What is output in a cycle the PLC sees when it runs through next, after that cycle.
     let run = next_run(output + 1e-6);
     let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} {b}");
     close(times(&report, EventKind::Fetch, "M25")[0], next_cycle(run));
@@ -193,7 +193,7 @@ fn what_is_not_fetched_blocks_its_range() {
             image[1] = 1;
         }
     });
-    // M25 stays in the window until 1 s: M26, due on the way, finds its range blocked.
+    // M25 stays in the window until 1 s: M26, due within the block, finds its range blocked.
     let report = Bench::new(
         "%T\nN10 G01 F6000 X10 M25\nN20 X60 M26\nN30 M30\n",
         "m_synch[25] MOS\nm_synch[26] MOS\n",

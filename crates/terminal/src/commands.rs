@@ -1,4 +1,4 @@
-//! The command line: what is typed behind `:`.
+//! The command line: what is typed after `:`.
 
 use bahn_panel::{EMERGENCY_STOP, Input, InputText, Key, Language, around, filled};
 

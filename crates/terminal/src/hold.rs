@@ -1,14 +1,14 @@
 //! Keys of the machine that are held down.
 //!
-//! Most terminals tell that a key was pressed, and tell it again and again while it stays down, but not that it was let
-//! go. A key counts as held as long as it is told again; one that is tapped is down for [`RENEWED`]. Terminals with the
-//! keyboard protocol of kitty tell when a key was let go, but not of one that writes a letter.
+//! Most terminals report that a key was pressed, and repeat that while it stays down, but not that it was let
+//! go. A key counts as held as long as it is repeated; one that is tapped is down for [`RENEWED`]. Terminals with the
+//! keyboard protocol of kitty report when a key was let go, but not of one that writes a letter.
 
 use std::time::{Duration, Instant};
 
-/// A key that is not told again for so long was let go: keys repeat every 30 to 50 ms (inferred).
+/// A key that is not repeated for so long was let go: keys repeat every 30 to 50 ms (inferred).
 pub(crate) const RENEWED: Duration = Duration::from_millis(200);
-/// The same where the terminal tells when a key is let go; until keys begin to repeat 660 ms may pass (inferred).
+/// The same where the terminal reports when a key is let go; until keys begin to repeat 660 ms may pass (inferred).
 const REPORTED: Duration = Duration::from_millis(1000);
 /// A switch that turns over is not turned over again by a key that repeats (inferred).
 const STROKE: Duration = Duration::from_millis(700);
@@ -16,9 +16,9 @@ const STROKE: Duration = Duration::from_millis(700);
 /// Who holds a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Hand {
-    /// A key of the keyboard, while it is told again.
+    /// A key of the keyboard, while it is repeated.
     Keyboard,
-    /// The same of a letter: no terminal tells when it is let go.
+    /// The same of a letter: no terminal reports when it is let go.
     Letter,
     /// The mouse, until its button is let go.
     Mouse,
@@ -39,7 +39,7 @@ pub(crate) enum Change {
 struct Held {
     name: String,
     hand: Hand,
-    /// When it was told last.
+    /// When it was reported last.
     reported: Instant,
 }
 
@@ -47,9 +47,9 @@ struct Held {
 #[derive(Debug, Default)]
 pub(crate) struct Holds {
     held: Vec<Held>,
-    /// The terminal tells when a key was let go.
+    /// The terminal reports when a key was let go.
     pub reports_releases: bool,
-    /// A switch that was turned over, and when it was told last.
+    /// A switch that was turned over, and when it was reported last.
     stroke: Option<(String, Instant)>,
 }
 

@@ -24,7 +24,7 @@ use crate::TerminalError;
 /// The terminal while the panel is in it. When it goes, whatever the reason, the terminal is as it was.
 pub(crate) struct FullScreen {
     pub terminal: Terminal<CrosstermBackend<Stdout>>,
-    /// The terminal tells when a key is let go.
+    /// The terminal reports when a key is let go.
     pub reports_releases: bool,
 }
 

@@ -20,7 +20,7 @@ pub struct WebFile {
 
 macro_rules! files {
     ($($name:literal $mime:literal,)*) => {
-        /// The modules and styles of the viewer. A module stands behind those that it imports.
+        /// The modules and styles of the viewer. A module stands after those that it imports.
         pub const FILES: &[WebFile] = &[
             $(WebFile { name: $name, mime: $mime, text: include_str!(concat!("../web/", $name)) },)*
         ];

@@ -154,7 +154,7 @@ impl Frame {
     }
 }
 
-/// The data of the page, deflated: a head as JSON behind its length, then the listing, the moments of the part
+/// The data of the page, deflated: a head as JSON after its length, then the listing, the moments of the part
 /// and the path; their lengths stand in the head.
 pub(crate) fn write(recording: Recording, part: Option<&Part>, about: &About) -> io::Result<Vec<u8>> {
     let Recording { track, mut history } = recording;

@@ -17,7 +17,7 @@ const MOST_CHORD_DEG: f64 = 15.0;
 /// Chords of an element at most.
 const MOST_CHORDS: f64 = 2000.0;
 
-/// What the way to a point is.
+/// How the tool moves to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Kind {
@@ -247,7 +247,7 @@ impl Track {
         }
     }
 
-    /// Whether the points behind `first` up to `last` can be left out, when the one behind `last` is the next.
+    /// Whether the points after `first` up to `last` can be left out, when the one after `last` is the next.
     fn may_leave_out(&self, all: &[Point], first: usize, last: usize) -> bool {
         let (Some(from), Some(to)) = (all.get(first), all.get(last + 1)) else {
             return false;

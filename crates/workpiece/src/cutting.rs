@@ -35,7 +35,7 @@ pub enum Remark {
     BlankRedefined,
 }
 
-/// Who is told of the cut.
+/// Who gets the events of the cut.
 pub trait Hears {
     /// It happened in a block, so many times.
     fn hear(&mut self, block: BlockRef, remark: Remark, count: u64);
@@ -74,7 +74,7 @@ impl Columns {
 pub struct Memory {
     /// Which tool cut what.
     pub tools: bool,
-    /// The way of the tool.
+    /// The tool path.
     pub path: bool,
 }
 
@@ -226,7 +226,7 @@ impl Cutting {
     ) -> Result<(), WorkpieceError> {
         let before = self.spindle;
         for function in element.functions() {
-            // What is output before the end, as M05 in tapping, acts on the way to the end and not before.
+            // What is output before the end, as M05 in tapping, acts on the distance to the end and not before.
             if matches!(function.at, At::End | At::BeforeEnd(_)) != at_end {
                 continue;
             }

@@ -9,7 +9,7 @@ use crate::part::Part;
 const UNKNOWN: f32 = f32::NAN;
 /// Steps that find the nearest place on a slope.
 const STEPS: u32 = 6;
-/// Farther than this the way out of the material is not looked for, mm: no stylus is deflected as far.
+/// Farther than this a place outside of the material is not looked for, mm: no stylus is deflected as far.
 const FARTHEST_MM: f64 = 6.0;
 
 /// How high the tip of a ball stands when it touches the part: found at the corners of the columns as far as it is
@@ -50,7 +50,7 @@ impl Feeler {
         self.height([x, y]).is_some_and(|height| z <= height)
     }
 
-    /// The shortest way out of the material of a ball with its tip at a position in X, Y and Z, mm: how far a stylus is
+    /// The shortest displacement out of the material of a ball with its tip at a position in X, Y and Z, mm: how far a stylus is
     /// deflected whose probe stands there. 0 where it is in contact with nothing.
     pub fn deflection(&self, tip: &[f64; 3]) -> [f64; 3] {
         let at = self.local(tip);
@@ -77,7 +77,7 @@ impl Feeler {
         along
     }
 
-    /// The way to the nearest place of a slope: along its normal, step by step.
+    /// The displacement to the nearest place of a slope: along its normal, step by step.
     fn down_the_slope(&self, from: [f64; 3]) -> Option<[f64; 3]> {
         let [dx, dy] = self.part.resolution_mm();
         let mut at = from;
@@ -97,7 +97,7 @@ impl Feeler {
         (missing.abs() < dx.max(dy)).then(|| std::array::from_fn(|k| at[k] - from[k]))
     }
 
-    /// The shortest way to a corner of columns at which the ball is free, shorter than a length.
+    /// The shortest displacement to a corner of columns at which the ball is free, shorter than a length.
     fn beside(&self, at: [f64; 3], within: f64) -> Option<[f64; 3]> {
         let [dx, dy] = self.part.resolution_mm();
         let range = |at: f64, side: f64, margin: usize, size: usize| {

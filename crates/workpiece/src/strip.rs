@@ -104,7 +104,7 @@ impl Track {
         borders
     }
 
-    /// The columns that are lowest behind the lower end: at least these.
+    /// The columns that the cap at the lower end holds: at least these.
     #[inline(always)]
     fn low_cap(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
         let (first, second) = self.inner();
@@ -124,7 +124,7 @@ impl Track {
         borders
     }
 
-    /// The columns that are lowest behind the higher end: at most these.
+    /// The columns up to the cap at the higher end: at most these.
     #[inline(always)]
     fn high_cap(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
         self.up_to(self.length, self.outer(), base, grid, rows)

@@ -136,7 +136,7 @@ pub(crate) struct Track {
 pub(crate) enum End {
     /// The track itself.
     Own,
-    /// The track before or behind it.
+    /// The track before or after it.
     Other,
     /// The track before it, up to where that one ends.
     Shared,

@@ -46,7 +46,7 @@ impl Writer {
         for line in [
             format!("; the path of {name} as a {model} moves it, for LinuxCNC"),
             "; It is the path of the tool's tip, its radius compensated already: no G41 or G42.".to_owned(),
-            "; Behind a tool change G43 takes the length from LinuxCNC's tool table.".to_owned(),
+            "; After a tool change G43 takes the length from LinuxCNC's tool table.".to_owned(),
         ] {
             writer.line(&line);
         }
@@ -72,7 +72,7 @@ impl Writer {
         self.lines += 1;
     }
 
-    /// The lines of one thing that is said; behind the first one the block that it comes from, where that is another
+    /// The lines of one thing that is said; after the first one the block that it comes from, where that is another
     /// one than before.
     pub fn said(&mut self, said: &Said, block: impl FnOnce() -> String) {
         let mut text = String::new();
@@ -226,7 +226,7 @@ impl Writer {
         }
     }
 
-    /// The axes whose position the text knows behind a way: not one that stands where no line has brought it.
+    /// The axes whose position the text knows after a movement: not one that stands where no line has brought it.
     fn written(&self, [start, end]: [&Position; 2]) -> Vec<Axis> {
         let stands = |axis: Axis| self.at[axis].is_nan() && start[axis] == end[axis];
         let known = |axis: &Axis| end[*axis].is_finite() && !stands(*axis);
@@ -237,7 +237,7 @@ impl Writer {
         self.at = self.after(ends);
     }
 
-    /// Where the text stands behind a way.
+    /// Where the text stands after a movement.
     fn after(&self, ends: [&Position; 2]) -> Position {
         let mut after = self.at;
         for axis in self.written(ends) {
@@ -255,7 +255,7 @@ fn push_word(text: &mut String, letter: &str, value: f64) {
     push_number(text, value);
 }
 
-/// A number without exponent and without zeros behind.
+/// A number without exponent and without trailing zeros.
 fn push_number(text: &mut String, value: f64) {
     let rounded = (value * STEPS).round() / STEPS;
     let rounded = if rounded == 0.0 { 0.0 } else { rounded };

@@ -39,7 +39,7 @@ impl Link {
     /// A byte has come; what it is a piece of, when that is whole.
     ///
     /// Answers that come before a block is sent are answers to nothing: the line has doubled one. Its check character ends a
-    /// block; the DC1 behind it may still be on its way.
+    /// block; the DC1 after it may still be in transit.
     pub fn receive(&mut self, byte: u8, now: Duration) -> Option<Piece> {
         self.quiet = now;
         let piece = self.decoder.take(&self.settings, byte)?;

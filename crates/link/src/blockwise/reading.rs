@@ -138,7 +138,7 @@ impl Reading {
         }
     }
 
-    /// EOT without ETX: behind END PGM it ends the file, elsewhere the device gives up.
+    /// EOT without ETX: after END PGM it ends the file, elsewhere the device gives up.
     fn eot(&mut self) {
         if self.taking.as_ref().is_some_and(Taking::is_ended) {
             self.end_of_file();

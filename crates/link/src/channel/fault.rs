@@ -116,7 +116,7 @@ mod tests {
                 all.extend(out);
             }
             for count in [lost, doubled, flipped, slow] {
-                // Less than one of 1000, since some bytes pass well behind each.
+                // Less than one of 1000, since some bytes pass well after each.
                 assert!((350..550).contains(&count), "{lost} {doubled} {flipped} {slow}");
             }
             all

@@ -364,7 +364,7 @@ mod tests {
         until(&mut ours, Happened::Closed);
         until(&mut ours, Happened::Opened);
         assert_eq!(hear(&mut ours, 1), b"2");
-        // Who is told so connects again, and has what is said to it then.
+        // Whoever sees that connects again, and has what is said to it then.
         let mut again = Channel::open(&connect, Characters::FIXED).unwrap();
         again.connect_again();
         drop(second);

@@ -15,7 +15,7 @@ pub enum DripState {
     Over,
 }
 
-/// A program on its way from a line into a machine. It holds one block; what the machine has no room for stays with the
+/// A program that goes from a line into a machine. It holds one block; what the machine has no room for stays with the
 /// other side, which gets no acknowledgement.
 #[derive(Debug)]
 pub struct Drip {
@@ -28,11 +28,11 @@ pub struct Drip {
     come: u64,
     come_print: Fingerprint,
     waiting: Option<Vec<u8>>,
-    /// Blocks that have come behind the end of the run.
+    /// Blocks that have come after the end of the run.
     after_end: u32,
 }
 
-/// Blocks behind M2 or M30 that are acknowledged before the other side is told that no more is wanted: END PGM is among them
+/// Blocks after M2 or M30 that are acknowledged before the transfer is ended: END PGM is among them
 /// *(inferred)*.
 const AFTER_END_MAX: u32 = 16;
 
@@ -108,7 +108,7 @@ impl Drip {
         self.hand_on(line, machine)
     }
 
-    /// The run has ended: what little comes behind it is acknowledged.
+    /// The run has ended: what little comes after it is acknowledged.
     fn pass_over(&mut self, line: &mut dyn BlockLine, at_most: Duration) -> bool {
         let waits = self.waiting.take().is_some();
         let arrival = match waits {

@@ -33,7 +33,7 @@ pub trait BlockLine {
     /// The block that came last is taken: the next one may come.
     fn acknowledge(&mut self);
 
-    /// Nothing more is wanted: the other side is told, and the line is idle again.
+    /// Nothing more is wanted: ends the transfer; the line is idle again.
     fn give_up(&mut self);
 }
 

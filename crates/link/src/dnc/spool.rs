@@ -33,7 +33,7 @@ impl Progress {
     }
 }
 
-/// Where a [`Spool`] tells how far it is.
+/// Where a [`Spool`] reports its progress.
 #[derive(Clone, Debug, Default)]
 pub struct Spooled(Arc<Mutex<State>>);
 
@@ -82,7 +82,7 @@ impl Spooled {
 pub struct Spool {
     files: Box<dyn Files>,
     spooled: Spooled,
-    /// Behind a broken transfer a program begins with its first block and those that were not acknowledged.
+    /// After a broken transfer a program begins with its first block and those that were not acknowledged.
     resumes: bool,
 }
 
@@ -96,7 +96,7 @@ impl Spool {
         }
     }
 
-    /// Where it tells how far it is.
+    /// Where it reports its progress.
     pub fn spooled(&self) -> Spooled {
         self.spooled.clone()
     }
@@ -173,7 +173,7 @@ impl Lines {
     }
 }
 
-/// Reads a line; `false` behind the last one.
+/// Reads a line; `false` after the last one.
 fn read(file: &mut BufReader<Box<dyn Read + Send>>, line: &mut Vec<u8>) -> io::Result<bool> {
     line.clear();
     let count = file.take(LINE_MAX).read_until(b'\n', line)?;

@@ -126,7 +126,7 @@ impl Passwords {
     }
 }
 
-/// Compares in a time that does not tell how much is right.
+/// Compares in constant time.
 fn same(one: &str, other: &str) -> bool {
     let differences = one
         .bytes()

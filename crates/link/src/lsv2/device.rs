@@ -42,7 +42,7 @@ pub enum ProgramState {
     Idle = 7,
 }
 
-/// The run as `R_RI` tells it.
+/// The run as `R_RI` reports it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// How the machine is operated.

@@ -14,9 +14,9 @@ const EOT: u8 = 0x04;
 const ENQ: u8 = 0x05;
 const DLE: u8 = 0x10;
 const NAK: u8 = 0x15;
-/// Behind `DLE`: go on.
+/// After `DLE`: go on.
 const READY: u8 = b'0';
-/// Behind `DLE`: taken.
+/// After `DLE`: taken.
 const TAKEN: u8 = b'1';
 
 /// From `STX` to `ETX`, and until `ENQ` or the check byte is answered (public).
@@ -154,12 +154,12 @@ impl SerialLine {
         }
     }
 
-    /// Nothing is on its way.
+    /// Nothing is in transit.
     pub fn is_idle(&self) -> bool {
         self.state == State::Idle && self.frame.is_none()
     }
 
-    /// Begins to send a telegram, as soon as the line is idle; false while another one is on its way.
+    /// Begins to send a telegram, as soon as the line is idle; false while another one is in transit.
     pub fn send(&mut self, telegram: &Telegram, now: Duration) -> bool {
         if self.frame.is_some() {
             return false;
@@ -220,7 +220,7 @@ impl SerialLine {
             // The other side is gone.
             State::Ready | State::Answered { taken: false } => self.rest(now),
             State::Text | State::Check => self.refuse(now),
-            // Its EOT was lost: it was told that the telegram was taken.
+            // Its EOT was lost: the telegram was acknowledged.
             State::Answered { taken: true } => self.receive(now),
         }
     }

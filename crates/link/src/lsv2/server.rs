@@ -206,7 +206,7 @@ fn leave(shared: &Shared, number: usize) {
     shared.count.fetch_sub(1, Ordering::AcqRel);
 }
 
-/// There is no room: it is told so, if it takes it.
+/// There is no room: that is sent to it, if it takes it.
 fn turn_away(mut stream: TcpStream) {
     let _ = stream.set_nonblocking(true);
     let _ = stream.write_all(&encode(&ErrorNumber::TOO_MANY.telegram()));

@@ -82,28 +82,28 @@ impl Telegram {
         [self.command.0.as_slice(), &self.data].concat()
     }
 
-    /// A byte behind the parameters.
+    /// A byte after the parameters.
     #[must_use]
     pub fn byte(mut self, value: u8) -> Telegram {
         self.data.push(value);
         self
     }
 
-    /// A number of 16 bits behind the parameters.
+    /// A number of 16 bits after the parameters.
     #[must_use]
     pub fn word(mut self, value: u16) -> Telegram {
         self.data.extend(value.to_be_bytes());
         self
     }
 
-    /// A number of 32 bits behind the parameters.
+    /// A number of 32 bits after the parameters.
     #[must_use]
     pub fn long(mut self, value: u32) -> Telegram {
         self.data.extend(value.to_be_bytes());
         self
     }
 
-    /// A string behind the parameters, in Latin 1; characters that it has not are `?`.
+    /// A string after the parameters, in Latin 1; characters that it has not are `?`.
     #[must_use]
     pub fn string(mut self, text: &str) -> Telegram {
         let byte = |character: char| u8::try_from(u32::from(character)).unwrap_or(b'?');
@@ -113,7 +113,7 @@ impl Telegram {
         self
     }
 
-    /// Bytes behind the parameters.
+    /// Bytes after the parameters.
     #[must_use]
     pub fn raw(mut self, bytes: &[u8]) -> Telegram {
         self.data.extend_from_slice(bytes);

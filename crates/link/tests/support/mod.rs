@@ -105,7 +105,7 @@ pub fn shown(bytes: &[u8]) -> String {
     bytes.iter().map(name).collect()
 }
 
-/// What a protocol tells, as words.
+/// The events of a protocol, as words.
 pub fn described(event: &Event, model: ControlModel) -> String {
     match event {
         Event::Received(name) => format!("received {name}"),
@@ -125,7 +125,7 @@ pub fn described(event: &Event, model: ControlModel) -> String {
 }
 
 /// Lets a protocol have a conversation: what it says is compared byte by byte, what the other side says is played. Returns
-/// what it told.
+/// what it reported.
 pub fn converse(role: Role, protocol: &mut dyn Protocol, script: &str) -> Vec<String> {
     let model = ControlModel::Tnc415b;
     let own = if role == Role::Control { 'T' } else { 'P' };

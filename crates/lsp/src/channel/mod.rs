@@ -152,7 +152,7 @@ impl Analysis for ChannelText {
         Vec::new()
     }
 
-    /// Names at the begin of a line, synchronisation types behind one.
+    /// Names at the begin of a line, synchronisation types after one.
     fn completions(&self, at: usize, _: &World) -> Vec<Completion> {
         let line = self.text.line_at(at);
         let before = self.text.get(line.start..at);

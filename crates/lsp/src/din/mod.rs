@@ -33,7 +33,7 @@ impl DinProgram {
         let program = Arc::new(Program::from_bytes(&name, text.text.as_bytes()));
         let mut from = 0;
         let lines = (1..=program.line_count()).map(|number| {
-            // Each line stands behind the one before it.
+            // Each line stands after the one before it.
             let line = program.line(number);
             let found = text.text.get(from..).and_then(|rest| rest.find(line));
             let start = from + found.unwrap_or_default();
@@ -146,7 +146,7 @@ fn subroutine_at(start: usize, name: &str, role: Role) -> Mention {
     }
 }
 
-/// The value of a variable or a parameter behind a run; nothing of one whose number is calculated.
+/// The value of a variable or a parameter after a run; nothing of one whose number is calculated.
 fn value(name: &str, examined: &Examined) -> String {
     let digits = name
         .strip_prefix('P')

@@ -43,7 +43,7 @@ pub(crate) struct Mention {
     pub(crate) role: Role,
 }
 
-/// The name at a place; the cursor may stand behind it.
+/// The name at a place; the cursor may stand after it.
 pub(crate) fn at(mentions: &[Mention], offset: usize) -> Option<&Mention> {
     let inside = |mention: &&Mention| mention.range.contains(&offset);
     let after = |mention: &&Mention| mention.range.end == offset;

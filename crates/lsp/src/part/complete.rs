@@ -86,7 +86,7 @@ fn number_length(line: &str) -> usize {
     line.len() - rest.strip_prefix('/').map_or(rest, str::trim_start).len()
 }
 
-/// The bytes of the word that goes on behind the cursor.
+/// The bytes of the word that goes on after the cursor.
 fn word_rest(text: &str) -> usize {
     text.chars()
         .take_while(|c| c.is_alphanumeric())
@@ -275,7 +275,7 @@ impl Writer<'_> {
         .collect()
     }
 
-    /// Words behind the function.
+    /// Words after the function.
     fn addresses(&self) -> Vec<Completion> {
         let all = words::of_language(self.program.is_iso()).filter(|word| word.part == Part::Address);
         let mut all: Vec<Completion> = all
@@ -328,7 +328,7 @@ fn cycle_snippet(template: &[Vec<TemplatePart>]) -> String {
                     text = own;
                 }
                 TemplatePart::Ask { prompt, optional } => {
-                    // The head of a block stays, whatever may be missing behind it.
+                    // The head of a block stays, whatever may be missing after it.
                     let is_head = block.is_empty();
                     if !*optional {
                         number += 1;

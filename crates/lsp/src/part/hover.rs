@@ -82,7 +82,7 @@ fn shortened(blocks: &[u32]) -> String {
     shown.join(", ") + more
 }
 
-/// The value of a parameter behind a run.
+/// The value of a parameter after a run.
 fn value(number: u16, examined: Option<&Examined>) -> String {
     let Some(examined) = examined else {
         return String::new();

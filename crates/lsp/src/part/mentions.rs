@@ -37,7 +37,7 @@ impl Finder<'_> {
         self.program.text.get(range.clone())
     }
 
-    /// The words behind the one that opens the block, and that one in capitals, without its numbers.
+    /// The words after the one that opens the block, and that one in capitals, without its numbers.
     fn opened(&self) -> Option<(String, &[WordSpan])> {
         let place = self
             .block

@@ -76,7 +76,7 @@ fn located(source: &PlcSource, main: &Path, severity: Severity, fault: &Diagnost
             related: related.into_iter().collect(),
         });
     }
-    // The main file tells of all; what lies beside a linked file is not its matter.
+    // The main file shows all errors; a linked file only its own.
     let is_main = is_same(main, &source.path);
     let line = fault.line.saturating_sub(1);
     let column = fault.column.saturating_sub(1);

@@ -82,8 +82,8 @@ impl Ahead {
 }
 
 impl Entry {
-    /// Whether the place is as near as it is to be, with so much way to it, mm, at a speed, mm/s. A time is counted as if the
-    /// path stopped there, when it waits there [004:87]: over the way d with the deceleration a it takes
+    /// Whether the place is as near as it is to be, at a distance, mm, at a speed, mm/s. A time is counted as if the
+    /// path stopped there, when it waits there [004:87]: over the distance d with the deceleration a it takes
     /// d/v + v/2a.
     fn is_due(&self, item: &Item, distance: f64, speed: f64) -> bool {
         match self.lead {

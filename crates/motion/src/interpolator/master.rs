@@ -1,6 +1,6 @@
 //! Elements that follow the spindle: it is the master of the path instead of time.
 //!
-//! What the element would do in time, within what axes and spindle can do, is what the spindle is told
+//! What the element would do in time, within what axes and spindle can do, is the command to the spindle
 //! ([`Lead`]). The axes do not take that position but the one that belongs to the angle where the spindle
 //! really is ([`Master`]), also beyond the ends of the element. So whatever the spindle does, from lagging to
 //! running out without power, the axes keep to the thread.
@@ -43,7 +43,7 @@ impl Coupling {
         self.origin_deg + self.deg_per_mm * distance_mm
     }
 
-    /// What is told the spindle so far along the element, mm, at a speed, mm/s, negative backwards.
+    /// The command to the spindle so far along the element, mm, at a speed, mm/s, negative backwards.
     pub(super) fn lead(&self, distance_mm: f64, speed: f64) -> Lead {
         Lead {
             angle_deg: self.angle_deg(distance_mm),
@@ -65,7 +65,7 @@ impl Coupling {
     }
 }
 
-/// Goes back along an element for a time, not faster than a limit, mm/s: the speed and the way that is covered then. Before the
+/// Goes back along an element for a time, not faster than a limit, mm/s: the speed and the distance that is covered then. Before the
 /// start of the element it stays where it is.
 pub(super) fn go_back(item: &Item, speed: f64, covered: f64, limit: f64, time: f64) -> (f64, f64) {
     let ramp = Ramp {

@@ -1,4 +1,4 @@
-//! The functions that are output on the way.
+//! The functions that are output within an element.
 
 use std::collections::VecDeque;
 

@@ -15,7 +15,7 @@ pub(super) struct Stops {
     acknowledged: Acknowledged,
     /// The next stop is to be looked for.
     wanted: bool,
-    /// The path stops behind no element before this number.
+    /// The path stops after no element before this number.
     sought: u64,
 }
 
@@ -115,7 +115,7 @@ impl Stops {
             || next.is_some_and(|next| self.is_clamped(next) || self.is_awaited(next, number + 1))
     }
 
-    /// The path stops behind it in single block, or before the block that is next.
+    /// The path stops after it in single block, or before the block that is next.
     pub(super) fn is_block_end(&self, item: &Item, next: Option<&Item>) -> bool {
         let is_before = |sequence| {
             item.element.sequence < sequence && next.is_some_and(|next| next.element.sequence >= sequence)
@@ -134,7 +134,7 @@ impl Stops {
             || item.awaits.ahead && number >= self.acknowledged.ahead
     }
 
-    /// An axis that its block moved is to be clamped behind it.
+    /// An axis that its block moved is to be clamped after it.
     pub(super) fn is_to_be_clamped(&self, item: &Item) -> bool {
         item.block_end && moves(item, self.clamping)
     }

@@ -45,7 +45,7 @@ pub(super) struct Course {
     stage: Stage,
     /// Axis and sign of the line that is scanned, and where it ends; of levels the approach.
     line: (usize, f64, f64),
-    /// Meander: it is on its way to the next line, and the sign of the line before.
+    /// Meander: it goes to the next line, and the sign of the line before.
     shifts: bool,
     sign: f64,
     /// Contour lines: height of the level, first point of it, points and time since.

@@ -267,7 +267,7 @@ impl Follower {
         (left * SLOWS).clamp(0.0, greatest) / self.along_mm_s
     }
 
-    /// Nothing behind the last point either: it was the tip of something thin, and its other side is scanned.
+    /// Nothing after the last point either: it was the tip of something thin, and its other side is scanned.
     fn turn_round(&mut self) -> Followed {
         self.turns += 1;
         if self.turns > TURNS {

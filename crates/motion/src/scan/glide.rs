@@ -35,7 +35,7 @@ impl Glide {
         self.normal = [0.0, 1.0];
     }
 
-    /// Along the surface: the deflection says which way that is, and its depth is held. A point is taken before it
+    /// Along the surface: the deflection says in which direction that is, and its depth is held. A point is taken before it
     /// would lie farther than the interval from the last one.
     pub fn cycle(&mut self, felt: &Felt, tracking: &Tracking, last: ScanPoint, interval_mm: f64) -> Followed {
         let deflection = [
@@ -64,7 +64,7 @@ impl Glide {
     fn wish(&self, tracking: &Tracking, feed: f64, missing: f64, full: f64) -> Wish {
         let [along, off] = self.normal;
         let inwards = (GAIN_PER_S * missing).clamp(-full, full);
-        // The way along the surface stands at right angles to its normal.
+        // The direction along the surface stands at right angles to its normal.
         let plane = [feed * off - inwards * along, -feed * along - inwards * off];
         Wish {
             velocity: std::array::from_fn(|k| plane[0] * tracking.along[k] + plane[1] * tracking.off[k]),

@@ -40,7 +40,7 @@ impl Wish {
     }
 }
 
-/// The plane in which a surface is followed: the way along it and the way off it, unit vectors.
+/// The plane in which a surface is followed: the direction along it and the one off it, unit vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tracking {
     pub along: ScanPoint,

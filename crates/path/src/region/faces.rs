@@ -198,7 +198,7 @@ impl Faces {
         tangled.map(|(_, edge)| edge.segment.length()).sum()
     }
 
-    /// The loops around the faces that are told to be inside, interior on the left.
+    /// The loops around the faces that are given as inside, interior on the left.
     ///
     /// # Errors
     /// When the effort ends it.

@@ -16,7 +16,7 @@ const MOST_LINES: f64 = 1e6;
 /// Order and direction of the passes of [`Region::hatch`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HatchPattern {
-    /// Neighbouring passes alternate in direction and are linked where the way stays inside the
+    /// Neighbouring passes alternate in direction and are linked where the link stays inside the
     /// region. Each stretch between islands is cleared as far as it goes before the next one.
     Zigzag,
     /// All passes run in the direction of the angle, line by line; none is linked.
@@ -26,7 +26,7 @@ pub enum HatchPattern {
 /// A straight clearing pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pass {
-    /// The way from the end of the pass before to the start of this one inside the region; `None` when
+    /// The path from the end of the pass before to the start of this one inside the region; `None` when
     /// the tool must be lifted.
     pub link: Option<Vec<Segment>>,
     /// Start point.
@@ -217,7 +217,7 @@ impl Area<'_> {
                 let pass = span.pass(forward, link.take());
                 let end = pass.to;
                 passes.push(pass);
-                // The spans of a line lie one behind the other.
+                // The spans of a line lie one after the other.
                 let next = lines.get(line + 1).map_or(&[][..], Vec::as_slice);
                 let first = next.partition_point(|s| s.high <= span.low);
                 let beside = next.iter().enumerate().skip(first);
@@ -240,7 +240,7 @@ impl Area<'_> {
         Ok(passes)
     }
 
-    /// The way between ends of neighbouring passes: straight if that stays inside, else along the boundary
+    /// The path between ends of neighbouring passes: straight if that stays inside, else along the boundary
     /// if that is not much longer than the stepover.
     fn link<E: Effort>(
         &self,
@@ -298,7 +298,7 @@ impl Area<'_> {
     }
 }
 
-/// The way along a closed contour between two of its points, in its sense or against it, from the segment
+/// The path along a closed contour between two of its points, in its sense or against it, from the segment
 /// at a place; `None` when it is longer than `longest`.
 fn path_along(
     segments: &[Segment],
@@ -310,7 +310,7 @@ fn path_along(
     let count = segments.len();
     let mut length = 0.0;
     let mut path: Vec<Segment> = Vec::new();
-    // The segment of the start may be the one of the end too, and come again behind all others.
+    // The segment of the start may be the one of the end too, and come again after all others.
     for step in 0..=count {
         let at = if forward {
             place + step

@@ -190,7 +190,7 @@ impl Covering {
     /// A tolerance serves when nothing speaks against its loops that is more than the tolerance: every edge
     /// that was taken away because it ends nowhere runs along a kept one ([`strayed_length`]), so that
     /// nothing of the true boundary is missing by more; and every face whose edges disagree is a sliver
-    /// ([`free_faces`]), so that nothing is told wrongly that is thicker. Every kept edge is covered by no more
+    /// ([`free_faces`]), so that nothing thicker is decided wrongly. Every kept edge is covered by no more
     /// than is granted. Together the loops are the boundary within what is granted, wherever it is.
     fn free_loops<E: Effort>(&self, moved: &[Segment], effort: &E) -> Result<Vec<Contour>, E::Stop> {
         let mut best: Option<(f64, Faces, Vec<bool>)> = None;
@@ -256,7 +256,7 @@ fn without_ends(edges: Vec<Edge>) -> (Vec<Edge>, Vec<Edge>) {
 }
 
 /// Thinner than this times what is granted is the tolerance's doing. Edges that cross at a flat angle are
-/// both kept behind the crossing until one is covered by more than is granted, which brings them no farther
+/// both kept after the crossing until one is covered by more than is granted, which brings them no farther
 /// apart than that; cutting moved each by twice the tolerance.
 const SLIVER: f64 = 4.0;
 
@@ -283,7 +283,7 @@ fn strayed_length<E: Effort>(
 }
 
 /// Which faces are free, and the greatest length that speaks against it, mm: the left of every edge is
-/// free and its right covered, so that every half-edge tells about its face. They may disagree in slivers
+/// free and its right covered, so that every half-edge is evidence about its face. They may disagree in slivers
 /// and in faces that are as small all around; elsewhere directions at a vertex were mistaken, or edges are
 /// missing between two faces.
 fn free_faces(faces: &Faces, granted: f64) -> (Vec<bool>, f64) {

@@ -301,7 +301,7 @@ impl Segment {
         let counter_clockwise = sweep_deg > 0.0;
         // A counter-clockwise arc of any sweep lies right of its chord.
         let in_circle = distance(point, centre) < radius;
-        // A chord through the point along the ray lies as a trifle tells.
+        // A chord through the point along the ray lies on either side by rounding alone.
         let left_of_chord = side > 0.0 || (side == 0.0 && above_a == above_b && dot(sub(b, a), ray) > 0.0);
         let on_arc_side = left_of_chord != counter_clockwise;
         let inside = in_circle && (on_arc_side || self.is_full_circle());

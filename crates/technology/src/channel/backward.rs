@@ -1,8 +1,8 @@
-//! The way back along what was executed, and forward again over it.
+//! Backward motion along what was executed, and forward again over it.
 //!
-//! On the way back functions are output as MOS, those with BWD_SYNCH as MVS_SVS; forward again they have their own types
-//! [004:54] (public: backward motion). What is output ahead is output at the place it belongs to on the way back, and forward
-//! again ahead of it; where the path turns behind that, at once, as what does not come early enough (inferred).
+//! In backward motion functions are output as MOS, those with BWD_SYNCH as MVS_SVS; forward again they have their own types
+//! [004:54] (public: backward motion). What is output ahead is output at the place it belongs to in backward motion, and forward
+//! again ahead of it; where the path turns after that, at once, as what does not come early enough (inferred).
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -83,7 +83,7 @@ impl Channel<'_> {
         });
     }
 
-    /// The way along the path, mm, while it is run back.
+    /// The distance along the path, mm, while it is run back.
     pub(super) fn backward_distance(&self, path: &Interpolator<()>) -> Option<f64> {
         let back = self.backward.back.as_ref()?;
         let number = path.element().and_then(|element| back.element(element.sequence));
@@ -108,7 +108,7 @@ impl Channel<'_> {
         self.motion.path.prepare(&mut feed, usize::MAX);
         let (from, seen, reached) = (back.from, back.seen, back.reached);
         let waits = back.waits();
-        // The next place with a function that is waited for on the way back.
+        // The next place with a function that is waited for in backward motion.
         let first = self.plan.track.first();
         let known = (from + 2).saturating_sub(back.fed).max(first);
         let stop = (known..seen).rev().find(|place| self.waits_backward(*place));
@@ -126,7 +126,7 @@ impl Channel<'_> {
         self.drive_once(&drive, block)
     }
 
-    /// Whether the path stops at a place on the way back.
+    /// Whether the path stops at a place in backward motion.
     fn waits_backward(&self, place: u64) -> bool {
         let actions = self.plan.track.actions(place);
         actions.iter().any(|action| matches!(action, Action::BlockEnd))
@@ -137,7 +137,7 @@ impl Channel<'_> {
             })
     }
 
-    /// The functions of a place that are output on the way back, in program order.
+    /// The functions of a place that are output in backward motion, in program order.
     fn of_place(&self, place: u64) -> Vec<OrderId> {
         let outputs = self
             .plan
@@ -168,7 +168,7 @@ impl Channel<'_> {
         }
     }
 
-    /// Outputs functions on the way back. Whether anything was done.
+    /// Outputs functions in backward motion. Whether anything was done.
     pub(super) fn act_backward(&mut self) -> bool {
         let Some(mut back) = self.backward.back.take() else {
             return false;
@@ -209,7 +209,7 @@ impl Channel<'_> {
         any
     }
 
-    /// The functions of a place as they are output on the way back, the last one first.
+    /// The functions of a place as they are output in backward motion, the last one first.
     fn repeated(&mut self, place: u64) -> VecDeque<OrderId> {
         let mut queue = VecDeque::new();
         for id in self.of_place(place).into_iter().rev() {
@@ -222,7 +222,7 @@ impl Channel<'_> {
             } else {
                 SynchType::Mos
             };
-            // On the way back a simulated one is waited for all the same (public).
+            // In backward motion a simulated one is waited for all the same (public).
             order.synch = Synch {
                 kind,
                 forward: order.waits,
@@ -253,7 +253,7 @@ impl Channel<'_> {
         let number = back.reached.saturating_sub(1).max(self.plan.track.first());
         let (mut number, mut along) = match self.plan.track.leg(number) {
             Some(leg) => (number, (distance - leg.from).max(0.0)),
-            // There is no way to go back: it is still at the place where it turned.
+            // There is nothing to go back: it is still at the place where it turned.
             None => (number, 0.0),
         };
         if self.plan.track.leg(number).is_some_and(|leg| along >= leg.length) {

@@ -75,7 +75,7 @@ impl Channel<'_> {
         self.motion.distance_before = distance;
         let cycle = self.motion.path.cycle(drive);
         let (rest, speed) = (self.motion.path.rest_mm(), self.motion.speed());
-        // What lacks rounding alone to be there is there in this cycle, not in the next one.
+        // A distance to go within rounding counts as reached in this cycle, not in the next one.
         let arrives = rest > 0.0 && rest <= speed * ROUNDING_S + if speed > 0.0 { 0.0 } else { ROUNDING_MM };
         let here = self.motion.path.element().map(|element| element.sequence);
         let passed = self.motion.path.passed().last().map(|last| last.sequence);

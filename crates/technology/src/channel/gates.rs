@@ -8,7 +8,7 @@ use crate::plc::{self, Output, cycle_at};
 use crate::report::EventKind;
 use crate::synch::SynchType;
 
-/// What became of a deed.
+/// What became of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Done {
     Yes,
@@ -137,7 +137,7 @@ impl Channel<'_> {
         }
     }
 
-    /// A dwell ends in the first cycle behind its time, which begins when the path comes to rest.
+    /// A dwell ends in the first cycle after its time, which begins when the path comes to rest.
     fn dwell(&mut self, place: u64, seconds: f64) -> Done {
         let cycle = self.cycle;
         let left = self.passed(place).map_or(0.0, |passed| passed.0);
@@ -255,7 +255,7 @@ impl Channel<'_> {
         order.is_done() || self.gates.simulated && !order.state.output && !order.synch.forward
     }
 
-    /// Whether the path has to stop at a place, looking from one of its deeds on.
+    /// Whether the path has to stop at a place, looking from one of its actions on.
     pub(super) fn is_closed(&self, place: u64, from: usize) -> bool {
         let actions = self.plan.track.actions(place).get(from..).unwrap_or_default();
         actions.iter().any(|action| match action {

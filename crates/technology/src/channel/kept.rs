@@ -1,4 +1,4 @@
-//! Whether a lead was kept: what went out later before its place than it should is told.
+//! Whether a lead was kept: what went out later before its place than it should is reported.
 //!
 //! A time ahead of a place where the path waits is planned with an end velocity of 0 there; when the acknowledgement comes in
 //! time the path does not stop, and is there sooner [004:87]. M functions that nobody waits for keep their lead (inferred).
@@ -70,7 +70,7 @@ impl Channel<'_> {
         let why = self.why(&promise);
         let digits = if unit == "ms" { 1.0 } else { 1e3 };
         let (is, asked) = ((is * digits).round() / digits, (asked * digits).round() / digits);
-        let (is, side) = (is.abs(), if is < 0.0 { "behind" } else { "before" });
+        let (is, side) = (is.abs(), if is < 0.0 { "after" } else { "before" });
         self.record.warnings.push(Warning {
             message: format!("{label} is output {is} {unit} {side} its place, not {asked} {unit}: {why}"),
             program: place.program.to_string(),

@@ -1,4 +1,4 @@
-//! A function that was programmed, on its way through the channel.
+//! A function that was programmed, as it goes through the channel.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

@@ -51,7 +51,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The path begins anew, somewhere, at a way along it, mm. Returns its first place.
+    /// The path begins anew, somewhere, at a distance along it, mm. Returns its first place.
     pub(super) fn begin_path(&mut self, start: Position, distance: f64) -> u64 {
         let first = self.track.last() + 1;
         self.track = Track::new(start, first, distance);
@@ -68,7 +68,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// What lies behind a place of the path is forgotten.
+    /// What lies before a place of the path is forgotten.
     pub(super) fn forget_before(&mut self, reached: u64) {
         let first = self.track.forget_before(reached);
         let ahead = self.leads.forget_before(self.track.distance(self.track.first()));

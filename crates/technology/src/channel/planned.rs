@@ -1,4 +1,4 @@
-//! What is done ahead of its place: output by way or by time, with the time that the path will take as planned.
+//! What is done ahead of its place: output by distance or by time, with the time that the path will take as planned.
 
 use bahn_motion::{Drive, State};
 
@@ -157,7 +157,7 @@ impl Channel<'_> {
         None
     }
 
-    /// Cycles that the path dwells at a place to which it came so long before the end of a cycle, s, from one of its deeds on.
+    /// Cycles that the path dwells at a place to which it came so long before the end of a cycle, s, from one of its actions on.
     fn dwells(&self, place: u64, from: usize, left_s: f64) -> u64 {
         let actions = self.plan.track.actions(place).get(from..).unwrap_or_default();
         let dwell = actions.iter().filter_map(|action| match action {

@@ -26,13 +26,13 @@ struct Sorted {
     before: Vec<OrderId>,
     /// Waited for before it.
     gate: Vec<OrderId>,
-    /// Waited for behind it.
+    /// Waited for after it.
     gate_after: Vec<OrderId>,
-    /// Done behind it.
+    /// Done after it.
     after: Vec<Action>,
     /// Output ahead.
     ahead: Vec<OrderId>,
-    /// Micro Joints before the motion and behind it.
+    /// Micro Joints before the motion and after it.
     joints: Vec<OrderId>,
     joints_after: Vec<OrderId>,
     /// At the measuring event.
@@ -93,7 +93,7 @@ impl Plan<'_> {
         Ok(())
     }
 
-    /// Whether a function holds decoding behind the block.
+    /// Whether a function holds decoding after the block.
     fn flush_and_wait(&self, ids: &[OrderId], unit: &Unit) -> Result<bool, Fault> {
         let of_block = ids.iter().filter_map(|id| self.orders.get(*id));
         let mut flushing = of_block.filter(|order| order.synch.flush_and_wait);
@@ -286,7 +286,7 @@ impl Plan<'_> {
         self.window.leg(leg, most.max(1), &mut self.track);
     }
 
-    /// What is done behind the motion.
+    /// What is done after the motion.
     fn after(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
         if unit.dwell_s > 0.0 {
             self.window.action(Action::Dwell(unit.dwell_s));
@@ -320,7 +320,7 @@ impl Plan<'_> {
         let tolerance = f64::from(settings.tolerance) / PER_MM;
         if settings.tolerance > 0 && planned.deviation > tolerance {
             let message = format!(
-                "{label} is output {:.4} mm behind its planned place, more than {tolerance} mm",
+                "{label} is output {:.4} mm after its planned place, more than {tolerance} mm",
                 planned.deviation
             );
             return Err(numbered(&unit.place, 120_815, message));
@@ -328,7 +328,7 @@ impl Plan<'_> {
         if planned.held == Held::Window {
             warnings.push(Warning {
                 message: format!(
-                    "{label} is output {:.4} mm behind its planned place: the look-ahead ends there",
+                    "{label} is output {:.4} mm after its planned place: the look-ahead ends there",
                     planned.deviation
                 ),
                 program: unit.place.program.to_string(),
@@ -352,7 +352,7 @@ impl Plan<'_> {
         Ok(())
     }
 
-    /// A function at the measuring event of edge banding, behind its distance to go [004:69].
+    /// A function at the measuring event of edge banding, after its distance to go [004:69].
     fn measured(&mut self, id: OrderId, unit: &Unit) {
         let label = self
             .orders
@@ -388,7 +388,7 @@ impl Plan<'_> {
         self.decoding.ended = true;
     }
 
-    /// A program begins. Late functions can be open here only behind an abort: with P-CHAN-00033 they are waited for [004:78].
+    /// A program begins. Late functions can be open here only after an abort: with P-CHAN-00033 they are waited for [004:78].
     pub(super) fn begin_program(&mut self) {
         self.decoding.begin();
         if self.in_force.settings.late_sync_ready {

@@ -1,4 +1,4 @@
-//! Programs one behind the other.
+//! Programs one after the other.
 
 use bahn_din::{Place, Unit};
 use bahn_path::Position;
@@ -19,12 +19,12 @@ use crate::run::{Blocks, Run};
 
 /// Elements of the path that are decoded ahead of it at most.
 const AHEAD: u64 = 300;
-/// Deeds at the end of what is known, and blocks at a time.
+/// Actions at the end of what is known, and blocks at a time.
 const ACTIONS: usize = 2000;
 const BLOCKS: usize = 2000;
 /// Rounds of decoding and doing in a cycle.
 const ROUNDS: usize = 8;
-/// What lies behind is forgotten every so many cycles.
+/// What the path has passed is forgotten every so many cycles.
 const FORGET: u64 = 1024;
 
 /// How a program ended.
@@ -99,7 +99,7 @@ fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -
 }
 
 impl Channel<'_> {
-    /// Behind the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
+    /// After the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
     fn fetch_the_rest(&mut self) {
         self.plc.keep_fetches();
         while let Some(cycle) = self.plc.next_cycle(self.cycle, 0) {

@@ -151,7 +151,7 @@ impl Record {
         });
     }
 
-    /// A stop behind which nothing goes any more is the end of the path, and none.
+    /// A stop after which nothing goes any more is the end of the path, and none.
     pub(super) fn drop_last_stop(&mut self) {
         let last = self
             .events

@@ -12,7 +12,7 @@ use crate::plc::{Script, cycle_at};
 #[derive(Debug, Default)]
 pub(super) struct Single {
     on: bool,
-    /// Way along the path, mm, at which it can first come to a standstill: block ends before it are passed. Unknown as
+    /// Distance along the path, mm, at which it can first come to a standstill: block ends before it are passed. Unknown as
     /// long as nobody has looked.
     first: Option<f64>,
     /// The operator starts in this cycle, at this time, s.
@@ -54,7 +54,7 @@ impl Single {
         self.on && self.first.is_none()
     }
 
-    /// It can first come to a standstill at this way along it, mm.
+    /// It can first come to a standstill at this distance along it, mm.
     pub(super) fn see(&mut self, distance: f64) {
         self.first = Some(distance);
     }

@@ -67,7 +67,7 @@ pub(crate) struct Leg {
     /// Count of executed blocks.
     pub(crate) unit: u64,
     pub(crate) length: f64,
-    /// Way along the path to its start, mm.
+    /// Distance along the path to its start, mm.
     pub(crate) from: f64,
 }
 
@@ -86,7 +86,7 @@ impl Leg {
         self.curve.position(&self.start, &self.end, part.clamp(0.0, 1.0))
     }
 
-    /// Its parts before and behind a place so far along it, mm.
+    /// Its parts before and after a place so far along it, mm.
     pub(crate) fn split(&self, along: f64) -> (Leg, Leg) {
         let at = along / self.length;
         let part = |from: f64, to: f64| {
@@ -107,7 +107,7 @@ impl Leg {
         (first, second)
     }
 
-    /// What is left of it behind a place so far along it, or, backward, the way back from there to its start.
+    /// What is left of it after a place so far along it, or, backward, what lies from there to its start.
     pub(crate) fn rest(&self, along: f64, backward: bool) -> Leg {
         let at = if self.length > 0.0 {
             along / self.length
@@ -152,14 +152,14 @@ impl Leg {
     }
 }
 
-/// A place of the path and the element behind it.
+/// A place of the path and the element after it.
 #[derive(Clone, Debug)]
 struct Stretch {
     actions: Vec<Action>,
     leg: Leg,
 }
 
-/// Elements that were executed and are kept for the way back.
+/// Elements that were executed and are kept for backward motion.
 const HISTORY: u64 = 10_000;
 
 /// The path as far as it is known. Its places are numbered: place `n` is that before element `n`, the last one is where
@@ -235,7 +235,7 @@ impl Track {
         self.leg(place).map_or(self.end, |leg| leg.start)
     }
 
-    /// The way along the path to a place, mm.
+    /// The distance along the path to a place, mm.
     pub(crate) fn distance(&self, place: u64) -> f64 {
         self.leg(place).map_or(self.distance, |leg| leg.from)
     }
@@ -271,7 +271,7 @@ impl Track {
         self.tail.push(action);
     }
 
-    /// So many deeds where the path ends are done: blocks without a movement may go on for ever.
+    /// So many actions where the path ends are done: blocks without a movement may go on for ever.
     pub(crate) fn forget_done(&mut self, count: usize) {
         self.tail.drain(..count.min(self.tail.len()));
     }

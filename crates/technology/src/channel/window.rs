@@ -9,7 +9,7 @@ const SAME: f64 = 1e-7;
 /// Length of the piece at whose feed the path enters a joint (`E=`), mm.
 const ENTRY: f64 = 1e-5;
 
-/// Elements and deeds that are kept at most.
+/// Elements and actions that are kept at most.
 const MOST: usize = 4000;
 
 /// What is decoded and may still be split.
@@ -17,7 +17,7 @@ const MOST: usize = 4000;
 pub(super) struct Window {
     pieces: VecDeque<Piece>,
     legs: usize,
-    /// Way along the path to its end, mm.
+    /// Distance along the path to its end, mm.
     distance: f64,
     /// Nothing is output before this, mm.
     barrier: f64,
@@ -48,7 +48,7 @@ pub(super) struct JointFeed {
 pub(super) enum Held {
     /// Nothing: it is where it was planned.
     No,
-    /// No more blocks, or no more way, are looked at.
+    /// No more blocks, or no greater distance, are looked at.
     Window,
     /// The start, a flush, another joint or a function that is still waited for.
     Barrier,
@@ -72,7 +72,7 @@ impl Window {
         };
     }
 
-    /// Way along the path to its end, mm.
+    /// Distance along the path to its end, mm.
     pub(super) fn distance(&self) -> f64 {
         self.distance
     }
@@ -146,7 +146,7 @@ impl Window {
         }
     }
 
-    /// Puts what is to be done at a place, which is behind all that stands there already. Where an element is split for
+    /// Puts what is to be done at a place, which is after all that stands there already. Where an element is split for
     /// it, `after` is done at the end of its block, otherwise at once. The joint goes on to the end of what is kept.
     pub(super) fn insert(&mut self, real: f64, actions: Vec<Action>, after: Option<Action>) {
         let joint = self.next.take();

@@ -33,7 +33,7 @@ impl Place {
     }
 }
 
-/// What stands behind a name.
+/// What stands after a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Value {
     /// A synchronisation type; `None` is `NOT_VALID`.

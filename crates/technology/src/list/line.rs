@@ -1,4 +1,4 @@
-//! One line of a list: a name with its indices, and what stands behind it.
+//! One line of a list: a name with its indices, and what stands after it.
 
 use super::Place;
 use super::table::{Definition, canonical, pattern};
@@ -10,9 +10,9 @@ pub(super) struct Line<'a> {
     pub name: &'a str,
     /// Column of the name, from 1 on.
     pub name_column: usize,
-    /// What stands behind it, without blanks before and behind.
+    /// What stands after it, without blanks before and after.
     pub value: &'a str,
-    /// Column of the value; without one that behind the name.
+    /// Column of the value; without one that after the name.
     pub value_column: usize,
 }
 
@@ -57,7 +57,7 @@ fn end_of_name(text: &str) -> usize {
     text.len()
 }
 
-/// Whether an index goes on behind a blank: `m_synch[ 25 ]`.
+/// Whether an index goes on after a blank: `m_synch[ 25 ]`.
 fn closes(text: &str, at: usize) -> bool {
     let rest = text.get(at..).unwrap_or_default().trim_start();
     let rest = rest.trim_start_matches(|c: char| c.is_ascii_digit());

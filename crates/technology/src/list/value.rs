@@ -1,4 +1,4 @@
-//! What stands behind a name: numbers, constants, names, and remarks that mean nothing.
+//! What stands after a name: numbers, constants, names, and remarks that mean nothing.
 
 use super::Value;
 use super::line::Fault;
@@ -107,7 +107,7 @@ struct Term<'a> {
     offset: usize,
 }
 
-/// Terms that are joined by `|`, how many characters they take, and the remark behind.
+/// Terms that are joined by `|`, how many characters they take, and the remark after.
 fn terms(text: &str, column: usize) -> Result<(Vec<Term<'_>>, usize, &str), Fault> {
     let mut found = Vec::new();
     let mut rest = text;

@@ -45,7 +45,7 @@ pub(crate) struct Plc<'a> {
 /// What part of a cycle may be rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The first cycle at a time or behind it.
+/// The first cycle at a time or after it.
 pub(crate) fn cycle_at(time_s: f64, cycle_s: f64) -> u64 {
     (time_s / cycle_s - ROUNDING).ceil().max(0.0) as u64
 }

@@ -52,7 +52,7 @@ pub fn settings(list: &str) -> ChannelSettings {
     list.settings().clone()
 }
 
-/// A run as it is told.
+/// A run as it is reported.
 #[derive(Clone, Debug)]
 pub struct Bench {
     pub programs: Vec<String>,
@@ -219,7 +219,7 @@ pub fn when(t: f64, expected: f64) {
     assert!((t - expected).abs() <= T * 1.001, "{t} s is not {expected} s");
 }
 
-/// Time of a way from standstill to standstill, s.
+/// Time of a movement from standstill to standstill, s.
 pub fn ramp_s(distance: f64, v: f64) -> f64 {
     if v * v / A >= distance {
         2.0 * (distance / A).sqrt()

@@ -26,7 +26,7 @@ const LEAST: (u16, u16) = (60, 18);
 const ROOMY: u16 = 32;
 /// Columns of the status window.
 const STATUS: u16 = 30;
-/// Share of the rows behind [`ROOMY`] that messages, reasons and lesson may take: a third.
+/// Share of the rows beyond [`ROOMY`] that messages, reasons and lesson may take: a third.
 const SHARE: u16 = 3;
 
 /// Where something was drawn that others need.

@@ -16,7 +16,7 @@ pub struct PlanView {
     pub levels: u8,
     /// What the colours tell.
     pub colouring: Colouring,
-    /// The way of the tool is drawn over the part; nothing unless
+    /// The tool path is drawn over the part; nothing unless
     /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
     pub tool_path: bool,
 }
@@ -99,7 +99,7 @@ fn plan_pixel(part: &Part, drawing: &Area, palette: &Palette, [px, py]: [usize; 
     sum.map(|value| (value / (SAMPLES * SAMPLES) as f64).round() as u8)
 }
 
-/// Draws the way of the tool from above: nothing of the part is over the tool.
+/// Draws the tool path from above: nothing of the part is over the tool.
 pub(super) fn draw_tool_path(image: &mut Image, part: &Part, drawing: &Area, page: &Page) {
     let Some(trail) = &part.trail else { return };
     let ([width, height], size) = (drawing.size(), part.setup.size);

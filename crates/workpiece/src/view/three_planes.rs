@@ -33,7 +33,7 @@ pub struct ThreePlanes {
     pub levels: u8,
     /// What the colours of the plan view tell.
     pub colouring: Colouring,
-    /// The way of the tool is drawn over all three views; nothing unless
+    /// The tool path is drawn over all three views; nothing unless
     /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
     pub tool_path: bool,
 }
@@ -213,7 +213,7 @@ impl<'a> Sheet<'a> {
         self.contour(image, drawing, |share| height(share, 0));
     }
 
-    /// The way of the tool in front and side view, also before and behind the sections.
+    /// The tool path in front and side view, also before and behind the sections.
     fn draw_tool_paths(&self, image: &mut Image, page: &Page) {
         let Some(trail) = &self.part.trail else { return };
         let size = self.part.setup.size;

@@ -1,4 +1,4 @@
-//! The way of the tool over a view: feed solid, rapid traverse dashed, nothing where the part hides it.
+//! The tool path over a view: feed solid, rapid traverse dashed, nothing where the part hides it.
 
 use super::edges::Spot;
 use super::raycast::Vector;
@@ -9,7 +9,7 @@ use bahn_picture::{Colour, Image};
 /// A point of the picture and its distance from the eye, pixels.
 type Seen = [f64; 3];
 
-/// Draws the way in an area of the picture, all of it where there are no spots. `project` gives a point of the
+/// Draws the path in an area of the picture, all of it where there are no spots. `project` gives a point of the
 /// blank its place in the picture.
 pub(super) fn draw(
     image: &mut Image,

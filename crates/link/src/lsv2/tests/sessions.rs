@@ -41,7 +41,7 @@ fn logins_say_what_is_allowed() {
             (b"R_VR", b"T_ER\x01\x31"),
         ],
     );
-    // The PLC is told when somebody takes its messages, and when nobody does any more.
+    // The PLC gets a signal when somebody takes its messages, and when nobody does any more.
     assert_eq!(desk.device.take_calls(), ["host true", "host false"]);
     let one = logged_in(&desk, &[Level::Inspect]);
     assert!(
@@ -388,7 +388,7 @@ fn folders_files_and_attributes() {
     assert_eq!(name(&listed), (3, 0x03, "B.H".to_owned()));
     let many = session.take(&Telegram::new(Command(*b"R_DR")).byte(1)).unwrap();
     assert_eq!(many.data.len(), 16);
-    assert_eq!(desk.device.take_calls().len(), 8, "each change is told once");
+    assert_eq!(desk.device.take_calls().len(), 8, "each change is reported once");
 }
 
 #[test]
