@@ -3,7 +3,7 @@
 /// A key as the protocol wants it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Key {
-    /// `KeyboardEvent.key`.
+    /// `KeyboardEvent.key`, such as `a` or `Enter`.
     pub key: String,
     /// `KeyboardEvent.code`: where it is on the keyboard.
     pub code: String,

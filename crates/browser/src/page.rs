@@ -29,9 +29,9 @@ pub struct Page {
 /// When a page was ready, ms after its navigation began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timings {
-    /// Something was drawn.
+    /// From the navigation to the first painted pixel, ms.
     pub first_paint_ms: f64,
-    /// All was loaded.
+    /// From the navigation to the end of the load event, ms.
     pub load_ms: f64,
 }
 

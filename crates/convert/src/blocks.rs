@@ -47,7 +47,7 @@ impl Default for Options<'_> {
 /// A program in the other language.
 #[derive(Clone, Debug)]
 pub struct Converted {
-    /// Its text.
+    /// The program, block by block.
     pub text: String,
     /// How many blocks it has.
     pub blocks: u32,

@@ -15,16 +15,16 @@ pub(crate) enum Part {
     Whole(Box<Tap>),
 }
 
-/// A whole tap.
+/// A whole tap with a floating holder.
 pub(crate) struct Tap {
     pub plunge: PathElement,
     /// Between turning back and the retraction, s.
     pub dwell_s: f64,
-    /// mm/min.
+    /// Feed of the plunge, mm/min.
     pub feed_mm_min: f64,
 }
 
-/// Gathers taps.
+/// Recognises taps in the elements of a run.
 #[derive(Default)]
 pub(crate) struct FloatingTaps {
     open: Option<Open>,

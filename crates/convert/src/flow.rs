@@ -35,7 +35,7 @@ const PLANES: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 pub(crate) struct States([u16; PARTS]);
 
 impl States {
-    /// Anything.
+    /// Any function may be in force.
     pub const UNKNOWN: States = States(ANY);
     const CALLED: States = States([AS_CALLED; PARTS]);
 

@@ -224,7 +224,7 @@ fn same_function(one: &Function, other: &Function) -> bool {
     }
 }
 
-/// Writes blocks.
+/// Writes what a run does as blocks without cycles and labels.
 struct Writer {
     text: String,
     number: u32,

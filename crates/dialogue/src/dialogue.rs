@@ -40,15 +40,15 @@ impl Source {
 /// What becomes of a dialogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// It goes on.
+    /// The dialogue stays open.
     Stay,
     /// Its blocks are complete.
     Finish,
-    /// It is dropped.
+    /// The dialogue is closed without a block.
     Drop,
 }
 
-/// An open dialogue.
+/// An open dialogue: the block that is asked for, and how far it is.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Dialogue {
     pub(crate) source: Source,
@@ -57,7 +57,7 @@ pub(crate) struct Dialogue {
     pub(crate) lines: Vec<Line>,
     /// Lines that the dialogue needs; more repeat the last.
     base: usize,
-    /// The question.
+    /// The line of the block that is asked for, from 0.
     pub(crate) line: usize,
     pub(crate) field: usize,
     /// The last line that was asked for.
@@ -66,7 +66,7 @@ pub(crate) struct Dialogue {
 }
 
 impl Dialogue {
-    /// New blocks.
+    /// A dialogue for a new block.
     pub(crate) fn new(source: Source, setting: &Setting) -> Dialogue {
         let mut lines = match source {
             Source::Row(row) => Line::of_row(row.id),
@@ -403,7 +403,7 @@ impl Dialogue {
         self.lines.get(..count).unwrap_or_default()
     }
 
-    /// Forgets all answers.
+    /// Forgets the answers of all lines.
     pub(crate) fn clear(&mut self) {
         for line in &mut self.lines {
             line.clear();

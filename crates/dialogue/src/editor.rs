@@ -23,7 +23,7 @@ use crate::{Key, KeyGroup, Reaction, Setting, Wanted};
 /// The key of a comment.
 const COMMENT: &str = ";";
 
-/// What is open.
+/// What the keys go to.
 #[derive(Clone, Debug)]
 pub(crate) enum Open {
     Nothing,

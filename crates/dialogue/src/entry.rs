@@ -175,7 +175,7 @@ impl Entry {
         }
     }
 
-    /// A character.
+    /// A character is typed.
     pub(crate) fn character(&mut self, character: char) -> Result<(), MessageId> {
         let comment = self.is_comment();
         if NOT_IN_A_BLOCK.contains(&character)

@@ -18,7 +18,7 @@ const DIALOG_TEXTS_MAX: usize = 15;
 /// A word of a block in its parts, as it is being entered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Word {
-    /// Written with `I`.
+    /// The word is written with `I`: an incremental coordinate.
     pub incremental: bool,
     /// `X`, `PR`, `F`; empty where the value stands by itself.
     pub address: String,
@@ -29,11 +29,11 @@ pub struct Word {
 /// The sign of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Signs {
-    /// Always written.
+    /// The sign is always written.
     Always,
     /// Only `-` is written.
     Minus,
-    /// There is none.
+    /// The number has no sign.
     None,
 }
 
@@ -44,7 +44,7 @@ pub(crate) enum Most {
     Line,
     /// Those of a circle or helix of the model.
     Circle,
-    /// So many.
+    /// A fixed number of axes.
     Count(u8),
     /// X, Y and Z of a corner: numbers without axis keys are for them in this sequence [003:6611].
     Corner,
@@ -73,7 +73,7 @@ pub(crate) struct Choice {
 pub(crate) enum Ask {
     /// A number or Q parameter.
     Number { signs: Signs, incremental: bool },
-    /// A whole number.
+    /// A whole number; with `q` a Q parameter, too.
     Integer { q: bool },
     /// How often a section is repeated; listings show it twice.
     Repeat,
@@ -87,7 +87,7 @@ pub(crate) enum Ask {
         /// A line of a datum table may stand in their place, after `#` [000:6898-6904].
         table: bool,
     },
-    /// Axes alone.
+    /// Axes without values, so many at most.
     Axes(u8),
     /// An axis with a direction.
     Direction,
@@ -95,7 +95,7 @@ pub(crate) enum Ask {
     Choice(&'static [Choice]),
     /// A feed; with `max` ENT alone is rapid traverse.
     Feed { max: bool },
-    /// An M function.
+    /// The number of an M function.
     M,
     /// Whole numbers, one after the other.
     Labels,

@@ -8,7 +8,7 @@ use crate::line::{Line, WordPlace};
 use crate::typing::{Fresh, Typing};
 use crate::{Key, Setting, Wanted};
 
-/// A highlighted word.
+/// The word of a block that is highlighted, and its comment.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Highlight {
     pub(crate) block: u32,

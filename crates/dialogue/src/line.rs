@@ -9,7 +9,7 @@ use crate::{Key, Setting};
 /// A block with its fields.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Line {
-    /// Optional block.
+    /// The block begins with `/`: an optional block.
     skip: bool,
     head: String,
     fields: Vec<Field>,
@@ -193,7 +193,7 @@ impl Line {
         }
     }
 
-    /// Forgets all words.
+    /// Forgets the words of all fields.
     pub(crate) fn clear(&mut self) {
         for field in &mut self.fields {
             field.words.clear();

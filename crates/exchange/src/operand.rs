@@ -12,7 +12,7 @@ pub enum Operand {
     Bit(Bit),
     /// A byte, word or doubleword.
     Number(Number),
-    /// S0 to S3.
+    /// A string, S0 to S3.
     Text(usize),
 }
 
@@ -144,7 +144,7 @@ impl Operand {
 pub enum Content {
     /// Of a bit, 0 or 1, or of a number.
     Number(i32),
-    /// Of a string.
+    /// The value of a string.
     Text(String),
 }
 
@@ -162,7 +162,7 @@ impl fmt::Display for Content {
 pub enum Assignment {
     /// An operand and what it is to hold.
     Operand(Operand, Content),
-    /// `4110.2=4`.
+    /// A machine parameter with its value, `4110.2=4`.
     Parameter(String),
 }
 

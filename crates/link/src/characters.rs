@@ -16,7 +16,7 @@ pub const AFTER_DC3: usize = 12;
 pub enum Parity {
     /// The bits that are 1, with that of the parity, are even in number.
     Even,
-    /// They are odd.
+    /// The number of ones with the parity bit is odd.
     Odd,
 }
 
@@ -32,7 +32,7 @@ pub enum Parity {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Characters {
-    /// 7 or 8.
+    /// Data bits of a character, 7 or 8.
     pub data_bits: u8,
     /// `None` when it is not desired.
     pub parity: Option<Parity>,

@@ -13,20 +13,20 @@ pub(crate) enum Kind {
     Text,
 }
 
-/// What has come.
+/// A piece of the conversation that has come whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Piece {
     /// A block that is right, without what frames it.
     Block(Kind, Vec<u8>),
     /// A block that is wrong.
     Wrong,
-    /// End of text.
+    /// End of text, ETX.
     Etx,
-    /// End of transmission.
+    /// End of transmission, EOT.
     Eot,
     /// The block was right.
     Ack,
-    /// It was wrong.
+    /// Negative acknowledgement, NAK.
     Nak,
     /// Any other character between blocks.
     Other(u8),
@@ -92,7 +92,7 @@ impl Decoder {
         *self = Decoder::default();
     }
 
-    /// Takes a byte.
+    /// Takes a byte from the line; the piece that it completes.
     pub fn take(&mut self, settings: &Settings, byte: u8) -> Option<Piece> {
         match self.state {
             State::Between => self.between(settings, byte),

@@ -136,5 +136,5 @@ impl Protocol for Passive {
     }
 }
 
-/// Begins LSV/2.
+/// ENQ, with which LSV/2 begins.
 const ENQ: u8 = 0x05;

@@ -32,7 +32,7 @@ pub struct PrintOut {
 }
 
 impl PrintOut {
-    /// Prints bytes.
+    /// Begins to print bytes.
     pub fn new(bytes: Vec<u8>) -> PrintOut {
         PrintOut {
             over: bytes.is_empty(),

@@ -98,7 +98,7 @@ pub struct SharedPort {
 }
 
 impl SharedPort {
-    /// A port.
+    /// A port that a PLC shares with another protocol.
     pub fn new(hold: PlcHold, other: Box<dyn Protocol>) -> SharedPort {
         SharedPort {
             hold,

@@ -12,7 +12,7 @@ pub(crate) const LINE_MAX: usize = 1000;
 /// What the first line of a file says of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Beginning {
-    /// Name, without extension.
+    /// Name of the file, without extension.
     pub name: String,
     /// Type of file, when the line names it.
     pub kind: Option<FileType>,
@@ -192,7 +192,7 @@ impl Taking {
         self.ended
     }
 
-    /// Stores it.
+    /// Stores the file, whole, under its name.
     pub fn commit(self) -> Result<(), Unstored> {
         if self.is_program && !self.ended {
             return Err(Unstored::Incomplete);

@@ -25,7 +25,7 @@ struct Job {
     interrupt: Arc<AtomicBool>,
 }
 
-/// What was found.
+/// The result of an examination in the background.
 pub(crate) struct Done {
     pub(crate) uri: Uri,
     pub(crate) version: Arc<Version>,

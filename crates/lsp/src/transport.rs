@@ -21,10 +21,10 @@ const MESSAGE_MAX: u64 = 64 << 20;
 const LINE_MAX: u64 = 4096;
 const LINES_MAX: usize = 64;
 
-/// What comes next.
+/// What was read from the client.
 #[derive(Debug)]
 pub enum Frame {
-    /// A message.
+    /// A whole message.
     Message(Box<Message>),
     /// No message, with the request that it was meant to be.
     Wrong(String, Option<RequestId>),

@@ -69,7 +69,7 @@ impl Cam {
     }
 }
 
-/// See the module.
+/// A simulated axis; the module describes its physics.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
     pub letter: char,
@@ -130,7 +130,7 @@ pub(crate) struct Axis {
 }
 
 impl Cam {
-    /// `[axis.X.reference_cam]`.
+    /// Reads `[axis.X.reference_cam]`; `None` without one.
     fn of_reference(axis: &Section) -> Option<Cam> {
         let section = axis.section("reference_cam")?;
         let [from, to] = section.range("range").unwrap_or([0.0, 1.0]);
@@ -225,7 +225,7 @@ pub(crate) struct Load {
     outside: f64,
     friction: f64,
     stiction: f64,
-    /// It is clamped.
+    /// The clamp holds the table.
     fixed: bool,
     half_play: f64,
 }
@@ -333,7 +333,7 @@ impl Axis {
         }
     }
 
-    /// Where it stands.
+    /// Positions of table and motor.
     pub fn place(&self) -> AxisPlace {
         AxisPlace {
             letter: self.letter,

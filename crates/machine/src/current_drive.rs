@@ -9,7 +9,7 @@ use crate::reader::Section;
 /// Volts at which the drive gives its greatest current.
 const FULL_VOLTS: f64 = 10.0;
 
-/// `[axis.X.current_drive]`.
+/// A drive by current: the section `[axis.X.current_drive]`.
 #[derive(Clone, Debug)]
 pub(crate) struct CurrentDrive {
     /// Force of the axis for 1 V, N or Nm.

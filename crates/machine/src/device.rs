@@ -38,7 +38,7 @@ pub struct DeviceState<'a> {
     pub by_hand: bool,
 }
 
-/// See the module.
+/// A device; the module describes its behaviour.
 #[derive(Clone, Debug)]
 pub(crate) struct Device {
     pub name: String,
@@ -130,7 +130,7 @@ impl Device {
         self.position != before
     }
 
-    /// Where it is.
+    /// Position and direction of the device.
     pub fn place(&self) -> DevicePlace {
         DevicePlace {
             name: self.name.clone(),

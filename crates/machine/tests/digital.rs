@@ -104,7 +104,7 @@ impl Loop {
         self.axis.measure(self.measured.encoder(0));
     }
 
-    /// A servo step.
+    /// Runs one servo step.
     fn step(&mut self) {
         self.axis.step();
         self.lag_mm = self.axis.lag_mm();

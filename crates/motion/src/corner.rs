@@ -40,19 +40,19 @@ const NO_CHANGE: f64 = 1e-8;
 /// Which change of direction a joint may have to be passed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Passing {
-    /// That of MP7460.
+    /// Up to the angle of MP7460.
     #[default]
     ByAngle,
     /// The path is tangential by construction, but for rounding; axes beside it keep to MP7460.
     Tangential,
-    /// Any: M90.
+    /// Any angle: M90.
     AnyAngle,
 }
 
 /// What happens between two motions.
 #[derive(Clone, Debug)]
 pub(crate) enum Joint {
-    /// The path stops.
+    /// The path stops at the corner.
     Stop,
     /// No change of direction: passed at this speed, mm/s.
     Smooth(f64),

@@ -125,7 +125,7 @@ pub enum State {
 pub struct FunctionOutput {
     /// Number of the element, see [`Interpolator::functions`](crate::Interpolator::functions).
     pub element: u64,
-    /// Its block.
+    /// The block of the element.
     pub block: BlockRef,
     /// Its count of executed blocks.
     pub sequence: u64,

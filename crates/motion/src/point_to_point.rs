@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointToPoint {
     position: f64,
-    /// mm/s, signed.
+    /// Speed with its sign, mm/s.
     speed: f64,
 }
 

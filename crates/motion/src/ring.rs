@@ -90,7 +90,7 @@ impl Ring {
             .get(usize::try_from(number.checked_sub(self.first)?).ok()?)
     }
 
-    /// The last item.
+    /// The last item that is known.
     pub(crate) fn back(&self) -> Option<&Item> {
         self.items.back()
     }

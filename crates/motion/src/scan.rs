@@ -38,7 +38,7 @@ pub struct Sense {
 /// What a cycle of a scan comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScanStep {
-    /// It goes on.
+    /// The scan goes on.
     Moves,
     /// It goes on, and this is a point of the surface.
     Point(ScanPoint),
@@ -95,7 +95,7 @@ impl Scan {
         self.follower.retreat();
     }
 
-    /// Points so far.
+    /// The number of points that were taken so far.
     pub fn points(&self) -> u64 {
         self.points
     }

@@ -36,7 +36,7 @@ impl Wanted {
         self.stretches.push(number, wish);
     }
 
-    /// Drops everything.
+    /// Drops all elements.
     pub(crate) fn clear(&mut self) {
         self.stretches.clear();
         self.braking.set_stop(None);

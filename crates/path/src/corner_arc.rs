@@ -28,7 +28,7 @@ pub struct Circle {
     pub radius_mm: f64,
     /// Sweep, rad; 0 where the path is straight.
     pub sweep_rad: f64,
-    /// Length, mm.
+    /// Length of the arc, mm.
     pub length_mm: f64,
 }
 

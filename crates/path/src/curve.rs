@@ -5,7 +5,7 @@ use crate::{Axis, CornerArc, PerAxis, Plane, Point2, Position};
 /// The shape of a path element between its start and end position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {
-    /// No axis moves.
+    /// No axis moves: a dwell, or functions alone.
     Hold,
     /// All axes start and end together on a straight line [003:2522-2524].
     Line,
@@ -16,7 +16,7 @@ pub enum Curve {
     Corner(CornerArc),
 }
 
-/// The main axes.
+/// The main axes X, Y and Z.
 const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// A circular arc: about `centre`, from the angle of the start point through `sweep_deg`.

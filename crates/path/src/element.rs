@@ -81,7 +81,7 @@ pub struct PathElement {
     pub start: Position,
     /// End. An axis that gets its first position by this element has it here only; it adds no length.
     pub end: Position,
-    /// Feed rate.
+    /// Feed rate of the path.
     pub feed: FeedRate,
     /// What the overrides may do.
     pub override_law: OverrideLaw,
@@ -172,7 +172,7 @@ impl PathElement {
 /// A function output to the PLC or the spindle with the place on the path where it happens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TechnologyFunction {
-    /// What is output.
+    /// The function that is output.
     pub function: Function,
     /// Where on the element.
     pub at: At,
@@ -201,7 +201,7 @@ pub enum SpindleOrder {
     Clockwise,
     /// Turn counter-clockwise: M4, M14.
     CounterClockwise,
-    /// Stop: M5.
+    /// The spindle stops: M5.
     Stop,
     /// Stop, for the run stops or ends there: M0, M2, M6, M30.
     StopWithRun,
@@ -221,9 +221,9 @@ pub enum ControlFunction {
 /// Place of a function on its element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum At {
-    /// Before the movement.
+    /// Before the movement of its element.
     Start,
-    /// After the movement.
+    /// After the movement of its element.
     End,
     /// At a path length from the start, mm.
     Length(f64),
@@ -316,7 +316,7 @@ pub enum Voltage {
     Pulse {
         /// As long as it lasts, V.
         volts: f64,
-        /// How long, s.
+        /// Duration of the dwell, s.
         time_s: f64,
     },
 }

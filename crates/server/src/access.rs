@@ -21,21 +21,21 @@ pub(crate) const COOKIE_NAME: &str = "bahn-token";
 pub(crate) enum Role {
     /// He sees everything and does nothing.
     Look,
-    /// He operates.
+    /// May operate the machine.
     Operate,
 }
 
 /// What others must know.
 #[derive(Clone, Debug, Default)]
 pub struct Tokens {
-    /// To operate.
+    /// The token with which one may operate.
     pub operate: Option<String>,
-    /// To look.
+    /// The token with which one may look.
     pub look: Option<String>,
 }
 
 impl Tokens {
-    /// There is one.
+    /// Whether any token is asked for.
     pub(crate) fn any(&self) -> bool {
         self.operate.is_some() || self.look.is_some()
     }
@@ -52,7 +52,7 @@ impl Tokens {
     }
 }
 
-/// The rules.
+/// The rules of access to the panel.
 #[derive(Debug)]
 pub(crate) struct Access {
     address: SocketAddr,

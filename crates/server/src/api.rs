@@ -19,7 +19,7 @@ pub(crate) async fn station(State(shared): State<Shared>) -> Response {
     Json(shared.about.as_ref()).into_response()
 }
 
-/// In which language.
+/// The language of a request.
 #[derive(Deserialize)]
 pub(crate) struct Spoken {
     language: Option<String>,

@@ -19,7 +19,7 @@ use crate::regions::Regions;
 use crate::shared::Shared;
 use crate::{api, assets, door, gate, socket};
 
-/// Viewers at most.
+/// Viewers at once, at most.
 const VIEWERS: usize = 32;
 /// Those of them who may only look: the other places are kept for who operates.
 const LOOKERS: usize = 24;
@@ -128,7 +128,7 @@ impl Server {
         self.address
     }
 
-    /// The station.
+    /// The station that is served.
     pub fn live(&self) -> &Live {
         &self.live
     }

@@ -13,7 +13,7 @@ use crate::settings::ChannelSettings;
 ///
 /// Time, PLC, spindles and functions that are still open go over from one to the next, which starts where it ended.
 pub struct Run<'a> {
-    /// The programs.
+    /// The programs that may be run and called.
     pub programs: &'a dyn Programs,
     /// What the channel parameter list says.
     pub settings: &'a ChannelSettings,

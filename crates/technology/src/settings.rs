@@ -26,9 +26,9 @@ pub(crate) const SPINDLE_M: [u32; 4] = [3, 4, 5, 19];
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelSettings {
-    /// M functions.
+    /// The settings of the M functions.
     pub m: FunctionTable,
-    /// H functions.
+    /// The settings of the H functions.
     pub h: FunctionTable,
     /// Spindles by the index of `spindel[i]`.
     pub spindles: BTreeMap<usize, SpindleSettings>,
@@ -133,7 +133,7 @@ impl FunctionTable {
         self.0.get(usize::try_from(number).ok()?)
     }
 
-    /// To change it.
+    /// The settings of a function, to change them.
     pub fn get_mut(&mut self, number: u32) -> Option<&mut FunctionSettings> {
         self.0.get_mut(usize::try_from(number).ok()?)
     }

@@ -134,7 +134,7 @@ impl fmt::Display for SynchType {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Synch {
-    /// The type.
+    /// The synchronisation type.
     pub kind: SynchType,
     /// `PLC_INFO`: M functions of an NC spindle go to the PLC, too, and are waited for [004:159].
     pub plc_info: bool,

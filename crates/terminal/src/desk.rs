@@ -43,7 +43,7 @@ impl Targets {
 /// The desk in front of the terminal.
 #[derive(Debug, Default)]
 pub(crate) struct Desk {
-    /// The machine.
+    /// The machine in front of the operator.
     pub machine: Machine,
     /// The language of what is said.
     language: Language,
@@ -59,7 +59,7 @@ pub(crate) struct Desk {
     pub notice: String,
     /// Keys of the machine that are held.
     pub holds: Holds,
-    /// The operator leaves.
+    /// The operator leaves the panel.
     pub leaves: bool,
 }
 

@@ -29,9 +29,9 @@ pub(crate) enum Hand {
 /// What is to be done with a key of the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
-    /// It goes down.
+    /// The key is pressed.
     Press(String),
-    /// It comes up.
+    /// The key is released.
     Release(String),
 }
 

@@ -56,7 +56,7 @@ impl Recording {
 pub struct About {
     /// Name of the program.
     pub title: String,
-    /// The control model.
+    /// The control model that ran the program.
     pub model: String,
     /// The listings of the programs that took part, the main program first.
     pub listings: Vec<Listing>,
@@ -75,7 +75,7 @@ pub struct About {
 pub struct Listing {
     /// Number of the program in [`BlockRef::program`].
     pub program: u16,
-    /// Its name.
+    /// The name of the program.
     pub name: String,
     /// Its blocks from BEGIN PGM on.
     pub blocks: Vec<String>,
@@ -84,11 +84,11 @@ pub struct Listing {
 /// Something to know about a block.
 #[derive(Clone, Debug, Default)]
 pub struct Remark {
-    /// What it is.
+    /// The text of the remark.
     pub text: String,
     /// Where; `None` when it is about no block.
     pub block: Option<BlockRef>,
-    /// How often.
+    /// How often it came up.
     pub count: u64,
 }
 

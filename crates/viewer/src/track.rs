@@ -23,7 +23,7 @@ const MOST_CHORDS: f64 = 2000.0;
 enum Kind {
     Rapid = 0,
     Feed = 1,
-    /// The tool stands.
+    /// The tool stands still.
     Hold = 2,
     /// How the tool comes there is not known, or not in the coordinates of the blank.
     Hidden = 3,

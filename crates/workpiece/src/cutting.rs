@@ -21,14 +21,14 @@ pub enum Remark {
     Tool {
         /// `None` before the first TOOL CALL.
         tool: Option<u32>,
-        /// What happened.
+        /// The kind of event.
         kind: EventKind,
     },
     /// The tool was below the blank, last in this block.
     BelowBlank {
         /// `None` before the first TOOL CALL.
         tool: Option<u32>,
-        /// The last block.
+        /// The last block with the tool below the blank.
         last: BlockRef,
     },
     /// A second, different BLK FORM after the first movement.
@@ -48,7 +48,7 @@ pub enum Columns {
     BySize,
     /// Of this side, mm.
     Millimetres(f64),
-    /// About so many.
+    /// About so many columns.
     About(f64),
 }
 
@@ -74,7 +74,7 @@ impl Columns {
 pub struct Memory {
     /// Which tool cut what.
     pub tools: bool,
-    /// The tool path.
+    /// The tool path is kept for pictures.
     pub path: bool,
 }
 

@@ -77,7 +77,7 @@ pub struct DirectoryRequest {
 }
 
 impl DirectoryRequest {
-    /// Asks.
+    /// Asks the device for its directory.
     pub fn new(settings: Settings) -> DirectoryRequest {
         DirectoryRequest {
             settings,

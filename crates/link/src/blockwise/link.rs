@@ -75,7 +75,7 @@ impl Link {
         again
     }
 
-    /// Sends characters.
+    /// Sends control characters.
     pub fn send(&mut self, characters: &[u8]) {
         self.outgoing.extend(characters);
     }

@@ -32,7 +32,7 @@ enum Step {
     Sending(Source),
     /// ETX waits for what the other side wants next.
     Sent,
-    /// Lines come.
+    /// A file is received line by line.
     Receiving(Into),
     /// ETX has come: an EOT may follow, or more of the text, when it was none.
     Etx(Into),
@@ -42,7 +42,7 @@ enum Step {
     Refused,
 }
 
-/// The device.
+/// The device at the other end of the line: a disk unit with its files.
 pub struct Peripheral {
     link: Link,
     files: Box<dyn Files>,

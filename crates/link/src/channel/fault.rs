@@ -80,7 +80,7 @@ impl Faults {
         }
     }
 
-    /// SplitMix64.
+    /// The next random number, by SplitMix64.
     fn next(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut mixed = self.state;

@@ -38,7 +38,7 @@ impl Pace {
         1 + usize::try_from(whole).unwrap_or_default()
     }
 
-    /// Characters have gone.
+    /// Counts characters that were sent.
     pub fn sent(&mut self, characters: usize) {
         self.free += self.character * u32::try_from(characters).unwrap_or(u32::MAX);
     }

@@ -61,7 +61,7 @@ impl Pty {
         })
     }
 
-    /// What others open.
+    /// The path of the terminal that the other side opens.
     pub fn name(&self) -> &Path {
         self.link.as_deref().unwrap_or(&self.name)
     }

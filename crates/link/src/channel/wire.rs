@@ -18,7 +18,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// How long a peer has to close after the end of what is sent.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// One of them.
+/// The line behind a channel.
 #[derive(Debug)]
 pub(super) enum Wire {
     Listener {
@@ -27,9 +27,9 @@ pub(super) enum Wire {
     },
     Stream {
         peer: Option<TcpStream>,
-        /// Connects again.
+        /// Connects again in the background, while that runs.
         redial: Option<Redial>,
-        /// Whether it may.
+        /// Whether a lost connection is made again.
         redials: bool,
         address: String,
     },

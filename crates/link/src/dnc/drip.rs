@@ -7,7 +7,7 @@ use super::{Arrival, BlockLine, Machine};
 /// How far a transfer is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DripState {
-    /// Blocks are coming.
+    /// Blocks are transferred.
     Running,
     /// The line is broken off: START asks for the program again.
     Broken(String),

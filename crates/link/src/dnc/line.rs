@@ -48,7 +48,7 @@ pub trait Machine {
     /// Takes text; `false` when it does not.
     fn take(&mut self, text: &[u8]) -> bool;
 
-    /// Everything has come.
+    /// The program has come whole.
     fn complete(&mut self);
 
     /// The line is broken.

@@ -17,7 +17,7 @@ pub struct Progress {
     pub name: String,
     /// Blocks that the machine has acknowledged.
     pub blocks: u64,
-    /// Bytes of them.
+    /// Size of the blocks, bytes.
     pub bytes: u64,
     /// Bytes of the file.
     pub size: u64,
@@ -87,7 +87,7 @@ pub struct Spool {
 }
 
 impl Spool {
-    /// Spools files.
+    /// A spool of these files; with `resumes` a broken transfer goes on where it was.
     pub fn new(files: Box<dyn Files>, resumes: bool) -> Spool {
         Spool {
             files,

@@ -59,7 +59,7 @@ fn entry(telegram: Telegram, name: &str, attributes: &Attributes, features: Feat
         .string(name)
 }
 
-/// `R_DI`: the folder.
+/// `R_DI`: the current folder.
 pub(super) fn folder(session: &mut Session, telegram: &Telegram) -> Answer {
     let path = session.folder.to_string();
     let path = if path.ends_with('\\') { path } else { path + "\\" };

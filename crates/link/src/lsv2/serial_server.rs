@@ -32,7 +32,7 @@ impl SerialServer {
         self.follow(now);
     }
 
-    /// Time has passed.
+    /// Advances the clock: what was awaited for too long is repeated or given up.
     pub fn tick(&mut self, now: Duration) {
         self.line.tick(now);
         if self.line.is_idle()

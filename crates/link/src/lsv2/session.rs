@@ -17,7 +17,7 @@ const WRONG_PASSWORDS: u32 = 5;
 
 /// What all connections to a machine share.
 pub struct Site {
-    /// The machine.
+    /// The machine that answers.
     pub device: Arc<dyn Device>,
     /// Passwords of the levels.
     pub passwords: Passwords,
@@ -59,7 +59,7 @@ impl Site {
 /// What a connection is in the middle of.
 #[derive(Default)]
 pub(super) enum Task {
-    /// Nothing.
+    /// No answer is sent.
     #[default]
     None,
     /// Telegrams that go out one by one, each when the one before is confirmed.

@@ -39,7 +39,7 @@ impl Outgoing {
         }
     }
 
-    /// Begins a file.
+    /// Begins to send a file.
     fn begin(&mut self, source: Source) {
         self.bytes.extend([0; NULS]);
         self.source = Some(source);

@@ -91,7 +91,7 @@ pub struct Reading {
 #[derive(Debug)]
 enum Source {
     File(File),
-    /// Of a view.
+    /// The text of a view, which is no file of the medium.
     Bytes(io::Cursor<Vec<u8>>),
 }
 

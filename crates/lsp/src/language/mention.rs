@@ -8,9 +8,9 @@ use std::ops::Range;
 pub(crate) enum Thing {
     /// A label of a part program.
     Label(u16),
-    /// A Q parameter.
+    /// A Q parameter by its number.
     Q(u16),
-    /// A tool.
+    /// A tool by its number.
     Tool(u32),
     /// A part program, or a source file.
     File(String),
@@ -22,7 +22,7 @@ pub(crate) enum Thing {
     PlcLabel(String),
     /// An operand of the PLC.
     Operand(String),
-    /// A machine parameter.
+    /// A machine parameter by its number, such as `4110.2`.
     MachineParameter(String),
 }
 

@@ -196,7 +196,7 @@ pub(crate) struct Completion {
     pub(crate) detail: String,
     pub(crate) documentation: String,
     pub(crate) kind: CompletionKind,
-    /// What is replaced.
+    /// The bytes that are replaced.
     pub(crate) range: Range<usize>,
     /// What is written, with places to fill in as `${1:prompt}`.
     pub(crate) snippet: String,

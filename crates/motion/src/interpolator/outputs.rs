@@ -24,7 +24,7 @@ impl Outputs {
         self.passed.reserve(ends);
     }
 
-    /// A cycle begins.
+    /// Forgets which elements were passed in the cycle before.
     pub(super) fn begin_cycle(&mut self) {
         self.passed.clear();
     }
@@ -50,7 +50,7 @@ impl Outputs {
         self.queue.pop_front()
     }
 
-    /// An element begins.
+    /// Begins an element: none of its functions is output.
     pub(super) fn begin(&mut self) {
         self.to = f64::NEG_INFINITY;
     }

@@ -8,7 +8,7 @@ use crate::gate::{Gate, place};
 /// How far the element was executed that is taken back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Executed {
-    /// Its number.
+    /// The number of the element.
     pub(super) number: u64,
     /// Functions have still to be acknowledged after it.
     pub(super) late: bool,

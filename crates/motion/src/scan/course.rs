@@ -23,7 +23,7 @@ enum Stage {
     Plunge,
     /// Along a direction until the stylus touches.
     Approach,
-    /// Along the surface.
+    /// The stylus follows the surface.
     Follow,
     /// The end of a line is reached: up until free, then straight down.
     Rise,
@@ -39,7 +39,7 @@ enum Stage {
     Home,
 }
 
-/// See the module.
+/// The course of a scan; the module describes it.
 #[derive(Clone, Debug)]
 pub(super) struct Course {
     stage: Stage,

@@ -48,7 +48,7 @@ pub(super) struct Follower {
     tracking: Tracking,
     /// Direction of the scan in the plane: along and off.
     direction: [f64; 2],
-    /// The last point.
+    /// The last point that was taken, mm.
     last: ScanPoint,
     phase: Phase,
     /// How far it may go along before it goes straight to the surface.

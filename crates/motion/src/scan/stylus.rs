@@ -17,7 +17,7 @@ pub(super) struct Felt {
 /// How the tip is to move.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wish {
-    /// mm/s
+    /// Velocity of the tip, mm/s.
     pub velocity: ScanPoint,
     /// Axis that must not go beyond a coordinate in a direction.
     pub end: Option<(usize, f64, f64)>,

@@ -62,7 +62,7 @@ impl Faces {
         directed(self.edges.get(half_edge / 2).map(|edge| edge.segment), half_edge)
     }
 
-    /// See [`Edge::course`].
+    /// The segment of a half-edge in its direction; see [`Edge::course`].
     fn course(&self, half_edge: usize) -> Segment {
         directed(self.edges.get(half_edge / 2).map(|edge| edge.course), half_edge)
     }
@@ -103,7 +103,7 @@ impl Faces {
         sorted.into_iter().map(|(_, _, h)| h).collect()
     }
 
-    /// Numbers the faces.
+    /// Numbers the faces by their half-edges.
     fn trace<E: Effort>(&mut self, effort: &E) -> Result<(), E::Stop> {
         const NONE: usize = usize::MAX;
         self.face = vec![NONE; self.next.len()];

@@ -29,9 +29,9 @@ pub struct Pass {
     /// The path from the end of the pass before to the start of this one inside the region; `None` when
     /// the tool must be lifted.
     pub link: Option<Vec<Segment>>,
-    /// Start point.
+    /// Start of the pass, mm.
     pub from: Point2,
-    /// End point.
+    /// End of the pass, mm.
     pub to: Point2,
 }
 

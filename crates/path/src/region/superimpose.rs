@@ -20,7 +20,7 @@ pub enum Kind {
 pub struct SubContour {
     /// Programmed contour, in either sense; an open one is closed by a line.
     pub contour: Contour,
-    /// Pocket or island.
+    /// Whether it is a pocket or an island.
     pub kind: Kind,
 }
 

@@ -234,7 +234,7 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// At an address.
+    /// A viewer at an address of the server.
     pub fn of(url: &str) -> Viewer {
         let (socket, _) = tungstenite::connect(url).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {

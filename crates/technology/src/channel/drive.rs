@@ -123,7 +123,7 @@ impl Channel<'_> {
         }
     }
 
-    /// The path stands.
+    /// Notes that the path stands.
     pub(super) fn stop(&mut self, at: Moment) {
         let block = self.block_now();
         self.record.path(false, &block, at);

@@ -62,7 +62,7 @@ struct Gates {
     open_to: u64,
     /// The cycle in which a dwell ends.
     dwell: Option<u64>,
-    /// Functions are simulated.
+    /// Simulated forward motion: functions are output as MOS.
     simulated: bool,
 }
 

@@ -30,7 +30,7 @@ pub(super) struct Motion<'a> {
     pub(super) distance_before: f64,
     /// The path stood still in the last cycle.
     pub(super) still: bool,
-    /// That was said.
+    /// The standstill was reported.
     pub(super) stands: bool,
     /// It stands because it is held.
     pub(super) held: bool,

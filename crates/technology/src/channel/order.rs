@@ -27,11 +27,11 @@ pub(crate) enum Lead {
     None,
     /// Along the path, mm.
     Distance(f64),
-    /// s.
+    /// By a time, s.
     Time(f64),
 }
 
-/// Which range.
+/// The range to which a function goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RangeId {
     Channel,

@@ -28,9 +28,9 @@ struct Sorted {
     gate: Vec<OrderId>,
     /// Waited for after it.
     gate_after: Vec<OrderId>,
-    /// Done after it.
+    /// Done after the motion.
     after: Vec<Action>,
-    /// Output ahead.
+    /// Output ahead of the motion.
     ahead: Vec<OrderId>,
     /// Micro Joints before the motion and after it.
     joints: Vec<OrderId>,

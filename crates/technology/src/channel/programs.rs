@@ -37,7 +37,7 @@ enum Ended {
 }
 
 impl Run<'_> {
-    /// Runs them.
+    /// Runs the programs up to their end or an error.
     pub fn execute(self) -> Report {
         execute(&self, None)
     }

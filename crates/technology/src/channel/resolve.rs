@@ -251,7 +251,7 @@ impl Resolve<'_> {
         }
     }
 
-    /// An S word.
+    /// How an S word is handed over.
     fn speed(&self, function: &Function, place: &Place) -> Result<Option<Handling>, Fault> {
         let name = match &function.target {
             Some(Target::Spindle(name)) => Some(name.as_ref()),

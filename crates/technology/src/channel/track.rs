@@ -214,7 +214,7 @@ impl Track {
         }
     }
 
-    /// To change that.
+    /// The actions of a place, to change them.
     pub(crate) fn actions_mut(&mut self, place: u64) -> &mut [Action] {
         let last = self.last();
         let index = self.index(place);

@@ -68,7 +68,7 @@ struct OfFunction {
     field: &'static str,
 }
 
-/// `M25`.
+/// A function as it is written, `M25`.
 impl fmt::Display for OfFunction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", if self.is_m { 'M' } else { 'H' }, self.number)

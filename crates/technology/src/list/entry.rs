@@ -12,7 +12,7 @@ pub struct ListFault {
     pub column: usize,
     /// How many characters are meant.
     pub length: usize,
-    /// What it is.
+    /// What is wrong, in words.
     pub message: String,
     /// What to do about it, where that can be guessed.
     pub help: Option<String>,

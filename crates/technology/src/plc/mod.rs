@@ -25,7 +25,7 @@ pub(crate) use output::{Answer, Output};
 pub(crate) enum Reaction {
     /// The PLC fetches a function.
     Fetch(Id),
-    /// It acknowledges it.
+    /// The PLC acknowledges it.
     Acknowledge(Id),
     /// A spindle of the NC confirms it.
     Confirm(Id),

@@ -209,12 +209,12 @@ pub fn y(event: &Event) -> f64 {
     event.position.0[Axis::Y]
 }
 
-/// To 1 µm.
+/// Asserts a place within 1 µm.
 pub fn at(place: f64, expected: f64) {
     assert!((place - expected).abs() < 1e-3, "{place} mm is not {expected} mm");
 }
 
-/// To a cycle.
+/// Asserts a time within a cycle.
 pub fn when(t: f64, expected: f64) {
     assert!((t - expected).abs() <= T * 1.001, "{t} s is not {expected} s");
 }

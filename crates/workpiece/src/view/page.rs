@@ -26,9 +26,9 @@ pub struct Page {
 pub struct PageError;
 
 impl Page {
-    /// Shortest side, pixels.
+    /// Shortest side of a picture, pixels.
     pub const MIN_SIDE: u32 = 200;
-    /// Longest side, pixels.
+    /// Longest side of a picture, pixels.
     pub const MAX_SIDE: u32 = 8000;
 
     /// A page of a size in pixels. The title line shows `title` on the left, usually the name of the

@@ -6,7 +6,7 @@ use bahn_picture::{Colour, mix};
 /// in colours of our own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheme {
-    /// Behind the part.
+    /// Colour behind the part.
     pub background: Colour,
     /// Words, rulers and lines over the part.
     pub text: Colour,
@@ -24,7 +24,7 @@ pub(super) struct Pens {
     pub ink: Colour,
     /// Lines that are not to be seen first.
     pub faint: Colour,
-    /// Sectional planes.
+    /// Colour of sectional planes.
     pub section: Colour,
     /// The face of a section and its hatching.
     pub cut: [Colour; 2],
