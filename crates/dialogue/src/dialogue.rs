@@ -389,7 +389,7 @@ impl Dialogue {
         Ok(Step::Finish)
     }
 
-    /// The blocks so far: a last one to which nothing was said yet is none.
+    /// The blocks that were entered so far, without a last one that is still empty.
     pub(crate) fn made(&self) -> &[Line] {
         let mut count = self.reached + 1;
         while count > 1 {

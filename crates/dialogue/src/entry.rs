@@ -61,7 +61,7 @@ impl Entry {
         }
     }
 
-    /// With another text, which was entered before; `false` where the place is none in it.
+    /// With another text, which was entered before; `None` where the place does not exist in it.
     pub(crate) fn with(mut self, text: String, place: Place) -> Option<Entry> {
         self.text = text;
         self.place = place;
@@ -153,7 +153,7 @@ impl Entry {
         character.eq_ignore_ascii_case(&'Q') && self.current().is_some_and(address)
     }
 
-    /// Whether a character that comes after others is none of their word.
+    /// Whether a character that follows others does not belong to their word.
     fn parts(&self, before: &str, character: char) -> bool {
         let address = self.current_word().map_or("", |(address, _)| address);
         let one_axis = match address.as_bytes() {

@@ -16,7 +16,7 @@ use crate::entry::{Entry, Place};
 use crate::line::written;
 use crate::{Key, Reaction, Wanted};
 
-/// What keys write that are none of a character: those of the contour and of tools and cycles the G functions that do
+/// The words that keys without a character write: those of the contour and of tools and cycles the G functions that do
 /// the same *(inferred)*, so that a keyboard without letters has them.
 const WRITTEN: &[(Key, &str)] = &[
     (Key::Cr, "G02"),
@@ -203,7 +203,7 @@ impl Editor {
         }
     }
 
-    /// Writes a character, unless a word before it is none that a block can have.
+    /// Writes a character, unless a word before it is not allowed in a block.
     fn write(&self, entry: &mut Entry, character: char) -> Result<(), MessageId> {
         if entry.text.chars().count() >= self.characters_max() {
             return Err(EntryValueIncorrect);

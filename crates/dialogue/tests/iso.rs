@@ -304,7 +304,7 @@ fn what_is_open_is_kept() {
     assert_eq!(again.editor.view(3, 3), desk.editor.view(3, 3));
     again.enter("0 END");
     assert_eq!(again.blocks(), ["N10 M3 *", "N20 G00 X-50 *"]);
-    // A draft of the other language is none here.
+    // A draft of the other language is not taken.
     let mut plain = Desk::new();
     assert!(!plain.editor.restore(&kept));
 }

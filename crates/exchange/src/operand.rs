@@ -192,10 +192,10 @@ impl Assignment {
         is_word || parameter(name).is_some() || name.parse::<Operand>().is_ok()
     }
 
-    /// Reads one.
+    /// Reads an assignment, `M100=1`.
     ///
     /// # Errors
-    /// In words, when it is none.
+    /// In words, when the text is no assignment.
     pub fn parse(text: &str) -> Result<Assignment, String> {
         let (name, value) = text
             .split_once('=')
@@ -208,10 +208,10 @@ impl Assignment {
         Ok(Assignment::Operand(operand, operand.content(value)?))
     }
 
-    /// Several with commas between.
+    /// Reads several assignments with commas between.
     ///
     /// # Errors
-    /// That of the first that is none.
+    /// The error of the first that is no assignment.
     pub fn parse_all(text: &str) -> Result<Vec<Assignment>, String> {
         parts(text).map(Assignment::parse).collect()
     }

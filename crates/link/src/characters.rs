@@ -65,7 +65,7 @@ impl Characters {
         Duration::from_nanos(half_bits * 500_000_000 / u64::from(baud.max(1)))
     }
 
-    /// What of a byte a character carries on a channel without UART: with 7 data bits bit 7 is none of it.
+    /// The part of a byte that a character carries on a channel without UART: with 7 data bits bit 7 is lost.
     #[inline]
     pub fn mask(&self, byte: u8) -> u8 {
         if self.data_bits == 7 { byte & 0x7F } else { byte }

@@ -165,8 +165,8 @@ impl Decoder {
     }
 }
 
-/// The text of a block: ends of lines that some devices send in it are none of it, and neither is the blank of a check
-/// character that would be a control character.
+/// The text of a block, without the ends of lines that some devices send in it, and without the blank that fills a block
+/// whose check character would be a control character.
 fn strip(text: Vec<u8>, is_filled: bool) -> Option<Vec<u8>> {
     let is_end = |byte: &u8| matches!(byte, b'\r' | b'\n' | 0x0C);
     let from = text.iter().position(|byte| !is_end(byte)).unwrap_or(text.len());

@@ -223,7 +223,7 @@ fn a_million_blocks_over_a_line_with_faults() {
     assert!(tally.doubted * 20 < tally.transfers, "{tally:?}");
 }
 
-/// FE fills its line: what goes over it in one direction is 95 % of what could, with all that frames it.
+/// FE fills its line: in one direction it carries 95 % of what the baud rate allows, frames included.
 #[test]
 fn a_good_line_is_full() {
     let settings = settings(Mode::Fe2).on(Some(38_400), Duration::from_secs(3));

@@ -75,7 +75,7 @@ fn head(input: &mut impl BufRead) -> Result<Option<u64>, Frame> {
         }
         match line.split_once(':') {
             Some((name, value)) if name.trim().eq_ignore_ascii_case("Content-Length") => {
-                // After a length that is none nobody knows where the next message begins.
+                // Without a valid length nobody knows where the next message begins.
                 let number = value.trim().parse().ok().filter(|length| *length <= MESSAGE_MAX);
                 length = Some(number.ok_or_else(|| {
                     let value = value.trim();

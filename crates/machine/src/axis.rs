@@ -366,7 +366,7 @@ impl Axis {
     }
 
     /// Lets the drive have voltage or not, as enable output and control voltage say. A drive that goes on without them
-    /// brakes on order of the control; when that is not ready there is none, and its brake must hold it (inferred)
+    /// brakes on order of the control; when that is not ready nothing brakes it, and its brake must hold it (inferred)
     /// [000:18508-18521]. Whether its power is about to end by itself.
     pub fn set_power(&mut self, voltage: bool, control_ready: bool, outputs: &[bool; OUTPUTS]) -> bool {
         let enabled = self.enable.is_none_or(|enable| enable.is_on(outputs));

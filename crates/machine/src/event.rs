@@ -99,7 +99,7 @@ pub enum Fault {
 /// Why an event was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EventError {
-    /// The first word is none of the events.
+    /// The first word names no event.
     #[error("`{0}` is no event; there are {list}", list = Event::WORDS.join(", "))]
     Unknown(String),
     /// The words do not fit the event.

@@ -9,7 +9,7 @@ use crate::placed::Placed;
 pub(crate) const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
 /// The parallel axes.
 const PARALLEL: [Axis; 3] = [Axis::U, Axis::V, Axis::W];
-/// Shorter movements are none, mm or degrees: a thousandth of the finest resolution of any model.
+/// Shorter movements count as standstill, mm or degrees: a thousandth of the finest resolution of any model.
 const NO_LENGTH: f64 = 1e-7;
 /// Longer movements count as this long, mm: no machine has them, and sums stay finite.
 const LONGEST: f64 = 1e12;
@@ -118,7 +118,7 @@ impl Motion {
             swings,
             deg_per_mm: cylinder.map_or(0.0, |cylinder| cylinder.deg_per_mm),
             main_axes: self.main_axes && cylinder.is_none(),
-            // Straight lines are none in the machine where swivel axes turn; a direction is then not of length 1.
+            // Where swivel axes turn, a straight line is curved in the machine; a direction is then not of length 1.
             end_direction: (self.end_direction.is_some() || swings).then_some(end_direction),
             ..self
         }

@@ -363,7 +363,7 @@ pub struct Oversize {
 }
 
 impl ToolShape {
-    /// Sharper points are none (inferred), degrees.
+    /// Sharper points count as no point (inferred), degrees.
     pub const POINT_ANGLE_MIN_DEG: f64 = 5.0;
 }
 

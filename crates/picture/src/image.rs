@@ -107,7 +107,7 @@ impl Image {
     /// Reads a PNG; what shines through lies on black.
     ///
     /// # Errors
-    /// When it is none, or has more than a hundred million pixels.
+    /// When it is no PNG, or has more than a hundred million pixels.
     pub fn read_png(reader: impl BufRead + Seek) -> Result<Image, ImageError> {
         let mut decoder = png::Decoder::new(reader);
         decoder.set_transformations(png::Transformations::normalize_to_color8());

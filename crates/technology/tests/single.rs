@@ -174,7 +174,7 @@ fn what_is_output_ahead() {
     when(report.output("M56").t, 2.0 + ramp_s(20.0, V) - 0.1);
 }
 
-/// An axis that moves on its own ends with its block, which is one with a motion. A dwell is none.
+/// An axis that moves on its own ends with its block, which counts as a block with a motion. A dwell does not.
 #[test]
 fn independent_axes_and_dwells() {
     let program = "%T\nN10 G01 X20 F6000\nN20 Y[INDP G90 G01 FEED=6000 POS=20]\nN30 G04 X0.5\nN40 X40\nM30\n";

@@ -60,7 +60,7 @@ const fn command(word: &'static str, argument: &'static str, what: &'static str,
     }
 }
 
-/// The commands. A word that is none of them is a key.
+/// The commands. Any other word is a key.
 pub(crate) const COMMANDS: &[Command] = &[
     command(
         "key",

@@ -346,7 +346,7 @@ impl Leads {
         self.most.max(FLATTEST) * self.radius()
     }
 
-    /// So far from the track heights between places are sure, mm; nowhere when there are none.
+    /// Distance from the track up to which heights between places are exact, mm; `None` without heights.
     pub fn beside(&self) -> Option<f32> {
         (!self.heights.is_empty()).then(|| self.radius() - Leads::SIDE * self.step)
     }

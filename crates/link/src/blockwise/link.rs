@@ -127,7 +127,7 @@ impl Link {
         self.decoder.is_inside()
     }
 
-    /// A block that has begun does not come to its end: as good as wrong.
+    /// A block that has begun does not come to its end: it counts as wrong.
     pub fn give_block_up(&mut self, now: Duration) {
         self.decoder.reset();
         self.quiet = now;

@@ -241,7 +241,7 @@ impl<T: Transport> Client<T> {
     /// What is in a folder; without a path in the one where the device begins.
     ///
     /// # Errors
-    /// When there is none.
+    /// When the folder does not exist.
     pub fn list(&mut self, path: Option<&str>) -> Result<Vec<RemoteEntry>, ClientError> {
         if let Some(path) = path {
             self.order(&request(b"C_DC").string(path))?;

@@ -160,7 +160,7 @@ pub trait Device: Send + Sync {
     /// Elements of the PLC's memory: a byte for each bit, bytes in the order of their addresses, 128 bytes for each string.
     ///
     /// # Errors
-    /// When there are none of these.
+    /// When the area has no such elements.
     fn memory(&self, area: Area, first: u32, count: u32) -> Result<Vec<u8>, Refused>;
 
     /// A value of the tool table as it is written there, by the number of the tool and the name of the column.
@@ -172,7 +172,7 @@ pub trait Device: Send + Sync {
     /// Changes a machine parameter, for good or until power-off.
     ///
     /// # Errors
-    /// When there is none, it does not take the value, or not now.
+    /// When the parameter does not exist, does not take the value, or not now.
     fn set_parameter(&self, number: u16, index: u8, value: &str, for_good: bool) -> Result<(), Refused>;
 
     /// Presses a key by its name, or enters a character.
@@ -184,7 +184,7 @@ pub trait Device: Send + Sync {
     /// The screen as a BMP file.
     ///
     /// # Errors
-    /// When there is none.
+    /// When the device has no screen.
     fn screen(&self) -> Result<Vec<u8>, Refused>;
 
     /// The last [`EVENTS`] events, the oldest first.
@@ -211,7 +211,7 @@ pub trait Device: Send + Sync {
 pub struct Identity {
     /// The control: `BAHN TNC 415`.
     pub control: String,
-    /// What it does as such a one.
+    /// What a control of this kind can do.
     pub features: Features,
     /// NC software: six digits and two.
     pub nc_software: String,

@@ -632,7 +632,7 @@ pub fn list<W: Wire>(client: &mut Client<W>, folder: &Path) {
     client.close(&document);
 }
 
-/// What is not offered, and what is none of ours.
+/// What the server does not offer, and documents of other languages.
 pub fn others<W: Wire>(client: &mut Client<W>, folder: &Path) {
     let reason = client.refused("textDocument/willSaveWaitUntil", json!({}));
     assert!(reason.contains("not offered"), "{reason}");

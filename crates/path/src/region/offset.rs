@@ -81,7 +81,7 @@ struct Covering {
 
 /// What is nearer than the radius by this is covered, mm: more than rounding does.
 const COVERED_MM: f64 = 1e-9;
-/// Parts of an element shorter than this are none, mm.
+/// Shorter parts of an element are left out, mm.
 const LEAST_PART_MM: f64 = 1e-3 * RESOLUTION_MM;
 /// Parts of one element that are looked at.
 const MOST_LOOKS: usize = 1000;
