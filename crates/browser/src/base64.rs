@@ -1,6 +1,6 @@
 //! Bytes from text (RFC 4648).
 
-/// `None` for text that is none.
+/// The bytes of a text; `None` when it is not base64.
 pub(crate) fn decode(text: &str) -> Option<Vec<u8>> {
     let text = text.trim_end_matches('=');
     let mut out = Vec::with_capacity(text.len() / 4 * 3 + 3);

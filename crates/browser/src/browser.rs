@@ -89,7 +89,7 @@ impl Browser {
     /// Starts the browser with an empty profile.
     ///
     /// # Errors
-    /// When there is none, or it does not come up.
+    /// When no browser is installed, or it does not start.
     pub fn start() -> Result<Browser, BrowserError> {
         let program = Browser::installed().ok_or(BrowserError::NotInstalled)?;
         let profile = empty_folder().map_err(|error| BrowserError::Start(error.to_string()))?;

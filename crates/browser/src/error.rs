@@ -21,7 +21,7 @@ pub enum BrowserError {
     Refused {
         /// The order in terms of the DevTools protocol.
         method: String,
-        /// What it says.
+        /// The message of the browser.
         message: String,
     },
     /// JavaScript threw an error.
@@ -35,7 +35,7 @@ pub enum BrowserError {
     Never {
         /// What was waited for.
         condition: String,
-        /// How long.
+        /// The time limit that has passed, s.
         seconds: f64,
         /// What it was at the end.
         last: String,

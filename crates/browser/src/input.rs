@@ -62,7 +62,7 @@ impl Page {
     pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), BrowserError> {
         self.mouse_move(from)?;
         self.mouse_down(from)?;
-        for at in way(from, to) {
+        for at in steps(from, to) {
             self.mouse("mouseMoved", at, "left", 1)?;
             std::thread::sleep(STEP);
         }
@@ -109,12 +109,15 @@ impl Page {
     pub fn swipe(&mut self, fingers: &[[[f64; 2]; 2]]) -> Result<(), BrowserError> {
         let starts: Vec<[f64; 2]> = fingers.iter().map(|[from, _]| *from).collect();
         self.touch("touchStart", &starts)?;
-        let ways: Vec<Vec<[f64; 2]>> = fingers
+        let paths: Vec<Vec<[f64; 2]>> = fingers
             .iter()
-            .map(|[from, to]| way(*from, *to).collect())
+            .map(|[from, to]| steps(*from, *to).collect())
             .collect();
-        for step in 0..WAY_STEPS {
-            let now: Vec<[f64; 2]> = ways.iter().filter_map(|way| way.get(step).copied()).collect();
+        for step in 0..STEPS {
+            let now: Vec<[f64; 2]> = paths
+                .iter()
+                .filter_map(|steps| steps.get(step).copied())
+                .collect();
             self.touch("touchMove", &now)?;
             std::thread::sleep(STEP);
         }
@@ -210,12 +213,12 @@ impl Page {
     }
 }
 
-const WAY_STEPS: usize = 12;
+const STEPS: usize = 12;
 
-/// The places of a straight movement behind its first.
-fn way(from: [f64; 2], to: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
-    (1..=WAY_STEPS).map(move |step| {
-        let t = step as f64 / WAY_STEPS as f64;
+/// The places of a straight movement after its first.
+fn steps(from: [f64; 2], to: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    (1..=STEPS).map(move |step| {
+        let t = step as f64 / STEPS as f64;
         [from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t]
     })
 }

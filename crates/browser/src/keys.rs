@@ -1,9 +1,9 @@
-//! What the browser is told of each key.
+//! What is sent to the browser for each key.
 
 /// A key as the protocol wants it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Key {
-    /// `KeyboardEvent.key`.
+    /// `KeyboardEvent.key`, such as `a` or `Enter`.
     pub key: String,
     /// `KeyboardEvent.code`: where it is on the keyboard.
     pub code: String,

@@ -29,9 +29,9 @@ pub struct Page {
 /// When a page was ready, ms after its navigation began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timings {
-    /// Something was drawn.
+    /// From the navigation to the first painted pixel, ms.
     pub first_paint_ms: f64,
-    /// All was loaded.
+    /// From the navigation to the end of the load event, ms.
     pub load_ms: f64,
 }
 
@@ -136,7 +136,7 @@ impl Page {
     /// The text of an element as it is shown.
     ///
     /// # Errors
-    /// When there is none.
+    /// When the page has no such element.
     pub fn text(&mut self, selector: &str) -> Result<String, BrowserError> {
         let name = Value::from(selector);
         match self.evaluate(&format!("document.querySelector({name})?.innerText ?? null"))? {
@@ -172,7 +172,7 @@ impl Page {
     /// The middle of an element in the window, into which it is scrolled first.
     ///
     /// # Errors
-    /// When there is none, or it has no size.
+    /// When the page has no such element, or it has no size.
     pub fn middle(&mut self, selector: &str) -> Result<[f64; 2], BrowserError> {
         let [x, y, width, height] = self.bounds(selector)?;
         Ok([x + 0.5 * width, y + 0.5 * height])
@@ -181,7 +181,7 @@ impl Page {
     /// Left, top, width and height of an element in the window, into which it is scrolled first.
     ///
     /// # Errors
-    /// When there is none, or it has no size.
+    /// When the page has no such element, or it has no size.
     pub fn bounds(&mut self, selector: &str) -> Result<[f64; 4], BrowserError> {
         let name = Value::from(selector);
         let found = self.evaluate(&format!(
@@ -266,7 +266,7 @@ impl Page {
         &self.complaints
     }
 
-    /// What scripts told the console otherwise.
+    /// What scripts wrote to the console otherwise.
     pub fn said(&mut self) -> &[String] {
         self.listen();
         &self.said
@@ -280,7 +280,7 @@ impl Page {
 
     /// Takes events that have come and were not read yet.
     fn listen(&mut self) {
-        // Whoever asks next is told that the connection is lost.
+        // Whoever asks next gets the error that the connection is lost.
         while let Ok(Some(event)) = self.connection.event(Duration::ZERO) {
             self.take(&event);
         }

@@ -93,7 +93,7 @@ fn colours_and_pictures_are_those_of_the_window() {
             colour
         );
         let picture = page.screenshot().unwrap();
-        // Width and height stand behind the head of a PNG.
+        // Width and height stand after the head of a PNG.
         assert_eq!(&picture[..8], b"\x89PNG\r\n\x1a\n");
         assert_eq!(
             &picture[16..24],

@@ -47,7 +47,7 @@ impl Default for Options<'_> {
 /// A program in the other language.
 #[derive(Clone, Debug)]
 pub struct Converted {
-    /// Its text.
+    /// The program, block by block.
     pub text: String,
     /// How many blocks it has.
     pub blocks: u32,
@@ -165,7 +165,7 @@ fn operations_of(blocks: &[NumberedBlock]) -> Vec<Operation> {
 /// Writes the cycle that was gathered, and the comment blocks that came up in it: those before it that stood inside.
 fn cycle_to_iso(open: &mut Vec<NumberedBlock>, aside: &mut Vec<NumberedBlock>, writer: &mut Writer<'_>) {
     let last = open.last().map_or(0, |last| last.number);
-    let (inside, behind): (Vec<_>, Vec<_>) = aside.drain(..).partition(|comment| comment.number < last);
+    let (inside, after): (Vec<_>, Vec<_>) = aside.drain(..).partition(|comment| comment.number < last);
     let open = std::mem::take(open);
     for comment in inside {
         writer.comment(&comment.block);
@@ -173,7 +173,7 @@ fn cycle_to_iso(open: &mut Vec<NumberedBlock>, aside: &mut Vec<NumberedBlock>, w
     if !open.is_empty() {
         block_to_iso(&open, false, Plane::XY, writer);
     }
-    for comment in behind {
+    for comment in after {
         writer.comment(&comment.block);
     }
 }
@@ -200,7 +200,7 @@ struct Writer<'a> {
     made: Converted,
 }
 
-/// Characters that stand before and behind the text of a comment in a block of its own.
+/// Characters that stand before and after the text of a comment in a block of its own.
 const COMMENT_FRAME: u32 = 16;
 
 impl Writer<'_> {
@@ -428,9 +428,9 @@ fn wrapped(text: &str, max: usize) -> Vec<String> {
         let blank = begin.rev().position(|c| *c == ' ').map(|back| max - back);
         let word = rest.iter().position(|c| *c != ' ').unwrap_or(0);
         let cut = blank.filter(|at| *at > word).unwrap_or(max);
-        let (piece, behind) = rest.split_at(cut);
+        let (piece, after) = rest.split_at(cut);
         pieces.push(piece.iter().collect());
-        rest = behind.strip_prefix(&[' ']).unwrap_or(behind);
+        rest = after.strip_prefix(&[' ']).unwrap_or(after);
     }
     pieces.push(rest.iter().collect());
     pieces

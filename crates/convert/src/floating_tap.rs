@@ -1,6 +1,6 @@
 //! A tap with a floating holder: what cycle 2 does, gathered from its elements to be written as the cycle again.
 //!
-//! The way in on which the spindle is stopped before its end, the turning back, a dwell, the way out, and the spindle as it turned
+//! The plunge on which the spindle is stopped before its end, the turning back, a dwell, the retraction, and the spindle as it turned
 //! before [003:5005-5035]. The wait before the turning back belongs to the machine (MP7120.0), not to the cycle.
 
 use bahn_path::{At, Curve, FeedRate, Function, OverrideLaw, PathElement};
@@ -11,35 +11,35 @@ pub(crate) enum Part {
     None,
     /// It is in one.
     Inside,
-    /// It is the way out.
+    /// It is the retraction.
     Whole(Box<Tap>),
 }
 
-/// A whole tap, along its way.
+/// A whole tap with a floating holder.
 pub(crate) struct Tap {
-    pub way_in: PathElement,
-    /// Between turning back and the way out, s.
+    pub plunge: PathElement,
+    /// Between turning back and the retraction, s.
     pub dwell_s: f64,
-    /// mm/min.
+    /// Feed of the plunge, mm/min.
     pub feed_mm_min: f64,
 }
 
-/// Gathers taps.
+/// Recognises taps in the elements of a run.
 #[derive(Default)]
 pub(crate) struct FloatingTaps {
     open: Option<Open>,
     /// Orders to the spindle that still belong to the last tap.
-    orders_behind: u8,
+    orders_after: u8,
 }
 
 struct Open {
-    way_in: PathElement,
+    plunge: PathElement,
     dwell_s: f64,
     turns_back: bool,
 }
 
-/// Behind the way out the spindle stops and turns as before.
-const ORDERS_BEHIND: u8 = 2;
+/// After the retraction the spindle stops and turns as before.
+const ORDERS_AFTER: u8 = 2;
 
 impl FloatingTaps {
     /// Takes the next element of a run.
@@ -50,23 +50,23 @@ impl FloatingTaps {
         let taps = matches!(element.override_law, OverrideLaw::Tapping { .. });
         let ordered =
             element.curve == Curve::Hold && matches!(element.functions(), [of] if is_order(&of.function));
-        if self.orders_behind > 0 {
+        if self.orders_after > 0 {
             if !ordered || element.dwell_s > 0.0 {
                 return Err("a tap that ends otherwise than cycle 2".to_owned());
             }
-            self.orders_behind -= 1;
+            self.orders_after -= 1;
             return Ok(Part::Inside);
         }
         match (&mut self.open, taps) {
             (None, false) => return Ok(Part::None),
-            (Some(_), false) => return Err("a movement between both ways of a tap".to_owned()),
+            (Some(_), false) => return Err("a movement between plunge and retraction of a tap".to_owned()),
             (None, true) => {
                 let early = |of: &bahn_path::TechnologyFunction| !matches!(of.at, At::BeforeEnd(_));
                 if element.curve != Curve::Line || element.functions().iter().any(early) {
                     return Err("a tap that begins otherwise than cycle 2".to_owned());
                 }
                 self.open = Some(Open {
-                    way_in: element.clone(),
+                    plunge: element.clone(),
                     dwell_s: 0.0,
                     turns_back: false,
                 });
@@ -82,24 +82,24 @@ impl FloatingTaps {
         Ok(Part::Inside)
     }
 
-    /// The element is the way out.
+    /// The element is the retraction.
     fn whole(&mut self, out: &PathElement) -> Result<Part, String> {
         let same = |open: &Open| {
             open.turns_back
-                && open.way_in.start == out.end
-                && open.way_in.end == out.start
-                && open.way_in.feed == out.feed
+                && open.plunge.start == out.end
+                && open.plunge.end == out.start
+                && open.plunge.feed == out.feed
         };
         match (self.open.take().filter(same), out.feed) {
             (Some(open), FeedRate::Programmed(feed_mm_min)) => {
-                self.orders_behind = ORDERS_BEHIND;
+                self.orders_after = ORDERS_AFTER;
                 Ok(Part::Whole(Box::new(Tap {
-                    way_in: open.way_in,
+                    plunge: open.plunge,
                     dwell_s: open.dwell_s,
                     feed_mm_min,
                 })))
             }
-            _ => Err("the way out of a tap is not the way into it".to_owned()),
+            _ => Err("the retraction of a tap is not its plunge".to_owned()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Which G functions may be in force before each block of a program, wherever it is reached from.
 //!
-//! What a subprogram leaves behind is found once, relative to what is in force at its call: a subprogram that says nothing
+//! What a subprogram leaves in force is found once, relative to what is in force at its call: a subprogram that says nothing
 //! of G90 leaves it to each of its calls as it was there.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,7 +35,7 @@ const PLANES: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 pub(crate) struct States([u16; PARTS]);
 
 impl States {
-    /// Anything.
+    /// Any function may be in force.
     pub const UNKNOWN: States = States(ANY);
     const CALLED: States = States([AS_CALLED; PARTS]);
 
@@ -61,7 +61,7 @@ impl States {
     }
 
     /// With what a block says.
-    fn behind(self, change: States) -> States {
+    fn after(self, change: States) -> States {
         States(std::array::from_fn(|part| match change.part(part) {
             0 => self.part(part),
             said => said,
@@ -113,9 +113,9 @@ impl States {
     }
 }
 
-/// Where the run goes behind a block.
+/// Where the run goes after a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
+enum Successor {
     Next,
     End,
     Jump(u16),
@@ -128,7 +128,7 @@ enum Way {
 #[derive(Clone, Copy, Debug)]
 struct Step {
     change: States,
-    way: Way,
+    successor: Successor,
 }
 
 /// What may be in force before each block.
@@ -139,7 +139,7 @@ pub(crate) struct Flow {
 
 impl Flow {
     /// Follows a program that begins with `entry`; `foreign` says of a program that it may leave other functions in
-    /// force behind its call.
+    /// force after its call.
     pub fn of(program: &Program, entry: States, foreign: &dyn Fn(&str) -> bool) -> Flow {
         let mut analysis = Analysis::of(program, foreign);
         analysis.find_effects();
@@ -154,7 +154,7 @@ impl Flow {
             if states.is_unreached() {
                 *states = last;
             }
-            last = states.behind(step.change);
+            last = states.after(step.change);
         }
         Flow { before }
     }
@@ -191,7 +191,7 @@ impl Analysis {
             let operation = &numbered.block.operation;
             let mut step = Step {
                 change: States::default(),
-                way: Way::Next,
+                successor: Successor::Next,
             };
             for part in operation.parts() {
                 if let Operation::Cycle(block) = part {
@@ -203,20 +203,20 @@ impl Analysis {
                         }
                     }
                 }
-                step.way = match part {
-                    Operation::End(_) => Way::End,
-                    Operation::Jump { label, .. } => Way::Jump(*label),
-                    Operation::CallLabel { label, repeats: None } => Way::Call(*label),
-                    Operation::CallLabel { label, .. } => Way::Jump(*label),
-                    Operation::Label(0) => Way::Return,
-                    Operation::CallProgram(name) if foreign(name) => Way::Program,
-                    _ => step.way,
+                step.successor = match part {
+                    Operation::End(_) => Successor::End,
+                    Operation::Jump { label, .. } => Successor::Jump(*label),
+                    Operation::CallLabel { label, repeats: None } => Successor::Call(*label),
+                    Operation::CallLabel { label, .. } => Successor::Jump(*label),
+                    Operation::Label(0) => Successor::Return,
+                    Operation::CallProgram(name) if foreign(name) => Successor::Program,
+                    _ => step.successor,
                 };
             }
             if operation.m().is_some_and(|m| m.contains(2) || m.contains(30)) {
-                step.way = Way::End;
+                step.successor = Successor::End;
             } else if cycle_is_foreign {
-                step.way = Way::Program;
+                step.successor = Successor::Program;
             }
             step.change = said(operation);
             analysis.steps.push(step);
@@ -229,8 +229,8 @@ impl Analysis {
         let called: BTreeSet<u16> = self
             .steps
             .iter()
-            .filter_map(|step| match step.way {
-                Way::Call(label) => Some(label),
+            .filter_map(|step| match step.successor {
+                Successor::Call(label) => Some(label),
                 _ => None,
             })
             .collect();
@@ -246,13 +246,15 @@ impl Analysis {
         }
     }
 
-    /// From a label to the LBL 0 behind it.
+    /// From a label to the LBL 0 after it.
     fn effect(&self, label: u16) -> States {
         let Some(&start) = self.labels.get(&label) else {
             return States::default();
         };
-        let behind = self.steps.iter().skip(start);
-        let length = behind.take_while(|step| step.way != Way::Return).count();
+        let after = self.steps.iter().skip(start);
+        let length = after
+            .take_while(|step| step.successor != Successor::Return)
+            .count();
         let end = start + length;
         let mut before = vec![States::default(); length + 1];
         if let Some(first) = before.first_mut() {
@@ -262,7 +264,7 @@ impl Analysis {
         before.last().copied().unwrap_or_default()
     }
 
-    /// Carries all states of a range one way along it; `true` if any was new. The states of a call go into its
+    /// Carries all states of a range in one direction along it; `true` if any was new. The states of a call go into its
     /// subprogram where that is wanted.
     fn sweep(&self, before: &mut [States], range: std::ops::Range<usize>, enter: bool) -> bool {
         let mut changed = false;
@@ -280,23 +282,23 @@ impl Analysis {
             if here.is_unreached() {
                 continue;
             }
-            let behind = here.behind(step.change);
-            all = all.union(behind);
-            match step.way {
-                Way::End => {}
-                Way::Next | Way::Return => add(before, at + 1, behind),
-                Way::Program => add(before, at + 1, States::UNKNOWN),
-                Way::Jump(label) => {
-                    add(before, at + 1, behind);
+            let after = here.after(step.change);
+            all = all.union(after);
+            match step.successor {
+                Successor::End => {}
+                Successor::Next | Successor::Return => add(before, at + 1, after),
+                Successor::Program => add(before, at + 1, States::UNKNOWN),
+                Successor::Jump(label) => {
+                    add(before, at + 1, after);
                     if let Some(target) = self.labels.get(&label) {
-                        add(before, *target, behind);
+                        add(before, *target, after);
                     }
                 }
-                Way::Call(label) => {
+                Successor::Call(label) => {
                     let left = self.effects.get(&label).copied().unwrap_or_default();
-                    add(before, at + 1, left.called_with(behind));
+                    add(before, at + 1, left.called_with(after));
                     if let Some(target) = self.labels.get(&label).filter(|_| enter) {
-                        add(before, *target, behind);
+                        add(before, *target, after);
                     }
                 }
             }
@@ -342,13 +344,13 @@ fn take(change: &mut States, modality: &Modality) {
             .iter()
             .position(|(_, listed)| *listed == function);
         change.0[FUNCTION] = 1 << index.unwrap_or(0);
-        let mut behind = InForce::default();
+        let mut after = InForce::default();
         // Without words nothing can be wrong with them.
-        let _ = behind.resolve(&bare(), modality);
+        let _ = after.resolve(&bare(), modality);
         if let Some(index) = DIRECTIONS
             .iter()
-            .position(|direction| *direction == behind.direction)
-            && behind.direction.is_some()
+            .position(|direction| *direction == after.direction)
+            && after.direction.is_some()
         {
             change.0[DIRECTION] = 1 << index;
         }

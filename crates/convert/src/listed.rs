@@ -1,4 +1,4 @@
-//! What people are told of a conversion.
+//! The report of a conversion for people.
 
 use bahn_program::{IsoLanguage, PlainLanguage};
 use serde::Serialize;
@@ -37,8 +37,8 @@ pub struct Listed {
     pub block: u32,
     /// Its line in the file.
     pub line: u32,
-    /// Its text.
+    /// The block as it stands in the source.
     pub text: String,
-    /// Why.
+    /// Why it is refused or left out.
     pub reason: String,
 }

@@ -62,8 +62,8 @@ fn take_plane(modality: &Modality, state: &State) -> Result<(), Reason> {
     }
 }
 
-/// As a run executes it: F of a block in rapid traverse counts from the next one on that is not, a block that only sets
-/// functions is none.
+/// As a run executes it: F of a block in rapid traverse counts from the next movement with a feed on; a block that only
+/// sets functions is no movement.
 fn movement(
     motion: &Motion,
     modality: &Modality,

@@ -65,7 +65,7 @@ pub struct At {
     pub block: u32,
     /// Its line in the file.
     pub line: u32,
-    /// Its text.
+    /// The text of the block; empty where there is none.
     pub text: String,
 }
 

@@ -92,10 +92,10 @@ pub fn prove_unrolled(
         if stop.load(Ordering::Relaxed) {
             return proof;
         }
-        let deeds = (source.next(), target.next());
+        let actions = (source.next(), target.next());
         warned.take(&mut source.run, &mut target.run);
-        let what = match deeds {
-            (Deed::Over(one), Deed::Over(other)) if one == other => {
+        let what = match actions {
+            (Action::Over(one), Action::Over(other)) if one == other => {
                 proof.completed = true;
                 proof.message = one;
                 proof.warnings = warned.both();
@@ -103,12 +103,12 @@ pub fn prove_unrolled(
                 proof.first_difference = warned.difference(gained, &source.run, &target.run);
                 return proof;
             }
-            (Deed::Move(one), Deed::Move(other)) => {
+            (Action::Move(one), Action::Move(other)) => {
                 proof.elements += 1;
                 moves_differ(&one, &other, &mut proof)
             }
-            (Deed::Dwell(one), Deed::Dwell(other)) if (one - other).abs() < 1e-3 => None,
-            (Deed::Function(one), Deed::Function(other)) if same_function(&one, &other) => {
+            (Action::Dwell(one), Action::Dwell(other)) if (one - other).abs() < 1e-3 => None,
+            (Action::Function(one), Action::Function(other)) if same_function(&one, &other) => {
                 proof.functions += 1;
                 None
             }
@@ -127,19 +127,19 @@ pub fn prove_unrolled(
 
 /// One thing that a run does.
 #[derive(Debug)]
-enum Deed {
+enum Action {
     Move(Box<PathElement>),
     Dwell(f64),
     Function(Function),
     Over(Option<String>),
 }
 
-/// A run deed by deed.
+/// A run action by action.
 struct Flat {
     run: Interpreter,
     model: ControlModel,
     block: BlockRef,
-    queue: VecDeque<Deed>,
+    queue: VecDeque<Action>,
 }
 
 impl Flat {
@@ -153,17 +153,17 @@ impl Flat {
         }
     }
 
-    fn next(&mut self) -> Deed {
+    fn next(&mut self) -> Action {
         loop {
-            if let Some(deed) = self.queue.pop_front() {
-                return deed;
+            if let Some(action) = self.queue.pop_front() {
+                return action;
             }
             match next_event(&mut self.run, self.model) {
                 Event::Element(element) => self.element(*element),
                 Event::Stop(_) | Event::Asked(_) => {}
-                Event::Message(_, text) => return Deed::Over(Some(text)),
-                Event::End => return Deed::Over(None),
-                Event::Interrupted => return Deed::Over(Some("interrupted".to_owned())),
+                Event::Message(_, text) => return Action::Over(Some(text)),
+                Event::End => return Action::Over(None),
+                Event::Interrupted => return Action::Over(Some("interrupted".to_owned())),
             }
         }
     }
@@ -171,17 +171,17 @@ impl Flat {
     fn element(&mut self, mut element: PathElement) {
         self.block = element.block;
         let functions = element.functions.take().unwrap_or_default();
-        let (before, behind): (Vec<_>, Vec<_>) = functions.into_iter().partition(|of| of.at == At::Start);
-        let deed = |of: bahn_path::TechnologyFunction| Deed::Function(of.function);
-        self.queue.extend(before.into_iter().map(deed));
+        let (before, after): (Vec<_>, Vec<_>) = functions.into_iter().partition(|of| of.at == At::Start);
+        let action = |of: bahn_path::TechnologyFunction| Action::Function(of.function);
+        self.queue.extend(before.into_iter().map(action));
         let dwell_s = std::mem::take(&mut element.dwell_s);
         if element.curve != Curve::Hold {
-            self.queue.push_back(Deed::Move(Box::new(element)));
+            self.queue.push_back(Action::Move(Box::new(element)));
         }
         if dwell_s > 0.0 {
-            self.queue.push_back(Deed::Dwell(dwell_s));
+            self.queue.push_back(Action::Dwell(dwell_s));
         }
-        self.queue.extend(behind.into_iter().map(deed));
+        self.queue.extend(after.into_iter().map(action));
     }
 }
 
@@ -224,14 +224,14 @@ fn same_function(one: &Function, other: &Function) -> bool {
     }
 }
 
-/// Writes blocks.
+/// Writes what a run does as blocks without cycles and labels.
 struct Writer {
     text: String,
     number: u32,
     define_tools: bool,
     /// Tools with the data that were written last.
     defined: BTreeSet<(u32, u64, u64)>,
-    /// The way into a thread whose way out comes next.
+    /// The plunge into a thread whose retraction comes next.
     tap: Option<PathElement>,
     floating: FloatingTaps,
 }
@@ -248,9 +248,9 @@ impl Writer {
     }
 
     fn element(&mut self, element: &PathElement) -> Result<(), String> {
-        let is_way_out = matches!(element.thread(), Some(thread) if thread.retracts);
-        if self.tap.is_some() && !is_way_out {
-            return Err("a movement between both ways of a tap".to_owned());
+        let is_retraction = matches!(element.thread(), Some(thread) if thread.retracts);
+        if self.tap.is_some() && !is_retraction {
+            return Err("a movement between plunge and retraction of a tap".to_owned());
         }
         match self.floating.take(element)? {
             Part::None => {}
@@ -278,7 +278,7 @@ impl Writer {
         let by_m = [0, 1, 6].iter().any(|code| m.contains(*code));
         match &element.curve {
             Curve::Hold if stops && !by_m => self.block(Operation::Stop(m)),
-            _ if stops && !by_m => return Err("a stop on the way".to_owned()),
+            _ if stops && !by_m => return Err("a stop within a tap".to_owned()),
             Curve::Hold if m.is_empty() => {}
             Curve::Hold => self.block(Operation::Miscellaneous(m)),
             Curve::Line if element.thread().is_some() => {
@@ -395,7 +395,7 @@ impl Writer {
                 .any(|axis| !arc.plane.contains(axis));
             motion.kind = MotionKind::Circle;
             if helix || arc.sweep_deg.abs() > 360.0 {
-                // By its angle: the way in the plane follows from the start.
+                // By its angle: the path in the plane follows from the start.
                 motion.kind = MotionKind::CirclePolar;
                 motion.polar_angle = Some(Word {
                     value: number(arc.sweep_deg),
@@ -426,22 +426,22 @@ impl Writer {
         Ok(())
     }
 
-    /// A way with the spindle, from where the tool stands: cycle 18, and cycle 17 with the way back.
+    /// A movement with the spindle, from where the tool stands: cycle 18, and cycle 17 with the retraction.
     fn thread(&mut self, element: &PathElement) -> Result<(), String> {
         let Some(thread) = element.thread().copied() else {
             return Ok(());
         };
-        let way_in = match (thread.retracts, self.tap.take()) {
+        let plunge = match (thread.retracts, self.tap.take()) {
             (true, None) => {
                 self.tap = Some(element.clone());
                 return Ok(());
             }
-            (true, Some(way_in)) if way_in.start == element.end && way_in.end == element.start => way_in,
-            (true, Some(_)) => return Err("the way out of a thread is not the way into it".to_owned()),
+            (true, Some(plunge)) if plunge.start == element.end && plunge.end == element.start => plunge,
+            (true, Some(_)) => return Err("the retraction from a thread is not its plunge".to_owned()),
             (false, _) => element.clone(),
         };
-        let travel = along_one_axis(&way_in)?;
-        let clockwise = way_in.thread().is_some_and(|thread| thread.clockwise);
+        let travel = along_one_axis(&plunge)?;
+        let clockwise = plunge.thread().is_some_and(|thread| thread.clockwise);
         if thread.retracts {
             let pitch = if clockwise {
                 thread.pitch_mm
@@ -465,7 +465,7 @@ impl Writer {
 
     /// A tap with a floating holder from where the tool stands: cycle 2.
     fn floating_tap(&mut self, tap: &Tap) -> Result<(), String> {
-        let travel = along_one_axis(&tap.way_in)?;
+        let travel = along_one_axis(&tap.plunge)?;
         self.cycle_of(2, &[0.0, travel, tap.dwell_s, tap.feed_mm_min]);
         self.block(Operation::CycleCall(MFunctions::default()));
         Ok(())
@@ -503,11 +503,11 @@ impl Writer {
     }
 }
 
-/// The way of a thread, mm, with its sign.
-fn along_one_axis(way: &PathElement) -> Result<f64, String> {
-    let mut moved = moved(&way.start, &way.end).axes().iter();
+/// The travel of a thread, mm, with its sign.
+fn along_one_axis(element: &PathElement) -> Result<f64, String> {
+    let mut moved = moved(&element.start, &element.end).axes().iter();
     match (moved.next(), moved.next()) {
-        (Some(axis), None) => Ok(way.end[axis] - way.start[axis]),
+        (Some(axis), None) => Ok(element.end[axis] - element.start[axis]),
         _ => Err("a thread that lies not along one axis".to_owned()),
     }
 }

@@ -10,7 +10,7 @@ use bahn_parameters::ControlModel;
 use bahn_path::{Axis, Position};
 use support::*;
 
-/// The lines of the text without comments, behind its first four, and the reasons of what is refused.
+/// The lines of the text without comments, after its first four, and the reasons of what is refused.
 fn lines(blocks: &str) -> (Vec<String>, Vec<String>) {
     let source = program(
         &format!("BEGIN PGM A MM\n{blocks}\nEND PGM A MM\n"),
@@ -221,9 +221,9 @@ fn moves(line: &str) -> Vec<char> {
 /// A tool changer, an operator or a program M100 may leave the axes anywhere: every axis that the program has brought somewhere
 /// is brought back by G0, with the tool axis last, or first where the path begins with its retraction.
 #[test]
-fn every_axis_is_brought_back_behind_what_may_move_the_machine() {
+fn every_axis_is_brought_back_after_what_may_move_the_machine() {
     let begin = "TOOL CALL 1 Z S500\nL Z+50 R0 FMAX\nL X+10 Y+20 FMAX\nL Z-5 F200\n";
-    let lines_behind = |mark: &str, blocks: &str| {
+    let lines_after = |mark: &str, blocks: &str| {
         let (lines, _) = lines(&format!("{begin}{blocks}"));
         let at = lines.iter().rposition(|line| line == mark).unwrap();
         lines[at + 1..].to_vec()
@@ -233,19 +233,19 @@ fn every_axis_is_brought_back_behind_what_may_move_the_machine() {
         ("S600", "L Z+50 FMAX\nTOOL CALL 2 Z S600\nL X+30 FMAX"),
         ("M0", "L Z+50 FMAX\nSTOP\nL X+30 FMAX"),
     ] {
-        let behind = lines_behind(mark, blocks);
-        assert_eq!(behind, ["X10 Y20", "Z50", "X30", "M2"], "{blocks}");
+        let after = lines_after(mark, blocks);
+        assert_eq!(after, ["X10 Y20", "Z50", "X30", "M2"], "{blocks}");
     }
     // In the workpiece: up first, nothing goes down to where the tool was.
-    let behind = lines_behind("S600", "TOOL CALL 2 Z S600\nL Z+50 FMAX\nL X+30 FMAX");
-    assert_eq!(behind, ["G0 Z50", "X10 Y20", "X30", "M2"]);
-    let behind = lines_behind("S600", "TOOL CALL 2 Z S600\nL X+30 Z+50 FMAX");
-    assert_eq!(behind, ["G0 Z50", "X30 Y20", "M2"]);
-    let behind = lines_behind("M0", "L Z+50 FMAX M17");
-    assert_eq!(behind, ["G0 Z50", "X10 Y20", "M2"]);
-    // Up by feed is up by feed: behind a stop the tool may stand where it was.
-    let behind = lines_behind("M0", "STOP\nL Z+50 F300");
-    assert_eq!(behind, ["Z50 F300", "G0 X10 Y20", "M2"]);
+    let after = lines_after("S600", "TOOL CALL 2 Z S600\nL Z+50 FMAX\nL X+30 FMAX");
+    assert_eq!(after, ["G0 Z50", "X10 Y20", "X30", "M2"]);
+    let after = lines_after("S600", "TOOL CALL 2 Z S600\nL X+30 Z+50 FMAX");
+    assert_eq!(after, ["G0 Z50", "X30 Y20", "M2"]);
+    let after = lines_after("M0", "L Z+50 FMAX M17");
+    assert_eq!(after, ["G0 Z50", "X10 Y20", "M2"]);
+    // Up by feed is up by feed: after a stop the tool may stand where it was.
+    let after = lines_after("M0", "STOP\nL Z+50 F300");
+    assert_eq!(after, ["Z50 F300", "G0 X10 Y20", "M2"]);
 }
 
 /// A tool that is called before its M06 does not move the machine, but its tip is lifted out of the blank in a test run
@@ -262,9 +262,9 @@ fn a_tool_call_before_its_m06_brings_the_tip_to_where_the_path_goes_on() {
     let (made, proof) = gcode(&source, &settings, &root());
     assert!(proof.holds(), "{proof:?}\n{}", made.text);
     let bare = |line: &str| line.split(';').next().unwrap_or_default().trim().to_owned();
-    let behind = made.text.lines().map(bare).skip_while(|line| line != "T2");
+    let after = made.text.lines().map(bare).skip_while(|line| line != "T2");
     let expected = ["T2", "S500", "Z0", "Z-310", "M6", "G43", "Z50", "X5", "M2"];
-    assert_eq!(behind.collect::<Vec<_>>(), expected, "{}", made.text);
+    assert_eq!(after.collect::<Vec<_>>(), expected, "{}", made.text);
 }
 
 /// The axes stand at X0 Y0 before the start: a line says nothing of them until an arc counts its centre from there.
@@ -290,9 +290,9 @@ fn an_arc_begins_where_the_text_has_brought_its_axes() {
     );
 }
 
-/// A line that leaves an axis out behind a tool change is found: the machine stands elsewhere there.
+/// A line that leaves an axis out after a tool change is found: the machine stands elsewhere there.
 #[test]
-fn the_proof_finds_an_axis_that_is_left_out_behind_a_tool_change() {
+fn the_proof_finds_an_axis_that_is_left_out_after_a_tool_change() {
     let text =
         "TOOL CALL 1 Z S500\nL Z+50 R0 FMAX\nL X+10 Y+20 FMAX\nTOOL CALL 2 Z S600\nL X+30 F500\nL X+0 F500";
     let source = program(
@@ -325,7 +325,7 @@ fn the_proof_finds_an_axis_that_is_left_out_behind_a_tool_change() {
 
 /// In all programs of the repository: between a tool change and the first cut every axis is said that was said before.
 #[test]
-fn no_program_of_the_repository_cuts_behind_a_tool_change_with_an_axis_left_out() {
+fn no_program_of_the_repository_cuts_after_a_tool_change_with_an_axis_left_out() {
     let mut changes = 0;
     for file in programs("H") {
         let bytes = std::fs::read(&file).unwrap();

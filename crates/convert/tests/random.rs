@@ -146,7 +146,7 @@ fn machine_blocks() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Where the workpiece lies, where the tip stands behind a tool change, and where the axes stand before the start.
+/// Where the workpiece lies, where the tip stands after a tool change, and where the axes stand before the start.
 fn machine_settings() -> impl Strategy<Value = Settings> {
     let models = prop::sample::select(vec![
         ControlModel::Tnc155,

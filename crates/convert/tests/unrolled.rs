@@ -109,7 +109,7 @@ fn warnings_are_compared() {
 
 /// Taps that follow the spindle are the same from where the tool stands, scaled or not, up or down, left or right.
 #[test]
-fn taps_that_follow_the_spindle_become_cycles_of_their_way() {
+fn taps_that_follow_the_spindle_become_cycles_of_their_path() {
     for (pitch, depth) in [("+1.5", "-10"), ("-0.75", "-10"), ("+1.5", "+10")] {
         for scaled in ["", "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.5 Z0.5\n"] {
             let setup = depth.replace("10", "2");
@@ -126,10 +126,10 @@ fn taps_that_follow_the_spindle_become_cycles_of_their_way() {
     }
 }
 
-/// A tap with a floating holder is the same from where the tool stands: the way in, the spindle back, the dwell and the way out,
+/// A tap with a floating holder is the same from where the tool stands: the plunge, the spindle back, the dwell and the retraction,
 /// whichever way the spindle turns, scaled or not.
 #[test]
-fn taps_with_a_floating_holder_become_cycles_of_their_way() {
+fn taps_with_a_floating_holder_become_cycles_of_their_path() {
     for (turn, depth, dwell) in [("M3", "-10", "0.5"), ("M4", "-10", "0"), ("M3", "+10", "0")] {
         for scaled in ["", "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.5 Z0.5\n"] {
             let setup = depth.replace("10", "2");

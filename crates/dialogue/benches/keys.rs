@@ -1,4 +1,4 @@
-//! Time of a key with what is shown behind it, in a program of a million blocks.
+//! Time of a key with what is shown after it, in a program of a million blocks.
 //!
 //! ```text
 //! cargo bench -p bahn-dialogue

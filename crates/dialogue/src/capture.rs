@@ -30,7 +30,7 @@ impl Editor {
         self.reaction(done)
     }
 
-    /// Puts an L block with the actual position of several axes, mm or degrees, behind the cursor, without radius
+    /// Puts an L block with the actual position of several axes, mm or degrees, after the cursor, without radius
     /// compensation, feed or M function [003:2311-2316].
     pub fn capture_block(&mut self, position: &[(Axis, f64)]) -> Reaction {
         let done = match self.open {

@@ -40,15 +40,15 @@ impl Source {
 /// What becomes of a dialogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// It goes on.
+    /// The dialogue stays open.
     Stay,
     /// Its blocks are complete.
     Finish,
-    /// It is dropped.
+    /// The dialogue is closed without a block.
     Drop,
 }
 
-/// An open dialogue.
+/// An open dialogue: the block that is asked for, and how far it is.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Dialogue {
     pub(crate) source: Source,
@@ -57,7 +57,7 @@ pub(crate) struct Dialogue {
     pub(crate) lines: Vec<Line>,
     /// Lines that the dialogue needs; more repeat the last.
     base: usize,
-    /// The question.
+    /// The line of the block that is asked for, from 0.
     pub(crate) line: usize,
     pub(crate) field: usize,
     /// The last line that was asked for.
@@ -66,7 +66,7 @@ pub(crate) struct Dialogue {
 }
 
 impl Dialogue {
-    /// New blocks.
+    /// A dialogue for a new block.
     pub(crate) fn new(source: Source, setting: &Setting) -> Dialogue {
         let mut lines = match source {
             Source::Row(row) => Line::of_row(row.id),
@@ -109,7 +109,7 @@ impl Dialogue {
         dialogue.go_on(0, field).then_some(dialogue)
     }
 
-    /// Goes to a question, or to the next that is asked behind it; whether there is one.
+    /// Goes to a question, or to the next that is asked after it; whether there is one.
     fn go_on(&mut self, line: usize, field: usize) -> bool {
         let mut from = field;
         for (index, candidate) in self.lines.iter().enumerate().skip(line) {
@@ -185,8 +185,8 @@ impl Dialogue {
         Ok(Step::Stay)
     }
 
-    /// The block that a key makes of one in which nothing is entered yet: P the polar one, N behind L that with surface
-    /// normals, and a number without an axis behind L is a chamfer [003:2685].
+    /// The block that a key makes of one in which nothing is entered yet: P the polar one, N after L that with surface
+    /// normals, and a number without an axis after L is a chamfer [003:2685].
     fn other_block(&self, key: Key, setting: &Setting) -> Option<Dialogue> {
         let Source::Row(row) = self.source else {
             return None;
@@ -240,7 +240,7 @@ impl Dialogue {
         Ok(())
     }
 
-    /// Goes to the comment behind the block.
+    /// Goes to the comment after the block.
     pub(crate) fn comment(&mut self, context: Context<'_>) -> Result<(), MessageId> {
         self.confirm(context)?;
         let line = self.lines.get(self.line).ok_or(KeyNonFunctional)?;
@@ -389,7 +389,7 @@ impl Dialogue {
         Ok(Step::Finish)
     }
 
-    /// The blocks so far: a last one to which nothing was said yet is none.
+    /// The blocks that were entered so far, without a last one that is still empty.
     pub(crate) fn made(&self) -> &[Line] {
         let mut count = self.reached + 1;
         while count > 1 {
@@ -403,7 +403,7 @@ impl Dialogue {
         self.lines.get(..count).unwrap_or_default()
     }
 
-    /// Forgets all answers.
+    /// Forgets the answers of all lines.
     pub(crate) fn clear(&mut self) {
         for line in &mut self.lines {
             line.clear();

@@ -184,7 +184,7 @@ impl Editor {
                 return None;
             }
         }
-        // The question may be that of a block to which nothing was said yet, but none behind the last one asked for.
+        // The question may be that of a block to which nothing was said yet, but none after the last one asked for.
         if line > draft.reached || !dialogue.reach(draft.reached, &self.setting) {
             return None;
         }

@@ -23,7 +23,7 @@ use crate::{Key, KeyGroup, Reaction, Setting, Wanted};
 /// The key of a comment.
 const COMMENT: &str = ";";
 
-/// What is open.
+/// What the keys go to.
 #[derive(Clone, Debug)]
 pub(crate) enum Open {
     Nothing,
@@ -40,7 +40,7 @@ pub(crate) enum Open {
 
 /// Programming by dialogue: takes keys, changes a program, says what is to be shown.
 ///
-/// While nothing is open, arrows and GOTO go from block to block, a key of a block opens its dialogue behind the cursor,
+/// While nothing is open, arrows and GOTO go from block to block, a key of a block opens its dialogue after the cursor,
 /// CYCL DEF, TOUCH PROBE and Q open lists, DEL deletes the block, the cycle from its last block, or the marked section.
 ///
 /// In a dialogue ENT takes the answer and goes on, NO ENT passes over the question, END makes the block of what is there,
@@ -50,7 +50,7 @@ pub(crate) enum Open {
 /// RIGHT highlights a word of the block at the cursor. Digits overwrite it; LEFT, RIGHT, END, UP and DOWN confirm, the
 /// latter two find the same word in other blocks. NO ENT deletes the word, ENT opens the dialogue from there.
 ///
-/// The comment of a block stands behind its last word: RIGHT goes there on controls with an alpha keyboard, `;` while
+/// The comment of a block stands after its last word: RIGHT goes there on controls with an alpha keyboard, `;` while
 /// the block is open, and a soft key. `;` while nothing is open begins a comment in a block of its own.
 ///
 /// Blocks of DIN/ISO are text: keys write their letters, those of the contour the G functions that do the same. END, ENT
@@ -367,7 +367,7 @@ impl Editor {
         }
     }
 
-    /// Blocks stand behind any block but END [003:1768-1774].
+    /// Blocks stand after any block but END [003:1768-1774].
     pub(crate) fn may_insert(&self) -> Result<(), MessageId> {
         self.may_edit()?;
         match self.cursor < self.last() {
@@ -437,7 +437,7 @@ impl Editor {
         }
     }
 
-    /// Puts blocks behind the cursor, which goes to the last of them.
+    /// Puts blocks after the cursor, which goes to the last of them.
     pub(crate) fn insert(&mut self, texts: &[String]) -> Result<Reaction, MessageId> {
         match self.is_iso() {
             true => self.insert_numbered(texts),

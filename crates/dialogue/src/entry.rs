@@ -7,7 +7,7 @@ use bahn_program::{Language, WordKind, WordSpan};
 /// What the next key changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// This word is highlighted: a digit takes the place of its value, a letter begins a word behind it.
+    /// This word is highlighted: a digit takes the place of its value, a letter begins a word after it.
     Word(usize),
     /// The same, and the sign of the value was turned already: the first digit leaves it.
     Signed(usize),
@@ -18,12 +18,12 @@ pub(crate) enum Place {
 /// What no block can hold.
 const NOT_IN_A_BLOCK: &[char] = &['~', '\n', '\r', '\t', '\u{c}', '\u{feff}'];
 
-/// Whether behind a text any character is taken: in a comment, the name of a program, a formula.
+/// Whether after a text any character is taken: in a comment, the name of a program, a formula.
 fn is_free(before: &str) -> bool {
     before.contains([';', '%', '=']) || before.contains(NAME)
 }
 
-/// Behind this stands the name of a program that is a cycle.
+/// After this stands the name of a program that is a cycle.
 const NAME: &str = "G39 P";
 
 /// A block that is entered.
@@ -39,7 +39,7 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
-    /// A new block, behind that at the cursor.
+    /// A new block, after that at the cursor.
     pub(crate) fn new(language: &'static dyn Language) -> Entry {
         Entry {
             replaces: None,
@@ -61,7 +61,7 @@ impl Entry {
         }
     }
 
-    /// With another text, which was entered before; `false` where the place is none in it.
+    /// With another text, which was entered before; `None` where the place does not exist in it.
     pub(crate) fn with(mut self, text: String, place: Place) -> Option<Entry> {
         self.text = text;
         self.place = place;
@@ -83,7 +83,7 @@ impl Entry {
         self.language.parse_block(&self.text).words
     }
 
-    /// The word that is highlighted, or in or behind which the next character comes.
+    /// The word that is highlighted, or in or after which the next character comes.
     pub(crate) fn current(&self) -> Option<(usize, WordSpan)> {
         let words = self.words();
         let at = match self.place {
@@ -153,7 +153,7 @@ impl Entry {
         character.eq_ignore_ascii_case(&'Q') && self.current().is_some_and(address)
     }
 
-    /// Whether a character that comes behind others is none of their word.
+    /// Whether a character that follows others does not belong to their word.
     fn parts(&self, before: &str, character: char) -> bool {
         let address = self.current_word().map_or("", |(address, _)| address);
         let one_axis = match address.as_bytes() {
@@ -175,7 +175,7 @@ impl Entry {
         }
     }
 
-    /// A character.
+    /// A character is typed.
     pub(crate) fn character(&mut self, character: char) -> Result<(), MessageId> {
         let comment = self.is_comment();
         if NOT_IN_A_BLOCK.contains(&character)
@@ -226,7 +226,7 @@ impl Entry {
         }
         let of_value = character.is_ascii_digit() || "+-.,".contains(character);
         if !(of_value || self.takes_parameter(character)) {
-            // A word of its own, behind this one.
+            // A word of its own, after this one.
             let at = word.span.end;
             if character != ' ' {
                 self.text.insert(at, ' ');
@@ -303,15 +303,15 @@ impl Entry {
         Ok(())
     }
 
-    /// LEFT and RIGHT go from word to word, and behind the last one; `false` where there is nothing more.
+    /// LEFT and RIGHT go from word to word, and after the last one; `false` where there is nothing more.
     pub(crate) fn go(&mut self, right: bool) -> bool {
         let words = self.words();
         let next = match (self.place, right) {
             (Place::Word(at) | Place::Signed(at), true) => Some(at + 1),
             (Place::Word(at) | Place::Signed(at), false) => at.checked_sub(1),
             (Place::At(at), true) if at < self.text.len() => {
-                let behind = words.iter().position(|word| word.span.start >= at);
-                Some(behind.unwrap_or(words.len()))
+                let after = words.iter().position(|word| word.span.start >= at);
+                Some(after.unwrap_or(words.len()))
             }
             (Place::At(_), true) => None,
             (Place::At(at), false) => words.iter().rposition(|word| word.span.start < at),

@@ -18,7 +18,7 @@ const DIALOG_TEXTS_MAX: usize = 15;
 /// A word of a block in its parts, as it is being entered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Word {
-    /// Written with `I`.
+    /// The word is written with `I`: an incremental coordinate.
     pub incremental: bool,
     /// `X`, `PR`, `F`; empty where the value stands by itself.
     pub address: String,
@@ -29,11 +29,11 @@ pub struct Word {
 /// The sign of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Signs {
-    /// Always written.
+    /// The sign is always written.
     Always,
     /// Only `-` is written.
     Minus,
-    /// There is none.
+    /// The number has no sign.
     None,
 }
 
@@ -44,7 +44,7 @@ pub(crate) enum Most {
     Line,
     /// Those of a circle or helix of the model.
     Circle,
-    /// So many.
+    /// A fixed number of axes.
     Count(u8),
     /// X, Y and Z of a corner: numbers without axis keys are for them in this sequence [003:6611].
     Corner,
@@ -73,7 +73,7 @@ pub(crate) struct Choice {
 pub(crate) enum Ask {
     /// A number or Q parameter.
     Number { signs: Signs, incremental: bool },
-    /// A whole number.
+    /// A whole number; with `q` a Q parameter, too.
     Integer { q: bool },
     /// How often a section is repeated; listings show it twice.
     Repeat,
@@ -84,10 +84,10 @@ pub(crate) enum Ask {
         signs: Signs,
         incremental: bool,
         most: Most,
-        /// A line of a datum table may stand in their place, behind `#` [000:6898-6904].
+        /// A line of a datum table may stand in their place, after `#` [000:6898-6904].
         table: bool,
     },
-    /// Axes alone.
+    /// Axes without values, so many at most.
     Axes(u8),
     /// An axis with a direction.
     Direction,
@@ -95,7 +95,7 @@ pub(crate) enum Ask {
     Choice(&'static [Choice]),
     /// A feed; with `max` ENT alone is rapid traverse.
     Feed { max: bool },
-    /// An M function.
+    /// The number of an M function.
     M,
     /// Whole numbers, one after the other.
     Labels,
@@ -167,7 +167,7 @@ impl Ask {
         }
     }
 
-    /// Whether ENT behind one word asks for the next.
+    /// Whether ENT after one word asks for the next.
     pub(crate) fn is_list(self) -> bool {
         matches!(self, Ask::Labels | Ask::Items | Ask::Texts)
     }
@@ -282,8 +282,8 @@ impl Ask {
                 rest.literal(address)?;
                 word.address = address.to_owned();
                 let found = choices.iter().find(|choice| {
-                    let mut behind = rest.clone();
-                    behind.literal(choice.value).is_some() && behind.ends_word()
+                    let mut after = rest.clone();
+                    after.literal(choice.value).is_some() && after.ends_word()
                 })?;
                 rest.literal(found.value)?;
                 word.value = found.value.to_owned();
@@ -359,7 +359,7 @@ impl<'a> Rest<'a> {
         value
     }
 
-    /// The words behind an M function that belong to it.
+    /// The words after an M function that belong to it.
     fn arguments(&mut self) -> &'a str {
         let rest = self.rest();
         let length = rest.find(" M").unwrap_or(rest.len());
@@ -516,7 +516,7 @@ impl Field {
         {
             return Some(glue + length);
         }
-        // The words before a value vary with the language of the control, and listings have a colon behind some.
+        // The words before a value vary with the language of the control, and listings have a colon after some.
         if glue < 2 || !self.glue.ends_with(' ') {
             return None;
         }
@@ -551,11 +551,11 @@ impl Field {
         let several = ask.is_list() || matches!(ask, Ask::Coordinates { .. } | Ask::Axes(_) | Ask::M);
         while several
             && let Some(rest) = text.get(length..)
-            && let Some(behind) = rest.strip_prefix(ask.separator())
-            && let Some((word, more)) = ask.scan(address, behind)
+            && let Some(after) = rest.strip_prefix(ask.separator())
+            && let Some((word, more)) = ask.scan(address, after)
         {
             words.push(word);
-            length += rest.len() - behind.len() + more;
+            length += rest.len() - after.len() + more;
         }
         if ask == Ask::Repeat
             && let Some(left) = text.get(length..).filter(|rest| rest.starts_with('/'))

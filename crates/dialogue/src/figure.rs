@@ -10,7 +10,7 @@ use crate::cycles::prompts_of;
 /// Width and height of the sheet.
 pub const FIGURE_SIZE: [f64; 2] = [100.0, 75.0];
 
-/// What is drawn.
+/// A shape of a help figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// An edge of the part: points of a polyline.
@@ -32,7 +32,7 @@ pub enum Shape {
 /// A part of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigurePart {
-    /// What is drawn.
+    /// Its geometry.
     pub shape: Shape,
     /// The prompts at which it stands out, by their ids; none for what every cycle of the drawing has.
     pub ids: Vec<&'static str>,

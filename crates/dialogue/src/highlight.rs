@@ -8,7 +8,7 @@ use crate::line::{Line, WordPlace};
 use crate::typing::{Fresh, Typing};
 use crate::{Key, Setting, Wanted};
 
-/// A highlighted word.
+/// The word of a block that is highlighted, and its comment.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Highlight {
     pub(crate) block: u32,
@@ -47,7 +47,7 @@ impl Highlight {
         *self = Highlight::new(self.block, original, place);
     }
 
-    /// Goes to the comment behind the block, or begins one.
+    /// Goes to the comment after the block, or begins one.
     pub(crate) fn comment(&mut self) -> Result<(), MessageId> {
         let index = self.line.comment_field().ok_or(KeyNonFunctional)?;
         let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
@@ -190,8 +190,8 @@ impl Highlight {
         }
         if self.place.is_some() && self.line.word(self.place).is_none() {
             let places = self.line.places();
-            let behind = places.iter().find(|place| **place >= self.place);
-            self.place = behind.or(places.last()).copied().flatten();
+            let after = places.iter().find(|place| **place >= self.place);
+            self.place = after.or(places.last()).copied().flatten();
             self.typing = self
                 .place
                 .map_or_else(Typing::default, |(_, word)| Typing::over(word));

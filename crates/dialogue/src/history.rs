@@ -10,11 +10,11 @@ const STEPS_MAX: usize = 1000;
 /// A version of a program with the block at the cursor.
 type Version = (Arc<Program>, u32);
 
-/// Versions before and behind the one at hand.
+/// Versions before and after the one at hand.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct History {
     before: Vec<Version>,
-    behind: Vec<Version>,
+    after: Vec<Version>,
 }
 
 impl History {
@@ -24,19 +24,19 @@ impl History {
             self.before.remove(0);
         }
         self.before.push((Arc::clone(program), cursor));
-        self.behind.clear();
+        self.after.clear();
     }
 
     /// The version before, in exchange for the one at hand.
     pub(crate) fn undo(&mut self, program: &Arc<Program>, cursor: u32) -> Option<Version> {
         let version = self.before.pop()?;
-        self.behind.push((Arc::clone(program), cursor));
+        self.after.push((Arc::clone(program), cursor));
         Some(version)
     }
 
     /// The version that was undone last, in exchange for the one at hand.
     pub(crate) fn redo(&mut self, program: &Arc<Program>, cursor: u32) -> Option<Version> {
-        let version = self.behind.pop()?;
+        let version = self.after.pop()?;
         self.before.push((Arc::clone(program), cursor));
         Some(version)
     }

@@ -16,7 +16,7 @@ use crate::entry::{Entry, Place};
 use crate::line::written;
 use crate::{Key, Reaction, Wanted};
 
-/// What keys write that are none of a character: those of the contour and of tools and cycles the G functions that do
+/// The words that keys without a character write: those of the contour and of tools and cycles the G functions that do
 /// the same *(inferred)*, so that a keyboard without letters has them.
 const WRITTEN: &[(Key, &str)] = &[
     (Key::Cr, "G02"),
@@ -203,7 +203,7 @@ impl Editor {
         }
     }
 
-    /// Writes a character, unless a word before it is none that a block can have.
+    /// Writes a character, unless a word before it is not allowed in a block.
     fn write(&self, entry: &mut Entry, character: char) -> Result<(), MessageId> {
         if entry.text.chars().count() >= self.characters_max() {
             return Err(EntryValueIncorrect);
@@ -230,7 +230,7 @@ impl Editor {
         max.map_or(usize::MAX, |max| max as usize)
     }
 
-    /// What is wrong with the words of a text, whatever comes behind them, and where.
+    /// What is wrong with the words of a text, whatever comes after them, and where.
     fn certain(&self, text: &str) -> Option<(MessageId, u32)> {
         let read = self.program.language().parse_block(text);
         let last = read.words.last()?.span.start;
@@ -315,7 +315,7 @@ impl Editor {
         };
         let digits = text.get(word.value.clone()).unwrap_or_default();
         let number: u32 = digits.parse().map_err(|_| EntryValueIncorrect)?;
-        let (before, behind) = match replaces {
+        let (before, after) = match replaces {
             Some(block) => (block.saturating_sub(1), block + 1),
             None => (self.cursor, self.cursor + 1),
         };
@@ -323,17 +323,14 @@ impl Editor {
             .program
             .own_number(before)
             .is_none_or(|before| before < number);
-        let below = self
-            .program
-            .own_number(behind)
-            .is_none_or(|behind| number < behind);
+        let below = self.program.own_number(after).is_none_or(|after| number < after);
         match number > 0 && above && below {
             true => Ok(Some(number)),
             false => Err(EntryValueIncorrect),
         }
     }
 
-    /// Puts blocks behind the cursor with the numbers of the control: in steps of MP7220, closer where there is less
+    /// Puts blocks after the cursor with the numbers of the control: in steps of MP7220, closer where there is less
     /// room; without room all blocks get new ones *(inferred)*.
     pub(crate) fn insert_numbered(&mut self, texts: &[String]) -> Result<Reaction, MessageId> {
         let step = self.setting.iso_step;
@@ -342,9 +339,9 @@ impl Editor {
             return self.insert_blocks(&texts.join("\n"));
         }
         let before = self.program.own_number(self.cursor).unwrap_or(0);
-        let behind = self.program.own_number(self.cursor + 1).unwrap_or(u32::MAX);
+        let after = self.program.own_number(self.cursor + 1).unwrap_or(u32::MAX);
         let count = texts.len() as u32;
-        let room = behind.saturating_sub(before);
+        let room = after.saturating_sub(before);
         let apart = match count.saturating_mul(step) < room {
             true => step,
             false => room / count.saturating_add(1),
@@ -422,7 +419,7 @@ impl Editor {
         Ok(done)
     }
 
-    /// The comment behind the block at the cursor, or behind that which is entered.
+    /// The comment after the block at the cursor, or after that which is entered.
     pub(crate) fn iso_comment(&mut self) -> Result<Reaction, MessageId> {
         let mut entry = match std::mem::replace(&mut self.open, Open::Nothing) {
             Open::Entry(entry) => entry,

@@ -8,21 +8,21 @@ use bahn_parameters::ControlModel;
 /// Which part of the keyboard a key belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KeyGroup {
-    /// Operating modes.
+    /// Keys of the operating modes.
     Mode,
     /// Programs and supplementary functions.
     Files,
-    /// Arrows and GOTO.
+    /// Arrow keys and GOTO.
     Cursor,
-    /// Path functions.
+    /// Keys of the path functions.
     Contour,
     /// Tools and radius compensation.
     Tool,
     /// Cycles, labels, stop, touch probe.
     Cycle,
-    /// Graphics.
+    /// Keys of the graphics.
     Graphics,
-    /// Axes.
+    /// Axis keys.
     Axis,
     /// Digits, point and sign.
     Number,
@@ -58,10 +58,10 @@ impl KeyGroup {
 /// The language of what people read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Tongue {
-    /// English.
+    /// Texts in English.
     #[default]
     English,
-    /// German.
+    /// Texts in German.
     German,
 }
 
@@ -215,7 +215,7 @@ impl Key {
         Key::ALL.iter().copied().find(|key| key.name() == name)
     }
 
-    /// Its name, `CYCL_DEF`.
+    /// The name of the key in scripts and inputs, such as `CYCL_DEF`.
     pub const fn name(self) -> &'static str {
         self.row().name
     }
@@ -225,7 +225,7 @@ impl Key {
         self.label_in(Tongue::English)
     }
 
-    /// What it does.
+    /// The label of the key in a language: what it does.
     pub const fn label_in(self, tongue: Tongue) -> &'static str {
         let [english, german] = self.row().label;
         match tongue {

@@ -9,15 +9,15 @@ use crate::{Key, Setting};
 /// A block with its fields.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Line {
-    /// Optional block.
+    /// The block begins with `/`: an optional block.
     skip: bool,
     head: String,
     fields: Vec<Field>,
-    /// The comment behind the block, the field behind all others.
+    /// The comment after the block, the field after all others.
     comment: Field,
 }
 
-/// What stands behind a block of any kind. It is never asked for, but can be entered.
+/// What stands after a block of any kind. It is never asked for, but can be entered.
 const COMMENT: Slot = Slot {
     glue: " ; ",
     address: "",
@@ -193,7 +193,7 @@ impl Line {
         }
     }
 
-    /// Forgets all words.
+    /// Forgets the words of all fields.
     pub(crate) fn clear(&mut self) {
         for field in &mut self.fields {
             field.words.clear();

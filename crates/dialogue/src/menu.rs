@@ -28,7 +28,7 @@ pub(crate) struct MenuItem {
     source: Source,
 }
 
-/// An open list.
+/// An open list of soft keys or cycles.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Menu {
     pub(crate) kind: MenuKind,

@@ -19,7 +19,7 @@ impl Prompt {
         self.id
     }
 
-    /// Its text.
+    /// The words of the prompt in a language.
     pub fn text(&self, tongue: Tongue) -> &'static str {
         match tongue {
             Tongue::English => self.english,

@@ -14,7 +14,7 @@ pub enum Reaction {
     Refused(MessageId),
     /// The actual position is wanted; [`Editor::capture`] or [`Editor::capture_block`] gives it.
     Position(Wanted),
-    /// The key is none of the editor's.
+    /// The editor does not use the key.
     Passed,
 }
 

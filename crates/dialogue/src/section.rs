@@ -81,7 +81,7 @@ impl Editor {
                     true => Some(highlight.place),
                     false => highlight.beside(by),
                 };
-                // Behind the last word comes the comment, where the program may be changed.
+                // After the last word comes the comment, where the program may be changed.
                 let may_comment = self.setting.model.has_windows() && self.may_edit().is_ok();
                 let comment = by > 0 && beside.is_none() && may_comment;
                 let leaves = by < 0 && (beside.is_none() || highlight.line.is_text());
@@ -93,8 +93,8 @@ impl Editor {
             Key::NoEnt => {
                 let line = self.line_of(block).ok_or(KeyNonFunctional)?;
                 let places = line.places();
-                let behind = places.iter().find(|place| **place >= highlight.place);
-                self.highlight(block, behind.or(places.last()).copied().flatten())?;
+                let after = places.iter().find(|place| **place >= highlight.place);
+                self.highlight(block, after.or(places.last()).copied().flatten())?;
             }
             Key::Up | Key::Down => self.same_word(&highlight, key == Key::Down)?,
             Key::Ent => {
@@ -115,7 +115,7 @@ impl Editor {
         Ok(reaction)
     }
 
-    /// The comment behind the block: of a dialogue its question, of a highlighted word or of the block at the cursor
+    /// The comment after the block: of a dialogue its question, of a highlighted word or of the block at the cursor
     /// it is highlighted.
     pub(crate) fn comment(&mut self) -> Result<Reaction, MessageId> {
         self.may_edit()?;
@@ -188,7 +188,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Looks through the blocks before or behind a block, the nearest first.
+    /// Looks through the blocks before or after a block, the nearest first.
     pub(crate) fn search<T>(
         &self,
         from: u32,
@@ -377,7 +377,7 @@ impl Editor {
         Ok(Reaction::Shown)
     }
 
-    /// Goes to the next block that shows a text, behind the end to the first.
+    /// Goes to the next block that shows a text, after the end the first.
     fn find(&mut self, text: String) -> Result<Reaction, MessageId> {
         let wanted = text.to_uppercase();
         self.sought = text;
@@ -390,8 +390,8 @@ impl Editor {
         let found = match wanted.is_empty() {
             true => None,
             false => {
-                let behind = self.search(self.cursor, true, holds);
-                // The first block comes behind none.
+                let after = self.search(self.cursor, true, holds);
+                // The first block comes after none.
                 let first = || {
                     self.program
                         .decode(0)
@@ -400,7 +400,7 @@ impl Editor {
                         .and_then(holds)
                         .map(|()| (0, ()))
                 };
-                behind.or_else(first).or_else(|| self.search(0, true, holds))
+                after.or_else(first).or_else(|| self.search(0, true, holds))
             }
         };
         let (block, ()) = found.ok_or(MessageId::EntryValueIncorrect)?;

@@ -13,7 +13,7 @@ use crate::{Key, Tongue};
 pub struct BuilderCycle {
     /// Its number, 68 to 99.
     pub number: u16,
-    /// Its name.
+    /// The name of the cycle.
     pub name: String,
     /// Its parameters: Q parameter and text of the question.
     pub parameters: Vec<(u16, String)>,

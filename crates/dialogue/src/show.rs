@@ -16,19 +16,19 @@ use crate::typing::Typing;
 use crate::view::{List, Question, Row, ShownWord, View};
 
 impl Editor {
-    /// What is to be shown, with so many blocks before and behind the cursor.
-    pub fn view(&self, before: u32, behind: u32) -> View {
+    /// What is to be shown, with so many blocks before and after the cursor.
+    pub fn view(&self, before: u32, after: u32) -> View {
         let (words, rows) = match &self.open {
-            Open::Dialogue(dialogue) => self.with_dialogue(dialogue, before, behind),
+            Open::Dialogue(dialogue) => self.with_dialogue(dialogue, before, after),
             Open::Highlight(highlight) => {
                 let words = self.words(&highlight.line, Some(highlight.place));
-                (words, self.rows(before, behind, Some(highlight)))
+                (words, self.rows(before, after, Some(highlight)))
             }
-            Open::Entry(entry) => self.with_entry(entry, before, behind),
+            Open::Entry(entry) => self.with_entry(entry, before, after),
             _ => {
                 let line = self.line_of(self.cursor).filter(|_| !self.is_iso());
                 let words = line.map_or_else(Vec::new, |line| self.words(&line, None));
-                (words, self.rows(before, behind, None))
+                (words, self.rows(before, after, None))
             }
         };
         let keys = self.soft_keys();
@@ -48,8 +48,8 @@ impl Editor {
         }
     }
 
-    fn with_dialogue(&self, dialogue: &Dialogue, before: u32, behind: u32) -> (Vec<ShownWord>, Vec<Row>) {
-        let mut rows = self.rows(before, behind, None);
+    fn with_dialogue(&self, dialogue: &Dialogue, before: u32, after: u32) -> (Vec<ShownWord>, Vec<Row>) {
+        let mut rows = self.rows(before, after, None);
         let current = dialogue.lines.get(dialogue.line);
         let at = dialogue
             .current()
@@ -83,8 +83,8 @@ impl Editor {
         (words, rows)
     }
 
-    fn with_entry(&self, entry: &Entry, before: u32, behind: u32) -> (Vec<ShownWord>, Vec<Row>) {
-        let mut rows = self.rows(before, behind, None);
+    fn with_entry(&self, entry: &Entry, before: u32, after: u32) -> (Vec<ShownWord>, Vec<Row>) {
+        let mut rows = self.rows(before, after, None);
         let text = self.shown(&entry.text);
         if let Some(position) = rows.iter().position(|row| row.current) {
             match (entry.replaces, rows.get_mut(position)) {
@@ -116,7 +116,7 @@ impl Editor {
                 }
             })
             .collect();
-        // A blank behind the last word, before the next one.
+        // A blank after the last word, before the next one.
         if let Some(rest) = entry.text.get(shown..).filter(|rest| !rest.is_empty()) {
             words.push(ShownWord {
                 text: rest.to_owned(),
@@ -126,9 +126,9 @@ impl Editor {
         (words, rows)
     }
 
-    fn rows(&self, before: u32, behind: u32, highlight: Option<&Highlight>) -> Vec<Row> {
+    fn rows(&self, before: u32, after: u32, highlight: Option<&Highlight>) -> Vec<Row> {
         let first = self.cursor.saturating_sub(before);
-        let last = self.cursor.saturating_add(behind).min(self.last());
+        let last = self.cursor.saturating_add(after).min(self.last());
         let marked = self.marked().unwrap_or(0..0);
         let chunks = first / Program::CHUNK_SIZE..=last / Program::CHUNK_SIZE;
         let mut rows = Vec::new();

@@ -8,7 +8,7 @@ use crate::{Setting, Tongue};
 /// What a soft key does.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Soft {
-    /// Answers the question.
+    /// Answers the open question with a text.
     Answer(String),
     /// A function of the editor.
     Function(Function),

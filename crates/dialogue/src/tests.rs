@@ -302,7 +302,7 @@ fn every_block_of_every_model_is_entered_by_keys() {
                 needed.insert(entry.name);
             }
             for block in blocks {
-                // Words behind M functions that the model lacks are tried with it below.
+                // Words after M functions that the model lacks are tried with it below.
                 if !block.contains(" M118 ") {
                     enter(&setting, block);
                 }

@@ -8,7 +8,7 @@ use bahn_program::m_words;
 
 /// Most characters of a number, with sign and point.
 const NUMBER_MAX: usize = 14;
-/// Most digits behind `Q`.
+/// Most digits after `Q`.
 const Q_DIGITS_MAX: usize = 4;
 /// Most digits of an M function.
 const M_DIGITS_MAX: usize = 3;
@@ -126,7 +126,7 @@ impl Typing {
         begun.then(|| word.value.push('Q')).ok_or(KeyNonFunctional)
     }
 
-    /// `I` stands before the axis key [003:2585-2587]: behind a value it is for the axis that comes next.
+    /// `I` stands before the axis key [003:2585-2587]: after a value it is for the axis that comes next.
     fn make_incremental(&mut self, field: &mut Field) {
         let axes = matches!(field.slot.ask, Ask::Coordinates { .. });
         match self.word.and_then(|word| field.words.get_mut(word)) {
@@ -138,7 +138,7 @@ impl Typing {
         }
     }
 
-    /// No axis came behind `I`: it was meant for the word that is entered.
+    /// No axis came after `I`: it was meant for the word that is entered.
     pub(crate) fn settle(&mut self, field: &mut Field) {
         if let Some(word) = self.word.and_then(|word| field.words.get_mut(word))
             && std::mem::take(&mut self.incremental)
@@ -224,18 +224,18 @@ impl Typing {
             Fresh::Negative => word.value = "-".to_owned(),
             _ => word.value.clear(),
         }
-        // Words that belong to an M function stand behind it, each with its letter.
-        let (behind_m, number) = match word.value.rsplit_once(' ').filter(|_| m) {
+        // Words that belong to an M function stand after it, each with its letter.
+        let (after_m, number) = match word.value.rsplit_once(' ').filter(|_| m) {
             Some((_, last)) => (true, last.trim_start_matches(is_address)),
             None => (false, word.value.trim_start_matches('-')),
         };
         let full = match number.strip_prefix('Q') {
             Some(_) if digit == '.' => return Err(KeyNonFunctional),
             Some(digits) => digits.len() >= Q_DIGITS_MAX,
-            None if digit == '.' && (number.contains('.') || whole || m != behind_m) => {
+            None if digit == '.' && (number.contains('.') || whole || m != after_m) => {
                 return Err(KeyNonFunctional);
             }
-            None if m && !behind_m => number.len() >= M_DIGITS_MAX,
+            None if m && !after_m => number.len() >= M_DIGITS_MAX,
             None => number.len() >= NUMBER_MAX,
         };
         if full {

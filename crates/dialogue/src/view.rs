@@ -22,7 +22,7 @@ pub struct Row {
 pub struct ShownWord {
     /// Its text, with what stands before it.
     pub text: String,
-    /// It is highlighted.
+    /// The word is shown inverse.
     pub highlighted: bool,
 }
 
@@ -42,7 +42,7 @@ pub struct Question {
 /// A list to choose from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct List {
-    /// Its lines.
+    /// The lines of the list, from above.
     pub lines: Vec<String>,
     /// The line that ENT takes.
     pub at: usize,
@@ -55,9 +55,9 @@ pub struct View {
     pub rows: Vec<Row>,
     /// The words of the current block, or of the block that is being entered.
     pub words: Vec<ShownWord>,
-    /// The open question.
+    /// The question of the dialogue, while one is open.
     pub question: Option<Question>,
-    /// The open list.
+    /// The list to choose from, while one is open.
     pub list: Option<List>,
     /// The message in the header.
     pub message: Option<MessageId>,

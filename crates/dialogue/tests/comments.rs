@@ -1,4 +1,4 @@
-//! The word that is highlighted is asked for; behind the last one stands the comment of the block.
+//! The word that is highlighted is asked for; after the last one stands the comment of the block.
 
 mod desk;
 
@@ -13,7 +13,7 @@ fn word(desk: &Desk) -> String {
     highlighted.map_or_else(String::new, |word| word.text.trim().to_owned())
 }
 
-/// Behind the last word of a block RIGHT asks for its comment on controls with an alpha keyboard; `;` does while the
+/// After the last word of a block RIGHT asks for its comment on controls with an alpha keyboard; `;` does while the
 /// block is entered, and makes a block of its own while nothing is open.
 #[test]
 fn comments_are_entered_changed_and_deleted_by_keys() {
@@ -45,15 +45,15 @@ fn comments_are_entered_changed_and_deleted_by_keys() {
     desk.editor.type_text(";to the edge");
     assert_eq!(desk.prompt(), "COMMENT?");
     desk.enter("END");
-    desk.editor.type_text("; behind it");
+    desk.editor.type_text("; after it");
     desk.enter("END");
     assert_eq!(
         desk.blocks()[1..],
-        ["L X+5 ; to the edge", "; behind it", "STOP ; END"]
+        ["L X+5 ; to the edge", "; after it", "STOP ; END"]
     );
     // A comment has none of its own.
     desk.enter("RIGHT RIGHT");
-    assert_eq!(word(&desk), "; behind it");
+    assert_eq!(word(&desk), "; after it");
     desk.enter("END UP");
     // In a cycle each block may have one.
     desk.enter("CYCL_DEF 9 ENT");

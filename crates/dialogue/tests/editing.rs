@@ -31,7 +31,7 @@ fn word(desk: &Desk) -> String {
 }
 
 #[test]
-fn blocks_are_inserted_behind_the_cursor() {
+fn blocks_are_inserted_after_the_cursor() {
     let mut desk = desk("L X+1\nL X+2");
     desk.enter("DOWN STOP END LBL_SET 3 END");
     assert_eq!(desk.blocks(), ["L X+1", "STOP", "LBL 3", "L X+2"]);
@@ -133,7 +133,7 @@ fn cycles_are_deleted_from_their_last_block() {
     assert_eq!(desk.editor.cursor(), 1);
     desk.enter("DEL");
     assert_eq!(desk.blocks(), ["L X+1"]);
-    // Blocks of a cycle that is none are deleted as far as they belong together.
+    // Blocks of an incomplete cycle are deleted as far as they belong together.
     let mut desk = Desk::with(
         "CYCL DEF 1.3 PECKG -5\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -5",
         Tnc360,

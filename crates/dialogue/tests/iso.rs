@@ -109,7 +109,7 @@ fn a_star_closes_a_block_and_several_can_be_pasted() {
 
 #[test]
 fn numbers_are_the_controls() {
-    // Behind the last in steps; between two in the middle.
+    // After the last in steps; between two in the middle.
     let mut desk = at("N10 M3 *\nN20 M5 *\n", Tnc415b, 10);
     desk.enter("GOTO 2 0 ENT M 8 END");
     desk.enter("GOTO 1 0 ENT X 1 END X 2 END X 3 END X 4 END");
@@ -304,7 +304,7 @@ fn what_is_open_is_kept() {
     assert_eq!(again.editor.view(3, 3), desk.editor.view(3, 3));
     again.enter("0 END");
     assert_eq!(again.blocks(), ["N10 M3 *", "N20 G00 X-50 *"]);
-    // A draft of the other language is none here.
+    // A draft of the other language is not taken.
     let mut plain = Desk::new();
     assert!(!plain.editor.restore(&kept));
 }

@@ -96,7 +96,7 @@ fn texts(program: &Program) -> Vec<u8> {
     program.to_bytes()
 }
 
-/// One key, and what must hold behind it.
+/// One key, and what must hold after it.
 fn press(editor: &mut Editor, key: Key) -> Reaction {
     let before = Arc::clone(editor.program());
     let reaction = editor.key(key);

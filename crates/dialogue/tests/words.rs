@@ -16,7 +16,7 @@ fn at_first(blocks: &str, model: ControlModel) -> Desk {
     desk
 }
 
-/// Behind a highlighted word the key of an address adds its word where it belongs [003:1779-1780].
+/// After a highlighted word the key of an address adds its word where it belongs [003:1779-1780].
 #[test]
 fn keys_of_addresses_add_words_at_their_place() {
     for (block, keys, made) in [
@@ -179,7 +179,7 @@ fn the_dialogue_block_of_a_cycle() {
 }
 
 #[test]
-fn words_behind_m_functions_lines_of_datum_tables_and_optional_blocks() {
+fn words_after_m_functions_lines_of_datum_tables_and_optional_blocks() {
     let mut desk = Desk::with("", Tnc425);
     desk.enter("L X 1 ENT ENT ENT 118 X 1 . 5 Y 2 ENT");
     assert_eq!(desk.blocks(), ["L X+1 R0 FMAX M118 X1.5 Y2"]);

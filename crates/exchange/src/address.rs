@@ -24,11 +24,11 @@ pub(crate) const BYTES: u16 = 1024;
 /// A kind of operand of one bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum BitArea {
-    /// Marker.
+    /// Markers, 0 or 1.
     M,
-    /// Input.
+    /// PLC inputs, 0 or 1.
     I,
-    /// Output.
+    /// PLC outputs, 0 or 1.
     O,
     /// Timer: T0-T47 start, T48-T95 running.
     T,
@@ -37,7 +37,7 @@ pub enum BitArea {
 }
 
 impl BitArea {
-    /// All areas.
+    /// All areas of single bits.
     pub const ALL: [BitArea; 5] = [BitArea::M, BitArea::I, BitArea::O, BitArea::T, BitArea::C];
 
     /// The letter that programs use.
@@ -51,7 +51,7 @@ impl BitArea {
         }
     }
 
-    /// The first number behind the area.
+    /// The first number after the area.
     pub const fn count(self) -> u16 {
         AREAS[self as usize].2
     }
@@ -94,7 +94,7 @@ pub struct Bit {
 }
 
 impl Bit {
-    /// The operand of a number, also in the gaps between the input and output boards; `None` behind the end
+    /// The operand of a number, also in the gaps between the input and output boards; `None` beyond the end
     /// of the area.
     pub const fn new(area: BitArea, number: u16) -> Option<Bit> {
         if number < area.count() {
@@ -114,7 +114,7 @@ impl Bit {
         self.area
     }
 
-    /// The number behind the letter.
+    /// The number after the letter.
     pub const fn number(self) -> u16 {
         self.number
     }
@@ -148,16 +148,16 @@ impl fmt::Debug for Bit {
 /// The width of a number operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Size {
-    /// `B`, 8 bits.
+    /// `B`, a byte of 8 bits.
     Byte,
-    /// `W`, 16 bits.
+    /// `W`, a word of 16 bits.
     Word,
-    /// `D`, 32 bits.
+    /// `D`, a doubleword of 32 bits.
     Double,
 }
 
 impl Size {
-    /// All sizes.
+    /// All sizes of numbers.
     pub const ALL: [Size; 3] = [Size::Byte, Size::Word, Size::Double];
 
     /// Bytes that it takes.
@@ -197,7 +197,7 @@ pub struct Number {
 }
 
 impl Number {
-    /// The operand of an address; `None` when it is not a multiple of the size, or behind the end of the
+    /// The operand of an address; `None` when it is not a multiple of the size, or beyond the end of the
     /// memory.
     pub const fn new(size: Size, address: u16) -> Option<Number> {
         if address < BYTES && address.is_multiple_of(size.bytes()) {
@@ -212,12 +212,12 @@ impl Number {
         Number { size, address }
     }
 
-    /// The width.
+    /// The width of the number that is addressed.
     pub const fn size(self) -> Size {
         self.size
     }
 
-    /// The number behind the letter.
+    /// The number after the letter.
     pub const fn address(self) -> u16 {
         self.address
     }
@@ -308,7 +308,7 @@ impl BitRange {
         }
     }
 
-    /// How many markers.
+    /// The number of markers in the range.
     pub const fn count(self) -> u16 {
         self.count
     }
@@ -322,7 +322,7 @@ impl BitRange {
         }
     }
 
-    /// All markers.
+    /// The markers of the range, by rising number.
     pub fn iter(self) -> impl Iterator<Item = Bit> {
         (0..self.count).filter_map(move |index| self.get(index))
     }
@@ -340,7 +340,7 @@ impl ByteRange {
         ByteRange { first, count }
     }
 
-    /// How many bytes.
+    /// The number of bytes in the range.
     pub const fn count(self) -> u16 {
         self.count
     }
@@ -360,7 +360,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn areas_lie_one_behind_the_other() {
+    fn areas_lie_one_after_the_other() {
         let mut next = 0;
         for area in BitArea::ALL {
             assert_eq!(area.first_cell(), next, "{area:?}");

@@ -9,7 +9,7 @@ use crate::{Bit, Number};
 /// is queued and reaches the PLC at the start of the next scan; what the PLC changes during a scan reaches
 /// the NC at its end. So either side may set and reset any marker, whatever the manual's columns say; an
 /// NC write to a marker that the PLC changes in the same scan is the later one and wins (inferred).
-/// Inputs go one way only: a program that writes one sees its value until the next scan [000:12235].
+/// Inputs go in one direction only: a program that writes one sees its value until the next scan [000:12235].
 ///
 /// ```
 /// use bahn_exchange::{Exchange, signal};

@@ -12,7 +12,7 @@ pub enum Operand {
     Bit(Bit),
     /// A byte, word or doubleword.
     Number(Number),
-    /// S0 to S3.
+    /// A string, S0 to S3.
     Text(usize),
 }
 
@@ -144,7 +144,7 @@ impl Operand {
 pub enum Content {
     /// Of a bit, 0 or 1, or of a number.
     Number(i32),
-    /// Of a string.
+    /// The value of a string.
     Text(String),
 }
 
@@ -162,7 +162,7 @@ impl fmt::Display for Content {
 pub enum Assignment {
     /// An operand and what it is to hold.
     Operand(Operand, Content),
-    /// `4110.2=4`.
+    /// A machine parameter with its value, `4110.2=4`.
     Parameter(String),
 }
 
@@ -192,10 +192,10 @@ impl Assignment {
         is_word || parameter(name).is_some() || name.parse::<Operand>().is_ok()
     }
 
-    /// Reads one.
+    /// Reads an assignment, `M100=1`.
     ///
     /// # Errors
-    /// In words, when it is none.
+    /// In words, when the text is no assignment.
     pub fn parse(text: &str) -> Result<Assignment, String> {
         let (name, value) = text
             .split_once('=')
@@ -208,16 +208,16 @@ impl Assignment {
         Ok(Assignment::Operand(operand, operand.content(value)?))
     }
 
-    /// Several with commas between.
+    /// Reads several assignments with commas between.
     ///
     /// # Errors
-    /// That of the first that is none.
+    /// The error of the first that is no assignment.
     pub fn parse_all(text: &str) -> Result<Vec<Assignment>, String> {
         parts(text).map(Assignment::parse).collect()
     }
 }
 
-/// The number of a machine parameter, behind `MP`.
+/// The number of a machine parameter, after `MP`.
 fn parameter(name: &str) -> Option<&str> {
     let (prefix, number) = name.split_at_checked(2)?;
     let number = number.trim();
@@ -235,7 +235,7 @@ pub fn parts(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Decimal, or hexadecimal behind `$`.
+/// Decimal, or hexadecimal after `$`.
 fn integer(text: &str) -> Option<i64> {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(digits) => (true, digits),

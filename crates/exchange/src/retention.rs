@@ -52,7 +52,7 @@ pub trait RetentionStorage {
 /// Why a journal cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum RetentionError {
-    /// The medium failed.
+    /// Reading or writing of the medium failed.
     #[error("retained PLC memory: {0}")]
     Medium(#[from] io::Error),
     /// What is there is something else.
@@ -69,7 +69,7 @@ pub struct Damage {
     pub loss: Loss,
 }
 
-/// What damage costs.
+/// The values that are lost by damage of the medium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loss {
     /// Nothing: only older values were damaged.
@@ -77,7 +77,7 @@ pub enum Loss {
     /// So many of the latest changes at most: a record where they may have stood is damaged, perhaps by
     /// power-off in the midst of writing it.
     Latest(usize),
-    /// All values.
+    /// All values are lost.
     Everything,
 }
 
@@ -103,7 +103,7 @@ pub struct Retention<S> {
     storage: S,
     /// What the last record holds.
     written: Payload,
-    /// Its number.
+    /// The number of the record; each has one more than that before.
     number: u64,
     /// The last write failed.
     failed: bool,
@@ -183,7 +183,7 @@ impl<S: RetentionStorage> Retention<S> {
         Ok(())
     }
 
-    /// The storage.
+    /// The medium that the journal writes to.
     pub fn storage(&self) -> &S {
         &self.storage
     }

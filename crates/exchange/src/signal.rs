@@ -10,13 +10,13 @@ include!(concat!(env!("OUT_DIR"), "/signals.rs"));
 /// What a signal occupies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalOperand {
-    /// One marker.
+    /// A single marker.
     Bit(Bit),
     /// One byte, word or doubleword.
     Number(Number),
-    /// Consecutive markers.
+    /// Markers that follow one another.
     Bits(BitRange),
-    /// Consecutive bytes.
+    /// Bytes that follow one another.
     Bytes(ByteRange),
 }
 
@@ -43,13 +43,13 @@ impl std::fmt::Display for SignalOperand {
 pub struct Signal {
     /// Its name, as `M_FUNCTION_STROBE`.
     pub name: &'static str,
-    /// What it occupies.
+    /// The markers or bytes that the signal occupies.
     pub operand: SignalOperand,
-    /// What it means.
+    /// The meaning of the signal.
     pub function: &'static str,
     /// Who sets it: `NC`, `PLC`, `NC;PLC`.
     pub set_by: &'static str,
-    /// Who resets it.
+    /// Who resets it: NC, PLC, or nobody.
     pub reset_by: &'static str,
     /// Its part in a handshake: strobe, acknowledgement, level, status.
     pub role: &'static str,
@@ -59,7 +59,7 @@ pub struct Signal {
     pub tnc355: bool,
     /// The words that replace it where it is there for the TNC 355 only.
     pub replaced_by: &'static str,
-    /// Conditions and contradictions.
+    /// Conditions under which it acts, and contradictions of the manual.
     pub notes: &'static str,
     /// Where the manual prints it, as `[000:10573]`.
     pub source: &'static str,

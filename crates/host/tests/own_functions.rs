@@ -30,7 +30,7 @@ fn functions_are_read() {
     );
     let functions = machine.unwrap().functions;
     let out = |at, synchronisation| Some(OwnFunction::Out { at, synchronisation });
-    let ahead = out(At::Ahead(Ahead::Way(25.0)), Synchronisation::MvsSvs);
+    let ahead = out(At::Ahead(Ahead::Distance(25.0)), Synchronisation::MvsSvs);
     assert_eq!([70, 71].map(|code| functions.get(code)), [ahead; 2]);
     assert_eq!(
         functions.get(72),

@@ -8,15 +8,15 @@ use bahn_parameters::interfaces::TransferFormat;
 pub const DC3: u8 = 0x13;
 /// Starts it again: XON.
 pub const DC1: u8 = 0x11;
-/// Characters that may still come behind a DC3 [000:17045-17050].
-pub const BEHIND_DC3: usize = 12;
+/// Characters that may still come after a DC3 [000:17045-17050].
+pub const AFTER_DC3: usize = 12;
 
 /// Parity of a character [000:16636-16665].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
     /// The bits that are 1, with that of the parity, are even in number.
     Even,
-    /// They are odd.
+    /// The number of ones with the parity bit is odd.
     Odd,
 }
 
@@ -32,7 +32,7 @@ pub enum Parity {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Characters {
-    /// 7 or 8.
+    /// Data bits of a character, 7 or 8.
     pub data_bits: u8,
     /// `None` when it is not desired.
     pub parity: Option<Parity>,
@@ -65,7 +65,7 @@ impl Characters {
         Duration::from_nanos(half_bits * 500_000_000 / u64::from(baud.max(1)))
     }
 
-    /// What of a byte a character carries on a channel without UART: with 7 data bits bit 7 is none of it.
+    /// The part of a byte that a character carries on a channel without UART: with 7 data bits bit 7 is lost.
     #[inline]
     pub fn mask(&self, byte: u8) -> u8 {
         if self.data_bits == 7 { byte & 0x7F } else { byte }

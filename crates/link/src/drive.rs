@@ -1,4 +1,4 @@
-//! A protocol on a channel: what comes is handed to it, what it says is sent, and it is told the time.
+//! A protocol on a channel: what comes is handed to it, what it answers is sent, and it is given the time.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,10 +10,10 @@ use crate::protocol::{Event, Protocol};
 /// How often one looks whether the process is to end.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// What is told of the bytes that pass: `true` when they were sent.
+/// What observes the bytes that pass: `true` when they were sent.
 pub type Tap<'a> = &'a mut dyn FnMut(bool, u8, Duration);
 
-/// Who is told what happens, and answers questions.
+/// Who gets the events, and answers questions.
 pub trait Attendant {
     /// Something has happened; the answer to a question, which may come later by [`Attendant::answer`].
     fn event(&mut self, event: Event) -> Option<bool>;

@@ -9,9 +9,9 @@ use crate::store::{Entry, Existing, Place, Store, StoreError};
 /// A file in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Listed {
-    /// Name and extension.
+    /// Name of the file with its extension.
     pub name: String,
-    /// Bytes.
+    /// Size of the file, bytes.
     pub size: u64,
     /// It must not be replaced.
     pub protected: bool,
@@ -158,7 +158,7 @@ impl Memory {
         self.lock().insert(name.to_owned(), content);
     }
 
-    /// Protects a file.
+    /// Protects a file against erasing and writing.
     pub fn protect(&self, name: &str) {
         if let Some((_, protected)) = self.lock().get_mut(name) {
             *protected = true;

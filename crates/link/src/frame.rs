@@ -13,20 +13,20 @@ pub(crate) enum Kind {
     Text,
 }
 
-/// What has come.
+/// A piece of the conversation that has come whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Piece {
     /// A block that is right, without what frames it.
     Block(Kind, Vec<u8>),
     /// A block that is wrong.
     Wrong,
-    /// End of text.
+    /// End of text, ETX.
     Etx,
-    /// End of transmission.
+    /// End of transmission, EOT.
     Eot,
     /// The block was right.
     Ack,
-    /// It was wrong.
+    /// Negative acknowledgement, NAK.
     Nak,
     /// Any other character between blocks.
     Other(u8),
@@ -92,7 +92,7 @@ impl Decoder {
         *self = Decoder::default();
     }
 
-    /// Takes a byte.
+    /// Takes a byte from the line; the piece that it completes.
     pub fn take(&mut self, settings: &Settings, byte: u8) -> Option<Piece> {
         match self.state {
             State::Between => self.between(settings, byte),
@@ -165,8 +165,8 @@ impl Decoder {
     }
 }
 
-/// The text of a block: ends of lines that some devices send in it are none of it, and neither is the blank of a check
-/// character that would be a control character.
+/// The text of a block, without the ends of lines that some devices send in it, and without the blank that fills a block
+/// whose check character would be a control character.
 fn strip(text: Vec<u8>, is_filled: bool) -> Option<Vec<u8>> {
     let is_end = |byte: &u8| matches!(byte, b'\r' | b'\n' | 0x0C);
     let from = text.iter().position(|byte| !is_end(byte)).unwrap_or(text.len());
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn the_character_behind_etb_is_a_check_character_whatever_it_is() {
+    fn the_character_after_etb_is_a_check_character_whatever_it_is() {
         let settings = settings(false);
         // Check characters DC1, DC3, ETX, EOT, ACK, SOH and 0.
         for wanted in [0x11, 0x13, 0x03, 0x04, 0x06, 0x01, 0x00] {

@@ -49,7 +49,7 @@ pub mod store;
 mod text;
 
 pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
-pub use characters::{BEHIND_DC3, Characters, DC1, DC3, Parity};
+pub use characters::{AFTER_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile, OfKinds};

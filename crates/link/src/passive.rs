@@ -10,7 +10,7 @@ use crate::protocol::{Event, Protocol};
 use crate::settings::Settings;
 use crate::standard;
 
-/// How often LSV/2 is told the time while it has something to do.
+/// How often LSV/2 is given the time while it has something to do.
 const TICK: Duration = Duration::from_millis(50);
 
 /// A device by the protocol of a port.
@@ -136,5 +136,5 @@ impl Protocol for Passive {
     }
 }
 
-/// Begins LSV/2.
+/// ENQ, with which LSV/2 begins.
 const ENQ: u8 = 0x05;

@@ -29,7 +29,7 @@ pub struct PlcLine {
     too_long: bool,
     /// The PLC has a text that it has not taken.
     awaits: bool,
-    /// The text behind that.
+    /// The text after that.
     held: Option<Vec<u8>>,
     /// Answers and stops, before everything else.
     replies: VecDeque<u8>,
@@ -43,7 +43,7 @@ pub struct PlcLine {
     events: VecDeque<LineEvent>,
 }
 
-/// A text on its way.
+/// A text that is being sent.
 #[derive(Clone, Debug)]
 struct Sending {
     block: Vec<u8>,
@@ -216,14 +216,14 @@ impl PlcLine {
         }
     }
 
-    /// It is this time.
+    /// Advances the clock, which ends what it has waited for too long.
     pub fn clock(&mut self, now: Duration) {
         if self.deadline().is_some_and(|until| now >= until) {
             self.sent(LineEvent::NotSent);
         }
     }
 
-    /// When it wants to know the time.
+    /// When [`PlcLine::clock`] is to be called at the latest.
     pub fn deadline(&self) -> Option<Duration> {
         self.sending.as_ref()?.until
     }
@@ -234,7 +234,7 @@ impl PlcLine {
         !self.replies.is_empty() || !self.stopped && self.sending.as_ref().is_some_and(unsent)
     }
 
-    /// What it sends, `room` bytes at most. They are as good as sent.
+    /// Takes what is to be sent, `room` bytes at most; the caller must send all of them.
     pub fn send(&mut self, room: usize, now: Duration, into: &mut Vec<u8>) {
         let replies = room.min(self.replies.len());
         into.extend(self.replies.drain(..replies));
@@ -269,7 +269,7 @@ impl PlcLine {
         }
     }
 
-    /// What the control is to be told.
+    /// What the control is to get.
     pub fn event(&mut self) -> Option<LineEvent> {
         self.events.pop_front()
     }
@@ -406,7 +406,7 @@ mod tests {
     }
 
     proptest! {
-        /// Noise leaves nothing behind that grows, and a text gets through when it is over.
+        /// Noise leaves nothing that grows, and a text gets through when it is over.
         #[test]
         fn noise_ends(noise in prop::collection::vec(any::<u8>(), 0..400), blockwise: bool) {
             let (mut plc, settings) = line(blockwise);

@@ -26,13 +26,13 @@ pub struct PrintOut {
     bytes: Vec<u8>,
     at: usize,
     stopped: bool,
-    /// It is told that it is over, and whether all was sent.
+    /// The end is reported to it, and whether all was sent.
     ended: Option<bool>,
     over: bool,
 }
 
 impl PrintOut {
-    /// Prints bytes.
+    /// Begins to print bytes.
     pub fn new(bytes: Vec<u8>) -> PrintOut {
         PrintOut {
             over: bytes.is_empty(),

@@ -9,7 +9,7 @@ use crate::store::StoreError;
 /// What the control shows of a transfer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shown {
-    /// A message of the control, with a code behind it.
+    /// A message of the control, with a code after it.
     Control(MessageId, Option<char>),
     /// The text of the device [000:17442-17450], or what the medium says.
     Device(String),
@@ -62,14 +62,14 @@ pub enum Question {
     Protected(String),
 }
 
-/// What there is to be told of a transfer.
+/// An event of a transfer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A file is stored.
     Received(String),
     /// A file has arrived at the other side.
     Sent(String),
-    /// A file on the medium of the device, with its sectors when it tells them.
+    /// A file on the medium of the device, with its sectors when the device lists them.
     Listed(String, Option<u32>),
     /// Free sectors on the medium of the device.
     Free(u32),
@@ -83,18 +83,18 @@ pub enum Event {
     Ended(bool),
 }
 
-/// A protocol on one side of a line. It knows no clock and no channel: whoever drives it tells it what comes and what time
+/// A protocol on one side of a line. It knows no clock and no channel: whoever drives it gives it what comes and what time
 /// it is, and sends what it has to send.
 pub trait Protocol: Send {
     /// A byte has come.
     fn receive(&mut self, byte: u8, now: Duration);
-    /// It is this time.
+    /// Advances the clock of the protocol, which ends what it has waited for too long.
     fn clock(&mut self, now: Duration);
-    /// When it wants to know the time.
+    /// When [`Protocol::clock`] is to be called at the latest.
     fn deadline(&self) -> Option<Duration>;
     /// Whether it has something to send.
     fn has_output(&self) -> bool;
-    /// What it sends, `room` bytes at most. They are as good as sent.
+    /// Takes what is to be sent, `room` bytes at most; the caller must send all of them.
     fn send(&mut self, room: usize, now: Duration, into: &mut Vec<u8>);
     /// How long it may be left alone, when it has output from elsewhere.
     fn patience(&self) -> Option<Duration> {
@@ -104,7 +104,7 @@ pub trait Protocol: Send {
     fn plugged(&mut self, _now: Duration) {}
     /// The cable is pulled.
     fn unplugged(&mut self, now: Duration);
-    /// What there is to be told.
+    /// The next event, if there is one.
     fn event(&mut self) -> Option<Event>;
     /// The answer to its question.
     fn answer(&mut self, yes: bool, now: Duration);

@@ -57,7 +57,7 @@ impl FromStr for Mode {
     }
 }
 
-/// Everything that a protocol is told of its port.
+/// Everything that a protocol knows of its port.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The control whose messages are shown.
@@ -70,7 +70,7 @@ pub struct Settings {
     pub control: ControlCharacters,
     /// A check character is never a control character [000:17015-17017].
     pub printable_check: bool,
-    /// DC1 stands behind each check character [000:17399-17403].
+    /// DC1 stands after each check character [000:17399-17403].
     pub with_dc1: bool,
     /// The other side is stopped by RTS, otherwise by DC3 [000:17059-17063].
     pub stop_by_rts: bool,

@@ -62,7 +62,7 @@ impl PlcHold {
         fits
     }
 
-    /// What the control is to be told.
+    /// What the control is to get.
     pub fn take_events(&self) -> Vec<LineEvent> {
         let mut held = self.held();
         let mut events = std::mem::take(&mut held.events);
@@ -98,7 +98,7 @@ pub struct SharedPort {
 }
 
 impl SharedPort {
-    /// A port.
+    /// A port that a PLC shares with another protocol.
     pub fn new(hold: PlcHold, other: Box<dyn Protocol>) -> SharedPort {
         SharedPort {
             hold,
@@ -253,7 +253,7 @@ mod tests {
         bytes
     }
 
-    /// The other one is a transfer of three bytes; the PLC has the port behind it, then what was printed meanwhile goes out.
+    /// The other one is a transfer of three bytes; the PLC has the port after it, then what was printed meanwhile goes out.
     #[test]
     fn one_after_the_other_has_the_port() {
         let hold = PlcHold::default();

@@ -12,9 +12,9 @@ pub(crate) const LINE_MAX: usize = 1000;
 /// What the first line of a file says of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Beginning {
-    /// Name, without extension.
+    /// Name of the file, without extension.
     pub name: String,
-    /// Type of file, when the line tells.
+    /// Type of file, when the line names it.
     pub kind: Option<FileType>,
 }
 
@@ -35,8 +35,8 @@ pub(crate) fn beginning(line: &[u8]) -> Option<Beginning> {
         "PGM" => of_name(words.next()?, FileType::of_extension("H")),
         name => {
             let (stem, kind) = name.split_once('.').unwrap_or((name, ""));
-            let behind = words.next().and_then(|word| word.strip_prefix('.'));
-            of_name(stem, FileType::of_extension(behind.unwrap_or(kind)))
+            let after = words.next().and_then(|word| word.strip_prefix('.'));
+            of_name(stem, FileType::of_extension(after.unwrap_or(kind)))
         }
     }
 }
@@ -192,7 +192,7 @@ impl Taking {
         self.ended
     }
 
-    /// Stores it.
+    /// Stores the file, whole, under its name.
     pub fn commit(self) -> Result<(), Unstored> {
         if self.is_program && !self.ended {
             return Err(Unstored::Incomplete);

@@ -40,7 +40,7 @@ fn device(settings: Settings, files: &Memory) -> Peripheral {
     Peripheral::new(settings, Box::new(files.clone()), Rights::ALL)
 }
 
-/// A conversation in which the control reads in, in both roles; returns what each told and what the control has then.
+/// A conversation in which the control reads in, in both roles; returns what each reported and what the control has then.
 fn reads(want: Want, there: &[(&str, &str)], script: &str) -> (Vec<String>, Vec<String>, Memory) {
     let settings = settings(Mode::Fe2);
     let stored = Memory::default();
@@ -79,15 +79,15 @@ fn a_pallet_file_with_a_nak() {
     };
     let settings = settings(Mode::Fe1);
     let there = files(&[("PPP.P", &text)]);
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut writing(settings, &there, &["PPP.P"]),
         &script("BCC"),
     );
-    assert_eq!(told, ["sent PPP.P", "complete"]);
+    assert_eq!(reported, ["sent PPP.P", "complete"]);
     let stored = Memory::default();
-    let told = converse(Role::Device, &mut device(settings, &stored), &script("BAD"));
-    assert_eq!(told, ["received PPP.P", "complete"]);
+    let reported = converse(Role::Device, &mut device(settings, &stored), &script("BAD"));
+    assert_eq!(reported, ["received PPP.P", "complete"]);
     assert_eq!(stored.get("PPP.P").unwrap(), text);
     // The check character of the header is 4B.
     assert_eq!(
@@ -132,7 +132,7 @@ fn output_with_confirmation() {
     let there = files(&[("1.H", ONE), ("2.H", TWO)]);
     let names = vec!["1.H".to_owned(), "2.H".to_owned()];
     let mut control = Writing::new(settings(Mode::Fe2), Box::new(there), names, true);
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut control,
         r#"no
@@ -145,7 +145,7 @@ fn output_with_confirmation() {
            P: ACK
            T: ETX EOT"#,
     );
-    assert_eq!(told, ["output 1.H?", "output 2.H?", "sent 2.H", "complete"]);
+    assert_eq!(reported, ["output 1.H?", "output 2.H?", "sent 2.H", "complete"]);
 }
 
 const READ_ONE: &str = r#"T: SOH H1E ETB BCC DC1
@@ -187,7 +187,7 @@ const READ_ALL: &str = r#"T: SOH HE ETB BCC DC1
     quiet-for-a-moment
     T: SOH HE ETB BCC DC1"#;
 
-/// The last nameless header may be answered ETX, ACK ETX or EOT; ETX may stand between files or not, and an EOT behind it.
+/// The last nameless header may be answered ETX, ACK ETX or EOT; ETX may stand between files or not, and an EOT after it.
 #[test]
 fn read_all() {
     let moment = "quiet-for-a-moment";
@@ -207,9 +207,9 @@ fn read_all() {
                 + end;
             let stored = Memory::default();
             let mut control = reading(settings(Mode::Fe2), &stored, Want::All);
-            let told = converse(Role::Control, &mut control, &script);
+            let reported = converse(Role::Control, &mut control, &script);
             assert_eq!(
-                told,
+                reported,
                 ["received 1.H", "received 2.H", "complete"],
                 "{last} {between}"
             );
@@ -219,7 +219,7 @@ fn read_all() {
             );
         }
     }
-    // The device sends ETX behind each file, and alone when there is no more; EOT goes back to the first.
+    // The device sends ETX after each file, and alone when there is no more; EOT goes back to the first.
     let there = files(&[
         ("2.H", TWO),
         ("1.H", ONE),
@@ -229,12 +229,12 @@ fn read_all() {
     let mut device = device(settings(Mode::Fe2), &there);
     let script = READ_ALL.replace(moment, "") + "\nP: ETX\nT: EOT\n";
     for _ in 0..2 {
-        let told = converse(Role::Device, &mut device, &script);
-        assert_eq!(told, ["sent 1.H", "sent 2.H", "complete"]);
+        let reported = converse(Role::Device, &mut device, &script);
+        assert_eq!(reported, ["sent 1.H", "sent 2.H", "complete"]);
     }
 }
 
-/// Behind the first block of each file the next one is asked for [000:17455-17458].
+/// After the first block of each file the next one is asked for [000:17455-17458].
 #[test]
 fn directory() {
     let (control, device, stored) = reads(
@@ -264,8 +264,8 @@ fn directory_of_fe1() {
         P: FREE: " 1500 sectors" CR LF"#;
     let answer = answer.replace("        P: \"xxxxxx\\\"\n", "");
     let mut control = DirectoryRequest::new(settings(Mode::Fe1));
-    let told = converse(Role::Control, &mut control, &format!("{ask}{answer}"));
-    assert_eq!(told, ["listed 15 3", "free 1500", "complete"]);
+    let reported = converse(Role::Control, &mut control, &format!("{ask}{answer}"));
+    assert_eq!(reported, ["listed 15 3", "free 1500", "complete"]);
     // What the device answers the control understands.
     let mut device = device(
         settings(Mode::Fe1),
@@ -278,17 +278,20 @@ fn directory_of_fe1() {
         pass(&mut device, &mut control, now);
         now += std::time::Duration::from_millis(1);
     }
-    let told: Vec<String> = std::iter::from_fn(|| bahn_link::Protocol::event(&mut control))
-        .map(|event| support::told(&event, ControlModel::Tnc415b))
+    let reported: Vec<String> = std::iter::from_fn(|| bahn_link::Protocol::event(&mut control))
+        .map(|event| support::described(&event, ControlModel::Tnc415b))
         .collect();
-    assert_eq!(told, ["listed 15 1", "listed NOTE 2", "free 1577", "complete"]);
+    assert_eq!(
+        reported,
+        ["listed 15 1", "listed NOTE 2", "free 1577", "complete"]
+    );
     // Nobody there.
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut DirectoryRequest::new(settings(Mode::Fe1)),
         &format!("{ask}quiet"),
     );
-    assert_eq!(told, ["EXT. OUTPUT/INPUT NOT READY", "broken off"]);
+    assert_eq!(reported, ["EXT. OUTPUT/INPUT NOT READY", "broken off"]);
 }
 
 fn pass(from: &mut dyn bahn_link::Protocol, to: &mut dyn bahn_link::Protocol, now: std::time::Duration) {
@@ -326,7 +329,7 @@ fn read_offered() {
         control,
         ["offered 1.H?", "offered 2.H?", "received 2.H", "complete"]
     );
-    // Whoever is quiet behind ETX has it.
+    // Whoever is quiet after ETX has it.
     assert_eq!(device, ["sent 2.H", "complete", "complete"]);
     assert_eq!(
         (stored.get("1.H"), stored.get("2.H").unwrap()),
@@ -342,30 +345,30 @@ fn a_file_that_is_there_is_replaced_after_a_question() {
         P: STX "0 BEGIN PGM 1 MM" ETB BCC DC1
         "#;
     let control = &mut reading(settings(Mode::Fe2), &there, selected("1.H"));
-    let told = converse(Role::Control, control, &format!("{head}no\nT: EOT"));
-    assert_eq!(told, ["overread 1.H?", "ERASE/OVERREAD", "broken off"]);
+    let reported = converse(Role::Control, control, &format!("{head}no\nT: EOT"));
+    assert_eq!(reported, ["overread 1.H?", "ERASE/OVERREAD", "broken off"]);
     assert_eq!(there.get("1.H").unwrap(), "old");
 
     let rest = READ_ONE.split_once("\n    T: ACK").unwrap().1;
     let control = &mut reading(settings(Mode::Fe2), &there, selected("1.H"));
     // The operator may think as long as he likes.
-    let told = converse(Role::Control, control, &format!("{head}quiet\nyes\nT: ACK{rest}"));
-    assert_eq!(told, ["overread 1.H?", "received 1.H", "complete"]);
+    let reported = converse(Role::Control, control, &format!("{head}quiet\nyes\nT: ACK{rest}"));
+    assert_eq!(reported, ["overread 1.H?", "received 1.H", "complete"]);
     assert_eq!(there.get("1.H").unwrap(), ONE);
 
     there.protect("1.H");
     let control = &mut reading(settings(Mode::Fe2), &there, selected("1.H"));
-    let told = converse(Role::Control, control, &format!("{head}T: EOT"));
-    assert_eq!(told, ["PROTECTED PGM", "broken off"]);
+    let reported = converse(Role::Control, control, &format!("{head}T: EOT"));
+    assert_eq!(reported, ["PROTECTED PGM", "broken off"]);
     // Of all files the next one is read in.
     let all = head.replace("H1E", "HE");
     let control = &mut reading(settings(Mode::Fe2), &there, Want::All);
-    let told = converse(
+    let reported = converse(
         Role::Control,
         control,
         &format!("{all}yes\nT: SOH HE ETB BCC DC1\nP: ETX\nT: EOT"),
     );
-    assert_eq!(told, ["PROTECTED PGM", "protected 1.H?", "broken off"]);
+    assert_eq!(reported, ["PROTECTED PGM", "protected 1.H?", "broken off"]);
 }
 
 /// What the device refuses: SOH ERR: nnn ETB BCC, which the control shows [000:17442-17450] [000:17603-17625].
@@ -383,9 +386,9 @@ fn errors_of_the_device() {
         ("SOH H5A ETB BCC DC1", "011", None),
     ] {
         let script = format!("T: {header}\nP: SOH \"ERR: {error}\" ETB BCC\nT: ACK EOT");
-        let told = converse(Role::Device, &mut device(settings(Mode::Fe1), &there), &script);
+        let reported = converse(Role::Device, &mut device(settings(Mode::Fe1), &there), &script);
         assert_eq!(
-            told[..2],
+            reported[..2],
             [format!("ERR: {error}"), "broken off".to_owned()],
             "{header}"
         );
@@ -452,10 +455,10 @@ fn names_have_sixteen_characters_at_most() {
         ["PROGRAM INCOMPLETE", "broken off"]
     );
     let control = &mut writing(settings(Mode::Fe2), &there, &[&names[1]]);
-    let told = converse(Role::Control, control, "");
+    let reported = converse(Role::Control, control, "");
     assert!(
-        told.len() == 2 && told[0].contains(long) && told[1] == "broken off",
-        "{told:?}"
+        reported.len() == 2 && reported[0].contains(long) && reported[1] == "broken off",
+        "{reported:?}"
     );
 }
 
@@ -465,12 +468,12 @@ fn three_times_and_no_more() {
     let there = files(&[("1.H", ONE)]);
     let header = "T: SOH H1A ETB BCC DC1\n";
     let script = format!("{header}P: NAK\n{header}P: NAK\n{header}P: NAK\nT: EOT");
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut writing(settings(Mode::Fe2), &there, &["1.H"]),
         &script,
     );
-    assert_eq!(told, ["TRANSFERRED DATA INCORRECT E", "broken off"]);
+    assert_eq!(reported, ["TRANSFERRED DATA INCORRECT E", "broken off"]);
 
     let asked = "T: SOH H1E ETB BCC DC1\nP: ACK\n";
     let wrong = "P: STX \"0 BEGIN PGM 1 MM\" ETB BAD DC1\n";
@@ -481,7 +484,7 @@ fn three_times_and_no_more() {
         ["TRANSFERRED DATA INCORRECT M", "broken off"]
     );
 
-    for (script, told) in [
+    for (script, reported) in [
         (format!("{header}quiet\nT: EOT"), "TRANSFERRED DATA INCORRECT N"),
         (
             format!("{header}P: ACK\nT: STX \"0 BEGIN PGM 1 MM\" ETB BCC DC1\nquiet\nT: EOT"),
@@ -494,11 +497,11 @@ fn three_times_and_no_more() {
         let control = &mut writing(settings(Mode::Fe2), &there, &["1.H"]);
         assert_eq!(
             converse(Role::Control, control, &script),
-            [told, "broken off"],
+            [reported, "broken off"],
             "{script}"
         );
     }
-    for (end, told) in [
+    for (end, reported) in [
         ("quiet\nT: EOT", "PROGRAM INCOMPLETE"),
         ("P: EOT\nT: EOT", "PROGRAM INCOMPLETE"),
         ("pulled", "PROGRAM INCOMPLETE"),
@@ -509,7 +512,7 @@ fn three_times_and_no_more() {
         let control = &mut reading(settings(Mode::Fe2), &stored, selected("1.H"));
         assert_eq!(
             converse(Role::Control, control, &script),
-            [told, "broken off"],
+            [reported, "broken off"],
             "{script}"
         );
         assert_eq!(stored.get("1.H"), None);
@@ -521,18 +524,18 @@ fn three_times_and_no_more() {
         "{header}P: ACK\n{wrong}P: NAK\n{wrong}P: NAK\n{wrong}P: SOH \"ERR: 003\" ETB BCC\nT: ACK EOT"
     );
     let stored = Memory::default();
-    let told = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
-    assert_eq!(told, ["ERR: 003", "broken off"]);
+    let reported = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
+    assert_eq!(reported, ["ERR: 003", "broken off"]);
     // NAK three times is E on this side, too; what goes back is 003.
     let block = "P: STX \"0 BEGIN PGM 1 MM\" ETB BCC DC1\nT: NAK\n";
     let header_e = "T: SOH H1E ETB BCC DC1\nP: ACK\n";
     let script = format!("{header_e}{block}{block}{block}P: SOH \"ERR: 003\" ETB BCC\nT: ACK EOT");
-    let told = converse(Role::Device, &mut device(settings(Mode::Fe2), &there), &script);
-    assert_eq!(told, ["TRANSFERRED DATA INCORRECT E", "broken off"]);
+    let reported = converse(Role::Device, &mut device(settings(Mode::Fe2), &there), &script);
+    assert_eq!(reported, ["TRANSFERRED DATA INCORRECT E", "broken off"]);
     for end in ["quiet", "pulled", "T: EOT"] {
         let script = format!("{header}P: ACK\nT: STX \"0 BEGIN PGM 1 MM\" ETB BCC\nP: ACK\n{end}");
-        let told = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
-        assert_eq!(told, ["PROGRAM INCOMPLETE", "broken off"], "{end}");
+        let reported = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
+        assert_eq!(reported, ["PROGRAM INCOMPLETE", "broken off"], "{end}");
         assert_eq!(stored.get("1.H"), None);
     }
 }
@@ -541,19 +544,19 @@ fn three_times_and_no_more() {
 #[test]
 fn a_device_is_patient() {
     let script = READ_ONE.replace("T: ACK\n    P: STX \"2", "quiet\nT: ACK\n    P: STX \"2");
-    let told = converse(
+    let reported = converse(
         Role::Device,
         &mut device(settings(Mode::Fe2), &files(&[("1.H", ONE)])),
         &script,
     );
-    assert_eq!(told, ["sent 1.H", "complete"]);
+    assert_eq!(reported, ["sent 1.H", "complete"]);
 }
 
 /// When the answer is overdue, LSV/2 may begin: a control that is gone does not keep the port.
 #[test]
 fn a_device_that_waits_in_vain_hears_an_enquiry() {
     let asked = "T: SOH H1E ETB BCC DC1\nP: ACK STX \"0 BEGIN PGM 1 MM\" ETB BCC DC1\n";
-    for (silence, told) in [
+    for (silence, reported) in [
         (
             "quiet\n",
             &["TRANSFERRED DATA INCORRECT N", "broken off", "enquiry"][..],
@@ -563,10 +566,14 @@ fn a_device_that_waits_in_vain_hears_an_enquiry() {
     ] {
         let mut device = device(settings(Mode::Fe2), &files(&[("1.H", ONE)]));
         let script = format!("{asked}{silence}T: ENQ");
-        assert_eq!(converse(Role::Device, &mut device, &script), told, "{silence}");
+        assert_eq!(
+            converse(Role::Device, &mut device, &script),
+            reported,
+            "{silence}"
+        );
         // The next control is heard.
-        let told = converse(Role::Device, &mut device, READ_ONE);
-        assert_eq!(told, ["sent 1.H", "complete"]);
+        let reported = converse(Role::Device, &mut device, READ_ONE);
+        assert_eq!(reported, ["sent 1.H", "complete"]);
     }
 }
 
@@ -613,22 +620,22 @@ fn freely_configured() {
     assert_eq!(said, b"&");
 }
 
-/// The TNC 155 knows programs by their number only: % stands before it, and it tells no letter behind its messages
+/// The TNC 155 knows programs by their number only: % stands before it, and it shows no letter after its messages
 /// [001:2080-2126] [001:2036-2052].
 #[test]
 fn a_tnc_155() {
     let settings = ext(ControlModel::Tnc155, &[(222, 168.0), (223, 1.0), (92, 1.0)]);
     let script = READ_ONE.replace("H1E", "%1E");
     let stored = Memory::default();
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(settings, &stored, selected("1.H")),
         &script,
     );
-    assert_eq!(told, ["received 1.H", "complete"]);
+    assert_eq!(reported, ["received 1.H", "complete"]);
     assert_eq!(stored.get("1.H").unwrap(), ONE);
-    let told = converse(Role::Device, &mut device(settings, &stored), &script);
-    assert_eq!(told, ["sent 1.H", "complete"]);
+    let reported = converse(Role::Device, &mut device(settings, &stored), &script);
+    assert_eq!(reported, ["sent 1.H", "complete"]);
     // What comes gets its type by its first line.
     for (line, last, name) in [
         ("0 BEGIN PGM 7 MM", "1 END PGM 7 MM", "7.H"),
@@ -657,12 +664,12 @@ fn what_real_senders_do() {
              T: ACK\nP: STX \"2 END PGM 1 MM\" CR LF ETB BCC\nT: ACK\n{end}"
         );
         let stored = Memory::default();
-        let told = converse(
+        let reported = converse(
             Role::Control,
             &mut reading(settings(Mode::Fe2), &stored, selected("1.H")),
             &script,
         );
-        assert_eq!(told, ["received 1.H", "complete"], "{end}");
+        assert_eq!(reported, ["received 1.H", "complete"], "{end}");
         assert_eq!(stored.get("1.H").unwrap(), ONE);
     }
     for end in ["T: ETX", "T: EOT", "T: ETX EOT"] {
@@ -671,7 +678,7 @@ fn what_real_senders_do() {
              P: ACK\n{end}"
         );
         let stored = Memory::default();
-        let told = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
-        assert_eq!(told[..2], ["received 1.H", "complete"], "{end}");
+        let reported = converse(Role::Device, &mut device(settings(Mode::Fe2), &stored), &script);
+        assert_eq!(reported[..2], ["received 1.H", "complete"], "{end}");
     }
 }

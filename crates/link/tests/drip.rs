@@ -89,7 +89,7 @@ struct Model {
     executed: Vec<u8>,
     most: usize,
     complete: bool,
-    ends_behind: usize,
+    ends_after: usize,
     blocks: usize,
     broken: u32,
 }
@@ -102,7 +102,7 @@ impl Model {
             executed: Vec::new(),
             most: 0,
             complete: false,
-            ends_behind: usize::MAX,
+            ends_after: usize::MAX,
             blocks: 0,
             broken: 0,
         }
@@ -122,7 +122,7 @@ impl Machine for Model {
     }
 
     fn has_ended(&self) -> bool {
-        self.blocks >= self.ends_behind
+        self.blocks >= self.ends_after
     }
 
     fn take(&mut self, text: &[u8]) -> bool {
@@ -179,7 +179,7 @@ fn a_million_blocks_over_bad_lines() {
             if line.random.below(3) > 0 {
                 machine.execute();
             }
-            // The line was cut off behind an acknowledgement: the protocol's patience ends.
+            // The line was cut off after an acknowledgement: the protocol's patience ends.
             let dead = line.next.is_none() && *drip.state() == DripState::Running;
             if matches!(drip.state(), DripState::Broken(_)) || dead {
                 drip.start_again(&mut line);
@@ -198,7 +198,7 @@ fn a_million_blocks_over_bad_lines() {
     assert!(restarts > 500, "{restarts}");
 }
 
-/// Without room there is no acknowledgement, and when the run has ended the other side is told.
+/// Without room there is no acknowledgement, and when the run has ended the other side gets the end.
 #[test]
 fn a_full_machine_holds_the_line() {
     let mut line = bad_line(100, 1, false);
@@ -211,8 +211,8 @@ fn a_full_machine_holds_the_line() {
     machine.execute();
     assert!(drip.turn(&mut line, &mut machine, Duration::ZERO));
     assert_eq!(drip.blocks(), 11);
-    machine.ends_behind = 1;
-    // What stands behind M30 is acknowledged, if it is no more than some blocks.
+    machine.ends_after = 1;
+    // What stands after M30 is acknowledged, if it is no more than some blocks.
     for _ in 0..17 {
         assert_eq!((line.given_up, drip.state()), (false, &DripState::Running));
         drip.turn(&mut line, &mut machine, Duration::ZERO);
@@ -221,7 +221,7 @@ fn a_full_machine_holds_the_line() {
     assert_eq!(machine.waiting.len(), 10);
 }
 
-/// Behind a broken line the other side sends another program, or a shorter one: that is not executed.
+/// After a broken line the other side sends another program, or a shorter one: that is not executed.
 #[test]
 fn another_program_is_not_gone_on_with() {
     for other in [blocks(100).into_iter().rev().collect(), blocks(20)] {
@@ -241,7 +241,7 @@ fn another_program_is_not_gone_on_with() {
     }
 }
 
-/// A line is read when the one before it is acknowledged; behind a broken transfer the program begins anew, or with its first
+/// A line is read when the one before it is acknowledged; after a broken transfer the program begins anew, or with its first
 /// block and those that were not acknowledged.
 #[test]
 fn a_spool_knows_which_block_is_in_the_machine() {

@@ -15,22 +15,22 @@ use support::{ext, settings};
 
 /// Time of a character.
 const CHARACTER: Duration = Duration::from_micros(260);
-/// How long a character is under way.
-const WAY: Duration = Duration::from_micros(100);
+/// How long a character is in transit.
+const DELAY: Duration = Duration::from_micros(100);
 
 /// One direction of the line.
 struct Direction {
     faults: Faults,
     free: Duration,
-    under_way: VecDeque<(Duration, u8)>,
+    in_transit: VecDeque<(Duration, u8)>,
 }
 
 impl Direction {
-    fn new(seed: u64, way: u64, one_in: u64) -> Direction {
+    fn new(seed: u64, direction: u64, one_in: u64) -> Direction {
         Direction {
-            faults: Faults::with_rate(seed, way, one_in),
+            faults: Faults::with_rate(seed, direction, one_in),
             free: Duration::ZERO,
-            under_way: VecDeque::new(),
+            in_transit: VecDeque::new(),
         }
     }
 
@@ -42,13 +42,13 @@ impl Direction {
             sent.iter()
                 .for_each(|byte| self.faults.pass(*byte, now, &mut passed));
             self.free = now + CHARACTER;
-            self.under_way
-                .extend(passed.iter().map(|byte| (now + CHARACTER + WAY, *byte & 0x7F)));
+            self.in_transit
+                .extend(passed.iter().map(|byte| (now + CHARACTER + DELAY, *byte & 0x7F)));
         }
-        while let Some((time, byte)) = self.under_way.front().copied()
+        while let Some((time, byte)) = self.in_transit.front().copied()
             && time <= now
         {
-            self.under_way.pop_front();
+            self.in_transit.pop_front();
             to.receive(byte, now);
         }
     }
@@ -56,7 +56,7 @@ impl Direction {
     /// When it does something next.
     fn next(&self, from: &dyn Protocol) -> Option<Duration> {
         let goes = from.has_output().then(|| self.free.max(self.faults.ready()));
-        let arrives = self.under_way.front().map(|(time, _)| *time);
+        let arrives = self.in_transit.front().map(|(time, _)| *time);
         goes.into_iter().chain(arrives).min()
     }
 }
@@ -79,7 +79,7 @@ fn follow(protocol: &mut dyn Protocol, end: &mut Option<bool>) {
 
 /// One transfer until both sides are done with it.
 fn transfer(control: &mut dyn Protocol, device: &mut dyn Protocol, seed: u64, one_in: u64) -> Outcome {
-    let mut lines = [0, 1].map(|way| Direction::new(seed, way, one_in));
+    let mut lines = [0, 1].map(|direction| Direction::new(seed, direction, one_in));
     let mut now = Duration::from_secs(1);
     let mut outcome = Outcome {
         control: None,
@@ -191,7 +191,7 @@ fn campaign(blocks: u64, one_in: u64) -> Tally {
                 tally.blocks += count;
             }
             (Some(false) | None, Some(true)) => {
-                // Only the answer to the last block, or what stands behind it, may be what was lost.
+                // Only the answer to the last block, or what stands after it, may be what was lost.
                 assert!(has.is_some(), "transfer {number}");
                 tally.doubted += 1;
             }
@@ -223,7 +223,7 @@ fn a_million_blocks_over_a_line_with_faults() {
     assert!(tally.doubted * 20 < tally.transfers, "{tally:?}");
 }
 
-/// FE fills its line: what goes over it one way is 95 % of what could, with all that frames it.
+/// FE fills its line: in one direction it carries 95 % of what the baud rate allows, frames included.
 #[test]
 fn a_good_line_is_full() {
     let settings = settings(Mode::Fe2).on(Some(38_400), Duration::from_secs(3));

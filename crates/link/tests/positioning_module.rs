@@ -215,7 +215,7 @@ fn a_second_control_moves_the_pallets() {
             shuttle.machine
         );
     }
-    // The cable is pulled while an order is on its way: it is not answered, and comes through when it is plugged in.
+    // The cable is pulled while an order is in transit: it is not answered, and comes through when it is plugged in.
     for side in [&mut master, &mut module] {
         side.line.unplugged();
         side.tell(LineEvent::Ready(false));

@@ -26,7 +26,7 @@ fn kind() -> FileType {
     FileType::of_code('H').unwrap()
 }
 
-/// It waits for the header, acknowledges it, and sends each line with CR LF in its block and no DC1 behind it; its ETX is
+/// It waits for the header, acknowledges it, and sends each line with CR LF in its block and no DC1 after it; its ETX is
 /// answered with EOT. A block that comes wrong it sends again.
 #[test]
 fn drips_over_ext1() {
@@ -46,8 +46,8 @@ fn drips_over_ext1() {
             T: ACK
             P: ETX
             T: EOT"#;
-        let told = converse(Role::Control, &mut control, script);
-        assert_eq!(told, ["received SADDLE.H", "complete"]);
+        let reported = converse(Role::Control, &mut control, script);
+        assert_eq!(reported, ["received SADDLE.H", "complete"]);
         assert_eq!(stored.get("SADDLE.H").unwrap(), SADDLE);
     }
 }
@@ -59,8 +59,8 @@ fn sends_when_it_is_asked() {
         let stored = Memory::default();
         let mut control = standard::Reading::new(settings, Box::new(stored.clone()), saddle(), kind());
         let script = format!("T: DC1\nP: {TEXT} ETX\n{end}");
-        let told = converse(Role::Control, &mut control, &script);
-        assert_eq!(told, ["received SADDLE.H", "complete"]);
+        let reported = converse(Role::Control, &mut control, &script);
+        assert_eq!(reported, ["received SADDLE.H", "complete"]);
         assert_eq!(stored.get("SADDLE.H").unwrap(), SADDLE);
     }
 }
@@ -69,14 +69,14 @@ fn device(settings: Settings, stored: &Memory) -> standard::Peripheral {
     standard::Peripheral::new(settings, Box::new(stored.clone()), Rights::ALL)
 }
 
-/// Told not to wait it sends to a port that obeys, and waits for EOT all the same.
+/// With the option not to wait it sends to a port that obeys, and waits for EOT all the same.
 #[test]
 fn sends_unasked() {
     for (settings, end) in [(ext1(0.0), "P: EOT"), (settings(Mode::Me), "quiet")] {
         let stored = Memory::default();
         let script = format!("T: {TEXT} ETX\nquiet\n{end}");
-        let told = converse(Role::Device, &mut device(settings, &stored), &script);
-        assert_eq!(told, ["received SADDLE.H", "complete"]);
+        let reported = converse(Role::Device, &mut device(settings, &stored), &script);
+        assert_eq!(reported, ["received SADDLE.H", "complete"]);
         assert_eq!(stored.get("SADDLE.H").unwrap(), SADDLE);
     }
     // A control has its own EOT, and who goes on at once needs none.

@@ -50,15 +50,15 @@ fn ext1() -> Settings {
 fn output_begins_with_fifty_nul_and_ends_with_etx_eot() {
     for (settings, end) in [(ext1(), "ETX EOT"), (settings(Mode::Me), "ETX")] {
         let script = format!("T: {SENT_ONE} {end}");
-        let told = converse(
+        let reported = converse(
             Role::Control,
             &mut writing(settings, &both(), &["1.H"], false),
             &script,
         );
-        assert_eq!(told, ["sent 1.H", "complete"]);
+        assert_eq!(reported, ["sent 1.H", "complete"]);
         let stored = Memory::default();
-        let told = converse(Role::Device, &mut device(settings, &stored), &script);
-        assert_eq!(told, ["received 1.H", "complete"]);
+        let reported = converse(Role::Device, &mut device(settings, &stored), &script);
+        assert_eq!(reported, ["received 1.H", "complete"]);
         assert_eq!(stored.get("1.H").unwrap(), ONE);
     }
     assert_eq!(
@@ -71,15 +71,15 @@ fn output_begins_with_fifty_nul_and_ends_with_etx_eot() {
 #[test]
 fn output_of_all() {
     let script = format!("T: {SENT_ONE} {SENT_TWO} ETX EOT");
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut writing(ext1(), &both(), &["1.H", "2.H"], false),
         &script,
     );
-    assert_eq!(told, ["sent 1.H", "sent 2.H", "complete"]);
+    assert_eq!(reported, ["sent 1.H", "sent 2.H", "complete"]);
     let stored = Memory::default();
-    let told = converse(Role::Device, &mut device(ext1(), &stored), &script);
-    assert_eq!(told, ["received 1.H", "received 2.H", "complete"]);
+    let reported = converse(Role::Device, &mut device(ext1(), &stored), &script);
+    assert_eq!(reported, ["received 1.H", "received 2.H", "complete"]);
     assert_eq!(
         (stored.get("1.H").unwrap(), stored.get("2.H").unwrap()),
         (ONE.into(), TWO.into())
@@ -89,28 +89,28 @@ fn output_of_all() {
 #[test]
 fn output_with_confirmation() {
     let script = format!("no\nyes\nT: {SENT_TWO} ETX EOT");
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut writing(ext1(), &both(), &["1.H", "2.H"], true),
         &script,
     );
-    assert_eq!(told, ["output 1.H?", "output 2.H?", "sent 2.H", "complete"]);
+    assert_eq!(reported, ["output 1.H?", "output 2.H?", "sent 2.H", "complete"]);
 }
 
-/// Behind DC3 come 12 characters at most, and DC1 lets it go on where it stopped [000:17045-17050].
+/// After DC3 come 12 characters at most, and DC1 lets it go on where it stopped [000:17045-17050].
 #[test]
 fn a_sender_stops_at_dc3() {
-    use bahn_link::{BEHIND_DC3, DC1, DC3, Protocol as _};
+    use bahn_link::{AFTER_DC3, DC1, DC3, Protocol as _};
     let mut control = writing(ext1(), &both(), &["1.H", "2.H"], false);
     let now = std::time::Duration::ZERO;
     let mut all = Vec::new();
     let mut turns = 0;
     while control.has_output() {
         let before = all.len();
-        // A channel that takes everything; DC3 comes while it is under way.
+        // A channel that takes everything; DC3 comes while it is in transit.
         control.send(10_000, now, &mut all);
         control.receive(DC3, now);
-        assert!(all.len() - before <= BEHIND_DC3);
+        assert!(all.len() - before <= AFTER_DC3);
         assert!(!control.has_output());
         let stopped = all.len();
         control.send(10_000, now, &mut all);
@@ -126,28 +126,28 @@ fn a_sender_stops_at_dc3() {
 fn read_selected() {
     let script = format!("T: DC1\nP: {SENT_ONE} ETX\nT: EOT");
     let stored = Memory::default();
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(ext1(), &stored, Want::Selected("1.H".into())),
         &script,
     );
-    assert_eq!(told, ["received 1.H", "complete"]);
+    assert_eq!(reported, ["received 1.H", "complete"]);
     assert_eq!(stored.get("1.H").unwrap(), ONE);
-    let told = converse(Role::Device, &mut device(ext1(), &stored), &script);
-    assert_eq!(told, ["sent 1.H", "complete"]);
+    let reported = converse(Role::Device, &mut device(ext1(), &stored), &script);
+    assert_eq!(reported, ["sent 1.H", "complete"]);
     // ME never sends EOT.
     let me = settings(Mode::Me);
     let stored = Memory::default();
     let script = format!("T: DC1\nP: {SENT_ONE} ETX");
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(me, &stored, Want::Selected("1.H".into())),
         &script,
     );
-    assert_eq!(told, ["received 1.H", "complete"]);
+    assert_eq!(reported, ["received 1.H", "complete"]);
 }
 
-/// The control reads every program and looks for the name; ETX behind the last one ends without a message and nothing is
+/// The control reads every program and looks for the name; ETX after the last one ends without a message and nothing is
 /// stored [000:17326-17334].
 #[test]
 fn another_name() {
@@ -184,7 +184,7 @@ fn another_name() {
     );
 }
 
-/// DC1 again only behind ETX; several programs before one ETX need none [000:17336-17343].
+/// DC1 again only after ETX; several programs before one ETX need none [000:17336-17343].
 #[test]
 fn read_all() {
     for (script, role) in [
@@ -210,8 +210,8 @@ fn read_all() {
         ),
     ] {
         let stored = Memory::default();
-        let told = converse(Role::Control, &mut reading(ext1(), &stored, Want::All), &script);
-        assert_eq!(told, ["received 1.H", "received 2.H", "complete"], "{script}");
+        let reported = converse(Role::Control, &mut reading(ext1(), &stored, Want::All), &script);
+        assert_eq!(reported, ["received 1.H", "received 2.H", "complete"], "{script}");
         assert_eq!(
             (stored.get("1.H").unwrap(), stored.get("2.H").unwrap()),
             (ONE.into(), TWO.into())
@@ -237,12 +237,15 @@ fn read_offered() {
         "T: DC1\nP: {SENT_ONE}\nT: DC3\nno\nT: DC1\nP: {SENT_TWO} ETX\nT: DC3\nyes\nT: DC1 DC1\nP: ETX\nT: EOT"
     );
     let stored = Memory::default();
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(ext1(), &stored, Want::Offered),
         &script,
     );
-    assert_eq!(told, ["offered 1.H?", "offered 2.H?", "received 2.H", "complete"]);
+    assert_eq!(
+        reported,
+        ["offered 1.H?", "offered 2.H?", "received 2.H", "complete"]
+    );
     assert_eq!(
         (stored.get("1.H"), stored.get("2.H").unwrap()),
         (None, TWO.into())
@@ -250,32 +253,32 @@ fn read_offered() {
     // By RTS no character goes.
     let by_rts = ext(ControlModel::Tnc415b, &[(5020, 172.0), (5030, 0.0)]);
     let script = format!("T: DC1\nP: {SENT_TWO} ETX\nyes\nT: DC1\nP: ETX\nT: EOT");
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(by_rts, &Memory::default(), Want::Offered),
         &script,
     );
-    assert_eq!(told, ["offered 2.H?", "received 2.H", "complete"]);
+    assert_eq!(reported, ["offered 2.H?", "received 2.H", "complete"]);
 }
 
 #[test]
 fn directory() {
     let script = format!("T: DC1\nP: {SENT_ONE} {SENT_TWO} ETX\nT: EOT");
     let stored = Memory::default();
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(ext1(), &stored, Want::Directory),
         &script,
     );
-    assert_eq!(told, ["listed 1.H", "listed 2.H", "complete"]);
+    assert_eq!(reported, ["listed 1.H", "listed 2.H", "complete"]);
     assert_eq!(stored.get("1.H"), None);
     // END at once [000:17275].
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(ext1(), &stored, Want::Directory),
         "T: DC1\nEND\nT: ETX EOT",
     );
-    assert_eq!(told, ["complete"]);
+    assert_eq!(reported, ["complete"]);
 }
 
 #[test]
@@ -283,24 +286,24 @@ fn a_file_that_is_there() {
     let there = files(&[("1.H", "old")]);
     let want = || Want::Selected("1.H".into());
     let head = format!("T: DC1\nP: {SENT_ONE} ETX\nT: DC3\n");
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(ext1(), &there, want()),
         &format!("{head}no\nT: EOT"),
     );
-    assert_eq!(told, ["overread 1.H?", "ERASE/OVERREAD", "broken off"]);
+    assert_eq!(reported, ["overread 1.H?", "ERASE/OVERREAD", "broken off"]);
     assert_eq!(there.get("1.H").unwrap(), "old");
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(ext1(), &there, want()),
         &format!("{head}yes\nT: DC1 EOT"),
     );
-    assert_eq!(told, ["overread 1.H?", "received 1.H", "complete"]);
+    assert_eq!(reported, ["overread 1.H?", "received 1.H", "complete"]);
     assert_eq!(there.get("1.H").unwrap(), ONE);
     there.protect("1.H");
     let script = format!("T: DC1\nP: {SENT_ONE}\nT: EOT");
-    let told = converse(Role::Control, &mut reading(ext1(), &there, want()), &script);
-    assert_eq!(told, ["PROTECTED PGM", "broken off"]);
+    let reported = converse(Role::Control, &mut reading(ext1(), &there, want()), &script);
+    assert_eq!(reported, ["PROTECTED PGM", "broken off"]);
 }
 
 /// ESC 1 n of the magnetic tape unit, and what should have been one [000:17597-17598] [000:17627-17637].
@@ -321,20 +324,20 @@ fn errors_of_the_device() {
     ] {
         let me = settings(Mode::Me);
         let script = format!("T: DC1\nP: {sequence}");
-        let told = converse(
+        let reported = converse(
             Role::Control,
             &mut reading(me, &Memory::default(), Want::All),
             &script,
         );
-        assert_eq!(told, [message, "broken off"], "{sequence}");
+        assert_eq!(reported, [message, "broken off"], "{sequence}");
         // While it sends.
         let mut control = writing(me, &both(), &["1.H"], false);
         bahn_link::Protocol::send(&mut control, 7, std::time::Duration::ZERO, &mut Vec::new());
         for byte in support::bytes(sequence) {
             bahn_link::Protocol::receive(&mut control, byte, std::time::Duration::ZERO);
         }
-        let told = converse(Role::Control, &mut control, "");
-        assert_eq!(told, [message, "broken off"], "{sequence}");
+        let reported = converse(Role::Control, &mut control, "");
+        assert_eq!(reported, [message, "broken off"], "{sequence}");
     }
 }
 
@@ -345,18 +348,18 @@ fn what_is_broken_off_leaves_nothing() {
     for end in ["pulled", "END\nT: EOT", "P: ETX\nT: EOT", "P: EOT\nT: EOT"] {
         let stored = Memory::default();
         let script = format!("T: DC1\nP: {half}\n{end}");
-        let told = converse(Role::Control, &mut reading(ext1(), &stored, Want::All), &script);
-        assert_eq!(told, ["PROGRAM INCOMPLETE", "broken off"], "{end}");
+        let reported = converse(Role::Control, &mut reading(ext1(), &stored, Want::All), &script);
+        assert_eq!(reported, ["PROGRAM INCOMPLETE", "broken off"], "{end}");
         assert_eq!(stored.get("1.H"), None);
     }
     for end in ["pulled", "T: ETX", "T: EOT"] {
         let stored = Memory::default();
-        let told = converse(
+        let reported = converse(
             Role::Device,
             &mut device(ext1(), &stored),
             &format!("T: {half}\n{end}"),
         );
-        assert_eq!(told, ["PROGRAM INCOMPLETE", "broken off"], "{end}");
+        assert_eq!(reported, ["PROGRAM INCOMPLETE", "broken off"], "{end}");
         assert_eq!(stored.get("1.H"), None);
     }
 }
@@ -366,11 +369,11 @@ fn what_is_broken_off_leaves_nothing() {
 fn a_text_file() {
     let stored = Memory::default();
     let script = "T: DC1\nP: NUL*3 \"any text\" CR LF CR LF last\nP: ETX\nT: EOT";
-    let told = converse(
+    let reported = converse(
         Role::Control,
         &mut reading(ext1(), &stored, Want::Selected("NOTE.A".into())),
         script,
     );
-    assert_eq!(told, ["received NOTE.A", "complete"]);
+    assert_eq!(reported, ["received NOTE.A", "complete"]);
     assert_eq!(stored.get("NOTE.A").unwrap(), "any text\n\nlast\n");
 }

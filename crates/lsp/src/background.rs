@@ -25,7 +25,7 @@ struct Job {
     interrupt: Arc<AtomicBool>,
 }
 
-/// What was found.
+/// The result of an examination in the background.
 pub(crate) struct Done {
     pub(crate) uri: Uri,
     pub(crate) version: Arc<Version>,
@@ -120,7 +120,7 @@ impl Background {
     pub(crate) fn patience(&self) -> Duration {
         const LONG: Duration = Duration::from_secs(3600);
         let until = match &self.running {
-            // Whoever was told to stop will say so.
+            // Whoever was stopped will say so.
             Some((_, interrupt, _)) if interrupt.load(Ordering::Relaxed) => return LONG,
             Some((_, _, until)) => Some(*until),
             None => self.waiting.iter().map(|(_, due)| *due).min(),

@@ -1,6 +1,6 @@
 //! Why the server has ended.
 
-/// Why the server has ended before it was told to.
+/// Why the server has ended before the request to exit.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     /// The editor broke the protocol.

@@ -13,7 +13,7 @@ pub struct Settings {
     pub strict: bool,
     /// Pass over what nothing here knows, with a warning.
     pub skip_unknown: bool,
-    /// Write decimal commas.
+    /// Formatting writes decimal commas.
     pub comma: bool,
     /// Step of the block numbers of DIN/ISO programs.
     pub iso_step: u8,

@@ -21,10 +21,10 @@ const MESSAGE_MAX: u64 = 64 << 20;
 const LINE_MAX: u64 = 4096;
 const LINES_MAX: usize = 64;
 
-/// What comes next.
+/// What was read from the client.
 #[derive(Debug)]
 pub enum Frame {
-    /// A message.
+    /// A whole message.
     Message(Box<Message>),
     /// No message, with the request that it was meant to be.
     Wrong(String, Option<RequestId>),
@@ -42,7 +42,7 @@ pub fn read(input: &mut impl BufRead) -> Frame {
     let mut bytes = Vec::new();
     match input.by_ref().take(length).read_to_end(&mut bytes) {
         Ok(count) if count as u64 == length => message(&bytes),
-        Ok(count) => Frame::End(Some(format!("a message of {length} bytes ends behind {count}"))),
+        Ok(count) => Frame::End(Some(format!("a message of {length} bytes ends after {count}"))),
         Err(error) => Frame::End(Some(error.to_string())),
     }
 }
@@ -75,7 +75,7 @@ fn head(input: &mut impl BufRead) -> Result<Option<u64>, Frame> {
         }
         match line.split_once(':') {
             Some((name, value)) if name.trim().eq_ignore_ascii_case("Content-Length") => {
-                // Behind a length that is none nobody knows where the next message begins.
+                // Without a valid length nobody knows where the next message begins.
                 let number = value.trim().parse().ok().filter(|length| *length <= MESSAGE_MAX);
                 length = Some(number.ok_or_else(|| {
                     let value = value.trim();

@@ -9,15 +9,15 @@ use lsp_types::Uri;
 pub(crate) fn path_of(uri: &Uri) -> PathBuf {
     let text = uri.as_str();
     let (scheme, rest) = text.split_once(':').unwrap_or(("", text));
-    let rest = rest.strip_prefix("//").map_or(rest, |behind| {
-        // Behind the two strokes stands the host, mostly none.
-        behind.find('/').and_then(|at| behind.get(at..)).unwrap_or(behind)
+    let rest = rest.strip_prefix("//").map_or(rest, |after| {
+        // After the two strokes stands the host, mostly none.
+        after.find('/').and_then(|at| after.get(at..)).unwrap_or(after)
     });
     let path = decoded(rest);
     if scheme != "file" {
         return PathBuf::from(format!("{scheme}:{path}"));
     }
-    // A drive letter stands behind a stroke of its own: /C:/parts.
+    // A drive letter stands after a stroke of its own: /C:/parts.
     match path.as_bytes() {
         [b'/', drive, b':', ..] if drive.is_ascii_alphabetic() => {
             PathBuf::from(path.get(1..).unwrap_or_default())
@@ -45,17 +45,17 @@ pub(crate) fn uri_of(path: &Path) -> Option<Uri> {
 fn decoded(text: &str) -> String {
     let mut bytes = Vec::new();
     let mut rest = text.as_bytes();
-    while let Some((first, behind)) = rest.split_first() {
-        let code = behind.get(..2).and_then(|code| std::str::from_utf8(code).ok());
+    while let Some((first, after)) = rest.split_first() {
+        let code = after.get(..2).and_then(|code| std::str::from_utf8(code).ok());
         let code = code.and_then(|code| u8::from_str_radix(code, 16).ok());
         match code.filter(|_| *first == b'%') {
             Some(byte) => {
                 bytes.push(byte);
-                rest = behind.get(2..).unwrap_or_default();
+                rest = after.get(2..).unwrap_or_default();
             }
             None => {
                 bytes.push(*first);
-                rest = behind;
+                rest = after;
             }
         }
     }

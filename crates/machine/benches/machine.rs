@@ -55,8 +55,8 @@ fn advance_600_us_four_axes(bencher: Bencher) {
 #[divan::bench]
 fn advance_600_us_three_axes(bencher: Bencher) {
     let table = mill().find("[axis.C]").unwrap();
-    let behind = table + mill()[table..].find("[spindle]").unwrap();
-    let text = format!("{}{}", &mill()[..table], &mill()[behind..]).replace("clamps = \"C\"", "");
+    let after = table + mill()[table..].find("[spindle]").unwrap();
+    let text = format!("{}{}", &mill()[..table], &mill()[after..]).replace("clamps = \"C\"", "");
     advance(bencher, &text);
 }
 

@@ -355,7 +355,7 @@ mod tests {
     ];
 
     /// Event, output that is switched, nominal voltage of all drives, milliseconds until the next.
-    type Deed = (usize, usize, f64, u32);
+    type Action = (usize, usize, f64, u32);
 
     /// What a step without any shortcut does to all axes: for each of them the state and the encoder.
     fn stepped(machine: &Machine) -> String {
@@ -375,7 +375,7 @@ mod tests {
         axes.collect()
     }
 
-    fn is_left_out_without_effect(plant: &str, deeds: &[Deed]) {
+    fn is_left_out_without_effect(plant: &str, actions: &[Action]) {
         let mut lazy = Machine::from_toml(plant).unwrap();
         lazy.load_magazine([(1, 1), (2, 2)].into_iter(), 0);
         let mut eager = lazy.clone();
@@ -386,7 +386,7 @@ mod tests {
         commands.outputs[8..=12].fill(true);
         let mut measured = [Measured::default(), Measured::default()];
         let mut from_us = 0;
-        for (event, output, volts, milliseconds) in deeds {
+        for (event, output, volts, milliseconds) in actions {
             let event = EVENTS.get(*event).unwrap();
             assert_eq!(lazy.apply(event).is_ok(), eager.apply(event).is_ok());
             commands.outputs[*output] ^= true;
@@ -415,10 +415,10 @@ mod tests {
         /// leaves out what rests.
         #[test]
         fn what_rests_is_left_out_without_effect(
-            deeds in prop::collection::vec((0..EVENTS.len(), 0..OUTPUTS / 4, -3.0..3.0, 1u32..60), 1..30),
+            actions in prop::collection::vec((0..EVENTS.len(), 0..OUTPUTS / 4, -3.0..3.0, 1u32..60), 1..30),
         ) {
-            is_left_out_without_effect(&shipped("mill"), &deeds);
-            is_left_out_without_effect(&shipped("dig425"), &deeds);
+            is_left_out_without_effect(&shipped("mill"), &actions);
+            is_left_out_without_effect(&shipped("dig425"), &actions);
         }
     }
 }

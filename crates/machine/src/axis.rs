@@ -69,7 +69,7 @@ impl Cam {
     }
 }
 
-/// See the module.
+/// A simulated axis; the module describes its physics.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
     pub letter: char,
@@ -130,7 +130,7 @@ pub(crate) struct Axis {
 }
 
 impl Cam {
-    /// `[axis.X.reference_cam]`.
+    /// Reads `[axis.X.reference_cam]`; `None` without one.
     fn of_reference(axis: &Section) -> Option<Cam> {
         let section = axis.section("reference_cam")?;
         let [from, to] = section.range("range").unwrap_or([0.0, 1.0]);
@@ -225,7 +225,7 @@ pub(crate) struct Load {
     outside: f64,
     friction: f64,
     stiction: f64,
-    /// It is clamped.
+    /// The clamp holds the table.
     fixed: bool,
     half_play: f64,
 }
@@ -333,7 +333,7 @@ impl Axis {
         }
     }
 
-    /// Where it stands.
+    /// Positions of table and motor.
     pub fn place(&self) -> AxisPlace {
         AxisPlace {
             letter: self.letter,
@@ -366,7 +366,7 @@ impl Axis {
     }
 
     /// Lets the drive have voltage or not, as enable output and control voltage say. A drive that goes on without them
-    /// brakes on order of the control; when that is not ready there is none, and its brake must hold it (inferred)
+    /// brakes on order of the control; when that is not ready nothing brakes it, and its brake must hold it (inferred)
     /// [000:18508-18521]. Whether its power is about to end by itself.
     pub fn set_power(&mut self, voltage: bool, control_ready: bool, outputs: &[bool; OUTPUTS]) -> bool {
         let enabled = self.enable.is_none_or(|enable| enable.is_on(outputs));
@@ -539,7 +539,7 @@ impl Axis {
     /// The motor's encoder counts again: what it lost stays lost.
     pub fn find_motor(&mut self) {
         if let (Some(seen), Some(drive)) = (self.motor_lost.take(), &self.current) {
-            self.motor_start = self.motor - drive.way(seen);
+            self.motor_start = self.motor - drive.travel(seen);
         }
     }
 

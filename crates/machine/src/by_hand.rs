@@ -25,7 +25,7 @@ impl ByHand {
         [self.tool, self.called]
     }
 
-    /// As it was.
+    /// Puts the tools back as they were at power-off.
     pub fn stand_at(&mut self, [tool, called]: [u32; 2]) {
         (self.tool, self.called) = (tool, called);
     }

@@ -41,7 +41,7 @@ impl ContactFault {
     }
 }
 
-/// See the module.
+/// The chains of contacts; the module describes them.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
     pub acknowledgement: Option<Contact>,
@@ -102,7 +102,7 @@ impl Chain {
         chain
     }
 
-    /// `O5` or `O0-O23`.
+    /// Reads which outputs are switched: `O5` or `O0-O23`.
     fn read_switched(&mut self, reader: &Reader, at: usize, text: &str) {
         let (first, last) = text.split_once('-').unwrap_or((text, text));
         let number = |text: &str| {

@@ -9,7 +9,7 @@ use crate::reader::Section;
 /// Volts at which the drive gives its greatest current.
 const FULL_VOLTS: f64 = 10.0;
 
-/// `[axis.X.current_drive]`.
+/// A drive by current: the section `[axis.X.current_drive]`.
 #[derive(Clone, Debug)]
 pub(crate) struct CurrentDrive {
     /// Force of the axis for 1 V, N or Nm.
@@ -82,13 +82,13 @@ impl CurrentDrive {
         self.force
     }
 
-    /// The way of the motor at which its encoder has counted so much, mm or degrees.
-    pub fn way(&self, count: i64) -> f64 {
+    /// The travel of the motor at which its encoder has counted so much, mm or degrees.
+    pub fn travel(&self, count: i64) -> f64 {
         count as f64 / self.steps_per_unit
     }
 
-    /// What the motor's encoder has counted at a way of the motor, mm or degrees.
-    pub fn count(&self, way: f64) -> i64 {
-        floor_to_i64(way * self.steps_per_unit)
+    /// What the motor's encoder has counted at a travel of the motor, mm or degrees.
+    pub fn count(&self, travel: f64) -> i64 {
+        floor_to_i64(travel * self.steps_per_unit)
     }
 }

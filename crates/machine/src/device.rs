@@ -38,7 +38,7 @@ pub struct DeviceState<'a> {
     pub by_hand: bool,
 }
 
-/// See the module.
+/// A device; the module describes its behaviour.
 #[derive(Clone, Debug)]
 pub(crate) struct Device {
     pub name: String,
@@ -47,7 +47,7 @@ pub(crate) struct Device {
     /// A second output that moves it back; without one a spring does.
     output_back: Option<Coil>,
     inputs: [Option<Contact>; 2],
-    /// Way in a millisecond, back and forth.
+    /// Share of the travel in a millisecond, forth and back.
     speed: [f64; 2],
     /// The axis that it clamps in its second state.
     pub clamps: Option<char>,
@@ -130,7 +130,7 @@ impl Device {
         self.position != before
     }
 
-    /// Where it is.
+    /// Position and direction of the device.
     pub fn place(&self) -> DevicePlace {
         DevicePlace {
             name: self.name.clone(),
@@ -185,5 +185,5 @@ impl Device {
     }
 }
 
-/// So near the end counts as there: the steps of the way do not add up to 1 exactly.
+/// So near the end counts as there: the steps of the travel do not add up to 1 exactly.
 const END: f64 = 1e-9;

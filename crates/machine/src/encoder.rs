@@ -23,7 +23,7 @@ pub enum EncoderFault {
     Marks,
     /// No reference mark is seen: its signal is lost.
     NoMarks,
-    /// Every reference mark is seen twice: there is another one behind it, on a scale that is scratched.
+    /// Every reference mark is seen twice: there is another one after it, on a scale that is scratched.
     Twice,
 }
 
@@ -37,7 +37,7 @@ impl EncoderFault {
     }
 }
 
-/// So many signal periods behind a mark that is seen twice it is seen again.
+/// So many signal periods after a mark that is seen twice it is seen again.
 const AGAIN_PERIODS: i64 = 20;
 
 /// A scale or rotary encoder, read at a position in mm or degrees.
@@ -174,14 +174,14 @@ impl Counter {
     fn enclose(&mut self, position: f64) {
         [self.below, self.above] = self.enclosing(position);
         if self.fault == Some(EncoderFault::Twice) {
-            let behind = self.again();
-            let [below, above] = self.enclosing(position - behind);
-            self.below = self.below.max(below + behind);
-            self.above = self.above.min(above + behind);
+            let offset = self.again();
+            let [below, above] = self.enclosing(position - offset);
+            self.below = self.below.max(below + offset);
+            self.above = self.above.min(above + offset);
         }
     }
 
-    /// So far behind a mark it is seen again.
+    /// So far after a mark it is seen again.
     fn again(&self) -> f64 {
         (AGAIN_PERIODS * Encoder::STEPS) as f64 / self.steps_per_unit.abs()
     }

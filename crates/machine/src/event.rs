@@ -44,7 +44,7 @@ pub enum Event {
     Temperature(usize, f64),
     /// An axis is pushed with a force, N or Nm, until the next such event.
     Force(char, f64),
-    /// Something fails.
+    /// A fault is injected.
     Fault(Fault),
     /// Something is repaired: an axis letter, `S`, the name of a thing, an input, `relay`, `battery`, or `all`.
     Repair(String),
@@ -53,11 +53,11 @@ pub enum Event {
 /// What is done with a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyAction {
-    /// Pressed and held.
+    /// The key is pressed and held.
     Press,
-    /// Released.
+    /// The key is released.
     Release,
-    /// Pressed for [`KeyAction::TAP_MS`].
+    /// The key is pressed for [`KeyAction::TAP_MS`].
     Tap,
 }
 
@@ -66,7 +66,7 @@ impl KeyAction {
     pub const TAP_MS: u32 = 200;
 }
 
-/// What can fail.
+/// A fault that can be injected, by the part that fails.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// The encoder of an axis, or of the spindle (`S`).
@@ -102,7 +102,7 @@ pub enum Fault {
 /// Why an event was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EventError {
-    /// The first word is none of the events.
+    /// The first word names no event.
     #[error("`{0}` is no event; there are {list}", list = Event::WORDS.join(", "))]
     Unknown(String),
     /// The words do not fit the event.
@@ -116,7 +116,7 @@ pub enum EventError {
     Name {
         /// What kind of thing.
         what: &'static str,
-        /// The name given.
+        /// The name in the text of the event.
         name: String,
         /// The names that it has.
         known: String,
@@ -394,7 +394,7 @@ fn letter(text: &str, form: &'static str) -> Result<char, EventError> {
     }
 }
 
-/// `I12`.
+/// The number of an input such as `I12`.
 pub(crate) fn input_number(text: &str) -> Option<usize> {
     let digits = text.strip_prefix('I')?;
     if !digits.bytes().all(|byte| byte.is_ascii_digit()) {

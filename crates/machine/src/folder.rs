@@ -15,7 +15,7 @@ use crate::reader::{PlantError, Reader, Section};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineFolder {
-    /// Name for people.
+    /// Name of the machine for people.
     pub name: String,
     /// Control model, as `tnc415b`.
     pub model: String,
@@ -36,7 +36,7 @@ pub struct MachineFolder {
     pub plant: String,
     /// A solid on the table that the touch probe touches, a mesh (STL) in workpiece coordinates.
     pub solid: Option<String>,
-    /// Tool table.
+    /// File of the tool table.
     pub tools: Option<String>,
     /// Pocket table: which tool is in which pocket of the magazine.
     pub pockets: Option<String>,
@@ -94,7 +94,7 @@ pub struct HandOverFolder {
     pub axis: u8,
     /// The channel that gets it, from 1.
     pub to: u8,
-    /// Its letter there.
+    /// The letter of the axis in that channel.
     pub letter: String,
     /// Its index of markers there.
     pub index: u8,
@@ -109,7 +109,7 @@ pub struct HandOverFolder {
 /// M functions that are synchronised otherwise than the control model does: `[[function]]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FunctionFolder {
-    /// Their codes.
+    /// The codes of these M functions.
     pub m: Vec<u8>,
     /// The type of their synchronisation, as `MVS_SNS`.
     pub synchronisation: String,
@@ -124,7 +124,7 @@ pub struct FunctionFolder {
 /// The keys of the panel that an operator presses who stands by.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperatorKeys {
-    /// NC start.
+    /// Key of the operating panel for NC start.
     pub start: String,
     /// The control voltage, where it waits for a key.
     pub control_voltage: Option<String>,

@@ -61,7 +61,7 @@ pub(crate) struct Magazine {
     spindle: u32,
     /// Where the chain stands, in pockets: 0 is pocket 1 at the change position.
     position: f64,
-    /// Way in a millisecond, pockets.
+    /// Travel in a millisecond, pockets.
     speed: f64,
     forward: Option<Coil>,
     backward: Option<Coil>,
@@ -172,7 +172,7 @@ impl Magazine {
         }
     }
 
-    /// Chain and tools are there at power-on, behind the things that move them.
+    /// Chain and tools are there at power-on, after the things that move them.
     pub fn stand_at(&mut self, place: &MagazinePlace, devices: &[Device]) {
         self.position = place.position;
         self.pockets.clone_from(&place.pockets);
@@ -210,7 +210,7 @@ impl Magazine {
         self.spindle
     }
 
-    /// Lets a millisecond pass, behind the things; whether anything has moved.
+    /// Lets a millisecond pass, after the things; whether anything has moved.
     pub fn advance(&mut self, outputs: &[bool; OUTPUTS], devices: &mut [Device]) -> bool {
         let at = |place: usize| Place::of(devices.get(place));
         let parts = self.parts;

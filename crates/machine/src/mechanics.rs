@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mechanics {
-    /// The feed axes.
+    /// Positions of the feed axes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub axis: Vec<AxisPlace>,
-    /// The spindles.
+    /// Positions of the spindles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spindle: Vec<SpindlePlace>,
     /// Things with two states.
@@ -33,9 +33,9 @@ pub struct Mechanics {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AxisPlace {
-    /// Its letter.
+    /// The letter of the axis.
     pub letter: char,
-    /// The table.
+    /// Position of the table, mm or degrees.
     pub table: f64,
     /// The motor, behind the play.
     pub motor: f64,
@@ -55,7 +55,7 @@ pub struct SpindlePlace {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DevicePlace {
-    /// Its name.
+    /// The name of the device.
     pub name: String,
     /// 0 is its first state, 1 the second.
     pub position: f64,

@@ -22,7 +22,7 @@ impl Key {
     }
 }
 
-/// See the module.
+/// The operating panel; the module describes its wiring.
 #[derive(Clone, Debug)]
 pub(crate) struct Panel {
     pub keys: Vec<Key>,

@@ -47,9 +47,9 @@ impl Cuboid {
                 (2, self.max[2] - at[2]),
             ];
             let nearest = faces.into_iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-            let (axis, way) = nearest.unwrap_or((2, 0.0));
-            let sign = if way < 0.0 { -1.0 } else { 1.0 };
-            std::array::from_fn(|k| if k == axis { way + sign * radius } else { 0.0 })
+            let (axis, distance) = nearest.unwrap_or((2, 0.0));
+            let sign = if distance < 0.0 { -1.0 } else { 1.0 };
+            std::array::from_fn(|k| if k == axis { distance + sign * radius } else { 0.0 })
         };
         let [x, y, z] = pushed;
         [x * cos - y * sin, x * sin + y * cos, z]
@@ -246,7 +246,7 @@ impl Probe {
         let before = std::mem::replace(&mut self.held, tool);
         let is_probe = |tool| self.as_tool == Some(tool);
         let changes = before != tool && (is_probe(before) || is_probe(tool));
-        // One that is there already, as behind power-off, stays as it was put in.
+        // One that is there already, as after power-off, stays as it was put in.
         if changes && is_probe(tool) != self.inserted {
             self.insert(is_probe(tool), spindle_deg);
         }

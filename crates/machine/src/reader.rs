@@ -590,7 +590,7 @@ impl<'r, 't> Section<'r, 't> {
     }
 }
 
-/// The output of the spindle, behind 1 to 5.
+/// The output of the spindle, after 1 to 5.
 const SPINDLE: usize = 5;
 
 /// The place of a connector that is numbered from 1.

@@ -26,7 +26,7 @@ pub struct SpindleState {
     pub powered: bool,
 }
 
-/// A gear range.
+/// A gear range with its ratio.
 #[derive(Clone, Debug)]
 struct Gear {
     /// Turns of the motor to a turn of the spindle.
@@ -35,7 +35,7 @@ struct Gear {
     engaged: Option<Contact>,
 }
 
-/// See the module.
+/// A simulated spindle; the module describes its physics.
 #[derive(Clone, Debug)]
 pub(crate) struct Spindle {
     pub output: usize,
@@ -132,7 +132,7 @@ impl Spindle {
         spindle
     }
 
-    /// Where it stands.
+    /// Where the spindle stands.
     pub fn place(&self) -> SpindlePlace {
         SpindlePlace {
             turn: self.turns.rem_euclid(1.0),

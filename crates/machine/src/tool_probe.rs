@@ -113,7 +113,7 @@ impl ToolProbe {
         let [height, first, second] = self.axes.map(off);
         let contact = self.diameter / 2.0;
         let reach = tool.radius + contact;
-        // No way is shorter than its parts: most of the time the tool is far off.
+        // No distance is shorter than its components: most of the time the tool is far off.
         let may = height < tool.length && first.abs() < reach && second.abs() < reach;
         let near = may && first.hypot(second) < reach;
         if !near || tool.teeth.is_empty() {

@@ -31,7 +31,7 @@ fn a_drive_of_first_order_is_63_percent_there_after_its_time_constant() {
     // 1500 mm/min * (1 - 1/e) = 948.18 mm/min.
     let state = machine.axis('X').unwrap();
     assert!((state.speed_per_min - 948.18).abs() < 0.01, "{state:?}");
-    // Way v (t - T (1 - e^(-t/T))) = 25 mm/s * 20 ms / e = 0.18394 mm.
+    // Travel v (t - T (1 - e^(-t/T))) = 25 mm/s * 20 ms / e = 0.18394 mm.
     assert!((state.position - 0.18394).abs() < 1e-5, "{state:?}");
 }
 
@@ -204,7 +204,7 @@ fn two_coded_marks_tell_the_place() {
     let periods = (marks[1] - marks[0] + 512) / 1024;
     assert!(
         periods == 503 + 3 || periods == 497 - 3 || periods == 497 + 3,
-        "a dirty scale tells a wrong distance: {periods}"
+        "a dirty scale counts a wrong distance: {periods}"
     );
 }
 

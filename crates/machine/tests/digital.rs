@@ -104,7 +104,7 @@ impl Loop {
         self.axis.measure(self.measured.encoder(0));
     }
 
-    /// A servo step.
+    /// Runs one servo step.
     fn step(&mut self) {
         self.axis.step();
         self.lag_mm = self.axis.lag_mm();
@@ -147,7 +147,7 @@ impl Loop {
         ((greatest / feed_mm_min - 1.0) * 100.0, volts)
     }
 
-    /// Half the way between the greatest and the least speed from 12 ms behind the rise of a step on, % of the step: what
+    /// Half the difference of the greatest and the least speed from 12 ms after the rise of a step on, % of the step: what
     /// is left of its oscillation.
     fn ripple(&mut self, feed_mm_min: f64) -> f64 {
         assert!(self.axis.set_speed_step(Some(feed_mm_min)));
@@ -260,7 +260,7 @@ fn mp1910_monitors_the_calculated_voltage() {
     );
     assert!(x.axis.set_speed_step(Some(60.0)));
     // 60 mm/min are 0.6 µm in a step; a counting step is 2 µm / 256: 76.8 of them. 8591 / 76.8 = 111.9: 112 steps
-    // behind the one in which the speed was put in.
+    // after the one in which the speed was put in.
     let mut steps = 0;
     while x.axis.fault().is_none() && steps < 1000 {
         x.step();
@@ -293,7 +293,7 @@ fn mp1925_lets_the_sum_forget() {
     assert_eq!(volts("1925.0=0"), 10.0);
 }
 
-/// MP1955 = 20 µm / 2 µm = 10 [000:18478-18483]: the encoders say the same over a long way. With 9 the motor's way counts
+/// MP1955 = 20 µm / 2 µm = 10 [000:18478-18483]: the encoders say the same over a long travel. With 9 the motor's travel counts
 /// 10/9 of what it is: after 9 mm the difference is 1 mm, MP1970, and GROSS POSITIONING ERROR C comes.
 #[test]
 fn mp1970_compares_position_and_speed_encoder() {
@@ -394,7 +394,7 @@ fn the_speed_controller_can_be_trimmed_as_the_manual_says() {
     assert!((x.table() - target).abs() < 0.01 && x.axis.in_position());
 }
 
-/// Behind a step the position loop closes where the axis is.
+/// After a step the position loop closes where the axis is.
 #[test]
 fn the_position_loop_is_off_in_a_step() {
     let mut x = Loop::plain(&[]);

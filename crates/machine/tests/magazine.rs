@@ -6,7 +6,7 @@ mod common;
 use bahn_machine::Machine;
 use common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
 
-/// Every way takes 100 ms, a pocket 50 ms. Outputs: 8 clamp opens, 9 shuttle, 10 grip, 11 draw, 12 turn, 13 chain forward,
+/// Every movement takes 100 ms, a pocket 50 ms. Outputs: 8 clamp opens, 9 shuttle, 10 grip, 11 draw, 12 turn, 13 chain forward,
 /// 14 backward.
 const MAGAZINE: &str = r#"
 [device.tool_clamp]

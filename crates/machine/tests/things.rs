@@ -377,7 +377,7 @@ fn a_chattering_contact_changes_all_the_time() {
 #[test]
 fn an_axis_is_held_or_slow() {
     let mut machine = running(&with(""));
-    let mut way = |fault: &str| {
+    let mut travel = |fault: &str| {
         machine.apply("repair X").unwrap();
         if !fault.is_empty() {
             machine.apply(fault).unwrap();
@@ -388,9 +388,9 @@ fn an_axis_is_held_or_slow() {
         milliseconds(&mut machine, 100);
         machine.axis('X').unwrap().position - from
     };
-    let whole = way("");
+    let whole = travel("");
     assert!(whole > 0.1, "{whole}");
-    assert_eq!(way("fault clamp X"), 0.0);
-    assert!((way("fault drive X slow") - 0.3 * whole).abs() < 1e-6 * whole);
-    assert!((way("") - whole).abs() < 1e-6 * whole);
+    assert_eq!(travel("fault clamp X"), 0.0);
+    assert!((travel("fault drive X slow") - 0.3 * whole).abs() < 1e-6 * whole);
+    assert!((travel("") - whole).abs() < 1e-6 * whole);
 }

@@ -123,7 +123,7 @@ fn cycle_with_changing_override(bencher: Bencher<'_, '_>) {
     cycles(bencher, 0.1, false, alternating);
 }
 
-/// And every block has its own feed: each of those within the way of braking is asked.
+/// And every block has its own feed: each of those within the braking distance is asked.
 #[divan::bench]
 fn cycle_with_changing_override_and_feeds(bencher: Bencher<'_, '_>) {
     cycles(bencher, 0.1, true, alternating);

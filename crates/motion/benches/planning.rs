@@ -130,7 +130,7 @@ fn zigzag_with_stops(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// The worst for look-ahead: every new element lets all before it run faster, and the way of braking
+/// The worst for look-ahead: every new element lets all before it run faster, and the braking distance
 /// is longer than the window.
 #[divan::bench(sample_count = 10)]
 fn deepest_look_ahead(bencher: Bencher<'_, '_>) {

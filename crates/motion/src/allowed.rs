@@ -26,7 +26,7 @@ impl Allowed {
         self.seen = 0;
     }
 
-    /// The squared speed at the end of the current segment. `end` is the last joint; nothing is known behind it.
+    /// The squared speed at the end of the current segment. `end` is the last joint; nothing is known after it.
     pub(crate) fn exit(&mut self, current: u64, end: u64, segments: &Segments) -> f64 {
         let Allowed { braking, seen } = self;
         braking.set_stop(Some(end));

@@ -2,7 +2,7 @@
 //!
 //! A joint that may be passed at the squared speed c limits the joints before it to `c + E`, E the level of
 //! squared speed there (see [`Window`](crate::window::Window)); at a joint the least of all from it on counts. They
-//! are noted once each, in their order and not before they come within the way of braking, in a queue that keeps
+//! are noted once each, in their order and not before they come within the braking distance, in a queue that keeps
 //! the falling lows only. From the joint that is found to limit the envelope is made back to here, joint by joint
 //! so that nothing is lost by sums, and serves until that joint is passed. So each joint is looked at once and
 //! made once, however long the look-ahead.
@@ -64,7 +64,7 @@ impl Braking {
         self.lows.front().map_or(f64::INFINITY, |low| low.key)
     }
 
-    /// Notes a joint that lies behind all others, by its squared speed plus level.
+    /// Notes a joint that lies after all others, by its squared speed plus level.
     #[inline]
     pub(crate) fn note(&mut self, joint: u64, key: f64) {
         while self.lows.back().is_some_and(|low| low.key >= key) {

@@ -40,19 +40,19 @@ const NO_CHANGE: f64 = 1e-8;
 /// Which change of direction a joint may have to be passed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Passing {
-    /// That of MP7460.
+    /// Up to the angle of MP7460.
     #[default]
     ByAngle,
     /// The path is tangential by construction, but for rounding; axes beside it keep to MP7460.
     Tangential,
-    /// Any: M90.
+    /// Any angle: M90.
     AnyAngle,
 }
 
 /// What happens between two motions.
 #[derive(Clone, Debug)]
 pub(crate) enum Joint {
-    /// The path stops.
+    /// The path stops at the corner.
     Stop,
     /// No change of direction: passed at this speed, mm/s.
     Smooth(f64),
@@ -60,12 +60,12 @@ pub(crate) enum Joint {
     Corner(Corner),
 }
 
-/// A corner to pass. Its speed is known when the way to the next corner is.
+/// A corner to pass. Its speed is known when the distance to the next corner is.
 #[derive(Clone, Debug)]
 pub(crate) struct Corner {
     /// Speed that both motions allow, mm/s.
     speed: f64,
-    /// Way from the corner or stop before, mm.
+    /// Distance from the corner or stop before, mm.
     before: f64,
     /// The servo's window W, s.
     window: f64,
@@ -74,7 +74,7 @@ pub(crate) struct Corner {
 }
 
 impl Joint {
-    /// The joint between two motions. `before` is the way since the corner or stop before it, mm.
+    /// The joint between two motions. `before` is the distance since the corner or stop before it, mm.
     #[inline]
     pub(crate) fn between(
         last: &Motion,
@@ -120,7 +120,7 @@ fn cosine(last: &Motion, next: &Motion) -> f64 {
         if last.deg_per_mm == 0.0 {
             return linear;
         }
-        // What the rotary axis turns is the way around the cylinder.
+        // What the rotary axis turns is the distance around the cylinder.
         let turned = ROTARY.iter().map(|i| a[*i] * b[*i]).sum::<f64>();
         linear + turned / (last.deg_per_mm * last.deg_per_mm)
     };
@@ -167,21 +167,21 @@ fn step_limit(from: &PerAxis<f64>, to: &PerAxis<f64>, axes: &[Axis], dynamics: &
 }
 
 impl Corner {
-    /// Whether a longer way after the corner changes nothing about its speed.
+    /// Whether a longer distance after the corner changes nothing about its speed.
     #[inline]
     pub(crate) fn knows_enough(&self, after: f64) -> bool {
         after >= self.window * self.speed
     }
 
-    /// The speed of passing, mm/s, when the way to the next corner is at least `after`: the greatest v with
-    /// `v <= limit · τ(v)`. τ is the least of three functions that fall with v (no way, the shorter way or
-    /// both ways count), so v is the least of their solutions.
+    /// The speed of passing, mm/s, when the distance to the next corner is at least `after`: the greatest v with
+    /// `v <= limit · τ(v)`. τ is the least of three functions that fall with v (no distance, the shorter one or
+    /// both count), so v is the least of their solutions.
     pub(crate) fn pass_speed(&self, after: f64) -> f64 {
         let (limit, half) = (self.limit, 0.5 * self.limit * self.window);
         let both = (0.5 * limit * (self.before + after)).sqrt();
-        // v = limit · (W/2 + way / 2v): v² - half·v = limit·way/2
-        let way = self.before.min(after);
-        let shorter = 0.5 * (half + (half * half + 2.0 * limit * way).sqrt());
+        // v = limit · (W/2 + distance / 2v): v² - half·v = limit·distance/2
+        let distance = self.before.min(after);
+        let shorter = 0.5 * (half + (half * half + 2.0 * limit * distance).sqrt());
         self.speed.min(2.0 * half).min(both).min(shorter)
     }
 }

@@ -1,4 +1,4 @@
-//! What the interpolator is told, and what it answers.
+//! What the interpolator gets, and what it answers.
 
 use bahn_path::{AxisSet, Barrier, BlockRef, Position};
 
@@ -23,7 +23,7 @@ pub struct Drive {
     pub hold: bool,
     /// The path stops at the end of each block and waits for [`Interpolator::go_on`](crate::Interpolator::go_on).
     pub single_block: bool,
-    /// The path stops as in single block behind the last block before the one with this sequence, if it still can.
+    /// The path stops as in single block after the last block before the one with this sequence, if it still can.
     pub stop_before: Option<u64>,
     /// All functions that went out are acknowledged: what is not stops the path where it is
     /// [late](bahn_path::Synchronisation::MvsSns).
@@ -125,7 +125,7 @@ pub enum State {
 pub struct FunctionOutput {
     /// Number of the element, see [`Interpolator::functions`](crate::Interpolator::functions).
     pub element: u64,
-    /// Its block.
+    /// The block of the element.
     pub block: BlockRef,
     /// Its count of executed blocks.
     pub sequence: u64,

@@ -1,7 +1,7 @@
 //! How fast the ends of the elements to come may be passed, so that braking is always in time.
 //!
 //! There are two envelopes of squared speed over the path. One is of what machine and path [*allow*](Allowed).
-//! The end of what is known is a stop, and elements that are put behind it only raise it. The other is of what is
+//! The end of what is known is a stop, and elements that are put after it only raise it. The other is of what is
 //! [*wanted*](Wanted) and may be lowered at any time, even below the speed of the path. The path then brakes with
 //! all that it has, and so stays below the envelope of what is allowed: it was below it before, and no path within the
 //! acceleration can fall faster.
@@ -100,7 +100,7 @@ impl Envelope {
     }
 
     /// Whether that stop is passed, or there is none.
-    pub(crate) fn stop_is_behind(&self) -> bool {
+    pub(crate) fn stop_is_passed(&self) -> bool {
         self.wanted.stop_is_before(self.current)
     }
 
@@ -158,7 +158,7 @@ mod tests {
     use crate::limits::{Limits, Slowest};
 
     #[derive(Clone, Debug)]
-    enum Deed {
+    enum Action {
         /// A segment, and how the joint before it comes to its cap.
         Push(Segment, Joint),
         /// The held joint gets its cap.
@@ -217,7 +217,7 @@ mod tests {
         }
     }
 
-    fn deed() -> impl Strategy<Value = Deed> {
+    fn action() -> impl Strategy<Value = Action> {
         let decades = |from: f64, to: f64| (from.ln()..to.ln()).prop_map(f64::exp);
         let feed = prop_oneof![
             3 => Just(FeedRate::Programmed(6000.0)),
@@ -242,14 +242,14 @@ mod tests {
         let joint = prop_oneof![5 => speed().prop_map(Joint::Cap), 1 => Just(Joint::Hold)];
         let percent = prop_oneof![1 => Just(0.0), 3 => 1.0..150.0f64, 2 => Just(100.0)];
         prop_oneof![
-            12 => (segment, joint).prop_map(|(segment, joint)| Deed::Push(segment, joint)),
-            1 => speed().prop_map(Deed::Settle),
-            4 => (0usize..12).prop_map(Deed::Advance),
-            1 => Just(Deed::Discard),
-            3 => prop::array::uniform3(percent).prop_map(Deed::Overrides),
-            1 => (500.0..70_000.0f64).prop_map(Deed::RapidLimit),
-            1 => prop::option::of(0u64..10).prop_map(Deed::Stop),
-            1 => Just(Deed::Clear),
+            12 => (segment, joint).prop_map(|(segment, joint)| Action::Push(segment, joint)),
+            1 => speed().prop_map(Action::Settle),
+            4 => (0usize..12).prop_map(Action::Advance),
+            1 => Just(Action::Discard),
+            3 => prop::array::uniform3(percent).prop_map(Action::Overrides),
+            1 => (500.0..70_000.0f64).prop_map(Action::RapidLimit),
+            1 => prop::option::of(0u64..10).prop_map(Action::Stop),
+            1 => Just(Action::Clear),
         ]
     }
 
@@ -303,12 +303,12 @@ mod tests {
 
         fn apply(
             &mut self,
-            deed: Deed,
+            action: Action,
             envelope: &mut Envelope,
             dynamics: &mut Dynamics,
         ) -> Result<(), TestCaseError> {
-            match deed {
-                Deed::Push(segment, joint) => {
+            match action {
+                Action::Push(segment, joint) => {
                     if let Some(last) = self.segments.len().checked_sub(1) {
                         match joint {
                             Joint::Cap(speed) => {
@@ -326,8 +326,8 @@ mod tests {
                     self.segments.push(segment);
                     self.caps.push(0.0);
                 }
-                Deed::Settle(speed) => self.settle(envelope, speed),
-                Deed::Advance(count) => {
+                Action::Settle(speed) => self.settle(envelope, speed),
+                Action::Advance(count) => {
                     for _ in 0..count {
                         if self.current + 1 < self.segments.len() {
                             self.current += 1;
@@ -336,21 +336,21 @@ mod tests {
                         }
                     }
                 }
-                Deed::Discard => envelope.discard(),
-                Deed::Overrides(percent) => {
+                Action::Discard => envelope.discard(),
+                Action::Overrides(percent) => {
                     dynamics.set_overrides(percent);
                     envelope.forget_wanted();
                 }
-                Deed::RapidLimit(limit) => {
+                Action::RapidLimit(limit) => {
                     dynamics.set_rapid_limit(limit);
                     let ahead = self.segments.iter().skip(self.current);
                     envelope.set_greatest(ahead.map(|segment| segment.speed(dynamics, true)));
                 }
-                Deed::Stop(ahead) => {
+                Action::Stop(ahead) => {
                     self.stop = ahead.map(|ahead| self.first + self.current as u64 + ahead);
                     envelope.set_stop(self.stop);
                 }
-                Deed::Clear => {
+                Action::Clear => {
                     self.first += self.segments.len() as u64;
                     self.segments.clear();
                     self.caps.clear();
@@ -368,7 +368,7 @@ mod tests {
         /// However little of the envelopes is made, and in whatever order: bit by bit what one pass over all that
         /// is known gives.
         #[test]
-        fn it_is_as_good_as_a_pass_over_the_whole_path(deeds in prop::collection::vec(deed(), 1..200)) {
+        fn it_is_as_good_as_a_pass_over_the_whole_path(actions in prop::collection::vec(action(), 1..200)) {
             let limits = Limits {
                 max_feed_mm_min: PerAxis::splat(30_000.0),
                 acceleration_m_s2: PerAxis::splat(1.0),
@@ -391,8 +391,8 @@ mod tests {
                 current: 0,
                 stop: None,
             };
-            for deed in deeds {
-                whole.apply(deed, &mut envelope, &mut dynamics)?;
+            for action in actions {
+                whole.apply(action, &mut envelope, &mut dynamics)?;
             }
         }
     }

@@ -12,9 +12,9 @@ pub(crate) struct Gates {
 /// An end of an element, where the path can wait for functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gate {
-    /// Before its movement.
+    /// Before the movement of the element.
     Start,
-    /// After its movement.
+    /// After the movement of the element.
     End,
 }
 

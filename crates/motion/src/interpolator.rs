@@ -43,7 +43,7 @@ pub struct Interpolator<E> {
     phase: Phase,
     /// Path speed, mm/s.
     speed: f64,
-    /// Way to the end of the current element, mm; negative where a path that follows the spindle stands beyond it.
+    /// Distance to the end of the current element, mm; negative where a path that follows the spindle stands beyond it.
     rest: f64,
     position: Position,
     /// The placement in which that is: that of the element that was begun last.
@@ -57,7 +57,7 @@ pub struct Interpolator<E> {
     coupling: Option<Coupling>,
     /// It is run back.
     backward: bool,
-    /// The functions at its end are output; what is left of it is a way alone.
+    /// The functions at its end are output; what is left of it is a distance alone.
     end_is_output: bool,
     /// How far the first element was executed that is taken back and still to be given again.
     recalled: Option<Executed>,
@@ -352,7 +352,7 @@ impl<E> Interpolator<E> {
                 if !self.end_is_output {
                     self.outputs.pass(sequence, left, self.speed);
                 }
-                // The spindle is told the end before the path goes on.
+                // The spindle gets the end before the path goes on.
                 self.coupling.map(|_| State::Moving)
             }
         };
@@ -375,7 +375,7 @@ impl<E> Interpolator<E> {
         true
     }
 
-    /// What is told the spindle.
+    /// The command to the spindle.
     fn lead(&self) -> Option<Lead> {
         let (item, coupling) = self.ring.current().zip(self.coupling)?;
         let speed = if self.backward { -self.speed } else { self.speed };
@@ -417,7 +417,7 @@ impl<E> Interpolator<E> {
         })
     }
 
-    /// Goes on behind the current element, unless the path has to wait there. What it waits for.
+    /// Goes on after the current element, unless the path has to wait there. What it waits for.
     fn finish(&mut self, drive: &Drive) -> Option<State> {
         let item = self.ring.current()?;
         if self.speed <= 0.0 {
@@ -454,7 +454,7 @@ impl<E> Interpolator<E> {
         let thread = self.ring.current().and_then(|item| item.element.thread());
         self.coupling = self.coupling.and_then(|coupling| coupling.go_on(length, thread));
         self.backward = false;
-        if self.ring.stop_is_behind() {
+        if self.ring.stop_is_passed() {
             self.seek_stop();
         }
         None
@@ -546,7 +546,7 @@ impl<E> Interpolator<E> {
         }
     }
 
-    /// Why no more elements come behind those that are known, as long as that was not taken.
+    /// Why no more elements come after those that are known, as long as that was not taken.
     pub fn stop(&self) -> Option<&Stop<E>> {
         match &self.after {
             After::Stop(stop) => Some(stop),
@@ -649,9 +649,9 @@ impl<E> Interpolator<E> {
         let Some((item, coupling)) = self.ring.current().zip(self.coupling.as_mut()) else {
             return;
         };
-        let (way, place) = coupling.renew(item, position, angle_deg);
-        // Beyond its ends, too: what is told the spindle begins where it stands.
-        let rest = item.length - way;
+        let (distance, place) = coupling.renew(item, position, angle_deg);
+        // Beyond its ends, too: the command to the spindle begins where it stands.
+        let rest = item.length - distance;
         // Its end was reached in nominal values alone, the axis that follows the spindle is elsewhere.
         let ended = matches!(self.phase, Phase::Dwell(_) | Phase::Finish) || self.phase.is_executed();
         if ended && rest != 0.0 {
@@ -661,7 +661,7 @@ impl<E> Interpolator<E> {
         (self.speed, self.position) = (0.0, place);
     }
 
-    /// Whether the path follows the spindle: it has begun an element that does so, and none behind it.
+    /// Whether the path follows the spindle: it has begun an element that does so, and none after it.
     pub fn is_coupled(&self) -> bool {
         self.coupling.is_some()
     }

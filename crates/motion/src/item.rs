@@ -17,11 +17,11 @@ pub(crate) struct Item {
     /// Where functions are output, and whether the path waits for them.
     pub(crate) start: Output,
     pub(crate) end: Output,
-    /// Whether there are functions along the way.
+    /// Whether there are functions along its length.
     pub(crate) along: bool,
     /// The last element of its block, as far as is known.
     pub(crate) block_end: bool,
-    /// The way along the path to its start since the path began, mm.
+    /// The distance along the path to its start since the path began, mm.
     pub(crate) from: f64,
     /// What must be acknowledged before it begins.
     pub(crate) awaits: Awaits,

@@ -1,7 +1,7 @@
 //! The joints between elements: where the path stops, passes or waits for more to be known.
 //!
-//! One state machine for planning and for running. It is shown the path element by element and tells
-//! whoever keeps the joints ([`Caps`]) how fast each may be passed: that of a corner only when the way to
+//! One state machine for planning and for running. It gets the path element by element and decides
+//! whoever keeps the joints ([`Caps`]) how fast each may be passed: that of a corner only when the distance to
 //! the next corner is known, since its speed depends on it.
 
 use bahn_path::PathElement;
@@ -32,9 +32,9 @@ pub(crate) struct Joints {
     last: Option<Motion>,
     /// Which angle the joint after `last` may have to be passed.
     passing: Passing,
-    /// Way since the last corner or stop, mm.
-    way: f64,
-    /// The last corner while the way after it is too short to say how fast it may be passed.
+    /// Distance since the last corner or stop, mm.
+    distance: f64,
+    /// The last corner while the distance after it is too short to say how fast it may be passed.
     corner: Option<Corner>,
 }
 
@@ -58,14 +58,14 @@ impl Joints {
             // Without a length there is no direction: the corner is where the path goes on.
             return caps.join(last.speed);
         };
-        match Joint::between(last, next, self.way, self.passing, dynamics) {
+        match Joint::between(last, next, self.distance, self.passing, dynamics) {
             Joint::Stop => self.join_stop(caps),
             Joint::Smooth(speed) => caps.join(speed),
             Joint::Corner(corner) => {
                 self.settle(caps);
                 caps.hold();
                 self.corner = Some(corner);
-                self.way = 0.0;
+                self.distance = 0.0;
             }
         }
     }
@@ -81,7 +81,7 @@ impl Joints {
         dynamics: &Dynamics,
     ) {
         if let Some(motion) = motion {
-            self.way += motion.length;
+            self.distance += motion.length;
             self.passing = Passing::ByAngle;
             self.last = Some(motion);
         }
@@ -94,7 +94,7 @@ impl Joints {
         }
         self.open = true;
         self.stop = gates.end;
-        let enough = |corner: &Corner| corner.knows_enough(self.way);
+        let enough = |corner: &Corner| corner.knows_enough(self.distance);
         if self.corner.as_ref().is_some_and(enough) {
             self.settle(caps);
         }
@@ -112,14 +112,14 @@ impl Joints {
         self.settle(caps);
         caps.join(0.0);
         self.last = None;
-        self.way = 0.0;
+        self.distance = 0.0;
     }
 
-    /// Decides the corner that waits for the way after it.
+    /// Decides the corner that waits for the distance after it.
     #[inline]
     pub(crate) fn settle(&mut self, caps: &mut impl Caps) {
         if let Some(corner) = self.corner.take() {
-            caps.settle(corner.pass_speed(self.way));
+            caps.settle(corner.pass_speed(self.distance));
         }
     }
 }

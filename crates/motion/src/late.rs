@@ -20,7 +20,7 @@ impl Awaits {
 }
 
 /// The functions of the path as far as it is known that still have their place to wait ahead of them: each the number
-/// behind the last element that has one.
+/// after the last element that has one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Late {
     /// At the end of the block with this sequence.
@@ -35,8 +35,8 @@ impl Late {
     /// What the next element of the path waits for, which gets this number.
     pub(crate) fn follow(&mut self, element: &PathElement, number: u64) -> Awaits {
         let functions = element.functions();
-        let behind = |(_, sequence): &(u64, u64)| *sequence != element.sequence;
-        let block = self.block.take_if(|block| behind(block)).map(|block| block.0);
+        let has_ended = |(_, sequence): &(u64, u64)| *sequence != element.sequence;
+        let block = self.block.take_if(|block| has_ended(block)).map(|block| block.0);
         let feed = self.feed.take_if(|_| is_feed(element));
         let wanted = functions.iter().any(|one| one.function == Function::Synchronise);
         let point = self.point.take_if(|_| wanted);

@@ -92,11 +92,11 @@ pub(crate) struct Dynamics {
     pub(crate) slowness: PerAxis<f64>,
     /// Seconds that a mm takes any axis at least.
     least_slowness: f64,
-    /// MP1060, mm/s².
+    /// Acceleration of each axis, MP1060, mm/s².
     pub(crate) acceleration: PerAxis<f64>,
     /// `sqrt(MP1060² + MP1070²)` of each axis, mm/s².
     pub(crate) bound: PerAxis<f64>,
-    /// MP1070, mm/s².
+    /// Radial acceleration on arcs, MP1070, mm/s².
     pub(crate) radial: f64,
     /// Cosine of the greatest change of direction that is passed.
     pub(crate) corner_cosine: f64,

@@ -9,7 +9,7 @@ use crate::placed::Placed;
 pub(crate) const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
 /// The parallel axes.
 const PARALLEL: [Axis; 3] = [Axis::U, Axis::V, Axis::W];
-/// Shorter movements are none, mm or degrees: a thousandth of the finest resolution of any model.
+/// Shorter movements count as standstill, mm or degrees: a thousandth of the finest resolution of any model.
 const NO_LENGTH: f64 = 1e-7;
 /// Longer movements count as this long, mm: no machine has them, and sums stay finite.
 const LONGEST: f64 = 1e12;
@@ -93,11 +93,11 @@ impl Motion {
     fn placed(self, element: &PathElement, dynamics: &Dynamics) -> Motion {
         match &element.placement {
             None => self,
-            Some(placement) => self.behind(placement, element, dynamics),
+            Some(placement) => self.transformed(placement, element, dynamics),
         }
     }
 
-    fn behind(self, placement: &Placement, element: &PathElement, dynamics: &Dynamics) -> Motion {
+    fn transformed(self, placement: &Placement, element: &PathElement, dynamics: &Dynamics) -> Motion {
         let per_square = dynamics.radial / (self.radial_speed * self.radial_speed);
         let ends = [*self.start(), *self.end()];
         let placed = Placed::new(placement, element, ends, per_square, dynamics);
@@ -118,7 +118,7 @@ impl Motion {
             swings,
             deg_per_mm: cylinder.map_or(0.0, |cylinder| cylinder.deg_per_mm),
             main_axes: self.main_axes && cylinder.is_none(),
-            // Straight lines behind swivel axes that turn are none; a direction is then not of length 1.
+            // Where swivel axes turn, a straight line is curved in the machine; a direction is then not of length 1.
             end_direction: (self.end_direction.is_some() || swings).then_some(end_direction),
             ..self
         }
@@ -184,8 +184,8 @@ impl Motion {
     fn corner(element: &PathElement, arc: &CornerArc, dynamics: &Dynamics) -> Option<Motion> {
         let circle = arc.circle(&element.start, &element.end);
         let mut delta = known_delta(&element.start, &element.end);
-        for (axis, way) in MAIN.into_iter().zip([circle.length_mm, 0.0, 0.0]) {
-            delta[axis] = way;
+        for (axis, length) in MAIN.into_iter().zip([circle.length_mm, 0.0, 0.0]) {
+            delta[axis] = length;
         }
         let (length, rotary) = path_length(&delta)?;
         let around = circle.length_mm / length;

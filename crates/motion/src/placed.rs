@@ -8,7 +8,7 @@ use crate::limits::{Dynamics, MAIN};
 pub(crate) struct Placed {
     /// At the start and at the end.
     pub(crate) directions: [PerAxis<f64>; 2],
-    /// Greatest share of each axis on the whole way, or an upper bound of it.
+    /// Greatest share of each axis on the whole path, or an upper bound of it.
     pub(crate) share: PerAxis<f64>,
     /// Greatest path speed that the turning of swivel axes allows, mm/s; infinite where none turns.
     pub(crate) speed: f64,

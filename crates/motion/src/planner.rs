@@ -172,7 +172,7 @@ impl LookAhead {
         Some((self.elements.pop_front()?, profile))
     }
 
-    /// Reads an element.
+    /// Reads an element from the source.
     #[inline]
     fn push(&mut self, element: PathElement) {
         let LookAhead {

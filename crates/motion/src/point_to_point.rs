@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointToPoint {
     position: f64,
-    /// mm/s, signed.
+    /// Speed with its sign, mm/s.
     speed: f64,
 }
 
@@ -19,7 +19,7 @@ pub struct PointToPoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
     /// To a position, mm or degrees, and stand there. Without overshoot, unless the axis is already
-    /// too fast for its way: then it comes back.
+    /// too fast for its distance: then it comes back.
     Position(f64),
     /// On and on at a feed, mm/min or degrees/min, negative backwards; 0 stops.
     Feed(f64),
@@ -81,20 +81,20 @@ impl PointToPoint {
 
     /// Drives to a target; turns back first where it runs away from it or past it.
     fn approach(&mut self, mut time: f64, target: f64, limit: f64, acceleration: f64) {
-        let mut way = target - self.position;
+        let mut distance = target - self.position;
         // Positions are known to some parts in 1e16 of their size.
-        let rounding = ROUNDING * (target.abs() + self.position.abs() + way.abs());
+        let rounding = ROUNDING * (target.abs() + self.position.abs() + distance.abs());
         let braking = 0.5 * self.speed * self.speed / acceleration;
-        if self.speed * way < 0.0 || braking > way.abs() + rounding {
+        if self.speed * distance < 0.0 || braking > distance.abs() + rounding {
             time = self.change_to(0.0, time, acceleration);
             if self.speed != 0.0 {
                 return;
             }
-            way = target - self.position;
+            distance = target - self.position;
         }
         let ramp = Ramp {
-            speed: self.speed.abs().min((2.0 * acceleration * way.abs()).sqrt()),
-            rest: way.abs(),
+            speed: self.speed.abs().min((2.0 * acceleration * distance.abs()).sqrt()),
+            rest: distance.abs(),
             acceleration,
             limit,
             exit_squared: 0.0,
@@ -102,10 +102,10 @@ impl PointToPoint {
         match ramp.drive(time) {
             Driven::Arrived { .. } => (self.position, self.speed) = (target, 0.0),
             Driven::OnTheWay { speed, rest } => {
-                self.speed = speed.copysign(way);
+                self.speed = speed.copysign(distance);
                 // An axis that stands must not creep by rounding.
                 if rest < ramp.rest {
-                    self.position = target - rest.copysign(way);
+                    self.position = target - rest.copysign(distance);
                 }
             }
         }

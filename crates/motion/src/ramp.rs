@@ -3,16 +3,16 @@
 /// What part of the squared speed may be rounding: an end speed that is missed by less is met.
 const ROUNDING: f64 = 1e-12;
 
-/// A way to go at changing speed: from the speed now to at most the speed at its end, not faster than
+/// A distance to go at changing speed: from the speed now to at most the speed at its end, not faster than
 /// `limit` in between, with the same acceleration up and down.
 ///
-/// A speed above the limit is brought down to it. Where the way is too short for braking to the end
+/// A speed above the limit is brought down to it. Where the distance is too short for braking to the end
 /// speed, it is braked all along and ends faster.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ramp {
     /// Speed now, mm/s.
     pub(crate) speed: f64,
-    /// Way to go, mm.
+    /// Distance to go, mm.
     pub(crate) rest: f64,
     /// Acceleration of both slopes, mm/s².
     pub(crate) acceleration: f64,
@@ -25,7 +25,7 @@ pub(crate) struct Ramp {
 /// Where a time has led to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Driven {
-    /// Still on the way: speed and way to go.
+    /// Still on the way: speed and distance to go.
     OnTheWay { speed: f64, rest: f64 },
     /// At the end: speed there and time that is left, s.
     Arrived { speed: f64, left: f64 },
@@ -55,7 +55,7 @@ impl Ramp {
             let reachable = squared + change;
             let exit_squared = self.exit_squared.min(reachable);
             let meeting = (0.5 * (squared + exit_squared + change)).max(squared);
-            // The square root is for the short ways only.
+            // The square root is for short distances only.
             let peak = if limit * limit <= meeting {
                 limit
             } else {
@@ -77,9 +77,9 @@ impl Ramp {
             let rest = (rest - 0.5 * (v + to) * time).clamp(0.0, rest);
             return Driven::OnTheWay { speed: to, rest };
         }
-        let last_way = 0.5 * (peak + exit) * last;
+        let last_distance = 0.5 * (peak + exit) * last;
         let after_first = rest - 0.5 * (v + peak) * first;
-        let steady = (after_first - last_way).max(0.0);
+        let steady = (after_first - last_distance).max(0.0);
         if peak <= 0.0 {
             // It stands where it is, unless it just arrived.
             return if steady <= ROUNDING * rest {

@@ -90,7 +90,7 @@ impl Ring {
             .get(usize::try_from(number.checked_sub(self.first)?).ok()?)
     }
 
-    /// The last item.
+    /// The last item that is known.
     pub(crate) fn back(&self) -> Option<&Item> {
         self.items.back()
     }
@@ -110,7 +110,7 @@ impl Ring {
         self.awaiting > 0
     }
 
-    /// Whether what is known, or comes behind it, waits for functions to be acknowledged.
+    /// Whether what is known, or comes after it, waits for functions to be acknowledged.
     pub(crate) fn is_late(&self) -> bool {
         self.awaits() || self.late.is_any()
     }
@@ -263,8 +263,8 @@ impl Ring {
     }
 
     /// Whether the stop at the end of an item is passed, or there is none.
-    pub(crate) fn stop_is_behind(&self) -> bool {
-        self.envelope.stop_is_behind()
+    pub(crate) fn stop_is_passed(&self) -> bool {
+        self.envelope.stop_is_passed()
     }
 
     /// Greatest path speed on the current item with the overrides as they are, mm/s.

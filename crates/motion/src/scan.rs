@@ -1,25 +1,25 @@
 //! Digitizing: the stylus of a triggering probe taps along the surface, in lines or in levels [000:7722-7880]; that of a
 //! measuring one stays deflected [000:7882-7958].
 //!
-//! A [`Scan`] wants a velocity in every cycle and is told what the stylus feels; how far the axes have come and where the
+//! A [`Scan`] wants a velocity in every cycle and gets what the stylus feels; how far the axes have come and where the
 //! stylus was deflected it learns, too. So it is the same on a machine and on a height map.
 
 mod course;
 mod follow;
 mod glide;
-mod way;
+mod stylus;
 
 use bahn_path::{ScanFault, ScanJob, ScanPoint, Scanned};
 
 use course::Course;
 use follow::Follower;
-use way::{Felt, Wish};
+use stylus::{Felt, Wish};
 
 /// Points of a scan at most; a program of more is refused by every control (inferred).
 const POINTS_MAX: u64 = 10_000_000;
 /// How far the surface may lie below the range, mm: the stylus overshoots (inferred).
 const BELOW_MM: f64 = 0.1;
-/// What rounding leaves of the way to an end, mm.
+/// What rounding leaves of the distance to an end, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
 /// What the stylus feels in a cycle.
@@ -38,7 +38,7 @@ pub struct Sense {
 /// What a cycle of a scan comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScanStep {
-    /// It goes on.
+    /// The scan goes on.
     Moves,
     /// It goes on, and this is a point of the surface.
     Point(ScanPoint),
@@ -46,7 +46,7 @@ pub enum ScanStep {
     Over(Scanned),
 }
 
-/// A scan on its way.
+/// A scan that runs.
 #[derive(Clone, Debug)]
 pub struct Scan {
     job: ScanJob,
@@ -95,7 +95,7 @@ impl Scan {
         self.follower.retreat();
     }
 
-    /// Points so far.
+    /// The number of points that were taken so far.
     pub fn points(&self) -> u64 {
         self.points
     }
@@ -234,14 +234,14 @@ impl Scan {
     }
 }
 
-/// The greatest speed of a cycle, mm/s, from which an axis that loses `step` mm/s in each of the next ones stands behind
-/// `way` mm: n cycles of v, v - step, v - 2 step and so on, the last of them no faster than a step.
-fn landing_speed(way: f64, step: f64, time_s: f64) -> f64 {
-    if way <= 0.0 {
+/// The greatest speed of a cycle, mm/s, from which an axis that loses `step` mm/s in each of the next ones stops after
+/// `distance` mm: n cycles of v, v - step, v - 2 step and so on, the last of them no faster than a step.
+fn landing_speed(distance: f64, step: f64, time_s: f64) -> f64 {
+    if distance <= 0.0 {
         return 0.0;
     }
-    // n (n - 1) / 2 < way / (step time) <= n (n + 1) / 2
-    let steps = way / (step * time_s);
+    // n (n - 1) / 2 < distance / (step time) <= n (n + 1) / 2
+    let steps = distance / (step * time_s);
     let n = (((8.0 * steps + 1.0).sqrt() - 1.0) / 2.0).ceil().max(1.0);
     step * (steps / n + (n - 1.0) / 2.0)
 }

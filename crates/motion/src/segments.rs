@@ -71,7 +71,7 @@ impl Segments {
         self.queue.get_mut(index)
     }
 
-    /// Level at the end of one; infinite behind the last.
+    /// Level at the end of one; infinite after the last.
     #[inline]
     pub(crate) fn level(&self, number: u64) -> f64 {
         self.get(number).map_or(f64::INFINITY, |segment| segment.level)

@@ -108,7 +108,7 @@ impl Stretches {
     }
 }
 
-/// The way back over the stretches.
+/// The stretches, looked at from the last one back.
 #[derive(Clone, Debug)]
 pub(crate) struct Back<'a> {
     queue: &'a VecDeque<Stretch>,
@@ -117,7 +117,7 @@ pub(crate) struct Back<'a> {
 }
 
 impl Back<'_> {
-    /// Squared speed, as it was looked at, of an element that is not behind the one asked for before; infinite
+    /// Squared speed, as it was looked at, of an element that is not after the one asked for before; infinite
     /// before the first stretch.
     #[inline]
     pub(crate) fn at(&mut self, element: u64) -> f64 {

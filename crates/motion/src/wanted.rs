@@ -2,7 +2,7 @@
 //!
 //! It may change altogether from one cycle to the next. But it is the feed of the own stretch unless the path must
 //! brake for a slower one already, and only where stretches begin can it fall. So a change costs as many steps as
-//! the feed changes within the way of braking, and the way to the place for which it does brake.
+//! the feed changes within the braking distance, and the distance to the place for which it does brake.
 
 use crate::braking::{Braking, ROUNDING};
 use crate::limits::Dynamics;
@@ -36,7 +36,7 @@ impl Wanted {
         self.stretches.push(number, wish);
     }
 
-    /// Drops everything.
+    /// Drops all elements.
     pub(crate) fn clear(&mut self) {
         self.stretches.clear();
         self.braking.set_stop(None);

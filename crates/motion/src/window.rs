@@ -6,14 +6,14 @@
 //! the least `cap_k + E_k` of all joints from j on, less E_j: a suffix minimum, which a queue that keeps
 //! only the falling lows gives in O(1) per element. The speed is final as soon as no later joint can
 //! lower it: caps are never negative and E only grows, so that is when the path can stop from it within
-//! what is known. The window is then only as long as the way of braking, however long the program.
+//! what is known. The window is then only as long as the braking distance, however long the program.
 
 use std::collections::VecDeque;
 
 use crate::joints::Caps;
 use crate::profile::{Profile, Speed};
 
-/// Most elements that look-ahead holds. When the way of braking has more of them (65.5 mm of lines of
+/// Most elements that look-ahead holds. When the braking distance has more of them (65.5 mm of lines of
 /// 1 µm), the path is planned so that it can stop within these.
 pub const MAX_LOOK_AHEAD: usize = 65_536;
 
@@ -289,7 +289,7 @@ mod tests {
     /// while the path accelerates even sooner: the first of the segments of 1 mm is final at its end,
     /// for the next one lets the path stop from sqrt(2 · 1000 · 1) mm/s.
     #[test]
-    fn the_window_is_as_long_as_the_way_of_braking() {
+    fn the_window_is_as_long_as_the_braking_distance() {
         let mut window = Window::new();
         let mut longest = 0;
         let mut count = 0;

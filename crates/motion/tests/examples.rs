@@ -68,7 +68,7 @@ fn rapid_traverse_goes_by_the_slowest_axis_for_its_part() {
     close(plan(&path.elements, &l)[0].profile.peak_mm_s, 125.0);
 }
 
-/// A programmed feed is limited the same way, and the override acts before.
+/// A programmed feed is limited likewise, and the override acts before.
 #[test]
 fn programmed_feed_keeps_the_axis_limits() {
     let mut l = limits();
@@ -230,7 +230,7 @@ fn m90_passes_with_servo_lag() {
     close(corner(8000.0, 5.0, true, &feedforward), 8000.0 / 60.0);
 }
 
-/// Two corners 2 mm apart share the window. Each owns half the way between them, and half a window beside:
+/// Two corners 2 mm apart share the window. Each owns half the distance between them, and half a window beside:
 /// v · change <= limit · (W/2 + 1 mm / v).
 #[test]
 fn corners_close_together_share_the_window() {

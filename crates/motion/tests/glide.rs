@@ -99,15 +99,15 @@ fn a_slope_is_scanned_in_contact() {
         assert!((point[2] - height).abs() < 0.01, "{point:?}");
     }
     for pair in points.windows(2) {
-        let way = (0..3)
+        let distance = (0..3)
             .map(|k| (pair[0][k] - pair[1][k]).powi(2))
             .sum::<f64>()
             .sqrt();
-        assert!(way <= 0.51, "{pair:?}");
+        assert!(distance <= 0.51, "{pair:?}");
     }
     assert!(points.len() > 3 * 46, "{}", points.len());
     assert!((0.45..0.6).contains(&deepest), "{deepest}");
-    // Three lines of 20 / cos 30° mm at 10 mm/s, and the ways in air.
+    // Three lines of 20 / cos 30° mm at 10 mm/s, and the movements in air.
     assert!((7.0..60.0).contains(&time_s), "{time_s}");
 }
 
@@ -156,7 +156,7 @@ fn the_feed_falls_beside_the_path() {
     let corner = |at: ScanPoint| {
         let up = (-at[2]).max(0.0);
         let (dx, dz) = (at[0] - 10.0, at[2]);
-        // A slope of 60° rises behind X 10.
+        // A slope of 60° rises beyond X 10.
         let (sin, cos) = 60f64.to_radians().sin_cos();
         let below = (dx * sin - dz * cos).max(0.0);
         if below > up {

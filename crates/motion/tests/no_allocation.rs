@@ -27,7 +27,7 @@ fn path() -> Path {
             path.last().functions = Some(Box::new([
                 function(At::Start, Synchronisation::Mos),
                 function(At::Length(0.05), Synchronisation::Mos),
-                function(At::Ahead(Ahead::Way(0.3)), Synchronisation::MvsSvs),
+                function(At::Ahead(Ahead::Distance(0.3)), Synchronisation::MvsSvs),
                 function(At::Start, Synchronisation::MvsSns),
                 function(At::End, Synchronisation::MnsSns),
             ]));
@@ -119,7 +119,7 @@ fn many_feeds() -> VecDeque<PathElement> {
     path.elements.into()
 }
 
-/// Whatever the path is asked for at any moment: other overrides and limits, axes to be clamped, the way back in a
+/// Whatever the path is asked for at any moment: other overrides and limits, axes to be clamped, a movement back in a
 /// thread, and to be taken back.
 #[test]
 fn whatever_is_done_no_cycle_allocates() {

@@ -91,7 +91,7 @@ fn one_line_takes_as_long_as_planned() {
 /// 10 mm from standstill with 1000 mm/s² take sqrt(2 · 10 / 1000) s, and are passed at the speed that has grown until
 /// then, within the cycle.
 #[test]
-fn the_end_of_an_element_is_told_within_its_cycle() {
+fn the_end_of_an_element_is_reported_within_its_cycle() {
     let mut path = Path::new(12_000.0);
     path.line(&[(Axis::X, 10.0)]).line(&[(Axis::X, 100.0)]);
     let mut bench = Bench::new(&path.elements, &limits());
@@ -202,7 +202,7 @@ fn gates_wait_for_release() {
     assert_eq!((output.place, output.waits), (Place::End, false));
 }
 
-/// 10 mm, 0.5 s of dwell, 10 mm: two ways of 0.2 s (0.1 s up, 0.1 s down).
+/// 10 mm, 0.5 s of dwell, 10 mm: two movements of 0.2 s (0.1 s up, 0.1 s down).
 #[test]
 fn dwell_takes_its_time_and_is_held() {
     let mut path = Path::new(6000.0);

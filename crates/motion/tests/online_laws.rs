@@ -25,7 +25,7 @@ struct Seen {
     position: Position,
     speed: f64,
     state: State,
-    /// Element and way to its end.
+    /// Element and distance to its end.
     sequence: u64,
     rest: f64,
 }

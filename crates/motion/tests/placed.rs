@@ -1,4 +1,4 @@
-//! Paths that do not stand upright: the limits of the axes hold behind cycle 19 and M114.
+//! Paths that do not stand upright: the limits of the axes hold with cycle 19 and M114.
 #![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
 
 mod common;
@@ -82,10 +82,10 @@ fn axes(elements: &[PathElement], limits: &Limits) -> Vec<Position> {
     positions
 }
 
-/// A rapid movement along X of a plane that B+30 has tilted: X of the machine has cos 30° of the way and Z sin 30°. Z is
+/// A rapid movement along X of a plane that B+30 has tilted: X of the machine has cos 30° of the distance and Z sin 30°. Z is
 /// the slow one here: it takes sin 30° of it at 3 m/min, so the path runs at 6 m/min.
 #[test]
-fn the_slowest_axis_behind_the_plane_decides() {
+fn the_slowest_real_axis_of_a_tilted_plane_decides() {
     let mut slow = limits();
     slow.max_feed_mm_min[Axis::Z] = 3000.0;
     let mut path = Path::new(0.0);
@@ -202,7 +202,7 @@ proptest! {
     }
 }
 
-/// X of the path is the way around a cylinder of R20 about C.
+/// X of the path is the distance around a cylinder of R20 about C.
 fn rolled() -> Arc<Placement> {
     let cylinder = Cylinder {
         rotary: Axis::C,
@@ -214,7 +214,7 @@ fn rolled() -> Arc<Placement> {
     Arc::new(Placement::rolled(cylinder, (Axis::Y, 100.0)))
 }
 
-/// On a cylinder a rapid way around is as fast as C turns: at 5000 degrees/min on R20 that are 20 · 5000 · π/180 mm/min.
+/// On a cylinder a rapid movement around is as fast as C turns: at 5000 degrees/min on R20 that are 20 · 5000 · π/180 mm/min.
 /// A corner of two lines is what it is on the surface: one of 5° is passed within MP7460 = 10°, one of 20° stops.
 #[test]
 fn on_a_cylinder() {

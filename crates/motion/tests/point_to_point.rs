@@ -10,11 +10,11 @@ fn close(a: f64, b: f64) {
 }
 
 /// Time to a target from standstill: ramps and what is between them.
-fn trapezoid(way: f64, speed: f64, a: f64) -> f64 {
-    if way * a >= speed * speed {
-        way / speed + speed / a
+fn trapezoid(distance: f64, speed: f64, a: f64) -> f64 {
+    if distance * a >= speed * speed {
+        distance / speed + speed / a
     } else {
-        2.0 * (way / a).sqrt()
+        2.0 * (distance / a).sqrt()
     }
 }
 
@@ -87,10 +87,10 @@ fn aim() -> impl Strategy<Value = Aim> {
 proptest! {
     #[test]
     fn it_takes_the_least_time_without_overshoot(
-        from in -1000.0..1000.0f64, way in prop_oneof![-500.0..500.0f64, -0.01..0.01f64],
+        from in -1000.0..1000.0f64, distance in prop_oneof![-500.0..500.0f64, -0.01..0.01f64],
         feed in 10.0..30_000.0f64, a in 0.05..10.0f64,
     ) {
-        let to = from + way;
+        let to = from + distance;
         let mut axis = PointToPoint::new(from);
         let whole = trapezoid((to - from).abs(), feed / 60.0, 1000.0 * a);
         prop_assume!(whole < 100.0);
@@ -98,15 +98,15 @@ proptest! {
         while !axis.is_at(to) {
             let before = axis.position();
             let at = axis.cycle(T, Aim::Position(to), feed, a);
-            prop_assert!((to - at) * way >= 0.0, "overshoot to {at} beyond {to}");
-            prop_assert!((at - before) * way >= 0.0, "backwards from {before} to {at}");
+            prop_assert!((to - at) * distance >= 0.0, "overshoot to {at} beyond {to}");
+            prop_assert!((at - before) * distance >= 0.0, "backwards from {before} to {at}");
             prop_assert!(cycles * T <= whole + 1e-6, "{} s over {whole}", cycles * T);
             cycles += 1.0;
         }
         prop_assert!(cycles * T >= whole - 1e-6, "{} s of {whole}", cycles * T);
     }
 
-    /// Whatever is asked of it: speed changes with the acceleration only, way is that of the speed, the
+    /// Whatever is asked of it: speed changes with the acceleration only, the distance is that of the speed, the
     /// limit is kept once it is reached, and at last it lands.
     #[test]
     fn it_keeps_its_limits_whatever_comes(

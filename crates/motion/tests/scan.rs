@@ -81,8 +81,8 @@ fn assert_scanned(points: &[ScanPoint], scanned: &Scanned, tolerance: f64, heigh
         assert!(low <= point[2] && point[2] <= high, "{point:?}");
     }
     for pair in points.windows(2) {
-        let way = (pair[0][0] - pair[1][0]).hypot(pair[0][1] - pair[1][1]);
-        assert!(way <= 1.05, "{pair:?}");
+        let distance = (pair[0][0] - pair[1][0]).hypot(pair[0][1] - pair[1][1]);
+        assert!(distance <= 1.05, "{pair:?}");
     }
     for line in 0..5 {
         for end in [0.0, 20.0] {
@@ -207,7 +207,7 @@ fn the_override_slows_the_stylus() {
     assert_eq!(held.position(), job().begin());
 }
 
-/// Contour lines around a round boss of radius 4 [003:6716-6766]: plunge, approach, orbits, levels and the way home keep
+/// Contour lines around a round boss of radius 4 [003:6716-6766]: plunge, approach, orbits, levels and the return keep
 /// the acceleration, and the scan ends at the starting point to the bit.
 #[test]
 fn levels_of_a_boss_end_at_the_starting_point() {
@@ -244,8 +244,8 @@ fn levels_of_a_boss_end_at_the_starting_point() {
 fn assert_no_farther(points: &[ScanPoint], interval_mm: f64, case: &str) {
     for pair in points.windows(2) {
         let [a, b] = pair else { panic!() };
-        let way = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
-        assert!(way <= interval_mm * 1.001, "{case}: {way} mm, {pair:?}");
+        let distance = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        assert!(distance <= interval_mm * 1.001, "{case}: {distance} mm, {pair:?}");
     }
 }
 

@@ -110,7 +110,7 @@ fn blocks(blocks: &[(f64, f64, &[TechnologyFunction])]) -> Vec<PathElement> {
     path.elements
 }
 
-/// The program of the manual: X25, X50, X75 with M25, X100, and here X125 behind it.
+/// The program of the manual: X25, X50, X75 with M25, X100, and here X125 after it.
 fn manual(synchronisation: Synchronisation) -> Vec<PathElement> {
     let m25 = [m(25, At::Start, synchronisation)];
     let f = 5000.0;
@@ -126,7 +126,7 @@ fn manual(synchronisation: Synchronisation) -> Vec<PathElement> {
 /// `MVS_SNS`: out at X50, the movement goes on at once; acknowledged in time nobody sees it, otherwise the path
 /// stops at X75 [004:63].
 #[test]
-fn before_the_block_and_behind_it() {
+fn before_the_block_and_after_it() {
     let undisturbed = Bench::new(&manual(Synchronisation::Mos), &limits(), 0)
         .run()
         .cycle;
@@ -214,15 +214,19 @@ fn ahead(lead: Ahead, synchronisation: Synchronisation) -> Vec<PathElement> {
 
 /// `MEP_SVS` with 25 mm: out at X15, wherever blocks end; not acknowledged, the path stands at X40 [004:81-87].
 #[test]
-fn ahead_by_a_way() {
-    let way = 5000.0 / 60.0 * T;
+fn ahead_by_a_distance() {
+    let distance = 5000.0 / 60.0 * T;
     for (synchronisation, delay, stops) in [
         (Synchronisation::MvsSvs, 60, vec![]),
         (Synchronisation::MvsSvs, 1000, vec![40.0]),
         (Synchronisation::Mos, 1000, vec![]),
     ] {
-        let run = Bench::new(&ahead(Ahead::Way(25.0), synchronisation), &limits(), delay).run();
-        assert!((15.0..=15.0 + way).contains(&run.out(96)), "{:?}", run.outputs);
+        let run = Bench::new(&ahead(Ahead::Distance(25.0), synchronisation), &limits(), delay).run();
+        assert!(
+            (15.0..=15.0 + distance).contains(&run.out(96)),
+            "{:?}",
+            run.outputs
+        );
         assert_eq!(
             run.stops.iter().map(|stop| stop.0).collect::<Vec<_>>(),
             stops,
@@ -230,11 +234,11 @@ fn ahead_by_a_way() {
         );
     }
     // More than there is: at the start of the path.
-    let run = Bench::new(&ahead(Ahead::Way(100.0), Synchronisation::Mos), &limits(), 0).run();
-    assert!(run.out(96) <= way, "in the first cycle");
+    let run = Bench::new(&ahead(Ahead::Distance(100.0), Synchronisation::Mos), &limits(), 0).run();
+    assert!(run.out(96) <= distance, "in the first cycle");
 }
 
-/// `MET_SVS` with 0.3 s: the way v T - v²/2a, as if the path stopped at X40, so X18.47; `MET_MOS` v T, X15
+/// `MET_SVS` with 0.3 s: the distance v T - v²/2a, as if the path stopped at X40, so X18.47; `MET_MOS` v T, X15
 /// [004:87-90].
 #[test]
 fn ahead_by_a_time() {
@@ -255,7 +259,11 @@ fn ahead_by_a_time() {
 /// The axes were moved away while a function is out: what is given again has it not any more, and waits for it.
 #[test]
 fn a_recalled_path_goes_on_waiting() {
-    let mut bench = Bench::new(&ahead(Ahead::Way(25.0), Synchronisation::MvsSvs), &limits(), 5000);
+    let mut bench = Bench::new(
+        &ahead(Ahead::Distance(25.0), Synchronisation::MvsSvs),
+        &limits(),
+        5000,
+    );
     while bench.outputs.is_empty() {
         bench.step();
     }
@@ -265,7 +273,7 @@ fn a_recalled_path_goes_on_waiting() {
     assert_eq!(
         elements.len(),
         5,
-        "what is left of the second block, and the four behind it"
+        "what is left of the second block, and the four after it"
     );
     assert!(elements.iter().all(|element| element.functions.is_none()));
     bench.source = list(elements.into_iter().map(Step::Element).collect());
@@ -294,7 +302,7 @@ proptest! {
                 match kind {
                     0 => vec![m(code, At::Start, Synchronisation::MvsSns)],
                     1 => vec![m(code, At::Start, Synchronisation::MvsSlp)],
-                    2 => vec![m(code, At::Ahead(Ahead::Way(7.0)), Synchronisation::MvsSvs)],
+                    2 => vec![m(code, At::Ahead(Ahead::Distance(7.0)), Synchronisation::MvsSvs)],
                     3 => vec![m(code, At::Ahead(Ahead::Time(0.2)), Synchronisation::Mos)],
                     4 => vec![TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)],
                     _ => vec![],

@@ -46,11 +46,11 @@ fn thread() -> Path {
     path
 }
 
-/// A spindle that does what it is told, some cycles later.
+/// A spindle that follows its command, some cycles later.
 struct Bench {
     path: Interpolator<&'static str>,
     source: List,
-    told: Vec<f64>,
+    reported: Vec<f64>,
     dead: usize,
     drive: Drive,
 }
@@ -62,7 +62,7 @@ impl Bench {
         let mut bench = Bench {
             path: interpolator,
             source: list(path.elements.iter().cloned().map(Step::Element).collect()),
-            told: vec![0.0],
+            reported: vec![0.0],
             dead,
             drive: Drive::default(),
         };
@@ -71,7 +71,7 @@ impl Bench {
     }
 
     fn angle(&self) -> f64 {
-        self.told[self.told.len().saturating_sub(1 + self.dead)]
+        self.reported[self.reported.len().saturating_sub(1 + self.dead)]
     }
 
     fn cycle(&mut self) -> Cycle {
@@ -82,17 +82,17 @@ impl Bench {
         };
         // The control holds the path at its end until the spindle is there too.
         self.drive.in_position = self
-            .told
+            .reported
             .iter()
             .rev()
             .take(self.dead + 1)
-            .all(|told| *told == self.angle());
+            .all(|reported| *reported == self.angle());
         let cycle = self.path.cycle(&self.drive);
-        self.told.extend(
+        self.reported.extend(
             cycle
                 .lead
                 .map(|lead| lead.angle_deg)
-                .or(self.told.last().copied()),
+                .or(self.reported.last().copied()),
         );
         cycle
     }
@@ -114,7 +114,7 @@ fn height(angle_deg: f64) -> f64 {
 }
 
 /// F = S · p: 900 mm/min are 15 mm/s; the ramp of gear 1 is 2000 rpm/s · 1.5 mm / 60 = 50 mm/s², so each of
-/// the four ramps takes 0.3 s. Each way: 30 mm / 15 mm/s + 0.3 s; and the orientation of 1 s. The feed override
+/// the four ramps takes 0.3 s. Plunge and retraction each: 30 mm / 15 mm/s + 0.3 s; and the orientation of 1 s. The feed override
 /// has no effect.
 #[test]
 fn the_ramp_of_the_spindle_takes_its_time() {
@@ -135,7 +135,7 @@ fn the_ramp_of_the_spindle_takes_its_time() {
     assert!((time_s(&plan(&fast.elements, &limits())) - expected).abs() < 1e-9);
 }
 
-/// Online the path takes as long as planned, and what the spindle is told is that path.
+/// Online the path takes as long as planned, and the command to the spindle is that path.
 #[test]
 fn online_it_takes_as_long_as_planned() {
     let mut bench = Bench::new(&thread(), 0);
@@ -172,8 +172,10 @@ fn the_axis_follows_the_angle_through_the_reversal() {
         });
         // The reversal may lie between two cycles: 50 mm/s² over half of one.
         assert!((deepest + DEPTH).abs() < 1e-4, "{deepest}");
-        let greatest = bench.told.iter().fold(0.0f64, |a, b| a.max(*b));
-        assert!((greatest - 7200.0).abs() < 1e-6 && bench.told.last().is_some_and(|last| last.abs() < 1e-6));
+        let greatest = bench.reported.iter().fold(0.0f64, |a, b| a.max(*b));
+        assert!(
+            (greatest - 7200.0).abs() < 1e-6 && bench.reported.last().is_some_and(|last| last.abs() < 1e-6)
+        );
     }
 }
 
@@ -252,7 +254,7 @@ fn coupled_again_as_they_stand() {
     bench.until(|_, cycle| cycle.state == State::Held);
     let mut here = bench.path.position();
     here[Axis::Z] = -12.0;
-    bench.told.push(100.0);
+    bench.reported.push(100.0);
     bench.path.couple_again(&here, 100.0);
     bench.drive.hold = false;
     let mut deepest = 0.0f64;
@@ -268,7 +270,7 @@ fn coupled_again_as_they_stand() {
 }
 
 /// Spindle and axis have come to stand beyond an end of the thread: the path goes back to it as they are coupled, on the ramp of
-/// the spindle, and on from there. Nothing is told the spindle that is elsewhere than it stands: 50 mm/s² over a cycle of
+/// the spindle, and on from there. The spindle gets no command elsewhere than it stands: 50 mm/s² over a cycle of
 /// 3 ms are 0.15 mm/s, and 0.0002 mm of the thread.
 #[test]
 fn beyond_its_ends_a_thread_begins_where_it_stands() {
@@ -282,7 +284,7 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
         bench.until(|_, cycle| cycle.state == State::Held);
         let mut here = bench.path.position();
         here[Axis::Z] = here_z;
-        bench.told.push(100.0);
+        bench.reported.push(100.0);
         bench.path.couple_again(&here, 100.0);
         // Two millimetres behind the end there is less than nothing to go, before the start more than all of it; covered is
         // all or nothing.
@@ -304,17 +306,17 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
         bench.drive.back = false;
         bench.until(|_, cycle| cycle.state == State::Held);
         bench.drive.hold = false;
-        let (mut told, mut speed, mut deepest) = (bench.angle(), 0.0, here_z.min(0.0));
+        let (mut reported, mut speed, mut deepest) = (bench.angle(), 0.0, here_z.min(0.0));
         let end = bench.until(|bench, cycle| {
             if let Some(lead) = cycle.lead {
-                let now = (height(lead.angle_deg) - height(told)) / 0.003;
+                let now = (height(lead.angle_deg) - height(reported)) / 0.003;
                 let change = f64::abs(now - speed);
                 assert!(
                     change <= 50.0 * 0.003 + 1e-6,
                     "{element} {here_z}: {speed} {now} at {}",
                     cycle.position[Axis::Z]
                 );
-                (told, speed) = (lead.angle_deg, now);
+                (reported, speed) = (lead.angle_deg, now);
             }
             if bench.path.is_coupled() {
                 let expected = here_z + height(bench.drive.master.actual_deg - 100.0);
@@ -333,10 +335,10 @@ fn beyond_its_ends_a_thread_begins_where_it_stands() {
     }
 }
 
-/// Stopped between the two ways of a thread, with single block, too: coupled again elsewhere it begins where spindle and axis
-/// stand, and goes on to the end of the way that it stands before or behind.
+/// Stopped between plunge and retraction of a thread, with single block, too: coupled again elsewhere it begins where spindle and axis
+/// stand, and goes on to the end of the pass that it stands before or behind.
 #[test]
-fn between_its_ways_a_thread_begins_where_it_stands() {
+fn between_its_passes_a_thread_begins_where_it_stands() {
     for single_block in [false, true] {
         let mut bench = Bench::new(&thread(), 3);
         bench.drive.single_block = single_block;
@@ -356,19 +358,19 @@ fn between_its_ways_a_thread_begins_where_it_stands() {
         bench.dead = 0;
         let mut here = bench.path.position();
         here[Axis::Z] = -12.0;
-        bench.told.push(100.0);
+        bench.reported.push(100.0);
         bench.path.couple_again(&here, 100.0);
         (bench.drive.hold, bench.drive.single_block) = (false, false);
         bench.path.go_on();
-        let (mut told, mut speed) = (100.0, 0.0);
+        let (mut reported, mut speed) = (100.0, 0.0);
         let end = bench.until(|bench, cycle| {
             if let Some(lead) = cycle.lead {
-                let now = (height(lead.angle_deg) - height(told)) / 0.003;
+                let now = (height(lead.angle_deg) - height(reported)) / 0.003;
                 assert!(
                     f64::abs(now - speed) <= 50.0 * 0.003 + 1e-6,
                     "{single_block}: {speed} {now}"
                 );
-                (told, speed) = (lead.angle_deg, now);
+                (reported, speed) = (lead.angle_deg, now);
             }
             if bench.path.is_coupled() {
                 let expected = -12.0 + height(bench.drive.master.actual_deg - 100.0);
@@ -406,7 +408,7 @@ fn a_thread_that_was_not_reached_is_driven_to_its_end() {
         let mut here = bench.path.position();
         here[Axis::Z] = -2.0;
         bench.dead = 0;
-        bench.told.push(100.0);
+        bench.reported.push(100.0);
         bench.path.couple_again(&here, 100.0);
         bench.path.release();
         // The acceleration of the spindle in gear 1 is 50 mm/s² of the thread.
@@ -481,7 +483,7 @@ fn floating(lead_s: f64) -> Path {
 /// the spindle follows the flatter ramp [000:6070].
 #[test]
 fn a_function_before_the_end_of_a_movement() {
-    for (lead, way) in [
+    for (lead, distance) in [
         (0.5, 15.0 * (0.5 - 0.0075)),
         (0.1, 15.0 * (0.1 - 0.0075)),
         (0.0, 15.0 * 0.0075),
@@ -497,7 +499,7 @@ fn a_function_before_the_end_of_a_movement() {
             Some(cycle.position[Axis::Z] + DEPTH)
         });
         // It goes out at the end of the cycle in which the path passes its place.
-        let early = way - at.unwrap_or(f64::NAN);
+        let early = distance - at.unwrap_or(f64::NAN);
         assert!((-1e-9..=15.0 * 0.003 + 1e-9).contains(&early), "{lead}: {early}");
     }
 }

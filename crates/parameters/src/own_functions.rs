@@ -105,7 +105,7 @@ impl OwnFunction {
     /// use bahn_path::{Ahead, At, Synchronisation};
     ///
     /// let lead = Lead { way_mm: Some(25.0), time_s: None };
-    /// let (at, synchronisation) = (At::Ahead(Ahead::Way(25.0)), Synchronisation::MvsSvs);
+    /// let (at, synchronisation) = (At::Ahead(Ahead::Distance(25.0)), Synchronisation::MvsSvs);
     /// assert_eq!(OwnFunction::of("MEP_SVS", lead), Ok(OwnFunction::Out { at, synchronisation }));
     /// ```
     ///
@@ -118,7 +118,7 @@ impl OwnFunction {
         match (kind, lead.way_mm, lead.time_s) {
             (Kind::Start(kind), None, None) => out(At::Start, kind),
             (Kind::End(kind), None, None) => out(At::End, kind),
-            (Kind::Way(kind), Some(way), None) => out(At::Ahead(Ahead::Way(way)), kind),
+            (Kind::Way(kind), Some(way), None) => out(At::Ahead(Ahead::Distance(way)), kind),
             (Kind::Time(kind), None, Some(time)) => out(At::Ahead(Ahead::Time(time)), kind),
             (Kind::Point, None, None) => Ok(OwnFunction::Point),
             (Kind::Way(_), ..) => Err(OwnFunctionError::NeedsWay),

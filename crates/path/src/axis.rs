@@ -91,7 +91,7 @@ impl Axis {
         }
     }
 
-    /// Place in [`Axis::ALL`].
+    /// The index of the axis in [`Axis::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }

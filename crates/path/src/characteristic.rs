@@ -27,9 +27,9 @@ impl Characteristic {
     /// The voltage at a velocity, mm/min; beyond the last point its voltage (inferred), without points 0 V.
     pub fn volts(&self, mm_min: f64) -> f64 {
         let points = self.points();
-        let behind = points.iter().position(|point| point[0] > mm_min);
-        let behind = behind.unwrap_or(points.len());
-        match (points.get(behind.wrapping_sub(1)), points.get(behind)) {
+        let after = points.iter().position(|point| point[0] > mm_min);
+        let after = after.unwrap_or(points.len());
+        match (points.get(after.wrapping_sub(1)), points.get(after)) {
             (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (mm_min - from[0]) / (to[0] - from[0]),
             (Some(only), None) | (None, Some(only)) => only[1],
             (None, None) => 0.0,

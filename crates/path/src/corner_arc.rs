@@ -24,11 +24,11 @@ pub struct Circle {
     ahead: [f64; 3],
     /// Unit vector from the start to the centre.
     inward: [f64; 3],
-    /// Radius, mm; infinite where the way is straight.
+    /// Radius, mm; infinite where the path is straight.
     pub radius_mm: f64,
-    /// Sweep, rad; 0 where the way is straight.
+    /// Sweep, rad; 0 where the path is straight.
     pub sweep_rad: f64,
-    /// Length, mm.
+    /// Length of the arc, mm.
     pub length_mm: f64,
 }
 
@@ -36,14 +36,14 @@ impl CornerArc {
     /// The arc on its circle. What is straight within rounding is a straight line.
     pub fn circle(&self, start: &Position, end: &Position) -> Circle {
         let [from, to] = [start, end].map(|place| MAIN.map(|axis| place[axis]));
-        let (before, behind) = (between(from, self.corner), between(self.corner, to));
-        let legs = [length(before), length(behind)];
-        let straight = |way: [f64; 3]| {
-            let length = length(way);
+        let (before, after) = (between(from, self.corner), between(self.corner, to));
+        let legs = [length(before), length(after)];
+        let straight = |offset: [f64; 3]| {
+            let length = length(offset);
             Circle {
                 start: from,
                 ahead: if length > 0.0 {
-                    way.map(|d| d / length)
+                    offset.map(|d| d / length)
                 } else {
                     [0.0; 3]
                 },
@@ -56,7 +56,7 @@ impl CornerArc {
         if legs[0] <= 0.0 || legs[1] <= 0.0 {
             return straight(between(from, to));
         }
-        let (u, v) = (before.map(|d| d / legs[0]), behind.map(|d| d / legs[1]));
+        let (u, v) = (before.map(|d| d / legs[0]), after.map(|d| d / legs[1]));
         let along = dot(u, v);
         let across = [0, 1, 2].map(|i| v[i] - along * u[i]);
         let sine = length(across);
@@ -111,25 +111,25 @@ impl Circle {
         [0, 1, 2].map(|i| cos * self.ahead[i] + sin * self.inward[i])
     }
 
-    /// The centre of the circle, mm; `None` where the way is straight.
+    /// The centre of the circle, mm; `None` where the path is straight.
     pub fn centre(&self) -> Option<[f64; 3]> {
         (self.sweep_rad > 0.0).then(|| [0, 1, 2].map(|i| self.start[i] + self.radius_mm * self.inward[i]))
     }
 
     /// The fraction of the arc that is nearest to a place, mm.
     pub fn nearest(&self, place: [f64; 3]) -> f64 {
-        let way = between(self.start, place);
-        let (along, inward) = (dot(way, self.ahead), dot(way, self.inward));
+        let offset = between(self.start, place);
+        let (along, inward) = (dot(offset, self.ahead), dot(offset, self.inward));
         if self.sweep_rad == 0.0 {
             let t = along / self.length_mm;
             return if t.is_finite() { t.clamp(0.0, 1.0) } else { 1.0 };
         }
         let angle = along.atan2(self.radius_mm - inward);
-        let behind = angle.rem_euclid(std::f64::consts::TAU);
+        let after = angle.rem_euclid(std::f64::consts::TAU);
         // Outside of the arc the end that is nearer by the angle.
-        if behind <= self.sweep_rad {
-            behind / self.sweep_rad
-        } else if behind - self.sweep_rad < std::f64::consts::TAU - behind {
+        if after <= self.sweep_rad {
+            after / self.sweep_rad
+        } else if after - self.sweep_rad < std::f64::consts::TAU - after {
             1.0
         } else {
             0.0

@@ -5,7 +5,7 @@ use crate::{Axis, CornerArc, PerAxis, Plane, Point2, Position};
 /// The shape of a path element between its start and end position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {
-    /// No axis moves.
+    /// No axis moves: a dwell, or functions alone.
     Hold,
     /// All axes start and end together on a straight line [003:2522-2524].
     Line,
@@ -16,7 +16,7 @@ pub enum Curve {
     Corner(CornerArc),
 }
 
-/// The main axes.
+/// The main axes X, Y and Z.
 const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// A circular arc: about `centre`, from the angle of the start point through `sweep_deg`.
@@ -83,7 +83,7 @@ impl Curve {
             }
             Curve::Arc(arc) => {
                 let (r0, r1) = arc.radii(start, end);
-                // Where the radius changes within MP7431 the way outwards counts too: it is all there is
+                // Where the radius changes within MP7431 the distance outwards counts, too: it is all there is
                 // when start and end lie in the same direction from the centre.
                 let around = 0.5 * (r0 + r1) * arc.sweep_deg.abs().to_radians();
                 let in_plane = around.hypot(r1 - r0);
@@ -134,7 +134,7 @@ impl Curve {
         result
     }
 
-    /// Least and greatest position of each axis on the way. An axis without a position at the start counts
+    /// Least and greatest position of each axis on the curve. An axis without a position at the start counts
     /// with its end alone.
     pub fn bounds(&self, start: &Position, end: &Position) -> [Position; 2] {
         // `f64::min` and `max` pass over NaN.

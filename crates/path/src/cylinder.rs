@@ -2,17 +2,17 @@
 
 use crate::{Axis, Curve, PerAxis, Position};
 
-/// A cylinder about a rotary axis whose surface the path sees unrolled under the tool. One main axis of the path is the way
+/// A cylinder about a rotary axis whose surface the path sees unrolled under the tool. One main axis of the path is the distance
 /// around it, mm; the axis itself stays over the centre, and the rotary axis turns instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     /// The axis that turns.
     pub rotary: Axis,
-    /// The main axis across it and across the tool: the way around on the path.
+    /// The main axis across it and across the tool: the distance around it on the path.
     pub around: Axis,
-    /// Degrees of the rotary axis for a mm of the way around, with its sign.
+    /// Degrees of the rotary axis for a mm around the cylinder, with its sign.
     pub deg_per_mm: f64,
-    /// Where the rotary axis stands at 0 of the way around, degrees.
+    /// Where the rotary axis stands at 0 of that axis, degrees.
     pub zero_deg: f64,
     /// Position of the main axis with the tool over the centre, mm.
     pub centre_mm: f64,

@@ -57,7 +57,7 @@ pub enum OverrideLaw {
 /// A path that follows the angle of the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thread {
-    /// Way along the path to a turn of the spindle, mm; positive.
+    /// Distance along the path for a turn of the spindle, mm; positive.
     pub pitch_mm: f64,
     /// Along the path the spindle turns as with M03.
     pub clockwise: bool,
@@ -81,7 +81,7 @@ pub struct PathElement {
     pub start: Position,
     /// End. An axis that gets its first position by this element has it here only; it adds no length.
     pub end: Position,
-    /// Feed rate.
+    /// Feed rate of the path.
     pub feed: FeedRate,
     /// What the overrides may do.
     pub override_law: OverrideLaw,
@@ -139,7 +139,7 @@ impl PathElement {
             Curve::Arc(arc) => {
                 to.is_finite() && (from != to || axis == arc.plane.first || axis == arc.plane.second)
             }
-            // Where an axis stands at the corner as at both ends, it stands on the whole way.
+            // Where an axis stands at the corner as at both ends, it stands on the whole corner.
             Curve::Corner(arc) => {
                 let at_corner = arc.corner.get(axis.index()).copied();
                 to.is_finite() && (from != to || at_corner.is_some_and(|corner| corner != from))
@@ -147,7 +147,7 @@ impl PathElement {
         }
     }
 
-    /// Whether an axis of the machine moves: behind a placement those are others than on the path.
+    /// Whether an axis of the machine moves: with a placement those are others than on the path.
     pub fn moves_axis(&self, axis: Axis) -> bool {
         match &self.placement {
             None => self.moves(axis),
@@ -172,7 +172,7 @@ impl PathElement {
 /// A function output to the PLC or the spindle with the place on the path where it happens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TechnologyFunction {
-    /// What is output.
+    /// The function that is output.
     pub function: Function,
     /// Where on the element.
     pub at: At,
@@ -201,7 +201,7 @@ pub enum SpindleOrder {
     Clockwise,
     /// Turn counter-clockwise: M4, M14.
     CounterClockwise,
-    /// Stop: M5.
+    /// The spindle stops: M5.
     Stop,
     /// Stop, for the run stops or ends there: M0, M2, M6, M30.
     StopWithRun,
@@ -221,9 +221,9 @@ pub enum ControlFunction {
 /// Place of a function on its element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum At {
-    /// Before the movement.
+    /// Before the movement of its element.
     Start,
-    /// After the movement.
+    /// After the movement of its element.
     End,
     /// At a path length from the start, mm.
     Length(f64),
@@ -236,8 +236,8 @@ pub enum At {
 /// How far ahead of its place a function goes out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ahead {
-    /// By a way along the path, mm.
-    Way(f64),
+    /// By a distance along the path, mm.
+    Distance(f64),
     /// By a time, s.
     Time(f64),
 }
@@ -316,7 +316,7 @@ pub enum Voltage {
     Pulse {
         /// As long as it lasts, V.
         volts: f64,
-        /// How long, s.
+        /// Duration of the dwell, s.
         time_s: f64,
     },
 }
@@ -363,7 +363,7 @@ pub struct Oversize {
 }
 
 impl ToolShape {
-    /// Sharper points are none (inferred), degrees.
+    /// Sharper points count as no point (inferred), degrees.
     pub const POINT_ANGLE_MIN_DEG: f64 = 5.0;
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::swivel::{Matrix, Swivels, Vector, turn, turn_back};
 use crate::{Axis, Curve, Cylinder, PerAxis, Position};
 
-/// Steps in which the way of the axes on a curved path is looked at, degrees.
+/// Steps in which the travel of the axes on a curved path is examined, degrees.
 const STEP_DEG: f64 = 1.0;
 /// Steps at most: more turns than that repeat themselves.
 const STEPS_MAX: f64 = 720.0;
@@ -149,7 +149,7 @@ impl Placement {
 
     /// The derivative of the axes where that of the path is `direction`.
     pub fn velocity(&self, at: &Position, direction: &PerAxis<f64>) -> PerAxis<f64> {
-        /// So far on both sides the way of the axes is looked at, degrees: rounding and curvature count alike.
+        /// So far on both sides the travel of the axes is examined, degrees: rounding and curvature count alike.
         const BESIDE_DEG: f64 = 1e-3;
         let mut axes = *direction;
         let [x, y, z] = [Axis::X, Axis::Y, Axis::Z].map(|axis| direction[axis]);
@@ -171,8 +171,8 @@ impl Placement {
                     }
                     self.swing(&beside)
                 };
-                let (before, behind) = (beside(-h), beside(h));
-                let swing = [0, 1, 2].map(|i| (behind[i] - before[i]) / (2.0 * h));
+                let (before, after) = (beside(-h), beside(h));
+                let swing = [0, 1, 2].map(|i| (after[i] - before[i]) / (2.0 * h));
                 sum([x, y, z], swing)
             }
         };
@@ -190,7 +190,7 @@ impl Placement {
         }
     }
 
-    /// Whether an axis moves behind a path on which these do.
+    /// Whether an axis of the machine moves for a path on which these move.
     pub fn moves(&self, axis: Axis, on_path: impl Fn(Axis) -> bool) -> bool {
         if let Kind::Rolled(cylinder) = &self.kind {
             return on_path(cylinder.moved_by(axis));
@@ -209,7 +209,7 @@ impl Placement {
         }
     }
 
-    /// Upper bound of the way of a main axis by a radian of the swivel axes, mm.
+    /// Upper bound of the travel of a main axis for a radian of the swivel axes, mm.
     pub fn reach_mm(&self) -> f64 {
         match &self.kind {
             Kind::Tilted { .. } | Kind::Rolled(_) => 0.0,
@@ -217,7 +217,7 @@ impl Placement {
         }
     }
 
-    /// The least and greatest positions of the tool datum on a curve; wider by what the way between two places looked at
+    /// The least and greatest positions of the tool datum on a curve; wider by what the travel between two examined places
     /// can bulge.
     pub fn bounds(&self, curve: &Curve, start: &Position, end: &Position) -> [Position; 2] {
         if let Kind::Rolled(cylinder) = &self.kind {
@@ -239,7 +239,7 @@ impl Placement {
                 [Axis::A, Axis::B, Axis::C]
                     .map(|axis| (end[axis] - start[axis]).abs())
                     .into_iter()
-                    .filter(|way| way.is_finite())
+                    .filter(|distance| distance.is_finite())
                     .sum(),
             ),
         };
@@ -322,9 +322,9 @@ impl Placement {
     }
 }
 
-fn along(position: &Position, axis: Axis, way: f64) -> Position {
+fn along(position: &Position, axis: Axis, distance: f64) -> Position {
     let mut position = *position;
-    position[axis] += way;
+    position[axis] += distance;
     position
 }
 

@@ -20,7 +20,7 @@ pub struct ScanJob {
     pub clearance_mm: f64,
     /// How the range is scanned.
     pub pattern: ScanPattern,
-    /// TRAVEL: farthest way off the surface and back, mm.
+    /// TRAVEL: greatest distance off the surface and back, mm.
     pub travel_mm: f64,
     /// L.SPAC: from line to line, mm; of contour lines with its sign.
     pub spacing_mm: f64,
@@ -34,7 +34,7 @@ pub struct ScanJob {
     pub inch: bool,
     /// The program that takes the points.
     pub program: ScanName,
-    /// Machine parameters.
+    /// The machine parameters of scanning.
     pub rules: ScanRules,
 }
 
@@ -64,7 +64,7 @@ impl ScanName {
         Some(made)
     }
 
-    /// The name.
+    /// The name of the file with the points.
     pub fn as_str(&self) -> &str {
         let used = self.text.get(..usize::from(self.length));
         used.and_then(|text| std::str::from_utf8(text).ok())
@@ -77,7 +77,7 @@ impl ScanName {
 pub enum ScanPattern {
     /// Cycle 6: to and fro in lines along an axis.
     Meander {
-        /// LINE DIRECTION.
+        /// The axis along which lines run, LINE DIRECTION.
         line: Axis,
     },
     /// Cycle 7: round the model, level by level.
@@ -98,7 +98,7 @@ pub enum ScanPattern {
 pub struct ScanRules {
     /// MP6120: to the first contact, mm/min.
     pub probing_mm_min: f64,
-    /// MP6150: positioning, mm/min.
+    /// Feed for positioning, MP6150, mm/min.
     pub rapid_mm_min: f64,
     /// MP6210: oscillations of the stylus, 1/s.
     pub oscillations_hz: f64,

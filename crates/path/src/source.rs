@@ -38,11 +38,11 @@ pub enum Barrier {
     /// A probing movement: from `from` in a straight line to `to` at most; the answer is
     /// [`LiveData::touch`] [003:4401-4410].
     Probe {
-        /// The probe block.
+        /// The block that probes.
         block: BlockRef,
         /// Pre-position, tip of the stylus.
         from: Position,
-        /// Farthest position.
+        /// The farthest position to probe to, mm or degrees.
         to: Position,
         /// Probing feed, mm/min.
         feed_mm_min: f64,
@@ -61,7 +61,7 @@ pub enum Barrier {
     },
     /// A programmed stop (STOP, M0, M1): the operator or the driver lets it go on.
     Stop {
-        /// The stop block.
+        /// The block that stops the run.
         block: BlockRef,
     },
     /// Data that the PLC may write (Q100-Q107) must be current before the next block is read.
@@ -76,7 +76,7 @@ pub enum Barrier {
 pub struct ToolMeasuring {
     /// The block that measures.
     pub block: BlockRef,
-    /// What is measured.
+    /// What of the tool is measured.
     pub part: MeasuredPart,
     /// Each tooth on its own, with the spindle oriented.
     pub teeth: bool,

@@ -316,7 +316,7 @@ fn chains_are_closed_to_the_last_bit() {
     assert_eq!(area.locate([0.0, 1.5]), Location::Inside);
 }
 
-/// Two arcs that end in a corner just behind where they cross: between crossing and corner lies a lens, which
+/// Two arcs that end in a corner just after where they cross: between crossing and corner lies a lens, which
 /// the contour goes around twice. However thin, it is inside, and no boundary of its own.
 #[test]
 fn arcs_that_cross_just_before_their_corner_leave_no_loop_in_the_lens() {

@@ -92,7 +92,7 @@ impl Chords {
     }
 }
 
-/// A corner and how the element behind it bulges: the tangent of a quarter of its sweep, 0 for a line.
+/// A corner and how the element after it bulges: the tangent of a quarter of its sweep, 0 for a line.
 type Corner = (Point2, f64);
 
 /// Contours of three to eight elements: around a centre, or across themselves. Coordinates lie on a grid,

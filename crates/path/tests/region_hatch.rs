@@ -10,7 +10,7 @@ use proptest::prelude::*;
 const PATTERNS: [HatchPattern; 2] = [HatchPattern::Zigzag, HatchPattern::OneWay];
 
 /// Everything that the tool passes after the boundary: passes and links.
-fn ways(passes: &[Pass]) -> impl Iterator<Item = Segment> {
+fn segments(passes: &[Pass]) -> impl Iterator<Item = Segment> {
     passes.iter().flat_map(|pass| {
         pass.link
             .iter()
@@ -105,16 +105,16 @@ proptest! {
         let centre = area.offset(-radius);
         let reachable = centre.offset(radius);
         let passes = centre.hatch(angle, radius, PATTERNS[usize::from(!zigzag)]);
-        for way in ways(&passes) {
+        for segment in segments(&passes) {
             for t in [0.0, 0.01, 0.2, 0.5, 0.77, 0.99, 1.0] {
-                let p = way.point(t);
+                let p = segment.point(t);
                 prop_assert!(centre.contains(p) || centre.boundary_distance(p) < 1e-5, "{p:?} is outside");
             }
         }
         for (x, y) in samples {
             let p = [x, y];
             if reachable.contains(p) {
-                let cleared = ways(&passes).map(|way| way.distance(p)).fold(centre.boundary_distance(p), f64::min);
+                let cleared = segments(&passes).map(|segment| segment.distance(p)).fold(centre.boundary_distance(p), f64::min);
                 prop_assert!(cleared <= radius + 1e-5, "{p:?} stays, {cleared} away");
             }
         }

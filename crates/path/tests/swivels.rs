@@ -235,16 +235,16 @@ proptest! {
         }
     }
 
-    /// What the velocities say is what the positions do, and the bounds hold all positions of the way.
+    /// What the velocities say is what the positions do, and the bounds hold all positions of the movement.
     #[test]
     fn velocities_and_bounds(start in place(), end in place(), datum in place(), t in 0.01..0.99f64) {
         for placement in placements(&end, &datum, &Position::ZERO, 120.0) {
             let delta = PerAxis::from_fn(|axis| end[axis] - start[axis]);
             let at = |t: f64| placement.to_nose(&Curve::Line.position(&start, &end, t));
             let velocity = placement.velocity(&Curve::Line.position(&start, &end, t), &delta);
-            let (before, behind) = (at(t - 1e-6), at(t + 1e-6));
+            let (before, after) = (at(t - 1e-6), at(t + 1e-6));
             for axis in Axis::ALL {
-                let slope = (behind[axis] - before[axis]) / 2e-6;
+                let slope = (after[axis] - before[axis]) / 2e-6;
                 prop_assert!((velocity[axis] - slope).abs() < 0.1 + 1e-4 * slope.abs());
             }
             let [least, greatest] = placement.bounds(&Curve::Line, &start, &end);

@@ -20,7 +20,7 @@ pub struct Image {
 /// A text of a picture and the rectangle that its letters cover.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// What is written.
+    /// The text that is drawn.
     pub text: String,
     /// Upper left corner, pixels.
     pub min: [f64; 2],
@@ -31,7 +31,7 @@ pub struct Label {
 /// Why a picture could not be written or read.
 #[derive(Debug, Error)]
 pub enum ImageError {
-    /// The writer failed.
+    /// The PNG could not be written.
     #[error("the picture cannot be written: {0}")]
     Writer(#[from] png::EncodingError),
     /// The work was stopped.
@@ -58,12 +58,12 @@ impl PartialEq for Image {
 impl Eq for Image {}
 
 impl Image {
-    /// Width, pixels.
+    /// Width of the image, pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Height, pixels.
+    /// Height of the image, pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
@@ -107,7 +107,7 @@ impl Image {
     /// Reads a PNG; what shines through lies on black.
     ///
     /// # Errors
-    /// When it is none, or has more than a hundred million pixels.
+    /// When it is no PNG, or has more than a hundred million pixels.
     pub fn read_png(reader: impl BufRead + Seek) -> Result<Image, ImageError> {
         let mut decoder = png::Decoder::new(reader);
         decoder.set_transformations(png::Transformations::normalize_to_color8());
@@ -229,7 +229,7 @@ impl Image {
         }
     }
 
-    /// Draws a circle.
+    /// Draws the outline of a circle; centre, radius and width in pixels.
     pub fn circle(&mut self, centre: [f64; 2], radius: f64, width: f64, colour: Colour) {
         let points: Vec<[f64; 2]> = (0..=64)
             .map(|k| {

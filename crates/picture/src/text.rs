@@ -7,11 +7,11 @@ use crate::image::{Colour, Image, Label};
 /// Where a text lies from its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// It begins there.
+    /// The text begins at the place.
     Left,
     /// Its middle is there.
     Centre,
-    /// It ends there.
+    /// The text ends at the place.
     Right,
 }
 

@@ -164,7 +164,7 @@ fn processor_s() -> f64 {
         .split_whitespace()
         .filter_map(|field| field.parse().ok())
         .collect();
-    // Behind the name: state is no number; utime and stime are the 14th and 15th field of all.
+    // After the name: state is no number; utime and stime are the 14th and 15th field of all.
     (fields[10] + fields[11]) / 100.0
 }
 

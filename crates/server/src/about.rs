@@ -8,7 +8,7 @@ use serde::Serialize;
 pub(crate) struct About {
     /// Name of the machine.
     machine: String,
-    /// Its control model.
+    /// The control model, as people read it.
     model: String,
     /// The keyboard of the model.
     keys: Vec<KeyText>,
@@ -65,7 +65,7 @@ impl ShortcutText {
 }
 
 impl About {
-    /// Of a station.
+    /// What does not change about a station.
     pub fn of(station: &Station) -> About {
         let key = |key: &Key| KeyText {
             name: key.name(),

@@ -1,8 +1,8 @@
 //! Who may come in, and what he may do there.
 //!
 //! On loopback the page itself and programs of this computer; a page of somebody else's, opened in the same browser,
-//! may not: its requests name their origin. Names that lead to loopback by a false answer of the name service are
-//! refused by the host that requests name. Elsewhere everybody needs a token, once in the address, then as a
+//! may not: its requests name their origin. DNS rebinding, a name of somebody else's that leads to loopback, is refused
+//! by the Host header. Elsewhere everybody needs a token, once in the address, then as a
 //! cookie: one is for operating, another for looking.
 
 use std::net::{IpAddr, SocketAddr};
@@ -21,21 +21,21 @@ pub(crate) const COOKIE_NAME: &str = "bahn-token";
 pub(crate) enum Role {
     /// He sees everything and does nothing.
     Look,
-    /// He operates.
+    /// May operate the machine.
     Operate,
 }
 
 /// What others must know.
 #[derive(Clone, Debug, Default)]
 pub struct Tokens {
-    /// To operate.
+    /// The token with which one may operate.
     pub operate: Option<String>,
-    /// To look.
+    /// The token with which one may look.
     pub look: Option<String>,
 }
 
 impl Tokens {
-    /// There is one.
+    /// Whether any token is asked for.
     pub(crate) fn any(&self) -> bool {
         self.operate.is_some() || self.look.is_some()
     }
@@ -52,7 +52,7 @@ impl Tokens {
     }
 }
 
-/// The rules.
+/// The rules of access to the panel.
 #[derive(Debug)]
 pub(crate) struct Access {
     address: SocketAddr,
@@ -135,7 +135,7 @@ impl Access {
     }
 }
 
-/// Compares without telling by its time how much is right.
+/// Compares in constant time.
 fn same(given: &str, token: &str) -> bool {
     let differences = given
         .bytes()

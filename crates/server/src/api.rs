@@ -19,7 +19,7 @@ pub(crate) async fn station(State(shared): State<Shared>) -> Response {
     Json(shared.about.as_ref()).into_response()
 }
 
-/// In which language.
+/// The language of a request.
 #[derive(Deserialize)]
 pub(crate) struct Spoken {
     language: Option<String>,
@@ -123,7 +123,7 @@ pub(crate) async fn graphics(State(shared): State<Shared>, Query(size): Query<Si
     }
 }
 
-/// `POST /api/key` and `POST /api/command`: an input; the answer has the screen behind it, and what became of contour
+/// `POST /api/key` and `POST /api/command`: an input; the answer has the screen after it, and what became of contour
 /// cycles that were asked for.
 pub(crate) async fn input(State(shared): State<Shared>, body: String) -> Response {
     let input = serde_json::from_str::<InputText>(&body)

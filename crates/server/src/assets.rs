@@ -40,7 +40,7 @@ const MODULES: &[(&str, &str)] = &modules![
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; \
                       base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// The page.
+/// `GET /`: the page.
 pub(crate) async fn page() -> Response {
     served("text/html; charset=utf-8", &PAGE)
 }

@@ -134,7 +134,7 @@ impl Crew {
         }
     }
 
-    /// Somebody operates.
+    /// Whether this viewer operates.
     pub fn is_operator(&self, id: &str) -> bool {
         self.operator.as_deref() == Some(id) && self.may(id)
     }
@@ -166,11 +166,11 @@ impl Crew {
 /// What becomes of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Taking {
-    /// It is done.
+    /// The input is new: it is done.
     New,
     /// It was done before its connection broke.
     Twice,
-    /// Somebody else operates.
+    /// Another viewer operates.
     NotOperator,
     /// He may only look.
     Looks,

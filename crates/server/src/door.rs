@@ -24,7 +24,7 @@ pub(crate) const HEAD: Duration = Duration::from_secs(5);
 const HEAD_BYTES: usize = 16 << 10;
 /// Lines of a head at most.
 const HEAD_LINES: usize = 64;
-/// When no connection can be taken, because the system has no more, it is tried again behind this time.
+/// When no connection can be taken, because the system has no more, it is tried again after this time.
 const AGAIN: Duration = Duration::from_millis(50);
 
 /// Takes connections for ever.
@@ -43,7 +43,7 @@ pub(crate) async fn serve(listener: TcpListener, router: Router) {
 
 /// Answers one connection until it ends, or its place is needed.
 async fn follow(stream: TcpStream, place: Arc<Place>, router: Router) {
-    // A screen behind the number of its key would wait until the viewer has acknowledged that, 40 ms.
+    // A screen that is sent after the number of its key would wait until the viewer has acknowledged that, 40 ms.
     let _ = stream.set_nodelay(true);
     let visit = Visit {
         place: Arc::clone(&place),

@@ -42,7 +42,7 @@ struct Shared {
 #[derive(Default)]
 struct State {
     seen: Option<Seen>,
-    /// Parts so far.
+    /// Number of parts that were cut so far.
     parts: u64,
 }
 
@@ -77,7 +77,7 @@ impl PartFeed {
         PartFeed { shared, news }
     }
 
-    /// Somebody looks.
+    /// Counts a viewer who looks at the part, as long as the result lives.
     fn look(&self) -> Looking {
         *lock(&self.shared.viewers) += 1;
         self.shared.wanted.notify_all();
@@ -179,7 +179,7 @@ impl State {
 pub(crate) enum Look {
     #[default]
     Away,
-    /// He has everything.
+    /// He has everything, and waits for news.
     Waits(Looking),
     /// What he lacks is being coded. A large part takes a while, for which nothing else waits, neither of the server nor of his:
     /// he sees screens meanwhile.
@@ -187,12 +187,12 @@ pub(crate) enum Look {
 }
 
 impl Look {
-    /// Somebody looks.
+    /// A viewer begins to look.
     pub fn on(feed: &PartFeed) -> Look {
         Look::Waits(feed.look())
     }
 
-    /// Whether he looks.
+    /// Whether the viewer looks at the part.
     pub fn is_on(&self) -> bool {
         !matches!(self, Look::Away)
     }

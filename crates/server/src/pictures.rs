@@ -1,4 +1,4 @@
-//! Pictures that programs ask for: one is drawn at a time, and behind it the processor rests as long as it took.
+//! Pictures that programs ask for: one is drawn at a time, and after it the processor rests as long as it took.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -35,13 +35,13 @@ impl Pictures {
     pub async fn draw<T: Send + 'static>(&self, what: impl FnOnce() -> T + Send + 'static) -> Option<T> {
         let _waits = self.waiting.try_acquire().ok()?;
         let draws = Arc::clone(&self.drawing).acquire_owned().await.ok()?;
-        let (tell, told) = oneshot::channel();
+        let (sender, receiver) = oneshot::channel();
         tokio::task::spawn_blocking(move || {
             let begun = Instant::now();
-            let _ = tell.send(what());
+            let _ = sender.send(what());
             std::thread::sleep(begun.elapsed().max(EVERY));
             drop(draws);
         });
-        told.await.ok()
+        receiver.await.ok()
     }
 }

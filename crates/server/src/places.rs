@@ -18,7 +18,7 @@ pub(crate) const PLACES: usize = 256;
 /// Those of one address.
 pub(crate) const PLACES_OF_AN_ADDRESS: usize = 64;
 
-/// The places.
+/// The connections that may be open at once.
 #[derive(Default)]
 pub(crate) struct Places {
     guests: Mutex<Guests>,
@@ -110,7 +110,7 @@ impl Place {
         });
     }
 
-    /// He was answered.
+    /// The answer was sent: the place is free again.
     pub fn end(&self) {
         self.heard(|guest| guest.is_answered = false);
     }

@@ -51,7 +51,7 @@ impl Regions {
         }
     }
 
-    /// What has changed behind a screen, as one message: an array of regions.
+    /// What has changed since a screen, as one message: an array of regions.
     pub fn since(&self, serial: u64) -> Vec<u8> {
         let news = self.parts.iter().filter(|(since, _)| *since > serial);
         let news: Vec<&[u8]> = news.map(|(_, bytes)| &**bytes).collect();

@@ -19,11 +19,11 @@ use crate::regions::Regions;
 use crate::shared::Shared;
 use crate::{api, assets, door, gate, socket};
 
-/// Viewers at most.
+/// Viewers at once, at most.
 const VIEWERS: usize = 32;
 /// Those of them who may only look: the other places are kept for who operates.
 const LOOKERS: usize = 24;
-/// What is under way to a viewer who reads slowly, bytes: what is newer than that he gets at once when he has it, instead of
+/// What is in transit to a viewer who reads slowly, bytes: what is newer than that he gets at once when he has it, instead of
 /// megabytes of what was.
 const UNDERWAY: u32 = 256 << 10;
 /// Connections that wait until they are taken.
@@ -128,7 +128,7 @@ impl Server {
         self.address
     }
 
-    /// The station.
+    /// The station that is served.
     pub fn live(&self) -> &Live {
         &self.live
     }

@@ -28,7 +28,7 @@ use crate::shared::Shared;
 const MESSAGE: usize = 16 << 10;
 /// Messages of a viewer in a second.
 const RATE: u32 = 400;
-/// A viewer that asks for the part again is sent all of it behind this time (inferred).
+/// A viewer that asks for the part again is sent all of it after this time (inferred).
 const AGAIN: Duration = Duration::from_millis(500);
 /// Length of a name, and of a key.
 const NAME: usize = 64;
@@ -76,7 +76,7 @@ struct Sent {
 
 /// Who operates, as one viewer sees it.
 #[derive(Serialize)]
-struct Told<'a> {
+struct CrewView<'a> {
     may_operate: bool,
     operates: bool,
     operator: Option<&'a str>,
@@ -124,7 +124,7 @@ async fn attend(shared: Shared, role: Role, who: Who, socket: WebSocket) {
         role,
         shared,
         seen: 0,
-        told: Vec::new(),
+        sent_crew: Vec::new(),
         looked: Instant::now(),
         look: Look::default(),
         rate: Rate::default(),
@@ -146,7 +146,7 @@ struct Viewer {
     /// Number of the last input that was taken.
     taken: u64,
     /// What was sent of the crew.
-    told: Vec<u8>,
+    sent_crew: Vec<u8>,
     /// When he last asked for the part.
     looked: Instant,
     /// He looks at the part that is being cut.
@@ -209,7 +209,7 @@ impl Viewer {
             return refused("this is no input");
         };
         if let Some(looks) = sent.part {
-            // Whoever asks again is sent all of it anew, which takes its time: soon again he has what he gets.
+            // Each request sends all of it anew, which is expensive: one that follows soon after another is ignored.
             let again = looks && self.look.is_on() && self.looked.elapsed() < AGAIN;
             if !again {
                 self.look = match looks {
@@ -258,31 +258,31 @@ impl Viewer {
     }
 
     fn taken_message(&self) -> Message {
-        told("taken", &self.taken)
+        region_message("taken", &self.taken)
     }
 
     fn news_of_the_crew(&mut self) -> Option<Message> {
         let crew = lock(&self.shared.crew);
         let (operator, asks) = crew.names();
-        let told = Told {
+        let view = CrewView {
             may_operate: self.role >= Role::Operate,
             operates: crew.is_operator(&self.id),
             operator,
             asks,
         };
-        let encoded = alone("crew", &told);
-        (encoded != self.told).then(|| {
-            self.told.clone_from(&encoded);
+        let encoded = alone("crew", &view);
+        (encoded != self.sent_crew).then(|| {
+            self.sent_crew.clone_from(&encoded);
             Message::Binary(encoded.into())
         })
     }
 }
 
 fn refused(why: &str) -> Message {
-    told("refused", &why)
+    region_message("refused", &why)
 }
 
-fn told<T: Serialize>(name: &str, value: &T) -> Message {
+fn region_message<T: Serialize>(name: &str, value: &T) -> Message {
     Message::Binary(alone(name, value).into())
 }
 

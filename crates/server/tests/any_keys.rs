@@ -14,7 +14,7 @@ const KEYS: usize = 5_000;
 /// A viewer who sends more than 400 messages a second is sent away.
 const PACE: Duration = Duration::from_micros(2_600);
 
-/// xorshift.
+/// A random generator, xorshift.
 struct Dice(u64);
 
 impl Dice {

@@ -77,7 +77,7 @@ fn emergency_stop_comes_between_cycles_that_are_asked_for() {
 
 /// Everybody else asks for what takes longest, at once and again and again.
 #[test]
-fn emergency_stop_does_not_wait_behind_others() {
+fn emergency_stop_waits_for_no_other_input() {
     let panel = Panel::start();
     panel.to_manual();
     let lessons = panel.get("/api/lessons");
@@ -127,7 +127,7 @@ fn emergency_stop_does_not_wait_for_a_slow_cycle() {
 
 /// Time that stood is not made up for.
 #[test]
-fn behind_a_pause_time_goes_on_as_fast_as_before() {
+fn after_a_pause_time_goes_on_as_fast_as_before() {
     let panel = Panel::start();
     panel.until(|screen| screen["messages"][0]["text"] == "POWER INTERRUPTED");
     answer(&panel, &json!({"pause": true}));
@@ -138,10 +138,10 @@ fn behind_a_pause_time_goes_on_as_fast_as_before() {
         let (begun, begun_s) = (Instant::now(), time_s(&panel));
         answer(&panel, &going_on);
         std::thread::sleep(Duration::from_millis(300));
-        let (passed_s, wall_s) = (time_s(&panel) - begun_s, begun.elapsed().as_secs_f64());
+        let (passed_s, real_s) = (time_s(&panel) - begun_s, begun.elapsed().as_secs_f64());
         assert!(
-            passed_s <= wall_s + 0.01,
-            "{going_on}: {passed_s} s in {wall_s} s"
+            passed_s <= real_s + 0.01,
+            "{going_on}: {passed_s} s in {real_s} s"
         );
     }
 }

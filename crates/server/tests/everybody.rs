@@ -76,7 +76,7 @@ fn the_rules_of_accessibility_hold_everywhere() {
                 let wrong = wrong(&mut page);
                 assert!(
                     wrong.is_empty(),
-                    "{size:?}, behind {keys:?}, dark {dark}:\n{}",
+                    "{size:?}, after {keys:?}, dark {dark}:\n{}",
                     wrong.join("\n")
                 );
             }

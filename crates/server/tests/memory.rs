@@ -10,7 +10,7 @@ use support::Panel;
 
 /// What a panel may need, KiB.
 const MOST: u64 = 100 << 10;
-/// An hour in five parts: four ways that are left, and the last.
+/// An hour in five parts: four branches that are left, and the last.
 const PART_S: f64 = 720.0;
 
 #[test]
@@ -35,7 +35,7 @@ fn an_hour_with_four_branches_stays_below_100_mb() {
         }
         println!("part {part}: {} s, {} KiB", now(), panel.memory_kib());
         if part < 4 {
-            // Back by two minutes, and on from there another way.
+            // Back by two minutes, and on from there on another branch.
             assert_eq!(panel.give(&json!({"go_to": now() - 120.0})), 200);
         }
     }

@@ -77,7 +77,7 @@ fn the_time_line_leads_back_and_on() {
     );
     let on = "[...document.querySelectorAll('[data-region=timeline] button')].find(button => button.textContent === 'Go on')";
     until(&mut page, &format!("!{on}.disabled"));
-    // To the newest moment, back again, and on from there: another way, and the old one can still be gone to.
+    // To the newest moment, back again, and on from there: another branch, and the old one can still be gone to.
     let newest = "[...document.querySelectorAll('[data-region=timeline] button')].find(button => button.textContent === 'Newest')";
     until(&mut page, &format!("!{newest}.disabled"));
     page.evaluate(&format!("{newest}.click()")).unwrap();
@@ -163,8 +163,8 @@ fn the_drawer_breaks_and_repairs() {
         found.unwrap_or_else(|| panic!("{name} {group}: {drawer:#?}"))
     };
     let encoder = of("X", "axes and spindle");
-    let way = &encoder["faults"][0];
-    assert!(way["deed"].as_str().unwrap().starts_with("fault "), "{way}");
+    let fault = &encoder["faults"][0];
+    assert!(fault["deed"].as_str().unwrap().starts_with("fault "), "{fault}");
     let mut page = open(&panel, &browser);
     page.click(".drawer summary").unwrap();
     until(
@@ -176,7 +176,7 @@ fn the_drawer_breaks_and_repairs() {
     );
     let words = format!("X: {}", encoder["words"].as_str().unwrap());
     choose(&mut page, ".drawer .things", &words);
-    choose(&mut page, ".drawer .ways", way["words"].as_str().unwrap());
+    choose(&mut page, ".drawer .ways", fault["words"].as_str().unwrap());
     page.click(".drawer .break").unwrap();
     panel.until(|screen| !screen["messages"].as_array().unwrap().is_empty());
     page.click(".drawer .repair").unwrap();
@@ -187,7 +187,7 @@ fn the_drawer_breaks_and_repairs() {
     assert!(
         marks["timeline"]["marks"]
             .to_string()
-            .contains(way["deed"].as_str().unwrap())
+            .contains(fault["deed"].as_str().unwrap())
     );
     assert_eq!(page.complaints(), [] as [String; 0]);
 }

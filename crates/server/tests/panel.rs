@@ -63,7 +63,7 @@ fn what_is_wrong_is_said() {
 
 /// `/api/drawer`, `/api/lessons`, `/api/graphics.png`: what they say, and what they say when there is nothing.
 #[test]
-fn drawer_lessons_and_picture_are_told() {
+fn drawer_lessons_and_picture_are_served() {
     let panel = Panel::start();
     let drawer = panel.get("/api/drawer");
     let drawer = drawer.as_array().unwrap();

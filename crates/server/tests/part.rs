@@ -1,4 +1,4 @@
-//! The part in the page while it is cut: it is the machine's own part, bit for bit, live and behind a reload.
+//! The part in the page while it is cut: it is the machine's own part, bit for bit, live and after a reload.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
@@ -137,7 +137,7 @@ fn a_test_run_is_seen_while_it_cuts() {
     assert_eq!(page.complaints(), [] as [String; 0]);
 }
 
-/// The same while the machine cuts: the tool goes along with it, and the part behind an NC stop is the machine's.
+/// The same while the machine cuts: the tool goes along with it, and the part after an NC stop is the machine's.
 #[test]
 fn a_program_run_is_seen_on_a_phone() {
     let Some(browser) = Browser::for_test().unwrap() else {

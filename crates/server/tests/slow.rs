@@ -31,7 +31,7 @@ struct Looker {
     silent: usize,
 }
 
-/// Reads of 20 s without a message after which nothing will come: on a busy machine the end of the part that is awaited is told to
+/// Reads of 20 s without a message after which nothing will come: on a busy machine the end of the part that is awaited is reported to
 /// the test long after the last message.
 const SILENT_MAX: usize = 15;
 
@@ -159,11 +159,11 @@ fn a_viewer_that_does_not_read_gets_the_newest() {
         "quick: {} parts, {} bytes; slow: {} parts, {} bytes; {grown} KiB more",
         quick.parts, quick.bytes, late.parts, late.bytes
     );
-    // What was under way is kept for him: what the system holds, twice the bytes that the server asks of it, and the part that was
+    // What was in transit is kept for him: what the system holds, twice the bytes that the server asks of it, and the part that was
     // being sent; then comes the newest. How many parts another one sees meanwhile depends on the processor.
-    let under_way = 2 * (256 << 10) + 2 * (8 << 10);
+    let in_transit = 2 * (256 << 10) + 2 * (8 << 10);
     assert!(
-        late.bytes <= under_way + 2 * late.longest && late.parts <= quick.parts,
+        late.bytes <= in_transit + 2 * late.longest && late.parts <= quick.parts,
         "{} parts, {} bytes, the longest {}; of {} parts",
         late.parts,
         late.bytes,

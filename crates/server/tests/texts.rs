@@ -106,7 +106,7 @@ fn to_german(panel: &Panel) {
     panel.until(|screen| screen["look"]["language"] == "de");
 }
 
-/// What is said in English only: what is the same in both languages tells nothing, nor what is another word in German.
+/// What is said in English only: what is the same in both languages proves nothing, nor what is another word in German.
 fn left(said: &[String]) -> Vec<String> {
     let table = texts_around(Language::German);
     let german: BTreeSet<_> = table.values().copied().collect();

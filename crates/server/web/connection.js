@@ -12,7 +12,7 @@ export class Connection {
     this.state = state;
     this.name = sessionStorage.getItem("bahn-name") ?? `viewer-${crypto.getRandomValues(new Uint32Array(1))[0]}`;
     sessionStorage.setItem("bahn-name", this.name);
-    // Who knows the key is this viewer: it is told to nobody but the station.
+    // Who knows the key is this viewer: it is sent to the station alone.
     this.key = sessionStorage.getItem("bahn-key") ?? [...crypto.getRandomValues(new Uint32Array(4))].map((word) => word.toString(16).padStart(8, "0")).join("");
     sessionStorage.setItem("bahn-key", this.key);
     this.waiting = JSON.parse(sessionStorage.getItem("bahn-waiting") ?? "[]");
@@ -56,7 +56,7 @@ export class Connection {
   }
 
   taken(number) {
-    // A page that was opened anew under its old name goes on behind what was taken.
+    // A page that was opened anew under its old name goes on after what was taken.
     this.number = Math.max(this.number, number);
     this.waiting = this.waiting.filter((input) => input.n > number);
     this.keep();

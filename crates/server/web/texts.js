@@ -5,7 +5,7 @@ let table = {};
 export let language = "en";
 
 /** Of each node: its text, or attributes, by what they are in English. */
-const told = new WeakMap();
+const originals = new WeakMap();
 
 /** Fetches the texts of a language, without a code those of the control, and says everything in it. */
 export async function load(code) {
@@ -23,24 +23,24 @@ export function words(english, ...values) {
 
 /** A node says a text, or a function's answer, in whatever language comes: as its text, or as one of its attributes. */
 export function say(node, english, attribute = "text") {
-  told.set(node, { ...told.get(node), [attribute]: english });
-  node.dataset.words = Object.keys(told.get(node)).join(" ");
+  originals.set(node, { ...originals.get(node), [attribute]: english });
+  node.dataset.words = Object.keys(originals.get(node)).join(" ");
   put(node);
 }
 
 /** Nodes of the page itself name what is to be said in another language: data-words="text title". */
 export function adopt(root) {
   for (const node of root.querySelectorAll("[data-words]")) {
-    if (!told.has(node)) {
+    if (!originals.has(node)) {
       const read = (name) => [name, name === "text" ? node.textContent : node.getAttribute(name)];
-      told.set(node, Object.fromEntries(node.dataset.words.split(" ").map(read)));
+      originals.set(node, Object.fromEntries(node.dataset.words.split(" ").map(read)));
     }
     put(node);
   }
 }
 
 function put(node) {
-  for (const [name, english] of Object.entries(told.get(node))) {
+  for (const [name, english] of Object.entries(originals.get(node))) {
     const text = typeof english === "function" ? english() : words(english);
     if (name !== "text") node.setAttribute(name, text);
     else if (node.textContent !== text) node.textContent = text;

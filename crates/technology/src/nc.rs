@@ -11,7 +11,7 @@ use crate::run::{Blocks, Programs};
 /// The code of what is wrong with the text of a block: the manuals have no number for it.
 const SYNTAX: &str = "syntax";
 
-/// The programs of files, one behind the other: of a file with several all of them.
+/// The programs of files, one after the other: of a file with several all of them.
 pub struct NcPrograms {
     list: Vec<(Arc<Program>, Section)>,
     shelf: Arc<dyn Shelf>,
@@ -73,7 +73,7 @@ impl Programs for NcPrograms {
     }
 }
 
-/// A program under way.
+/// A program that is read.
 struct NcBlocks {
     decoder: Decoder,
 }

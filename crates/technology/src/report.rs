@@ -30,7 +30,7 @@ pub struct Report {
     pub programs: Vec<ProgramEnd>,
     /// What was done otherwise than ordered.
     pub warnings: Vec<Warning>,
-    /// The velocity over time and way, for pictures.
+    /// The velocity over time and distance, for pictures.
     #[serde(skip)]
     pub samples: Vec<Sample>,
 }
@@ -40,7 +40,7 @@ pub struct Report {
 pub struct Fault {
     /// `P-ERR-20157`, or a name of its own where the manuals have no number.
     pub code: String,
-    /// What is wrong.
+    /// What is wrong, in words.
     pub message: String,
     /// File of the faulty block, a subroutine too.
     pub program: String,
@@ -68,11 +68,11 @@ impl std::error::Error for Fault {}
 /// Something that was done otherwise than ordered.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Warning {
-    /// What.
+    /// What has happened, in words.
     pub message: String,
     /// File of the block.
     pub program: String,
-    /// The block.
+    /// The block, `N40` or the line `#12`.
     pub block: String,
 }
 
@@ -87,12 +87,12 @@ pub struct ProgramEnd {
     pub time_s: f64,
 }
 
-/// What happened.
+/// Something that has happened to a function or to the path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Event {
     /// The cycle in which the PLC sees it, s.
     pub t: f64,
-    /// What.
+    /// The kind of event.
     pub kind: EventKind,
     /// Letter and number without leading zeros: `M25`, `H5`, `S`; of `active` the letter alone.
     pub function: Option<String>,
@@ -126,9 +126,9 @@ pub enum EventKind {
     Fetch,
     /// The PLC says it is done.
     Acknowledge,
-    /// The path stands.
+    /// The path comes to a standstill.
     Stop,
-    /// The path moves.
+    /// The path begins to move.
     Go,
     /// The functions of a letter that are waited for in a range are others.
     Active,
@@ -138,14 +138,14 @@ pub enum EventKind {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// There is none.
+    /// The function has no value.
     #[default]
     None,
-    /// Additive value.
+    /// The additive value of a function.
     Integer(i64),
-    /// Speed, rpm.
+    /// The speed of an S word, rpm.
     Number(f64),
-    /// Numbers of functions.
+    /// The numbers of functions that wait.
     Numbers(Vec<u16>),
 }
 
@@ -163,7 +163,7 @@ impl Value {
 /// What is left to the point where a function is waited for that was output ahead [004:81].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ToGo {
-    /// Way along the path, 0.1 µm.
+    /// Distance along the path, 0.1 µm.
     pub path: i64,
     /// Time as planned, µs.
     pub time: i64,
@@ -174,7 +174,7 @@ pub struct ToGo {
 pub struct Wait {
     /// Whose fetch, acknowledgement or confirmation was missing.
     pub function: String,
-    /// Its block.
+    /// The block of the function, `N40` or the line `#12`.
     pub block: String,
     /// Since when the path stood for it, s.
     pub from_s: f64,
@@ -198,17 +198,17 @@ pub struct Skipped {
     pub target: String,
     /// File of its block.
     pub program: String,
-    /// Its block.
+    /// The block of the function, `N40` or the line `#12`.
     pub block: String,
 }
 
 /// The path at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// When, s.
+    /// Time since the start of the run, s.
     pub t: f64,
-    /// Way along the path, mm.
-    pub way_mm: f64,
+    /// Distance along the path, mm.
+    pub distance_mm: f64,
     /// Path velocity, mm/min.
     pub v: f64,
 }

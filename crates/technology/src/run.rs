@@ -13,7 +13,7 @@ use crate::settings::ChannelSettings;
 ///
 /// Time, PLC, spindles and functions that are still open go over from one to the next, which starts where it ended.
 pub struct Run<'a> {
-    /// The programs.
+    /// The programs that may be run and called.
     pub programs: &'a dyn Programs,
     /// What the channel parameter list says.
     pub settings: &'a ChannelSettings,
@@ -47,7 +47,7 @@ pub trait Programs {
 
 /// A program that is decoded block by block.
 pub trait Blocks {
-    /// The next block; `None` behind the end.
+    /// The next block; `None` after the end.
     ///
     /// # Errors
     /// What is wrong with the block.
@@ -56,7 +56,7 @@ pub trait Blocks {
     /// Whether the next block is this one (`N50`, `#12`).
     fn next_is(&mut self, block: &str) -> bool;
 
-    /// Where the path stands behind the blocks that were handed on.
+    /// Where the path stands after the blocks that were handed on.
     fn position(&self) -> Position;
 
     /// There is no such block.

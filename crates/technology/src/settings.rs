@@ -26,9 +26,9 @@ pub(crate) const SPINDLE_M: [u32; 4] = [3, 4, 5, 19];
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelSettings {
-    /// M functions.
+    /// The settings of the M functions.
     pub m: FunctionTable,
-    /// H functions.
+    /// The settings of the H functions.
     pub h: FunctionTable,
     /// Spindles by the index of `spindel[i]`.
     pub spindles: BTreeMap<usize, SpindleSettings>,
@@ -44,7 +44,7 @@ pub struct ChannelSettings {
     pub m6_implicit_call: bool,
     /// P-CHAN-00033: the end of a program waits for all late functions [004:225].
     pub late_sync_ready: bool,
-    /// Output ahead by way or time.
+    /// Output ahead by distance or time.
     pub pre_output: PreOutput,
     /// Output at a place within a block.
     pub micro_joint: MicroJoint,
@@ -108,7 +108,7 @@ impl ChannelSettings {
 pub struct FunctionSettings {
     /// P-CHAN-00041, P-CHAN-00027: the synchronisation. `None` is `NOT_VALID`: to program it is P-ERR-20157 [004:42].
     pub synch: Option<Synch>,
-    /// P-CHAN-00070, P-CHAN-00107: the lead, a way of 0.1 µm, or a time of 1 µs with `MET_SVS` and `MET_MOS` [004:216].
+    /// P-CHAN-00070, P-CHAN-00107: the lead, a distance in 0.1 µm, or a time in 1 µs with `MET_SVS` and `MET_MOS` [004:216].
     pub lead: u32,
     /// P-CHAN-00040, P-CHAN-00026: how long the PLC is thought to take, µs [004:225].
     pub process_time_us: u32,
@@ -133,7 +133,7 @@ impl FunctionTable {
         self.0.get(usize::try_from(number).ok()?)
     }
 
-    /// To change it.
+    /// The settings of a function, to change them.
     pub fn get_mut(&mut self, number: u32) -> Option<&mut FunctionSettings> {
         self.0.get_mut(usize::try_from(number).ok()?)
     }
@@ -206,12 +206,12 @@ pub struct SpindleFunction {
     pub process_time_us: u32,
 }
 
-/// Output ahead by way or time, `MEP_*` and `MET_*` [004:222].
+/// Output ahead by distance or time, `MEP_*` and `MET_*` [004:222].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PreOutput {
     /// P-CHAN-00209: times are those of the velocity profile in force, not of a linear one.
     pub active_profile: bool,
-    /// P-CHAN-00212: way and time to go are worked out, and the look-ahead turns to the next place only behind this one.
+    /// P-CHAN-00212: distance and time to go are worked out, and the look-ahead turns to the next place only after this one.
     pub value_to_go: bool,
     /// P-CHAN-00274: blocks that are looked ahead, 50 to 200.
     pub blocks: u32,
@@ -254,6 +254,6 @@ impl Default for MicroJoint {
 /// Measuring an edge between G108 and G107, with `MNE_SNS` [004:69] (public: its parameter).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EdgeBanding {
-    /// P-CHAN-00030: distance to go behind the measuring event, 0.1 µm; `V.G.RW` changes it.
+    /// P-CHAN-00030: distance to go after the measuring event, 0.1 µm; `V.G.RW` changes it.
     pub residual_path: u32,
 }

@@ -7,7 +7,7 @@ use std::fmt;
 /// When a function is output and where the path waits for its acknowledgement [004:54-57] [004:204-207].
 ///
 /// Read a name as M-before-block, synchronisation-after-block and so on: `MVS_SNS` is output before the motion of its
-/// block, and waited for behind it.
+/// block, and waited for after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SynchType {
     /// Neither output nor waited for.
@@ -17,11 +17,11 @@ pub enum SynchType {
     Mos,
     /// Output and waited for before the motion.
     MvsSvs,
-    /// Output before the motion, waited for behind it.
+    /// Output before the motion, waited for after it.
     MvsSns,
-    /// Output and waited for behind the motion, which stops there in any case.
+    /// Output and waited for after the motion, which stops there in any case.
     MnsSns,
-    /// Output behind the measuring event and the distance to go of edge banding, waited for there.
+    /// Output after the measuring event and the distance to go of edge banding, waited for there.
     MneSns,
     /// Output before the motion, waited for at the transition to the next G01, G02 or G03.
     MvsSlm,
@@ -29,11 +29,11 @@ pub enum SynchType {
     MvsSlp,
     /// Output before the motion with the time that has passed since, not waited for.
     MosTs,
-    /// Output a way ahead, not waited for.
+    /// Output a distance ahead, not waited for.
     MepMos,
     /// Output a time ahead, not waited for.
     MetMos,
-    /// Output a way ahead, waited for before the next block.
+    /// Output a distance ahead, waited for before the next block.
     MepSvs,
     /// Output a time ahead, waited for before the next block.
     MetSvs,
@@ -88,7 +88,7 @@ impl SynchType {
         self.leads_by_time() || matches!(self, SynchType::MepMos | SynchType::MepSvs)
     }
 
-    /// Whether its lead is a time, µs; the lead of all others is a way, 0.1 µm.
+    /// Whether its lead is a time, µs; the lead of all others is a distance, 0.1 µm.
     pub(crate) fn leads_by_time(self) -> bool {
         matches!(self, SynchType::MetMos | SynchType::MetSvs)
     }
@@ -134,7 +134,7 @@ impl fmt::Display for SynchType {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Synch {
-    /// The type.
+    /// The synchronisation type.
     pub kind: SynchType,
     /// `PLC_INFO`: M functions of an NC spindle go to the PLC, too, and are waited for [004:159].
     pub plc_info: bool,
@@ -222,11 +222,11 @@ impl Synch {
         if let Some((second, ..)) = kinds.next() {
             return Err(SynchError::SeveralTypes(kind, *second));
         }
-        let way = [("BWD_SYNCH", Synch::BACKWARD), ("FWD_SYNCH", Synch::FORWARD)];
-        let of_way = way.iter().find(|(_, bit)| value & bit != 0);
+        let direction = [("BWD_SYNCH", Synch::BACKWARD), ("FWD_SYNCH", Synch::FORWARD)];
+        let of_direction = direction.iter().find(|(_, bit)| value & bit != 0);
         // PLC_INFO and FAW_SYNCH say themselves that the function is output.
         let is_output = value & (Synch::PLC_INFO | Synch::FLUSH_AND_WAIT) != 0;
-        if let Some((bit, _)) = of_way.filter(|_| kind == SynchType::NoSynch && !is_output) {
+        if let Some((bit, _)) = of_direction.filter(|_| kind == SynchType::NoSynch && !is_output) {
             return Err(SynchError::NoType(bit));
         }
         Ok(Synch {

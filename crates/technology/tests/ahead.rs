@@ -22,7 +22,7 @@ fn time_at(place: f64) -> f64 {
 }
 
 #[test]
-fn t13_mep_svs_is_output_a_way_ahead() {
+fn t13_mep_svs_is_output_a_distance_ahead() {
     let in_time = run("MEP_SVS", 250_000, "M96 ack 0.1");
     let output = in_time.output("M96");
     at(x(output), 15.0);
@@ -41,7 +41,7 @@ fn t13_mep_svs_is_output_a_way_ahead() {
     assert_eq!((go.t, go.block.as_deref()), (to, Some("N55")));
 }
 
-/// Longer than the way that is known: where the path begins.
+/// Longer than the path that is known: where the path begins.
 #[test]
 fn t13_a_lead_beyond_the_start_is_output_at_the_start() {
     let report = run("MEP_SVS", 990_000, "");
@@ -92,13 +92,13 @@ fn t14_met_svs_in_an_accelerating_path() {
 
 #[test]
 fn t15_mep_mos_and_met_mos_are_never_waited_for() {
-    let way = run("MEP_MOS", 250_000, "M96 ack never");
-    at(x(way.output("M96")), 15.0);
+    let distance = run("MEP_MOS", 250_000, "M96 ack never");
+    at(x(distance.output("M96")), 15.0);
     let time = run("MET_MOS", 300_000, "M96 ack never");
     // The path does not stop for it: 0.3 s at 83.33 mm/s are 25 mm.
     let place = x(time.output("M96"));
     assert!((15.0..15.0 + V * T).contains(&place), "{place}");
-    for report in [way, time] {
+    for report in [distance, time] {
         assert!(report.completed && report.waits.is_empty());
         assert!(report.of(EventKind::Stop).is_empty());
         assert_eq!(report.of(EventKind::Fetch).len(), 1);
@@ -129,7 +129,7 @@ fn one_place_after_the_other() {
                 m_h_pre_outp_calc_value_to_go 1\n";
     let report = Bench::new(program, list).run();
     at(x(report.output("M96")), 35.0);
-    // In the cycle in which the path is behind X40.
+    // In the cycle in which the path is past X40.
     let place = x(report.output("M97"));
     assert!((40.0..=40.0 + V * T).contains(&place), "{place}");
     let held = Bench::new(program, list).script("M96 ack 1").run();
@@ -138,7 +138,7 @@ fn one_place_after_the_other() {
 }
 
 #[test]
-fn what_is_to_go_is_told() {
+fn what_is_to_go_is_reported() {
     let list = "m_synch[96] MEP_SVS\nm_pre_outp[96] 250000\nm_h_pre_outp_calc_value_to_go 1\n";
     let report = Bench::new(PROGRAM, list).run();
     let to_go = report.output("M96").to_go.unwrap();

@@ -1,4 +1,4 @@
-//! Functions that are output ahead, on the way back and forward again.
+//! Functions that are output ahead, in backward motion and forward again.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod common;
@@ -7,7 +7,7 @@ use bahn_path::Axis;
 use bahn_technology::{EventKind, Report};
 use common::{A, Asked, Bench, T, at, when, x};
 
-/// F6000, mm/s, and the way to that speed and from it, mm.
+/// F6000, mm/s, and the distance to that speed and from it, mm.
 const V: f64 = 100.0;
 const RAMP: f64 = V * V / (2.0 * A);
 /// M96 belongs to X40.
@@ -38,7 +38,7 @@ fn brakes_for(place: f64) -> f64 {
     place / V
 }
 
-/// Ahead, at its own place on the way back, and ahead again.
+/// Ahead, at its own place in backward motion, and ahead again.
 #[test]
 fn what_is_passed_back_goes_out_ahead_again() {
     let script = format!("M96 ack 0.05\nbackward {}..2\n", brakes_for(60.0));
@@ -46,7 +46,7 @@ fn what_is_passed_back_goes_out_ahead_again() {
         let report = run(&PATH.replace("MEP_SVS", kind), &script);
         are(&places(&report), &[15.0, 40.0, 15.0]);
         assert!(report.waits.is_empty());
-        // On the way back it is MOS.
+        // In backward motion it is MOS.
         let acknowledged = report.of(EventKind::Acknowledge).len();
         assert_eq!(acknowledged, if waits { 2 } else { 0 });
         assert_eq!(report.of(EventKind::Fetch).len(), 3);
@@ -61,7 +61,7 @@ fn what_is_passed_back_goes_out_ahead_again() {
     are(&waits, &[40.0, 40.0]);
 }
 
-/// With BWD_SYNCH the path waits at its place on the way back.
+/// With BWD_SYNCH the path waits at its place in backward motion.
 #[test]
 fn a_function_ahead_with_the_bit() {
     let list = PATH.replace("MEP_SVS", "MEP_SVS | BWD_SYNCH");
@@ -90,7 +90,7 @@ fn it_turns_between_output_and_place() {
     are(&places(&waited), &[15.0, 40.0, 35.0]);
     let (from, to, place) = waited.wait("M96");
     at(place, 40.0);
-    // It goes out a cycle behind the turn.
+    // It goes out a cycle after the turn.
     when(to - from, 0.19 + T - 2.0 * (5.0 / A).sqrt());
 }
 

@@ -44,7 +44,7 @@ fn t01_mvs_svs_stands_before_its_block() {
 }
 
 #[test]
-fn t02_mvs_sns_late_stands_behind_its_block() {
+fn t02_mvs_sns_late_stands_after_its_block() {
     let report = Bench::new(PROGRAM, "m_synch[25] MVS_SNS")
         .script("M25 ack 2")
         .run();

@@ -19,12 +19,12 @@ const TYPES: [&str; 12] = [
 const FIRST: usize = 50;
 /// More late ones may not be open.
 const LATE: usize = 12;
-/// What rounding of the programmed coordinates may add to a way, mm.
+/// What rounding of the programmed coordinates may add to a distance, mm.
 const ROUNDING: f64 = 1e-4;
 
 #[derive(Clone, Debug)]
 struct Block {
-    /// Rapid, and the way in X and Y, mm.
+    /// Rapid, and the distance in X and Y, mm.
     motion: Option<(bool, f64, f64)>,
     functions: Vec<Switch>,
     synchronise: bool,
@@ -41,11 +41,15 @@ struct Switch {
 }
 
 fn block() -> impl Strategy<Value = Block> {
-    let way = prop_oneof![
+    let distance = prop_oneof![
         (1..40u32).prop_map(f64::from),
-        (1..30u32).prop_map(|way| f64::from(way) * 0.05)
+        (1..30u32).prop_map(|distance| f64::from(distance) * 0.05)
     ];
-    let motion = (any::<bool>(), way, prop_oneof![3 => Just(0.0), 1 => 1.0..9.0f64]);
+    let motion = (
+        any::<bool>(),
+        distance,
+        prop_oneof![3 => Just(0.0), 1 => 1.0..9.0f64],
+    );
     let cycles = prop_oneof![2 => Just(0), 2 => 1..60u32, 2 => 60..900u32];
     let switch = (0..TYPES.len(), prop::bool::weighted(0.3), cycles, 1..400u32);
     let switch = switch.prop_map(|(kind, of_axis, cycles, lead)| Switch {
@@ -72,9 +76,9 @@ fn block() -> impl Strategy<Value = Block> {
 struct Known {
     kind: &'static str,
     range: &'static str,
-    /// Place in the program: block, before or behind its motion, place in the text.
+    /// Place in the program: block, before or after its motion, place in the text.
     order: (usize, bool, usize),
-    /// The way that the path may not leave before the acknowledgement, mm.
+    /// The distance that the path may not pass before the acknowledgement, mm.
     gate: Option<f64>,
     /// Where it is output, mm.
     place: Option<f64>,
@@ -85,8 +89,8 @@ struct Case {
     bench: Bench,
     known: HashMap<String, Known>,
     /// Length of the path, mm.
-    way: f64,
-    /// Ways to the ends of the blocks with a motion, mm, and how many blocks there are up to each.
+    distance: f64,
+    /// Distances to the ends of the blocks with a motion, mm, and how many blocks there are up to each.
     ends: Vec<(f64, usize)>,
 }
 
@@ -144,19 +148,22 @@ fn hold_single(case: &Case, single: &Single, report: &Report) -> Result<(), Test
         .iter()
         .filter(|event| event.kind == EventKind::Stop && within(event.t));
     for stop in stops {
-        let way = report
+        let distance = report
             .samples
             .iter()
             .take_while(|sample| sample.t <= stop.t + 1e-9);
-        let way = way.last().map_or(0.0, |sample| sample.way_mm);
-        let end = case.ends.iter().find(|(end, _)| (end - way).abs() < ROUNDING);
-        let Some((end, blocks)) = end.filter(|_| way > ROUNDING) else {
-            prop_assert!(way < ROUNDING, "it stands at {way}");
+        let distance = distance.last().map_or(0.0, |sample| sample.distance_mm);
+        let end = case
+            .ends
+            .iter()
+            .find(|(end, _)| (end - distance).abs() < ROUNDING);
+        let Some((end, blocks)) = end.filter(|_| distance > ROUNDING) else {
+            prop_assert!(distance < ROUNDING, "it stands at {distance}");
             continue;
         };
         let start = single.next_start(stop.t);
         let before = report.samples.iter().filter(|sample| sample.t <= start + 1e-9);
-        let farthest = before.map(|sample| sample.way_mm).fold(0.0, f64::max);
+        let farthest = before.map(|sample| sample.distance_mm).fold(0.0, f64::max);
         prop_assert!(
             farthest <= end + ROUNDING,
             "{end} is passed before {start}: {farthest}"
@@ -180,7 +187,7 @@ fn hold_single(case: &Case, single: &Single, report: &Report) -> Result<(), Test
         let beyond = case
             .ends
             .iter()
-            .filter(|(end, _)| sample.way_mm > end + ROUNDING)
+            .filter(|(end, _)| sample.distance_mm > end + ROUNDING)
             .count();
         if sample.t <= first.t + 1e-9 {
             at = Some(beyond);
@@ -199,7 +206,7 @@ fn hold_single(case: &Case, single: &Single, report: &Report) -> Result<(), Test
     Ok(())
 }
 
-/// Where a function of a block between two ways is output; not known of one that is output ahead.
+/// Where a function of a block between two movements is output; not known of one that is output ahead.
 fn place(kind: &str, start: f64, end: f64) -> Option<f64> {
     match kind {
         "MNS_SNS" => Some(end),
@@ -212,21 +219,21 @@ fn case(blocks: &[Block]) -> Case {
     let (mut program, mut list, mut script) =
         ("%LAWS\nN1 G00 F4000\n".to_owned(), String::new(), String::new());
     let mut known: HashMap<String, Known> = HashMap::new();
-    let (mut way, mut x, mut y, mut number, mut late) = (0.0f64, 0.0, 0.0, FIRST, 0);
+    let (mut distance, mut x, mut y, mut number, mut late) = (0.0f64, 0.0, 0.0, FIRST, 0);
     let mut ends = Vec::new();
     let mut open: [Vec<String>; 2] = Default::default();
     for (index, block) in blocks.iter().enumerate() {
         if block.synchronise {
             program += "#EXPL SYN\n";
             for name in open[1].drain(..) {
-                known.get_mut(&name).unwrap().gate = Some(way);
+                known.get_mut(&name).unwrap().gate = Some(distance);
             }
         }
         program += &format!("N{} ", index + 2);
-        let start = way;
+        let start = distance;
         if let Some((rapid, dx, dy)) = block.motion {
-            (x, y, way) = (x + dx, y + dy, way + dx.hypot(dy));
-            ends.push((way, index + 1));
+            (x, y, distance) = (x + dx, y + dy, distance + dx.hypot(dy));
+            ends.push((distance, index + 1));
             program += &format!("{} X{x:.6} Y{y:.6} ", if rapid { "G00" } else { "G01" });
         }
         let feed = block.motion.is_some_and(|(rapid, ..)| !rapid);
@@ -253,7 +260,7 @@ fn case(blocks: &[Block]) -> Case {
             script += &format!("{name} ack {:.3}\n", f64::from(switch.cycles) * T);
             let gate = match kind {
                 "MVS_SVS" | "MEP_SVS" | "MET_SVS" => Some(start),
-                "MVS_SNS" | "MNS_SNS" => Some(way),
+                "MVS_SNS" | "MNS_SNS" => Some(distance),
                 "MVS_SLM" if feed => Some(start),
                 _ => None,
             };
@@ -262,7 +269,7 @@ fn case(blocks: &[Block]) -> Case {
                 "MVS_SLP" => open[1].push(name.clone()),
                 _ => {}
             }
-            let place = place(kind, start, way);
+            let place = place(kind, start, distance);
             let order = (index, kind == "MNS_SNS" && block.motion.is_some(), at);
             let one = Known {
                 kind,
@@ -284,7 +291,7 @@ fn case(blocks: &[Block]) -> Case {
     Case {
         bench: Bench::new(&program, &list).script(&script),
         known,
-        way,
+        distance,
         ends,
     }
 }
@@ -300,7 +307,7 @@ fn hold_gates(case: &Case, report: &Report) -> Result<(), TestCaseError> {
         let Some(gate) = known.gate else { continue };
         let until = acknowledged.get(name.as_str()).copied().unwrap_or(f64::INFINITY);
         let before = report.samples.iter().filter(|sample| sample.t <= until);
-        let farthest = before.map(|sample| sample.way_mm).fold(0.0, f64::max);
+        let farthest = before.map(|sample| sample.distance_mm).fold(0.0, f64::max);
         prop_assert!(
             farthest <= gate + ROUNDING,
             "{name} {known:?} lets the path go to {farthest} before {until}"
@@ -390,7 +397,7 @@ fn hold_laws(case: &Case, single: Option<&Single>, report: &Report) -> Result<()
             }
             EventKind::Output => {
                 let known = &case.known[event.function.as_deref().unwrap()];
-                // Where an output lies is asked where the way is known: without a way in Y.
+                // Where an output lies is asked where the path is known: without a movement in Y.
                 let x = event.position.0[bahn_path::Axis::X];
                 let y = event.position.0[bahn_path::Axis::Y];
                 if let Some(place) = known.place.filter(|_| y == 0.0) {
@@ -495,8 +502,8 @@ proptest! {
         if never.is_none() {
             prop_assert!(report.completed, "{:?} {:?}", report.waits, report.time_s);
             prop_assert_eq!(report.of(EventKind::Output).len(), report.of(EventKind::Fetch).len());
-            let way = report.samples.last().map_or(0.0, |sample| sample.way_mm);
-            prop_assert!((way - case.way).abs() < ROUNDING, "{} {}", way, case.way);
+            let distance = report.samples.last().map_or(0.0, |sample| sample.distance_mm);
+            prop_assert!((distance - case.distance).abs() < ROUNDING, "{} {}", distance, case.distance);
         }
         for range in ["channel", "X"] {
             hold_range(&report, range)?;

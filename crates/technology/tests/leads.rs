@@ -97,26 +97,22 @@ fn every_lead_is_kept_over_corners_and_changes_of_the_feed() {
 /// The path stops at the place for another reason.
 #[test]
 fn every_lead_is_kept_before_a_stop() {
-    for behind in [
+    for after in [
         "N50 M96 M25 M8\nN55 X80\n",
         "N50 M96 M25\nN55 X60 Y40\n",
         "N50 M96 M25\n",
     ] {
-        let program = format!("%T\nG01 F5000\nX60\n{behind}M30\n");
+        let program = format!("%T\nG01 F5000\nX60\n{after}M30\n");
         for lead_ms in LEADS.map(|step| 10 * step) {
             let report = run(&program, lead_ms, "M8 ack 0.2");
-            assert!(
-                keeps(&report, lead_ms),
-                "{lead_ms} ms {behind}: {}",
-                lead(&report)
-            );
+            assert!(keeps(&report, lead_ms), "{lead_ms} ms {after}: {}", lead(&report));
         }
     }
 }
 
-/// A dwell on the way is part of it.
+/// A dwell on the path is part of it.
 #[test]
-fn a_dwell_on_the_way_counts() {
+fn a_dwell_on_the_path_counts() {
     let program = "%T\nG01 F5000\nX40\nG04 0.25\nX50\nN50 M96 M25\nN55 X80\nM30\n";
     for kind in ["MET_MOS", "MET_SVS"] {
         for lead_ms in [50, 150, 200, 300, 350, 450, 500] {
@@ -134,9 +130,9 @@ fn a_dwell_on_the_way_counts() {
     }
 }
 
-/// What the end velocity of 0 takes from a lead is told: 83.3 mm/s with 1 m/s² are v/2a = 41.7 ms [004:87].
+/// What the end velocity of 0 takes from a lead is reported: 83.3 mm/s with 1 m/s² are v/2a = 41.7 ms [004:87].
 #[test]
-fn a_lead_that_is_not_kept_is_told() {
+fn a_lead_that_is_not_kept_is_reported() {
     let program = straight(10.0);
     let bench = Bench::new(&program, &list("MET_SVS", 300));
     let early = bench.clone().script("M96 ack 0").run();
@@ -146,8 +142,8 @@ fn a_lead_that_is_not_kept_is_told() {
     let warning = &early.warnings[0];
     assert_eq!(warning.block, "N50");
     let ms = ((lead(&early)) * 1000.0).round();
-    let told = format!("M96 is output {ms} ms before its place, not 300 ms");
-    assert!(warning.message.starts_with(&told), "{}", warning.message);
+    let expected = format!("M96 is output {ms} ms before its place, not 300 ms");
+    assert!(warning.message.starts_with(&expected), "{}", warning.message);
     assert!(
         warning.message.contains("end velocity of 0"),
         "{}",
@@ -165,13 +161,13 @@ fn a_lead_that_is_not_kept_is_told() {
         "{}",
         beyond.warnings[0].message
     );
-    // So it is with a way.
-    let way = Bench::new(
+    // So it is with a distance.
+    let distance = Bench::new(
         &program,
         "m_synch[96] MEP_MOS\nm_pre_outp[96] 990000\nm_synch[25] MOS\n",
     )
     .run();
-    let message = &way.warnings[0].message;
+    let message = &distance.warnings[0].message;
     assert!(
         message.starts_with("M96 is output 60 mm before its place, not 99 mm"),
         "{message}"
@@ -217,12 +213,12 @@ impl Shape {
             }
             let direction = direction.to_radians();
             (x, y) = (x + length * direction.cos(), y + length * direction.sin());
-            let way = if *feed == 0 {
+            let word = if *feed == 0 {
                 "G00".to_owned()
             } else {
                 format!("G01 F{feed}")
             };
-            writeln!(program, "{way} X{x:.5} Y{y:.5}").unwrap();
+            writeln!(program, "{word} X{x:.5} Y{y:.5}").unwrap();
         }
         program + "M30\n"
     }

@@ -63,7 +63,7 @@ fn spindles_in_both_languages() {
     assert_eq!(read.spindle_called("S2"), None);
 }
 
-/// Lines of the axis list behind `spindel[i].`, and without it, where they say nothing [004:162-171].
+/// Lines of the axis list after `spindel[i].`, and without it, where they say nothing [004:162-171].
 #[test]
 fn lines_of_the_axis_list() {
     let read = settings(
@@ -114,18 +114,18 @@ fn configuration_of_the_channel() {
     }
 }
 
-/// Of two lines for the same the later one counts, and is told of.
+/// Of two lines for the same the later one counts, and is reported.
 #[test]
 fn the_later_line_counts() {
     let list = ChannelList::from_bytes(
         b"m_synch[5] MOS\n\nspindel[0].m3_sync 2\nm_synch[5] 2\nspindle[0].m3_synch 4\n",
     );
     let warnings = list.warnings().iter();
-    let told: Vec<(usize, &str)> = warnings
+    let reported: Vec<(usize, &str)> = warnings
         .map(|fault| (fault.line, fault.message.as_str()))
         .collect();
     assert_eq!(
-        told,
+        reported,
         [
             (4, "m_synch[5] stands in line 1, too: this line counts"),
             (5, "spindel[0].m3_synch stands in line 3, too: this line counts"),

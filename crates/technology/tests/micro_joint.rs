@@ -133,12 +133,12 @@ fn slow_entry(lead: u32, n40: &str) -> Report {
     Bench::new(&program, &list("m_synch[100] MOS\nm_synch[26] MOS\n")).run()
 }
 
-/// The greatest velocity of the samples of a stretch of the way, mm/min.
+/// The greatest velocity of the samples of a stretch of the path, mm/min.
 fn fastest(report: &Report, from: f64, to: f64) -> f64 {
     let within = report
         .samples
         .iter()
-        .filter(|one| (from..=to).contains(&one.way_mm));
+        .filter(|one| (from..=to).contains(&one.distance_mm));
     within.map(|one| one.v).fold(0.0, f64::max)
 }
 
@@ -181,20 +181,20 @@ fn limited(more: &str, blocks: u32) -> Report {
 
 #[test]
 fn t34_joints_under_a_vector_limit() {
-    for (more, behind) in [("", 500.0), ("VECTOR_LIMIT_OFF", 750.0)] {
+    for (more, after) in [("", 500.0), ("VECTOR_LIMIT_OFF", 750.0)] {
         for blocks in [12, 20] {
             let report = limited(more, blocks);
             assert!(report.completed, "{:?}", report.error);
             assert_places(&report, &[("M11", -25.0, 0.0), ("M12", 175.0, 0.0)]);
             assert!((report.output("M11").v - 250.0).abs() < 1e-6);
             assert!((report.output("M12").v - 150.0).abs() < 1e-6);
-            // The way begins at X-222.
+            // The path begins at X-222.
             let fastest = |from: f64, to: f64| fastest(&report, from + 222.0, to + 222.0);
             assert!((fastest(-220.0, -25.1) - 1000.0).abs() < 1e-6);
             assert!((fastest(-24.0, 99.0) - 1500.0).abs() < 1e-6);
             assert!((fastest(101.0, 174.0) - 1000.0).abs() < 1e-6);
             assert!((fastest(176.0, 199.0) - 750.0).abs() < 1e-6);
-            assert!((fastest(201.0, 499.0) - behind).abs() < 1e-6, "{more}");
+            assert!((fastest(201.0, 499.0) - after).abs() < 1e-6, "{more}");
             assert!((fastest(501.0, 699.0) - 500.0).abs() < 1e-6);
         }
     }

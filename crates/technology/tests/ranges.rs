@@ -27,7 +27,7 @@ fn delivered(report: &Report) -> Vec<String> {
 }
 
 #[test]
-fn t07_mne_sns_behind_the_measuring_event() {
+fn t07_mne_sns_after_the_measuring_event() {
     let program = "%T7\nN05 X0 Y0\nN10 G108\nN15 V.G.RW = 5\nN20 G01 X90 Y90 F2000\nN30 G01 X150 Y150 M33 F800\nN40 G107\n\
                    N50 G00 X200 Y200\nM30\n";
     let report = Bench::new(program, "m_synch[33] 0x20")
@@ -47,7 +47,7 @@ fn t07_mne_sns_behind_the_measuring_event() {
     let stops = report.of(EventKind::Stop);
     assert_eq!(stops.len(), 1);
     at(report.path_end.0[Axis::X], 200.0);
-    // Without an event it is an error behind the block.
+    // Without an event it is an error after the block.
     let missing = Bench::new(program, "m_synch[33] 0x20").script("probe X190").run();
     let error = missing.error.unwrap();
     assert_eq!(
@@ -187,7 +187,7 @@ fn t23_a_spindle_of_the_nc_confirms_by_itself() {
     assert_eq!((from, place), (0.0, 0.0));
     when(to, 0.8);
     when(report.of(EventKind::Go)[0].t, 0.8);
-    // M4 is waited for behind its block, the main spindle is called S as well, another one by its name.
+    // M4 is waited for after its block, the main spindle is called S as well, another one by its name.
     let m4 = SPINDLE.replace("M3", "M4").replace("M30", "N20 X110\nM30");
     let m4 = m4.replace("M40", "M30");
     let report = Bench::new(&m4, list).script("spindle S ready 9").run();
@@ -199,7 +199,7 @@ fn t23_a_spindle_of_the_nc_confirms_by_itself() {
     when(report.wait("M3").1, 0.4);
 }
 
-/// The spindle executes M19 at once; behind the motion the path stands in any case, however early it has confirmed [004:66].
+/// The spindle executes M19 at once; after the motion the path stands in any case, however early it has confirmed [004:66].
 #[test]
 fn m19_mns_sns_stands_without_plc_info() {
     let program = "%T\nN10 G01 F1000 X10 M19\nN20 X20\nM30\n";

@@ -16,7 +16,7 @@ fn a_hold_brakes_and_lets_go() {
     let report = Bench::new(LINE, "m_synch[7] MOS").script("hold 0.5..0.9").run();
     let stops = report.of(EventKind::Stop);
     assert_eq!(stops.len(), 1);
-    // 0.5 s at 100 mm/s less half the ramp, and the way of braking.
+    // 0.5 s at 100 mm/s less half the ramp, and the braking distance.
     at(x(stops[0]), V * 0.5 - V * V / (2.0 * A) + V * V / (2.0 * A));
     when(stops[0].t, 0.5 + V / A);
     when(report.of(EventKind::Go)[1].t, 0.9);
@@ -154,7 +154,7 @@ fn faw_synch_alone_is_output_and_holds_decoding() {
 
 /// BWD_SYNCH and FWD_SYNCH say when a type counts [004:54] [004:207]: without one they are refused where they stand.
 #[test]
-fn bits_of_the_way_back_need_a_type() {
+fn bits_of_backward_motion_need_a_type() {
     for bit in ["BWD_SYNCH", "FWD_SYNCH", "0x00400000", "BWD_SYNCH | FWD_SYNCH"] {
         let list = ChannelList::from_bytes(format!("m_synch[7] MOS\nm_synch[8] {bit}\n").as_bytes());
         let errors = list.errors();
@@ -173,7 +173,7 @@ fn bits_of_the_way_back_need_a_type() {
     assert!(error.message.contains("needs a type"), "{}", error.message);
 }
 
-/// Flush and wait: the block behind is decoded when the path stands, so that there is no corner to pass.
+/// Flush and wait: the block after is decoded when the path stands, so that there is no corner to pass.
 #[test]
 fn faw_synch_holds_decoding() {
     let program = "%T\nN10 G01 F6000 X10\nN20 X20 M8\nN30 X30\nM30\n";
@@ -206,7 +206,7 @@ fn simulated_motion() {
     when(report.time_s, report.wait("M9").1 + ramp_s(20.0, V));
 }
 
-/// Back along what was executed, and forward again: functions are output as MOS on the way back, with BWD_SYNCH they are
+/// Back along what was executed, and forward again: functions are output as MOS in backward motion, with BWD_SYNCH they are
 /// waited for; forward they have their own types again.
 #[test]
 fn backward_motion() {
@@ -247,7 +247,7 @@ fn backward_motion() {
     at(x(goes[goes.len() - 2]), 0.0);
 }
 
-/// Without a motion there is no way back: the function is waited for as if nothing had been.
+/// Without a motion there is nothing to go back: the function is waited for as if nothing had been.
 #[test]
 fn there_is_no_way_back_before_the_first_motion() {
     let report = Bench::new("%T\nN10 M7\nN20 G01 X10 F6000\nM30\n", "m_synch[7] MVS_SVS")
@@ -260,10 +260,10 @@ fn there_is_no_way_back_before_the_first_motion() {
 #[test]
 fn scripts_say_what_is_wrong() {
     let (_, errors) = Script::from_text("M25 akc 1\nM26 ack 1\nhold 1\novreride 50 at 1\n");
-    let told = errors
+    let reported = errors
         .iter()
         .map(|error| (error.line, error.column, error.length));
-    assert_eq!(told.collect::<Vec<_>>(), [(1, 5, 3), (3, 6, 1), (4, 1, 8)]);
+    assert_eq!(reported.collect::<Vec<_>>(), [(1, 5, 3), (3, 6, 1), (4, 1, 8)]);
     let help: Vec<_> = errors.iter().filter_map(|error| error.help.as_deref()).collect();
     assert_eq!(help, ["did you mean `ack`?", "did you mean `override`?"]);
     for (text, line, column) in [

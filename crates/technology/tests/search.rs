@@ -80,7 +80,7 @@ fn blocks_of_subroutines_are_found() {
     let program = "%T\nN10 G01 X10 F6000 M7\nN20 L SUB\nN30 L SUB\nN40 X60\nM30\n";
     let sub = "%SUB\nN100 G91 X10 M7=2\nN110 X10 M8\nM17\n";
     let bench = Bench::new(program, LIST).subroutine("SUB", sub);
-    // The first call that comes to it; behind it everything is as always.
+    // The first call that comes to it; after it everything is as always.
     let report = bench.clone().from("N110").run();
     assert!(report.completed, "{:?}", report.error);
     assert_eq!(skipped(&report), ["channel:M7=2 SUB N100"]);
@@ -92,7 +92,7 @@ fn blocks_of_subroutines_are_found() {
     assert_eq!(own.order(), [""; 0]);
 }
 
-/// A file with several programs is searched from the first to the last; then the ones behind it run.
+/// A file with several programs is searched from the first to the last; then the ones after it run.
 #[test]
 fn other_programs_of_the_file() {
     let file = "%ONE\nN10 G01 X10 F6000 M7=1\nM30\n%TWO\nN20 G01 X20 F6000 M7=2\nN30 X30 M8\nM30\n%THREE\nN40 X35 F6000 G01\nM30\n";

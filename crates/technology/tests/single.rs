@@ -30,7 +30,7 @@ fn blocks(report: &Report, kind: EventKind) -> Vec<&str> {
     of.iter().map(|event| event.block.as_deref().unwrap()).collect()
 }
 
-/// A start is a block: its functions, those of blocks without a motion behind it, and the motion.
+/// A start is a block: its functions, those of blocks without a motion after it, and the motion.
 #[test]
 fn a_start_is_a_block_with_a_motion() {
     let report = Bench::new(LINE, "m_synch[8] MOS\nm_synch[9] MOS")
@@ -88,7 +88,7 @@ fn the_first_end_at_which_it_can_stop() {
     let stops = stops(&report);
     at(stops[0].1, place.ceil());
     assert_eq!(stops.len(), 1);
-    // A start while it runs has no effect, and is told.
+    // A start while it runs has no effect, and is reported.
     let early = Bench::new(&program, "")
         .script("single 0..2\nstart 0.02\nstart 1\n")
         .run();
@@ -127,7 +127,7 @@ fn gates_and_late_functions_while_it_stands() {
     assert_eq!(stops(&report).len(), 2);
 }
 
-/// A block that a Micro Joint splits is one; a joint at a block limit is as a block of its own behind it.
+/// A block that a Micro Joint splits is one; a joint at a block limit is as a block of its own after it.
 #[test]
 fn a_split_block_is_one_block() {
     let list = "configuration.path_preparation.function FCT_DEFAULT | FCT_M_PRE_OUTPUT\n\
@@ -170,11 +170,11 @@ fn what_is_output_ahead() {
     // 30 mm before X40.
     at(x(report.output("M55")), 10.0);
     assert!(report.output("M55").t < 1.0);
-    // 0.1 s before the standstill at X60, which N30 reaches 0.1 s and more behind its start.
+    // 0.1 s before the standstill at X60, which N30 reaches 0.1 s and more after its start.
     when(report.output("M56").t, 2.0 + ramp_s(20.0, V) - 0.1);
 }
 
-/// An axis that moves on its own ends with its block, which is one with a motion. A dwell is none.
+/// An axis that moves on its own ends with its block, which counts as a block with a motion. A dwell does not.
 #[test]
 fn independent_axes_and_dwells() {
     let program = "%T\nN10 G01 X20 F6000\nN20 Y[INDP G90 G01 FEED=6000 POS=20]\nN30 G04 X0.5\nN40 X40\nM30\n";
@@ -187,7 +187,7 @@ fn independent_axes_and_dwells() {
         report.error,
         report.waits
     );
-    // N20 is started at 1 s and at its end until 2 s; the dwell and the motion behind it are one start.
+    // N20 is started at 1 s and at its end until 2 s; the dwell and the motion after it are one start.
     when(goes(&report)[0], 2.5);
     when(report.time_s, 4.0);
 }
@@ -206,9 +206,9 @@ fn subroutines_and_flushes() {
     assert_eq!(blocks(&report, EventKind::Stop), ["N10", "N1", "N2"]);
 }
 
-/// On the way back the path stops at the same places.
+/// In backward motion the path stops at the same places.
 #[test]
-fn the_way_back_is_block_by_block_too() {
+fn backward_motion_is_block_by_block_too() {
     let program = "%T\nN10 G01 X20 F6000\nN20 X40\nN30 X60\nM30\n";
     let report = Bench::new(program, "")
         .script("backward 0.5..5\nsingle 0.55..4\nstart 2\nstart 3\n")
@@ -216,7 +216,7 @@ fn the_way_back_is_block_by_block_too() {
     assert!(report.completed, "{:?} {:?}", report.error, report.waits);
     let stops = stops(&report);
     let places: Vec<f64> = stops.iter().map(|stop| stop.1).collect();
-    // It turns behind X50; the ends of N20 and N10 are its stops, then the start of the path.
+    // It turns past X50; the ends of N20 and N10 are its stops, then the start of the path.
     assert!(places[0] > 50.0 && places[0] < 60.0, "{stops:?}");
     for (place, expected) in places[1..].iter().zip([40.0, 20.0, 0.0]) {
         at(*place, expected);

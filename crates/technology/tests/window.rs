@@ -62,12 +62,12 @@ fn times(report: &Report, kind: EventKind, function: &str) -> Vec<f64> {
     report.events.iter().filter(of).map(|event| event.t).collect()
 }
 
-/// The first run that begins at a time or behind it.
+/// The first run that begins at a time or after it.
 fn next_run(t: f64) -> f64 {
     (t / RUN_S - 1e-6).ceil() * RUN_S
 }
 
-/// The first cycle at a time or behind it.
+/// The first cycle at a time or after it.
 fn next_cycle(t: f64) -> f64 {
     (t / T - 1e-6).ceil() * T
 }
@@ -92,7 +92,7 @@ fn a_function_stands_in_the_window_with_all_that_is_said_of_it() {
     let seen = seen.borrow();
     let word = |bytes: &[u8]| i32::from(i16::from_be_bytes(bytes.try_into().unwrap()));
     let double = |bytes: &[u8]| i32::from_be_bytes(bytes.try_into().unwrap());
-    let told: Vec<_> = seen
+    let reported: Vec<_> = seen
         .iter()
         .map(|slot| (slot[0], slot[2], slot[3], word(&slot[4..6]), double(&slot[8..12])))
         .collect();
@@ -103,7 +103,7 @@ fn a_function_stands_in_the_window_with_all_that_is_said_of_it() {
         (b'M', 0, 0b100, 300, 0),
         (b'S', 64, 0b011, 0, 1_200_000),
     ];
-    assert_eq!(told, expected);
+    assert_eq!(reported, expected);
     assert_eq!(double(&seen[0][12..]), 150_000);
     let stamp = double(&seen[2][12..]);
     let offset = report.events.iter().find_map(|event| event.offset_us).unwrap();
@@ -113,7 +113,7 @@ fn a_function_stands_in_the_window_with_all_that_is_said_of_it() {
 }
 
 #[test]
-fn answers_are_seen_in_the_cycle_behind_the_run_that_gives_them() {
+fn answers_are_seen_in_the_cycle_after_the_run_that_gives_them() {
     // Fetched at once, acknowledged 0.1 s later.
     let mut since = None;
     let mut plc = Plc::new(move |image, now| {
@@ -128,7 +128,7 @@ fn answers_are_seen_in_the_cycle_behind_the_run_that_gives_them() {
     )
     .run_beside(&mut plc);
     let output = times(&report, EventKind::Output, "M25")[0];
-    // What is output in a cycle the PLC sees when it runs through next, behind that cycle.
+    // What is output in a cycle the PLC sees when it runs through next, after that cycle.
     let run = next_run(output + 1e-6);
     let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} {b}");
     close(times(&report, EventKind::Fetch, "M25")[0], next_cycle(run));
@@ -193,7 +193,7 @@ fn what_is_not_fetched_blocks_its_range() {
             image[1] = 1;
         }
     });
-    // M25 stays in the window until 1 s: M26, due on the way, finds its range blocked.
+    // M25 stays in the window until 1 s: M26, due within the block, finds its range blocked.
     let report = Bench::new(
         "%T\nN10 G01 F6000 X10 M25\nN20 X60 M26\nN30 M30\n",
         "m_synch[25] MOS\nm_synch[26] MOS\n",
@@ -219,8 +219,8 @@ fn a_reset_clears_the_window_and_an_error_of_the_plc_ends_the_run() {
     assert!(!report.completed && report.error.is_none());
     let seen = seen.borrow();
     assert!(seen.iter().any(|(now, letter)| *now < 0.5 && *letter == b'M'));
-    let behind: Vec<_> = seen.iter().filter(|(now, _)| *now > 1.0).collect();
-    assert!(!behind.is_empty() && behind.iter().all(|(_, letter)| *letter == 0));
+    let after: Vec<_> = seen.iter().filter(|(now, _)| *now > 1.0).collect();
+    assert!(!after.is_empty() && after.iter().all(|(_, letter)| *letter == 0));
     drop(seen);
     let mut plc = Plc::new(|image, now| {
         if now > 0.1 {

@@ -1,4 +1,4 @@
-//! The command line: what is typed behind `:`.
+//! The command line: what is typed after `:`.
 
 use bahn_panel::{EMERGENCY_STOP, Input, InputText, Key, Language, around, filled};
 
@@ -11,11 +11,11 @@ pub(crate) enum Order {
     Give(Input),
     /// A key of the machine stays down.
     Hold(String),
-    /// It comes up.
+    /// The key is released.
     Release(String),
     /// The list of short cuts.
     Help,
-    /// The panel ends.
+    /// The panel is left.
     Quit,
 }
 
@@ -26,7 +26,7 @@ enum Takes {
     Keys,
     /// A key of the machine that stays down, or comes up.
     Hold(bool),
-    /// Nothing.
+    /// No argument.
     Nothing(fn() -> Order),
     /// A number for a field.
     Number(fn(f64) -> InputText),
@@ -42,11 +42,11 @@ enum Takes {
 
 /// A line of the table.
 pub(crate) struct Command {
-    /// Its word.
+    /// The word that is typed.
     pub word: &'static str,
-    /// What follows it.
+    /// The argument in the help, such as `KEY..`.
     pub argument: &'static str,
-    /// What it does.
+    /// What the command does, for the help.
     pub what: &'static str,
     takes: Takes,
 }
@@ -60,7 +60,7 @@ const fn command(word: &'static str, argument: &'static str, what: &'static str,
     }
 }
 
-/// The commands. A word that is none of them is a key.
+/// The commands. Any other word is a key.
 pub(crate) const COMMANDS: &[Command] = &[
     command(
         "key",
@@ -172,8 +172,8 @@ pub(crate) const COMMANDS: &[Command] = &[
         "deed",
         "TEXT",
         "what scripts do (docs/scripts.md)",
-        Takes::Text(|deed| InputText {
-            deed: Some(deed),
+        Takes::Text(|action| InputText {
+            deed: Some(action),
             ..InputText::default()
         }),
     ),

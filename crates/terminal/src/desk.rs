@@ -43,7 +43,7 @@ impl Targets {
 /// The desk in front of the terminal.
 #[derive(Debug, Default)]
 pub(crate) struct Desk {
-    /// The machine.
+    /// The machine in front of the operator.
     pub machine: Machine,
     /// The language of what is said.
     language: Language,
@@ -51,7 +51,7 @@ pub(crate) struct Desk {
     pub at_the_machine: bool,
     /// The list of short cuts lies open, scrolled by so many lines.
     pub help: Option<u16>,
-    /// What was typed behind `:`.
+    /// What was typed after `:`.
     pub line: Option<String>,
     /// The line that was given last.
     last_line: String,
@@ -59,7 +59,7 @@ pub(crate) struct Desk {
     pub notice: String,
     /// Keys of the machine that are held.
     pub holds: Holds,
-    /// The operator leaves.
+    /// The operator leaves the panel.
     pub leaves: bool,
 }
 
@@ -206,7 +206,7 @@ impl Desk {
         })
     }
 
-    /// A key was let go, where the terminal tells it.
+    /// A key was let go, where the terminal reports it.
     fn released(&mut self, key: KeyEvent) -> Vec<Input> {
         let alt = key.modifiers.contains(KeyModifiers::ALT);
         let of_letter = match key.code {
@@ -297,7 +297,7 @@ fn turn(knob: f64, step: f64) -> f64 {
     (knob + step).clamp(0.0, KNOB_MAX)
 }
 
-/// How far the help is scrolled behind a key; `None` closes it.
+/// How far the help is scrolled after a key; `None` closes it.
 fn turned(scrolled: u16, code: KeyCode) -> Option<u16> {
     Some(match code {
         KeyCode::Up => scrolled.saturating_sub(1),

@@ -110,11 +110,11 @@ fn shade(upper: [u8; 3], lower: [u8; 3]) -> char {
 /// A picture that is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wanted {
-    /// Which one.
+    /// The number of the picture; a new one has a higher one.
     pub serial: u64,
-    /// How large, cells.
+    /// Width, columns of cells.
     pub columns: u16,
-    /// Rows of cells.
+    /// Height, rows of cells.
     pub rows: u16,
 }
 
@@ -129,7 +129,7 @@ pub(crate) struct Painter {
 }
 
 impl Painter {
-    /// Of a station.
+    /// Draws the graphics of a station.
     pub fn of(link: Link) -> Painter {
         let (orders, ordered) = sync_channel::<Wanted>(1);
         let (sender, painted) = sync_channel(1);

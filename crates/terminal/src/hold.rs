@@ -1,24 +1,24 @@
 //! Keys of the machine that are held down.
 //!
-//! Most terminals tell that a key was pressed, and tell it again and again while it stays down, but not that it was let
-//! go. A key counts as held as long as it is told again; one that is tapped is down for [`RENEWED`]. Terminals with the
-//! keyboard protocol of kitty tell when a key was let go, but not of one that writes a letter.
+//! Most terminals report that a key was pressed, and repeat that while it stays down, but not that it was let
+//! go. A key counts as held as long as it is repeated; one that is tapped is down for [`RENEWED`]. Terminals with the
+//! keyboard protocol of kitty report when a key was let go, but not of one that writes a letter.
 
 use std::time::{Duration, Instant};
 
-/// A key that is not told again for so long was let go: keys repeat every 30 to 50 ms (inferred).
+/// A key that is not repeated for so long was let go: keys repeat every 30 to 50 ms (inferred).
 pub(crate) const RENEWED: Duration = Duration::from_millis(200);
-/// The same where the terminal tells when a key is let go; until keys begin to repeat 660 ms may pass (inferred).
-const TOLD: Duration = Duration::from_millis(1000);
+/// The same where the terminal reports when a key is let go; until keys begin to repeat 660 ms may pass (inferred).
+const REPORTED: Duration = Duration::from_millis(1000);
 /// A switch that turns over is not turned over again by a key that repeats (inferred).
 const STROKE: Duration = Duration::from_millis(700);
 
 /// Who holds a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Hand {
-    /// A key of the keyboard, while it is told again.
+    /// A key of the keyboard, while it is repeated.
     Keyboard,
-    /// The same of a letter: no terminal tells when it is let go.
+    /// The same of a letter: no terminal reports when it is let go.
     Letter,
     /// The mouse, until its button is let go.
     Mouse,
@@ -29,9 +29,9 @@ pub(crate) enum Hand {
 /// What is to be done with a key of the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
-    /// It goes down.
+    /// The key is pressed.
     Press(String),
-    /// It comes up.
+    /// The key is released.
     Release(String),
 }
 
@@ -39,17 +39,17 @@ pub(crate) enum Change {
 struct Held {
     name: String,
     hand: Hand,
-    /// When it was told last.
-    told: Instant,
+    /// When it was reported last.
+    reported: Instant,
 }
 
 /// The keys that are held.
 #[derive(Debug, Default)]
 pub(crate) struct Holds {
     held: Vec<Held>,
-    /// The terminal tells when a key was let go.
-    pub releases_are_told: bool,
-    /// A switch that was turned over, and when it was told last.
+    /// The terminal reports when a key was let go.
+    pub reports_releases: bool,
+    /// A switch that was turned over, and when it was reported last.
     stroke: Option<(String, Instant)>,
 }
 
@@ -57,17 +57,17 @@ impl Holds {
     /// A key is held, or held on.
     pub fn press(&mut self, name: &str, hand: Hand, now: Instant) -> Option<Change> {
         // A keyboard repeats only the key that was pressed last.
-        let all = hand == Hand::Keyboard && self.releases_are_told;
+        let all = hand == Hand::Keyboard && self.reports_releases;
         let keys = self.held.iter_mut().filter(|held| held.hand == hand);
         let renewed = keys.filter(|held| all || held.name == name);
-        renewed.for_each(|held| held.told = now);
+        renewed.for_each(|held| held.reported = now);
         if self.held.iter().any(|held| held.name == name) {
             return None;
         }
         self.held.push(Held {
             name: name.to_owned(),
             hand,
-            told: now,
+            reported: now,
         });
         Some(Change::Press(name.to_owned()))
     }
@@ -88,7 +88,8 @@ impl Holds {
 
     /// Whether a key that turns something over is struck anew, and does not merely repeat.
     pub fn strikes(&mut self, name: &str, now: Instant) -> bool {
-        let repeats = matches!(&self.stroke, Some((last, told)) if last == name && now - *told < STROKE);
+        let repeats =
+            matches!(&self.stroke, Some((last, reported)) if last == name && now - *reported < STROKE);
         self.stroke = Some((name.to_owned(), now));
         !repeats
     }
@@ -100,10 +101,10 @@ impl Holds {
 
     /// Keys of the keyboard that were let go, as far as time tells.
     pub fn tick(&mut self, now: Instant) -> Vec<Change> {
-        let told = self.releases_are_told;
+        let reported = self.reports_releases;
         self.release_where(|held| match held.hand {
-            Hand::Keyboard if told => now - held.told >= TOLD,
-            Hand::Keyboard | Hand::Letter => now - held.told >= RENEWED,
+            Hand::Keyboard if reported => now - held.reported >= REPORTED,
+            Hand::Keyboard | Hand::Letter => now - held.reported >= RENEWED,
             Hand::Mouse | Hand::Latch => false,
         })
     }
@@ -129,9 +130,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_letter_is_let_go_by_time_even_where_releases_are_told() {
+    fn a_letter_is_let_go_by_time_even_where_releases_are_reported() {
         let mut holds = Holds {
-            releases_are_told: true,
+            reports_releases: true,
             ..Holds::default()
         };
         let begun = Instant::now();
@@ -177,7 +178,7 @@ mod tests {
     #[test]
     fn a_terminal_that_tells_of_releases_holds_two_keys() {
         let (mut holds, start) = (Holds::default(), Instant::now());
-        holds.releases_are_told = true;
+        holds.reports_releases = true;
         holds.press("RAPID", Hand::Keyboard, start);
         holds.press("X+", Hand::Keyboard, start + ms(300));
         let mut now = start + ms(900);
@@ -188,7 +189,7 @@ mod tests {
         }
         assert_eq!(holds.release("X+"), release("X+").pop());
         // A release that was lost is made up for.
-        assert_eq!(holds.tick(now + TOLD), release("RAPID"));
+        assert_eq!(holds.tick(now + REPORTED), release("RAPID"));
     }
 
     #[test]

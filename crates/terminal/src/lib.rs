@@ -3,7 +3,7 @@
 //! - [`show`] shows the panel of a station that runs, until the operator leaves; [`check`] says before that whether
 //!   there is a terminal;
 //! - `desk` makes inputs of keys, mouse and commands, by the table of short cuts that all front ends share; `hold` is
-//!   how a key of the machine is held where a terminal tells only that it was pressed; `commands` are those behind `:`,
+//!   how a key of the machine is held where a terminal reports only that it was pressed; `commands` are those after `:`,
 //!   `machine` the keys of its operating panel;
 //! - `draw` makes a picture of a screen, region by region; `graphics` is the part in half blocks, `palette` the colours;
 //! - `window` takes the terminal over and leaves it as it was, `panel` is the loop that brings it all together.

@@ -10,7 +10,7 @@ pub(crate) const STOP_LETTER: char = '!';
 /// What does not change while a machine is on.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Machine {
-    /// Its name.
+    /// The name of the machine.
     pub name: String,
     /// Keys of the keyboard of its control.
     pub keyboard: Vec<Key>,

@@ -18,7 +18,7 @@ pub(crate) enum Palette {
 pub(crate) enum Role {
     /// The operating mode that has the keys.
     Active,
-    /// The other one.
+    /// The other operating mode, beside the active one.
     Beside,
     /// The question of the dialogue.
     Prompt,
@@ -38,7 +38,7 @@ pub(crate) enum Role {
     Section,
     /// It is wrong, or a fault.
     Fault,
-    /// Less important.
+    /// Text of less importance.
     Quiet,
     /// A value that is looked for.
     Value,

@@ -63,7 +63,7 @@ struct Panel {
 impl Panel {
     fn new(link: Link, machine: Machine, window: FullScreen) -> Panel {
         let mut desk = Desk::new(machine);
-        desk.holds.releases_are_told = window.releases_are_told;
+        desk.holds.reports_releases = window.reports_releases;
         Panel {
             painter: Painter::of(link.clone()),
             screen: link.screen(),

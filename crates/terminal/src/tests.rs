@@ -23,7 +23,7 @@ use crate::graphics::{Mosaic, Wanted, mosaic};
 use crate::machine::Machine;
 use crate::palette::Palette;
 
-/// A machine that is on, by the free clock, and the desk in front of it.
+/// A machine that is on, in simulation time, and the desk in front of it.
 struct Hall {
     station: Station,
     desk: Desk,
@@ -65,7 +65,7 @@ impl Hall {
         }
     }
 
-    /// The same behind the reference run, where nothing flickers in the last digit.
+    /// The same after the reference run, where nothing flickers in the last digit.
     fn referenced() -> Hall {
         let mut hall = Hall::new();
         hall.run(1.0);
@@ -421,7 +421,7 @@ fn the_lesson_and_the_window_of_the_plc() {
         reason: "The time is over.".to_owned(),
         ..LessonLine::default()
     });
-    // A quarter of the bar is green; the text is red behind its third character.
+    // A quarter of the bar is green; the text is red after its third character.
     let line = PlcLine {
         text: "OILPRESSURE".to_owned(),
         colours: [vec![0; 3], vec![4; 8]].concat(),

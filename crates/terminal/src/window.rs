@@ -24,8 +24,8 @@ use crate::TerminalError;
 /// The terminal while the panel is in it. When it goes, whatever the reason, the terminal is as it was.
 pub(crate) struct FullScreen {
     pub terminal: Terminal<CrosstermBackend<Stdout>>,
-    /// The terminal tells when a key is let go.
-    pub releases_are_told: bool,
+    /// The terminal reports when a key is let go.
+    pub reports_releases: bool,
 }
 
 /// Whether there is a terminal.
@@ -47,7 +47,7 @@ impl FullScreen {
     }
 
     fn enter() -> Result<FullScreen, TerminalError> {
-        let releases_are_told = supports_keyboard_enhancement().unwrap_or(false);
+        let reports_releases = supports_keyboard_enhancement().unwrap_or(false);
         execute!(
             stdout(),
             EnterAlternateScreen,
@@ -55,7 +55,7 @@ impl FullScreen {
             EnableFocusChange,
             EnableBracketedPaste,
         )?;
-        if releases_are_told {
+        if reports_releases {
             let flags = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
                 | KeyboardEnhancementFlags::REPORT_EVENT_TYPES;
             execute!(stdout(), PushKeyboardEnhancementFlags(flags))?;
@@ -64,7 +64,7 @@ impl FullScreen {
         terminal.clear()?;
         Ok(FullScreen {
             terminal,
-            releases_are_told,
+            reports_releases,
         })
     }
 

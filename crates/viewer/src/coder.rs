@@ -4,7 +4,7 @@ use bahn_workpiece::Part;
 
 use crate::sheet::Sheet;
 
-/// Follows a part and tells what changed, in tiles.
+/// Follows a part and gives what changed, in tiles.
 ///
 /// ```
 /// use bahn_path::{Blank, Plane};
@@ -69,7 +69,7 @@ impl PartCoder {
         self.version
     }
 
-    /// The tiles that changed behind a version, as they are now, for whoever has that one.
+    /// The tiles that changed after a version, as they are now, for whoever has that one.
     pub fn since(&self, version: u64) -> Vec<u8> {
         let changed = |tile: usize| self.since.get(tile).is_some_and(|since| *since > version);
         let mut out = Vec::new();

@@ -17,7 +17,7 @@ const FIRST_STEP_S: f64 = 0.25;
 #[derive(Clone, Debug)]
 struct Moment {
     time_s: f64,
-    /// Sorted by tile.
+    /// Changes, sorted by tile.
     changes: Vec<Change>,
 }
 

@@ -20,7 +20,7 @@ pub struct WebFile {
 
 macro_rules! files {
     ($($name:literal $mime:literal,)*) => {
-        /// The modules and styles of the viewer. A module stands behind those that it imports.
+        /// The modules and styles of the viewer. A module stands after those that it imports.
         pub const FILES: &[WebFile] = &[
             $(WebFile { name: $name, mime: $mime, text: include_str!(concat!("../web/", $name)) },)*
         ];
@@ -133,7 +133,7 @@ mod tests {
 
     /// What a module imports stands before it, or the one script would miss it.
     #[test]
-    fn modules_stand_behind_those_that_they_import() {
+    fn modules_stand_after_those_that_they_import() {
         let mut before: Vec<&str> = Vec::new();
         for file in FILES.iter().filter(|file| file.mime == "text/javascript") {
             for line in file.text.lines().filter(|line| line.starts_with("import ")) {

@@ -56,7 +56,7 @@ impl Recording {
 pub struct About {
     /// Name of the program.
     pub title: String,
-    /// The control model.
+    /// The control model that ran the program.
     pub model: String,
     /// The listings of the programs that took part, the main program first.
     pub listings: Vec<Listing>,
@@ -75,7 +75,7 @@ pub struct About {
 pub struct Listing {
     /// Number of the program in [`BlockRef::program`].
     pub program: u16,
-    /// Its name.
+    /// The name of the program.
     pub name: String,
     /// Its blocks from BEGIN PGM on.
     pub blocks: Vec<String>,
@@ -84,11 +84,11 @@ pub struct Listing {
 /// Something to know about a block.
 #[derive(Clone, Debug, Default)]
 pub struct Remark {
-    /// What it is.
+    /// The text of the remark.
     pub text: String,
     /// Where; `None` when it is about no block.
     pub block: Option<BlockRef>,
-    /// How often.
+    /// How often it came up.
     pub count: u64,
 }
 
@@ -154,7 +154,7 @@ impl Frame {
     }
 }
 
-/// The data of the page, deflated: a head as JSON behind its length, then the listing, the moments of the part
+/// The data of the page, deflated: a head as JSON after its length, then the listing, the moments of the part
 /// and the path; their lengths stand in the head.
 pub(crate) fn write(recording: Recording, part: Option<&Part>, about: &About) -> io::Result<Vec<u8>> {
     let Recording { track, mut history } = recording;
@@ -228,21 +228,21 @@ pub(crate) fn tools(tools: &[TrackTool], cutters: &[CutBy]) -> Vec<Value> {
         let cutter = cutters.iter().find(|cutter| cutter.tool == number);
         cutter.map(|cutter| cutter.colours[0])
     };
-    let told = |tool: &TrackTool| {
+    let described = |tool: &TrackTool| {
         json!({
             "number": tool.number, "axis": tool.axis.to_string(), "radius": tool.shape.radius,
             "corner": tool.shape.corner_radius, "length": tool.shape.length,
             "point": tool.shape.point_angle_deg, "colour": colour_of(tool.number),
         })
     };
-    tools.iter().map(told).collect()
+    tools.iter().map(described).collect()
 }
 
 /// The marks of cells with their colours.
 pub(crate) fn marks(cutters: &[CutBy]) -> Vec<Value> {
-    let told =
+    let described =
         |cutter: &CutBy| json!({ "tool": cutter.tool, "marks": cutter.marks, "colours": cutter.colours });
-    cutters.iter().map(told).collect()
+    cutters.iter().map(described).collect()
 }
 
 /// A line for each block, in the order of the rows.

@@ -17,13 +17,13 @@ const MOST_CHORD_DEG: f64 = 15.0;
 /// Chords of an element at most.
 const MOST_CHORDS: f64 = 2000.0;
 
-/// What the way to a point is.
+/// How the tool moves to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Kind {
     Rapid = 0,
     Feed = 1,
-    /// The tool stands.
+    /// The tool stands still.
     Hold = 2,
     /// How the tool comes there is not known, or not in the coordinates of the blank.
     Hidden = 3,
@@ -247,7 +247,7 @@ impl Track {
         }
     }
 
-    /// Whether the points behind `first` up to `last` can be left out, when the one behind `last` is the next.
+    /// Whether the points after `first` up to `last` can be left out, when the one after `last` is the next.
     fn may_leave_out(&self, all: &[Point], first: usize, last: usize) -> bool {
         let (Some(from), Some(to)) = (all.get(first), all.get(last + 1)) else {
             return false;
@@ -389,15 +389,15 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// Distance of a point from a straight line between two others.
 fn off_line(point: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
-    let way = [0, 1, 2].map(|k| to[k] - from[k]);
-    let length = way.iter().map(|w| w * w).sum::<f64>();
-    let along: f64 = [0, 1, 2].iter().map(|k| (point[*k] - from[*k]) * way[*k]).sum();
+    let delta = [0, 1, 2].map(|k| to[k] - from[k]);
+    let length = delta.iter().map(|w| w * w).sum::<f64>();
+    let along: f64 = [0, 1, 2].iter().map(|k| (point[*k] - from[*k]) * delta[*k]).sum();
     let t = if length > 0.0 {
         (along / length).clamp(0.0, 1.0)
     } else {
         0.0
     };
-    distance(point, [0, 1, 2].map(|k| from[k] + way[k] * t))
+    distance(point, [0, 1, 2].map(|k| from[k] + delta[k] * t))
 }
 
 #[cfg(test)]
@@ -474,7 +474,7 @@ mod tests {
 
     /// Where an axis has no position yet nothing is drawn, but time goes on; standing is one point, however often.
     #[test]
-    fn standing_and_unknown_ways_are_points_in_time() {
+    fn standing_and_unknown_moves_are_points_in_time() {
         let mut track = Track::default();
         let mut only_z = Position::UNKNOWN;
         only_z[Axis::Z] = 100.0;

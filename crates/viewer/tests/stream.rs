@@ -22,7 +22,7 @@ fn workpiece() -> Workpiece {
     workpiece
 }
 
-/// Somebody who looks.
+/// A viewer of the part.
 struct Viewer {
     sent: Sent,
     id: u64,

@@ -172,7 +172,7 @@ function measuring(button, readout, view, overlay, frame, words) {
     readout.hidden = text === '';
   };
   const coordinates = point => point.map((value, k) => `${frame.axes[k]} ${format(value + frame.min[k])}`).join('  ');
-  const told = () => {
+  const description = () => {
     const { points } = overlay;
     if (points.length === 0) return words('Pick a point of the part.');
     if (points.length === 1) return words('{1}. Pick another point.', coordinates(points[0]));
@@ -186,7 +186,7 @@ function measuring(button, readout, view, overlay, frame, words) {
     overlay.cross = on;
     button.setAttribute('aria-pressed', String(on));
     view.canvas.classList.toggle('picking', on);
-    say(on ? told() : '');
+    say(on ? description() : '');
     view.changed();
   };
   button.addEventListener('click', () => set(!on));
@@ -197,10 +197,10 @@ function measuring(button, readout, view, overlay, frame, words) {
       if (!point) return say(words('There is no material. Pick a point of the part.'));
       if (overlay.points.length === 2) overlay.points = [];
       overlay.points.push(point);
-      say(told());
+      say(description());
       view.changed();
     },
     reset: () => set(false),
-    retell: () => say(on ? told() : ''),
+    retell: () => say(on ? description() : ''),
   };
 }

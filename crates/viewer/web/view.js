@@ -123,7 +123,7 @@ export class PartView {
     this.asked ??= requestAnimationFrame(time => this.frame(time));
   }
 
-  // Is called behind every picture.
+  // Is called after every picture.
   onFrame(listener) {
     this.listeners.push(listener);
   }
@@ -144,7 +144,7 @@ export class PartView {
     const dirty = this.dirty;
     this.dirty = false;
     if (this.fitCanvas(ratio) || dirty || this.drawn !== ratio) this.draw(ratio);
-    // The fine picture comes behind the last change.
+    // The fine picture comes after the last change.
     if (!quiet) this.asked ??= requestAnimationFrame(next => this.frame(next));
   }
 

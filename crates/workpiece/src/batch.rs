@@ -45,7 +45,7 @@ impl Batch {
         self.marks.push(mark);
     }
 
-    /// Cuts all segments in their order and forgets them. The answer tells which rapid segments
+    /// Cuts all segments in their order and forgets them. The answer says which rapid segments
     /// removed material, by index. `marked` keeps a mark for each column, when it is asked for.
     pub fn cut(&mut self, grid: &Grid, heights: &mut [f32], marked: Option<&mut [u8]>) -> Vec<u32> {
         self.bands.resize_with(grid.ny.div_ceil(BAND_ROWS), Vec::new);

@@ -100,7 +100,7 @@ impl<P: Fn(u64) -> Option<Local>> Chords<P> {
 }
 
 /// Chords of an arc whose middle is not farther from it than the tolerance: sagitta = r (1 - cos(a/2)).
-/// 0 when the arc is none.
+/// 0 for an arc without sweep.
 fn chord_count(radius: f64, sweep_deg: f64, tolerance_mm: f64) -> u64 {
     /// Coarsest chord, however small the arc.
     const MOST_DEG: f64 = 30.0;

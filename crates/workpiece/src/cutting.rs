@@ -21,21 +21,21 @@ pub enum Remark {
     Tool {
         /// `None` before the first TOOL CALL.
         tool: Option<u32>,
-        /// What happened.
+        /// The kind of event.
         kind: EventKind,
     },
     /// The tool was below the blank, last in this block.
     BelowBlank {
         /// `None` before the first TOOL CALL.
         tool: Option<u32>,
-        /// The last block.
+        /// The last block with the tool below the blank.
         last: BlockRef,
     },
     /// A second, different BLK FORM after the first movement.
     BlankRedefined,
 }
 
-/// Who is told of the cut.
+/// Who gets the events of the cut.
 pub trait Hears {
     /// It happened in a block, so many times.
     fn hear(&mut self, block: BlockRef, remark: Remark, count: u64);
@@ -48,7 +48,7 @@ pub enum Columns {
     BySize,
     /// Of this side, mm.
     Millimetres(f64),
-    /// About so many.
+    /// About so many columns.
     About(f64),
 }
 
@@ -74,7 +74,7 @@ impl Columns {
 pub struct Memory {
     /// Which tool cut what.
     pub tools: bool,
-    /// The way of the tool.
+    /// The tool path is kept for pictures.
     pub path: bool,
 }
 
@@ -94,7 +94,7 @@ pub struct Cutting {
     /// Tools that cut with M4.
     left_hand: BTreeSet<u32>,
     /// What was said of a tool already.
-    told: HashSet<(Option<u32>, EventKind)>,
+    reported: HashSet<(Option<u32>, EventKind)>,
     /// Where each tool was below the blank: first and last block, elements.
     below: BTreeMap<Option<u32>, (BlockRef, BlockRef, u64)>,
 }
@@ -176,7 +176,7 @@ impl Cutting {
             spindle: Spindle::default(),
             seen: None,
             left_hand,
-            told: HashSet::new(),
+            reported: HashSet::new(),
             below: BTreeMap::new(),
         }
     }
@@ -226,7 +226,7 @@ impl Cutting {
     ) -> Result<(), WorkpieceError> {
         let before = self.spindle;
         for function in element.functions() {
-            // What is output before the end, as M05 in tapping, acts on the way to the end and not before.
+            // What is output before the end, as M05 in tapping, acts on the distance to the end and not before.
             if matches!(function.at, At::End | At::BeforeEnd(_)) != at_end {
                 continue;
             }
@@ -257,7 +257,7 @@ impl Cutting {
             .seen
             .unwrap_or(self.spindle)
             .fault(left_hand)
-            .filter(|kind| !self.told.contains(&(self.tool, *kind)));
+            .filter(|kind| !self.reported.contains(&(self.tool, *kind)));
         if let Some((_, workpiece)) = &mut self.workpiece {
             workpiece.note_cut(fault);
         }
@@ -282,7 +282,7 @@ impl Cutting {
                 | EventKind::SpindleWithoutSpeed
                 | EventKind::SpindleWrongWay
                 | EventKind::NoRadius => {
-                    if self.told.insert((self.tool, event.kind)) {
+                    if self.reported.insert((self.tool, event.kind)) {
                         let tool = self.tool;
                         hears.hear(
                             event.block,

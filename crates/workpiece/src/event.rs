@@ -10,7 +10,7 @@ use bahn_path::BlockRef;
 pub struct Event {
     /// The block of the movement.
     pub block: BlockRef,
-    /// What happened.
+    /// The kind of event.
     pub kind: EventKind,
     /// How many path elements of the block did it.
     pub count: u64,
@@ -25,7 +25,7 @@ pub enum EventKind {
     /// The tool tip was lower than the lower face of the blank while a part of the tool was over the
     /// blank (inferred).
     BelowBlank,
-    /// The tool cut while the spindle stood still, as [`Workpiece::note_cut`](crate::Workpiece::note_cut) was told.
+    /// The tool cut while the spindle stood still, as reported by [`Workpiece::note_cut`](crate::Workpiece::note_cut).
     SpindleStopped,
     /// The tool cut while the speed of the spindle was 0, likewise.
     SpindleWithoutSpeed,

@@ -9,7 +9,7 @@ use crate::part::Part;
 const UNKNOWN: f32 = f32::NAN;
 /// Steps that find the nearest place on a slope.
 const STEPS: u32 = 6;
-/// Farther than this the way out of the material is not looked for, mm: no stylus is deflected as far.
+/// Farther than this a place outside of the material is not looked for, mm: no stylus is deflected as far.
 const FARTHEST_MM: f64 = 6.0;
 
 /// How high the tip of a ball stands when it touches the part: found at the corners of the columns as far as it is
@@ -50,7 +50,7 @@ impl Feeler {
         self.height([x, y]).is_some_and(|height| z <= height)
     }
 
-    /// The shortest way out of the material of a ball with its tip at a position in X, Y and Z, mm: how far a stylus is
+    /// The shortest displacement out of the material of a ball with its tip at a position in X, Y and Z, mm: how far a stylus is
     /// deflected whose probe stands there. 0 where it is in contact with nothing.
     pub fn deflection(&self, tip: &[f64; 3]) -> [f64; 3] {
         let at = self.local(tip);
@@ -64,12 +64,12 @@ impl Feeler {
         let straight = [0.0, 0.0, up];
         let shorter = |a: [f64; 3], b: [f64; 3]| if length(a) < length(b) { a } else { b };
         let best = shorter(slope.unwrap_or(straight), straight);
-        let way = shorter(
+        let delta = shorter(
             self.beside(at, length(best).min(FARTHEST_MM)).unwrap_or(best),
             best,
         );
         let mut along = [0.0; 3];
-        for (axis, part) in self.part.setup.axes.iter().zip(way) {
+        for (axis, part) in self.part.setup.axes.iter().zip(delta) {
             if let Some(place) = along.get_mut(axis.index()) {
                 *place = part;
             }
@@ -77,7 +77,7 @@ impl Feeler {
         along
     }
 
-    /// The way to the nearest place of a slope: along its normal, step by step.
+    /// The displacement to the nearest place of a slope: along its normal, step by step.
     fn down_the_slope(&self, from: [f64; 3]) -> Option<[f64; 3]> {
         let [dx, dy] = self.part.resolution_mm();
         let mut at = from;
@@ -85,8 +85,8 @@ impl Feeler {
             let missing = self.height([at[0], at[1]])? - at[2];
             let rise = |step: [f64; 2]| {
                 let ahead = self.height([at[0] + step[0], at[1] + step[1]])?;
-                let behind = self.height([at[0] - step[0], at[1] - step[1]])?;
-                Some((ahead - behind) / (2.0 * (step[0] + step[1])))
+                let back = self.height([at[0] - step[0], at[1] - step[1]])?;
+                Some((ahead - back) / (2.0 * (step[0] + step[1])))
             };
             let (u, v) = (rise([dx, 0.0])?, rise([0.0, dy])?);
             let part = missing / (1.0 + u * u + v * v);
@@ -97,7 +97,7 @@ impl Feeler {
         (missing.abs() < dx.max(dy)).then(|| std::array::from_fn(|k| at[k] - from[k]))
     }
 
-    /// The shortest way to a corner of columns at which the ball is free, shorter than a length.
+    /// The shortest displacement to a corner of columns at which the ball is free, shorter than a length.
     fn beside(&self, at: [f64; 3], within: f64) -> Option<[f64; 3]> {
         let [dx, dy] = self.part.resolution_mm();
         let range = |at: f64, side: f64, margin: usize, size: usize| {
@@ -226,8 +226,8 @@ impl Feeler {
     }
 }
 
-fn length(way: [f64; 3]) -> f64 {
-    way.iter().map(|part| part * part).sum::<f64>().sqrt()
+fn length(delta: [f64; 3]) -> f64 {
+    delta.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

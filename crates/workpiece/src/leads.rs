@@ -49,9 +49,9 @@ pub(crate) struct Leads {
 pub(crate) enum Spacing {
     /// So little that parts lie on a straight line over a group of columns.
     Fine,
-    /// As the places.
+    /// As far apart as the places.
     Equal,
-    /// So many places.
+    /// So many places apart.
     Coarse(usize),
 }
 
@@ -119,7 +119,7 @@ impl Near for Level {
     }
 }
 
-/// See [`Spacing::Fine`].
+/// The leads of [`Spacing::Fine`].
 pub(crate) struct Fine<'a> {
     leads: &'a Leads,
     /// From the first column of a group to that of the next one, and its share of a millimetre; 0 for none.
@@ -172,7 +172,7 @@ impl Near for f32 {
     }
 }
 
-/// See [`Spacing::Equal`].
+/// The leads of [`Spacing::Equal`].
 pub(crate) struct Equal<'a> {
     parts: &'a [f32],
     /// The place before the first column of each row, and how far behind a place the columns lie.
@@ -212,7 +212,7 @@ impl Near for Between<'_> {
     }
 }
 
-/// See [`Spacing::Coarse`].
+/// The leads of [`Spacing::Coarse`].
 pub(crate) struct Coarse<'a> {
     leads: &'a Leads,
     step: f32,
@@ -346,7 +346,7 @@ impl Leads {
         self.most.max(FLATTEST) * self.radius()
     }
 
-    /// So far from the track heights between places are sure, mm; nowhere when there are none.
+    /// Distance from the track up to which heights between places are exact, mm; `None` without heights.
     pub fn beside(&self) -> Option<f32> {
         (!self.heights.is_empty()).then(|| self.radius() - Leads::SIDE * self.step)
     }

@@ -3,7 +3,7 @@
 //! The face of this room:
 //! - [`Workpiece`]: takes a [`bahn_path::Blank`] and path elements, removes what the tool sweeps, and
 //!   collects what the operator should know ([`Event`]);
-//! - [`Cutting`]: follows a program from its BLK FORM on, with its tools and its spindle, and tells who [`Hears`];
+//! - [`Cutting`]: follows a program from its BLK FORM on, with its tools and its spindle, and reports to who [`Hears`];
 //! - [`Part`]: the material as it is now ([`Workpiece::part`]): removed volume, heights, probing, who cut what ([`CutBy`]);
 //! - views of it as an [`Image`]: [`Part::plan_view`], [`Part::three_planes`], [`Part::view_3d`], each
 //!   on a [`Page`] with a title line;

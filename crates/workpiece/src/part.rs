@@ -18,7 +18,7 @@ pub struct Part {
     /// Height of every column over the lower face of the blank, mm; 0 where nothing is left. Rows run
     /// along the first axis of the plane.
     pub(crate) heights: Vec<f32>,
-    /// Who cut the columns, and the way of the tool: when they are remembered.
+    /// Who cut the columns, and the tool path: when they are remembered.
     pub(crate) cutters: Option<Cutters>,
     pub(crate) trail: Option<Trail>,
 }

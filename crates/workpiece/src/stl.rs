@@ -34,7 +34,7 @@ pub enum MeshError {
     /// The work was stopped.
     #[error("stopped")]
     Stopped,
-    /// The writer failed.
+    /// The STL file could not be written.
     #[error(transparent)]
     Io(#[from] io::Error),
 }

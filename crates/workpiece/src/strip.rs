@@ -67,7 +67,7 @@ impl Track {
     /// The columns that the cap at a place of the track holds, in each of the rows, side by side as in
     /// [`Track::spans`].
     #[inline(always)]
-    fn behind(&self, place: f64, cap: Cap, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
+    fn up_to(&self, place: f64, cap: Cap, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
         let raster = Raster::new([self.low[0], self.low[1]], base, grid, rows);
         let [ux, uy] = self.u.map(|u| u as f32);
         let (place, beside) = (place as f32, cap.beside as f32);
@@ -104,13 +104,13 @@ impl Track {
         borders
     }
 
-    /// The columns that are lowest behind the lower end: at least these.
+    /// The columns that the cap at the lower end holds: at least these.
     #[inline(always)]
-    fn behind_low(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
+    fn low_cap(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
         let (first, second) = self.inner();
-        let mut borders = self.behind(0.0, first, base, grid, rows);
+        let mut borders = self.up_to(0.0, first, base, grid, rows);
         if let Some(cap) = second {
-            let other = self.behind(0.0, cap, base, grid, rows);
+            let other = self.up_to(0.0, cap, base, grid, rows);
             for k in 0..BAND_ROWS {
                 let is_longer = other.end[k] - other.start[k] > borders.end[k] - borders.start[k];
                 borders.start[k] = if is_longer {
@@ -124,10 +124,10 @@ impl Track {
         borders
     }
 
-    /// The columns that are lowest behind the higher end: at most these.
+    /// The columns up to the cap at the higher end: at most these.
     #[inline(always)]
-    fn behind_high(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
-        self.behind(self.length, self.outer(), base, grid, rows)
+    fn high_cap(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
+        self.up_to(self.length, self.outer(), base, grid, rows)
     }
 
     /// The columns that the track has to look at, in two parts, in whole groups where there are so many; and all under
@@ -146,19 +146,19 @@ impl Track {
         if self.length > 0.0 {
             // What two tracks share is rounded by each of them: a column more on either side.
             if self.high_end != End::Own {
-                outer.clip(&self.behind_high(base, grid, rows), 0);
+                outer.clip(&self.high_cap(base, grid, rows), 0);
             }
             if let (End::Shared, Some(before)) = (self.high_end, before) {
-                let mut also = before.behind_low(base, grid, rows);
+                let mut also = before.low_cap(base, grid, rows);
                 also.widen(1);
                 also.clip(&all, 0);
                 outer.join(&also);
             }
             if self.low_end != End::Own {
-                but = self.behind_low(base, grid, rows);
+                but = self.low_cap(base, grid, rows);
             }
             if let (End::Shared, Some(before)) = (self.low_end, before) {
-                but.clip(&before.behind_high(base, grid, rows), 1);
+                but.clip(&before.high_cap(base, grid, rows), 1);
             }
         }
         (outer.without(&but, &all), all)

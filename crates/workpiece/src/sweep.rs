@@ -94,10 +94,10 @@ impl Track {
             let low = low.start.clamp(all.start, all.end)..low.end.clamp(all.start, all.end);
             // Some columns more under the disc do no harm, and whole groups go without leftovers.
             let before = (low.start - all.start).next_multiple_of(GROUP);
-            let behind = (all.end - low.end).next_multiple_of(GROUP);
+            let after = (all.end - low.end).next_multiple_of(GROUP);
             let rest = [
                 all.start..(all.start + before).min(low.end),
-                all.end.saturating_sub(behind).max(low.start)..all.end,
+                all.end.saturating_sub(after).max(low.start)..all.end,
             ];
             if !low_is_cut {
                 sink.level(row, low, floor);

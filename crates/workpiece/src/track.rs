@@ -27,7 +27,7 @@ pub(crate) struct Segment {
 /// What the previous segment did where this one starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
-    /// Nothing.
+    /// It did not cut there.
     Uncut,
     /// It left the tool there: what the tool covers is cut.
     Cut,
@@ -136,7 +136,7 @@ pub(crate) struct Track {
 pub(crate) enum End {
     /// The track itself.
     Own,
-    /// The track before or behind it.
+    /// The track before or after it.
     Other,
     /// The track before it, up to where that one ends.
     Shared,

@@ -1,4 +1,4 @@
-//! The way of the tool tip, for pictures.
+//! The tool path tip, for pictures.
 
 use crate::setup::Local;
 

@@ -134,7 +134,7 @@ impl Workpiece {
         self.part.cutters.get_or_insert_with(|| Cutters::new(columns));
     }
 
-    /// From now on the part remembers the way of the tool, for pictures.
+    /// From now on the part remembers the tool path, for pictures.
     pub fn remember_path(&mut self) {
         self.part.trail.get_or_insert_default();
     }
@@ -164,7 +164,7 @@ impl Workpiece {
         self.events.take()
     }
 
-    /// Keeps the way of the tool when it is remembered.
+    /// Keeps the tool path when it is remembered.
     fn follow(&mut self, element: &PathElement) {
         // Coordinates of a tilted plane are not those of the blank.
         let Some(trail) = self.part.trail.as_mut().filter(|_| element.placement.is_none()) else {

@@ -64,8 +64,8 @@ proptest! {
             heading += if special == 1 { 3.0 * turn } else { turn };
             let (sin, cos) = if special == 2 { (0.0, 1.0) } else { heading.to_radians().sin_cos() };
             let fall = match special { 0 => 0.0, 3 => 4.0 * slope * length, _ => slope * length };
-            let way = if special == 4 { 0.0 } else { length };
-            p = [p[0] + way * cos, p[1] + way * sin, (p[2] + fall).clamp(-19.0, -0.5)];
+            let distance = if special == 4 { 0.0 } else { length };
+            p = [p[0] + distance * cos, p[1] + distance * sin, (p[2] + fall).clamp(-19.0, -0.5)];
             points.push(at(p[0], p[1], p[2]));
         }
         let [chain, links] = chain_and_links(&points).map(|elements| cut(tool, &elements));

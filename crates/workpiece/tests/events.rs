@@ -1,4 +1,4 @@
-//! What the operator is told about the cut.
+//! The events of the cut that the operator gets.
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 

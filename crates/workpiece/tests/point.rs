@@ -56,7 +56,7 @@ fn a_point_along_a_line_leaves_a_v() {
     };
     // 60 mm long, with half a cone at either end.
     close(groove(-2.0, -2.0), 60.0 * 4.0 + PI * 8.0 / 3.0, 2e-3);
-    // On a slope of 2 in 60 the integral of z² over the way: the ends are cones of depth 1 and 3.
+    // On a slope of 2 in 60 the integral of z² over the length: the ends are cones of depth 1 and 3.
     let slope = 60.0 * (27.0 - 1.0) / 6.0;
     let ends = 0.5 * PI / 3.0 * (1.0 + 27.0);
     close(groove(-1.0, -3.0), slope + ends, 5e-3);

@@ -470,7 +470,7 @@ fn a_detail_keeps_its_tools() {
 }
 
 #[test]
-fn the_tool_path_is_hidden_behind_the_part() {
+fn the_part_hides_the_tool_path() {
     let picture = |y: f64, remember: bool| {
         let mut workpiece = workpiece(0.5);
         if remember {

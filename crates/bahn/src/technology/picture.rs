@@ -71,14 +71,14 @@ pub(super) fn sheet(report: &Report, title: &str) -> Sheet {
     let along = Panel {
         top: way_top,
         bottom: way_top + CURVE,
-        end: end_of(report, |sample| sample.way_mm),
+        end: end_of(report, |sample| sample.distance_mm),
         greatest,
     };
     along.grid(&mut sheet, along.bottom, "way along the path, mm");
     for label in &labels {
         label.draw(&mut sheet, &along);
     }
-    along.curve(&mut sheet, report, |sample| sample.way_mm);
+    along.curve(&mut sheet, report, |sample| sample.distance_mm);
 
     let over_time = Panel {
         top: time_top,
@@ -297,7 +297,7 @@ fn standing(samples: &[Sample], cycle_s: f64) -> Vec<Sample> {
     let mut all: Vec<Sample> = Vec::with_capacity(samples.len() + 1);
     all.extend(samples.first().map(|first| Sample {
         t: (first.t - cycle_s).max(0.0),
-        way_mm: 0.0,
+        distance_mm: 0.0,
         v: 0.0,
     }));
     for sample in samples {
@@ -396,7 +396,7 @@ fn labels(report: &Report, bars: &[Bar]) -> Vec<Label> {
     let scale = Panel {
         top: 0.0,
         bottom: 0.0,
-        end: end_of(report, |sample| sample.way_mm),
+        end: end_of(report, |sample| sample.distance_mm),
         greatest: 0.0,
     };
     let mut ends: Vec<f64> = Vec::new();
@@ -435,8 +435,10 @@ fn way_at(report: &Report, time_s: f64) -> f64 {
     let next = samples.partition_point(|sample| sample.t < time_s);
     let before = next.checked_sub(1).and_then(|at| samples.get(at));
     match (before, samples.get(next)) {
-        (Some(a), Some(b)) if b.t > a.t => a.way_mm + (b.way_mm - a.way_mm) * (time_s - a.t) / (b.t - a.t),
-        (Some(one), _) | (None, Some(one)) => one.way_mm,
+        (Some(a), Some(b)) if b.t > a.t => {
+            a.distance_mm + (b.distance_mm - a.distance_mm) * (time_s - a.t) / (b.t - a.t)
+        }
+        (Some(one), _) | (None, Some(one)) => one.distance_mm,
         (None, None) => 0.0,
     }
 }

@@ -1,7 +1,7 @@
-//! The way back of axes that may stand elsewhere.
+//! Axes that may stand elsewhere are brought back.
 //!
 //! LinuxCNC's machine may leave for its tool changer at M6 and stay there (TOOL_CHANGE_POSITION, G28 or G30), and whoever goes
-//! on behind a stop or a function M100 to M199 may have moved it. What the control's path leaves out there, since the axis
+//! on after a stop or a function M100 to M199 may have moved it. What the control's path leaves out there, since the axis
 //! stands still, the text has to say.
 
 use bahn_path::{Axis, AxisSet, Curve, FeedRate, Position};
@@ -56,16 +56,16 @@ impl Stand {
         }
     }
 
-    /// The lines that bring every axis to where a way begins, where the text stands elsewhere, and where the way begins then.
+    /// The lines that bring every axis to where a movement begins, where the text stands elsewhere, and where it begins then.
     ///
-    /// The tool axis comes last, down to where the way begins. A way that retracts it begins with that: the tool does not go
+    /// The tool axis comes last, down to where the movement begins. One that retracts it begins with that: the tool does not go
     /// back to where it was in the workpiece first.
-    pub fn back(&mut self, way: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, Position) {
-        let [start, end] = way;
+    pub fn back(&mut self, ends: [&Position; 2], curve: &Curve, feed: FeedRate) -> (Vec<Said>, Position) {
+        let [start, end] = ends;
         let mut lines = Vec::new();
         let known = self.at.known();
         let counted = self.counted_from(start, curve);
-        if !std::mem::take(&mut self.away) && counted == known && !self.is_left_behind(start) {
+        if !std::mem::take(&mut self.away) && counted == known && !self.is_elsewhere(start) {
             return (lines, *start);
         }
         let tool = self.tool_axis;
@@ -92,7 +92,7 @@ impl Stand {
         (lines, begins)
     }
 
-    /// The axes that the text must have brought to the begin of a way: those that it has brought anywhere, and those that an arc
+    /// The axes that the text must have brought to the begin of a movement: those that it has brought anywhere, and those that an arc
     /// counts its centre from.
     fn counted_from(&self, start: &Position, curve: &Curve) -> AxisSet {
         let mut counted = self.at.known();
@@ -106,7 +106,7 @@ impl Stand {
 
     /// Whether the path goes on elsewhere than where the text stands: a tool call puts the tip of another tool there, and the
     /// text may change the tool only later, at an M6.
-    fn is_left_behind(&self, start: &Position) -> bool {
+    fn is_elsewhere(&self, start: &Position) -> bool {
         let apart = |axis: Axis| (self.at[axis] - start[axis]).abs() > TOLERANCE_MM;
         self.at.known().iter().any(apart)
     }

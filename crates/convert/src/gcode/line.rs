@@ -12,7 +12,7 @@ pub(super) enum Said {
         end: Position,
         feed: FeedRate,
     },
-    /// A way along the spindle's turning; a tap comes back.
+    /// A movement that follows the spindle; a tap comes back.
     Thread {
         start: Position,
         end: Position,
@@ -42,7 +42,7 @@ pub(super) enum Said {
 }
 
 impl Said {
-    /// Whether the machine may stand elsewhere behind it: at its tool changer, or where somebody has moved it.
+    /// Whether the machine may stand elsewhere after it: at its tool changer, or where somebody has moved it.
     pub fn may_move_the_machine(&self) -> bool {
         matches!(
             self,

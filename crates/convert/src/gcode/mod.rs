@@ -27,7 +27,7 @@ use said::Sayer;
 /// A program for LinuxCNC.
 #[derive(Clone, Debug)]
 pub struct GCode {
-    /// Its text.
+    /// The G-code, lines with LF.
     pub text: String,
     /// How many lines it has.
     pub lines: u32,

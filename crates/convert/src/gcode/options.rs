@@ -10,7 +10,7 @@ pub struct Options {
     pub model: ControlModel,
     /// Unit of the text: G21 or G20.
     pub unit: Unit,
-    /// The block of the source behind what comes of it.
+    /// The block of the source after what comes of it.
     pub comments: bool,
     /// Arcs in rapid traverse, which LinuxCNC does not have, move with this feed, mm/min.
     pub rapid_mm_min: f64,

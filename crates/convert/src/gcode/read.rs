@@ -25,7 +25,7 @@ pub(super) struct Reader<'a> {
 struct Words {
     motion: Option<&'static str>,
     end: Option<Position>,
-    /// I, J, K.
+    /// I, J and K of an arc: its centre from the start, in units of the program.
     centre: [Option<f64>; 3],
     k: Option<f64>,
     p: Option<f64>,
@@ -57,7 +57,7 @@ impl<'a> Reader<'a> {
         self.line
     }
 
-    /// Its text.
+    /// The text of the line that was read last.
     pub fn text(&self) -> &'a str {
         self.text
     }

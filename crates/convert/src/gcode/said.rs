@@ -29,11 +29,11 @@ pub(super) struct Sayer {
     unit_mm: f64,
     rapid_mm_min: f64,
     queue: VecDeque<(BlockRef, Said)>,
-    /// Whether the tools are changed by an M06 behind their call, call by call.
+    /// Whether the tools are changed by an M06 after their call, call by call.
     changes: VecDeque<bool>,
     stand: Stand,
     overrides: bool,
-    /// The way into a thread whose way out comes next.
+    /// The plunge into a thread whose retraction comes next.
     tap: Option<(Position, Position, Thread)>,
     user_functions: bool,
     refused: Vec<Listed>,
@@ -121,7 +121,7 @@ impl Sayer {
         (self.refused, self.left_out)
     }
 
-    /// The next thing; `None` behind the end.
+    /// The next thing; `None` after the end.
     pub fn next(&mut self) -> Option<(BlockRef, Said)> {
         while self.queue.is_empty() && !self.over {
             if self.stop.load(Ordering::Relaxed) {
@@ -140,7 +140,7 @@ impl Sayer {
                 Event::Stop(_) => {}
                 Event::Asked(block) => {
                     self.completed = true;
-                    self.ends(block, "the path behind it depends on what a probe finds");
+                    self.ends(block, "the path after it depends on what a probe finds");
                 }
                 Event::Message(block, text) => {
                     self.message = Some(text.clone());
@@ -190,7 +190,7 @@ impl Sayer {
         }
     }
 
-    /// Nothing can be said behind here.
+    /// Nothing can be said after here.
     fn ends(&mut self, block: BlockRef, what: &str) {
         self.refuse(block, what);
         self.say(block, Said::End);
@@ -259,21 +259,21 @@ impl Sayer {
         }
     }
 
-    /// Brings the axes back for a way where they stand elsewhere, and says where it begins then.
+    /// Brings the axes back for a movement where they stand elsewhere, and says where it begins then.
     fn brought_back(
         &mut self,
         block: BlockRef,
-        way: [&Position; 2],
+        ends: [&Position; 2],
         curve: &Curve,
         feed: FeedRate,
     ) -> Position {
-        let (lines, begins) = self.stand.back(way, curve, feed);
+        let (lines, begins) = self.stand.back(ends, curve, feed);
         lines.into_iter().for_each(|line| self.say(block, line));
-        self.stand.goes(way[0], way[1]);
+        self.stand.goes(ends[0], ends[1]);
         begins
     }
 
-    /// Both ways of a tap are one line; the spindle turns by the cycle alone.
+    /// Plunge and retraction of a tap are one line; the spindle turns by the cycle alone.
     fn thread(&mut self, element: &PathElement, thread: Thread) {
         let (start, end) = (self.rounded(&element.start), self.rounded(&element.end));
         let order = match thread.clockwise {
@@ -288,27 +288,27 @@ impl Sayer {
         };
         let mut order = order;
         if thread.retracts {
-            let Some((from, bottom, way_in)) = self.tap.take() else {
+            let Some((from, bottom, plunge)) = self.tap.take() else {
                 self.tap = Some((start, end, thread));
                 return;
             };
             if from != end || bottom != start {
-                return self.ends(element.block, "the way out of a thread is not the way into it");
+                return self.ends(element.block, "the retraction from a thread is not its plunge");
             }
-            order = match way_in.clockwise {
+            order = match plunge.clockwise {
                 true => SpindleOrder::Clockwise,
                 false => SpindleOrder::CounterClockwise,
             };
             said = Said::Thread {
                 start: from,
                 end: bottom,
-                pitch_mm: way_in.pitch_mm,
+                pitch_mm: plunge.pitch_mm,
                 returns: true,
             };
         }
         let begins = if thread.retracts { end } else { start };
         self.brought_back(element.block, [&begins, &begins], &Curve::Line, FeedRate::Rapid);
-        // Both ways of a tap end where it began.
+        // Plunge and retraction of a tap end where it began.
         self.stand.goes(&begins, &end);
         self.say(element.block, Said::Spindle(order));
         self.say(element.block, said);
@@ -402,7 +402,7 @@ impl Sayer {
     }
 }
 
-/// Whether an axis moves on a way.
+/// Whether an axis moves between two positions.
 fn moves(start: &Position, end: &Position) -> bool {
     Axis::ALL
         .into_iter()
@@ -481,8 +481,8 @@ pub(super) fn deviation_mm(one: &Said, other: &Said) -> Result<f64, String> {
         ) if returns == other_returns => {
             let (mut start, mut end) = (*start, *end);
             forget_unwritten((&mut start, &mut end), (other_start, other_end));
-            let ways = proof::between(&start, other_start)?.max(proof::between(&end, other_end)?);
-            Ok(ways.max((pitch_mm - other_pitch).abs()))
+            let apart = proof::between(&start, other_start)?.max(proof::between(&end, other_end)?);
+            Ok(apart.max((pitch_mm - other_pitch).abs()))
         }
         (Said::Dwell(a), Said::Dwell(b)) if (a - b).abs() < 1e-5 => Ok(0.0),
         (Said::Speed(a), Said::Speed(b)) if (a - b).abs() < 1e-5 => Ok(0.0),

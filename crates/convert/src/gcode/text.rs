@@ -2,9 +2,9 @@
 
 use bahn_path::{Axis, Position};
 
-/// How many turns an arc is counted as: up to one is one.
+/// The number of turns of an arc, at least 1.
 pub(super) fn turns(sweep_deg: f64) -> u32 {
-    /// A full turn within rounding is one.
+    /// So much more than a full turn is rounding.
     const ROUNDING_DEG: f64 = 1e-6;
     ((sweep_deg.abs() - ROUNDING_DEG) / 360.0).ceil().max(1.0) as u32
 }

@@ -46,7 +46,7 @@ impl Writer {
         for line in [
             format!("; the path of {name} as a {model} moves it, for LinuxCNC"),
             "; It is the path of the tool's tip, its radius compensated already: no G41 or G42.".to_owned(),
-            "; Behind a tool change G43 takes the length from LinuxCNC's tool table.".to_owned(),
+            "; After a tool change G43 takes the length from LinuxCNC's tool table.".to_owned(),
         ] {
             writer.line(&line);
         }
@@ -72,7 +72,7 @@ impl Writer {
         self.lines += 1;
     }
 
-    /// The lines of one thing that is said; behind the first one the block that it comes from, where that is another
+    /// The lines of one thing that is said; after the first one the block that it comes from, where that is another
     /// one than before.
     pub fn said(&mut self, said: &Said, block: impl FnOnce() -> String) {
         let mut text = String::new();
@@ -150,7 +150,7 @@ impl Writer {
         self.line(&text);
     }
 
-    fn movement(&mut self, curve: &Curve, way: [&Position; 2], feed: FeedRate) -> String {
+    fn movement(&mut self, curve: &Curve, ends: [&Position; 2], feed: FeedRate) -> String {
         let mut text = String::new();
         let arc = match curve {
             Curve::Arc(arc) => Some(arc),
@@ -174,12 +174,12 @@ impl Writer {
             self.motion = motion;
             text.push_str(motion);
         }
-        self.axes(&mut text, way, arc);
+        self.axes(&mut text, ends, arc);
         if let Some(arc) = arc {
             self.centre(&mut text, arc);
         }
         if let FeedRate::Programmed(feed) = feed {
-            let unit = if turns_only(&self.at, &self.behind(way)) {
+            let unit = if turns_only(&self.at, &self.after(ends)) {
                 1.0
             } else {
                 self.unit_mm
@@ -192,14 +192,14 @@ impl Writer {
                 self.feed = Some(word);
             }
         }
-        self.goes_to(way);
+        self.goes_to(ends);
         text.trim_start().to_owned()
     }
 
     /// The words of axes that move, and those of the plane of an arc.
-    fn axes(&self, text: &mut String, way: [&Position; 2], arc: Option<&Arc>) {
-        for axis in self.written(way) {
-            let to = way[1][axis];
+    fn axes(&self, text: &mut String, ends: [&Position; 2], arc: Option<&Arc>) {
+        for axis in self.written(ends) {
+            let to = ends[1][axis];
             let in_plane = arc.is_some_and(|arc| arc.plane.contains(axis));
             if in_plane || self.at[axis] != to {
                 let unit = if axis.is_rotary() { 1.0 } else { self.unit_mm };
@@ -226,24 +226,24 @@ impl Writer {
         }
     }
 
-    /// The axes whose position the text knows behind a way: not one that stands where no line has brought it.
+    /// The axes whose position the text knows after a movement: not one that stands where no line has brought it.
     fn written(&self, [start, end]: [&Position; 2]) -> Vec<Axis> {
         let stands = |axis: Axis| self.at[axis].is_nan() && start[axis] == end[axis];
         let known = |axis: &Axis| end[*axis].is_finite() && !stands(*axis);
         Axis::ALL.into_iter().filter(known).collect()
     }
 
-    fn goes_to(&mut self, way: [&Position; 2]) {
-        self.at = self.behind(way);
+    fn goes_to(&mut self, ends: [&Position; 2]) {
+        self.at = self.after(ends);
     }
 
-    /// Where the text stands behind a way.
-    fn behind(&self, way: [&Position; 2]) -> Position {
-        let mut behind = self.at;
-        for axis in self.written(way) {
-            behind[axis] = way[1][axis];
+    /// Where the text stands after a movement.
+    fn after(&self, ends: [&Position; 2]) -> Position {
+        let mut after = self.at;
+        for axis in self.written(ends) {
+            after[axis] = ends[1][axis];
         }
-        behind
+        after
     }
 }
 
@@ -255,7 +255,7 @@ fn push_word(text: &mut String, letter: &str, value: f64) {
     push_number(text, value);
 }
 
-/// A number without exponent and without zeros behind.
+/// A number without exponent and without trailing zeros.
 fn push_number(text: &mut String, value: f64) {
     let rounded = (value * STEPS).round() / STEPS;
     let rounded = if rounded == 0.0 { 0.0 } else { rounded };

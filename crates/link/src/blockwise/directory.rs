@@ -77,7 +77,7 @@ pub struct DirectoryRequest {
 }
 
 impl DirectoryRequest {
-    /// Asks.
+    /// Asks the device for its directory.
     pub fn new(settings: Settings) -> DirectoryRequest {
         DirectoryRequest {
             settings,
@@ -139,7 +139,7 @@ impl Protocol for DirectoryRequest {
         if self.deadline().is_some_and(|deadline| now >= deadline) {
             self.finish(match self.lines {
                 0 => Some(Shown::Control(MessageId::ExtInOutputNotReady, None)),
-                // A device that does not tell what is free.
+                // A device that does not report what is free.
                 lines if lines >= IGNORED => None,
                 _ => Some(Shown::Control(MessageId::ProgramIncomplete, None)),
             });

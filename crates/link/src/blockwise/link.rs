@@ -39,7 +39,7 @@ impl Link {
     /// A byte has come; what it is a piece of, when that is whole.
     ///
     /// Answers that come before a block is sent are answers to nothing: the line has doubled one. Its check character ends a
-    /// block; the DC1 behind it may still be on its way.
+    /// block; the DC1 after it may still be in transit.
     pub fn receive(&mut self, byte: u8, now: Duration) -> Option<Piece> {
         self.quiet = now;
         let piece = self.decoder.take(&self.settings, byte)?;
@@ -75,7 +75,7 @@ impl Link {
         again
     }
 
-    /// Sends characters.
+    /// Sends control characters.
     pub fn send(&mut self, characters: &[u8]) {
         self.outgoing.extend(characters);
     }
@@ -127,7 +127,7 @@ impl Link {
         self.decoder.is_inside()
     }
 
-    /// A block that has begun does not come to its end: as good as wrong.
+    /// A block that has begun does not come to its end: it counts as wrong.
     pub fn give_block_up(&mut self, now: Duration) {
         self.decoder.reset();
         self.quiet = now;

@@ -32,7 +32,7 @@ enum Step {
     Sending(Source),
     /// ETX waits for what the other side wants next.
     Sent,
-    /// Lines come.
+    /// A file is received line by line.
     Receiving(Into),
     /// ETX has come: an EOT may follow, or more of the text, when it was none.
     Etx(Into),
@@ -42,13 +42,13 @@ enum Step {
     Refused,
 }
 
-/// The device.
+/// The device at the other end of the line: a disk unit with its files.
 pub struct Peripheral {
     link: Link,
     files: Box<dyn Files>,
     rights: Rights,
     step: Step,
-    /// The file that is under way.
+    /// The file that is being transferred.
     name: String,
     /// The last file that was sent without being asked for by name.
     last: Option<String>,
@@ -56,7 +56,7 @@ pub struct Peripheral {
     wrong_headers: u8,
     /// What has come of an escape sequence.
     escape: Vec<u8>,
-    /// Something was begun whose end is not yet told.
+    /// Something was begun whose end is not yet reported.
     open: bool,
     events: VecDeque<Event>,
 }
@@ -160,7 +160,7 @@ impl Peripheral {
         }
     }
 
-    /// Tells the end of what was begun, once.
+    /// Reports the end of what was begun, once.
     fn ended(&mut self, complete: bool) {
         if std::mem::take(&mut self.open) || !complete {
             self.events.push_back(Event::Ended(complete));
@@ -227,7 +227,7 @@ impl Peripheral {
         }
     }
 
-    /// The file behind the last one that carries its name, of the type that is asked for.
+    /// The file after the last one that carries its name, of the type that is asked for.
     fn give_next(&mut self, code: Option<u8>) {
         let known = code
             .map(char::from)
@@ -391,7 +391,7 @@ impl Peripheral {
         self.tell(Shown::Control(MessageId::ProgramIncomplete, None));
     }
 
-    /// Tells why what was begun has failed.
+    /// Reports why what was begun has failed.
     fn tell(&mut self, shown: Shown) {
         self.events.push_back(Event::Message(shown));
         self.ended(false);
@@ -411,7 +411,7 @@ impl Peripheral {
     /// Signals an error that has another name on this side of the line.
     fn refuse_as(&mut self, code: u16, shown: Shown) {
         let text = error_text(code);
-        // The device sends no DC1 behind it.
+        // The device sends no DC1 after it.
         let with_dc1 = std::mem::replace(&mut self.link.settings.with_dc1, false);
         self.link.send_block(Kind::Header, text.as_bytes());
         self.link.settings.with_dc1 = with_dc1;

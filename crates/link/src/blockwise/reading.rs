@@ -18,7 +18,7 @@ use crate::text::{Taking, Unstored, beginning};
 pub enum Want {
     /// READ-IN SELECTED PROGRAM: this file, with its extension.
     Selected(String),
-    /// READ-IN ALL PROGRAMS.
+    /// All files, READ-IN ALL PROGRAMS.
     All,
     /// READ-IN PROGRAM OFFERED: each after a question.
     Offered,
@@ -39,7 +39,7 @@ enum Step {
     Question(Question, Vec<u8>),
     /// ETX has come: an EOT may follow, or more of the text, when it was none.
     Etx,
-    /// Nothing more.
+    /// The transfer has ended.
     Over,
 }
 
@@ -79,7 +79,7 @@ impl Reading {
         reading
     }
 
-    /// Sends the header.
+    /// Sends the header that asks for a file.
     fn ask(&mut self) {
         let control = self.link.settings.control;
         let (name, kind) = match &self.want {
@@ -138,7 +138,7 @@ impl Reading {
         }
     }
 
-    /// EOT without ETX: behind END PGM it ends the file, elsewhere the device gives up.
+    /// EOT without ETX: after END PGM it ends the file, elsewhere the device gives up.
     fn eot(&mut self) {
         if self.taking.as_ref().is_some_and(Taking::is_ended) {
             self.end_of_file();
@@ -279,7 +279,7 @@ impl Reading {
         self.finish();
     }
 
-    /// The end: EOT.
+    /// Ends the transfer with EOT.
     fn finish(&mut self) {
         self.link.send(&[self.link.settings.control.eot]);
         self.over();

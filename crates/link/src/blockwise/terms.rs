@@ -8,7 +8,7 @@ use crate::store::StoreError;
 pub struct Rights {
     /// Files may be asked for.
     pub gives: bool,
-    /// Files are stored.
+    /// The device stores files that are sent to it.
     pub takes: bool,
     /// Only these, when there are any.
     pub only: Vec<String>,
@@ -17,7 +17,7 @@ pub struct Rights {
 }
 
 impl Rights {
-    /// A disk: everything.
+    /// The rights of a disk unit: everything.
     pub const ALL: Rights = Rights {
         gives: true,
         takes: true,

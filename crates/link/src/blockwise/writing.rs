@@ -119,8 +119,8 @@ impl Writing {
             (step @ (Step::Offered(_) | Step::Block(_)), Piece::Nak) => {
                 self.step = step;
                 if !self.link.repeat() {
-                    let is_told = self.link.settings.model.has_transfer_codes();
-                    self.abort(match is_told {
+                    let has_codes = self.link.settings.model.has_transfer_codes();
+                    self.abort(match has_codes {
                         true => Shown::Control(MessageId::TransferredDataIncorrect, Some('E')),
                         false => Shown::Control(MessageId::ProgramIncomplete, None),
                     });

@@ -80,7 +80,7 @@ impl Faults {
         }
     }
 
-    /// SplitMix64.
+    /// The next random number, by SplitMix64.
     fn next(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut mixed = self.state;
@@ -116,7 +116,7 @@ mod tests {
                 all.extend(out);
             }
             for count in [lost, doubled, flipped, slow] {
-                // Less than one of 1000, since some bytes pass well behind each.
+                // Less than one of 1000, since some bytes pass well after each.
                 assert!((350..550).contains(&count), "{lost} {doubled} {flipped} {slow}");
             }
             all

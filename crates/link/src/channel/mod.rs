@@ -97,7 +97,7 @@ impl Channel {
             pace: paced.map(|baud| Pace::new(characters.time(baud))),
             faults: spec
                 .fault
-                .map(|seed| [0, 1].map(|way| Faults::of_seed(seed, way))),
+                .map(|seed| [0, 1].map(|direction| Faults::of_seed(seed, direction))),
             start: Instant::now(),
             incoming: VecDeque::new(),
             outgoing: Vec::new(),
@@ -364,7 +364,7 @@ mod tests {
         until(&mut ours, Happened::Closed);
         until(&mut ours, Happened::Opened);
         assert_eq!(hear(&mut ours, 1), b"2");
-        // Who is told so connects again, and has what is said to it then.
+        // Whoever sees that connects again, and has what is said to it then.
         let mut again = Channel::open(&connect, Characters::FIXED).unwrap();
         again.connect_again();
         drop(second);

@@ -33,12 +33,12 @@ impl Pace {
         if self.free > now {
             return 0;
         }
-        let behind = now - self.free;
-        let whole = behind.as_nanos() / self.character.as_nanos().max(1);
+        let elapsed = now - self.free;
+        let whole = elapsed.as_nanos() / self.character.as_nanos().max(1);
         1 + usize::try_from(whole).unwrap_or_default()
     }
 
-    /// Characters have gone.
+    /// Counts characters that were sent.
     pub fn sent(&mut self, characters: usize) {
         self.free += self.character * u32::try_from(characters).unwrap_or(u32::MAX);
     }

@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-/// What has come.
+/// The result of a read that does not wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Got {
-    /// So many bytes.
+    /// So many bytes were read.
     Bytes(usize),
-    /// Nothing yet.
+    /// No bytes are there yet.
     Nothing,
     /// A peer has connected.
     Opened,

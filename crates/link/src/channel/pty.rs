@@ -61,7 +61,7 @@ impl Pty {
         })
     }
 
-    /// What others open.
+    /// The path of the terminal that the other side opens.
     pub fn name(&self) -> &Path {
         self.link.as_deref().unwrap_or(&self.name)
     }
@@ -112,7 +112,7 @@ impl Pty {
     fn wait_until_read(&self) -> io::Result<()> {
         let theirs = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
         let theirs = rustix::fs::open(&self.name, theirs, rustix::fs::Mode::empty())?;
-        // What was written a moment ago may still be on its way.
+        // What was written a moment ago may still be in transit.
         let mut empty = 0;
         for _ in 0..GLANCES {
             empty = if rustix::io::ioctl_fionread(&theirs)? == 0 {

@@ -10,7 +10,7 @@ const CONNECT: Duration = Duration::from_secs(5);
 /// From one try to the next *(inferred)*.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// Connects.
+/// Connects to an address by TCP.
 pub(super) fn connect(address: &str) -> io::Result<TcpStream> {
     let mut last = io::Error::from(io::ErrorKind::AddrNotAvailable);
     for address in address.to_socket_addrs()? {

@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_ports_are_told_where() {
+    fn wrong_ports_are_reported_with_their_place() {
         for (text, column, what) in [
             ("", 1, NO_LINE),
             ("tcp", 1, "an address is ADDR:PORT"),

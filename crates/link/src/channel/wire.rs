@@ -15,10 +15,10 @@ use crate::{Characters, Parity};
 
 /// How often one looks whether a connection has been made again.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long a peer has to close behind the end of what is sent.
+/// How long a peer has to close after the end of what is sent.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// One of them.
+/// The line behind a channel.
 #[derive(Debug)]
 pub(super) enum Wire {
     Listener {
@@ -27,9 +27,9 @@ pub(super) enum Wire {
     },
     Stream {
         peer: Option<TcpStream>,
-        /// Connects again.
+        /// Connects again in the background, while that runs.
         redial: Option<Redial>,
-        /// Whether it may.
+        /// Whether a lost connection is made again.
         redials: bool,
         address: String,
     },
@@ -175,7 +175,7 @@ impl Wire {
             }
         };
         match written {
-            // That the peer is gone the next reading tells.
+            // The next read reports that the peer is gone.
             Err(error) if is_gone(&error) => Ok(bytes.len()),
             Err(error) if nothing(&error).is_some() => Ok(0),
             written => written,

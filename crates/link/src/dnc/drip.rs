@@ -7,7 +7,7 @@ use super::{Arrival, BlockLine, Machine};
 /// How far a transfer is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DripState {
-    /// Blocks are coming.
+    /// Blocks are transferred.
     Running,
     /// The line is broken off: START asks for the program again.
     Broken(String),
@@ -15,7 +15,7 @@ pub enum DripState {
     Over,
 }
 
-/// A program on its way from a line into a machine. It holds one block; what the machine has no room for stays with the
+/// A program that goes from a line into a machine. It holds one block; what the machine has no room for stays with the
 /// other side, which gets no acknowledgement.
 #[derive(Debug)]
 pub struct Drip {
@@ -28,13 +28,13 @@ pub struct Drip {
     come: u64,
     come_print: Fingerprint,
     waiting: Option<Vec<u8>>,
-    /// Blocks that have come behind the end of the run.
-    behind: u32,
+    /// Blocks that have come after the end of the run.
+    after_end: u32,
 }
 
-/// Blocks behind M2 or M30 that are acknowledged before the other side is told that no more is wanted: END PGM is among them
+/// Blocks after M2 or M30 that are acknowledged before the transfer is ended: END PGM is among them
 /// *(inferred)*.
-const BEHIND_MAX: u32 = 16;
+const AFTER_END_MAX: u32 = 16;
 
 impl Drip {
     /// Asks for a program.
@@ -48,7 +48,7 @@ impl Drip {
             come: 0,
             come_print: Fingerprint::default(),
             waiting: None,
-            behind: 0,
+            after_end: 0,
         }
     }
 
@@ -108,7 +108,7 @@ impl Drip {
         self.hand_on(line, machine)
     }
 
-    /// The run has ended: what little comes behind it is acknowledged.
+    /// The run has ended: what little comes after it is acknowledged.
     fn pass_over(&mut self, line: &mut dyn BlockLine, at_most: Duration) -> bool {
         let waits = self.waiting.take().is_some();
         let arrival = match waits {
@@ -117,9 +117,9 @@ impl Drip {
         };
         match arrival {
             Arrival::Nothing => return false,
-            Arrival::Block(_) if self.behind < BEHIND_MAX => {
+            Arrival::Block(_) if self.after_end < AFTER_END_MAX => {
                 line.acknowledge();
-                self.behind += 1;
+                self.after_end += 1;
                 self.taken += 1;
                 return true;
             }

@@ -14,10 +14,10 @@ impl<P: Operable> Executing<'_, P> {
     }
 
     fn tell(&mut self, dnc: Dnc) -> bool {
-        let deed = Deed::Command(0, Command::Dnc(dnc));
+        let action = Deed::Command(0, Command::Dnc(dnc));
         // What is done stands in the log; one that cannot be written says so with the next cycle.
         matches!(
-            self.0.act(Source::Client("DNC".to_owned()), deed),
+            self.0.act(Source::Client("DNC".to_owned()), action),
             Ok(Answer::Done)
         )
     }

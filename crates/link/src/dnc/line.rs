@@ -33,7 +33,7 @@ pub trait BlockLine {
     /// The block that came last is taken: the next one may come.
     fn acknowledge(&mut self);
 
-    /// Nothing more is wanted: the other side is told, and the line is idle again.
+    /// Nothing more is wanted: ends the transfer; the line is idle again.
     fn give_up(&mut self);
 }
 
@@ -48,7 +48,7 @@ pub trait Machine {
     /// Takes text; `false` when it does not.
     fn take(&mut self, text: &[u8]) -> bool;
 
-    /// Everything has come.
+    /// The program has come whole.
     fn complete(&mut self);
 
     /// The line is broken.

@@ -17,7 +17,7 @@ pub struct Progress {
     pub name: String,
     /// Blocks that the machine has acknowledged.
     pub blocks: u64,
-    /// Bytes of them.
+    /// Size of the blocks, bytes.
     pub bytes: u64,
     /// Bytes of the file.
     pub size: u64,
@@ -33,7 +33,7 @@ impl Progress {
     }
 }
 
-/// Where a [`Spool`] tells how far it is.
+/// Where a [`Spool`] reports its progress.
 #[derive(Clone, Debug, Default)]
 pub struct Spooled(Arc<Mutex<State>>);
 
@@ -82,12 +82,12 @@ impl Spooled {
 pub struct Spool {
     files: Box<dyn Files>,
     spooled: Spooled,
-    /// Behind a broken transfer a program begins with its first block and those that were not acknowledged.
+    /// After a broken transfer a program begins with its first block and those that were not acknowledged.
     resumes: bool,
 }
 
 impl Spool {
-    /// Spools files.
+    /// A spool of these files; with `resumes` a broken transfer goes on where it was.
     pub fn new(files: Box<dyn Files>, resumes: bool) -> Spool {
         Spool {
             files,
@@ -96,7 +96,7 @@ impl Spool {
         }
     }
 
-    /// Where it tells how far it is.
+    /// Where it reports its progress.
     pub fn spooled(&self) -> Spooled {
         self.spooled.clone()
     }
@@ -173,7 +173,7 @@ impl Lines {
     }
 }
 
-/// Reads a line; `false` behind the last one.
+/// Reads a line; `false` after the last one.
 fn read(file: &mut BufReader<Box<dyn Read + Send>>, line: &mut Vec<u8>) -> io::Result<bool> {
     line.clear();
     let count = file.take(LINE_MAX).read_until(b'\n', line)?;

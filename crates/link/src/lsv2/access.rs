@@ -16,7 +16,7 @@ pub enum Level {
     FilePlc,
     /// The run, messages to the PLC.
     Dnc,
-    /// Keys and screen.
+    /// Keys and screen of the control.
     Monitor,
     /// Memory of the PLC, changes of machine parameters.
     PlcDebug,
@@ -43,12 +43,12 @@ const PLC_FILES: &str = "807667";
 const PASSWORD_MAX: usize = 16;
 
 impl Level {
-    /// All levels.
+    /// All levels of access.
     pub fn all() -> impl Iterator<Item = Level> {
         NAMES.iter().map(|(level, _)| *level)
     }
 
-    /// Its name.
+    /// The name of the level as a client sends it at login.
     pub fn name(self) -> &'static str {
         let row = NAMES.iter().find(|(level, _)| *level == self);
         row.map_or("", |(_, name)| name)
@@ -126,7 +126,7 @@ impl Passwords {
     }
 }
 
-/// Compares in a time that does not tell how much is right.
+/// Compares in constant time.
 fn same(one: &str, other: &str) -> bool {
     let differences = one
         .bytes()

@@ -18,7 +18,7 @@ const BLOCK: usize = 256;
 /// Why the device did not do it.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
-    /// The line.
+    /// The connection failed.
     #[error("{0}")]
     Line(#[from] io::Error),
     /// The device says so.
@@ -54,7 +54,7 @@ pub trait Transport {
     fn receive(&mut self) -> io::Result<Telegram>;
 }
 
-/// Telegrams on TCP.
+/// Sends and receives telegrams over TCP.
 pub struct TcpTransport {
     stream: TcpStream,
     reader: TcpReader,
@@ -120,15 +120,15 @@ impl Transport for TcpTransport {
 /// A file or folder of the device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RemoteEntry {
-    /// Its name.
+    /// The name of the file or folder.
     pub name: String,
-    /// Bytes.
+    /// Size of the file, bytes.
     pub size: u32,
     /// When it was written.
     pub modified: SystemTime,
     /// It is a folder.
     pub is_folder: bool,
-    /// It is protected.
+    /// The file is protected against erasing and writing.
     pub protected: bool,
 }
 
@@ -241,7 +241,7 @@ impl<T: Transport> Client<T> {
     /// What is in a folder; without a path in the one where the device begins.
     ///
     /// # Errors
-    /// When there is none.
+    /// When the folder does not exist.
     pub fn list(&mut self, path: Option<&str>) -> Result<Vec<RemoteEntry>, ClientError> {
         if let Some(path) = path {
             self.order(&request(b"C_DC").string(path))?;

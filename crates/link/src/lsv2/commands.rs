@@ -7,7 +7,7 @@ use super::{Command, ErrorNumber, Level, Telegram, file_commands, machine_comman
 
 /// Who may send a telegram.
 enum Who {
-    /// Everybody.
+    /// Allowed without a login.
     All,
     /// Who is logged in anywhere.
     Any,

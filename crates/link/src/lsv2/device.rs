@@ -7,7 +7,7 @@ use super::{ErrorNumber as Refused, Features};
 /// How the machine is operated; numbers are those of telegram `R_RI` 23 (public).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Execution {
-    /// By hand.
+    /// The operating mode MANUAL OPERATION.
     #[default]
     Manual = 0,
     /// By single blocks that are entered.
@@ -23,15 +23,15 @@ pub enum Execution {
 /// What the program does; numbers are those of telegram `R_RI` 26 (public).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ProgramState {
-    /// It runs.
+    /// The program run is started.
     Started = 0,
-    /// It was stopped.
+    /// The program run is stopped.
     Stopped = 1,
     /// It has come to its end.
     Finished = 2,
     /// It was broken off.
     Cancelled = 3,
-    /// It is interrupted.
+    /// The program run is interrupted.
     Interrupted = 4,
     /// A fault has interrupted it.
     Error = 5,
@@ -42,7 +42,7 @@ pub enum ProgramState {
     Idle = 7,
 }
 
-/// The run as `R_RI` tells it.
+/// The run as `R_RI` reports it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// How the machine is operated.
@@ -68,13 +68,13 @@ pub struct Run {
 /// The tool in the spindle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tool {
-    /// Its number.
+    /// Tool number.
     pub number: u32,
     /// Its axis: 0 X, 1 Y, 2 Z.
     pub axis: u16,
-    /// Length, mm.
+    /// Tool length, mm.
     pub length: f64,
-    /// Radius, mm.
+    /// Tool radius, mm.
     pub radius: f64,
 }
 
@@ -83,28 +83,28 @@ pub struct Tool {
 pub struct Message {
     /// Class: 1 an error that CE does not clear, 2 one that it clears (inferred).
     pub class: u16,
-    /// Its number.
+    /// The number of the message.
     pub number: u32,
-    /// Its text.
+    /// The text of the message as the screen shows it.
     pub text: String,
 }
 
 /// A kind of memory of the PLC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Area {
-    /// Markers.
+    /// Markers M, single bits.
     Markers,
-    /// Inputs.
+    /// Inputs I, single bits.
     Inputs,
-    /// Outputs.
+    /// Outputs O, single bits.
     Outputs,
-    /// Counters.
+    /// Counters C, single bits.
     Counters,
-    /// Timers.
+    /// Timers T, single bits.
     Timers,
     /// Bytes, of which words and doublewords are made.
     Bytes,
-    /// Strings.
+    /// Strings of the PLC.
     Strings,
 }
 
@@ -113,7 +113,7 @@ pub enum Area {
 pub struct Event {
     /// When, in seconds since 1970.
     pub time: u32,
-    /// What.
+    /// The kind of event.
     pub kind: EventKind,
     /// Name of the key, or text of the message.
     pub text: String,
@@ -134,9 +134,9 @@ pub const EVENTS: usize = 100;
 /// A message between host and PLC (modules 9110 and 9111).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PlcMessage {
-    /// A doubleword.
+    /// The value of a doubleword.
     Double(i32),
-    /// A string.
+    /// The bytes of a string.
     Text(Vec<u8>),
 }
 
@@ -145,7 +145,7 @@ pub trait Device: Send + Sync {
     /// What `R_VR` says of the control and of the PLC program.
     fn identity(&self) -> Identity;
 
-    /// Its files.
+    /// The file service of the device.
     fn store(&self) -> &Store;
 
     /// The run.
@@ -160,7 +160,7 @@ pub trait Device: Send + Sync {
     /// Elements of the PLC's memory: a byte for each bit, bytes in the order of their addresses, 128 bytes for each string.
     ///
     /// # Errors
-    /// When there are none of these.
+    /// When the area has no such elements.
     fn memory(&self, area: Area, first: u32, count: u32) -> Result<Vec<u8>, Refused>;
 
     /// A value of the tool table as it is written there, by the number of the tool and the name of the column.
@@ -172,7 +172,7 @@ pub trait Device: Send + Sync {
     /// Changes a machine parameter, for good or until power-off.
     ///
     /// # Errors
-    /// When there is none, it does not take the value, or not now.
+    /// When the parameter does not exist, does not take the value, or not now.
     fn set_parameter(&self, number: u16, index: u8, value: &str, for_good: bool) -> Result<(), Refused>;
 
     /// Presses a key by its name, or enters a character.
@@ -184,7 +184,7 @@ pub trait Device: Send + Sync {
     /// The screen as a BMP file.
     ///
     /// # Errors
-    /// When there is none.
+    /// When the device has no screen.
     fn screen(&self) -> Result<Vec<u8>, Refused>;
 
     /// The last [`EVENTS`] events, the oldest first.
@@ -211,12 +211,12 @@ pub trait Device: Send + Sync {
 pub struct Identity {
     /// The control: `BAHN TNC 415`.
     pub control: String,
-    /// What it does as such a one.
+    /// What a control of this kind can do.
     pub features: Features,
     /// NC software: six digits and two.
     pub nc_software: String,
-    /// PLC program.
+    /// Version of the PLC software.
     pub plc_software: String,
-    /// Its number.
+    /// Identification number.
     pub id: String,
 }

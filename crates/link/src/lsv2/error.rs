@@ -20,7 +20,7 @@ macro_rules! numbers {
                 pub const $name: ErrorNumber = ErrorNumber($number);
             )+
 
-            /// What it means.
+            /// The meaning of an error number; `None` where no source gives it.
             pub fn meaning(self) -> Option<&'static str> {
                 match self.0 {
                     $($number => Some($text),)+

@@ -11,14 +11,14 @@ use crate::store::{Attributes, Existing, PLC, Place, StoreError};
 /// Names of attributes in `R_DI`, four characters each, and their values (public).
 const ATTRIBUTE_NAMES: usize = 32 * 4;
 const ATTRIBUTES: usize = 32;
-/// Room that is told: nobody counts it (public: controls tell so, too).
+/// Free room that is reported: nobody counts it (public: controls report such a figure, too).
 const FREE: u32 = u32::MAX;
 
 fn done() -> Answer {
     Ok(Telegram::new(Command::T_OK))
 }
 
-/// What the store says, as the number of an error; what cannot be done to a file has another one for each deed.
+/// What the store says, as the number of an error; what cannot be done to a file has another one for each action.
 fn number(error: &StoreError, protected: ErrorNumber) -> ErrorNumber {
     match error {
         StoreError::Protected(_) => protected,
@@ -49,7 +49,7 @@ impl Session {
     }
 }
 
-/// A file or folder as `S_FI` and `S_DR` tell it: size, time, attributes, name.
+/// A file or folder as `S_FI` and `S_DR` report it: size, time, attributes, name.
 fn entry(telegram: Telegram, name: &str, attributes: &Attributes, features: Features) -> Telegram {
     let since_1970 = attributes.modified.duration_since(UNIX_EPOCH).unwrap_or_default();
     telegram
@@ -59,7 +59,7 @@ fn entry(telegram: Telegram, name: &str, attributes: &Attributes, features: Feat
         .string(name)
 }
 
-/// `R_DI`: the folder.
+/// `R_DI`: the current folder.
 pub(super) fn folder(session: &mut Session, telegram: &Telegram) -> Answer {
     let path = session.folder.to_string();
     let path = if path.ends_with('\\') { path } else { path + "\\" };
@@ -194,7 +194,7 @@ pub(super) fn send(session: &mut Session, telegram: &Telegram) -> Answer {
     Ok(first.unwrap_or(Telegram::new(telegram.command.answer())))
 }
 
-/// The byte behind the name.
+/// The byte after the name.
 fn flags(telegram: &Telegram) -> u8 {
     let mut fields = telegram.fields();
     fields.string();
@@ -248,7 +248,7 @@ pub(super) fn copy(session: &mut Session, telegram: &Telegram) -> Answer {
     done()
 }
 
-/// `C_FA`: changes the attributes of a file: bits as `R_FI` tells them, then its name (inferred). Its protection follows.
+/// `C_FA`: changes the attributes of a file: bits as `R_FI` reports them, then its name (inferred). Its protection follows.
 pub(super) fn change_attributes(session: &mut Session, telegram: &Telegram) -> Answer {
     let mut fields = telegram.fields();
     let bits = fields.long().ok_or(ErrorNumber::BAD_FORMAT)?;

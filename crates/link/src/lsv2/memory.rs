@@ -22,7 +22,7 @@ const STRING: u32 = 128;
 /// Bits of an input or output word.
 const WORD_BITS: u32 = 16;
 
-/// Version of LSV/2, and the formats of programs: not told (inferred).
+/// Version of LSV/2, and the formats of programs: not reported (inferred).
 const LSV2_VERSION: u8 = 1;
 
 /// `R_PR`: 120 bytes, where what memory begins, and how large a telegram may be (public).

@@ -48,7 +48,7 @@ impl Features {
         found.map_or(OTHERS, |(_, features)| *features)
     }
 
-    /// Attributes as bits.
+    /// File attributes as the bits of the telegram.
     pub(super) fn encode(self, attributes: &Attributes) -> u32 {
         let bit = |on: bool, bit: u32| if on { bit } else { 0 };
         Features::SHOWN

@@ -14,9 +14,9 @@ const EOT: u8 = 0x04;
 const ENQ: u8 = 0x05;
 const DLE: u8 = 0x10;
 const NAK: u8 = 0x15;
-/// Behind `DLE`: go on.
+/// After `DLE`: go on.
 const READY: u8 = b'0';
-/// Behind `DLE`: taken.
+/// After `DLE`: the telegram is acknowledged.
 const TAKEN: u8 = b'1';
 
 /// From `STX` to `ETX`, and until `ENQ` or the check byte is answered (public).
@@ -33,7 +33,7 @@ const BYTES_MAX: usize = 4 + tcp::DATA_MAX;
 pub enum Side {
     /// The host, whose telegram goes first (inferred).
     Host,
-    /// The control.
+    /// The control, which yields when both sides begin.
     Control,
 }
 
@@ -51,7 +51,7 @@ pub enum LineEvent {
 /// Why a telegram was not sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LineFault {
-    /// Nobody answers.
+    /// The other side does not answer.
     #[error("nobody answers")]
     NoAnswer,
     /// It was refused three times.
@@ -66,13 +66,13 @@ pub enum LineFault {
 enum State {
     #[default]
     Idle,
-    /// `ENQ` was sent.
+    /// `ENQ` was sent, its answer is awaited.
     Asked,
     /// The telegram was sent.
     Framed,
     /// `ENQ` was answered: `DLE STX` is due.
     Ready,
-    /// Within a telegram.
+    /// The bytes of a telegram are received.
     Text,
     /// The check byte is due.
     Check,
@@ -154,12 +154,12 @@ impl SerialLine {
         }
     }
 
-    /// Nothing is on its way.
+    /// Nothing is in transit.
     pub fn is_idle(&self) -> bool {
         self.state == State::Idle && self.frame.is_none()
     }
 
-    /// Begins to send a telegram, as soon as the line is idle; false while another one is on its way.
+    /// Begins to send a telegram, as soon as the line is idle; false while another one is in transit.
     pub fn send(&mut self, telegram: &Telegram, now: Duration) -> bool {
         if self.frame.is_some() {
             return false;
@@ -208,7 +208,7 @@ impl SerialLine {
         self.due
     }
 
-    /// Time has passed.
+    /// Advances the clock: what was awaited for too long is repeated or given up.
     pub fn tick(&mut self, now: Duration) {
         if self.due.is_none_or(|due| now < due) {
             return;
@@ -220,7 +220,7 @@ impl SerialLine {
             // The other side is gone.
             State::Ready | State::Answered { taken: false } => self.rest(now),
             State::Text | State::Check => self.refuse(now),
-            // Its EOT was lost: it was told that the telegram was taken.
+            // Its EOT was lost: the telegram was acknowledged.
             State::Answered { taken: true } => self.receive(now),
         }
     }

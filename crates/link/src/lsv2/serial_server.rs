@@ -32,7 +32,7 @@ impl SerialServer {
         self.follow(now);
     }
 
-    /// Time has passed.
+    /// Advances the clock: what was awaited for too long is repeated or given up.
     pub fn tick(&mut self, now: Duration) {
         self.line.tick(now);
         if self.line.is_idle()
@@ -50,7 +50,7 @@ impl SerialServer {
         self.line.take_output()
     }
 
-    /// Nothing is on its way: the line may be another protocol's.
+    /// Nothing is in transit: the line may be another protocol's.
     pub fn is_idle(&self) -> bool {
         self.line.is_idle() && self.answers.is_empty()
     }

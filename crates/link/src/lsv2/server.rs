@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::machine_commands::from_plc;
 use super::{ErrorNumber, Passwords, Session, Site, TcpReader, encode};
 
-/// Connections at once.
+/// Connections at once, at most.
 const CONNECTIONS: usize = 16;
 /// The middle of a telegram lasts no longer.
 const TELEGRAM: Duration = Duration::from_secs(3);
@@ -30,7 +30,7 @@ const RATE: u32 = 40_000;
 /// How a device is served.
 #[derive(Clone, Debug)]
 pub struct ServerOptions {
-    /// Where it listens.
+    /// The address at which the server listens.
     pub listen: SocketAddr,
     /// Passwords of the levels.
     pub passwords: Passwords,
@@ -131,7 +131,7 @@ impl Server {
         OpenPort::open(options)?.serve(site.into())
     }
 
-    /// Where it listens.
+    /// The address at which the server listens.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -206,7 +206,7 @@ fn leave(shared: &Shared, number: usize) {
     shared.count.fetch_sub(1, Ordering::AcqRel);
 }
 
-/// There is no room: it is told so, if it takes it.
+/// There is no room: that is sent to it, if it takes it.
 fn turn_away(mut stream: TcpStream) {
     let _ = stream.set_nonblocking(true);
     let _ = stream.write_all(&encode(&ErrorNumber::TOO_MANY.telegram()));

@@ -12,12 +12,12 @@ use crate::store::Place;
 pub(super) const BLOCK: usize = 256;
 /// Bytes of the status that a client may set and read back (public).
 const STATUS: usize = 12;
-/// Wrong passwords of one connection, behind which it is closed.
+/// Wrong passwords of one connection, after which it is closed.
 const WRONG_PASSWORDS: u32 = 5;
 
 /// What all connections to a machine share.
 pub struct Site {
-    /// The machine.
+    /// The machine that answers.
     pub device: Arc<dyn Device>,
     /// Passwords of the levels.
     pub passwords: Passwords,
@@ -59,7 +59,7 @@ impl Site {
 /// What a connection is in the middle of.
 #[derive(Default)]
 pub(super) enum Task {
-    /// Nothing.
+    /// No answer is sent.
     #[default]
     None,
     /// Telegrams that go out one by one, each when the one before is confirmed.
@@ -85,7 +85,7 @@ pub struct Session {
     /// The end of a file that comes in is answered.
     pub(super) secure: bool,
     pub(super) task: Task,
-    /// The message that is told next.
+    /// The message that is sent next.
     pub(super) next_message: usize,
     pub(super) status: [u8; STATUS],
     wrong_passwords: u32,

@@ -13,7 +13,7 @@ use crate::store::{Store, StoreError};
 pub struct StillDevice {
     store: Store,
     /// What was done to it, in words.
-    deeds: Mutex<Vec<String>>,
+    calls: Mutex<Vec<String>>,
     /// What the PLC has to say.
     outgoing: Mutex<Vec<PlcMessage>>,
     control: String,
@@ -32,7 +32,7 @@ impl StillDevice {
         let [programs, plc] = folders;
         Ok(StillDevice {
             store: Store::of_machine(&programs, &plc)?,
-            deeds: Mutex::default(),
+            calls: Mutex::default(),
             outgoing: Mutex::default(),
             control: "BAHN TNC 415".to_owned(),
         })
@@ -46,8 +46,8 @@ impl StillDevice {
     }
 
     /// What was done to it since the last time.
-    pub fn take_deeds(&self) -> Vec<String> {
-        std::mem::take(&mut self.deeds.lock().unwrap_or_else(PoisonError::into_inner))
+    pub fn take_calls(&self) -> Vec<String> {
+        std::mem::take(&mut self.calls.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// The PLC has something to say.
@@ -56,11 +56,11 @@ impl StillDevice {
         outgoing.push(message);
     }
 
-    fn note(&self, deed: String) {
-        let mut deeds = self.deeds.lock().unwrap_or_else(PoisonError::into_inner);
+    fn note(&self, call: String) {
+        let mut calls = self.calls.lock().unwrap_or_else(PoisonError::into_inner);
         // Whoever does not take them does not want them.
-        if deeds.len() < 1000 {
-            deeds.push(deed);
+        if calls.len() < 1000 {
+            calls.push(call);
         }
     }
 }

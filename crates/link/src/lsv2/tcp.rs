@@ -4,7 +4,7 @@ use super::Telegram;
 
 /// Parameters of a telegram at most: the largest block, 4096 bytes.
 pub const DATA_MAX: usize = 4096;
-/// Length and command.
+/// Length of the head of a telegram: its length and command, bytes.
 const HEAD: usize = 8;
 
 /// A telegram as it travels.

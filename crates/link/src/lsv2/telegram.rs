@@ -7,7 +7,7 @@ use std::fmt;
 pub struct Command(pub [u8; 4]);
 
 impl Command {
-    /// Done.
+    /// The command is done.
     pub const T_OK: Command = Command(*b"T_OK");
     /// Not done: class and number of the error follow.
     pub const T_ER: Command = Command(*b"T_ER");
@@ -53,7 +53,7 @@ impl fmt::Debug for Command {
 pub struct Telegram {
     /// What it is about.
     pub command: Command,
-    /// Its parameters.
+    /// The parameters of the command, bytes.
     pub data: Vec<u8>,
 }
 
@@ -77,33 +77,33 @@ impl Telegram {
         Some(Telegram::with(Command(*command), data.to_vec()))
     }
 
-    /// Command and parameters.
+    /// Command and parameters as bytes.
     pub fn bytes(&self) -> Vec<u8> {
         [self.command.0.as_slice(), &self.data].concat()
     }
 
-    /// A byte behind the parameters.
+    /// A byte after the parameters.
     #[must_use]
     pub fn byte(mut self, value: u8) -> Telegram {
         self.data.push(value);
         self
     }
 
-    /// A number of 16 bits behind the parameters.
+    /// A number of 16 bits after the parameters.
     #[must_use]
     pub fn word(mut self, value: u16) -> Telegram {
         self.data.extend(value.to_be_bytes());
         self
     }
 
-    /// A number of 32 bits behind the parameters.
+    /// A number of 32 bits after the parameters.
     #[must_use]
     pub fn long(mut self, value: u32) -> Telegram {
         self.data.extend(value.to_be_bytes());
         self
     }
 
-    /// A string behind the parameters, in Latin 1; characters that it has not are `?`.
+    /// A string after the parameters, in Latin 1; characters that it has not are `?`.
     #[must_use]
     pub fn string(mut self, text: &str) -> Telegram {
         let byte = |character: char| u8::try_from(u32::from(character)).unwrap_or(b'?');
@@ -113,7 +113,7 @@ impl Telegram {
         self
     }
 
-    /// Bytes behind the parameters.
+    /// Bytes after the parameters.
     #[must_use]
     pub fn raw(mut self, bytes: &[u8]) -> Telegram {
         self.data.extend_from_slice(bytes);
@@ -131,7 +131,7 @@ impl Telegram {
 pub struct Fields<'a>(&'a [u8]);
 
 impl<'a> Fields<'a> {
-    /// The next byte.
+    /// Takes the next byte of the parameters.
     pub fn byte(&mut self) -> Option<u8> {
         let (first, rest) = self.0.split_first()?;
         self.0 = rest;
@@ -163,7 +163,7 @@ impl<'a> Fields<'a> {
         Some(text.iter().map(|byte| char::from(*byte)).collect())
     }
 
-    /// What is left.
+    /// Takes the bytes that are left of the parameters.
     pub fn rest(&self) -> &'a [u8] {
         self.0
     }

@@ -1,4 +1,4 @@
-//! Files on their way, block by block.
+//! Transfer of files, block by block.
 
 use std::io::{Read, Write};
 
@@ -10,7 +10,7 @@ const HEAD: usize = 10;
 /// Without the binary flag a zero byte ends a line (public).
 const END_OF_LINE: u8 = 0;
 
-/// Flags behind the name of a file (public).
+/// Flags after the name of a file (public).
 pub(super) const BINARY: u8 = 1;
 /// Lines of a table replace those of the table that is there.
 pub(super) const MERGE: u8 = 2;
@@ -32,7 +32,7 @@ impl Sending {
         }
     }
 
-    /// The next block; `None` behind the last one.
+    /// The next block; `None` after the last one.
     pub fn next(&mut self, block: usize) -> Result<Option<Telegram>, ErrorNumber> {
         let mut data = vec![0; block.saturating_sub(HEAD)];
         loop {

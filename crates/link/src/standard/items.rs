@@ -25,20 +25,20 @@ const ERRORS: [MessageId; 8] = [
     MessageId::MeEndOfTape,
 ];
 
-/// What has come.
+/// An item of the character stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Item {
     /// A line, without its end.
     Line(Vec<u8>),
-    /// End of text.
+    /// End of text, ETX.
     Etx,
-    /// End of transmission.
+    /// End of transmission, EOT.
     Eot,
     /// Go on, or begin.
     Dc1,
-    /// Stop.
+    /// DC3: sending is to stop.
     Dc3,
-    /// LSV/2 begins.
+    /// ENQ, with which LSV/2 begins.
     Enquiry,
     /// An error of the device, or what should have been one.
     Error(Shown),
@@ -48,7 +48,7 @@ pub(super) enum Item {
 enum Escape {
     #[default]
     None,
-    /// 1 is awaited.
+    /// The character 1 is awaited.
     One,
     /// The number is awaited.
     Number,
@@ -72,7 +72,7 @@ impl Items {
         (!self.line.is_empty()).then(|| std::mem::take(&mut self.line))
     }
 
-    /// Takes a byte.
+    /// Takes a byte from the line; the item that it completes.
     pub fn take(&mut self, settings: &Settings, byte: u8) -> Option<Item> {
         let code = |code| Item::Error(Shown::Control(MessageId::TransferredDataIncorrect, Some(code)));
         match std::mem::take(&mut self.escape) {

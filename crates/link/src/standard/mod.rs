@@ -1,6 +1,6 @@
 //! The standard protocol: ME, and EXT with MP5030 = 0 [000:17240-17349].
 //!
-//! Text goes as it is, with CR LF behind each line and nothing to check it by. `items`: what comes; `reading` and `writing`:
+//! Text goes as it is, with CR LF after each line and nothing to check it by. `items`: what comes; `reading` and `writing`:
 //! the control; `peripheral`: the device, and a control that obeys.
 
 mod items;
@@ -39,7 +39,7 @@ impl Outgoing {
         }
     }
 
-    /// Begins a file.
+    /// Begins to send a file.
     fn begin(&mut self, source: Source) {
         self.bytes.extend([0; NULS]);
         self.source = Some(source);
@@ -65,10 +65,10 @@ impl Outgoing {
         !self.stopped && !self.bytes.is_empty()
     }
 
-    /// Not more than may still come behind a DC3, so that one is seen in time.
+    /// Not more than may still come after a DC3, so that one is seen in time.
     fn take(&mut self, room: usize, into: &mut Vec<u8>) {
         if !self.stopped {
-            let count = room.min(crate::BEHIND_DC3).min(self.bytes.len());
+            let count = room.min(crate::AFTER_DC3).min(self.bytes.len());
             into.extend(self.bytes.drain(..count));
         }
     }

@@ -18,7 +18,7 @@ use crate::{DC1, DC3, FileType};
 enum Text {
     /// A first line is awaited.
     Search,
-    /// It is stored.
+    /// The file is stored while it comes.
     Taking(Taking),
     /// It is read, but not stored.
     Skip,
@@ -133,7 +133,7 @@ impl Reading {
         }
     }
 
-    /// A file begins.
+    /// Takes the first line of a file.
     fn first_line(&mut self, begins: &Beginning, line: Vec<u8>) {
         let kind = begins.kind.unwrap_or(self.kind);
         let name = format!("{}.{}", begins.name, kind.extension());

@@ -16,9 +16,9 @@ use crate::text::Source;
 enum Step {
     /// The operator is asked whether the next file goes.
     Question,
-    /// A file goes.
+    /// The lines of a file are sent.
     File,
-    /// Its end goes.
+    /// The end of a file is sent.
     End,
     Over,
 }

@@ -91,7 +91,7 @@ pub struct Reading {
 #[derive(Debug)]
 enum Source {
     File(File),
-    /// Of a view.
+    /// The text of a view, which is no file of the medium.
     Bytes(io::Cursor<Vec<u8>>),
 }
 
@@ -150,7 +150,7 @@ impl Writing {
         file.finish()
             .map_err(|error| StoreError::Medium(error.to_string()))?;
         if let Some(superseded) = &self.superseded {
-            // If it stays it is behind the new one.
+            // If it stays it is after the new one.
             let _ = fs::remove_file(superseded);
         }
         self.store.medium.changed();

@@ -141,7 +141,7 @@ fn shown_name(name: &str) -> String {
     kind.unwrap_or_else(|| name.to_owned())
 }
 
-/// What is spelled like a name in a folder: letter by letter if there is such a one, else the first by name that differs in
+/// What is spelled like a name in a folder: letter by letter if possible, else the first by name that differs in
 /// case only.
 fn spelled(folder: &Path, name: &str, wanted: Kind) -> Option<PathBuf> {
     let is_wanted = |path: &Path| {

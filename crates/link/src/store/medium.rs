@@ -27,7 +27,7 @@ impl Medium {
         self.busy.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Counts a change.
+    /// Counts a change of the medium, so that listings are read again.
     pub(super) fn changed(&self) {
         self.changes.fetch_add(1, Ordering::Release);
     }

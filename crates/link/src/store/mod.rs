@@ -260,9 +260,9 @@ impl Store {
         self.medium.find_folder(place).map(drop)
     }
 
-    /// A deed of the medium is on it, and counted.
-    fn done(&self, deed: std::io::Result<()>, path: &Path, place: &Place) -> Result<(), StoreError> {
-        deed.map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
+    /// An action on the medium is finished, and counted.
+    fn done(&self, result: std::io::Result<()>, path: &Path, place: &Place) -> Result<(), StoreError> {
+        result.map_err(|error| StoreError::of_system(&error, &place.to_string()))?;
         bahn_host::files::sync_folder(path);
         self.medium.changed();
         Ok(())

@@ -57,7 +57,7 @@ impl Place {
             Some(_) => return Err(refused()),
             None => (self.clone(), path),
         };
-        // Hosts write `\\\\` between folders and behind them, too: it is one.
+        // Hosts write `\\\\` between folders and after them, too: it is one.
         let rest = rest.trim_end_matches(SEPARATORS);
         if rest.is_empty() {
             // A drive alone; nothing at all is no path.

@@ -7,7 +7,7 @@ use super::*;
 use crate::Files;
 use proptest::prelude::*;
 
-/// A folder of its own for a test, gone behind it.
+/// A folder of its own for a test, gone after it.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -415,7 +415,7 @@ fn what_lies_elsewhere_is_shown_and_left_alone() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever paths are sent for whatever deeds: nothing outside the two folders is touched.
+    /// Whatever paths are sent for whatever actions: nothing outside the two folders is touched.
     #[test]
     fn no_path_leads_out(paths in proptest::collection::vec("(TNC:|PLC:|)[A-C./\\\\]{0,8}(up|1.H)?", 1..20)) {
         let folder = Folder::new("out");

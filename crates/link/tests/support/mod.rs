@@ -60,17 +60,17 @@ pub fn bytes(line: &str) -> Vec<u8> {
     let mut block = 0;
     let mut rest = line.trim();
     while !rest.is_empty() {
-        let (word, behind, quoted) = match rest.strip_prefix('"') {
+        let (word, after, quoted) = match rest.strip_prefix('"') {
             Some(text) => {
-                let (text, behind) = text.split_once('"').unwrap();
-                (text, behind, true)
+                let (text, after) = text.split_once('"').unwrap();
+                (text, after, true)
             }
             None => {
-                let (word, behind) = rest.split_once(' ').unwrap_or((rest, ""));
-                (word, behind, false)
+                let (word, after) = rest.split_once(' ').unwrap_or((rest, ""));
+                (word, after, false)
             }
         };
-        rest = behind.trim_start();
+        rest = after.trim_start();
         let (name, count) = match word.split_once('*') {
             Some((name, count)) if !quoted => (name, count.parse().unwrap()),
             _ => (word, 1),
@@ -105,8 +105,8 @@ pub fn shown(bytes: &[u8]) -> String {
     bytes.iter().map(name).collect()
 }
 
-/// What a protocol tells, as words.
-pub fn told(event: &Event, model: ControlModel) -> String {
+/// The events of a protocol, as words.
+pub fn described(event: &Event, model: ControlModel) -> String {
     match event {
         Event::Received(name) => format!("received {name}"),
         Event::Sent(name) => format!("sent {name}"),
@@ -125,7 +125,7 @@ pub fn told(event: &Event, model: ControlModel) -> String {
 }
 
 /// Lets a protocol have a conversation: what it says is compared byte by byte, what the other side says is played. Returns
-/// what it told.
+/// what it reported.
 pub fn converse(role: Role, protocol: &mut dyn Protocol, script: &str) -> Vec<String> {
     let model = ControlModel::Tnc415b;
     let own = if role == Role::Control { 'T' } else { 'P' };
@@ -188,6 +188,6 @@ pub fn converse(role: Role, protocol: &mut dyn Protocol, script: &str) -> Vec<St
         shown(&pending)
     );
     std::iter::from_fn(|| protocol.event())
-        .map(|event| told(&event, model))
+        .map(|event| described(&event, model))
         .collect()
 }

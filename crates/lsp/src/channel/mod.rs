@@ -45,9 +45,9 @@ impl ChannelText {
         let line = self.text.line_at(at);
         let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '[' | ']' | '-');
         let before = self.text.get(line.start..at);
-        let behind = self.text.get(at..line.end);
+        let after = self.text.get(at..line.end);
         let start = before.trim_end_matches(is_part).len();
-        let length = behind.len() - behind.trim_start_matches(is_part).len();
+        let length = after.len() - after.trim_start_matches(is_part).len();
         line.start + start..at + length
     }
 
@@ -152,7 +152,7 @@ impl Analysis for ChannelText {
         Vec::new()
     }
 
-    /// Names at the begin of a line, synchronisation types behind one.
+    /// Names at the begin of a line, synchronisation types after one.
     fn completions(&self, at: usize, _: &World) -> Vec<Completion> {
         let line = self.text.line_at(at);
         let before = self.text.get(line.start..at);

@@ -33,7 +33,7 @@ impl DinProgram {
         let program = Arc::new(Program::from_bytes(&name, text.text.as_bytes()));
         let mut from = 0;
         let lines = (1..=program.line_count()).map(|number| {
-            // Each line stands behind the one before it.
+            // Each line stands after the one before it.
             let line = program.line(number);
             let found = text.text.get(from..).and_then(|rest| rest.find(line));
             let start = from + found.unwrap_or_default();
@@ -94,13 +94,13 @@ impl DinProgram {
             for (range, kind) in &words {
                 let word = self.text.get(range.clone());
                 let rest = self.text.get(range.end..line.end);
-                let behind = rest.trim_start();
-                let blanks = rest.len() - behind.len();
+                let after = rest.trim_start();
+                let blanks = rest.len() - after.len();
                 match kind {
                     SpanKind::Variable => found.push(Mention {
                         range: range.clone(),
                         thing: Thing::Variable(word.to_ascii_uppercase()),
-                        role: if behind.starts_with('=') {
+                        role: if after.starts_with('=') {
                             Role::Sets
                         } else {
                             Role::Uses
@@ -117,7 +117,7 @@ impl DinProgram {
                         }
                     }
                     SpanKind::Address if matches!(word, "L" | "l" | "LL" | "ll") => {
-                        let name = first_word(behind);
+                        let name = first_word(after);
                         let start = range.end + blanks;
                         let is_here = subroutines.iter().any(|landmark| landmark.name == name);
                         if is_here {
@@ -146,7 +146,7 @@ fn subroutine_at(start: usize, name: &str, role: Role) -> Mention {
     }
 }
 
-/// The value of a variable or a parameter behind a run; nothing of one whose number is calculated.
+/// The value of a variable or a parameter after a run; nothing of one whose number is calculated.
 fn value(name: &str, examined: &Examined) -> String {
     let digits = name
         .strip_prefix('P')
@@ -278,7 +278,7 @@ impl Analysis for DinProgram {
         }
         let (range, kind) = self.word_at(at)?;
         Some(Hover {
-            text: words::told(self.text.get(range.clone()), kind)?,
+            text: words::meaning(self.text.get(range.clone()), kind)?,
             range,
         })
     }

@@ -35,7 +35,7 @@ fn words() -> impl Iterator<Item = Word> {
 }
 
 /// What a word means.
-pub(super) fn told(text: &str, kind: SpanKind) -> Option<String> {
+pub(super) fn meaning(text: &str, kind: SpanKind) -> Option<String> {
     let capitals = text.to_ascii_uppercase();
     let capitals = capitals.split_whitespace().collect::<Vec<_>>().join(" ");
     let found = match kind {

@@ -7,9 +7,9 @@ use std::path::Path;
 pub(crate) enum Kind {
     /// HEIDENHAIN plain language, `.H`.
     Plain,
-    /// DIN/ISO, `.I`.
+    /// DIN/ISO programs of the control, `.I`.
     Iso,
-    /// DIN 66025, `.nc`.
+    /// DIN 66025 programs, `.nc`.
     Din,
     /// A program of the PLC, `.PLC`.
     Plc,

@@ -8,9 +8,9 @@ use std::ops::Range;
 pub(crate) enum Thing {
     /// A label of a part program.
     Label(u16),
-    /// A Q parameter.
+    /// A Q parameter by its number.
     Q(u16),
-    /// A tool.
+    /// A tool by its number.
     Tool(u32),
     /// A part program, or a source file.
     File(String),
@@ -22,7 +22,7 @@ pub(crate) enum Thing {
     PlcLabel(String),
     /// An operand of the PLC.
     Operand(String),
-    /// A machine parameter.
+    /// A machine parameter by its number, such as `4110.2`.
     MachineParameter(String),
 }
 
@@ -43,14 +43,14 @@ pub(crate) struct Mention {
     pub(crate) role: Role,
 }
 
-/// The name at a place; the cursor may stand behind it.
+/// The name at a place; the cursor may stand after it.
 pub(crate) fn at(mentions: &[Mention], offset: usize) -> Option<&Mention> {
     let inside = |mention: &&Mention| mention.range.contains(&offset);
-    let behind = |mention: &&Mention| mention.range.end == offset;
+    let after = |mention: &&Mention| mention.range.end == offset;
     mentions
         .iter()
         .find(inside)
-        .or_else(|| mentions.iter().find(behind))
+        .or_else(|| mentions.iter().find(after))
 }
 
 /// All places of a thing.

@@ -1,4 +1,4 @@
-//! What the server asks of a language, and what it is told; the same for all of them.
+//! What the server asks of a language, and what it answers; the same for all of them.
 
 mod kind;
 mod mention;
@@ -15,13 +15,13 @@ use crate::world::World;
 
 /// One version of a document, read in its language. Places are bytes of the text.
 pub(crate) trait Analysis: Send + Sync {
-    /// All that is wrong, and what is known behind a run; it may take long and ends soon behind `interrupt`.
+    /// All that is wrong, and what is known after a run; it may take long and ends soon after `interrupt`.
     fn examine(&self, world: &World, interrupt: &AtomicBool) -> Examined;
 
     /// What the word at a place means.
     fn hover(&self, at: usize, examined: Option<&Examined>) -> Option<Hover>;
 
-    /// Whether [`Analysis::hover`] has more to say behind a run.
+    /// Whether [`Analysis::hover`] has more to say after a run.
     fn hover_waits(&self, _at: usize) -> bool {
         false
     }
@@ -196,7 +196,7 @@ pub(crate) struct Completion {
     pub(crate) detail: String,
     pub(crate) documentation: String,
     pub(crate) kind: CompletionKind,
-    /// What is replaced.
+    /// The bytes that are replaced.
     pub(crate) range: Range<usize>,
     /// What is written, with places to fill in as `${1:prompt}`.
     pub(crate) snippet: String,

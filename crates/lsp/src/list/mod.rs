@@ -124,8 +124,8 @@ impl Analysis for ParameterText {
         for entry in self.entries() {
             formatted += self.text.get(from..entry.line.start);
             let value = entry.definition.format_value(entry.number);
-            let behind = self.text.get(entry.value.end..entry.line.end).trim();
-            formatted += format!("{:<9}: {value:<12} {behind}", entry.definition.id.to_string()).trim_end();
+            let after = self.text.get(entry.value.end..entry.line.end).trim();
+            formatted += format!("{:<9}: {value:<12} {after}", entry.definition.id.to_string()).trim_end();
             from = entry.line.end;
         }
         Ok(formatted + self.text.get(from..self.text.text.len()))

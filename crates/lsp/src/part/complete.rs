@@ -75,18 +75,18 @@ pub(super) fn completions(program: &PartProgram, at: usize, world: &World) -> Ve
 /// The length of a block number with the blanks around it.
 fn number_length(line: &str) -> usize {
     let trimmed = line.trim_start();
-    let behind_n = trimmed
+    let after_n = trimmed
         .strip_prefix(['N', 'n'])
         .filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
-    let digits = behind_n.unwrap_or(trimmed);
-    let behind = digits.trim_start_matches(|c: char| c.is_ascii_digit());
-    let is_number = behind.len() < digits.len() && behind.starts_with(char::is_whitespace);
-    let rest = if is_number { behind } else { trimmed };
+    let digits = after_n.unwrap_or(trimmed);
+    let after = digits.trim_start_matches(|c: char| c.is_ascii_digit());
+    let is_number = after.len() < digits.len() && after.starts_with(char::is_whitespace);
+    let rest = if is_number { after } else { trimmed };
     let rest = rest.trim_start();
     line.len() - rest.strip_prefix('/').map_or(rest, str::trim_start).len()
 }
 
-/// The bytes of the word that goes on behind the cursor.
+/// The bytes of the word that goes on after the cursor.
 fn word_rest(text: &str) -> usize {
     text.chars()
         .take_while(|c| c.is_alphanumeric())
@@ -275,7 +275,7 @@ impl Writer<'_> {
         .collect()
     }
 
-    /// Words behind the function.
+    /// Words after the function.
     fn addresses(&self) -> Vec<Completion> {
         let all = words::of_language(self.program.is_iso()).filter(|word| word.part == Part::Address);
         let mut all: Vec<Completion> = all
@@ -328,7 +328,7 @@ fn cycle_snippet(template: &[Vec<TemplatePart>]) -> String {
                     text = own;
                 }
                 TemplatePart::Ask { prompt, optional } => {
-                    // The head of a block stays, whatever may be missing behind it.
+                    // The head of a block stays, whatever may be missing after it.
                     let is_head = block.is_empty();
                     if !*optional {
                         number += 1;

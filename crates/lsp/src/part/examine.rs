@@ -26,7 +26,7 @@ pub(super) fn examine(program: &PartProgram, world: &World, interrupt: &AtomicBo
     };
     let library = Box::new(Shelf::with(&program.program, world));
     let found = bahn_interpreter::examine(program.program.clone(), settings, library, interrupt);
-    let faults = found.found.iter().map(|fault| told(program, &found, fault));
+    let faults = found.found.iter().map(|fault| located(program, &found, fault));
     Examined {
         faults: faults.collect(),
         not_listed: found.more.errors + found.more.warnings,
@@ -37,7 +37,7 @@ pub(super) fn examine(program: &PartProgram, world: &World, interrupt: &AtomicBo
 }
 
 /// A fault of this program at its place, one of another program at the call that leads there.
-fn told(program: &PartProgram, all: &Examination, found: &Found) -> Fault {
+fn located(program: &PartProgram, all: &Examination, found: &Found) -> Fault {
     let fault = &found.fault;
     let severity = match fault.severity {
         Degree::Error => Severity::Error,

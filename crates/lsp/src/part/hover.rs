@@ -82,7 +82,7 @@ fn shortened(blocks: &[u32]) -> String {
     shown.join(", ") + more
 }
 
-/// The value of a parameter behind a run.
+/// The value of a parameter after a run.
 fn value(number: u16, examined: Option<&Examined>) -> String {
     let Some(examined) = examined else {
         return String::new();
@@ -115,7 +115,7 @@ fn of_word(program: &PartProgram, block: &ReadBlock<'_>, word: &WordSpan) -> Opt
             let found = words::find(is_iso, Part::Function, &text);
             let found = found.or_else(|| words::find(is_iso, Part::Function, bare));
             match found {
-                Some(row) => Some(told(program, row)),
+                Some(row) => Some(described(program, row)),
                 None if is_iso => of_code(program, &text),
                 None => None,
             }
@@ -140,14 +140,14 @@ fn of_word(program: &PartProgram, block: &ReadBlock<'_>, word: &WordSpan) -> Opt
                 find(&text).or_else(|| find(&letters))
             };
             let incremental = || find(letters.strip_prefix('I')?);
-            row.or_else(incremental).map(|row| told(program, row))
+            row.or_else(incremental).map(|row| described(program, row))
         }
         _ => None,
     }
 }
 
 /// A word of the table.
-fn told(program: &PartProgram, row: &Word) -> String {
+fn described(program: &PartProgram, row: &Word) -> String {
     let registered = registered(program.model, Kind::Word, row.word);
     Markdown::titled(&format!("{}: {}", row.word, row.title))
         .paragraph(row.rule)
@@ -234,7 +234,7 @@ fn of_code(program: &PartProgram, text: &str) -> Option<String> {
                 &format!("{} = ", found.word),
             ))
         }
-        _ => Some(told(program, found)),
+        _ => Some(described(program, found)),
     }
 }
 

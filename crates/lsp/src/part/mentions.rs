@@ -37,7 +37,7 @@ impl Finder<'_> {
         self.program.text.get(range.clone())
     }
 
-    /// The words behind the one that opens the block, and that one in capitals, without its numbers.
+    /// The words after the one that opens the block, and that one in capitals, without its numbers.
     fn opened(&self) -> Option<(String, &[WordSpan])> {
         let place = self
             .block
@@ -49,8 +49,8 @@ impl Finder<'_> {
             true => word.span.end,
             false => word.value.start,
         };
-        let behind = self.block.words.get(place + 1..)?;
-        Some((self.program.capitals(&(word.span.start..end)), behind))
+        let after = self.block.words.get(place + 1..)?;
+        Some((self.program.capitals(&(word.span.start..end)), after))
     }
 
     fn plain(&mut self) {
@@ -269,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parameters_are_found_behind_addresses_and_signs() {
+    fn parameters_are_found_after_addresses_and_signs() {
         let numbers = |text: &str| {
             parameters_in(text)
                 .into_iter()

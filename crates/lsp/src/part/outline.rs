@@ -195,7 +195,7 @@ fn fold(first: usize, last: usize) -> Fold {
     }
 }
 
-/// Blocks of one cycle, or comments, one behind the other.
+/// Blocks of one cycle, or comments, one after the other.
 #[derive(Default)]
 struct Runs {
     open: Option<(Run, usize, usize)>,

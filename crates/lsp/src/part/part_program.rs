@@ -119,7 +119,7 @@ impl PartProgram {
     }
 }
 
-/// Where the blocks of a program stand. Text around the program is none.
+/// Where the blocks of a program stand. Text around the program has no blocks.
 pub(super) fn places(program: &Program, body: &[u8], front: usize) -> Vec<Place> {
     let language = program.language();
     let mut each = Lines::new(body, 1);

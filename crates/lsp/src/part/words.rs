@@ -9,7 +9,7 @@ pub(super) enum Part {
     Function,
     /// It stands before a value, or is a word of its own.
     Address,
-    /// An M function.
+    /// A word M with its number.
     M,
     /// A G function that is a cycle; the title names it in plain language.
     Cycle,
@@ -33,7 +33,7 @@ pub(super) struct Word {
     pub(super) snippet: &'static str,
 }
 
-/// All words.
+/// All words of the table `data/words.tsv`.
 pub(super) fn words() -> &'static [Word] {
     static WORDS: LazyLock<Vec<Word>> = LazyLock::new(|| {
         let rows = include_str!("../../data/words.tsv").lines().skip(1);
@@ -140,9 +140,9 @@ mod tests {
     fn filled(snippet: &str) -> String {
         let mut text = String::new();
         let mut rest = snippet;
-        while let Some((before, behind)) = rest.split_once("${") {
+        while let Some((before, open)) = rest.split_once("${") {
             text += before;
-            let (place, after) = behind.split_once('}').unwrap();
+            let (place, after) = open.split_once('}').unwrap();
             text += place.split_once(':').unwrap().1;
             rest = after;
         }

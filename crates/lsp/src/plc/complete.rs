@@ -70,7 +70,7 @@ fn files(source: &PlcSource, world: &World, range: &Range<usize>) -> Vec<Complet
         .collect()
 }
 
-/// Labels of the file, and behind CM the modules of the control.
+/// Labels of the file, and after CM the modules of the control.
 fn places(source: &PlcSource, command: &str, range: &Range<usize>) -> Vec<Completion> {
     let set = source
         .mentions()

@@ -21,10 +21,10 @@ pub(super) fn examine(source: &PlcSource, world: &World) -> Examined {
     let main = main_of(&source.path, world);
     let compilation = compiled(source, &main, world);
     let of = |severity: Severity, all: &[Diagnostic]| -> Vec<Fault> {
-        let told = all
+        let located = all
             .iter()
-            .filter_map(|fault| told(source, &main, severity, fault));
-        told.collect()
+            .filter_map(|fault| located(source, &main, severity, fault));
+        located.collect()
     };
     let mut faults = of(Severity::Error, &compilation.errors);
     faults.extend(of(Severity::Warning, &compilation.warnings));
@@ -49,7 +49,7 @@ fn compiled(source: &PlcSource, main: &Path, world: &World) -> Compilation {
 }
 
 /// A fault of this file at its place; one of a linked file where this one links it.
-fn told(source: &PlcSource, main: &Path, severity: Severity, fault: &Diagnostic) -> Option<Fault> {
+fn located(source: &PlcSource, main: &Path, severity: Severity, fault: &Diagnostic) -> Option<Fault> {
     let folder = main.parent().unwrap_or(Path::new(""));
     let error = fault.error;
     let message = format!(
@@ -76,7 +76,7 @@ fn told(source: &PlcSource, main: &Path, severity: Severity, fault: &Diagnostic)
             related: related.into_iter().collect(),
         });
     }
-    // The main file tells of all; what lies beside a linked file is not its matter.
+    // The main file shows all errors; a linked file only its own.
     let is_main = is_same(main, &source.path);
     let line = fault.line.saturating_sub(1);
     let column = fault.column.saturating_sub(1);

@@ -41,8 +41,9 @@ impl Analysis for PlcSource {
                 let is_extern = |words: &LineWords| {
                     words.instruction == "EXTERN" && words.operand == LineOperand::Label(name.clone())
                 };
-                let told = self.words().any(|(_, _, words)| is_extern(words));
-                told.then(|| examine::label_elsewhere(self, name, world))
+                let declared = self.words().any(|(_, _, words)| is_extern(words));
+                declared
+                    .then(|| examine::label_elsewhere(self, name, world))
                     .flatten()
             }
             _ => None,

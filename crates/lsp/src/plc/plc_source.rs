@@ -81,7 +81,7 @@ pub(super) const WRITING: [&str; 14] = [
     "=", "=N", "=-", "B=", "W=", "D=", "S", "R", "SN", "RN", "INC", "DEC", "PL", "OVWR",
 ];
 
-/// Instructions that define the label behind them; EXTERN says that another file does.
+/// Instructions that define the label after them; EXTERN says that another file does.
 pub(super) const DEFINING: [&str; 3] = ["LBL", "KFIELD", "EXTERN"];
 
 pub(super) fn mention(words: &LineWords) -> Option<Mention> {

@@ -1,4 +1,4 @@
-//! What is wrong with a document, told without being asked.
+//! What is wrong with a document, published without a request.
 
 use std::ops::Range as Bytes;
 

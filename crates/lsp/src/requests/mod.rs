@@ -24,7 +24,7 @@ pub(crate) use diagnostics::diagnostics;
 use view::Reply;
 pub(crate) use view::{Answer, View};
 
-/// Answers a request.
+/// Answers a request of the client.
 pub(crate) fn answer(view: &View<'_>, request: &Message) -> Answer {
     match request.method.as_str() {
         HoverRequest::METHOD => of::<HoverRequest>(view, request, hover::hover),

@@ -9,14 +9,14 @@ pub(super) fn tokens(view: &View<'_>, params: SemanticTokensParams) -> Reply<Opt
     Reply::Done(opened.map(|opened| {
         let mut data = Vec::new();
         let (mut line, mut character) = (0, 0);
-        let mut behind = 0;
+        let mut end = 0;
         for (range, token) in opened.analysis.tokens() {
             let shown = opened.text.get(range.clone());
             // Tokens of several lines are not for every editor, and none may lie in another.
-            if shown.is_empty() || shown.contains(['\n', '\r']) || range.start < behind {
+            if shown.is_empty() || shown.contains(['\n', '\r']) || range.start < end {
                 continue;
             }
-            behind = range.end;
+            end = range.end;
             let start = opened.text.position(range.start);
             if start.line != line {
                 character = 0;

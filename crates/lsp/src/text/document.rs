@@ -25,7 +25,7 @@ impl Text {
         }
     }
 
-    /// The text behind changes, one after the other. A range that lies wrong is taken as far as there is text.
+    /// The text after changes, one after the other. A range that lies wrong is taken as far as there is text.
     pub(crate) fn changed(&self, changes: &[Change]) -> Text {
         let mut text = self.text.to_string();
         let mut lines = None;
@@ -77,7 +77,7 @@ impl Text {
         let first = column.saturating_sub(1);
         let range = byte_of(first)..byte_of(first.saturating_add(length));
         match range.is_empty() && !text.is_empty() {
-            // Behind the last character stands what is missing: the last one shows it.
+            // After the last character stands what is missing: the last one shows it.
             true => byte_of(text.chars().count().saturating_sub(1))..line.end,
             false => range,
         }

@@ -30,7 +30,7 @@ impl LineIndex {
             .saturating_sub(1)
     }
 
-    /// The bytes of a line without its end; of one behind the last the end of the text.
+    /// The bytes of a line without its end; of one after the last the end of the text.
     pub(crate) fn range(&self, text: &str, line: usize) -> Range<usize> {
         let start = self.starts.get(line).copied().unwrap_or(text.len());
         let end = self.starts.get(line + 1).copied().unwrap_or(text.len());
@@ -53,7 +53,7 @@ impl LineIndex {
         }
     }
 
-    /// The byte of a place; behind the end of a line that end, behind the last line the end of the text, inside a
+    /// The byte of a place; beyond the end of a line that end, beyond the last line the end of the text, inside a
     /// pair of units the character that they make.
     pub(crate) fn offset(&self, text: &str, position: Position) -> usize {
         let line = self.range(text, position.line as usize);
@@ -106,7 +106,7 @@ mod tests {
             let lines = LineIndex::of(&text);
             for (at, character) in text.char_indices() {
                 let position = lines.position(&text, at);
-                // Inside CR LF no place can be told.
+                // No place lies inside CR LF.
                 let inside = character == '\n' && text.get(..at).is_some_and(|before| before.ends_with('\r'));
                 prop_assert!(inside || lines.offset(&text, position) == at, "{at} of {text:?}");
             }

@@ -6,7 +6,7 @@ use std::ops::Range;
 pub(crate) fn word_at(text: &str, offset: usize, signs: &str) -> Option<Range<usize>> {
     let is_word = |c: &char| c.is_alphanumeric() || signs.contains(*c);
     let before = text.get(..offset)?;
-    let behind = text.get(offset..)?;
+    let after = text.get(offset..)?;
     let start = offset
         - before
             .chars()
@@ -15,7 +15,7 @@ pub(crate) fn word_at(text: &str, offset: usize, signs: &str) -> Option<Range<us
             .map(char::len_utf8)
             .sum::<usize>();
     let end = offset
-        + behind
+        + after
             .chars()
             .take_while(is_word)
             .map(char::len_utf8)

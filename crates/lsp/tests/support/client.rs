@@ -196,7 +196,7 @@ impl<W: Wire> Client<W> {
             .collect()
     }
 
-    /// The document behind edits that a request answers.
+    /// The document after edits that a request answers.
     pub fn edited(&mut self, document: &Document, edits: &Value) -> String {
         let mut text = document.text.clone();
         let mut edits: Vec<(std::ops::Range<usize>, String)> = edits
@@ -301,7 +301,7 @@ impl Document {
     }
 }
 
-/// How many lines have ended in a text, and what is left behind them.
+/// How many lines have ended in a text, and what is left after them.
 fn lines_of(text: &str) -> (usize, &str) {
     let joined = text.replace("\r\n", "\n");
     let ends = joined.matches(['\n', '\r']).count();

@@ -116,7 +116,7 @@ fn tokens<W: Wire>(client: &mut Client<W>, document: &Document) -> Vec<(String, 
 /// Plain language: every request.
 pub fn plain<W: Wire>(client: &mut Client<W>, folder: &Path) {
     let mut document = client.open(&folder.join("7.H"), "tnc-plain");
-    // The called program has an error: it is told at the call, with the place over there.
+    // The called program has an error: it is reported at the call, with the place over there.
     let found = client.diagnostics(&document);
     let [fault] = &found[..] else { panic!("{found:?}") };
     assert_eq!(document.marked(&fault["range"]), "16 CALL PGM 15");
@@ -136,7 +136,7 @@ pub fn plain<W: Wire>(client: &mut Client<W>, folder: &Path) {
     client.close(&document);
 }
 
-/// Errors follow what is typed, behind umlauts and pairs of units, too.
+/// Errors follow what is typed, after umlauts and pairs of units, too.
 fn plain_edits<W: Wire>(client: &mut Client<W>, document: &mut Document) {
     client.edit(document, "16 CALL PGM 15\n", "");
     assert_eq!(client.diagnostics(document), [] as [Value; 0]);
@@ -632,7 +632,7 @@ pub fn list<W: Wire>(client: &mut Client<W>, folder: &Path) {
     client.close(&document);
 }
 
-/// What is not offered, and what is none of ours.
+/// What the server does not offer, and documents of other languages.
 pub fn others<W: Wire>(client: &mut Client<W>, folder: &Path) {
     let reason = client.refused("textDocument/willSaveWaitUntil", json!({}));
     assert!(reason.contains("not offered"), "{reason}");

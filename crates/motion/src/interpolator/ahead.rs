@@ -82,20 +82,20 @@ impl Ahead {
 }
 
 impl Entry {
-    /// Whether the place is as near as it is to be, with so much way to it, mm, at a speed, mm/s. A time is counted as if the
-    /// path stopped there, when it waits there [004:87]: over the way d with the deceleration a it takes
+    /// Whether the place is as near as it is to be, at a distance, mm, at a speed, mm/s. A time is counted as if the
+    /// path stopped there, when it waits there [004:87]: over the distance d with the deceleration a it takes
     /// d/v + v/2a.
-    fn is_due(&self, item: &Item, way: f64, speed: f64) -> bool {
+    fn is_due(&self, item: &Item, distance: f64, speed: f64) -> bool {
         match self.lead {
-            _ if way <= 0.0 => true,
-            path::Ahead::Way(lead) => way <= lead,
+            _ if distance <= 0.0 => true,
+            path::Ahead::Distance(lead) => distance <= lead,
             path::Ahead::Time(lead_s) => {
                 let braking = if item.awaits.ahead {
                     0.5 * speed / item.acceleration
                 } else {
                     0.0
                 };
-                speed > 0.0 && way / speed + braking <= lead_s
+                speed > 0.0 && distance / speed + braking <= lead_s
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Elements that follow the spindle: it is the master of the path instead of time.
 //!
-//! What the element would do in time, within what axes and spindle can do, is what the spindle is told
+//! What the element would do in time, within what axes and spindle can do, is the command to the spindle
 //! ([`Lead`]). The axes do not take that position but the one that belongs to the angle where the spindle
 //! really is ([`Master`]), also beyond the ends of the element. So whatever the spindle does, from lagging to
 //! running out without power, the axes keep to the thread.
@@ -39,14 +39,14 @@ impl Coupling {
     }
 
     /// The angle that belongs to a place so far along the element, mm.
-    fn angle_deg(&self, way_mm: f64) -> f64 {
-        self.origin_deg + self.deg_per_mm * way_mm
+    fn angle_deg(&self, distance_mm: f64) -> f64 {
+        self.origin_deg + self.deg_per_mm * distance_mm
     }
 
-    /// What is told the spindle so far along the element, mm, at a speed, mm/s, negative backwards.
-    pub(super) fn lead(&self, way_mm: f64, speed: f64) -> Lead {
+    /// The command to the spindle so far along the element, mm, at a speed, mm/s, negative backwards.
+    pub(super) fn lead(&self, distance_mm: f64, speed: f64) -> Lead {
         Lead {
-            angle_deg: self.angle_deg(way_mm),
+            angle_deg: self.angle_deg(distance_mm),
             rpm: self.deg_per_mm * speed / DEG_S,
         }
     }
@@ -59,13 +59,13 @@ impl Coupling {
     /// From now on this position belongs to that angle of the spindle, degrees. How far along the element it lies,
     /// mm, and where that is.
     pub(super) fn renew(&mut self, item: &Item, position: &Position, angle_deg: f64) -> (f64, Position) {
-        let way = way(item, position);
-        self.origin_deg = angle_deg - self.deg_per_mm * way;
-        (way, place(item, way))
+        let distance = distance(item, position);
+        self.origin_deg = angle_deg - self.deg_per_mm * distance;
+        (distance, place(item, distance))
     }
 }
 
-/// Goes back along an element for a time, not faster than a limit, mm/s: the speed and the way that is covered then. Before the
+/// Goes back along an element for a time, not faster than a limit, mm/s: the speed and the distance that is covered then. Before the
 /// start of the element it stays where it is.
 pub(super) fn go_back(item: &Item, speed: f64, covered: f64, limit: f64, time: f64) -> (f64, f64) {
     let ramp = Ramp {
@@ -82,9 +82,13 @@ pub(super) fn go_back(item: &Item, speed: f64, covered: f64, limit: f64, time: f
 }
 
 /// The place so far along an item, mm; beyond its ends straight on.
-fn place(item: &Item, way: f64) -> Position {
+fn place(item: &Item, distance: f64) -> Position {
     let (start, end) = (&item.element.start, &item.element.end);
-    let fraction = if item.length > 0.0 { way / item.length } else { 0.0 };
+    let fraction = if item.length > 0.0 {
+        distance / item.length
+    } else {
+        0.0
+    };
     let mut position = *end;
     for axis in start.known().iter() {
         position[axis] = start[axis] + (end[axis] - start[axis]) * fraction;
@@ -93,7 +97,7 @@ fn place(item: &Item, way: f64) -> Position {
 }
 
 /// How far along an item a position lies, mm.
-fn way(item: &Item, position: &Position) -> f64 {
+fn distance(item: &Item, position: &Position) -> f64 {
     let (start, end) = (&item.element.start, &item.element.end);
     let along = start
         .known()

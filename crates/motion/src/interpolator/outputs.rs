@@ -1,4 +1,4 @@
-//! The functions that are output on the way.
+//! The functions that are output within an element.
 
 use std::collections::VecDeque;
 
@@ -24,7 +24,7 @@ impl Outputs {
         self.passed.reserve(ends);
     }
 
-    /// A cycle begins.
+    /// Forgets which elements were passed in the cycle before.
     pub(super) fn begin_cycle(&mut self) {
         self.passed.clear();
     }
@@ -50,7 +50,7 @@ impl Outputs {
         self.queue.pop_front()
     }
 
-    /// An element begins.
+    /// Begins an element: none of its functions is output.
     pub(super) fn begin(&mut self) {
         self.to = f64::NEG_INFINITY;
     }
@@ -114,6 +114,6 @@ pub(super) fn at(
 /// to brake, for in tapping the spindle follows a feed ramp that is flatter than its own [000:6070].
 fn place_before_end(item: &Item, feed: f64, time_s: f64) -> f64 {
     let braking = item.braking_s(feed);
-    let way = item.peak(feed) * (0.5 * braking + (time_s - braking).max(0.0));
-    (item.length - way).max(0.0)
+    let distance = item.peak(feed) * (0.5 * braking + (time_s - braking).max(0.0));
+    (item.length - distance).max(0.0)
 }

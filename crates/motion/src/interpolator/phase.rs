@@ -6,14 +6,14 @@ use crate::gate::Gate;
 pub(super) enum Phase {
     /// Its functions at the start are still to be output.
     Begin,
-    /// A gate waits.
+    /// The path waits at a gate.
     Gate(Gate),
     Move,
     /// Dwell to go, s.
     Dwell(f64),
     /// Its functions at the end are still to be output.
     Finish,
-    /// Executed.
+    /// The element is executed.
     Done,
     /// Executed; single block waits.
     BlockEnd,

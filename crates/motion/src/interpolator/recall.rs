@@ -8,12 +8,12 @@ use crate::gate::{Gate, place};
 /// How far the element was executed that is taken back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Executed {
-    /// Its number.
+    /// The number of the element.
     pub(super) number: u64,
-    /// Functions have still to be acknowledged behind it.
+    /// Functions have still to be acknowledged after it.
     pub(super) late: bool,
     pub(super) phase: Phase,
-    /// Its length and the way that is left, mm.
+    /// Its length and the distance to go, mm.
     pub(super) length: f64,
     pub(super) rest: f64,
     /// Functions along it up to this length are output, mm.
@@ -57,7 +57,7 @@ impl Executed {
         Some(left)
     }
 
-    /// The functions that are still to be output, at their places on the rest of the way.
+    /// The functions that are still to be output, at their places on the rest of the element.
     fn later(&self, functions: Option<Box<[TechnologyFunction]>>) -> Option<Box<[TechnologyFunction]>> {
         let mut functions = functions?.into_vec();
         functions.retain(|function| match (place(function), function.at) {

@@ -15,7 +15,7 @@ pub(super) struct Stops {
     acknowledged: Acknowledged,
     /// The next stop is to be looked for.
     wanted: bool,
-    /// The path stops behind no element before this number.
+    /// The path stops after no element before this number.
     sought: u64,
 }
 
@@ -86,11 +86,11 @@ impl Stops {
         }
         let last = ring.last()?;
         let mut first = self.sought.max(ring.number());
-        while first < last && !self.stops_behind(ring, first) {
+        while first < last && !self.stops_after(ring, first) {
             first += 1;
         }
         self.sought = first;
-        if !self.stops_behind(ring, first) {
+        if !self.stops_after(ring, first) {
             return None;
         }
         let squared = speed * speed * (1.0 - 1e-9);
@@ -98,7 +98,7 @@ impl Stops {
         let mut length = rest;
         for (number, item) in (ring.number()..).zip(ring.ahead()) {
             possible += 2.0 * item.acceleration * length;
-            if squared <= possible && (number < first || self.stops_behind(ring, number)) {
+            if squared <= possible && (number < first || self.stops_after(ring, number)) {
                 return Some(number.max(first));
             }
             length = ring.get(number + 1).map_or(0.0, |next| next.length);
@@ -108,14 +108,14 @@ impl Stops {
 
     /// Whether the path is to stop at the end of an element. What is not so stays so, but for the last element: it
     /// depends on the one after it.
-    fn stops_behind(&self, ring: &Ring, number: u64) -> bool {
+    fn stops_after(&self, ring: &Ring, number: u64) -> bool {
         let next = ring.get(number + 1);
         let ends = |item: &Item| self.is_block_end(item, next) || self.is_to_be_clamped(item);
         ring.get(number).is_some_and(ends)
             || next.is_some_and(|next| self.is_clamped(next) || self.is_awaited(next, number + 1))
     }
 
-    /// The path stops behind it in single block, or before the block that is next.
+    /// The path stops after it in single block, or before the block that is next.
     pub(super) fn is_block_end(&self, item: &Item, next: Option<&Item>) -> bool {
         let is_before = |sequence| {
             item.element.sequence < sequence && next.is_some_and(|next| next.element.sequence >= sequence)
@@ -134,7 +134,7 @@ impl Stops {
             || item.awaits.ahead && number >= self.acknowledged.ahead
     }
 
-    /// An axis that its block moved is to be clamped behind it.
+    /// An axis that its block moved is to be clamped after it.
     pub(super) fn is_to_be_clamped(&self, item: &Item) -> bool {
         item.block_end && moves(item, self.clamping)
     }

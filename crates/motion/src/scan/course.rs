@@ -3,7 +3,7 @@
 use bahn_path::{Axis, ScanFault, ScanJob, ScanPattern, ScanPoint};
 
 use super::follow::Follower;
-use super::way::{Felt, Followed, Tracking, Wish};
+use super::stylus::{Felt, Followed, Tracking, Wish};
 
 /// A line or level is reached within this, mm.
 const THERE_MM: f64 = 1e-3;
@@ -23,7 +23,7 @@ enum Stage {
     Plunge,
     /// Along a direction until the stylus touches.
     Approach,
-    /// Along the surface.
+    /// The stylus follows the surface.
     Follow,
     /// The end of a line is reached: up until free, then straight down.
     Rise,
@@ -39,13 +39,13 @@ enum Stage {
     Home,
 }
 
-/// See the module.
+/// The course of a scan; the module describes it.
 #[derive(Clone, Debug)]
 pub(super) struct Course {
     stage: Stage,
     /// Axis and sign of the line that is scanned, and where it ends; of levels the approach.
     line: (usize, f64, f64),
-    /// Meander: it is on its way to the next line, and the sign of the line before.
+    /// Meander: it goes to the next line, and the sign of the line before.
     shifts: bool,
     sign: f64,
     /// Contour lines: height of the level, first point of it, points and time since.
@@ -156,12 +156,12 @@ impl Course {
                     self.stage = Stage::Leave;
                     return Ok((Wish::stand(), None));
                 }
-                let way = self.level - felt.at[up];
-                if way.abs() <= THERE_MM {
+                let distance = self.level - felt.at[up];
+                if distance.abs() <= THERE_MM {
                     self.stage = Stage::Approach;
                 }
-                let mut wish = Wish::along(unit(up, way.signum()), probing);
-                wish.end = Some((up, way.signum(), self.level));
+                let mut wish = Wish::along(unit(up, distance.signum()), probing);
+                wish.end = Some((up, distance.signum(), self.level));
                 Ok((wish, None))
             }
         }
@@ -325,10 +325,10 @@ impl Course {
 
     /// How far the stylus may go along: no farther than to the first point of the level, so that it comes back to it.
     fn cap(&self, follower: &Follower, job: &ScanJob) -> f64 {
-        let way: ScanPoint = std::array::from_fn(|k| self.first[k] - follower.last()[k]);
+        let offset: ScanPoint = std::array::from_fn(|k| self.first[k] - follower.last()[k]);
         let direction = follower.direction();
-        let ahead: f64 = way.iter().zip(direction).map(|(a, b)| a * b).sum();
-        let square: f64 = way.iter().map(|part| part * part).sum();
+        let ahead: f64 = offset.iter().zip(direction).map(|(a, b)| a * b).sum();
+        let square: f64 = offset.iter().map(|part| part * part).sum();
         let beside = (square - ahead * ahead).max(0.0).sqrt();
         let near = ahead > 0.0 && ahead <= 1.25 * job.interval_mm && beside <= job.interval_mm / 2.0;
         if near && self.since.0 + 1 >= ORBIT_MIN {

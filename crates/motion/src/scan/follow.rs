@@ -6,7 +6,7 @@
 use bahn_path::{ScanJob, ScanPoint};
 
 use super::glide::Glide;
-use super::way::{Felt, Followed, Tracking, Wish};
+use super::stylus::{Felt, Followed, Tracking, Wish};
 
 /// Part of an oscillation that the stylus leaves the surface (inferred): two fifths, so that points lie nearer than the
 /// interval also where the surface falls away.
@@ -48,7 +48,7 @@ pub(super) struct Follower {
     tracking: Tracking,
     /// Direction of the scan in the plane: along and off.
     direction: [f64; 2],
-    /// The last point.
+    /// The last point that was taken, mm.
     last: ScanPoint,
     phase: Phase,
     /// How far it may go along before it goes straight to the surface.
@@ -180,8 +180,8 @@ impl Follower {
         if let Some(touch) = felt.touch.filter(|_| self.waits_for_touch()) {
             return self.touched(touch);
         }
-        let way = minus(felt.at, self.last);
-        let (along, height) = (dot(way, self.direction()), dot(way, self.normal()));
+        let offset = minus(felt.at, self.last);
+        let (along, height) = (dot(offset, self.direction()), dot(offset, self.normal()));
         let advance = self.advance(felt);
         match self.phase {
             Phase::Rise { for_s } => {
@@ -258,8 +258,8 @@ impl Follower {
 
     /// Part of the feed along: none any more where the interval is used up, by the nominal position, which leads.
     fn advance(&self, felt: &Felt) -> f64 {
-        let way = minus(felt.nominal, self.last);
-        let left = self.reach() - dot(way, self.direction());
+        let offset = minus(felt.nominal, self.last);
+        let left = self.reach() - dot(offset, self.direction());
         let greatest = match felt.deflected {
             true => self.along_mm_s.min(RESULTANT * self.across_mm_s),
             false => self.along_mm_s,
@@ -267,7 +267,7 @@ impl Follower {
         (left * SLOWS).clamp(0.0, greatest) / self.along_mm_s
     }
 
-    /// Nothing behind the last point either: it was the tip of something thin, and its other side is scanned.
+    /// Nothing after the last point either: it was the tip of something thin, and its other side is scanned.
     fn turn_round(&mut self) -> Followed {
         self.turns += 1;
         if self.turns > TURNS {
@@ -293,8 +293,8 @@ impl Follower {
 
     /// A new point: the direction of the scan is that from the last one to it.
     fn touched(&mut self, touch: ScanPoint) -> Followed {
-        let way = minus(touch, self.last);
-        let plane = [dot(way, self.tracking.along), dot(way, self.tracking.off)];
+        let offset = minus(touch, self.last);
+        let plane = [dot(offset, self.tracking.along), dot(offset, self.tracking.off)];
         let length = plane[0].hypot(plane[1]);
         if length > NEAR_MM {
             self.direction = plane.map(|part| part / length);

@@ -2,7 +2,7 @@
 
 use bahn_path::{MeasuringRules, ScanPoint};
 
-use super::way::{Felt, Followed, Tracking, Wish};
+use super::stylus::{Felt, Followed, Tracking, Wish};
 
 /// How fast a wrong depth of deflection is put right, 1/s: slower than position loops are with a kv factor of 1
 /// (inferred).
@@ -35,7 +35,7 @@ impl Glide {
         self.normal = [0.0, 1.0];
     }
 
-    /// Along the surface: the deflection says which way that is, and its depth is held. A point is taken before it
+    /// Along the surface: the deflection says in which direction that is, and its depth is held. A point is taken before it
     /// would lie farther than the interval from the last one.
     pub fn cycle(&mut self, felt: &Felt, tracking: &Tracking, last: ScanPoint, interval_mm: f64) -> Followed {
         let deflection = [
@@ -54,8 +54,8 @@ impl Glide {
             false => full,
         };
         let tip: ScanPoint = std::array::from_fn(|k| felt.at[k] + felt.deflection[k]);
-        let way = (0..3).map(|k| (tip[k] - last[k]).powi(2)).sum::<f64>().sqrt();
-        if in_plane > 0.0 && way + full * felt.time_s > interval_mm {
+        let distance = (0..3).map(|k| (tip[k] - last[k]).powi(2)).sum::<f64>().sqrt();
+        if in_plane > 0.0 && distance + full * felt.time_s > interval_mm {
             return Followed::Touched(tip, self.wish(tracking, feed, missing, full));
         }
         Followed::Moves(self.wish(tracking, feed, missing, full))
@@ -64,7 +64,7 @@ impl Glide {
     fn wish(&self, tracking: &Tracking, feed: f64, missing: f64, full: f64) -> Wish {
         let [along, off] = self.normal;
         let inwards = (GAIN_PER_S * missing).clamp(-full, full);
-        // The way along the surface stands at right angles to its normal.
+        // The direction along the surface stands at right angles to its normal.
         let plane = [feed * off - inwards * along, -feed * along - inwards * off];
         Wish {
             velocity: std::array::from_fn(|k| plane[0] * tracking.along[k] + plane[1] * tracking.off[k]),

@@ -162,7 +162,7 @@ impl Region {
         Region::from_loops(overlay(&contours, regions.len(), &inside, effort)?, effort)
     }
 
-    /// Puts every hole behind the outer contour that holds it.
+    /// Puts every hole after the outer contour that holds it.
     pub(super) fn from_loops<E: Effort>(loops: Vec<Contour>, effort: &E) -> Result<Region, E::Stop> {
         let (outer, holes): (Vec<Contour>, Vec<Contour>) =
             loops.into_iter().partition(Contour::is_counter_clockwise);

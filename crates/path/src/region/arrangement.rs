@@ -21,7 +21,7 @@ use super::faces::{Faces, Windings};
 use super::{Contour, RESOLUTION_MM};
 
 /// Where features are just about as far apart as the resolution, cutting at it may tangle the edges.
-/// Such a spot is none at another tolerance; the first one without tangles serves. mm.
+/// At another tolerance that does not happen; the first one without tangles serves. mm.
 pub(super) const TOLERANCES_MM: [f64; 4] = [
     RESOLUTION_MM,
     10.0 * RESOLUTION_MM,

@@ -7,11 +7,11 @@ use crate::Point2;
 /// Where a point lies relative to a closed contour or a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
-    /// Inside.
+    /// The point lies inside.
     Inside,
     /// On the boundary, within [`RESOLUTION_MM`](super::RESOLUTION_MM).
     Boundary,
-    /// Outside.
+    /// The point lies outside.
     Outside,
 }
 
@@ -126,7 +126,7 @@ impl Contour {
         Contour::polygon(&[min, [max[0], min[1]], max, [min[0], max[1]]])
     }
 
-    /// Start point.
+    /// Where the contour begins, mm.
     pub fn start(&self) -> Point2 {
         self.start
     }
@@ -157,7 +157,7 @@ impl Contour {
         }
     }
 
-    /// Length, mm.
+    /// Length of the contour, mm.
     pub fn length(&self) -> f64 {
         self.segments.iter().map(Segment::length).sum()
     }

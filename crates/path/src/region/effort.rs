@@ -20,7 +20,7 @@ pub trait Effort {
     fn spend(&self, steps: usize) -> Result<(), Self::Stop>;
 }
 
-/// Whatever it takes.
+/// An effort without a limit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unlimited;
 

@@ -62,7 +62,7 @@ impl Faces {
         directed(self.edges.get(half_edge / 2).map(|edge| edge.segment), half_edge)
     }
 
-    /// See [`Edge::course`].
+    /// The segment of a half-edge in its direction; see [`Edge::course`].
     fn course(&self, half_edge: usize) -> Segment {
         directed(self.edges.get(half_edge / 2).map(|edge| edge.course), half_edge)
     }
@@ -96,14 +96,14 @@ impl Faces {
         // Tangents put nearly all in order.
         let mut sorted: Vec<(f64, Segment, usize)> = Vec::with_capacity(leaving.len());
         for candidate in leaving {
-            let behind = sorted.iter().rev();
-            let before = behind.take_while(|other| is_before(&candidate.1, &other.1, reference));
+            let after = sorted.iter().rev();
+            let before = after.take_while(|other| is_before(&candidate.1, &other.1, reference));
             sorted.insert(sorted.len() - before.count(), candidate);
         }
         sorted.into_iter().map(|(_, _, h)| h).collect()
     }
 
-    /// Numbers the faces.
+    /// Numbers the faces by their half-edges.
     fn trace<E: Effort>(&mut self, effort: &E) -> Result<(), E::Stop> {
         const NONE: usize = usize::MAX;
         self.face = vec![NONE; self.next.len()];
@@ -198,7 +198,7 @@ impl Faces {
         tangled.map(|(_, edge)| edge.segment.length()).sum()
     }
 
-    /// The loops around the faces that are told to be inside, interior on the left.
+    /// The loops around the faces that are given as inside, interior on the left.
     ///
     /// # Errors
     /// When the effort ends it.

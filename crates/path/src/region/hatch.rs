@@ -16,7 +16,7 @@ const MOST_LINES: f64 = 1e6;
 /// Order and direction of the passes of [`Region::hatch`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HatchPattern {
-    /// Neighbouring passes alternate in direction and are linked where the way stays inside the
+    /// Neighbouring passes alternate in direction and are linked where the link stays inside the
     /// region. Each stretch between islands is cleared as far as it goes before the next one.
     Zigzag,
     /// All passes run in the direction of the angle, line by line; none is linked.
@@ -26,12 +26,12 @@ pub enum HatchPattern {
 /// A straight clearing pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pass {
-    /// The way from the end of the pass before to the start of this one inside the region; `None` when
+    /// The path from the end of the pass before to the start of this one inside the region; `None` when
     /// the tool must be lifted.
     pub link: Option<Vec<Segment>>,
-    /// Start point.
+    /// Start of the pass, mm.
     pub from: Point2,
-    /// End point.
+    /// End of the pass, mm.
     pub to: Point2,
 }
 
@@ -217,7 +217,7 @@ impl Area<'_> {
                 let pass = span.pass(forward, link.take());
                 let end = pass.to;
                 passes.push(pass);
-                // The spans of a line lie one behind the other.
+                // The spans of a line lie one after the other.
                 let next = lines.get(line + 1).map_or(&[][..], Vec::as_slice);
                 let first = next.partition_point(|s| s.high <= span.low);
                 let beside = next.iter().enumerate().skip(first);
@@ -226,21 +226,21 @@ impl Area<'_> {
                     if done.get(line + 1).and_then(|d| d.get(i)) != Some(&false) {
                         continue;
                     }
-                    if let Some(way) = self.link(end, s.entry(!forward), stepover, effort)? {
-                        let length = way.iter().map(Segment::length).sum();
+                    if let Some(path) = self.link(end, s.entry(!forward), stepover, effort)? {
+                        let length = path.iter().map(Segment::length).sum();
                         if best.as_ref().is_none_or(|(least, ..)| length < *least) {
-                            best = Some((length, i, way));
+                            best = Some((length, i, path));
                         }
                     }
                 }
-                let Some((_, next, way)) = best else { break };
-                (line, index, forward, link) = (line + 1, next, !forward, Some(way));
+                let Some((_, next, path)) = best else { break };
+                (line, index, forward, link) = (line + 1, next, !forward, Some(path));
             }
         }
         Ok(passes)
     }
 
-    /// The way between ends of neighbouring passes: straight if that stays inside, else along the boundary
+    /// The path between ends of neighbouring passes: straight if that stays inside, else along the boundary
     /// if that is not much longer than the stepover.
     fn link<E: Effort>(
         &self,
@@ -269,15 +269,15 @@ impl Area<'_> {
         for (contour, place) in starts {
             for forward in [true, false] {
                 let segments = self.contours.get(contour).map_or(&[][..], Contour::segments);
-                let found = way_along(segments, place, [from, to], forward, longest);
-                effort.spend(found.as_ref().map_or(1, |(_, way)| way.len()))?;
+                let found = path_along(segments, place, [from, to], forward, longest);
+                effort.spend(found.as_ref().map_or(1, |(_, path)| path.len()))?;
                 let shorter = |(length, _): &(f64, _)| best.as_ref().is_none_or(|(least, _)| length < least);
                 if let Some(found) = found.filter(shorter) {
                     best = Some(found);
                 }
             }
         }
-        Ok(best.map(|(_, way)| way))
+        Ok(best.map(|(_, path)| path))
     }
 
     /// Whether a line between two points of the region stays in it; it may run along the boundary.
@@ -298,9 +298,9 @@ impl Area<'_> {
     }
 }
 
-/// The way along a closed contour between two of its points, in its sense or against it, from the segment
+/// The path along a closed contour between two of its points, in its sense or against it, from the segment
 /// at a place; `None` when it is longer than `longest`.
-fn way_along(
+fn path_along(
     segments: &[Segment],
     place: usize,
     [from, to]: [Point2; 2],
@@ -309,8 +309,8 @@ fn way_along(
 ) -> Option<(f64, Vec<Segment>)> {
     let count = segments.len();
     let mut length = 0.0;
-    let mut way: Vec<Segment> = Vec::new();
-    // The segment of the start may be the one of the end too, and come again behind all others.
+    let mut path: Vec<Segment> = Vec::new();
+    // The segment of the start may be the one of the end too, and come again after all others.
     for step in 0..=count {
         let at = if forward {
             place + step
@@ -328,13 +328,13 @@ fn way_along(
             return None;
         }
         if part.is_proper() {
-            match way.last().and_then(|last| last.joined(&part)) {
-                Some(joined) => *way.last_mut()? = joined,
-                None => way.push(part),
+            match path.last().and_then(|last| last.joined(&part)) {
+                Some(joined) => *path.last_mut()? = joined,
+                None => path.push(part),
             }
         }
         if arrives {
-            return Some((length, way));
+            return Some((length, path));
         }
     }
     None

@@ -81,7 +81,7 @@ struct Covering {
 
 /// What is nearer than the radius by this is covered, mm: more than rounding does.
 const COVERED_MM: f64 = 1e-9;
-/// Parts of an element shorter than this are none, mm.
+/// Shorter parts of an element are left out, mm.
 const LEAST_PART_MM: f64 = 1e-3 * RESOLUTION_MM;
 /// Parts of one element that are looked at.
 const MOST_LOOKS: usize = 1000;
@@ -190,7 +190,7 @@ impl Covering {
     /// A tolerance serves when nothing speaks against its loops that is more than the tolerance: every edge
     /// that was taken away because it ends nowhere runs along a kept one ([`strayed_length`]), so that
     /// nothing of the true boundary is missing by more; and every face whose edges disagree is a sliver
-    /// ([`free_faces`]), so that nothing is told wrongly that is thicker. Every kept edge is covered by no more
+    /// ([`free_faces`]), so that nothing thicker is decided wrongly. Every kept edge is covered by no more
     /// than is granted. Together the loops are the boundary within what is granted, wherever it is.
     fn free_loops<E: Effort>(&self, moved: &[Segment], effort: &E) -> Result<Vec<Contour>, E::Stop> {
         let mut best: Option<(f64, Faces, Vec<bool>)> = None;
@@ -256,7 +256,7 @@ fn without_ends(edges: Vec<Edge>) -> (Vec<Edge>, Vec<Edge>) {
 }
 
 /// Thinner than this times what is granted is the tolerance's doing. Edges that cross at a flat angle are
-/// both kept behind the crossing until one is covered by more than is granted, which brings them no farther
+/// both kept after the crossing until one is covered by more than is granted, which brings them no farther
 /// apart than that; cutting moved each by twice the tolerance.
 const SLIVER: f64 = 4.0;
 
@@ -283,17 +283,17 @@ fn strayed_length<E: Effort>(
 }
 
 /// Which faces are free, and the greatest length that speaks against it, mm: the left of every edge is
-/// free and its right covered, so that every half-edge tells about its face. They may disagree in slivers
+/// free and its right covered, so that every half-edge is evidence about its face. They may disagree in slivers
 /// and in faces that are as small all around; elsewhere directions at a vertex were mistaken, or edges are
 /// missing between two faces.
 fn free_faces(faces: &Faces, granted: f64) -> (Vec<bool>, f64) {
     #[derive(Clone, Copy, Default)]
-    struct Told {
+    struct Evidence {
         free: f64,
         covered: f64,
         area: f64,
     }
-    let mut told = vec![Told::default(); faces.count()];
+    let mut evidence = vec![Evidence::default(); faces.count()];
     // Areas far from the datum lose no digits.
     let origin = faces
         .edges()
@@ -302,24 +302,26 @@ fn free_faces(faces: &Faces, granted: f64) -> (Vec<bool>, f64) {
     for (place, edge) in faces.edges().iter().enumerate() {
         let length = edge.segment.length();
         let area = edge.segment.moved(scale(origin, -1.0)).area_to_origin();
-        if let Some(left) = told.get_mut(faces.left_of(2 * place)) {
+        if let Some(left) = evidence.get_mut(faces.left_of(2 * place)) {
             left.free += length;
             left.area += area;
         }
-        if let Some(right) = told.get_mut(faces.left_of(2 * place + 1)) {
+        if let Some(right) = evidence.get_mut(faces.left_of(2 * place + 1)) {
             right.covered += length;
             right.area -= area;
         }
     }
     let width = SLIVER * granted;
-    let doubtful = told.iter().filter(|told| {
-        let around = told.free + told.covered;
-        told.area.abs() > 0.5 * width * around && around > 25.0 * width
+    let doubtful = evidence.iter().filter(|evidence| {
+        let around = evidence.free + evidence.covered;
+        evidence.area.abs() > 0.5 * width * around && around > 25.0 * width
     });
     let doubtful = doubtful
-        .map(|told| f64::min(told.free, told.covered))
+        .map(|evidence| f64::min(evidence.free, evidence.covered))
         .fold(0.0, f64::max);
-    let free = told.iter().map(|told| told.free > 2.0 * told.covered);
+    let free = evidence
+        .iter()
+        .map(|evidence| evidence.free > 2.0 * evidence.covered);
     (free.collect(), doubtful)
 }
 

@@ -15,19 +15,19 @@ const JOIN_SINE: f64 = 1e-9;
 pub enum Segment {
     /// A straight line.
     Line {
-        /// Start point.
+        /// Start point, mm.
         from: Point2,
-        /// End point.
+        /// End point, mm.
         to: Point2,
     },
     /// A circular arc. `from` equal to `to` with a sweep of +-360 degrees is a full circle. Both ends
     /// are as far from the centre; [`Contour::push`](super::Contour::push) mends what rounding made of that.
     Arc {
-        /// Start point.
+        /// Start point, mm.
         from: Point2,
-        /// End point.
+        /// End point, mm.
         to: Point2,
-        /// Centre.
+        /// Centre, mm.
         centre: Point2,
         /// Signed sweep, degrees; positive is counter-clockwise (DR+).
         sweep_deg: f64,
@@ -35,7 +35,7 @@ pub enum Segment {
 }
 
 impl Segment {
-    /// A line.
+    /// A straight line between two points, mm.
     pub fn line(from: Point2, to: Point2) -> Segment {
         Segment::Line { from, to }
     }
@@ -100,14 +100,14 @@ impl Segment {
         }
     }
 
-    /// Start point.
+    /// Where the segment begins, mm.
     pub fn from(&self) -> Point2 {
         match *self {
             Segment::Line { from, .. } | Segment::Arc { from, .. } => from,
         }
     }
 
-    /// End point.
+    /// Where the segment ends, mm.
     pub fn to(&self) -> Point2 {
         match *self {
             Segment::Line { to, .. } | Segment::Arc { to, .. } => to,
@@ -301,7 +301,7 @@ impl Segment {
         let counter_clockwise = sweep_deg > 0.0;
         // A counter-clockwise arc of any sweep lies right of its chord.
         let in_circle = distance(point, centre) < radius;
-        // A chord through the point along the ray lies as a trifle tells.
+        // A chord through the point along the ray lies on either side by rounding alone.
         let left_of_chord = side > 0.0 || (side == 0.0 && above_a == above_b && dot(sub(b, a), ray) > 0.0);
         let on_arc_side = left_of_chord != counter_clockwise;
         let inside = in_circle && (on_arc_side || self.is_full_circle());

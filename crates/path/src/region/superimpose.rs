@@ -20,7 +20,7 @@ pub enum Kind {
 pub struct SubContour {
     /// Programmed contour, in either sense; an open one is closed by a line.
     pub contour: Contour,
-    /// Pocket or island.
+    /// Whether it is a pocket or an island.
     pub kind: Kind,
 }
 
@@ -271,7 +271,7 @@ impl Group {
         std::iter::once(self.leader).chain(self.joined.iter().map(|(member, _)| *member))
     }
 
-    /// Whether a point that lies inside the subcontours as told lies inside the group.
+    /// Whether a point that lies inside these subcontours lies inside the group.
     fn holds(&self, inside: &dyn Fn(usize) -> bool) -> bool {
         self.joined
             .iter()
@@ -314,7 +314,7 @@ impl Plan {
         }
     }
 
-    /// Whether a point that lies in the subcontours as told is machined.
+    /// Whether a point that lies in these subcontours is machined.
     fn machined(&self, inside: &[bool]) -> bool {
         let inside = |i: usize| inside.get(i).copied().unwrap_or(false);
         let in_pocket = |group: usize| self.pockets.get(group).is_some_and(|group| group.holds(&inside));

@@ -115,7 +115,7 @@ impl Panel {
         request += &format!("Content-Length: {}\r\n\r\n{body}", body.len());
         stream.write_all(request.as_bytes()).unwrap();
         let mut answer = Vec::new();
-        // A refused body may break the connection behind its answer.
+        // A refused body may break the connection after its answer.
         let _ = stream.read_to_end(&mut answer);
         let answer = String::from_utf8_lossy(&answer).into_owned();
         let status = answer.split(' ').nth(1).and_then(|status| status.parse().ok());
@@ -234,7 +234,7 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// At an address.
+    /// A viewer at an address of the server.
     pub fn of(url: &str) -> Viewer {
         let (socket, _) = tungstenite::connect(url).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {

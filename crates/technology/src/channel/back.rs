@@ -1,4 +1,4 @@
-//! Where the path is on the way back.
+//! Where the path is in backward motion.
 
 use std::collections::VecDeque;
 
@@ -18,7 +18,7 @@ pub(super) struct Back {
     /// The element on which it turned, and how much of that was executed, mm.
     pub(super) from: u64,
     pub(super) along: f64,
-    /// Number of the way back that the interpolator is given next: the first is 1.
+    /// Number of the backward motion that the interpolator is given next: the first is 1.
     pub(super) fed: u64,
     /// The place to which the path has come back, and the one whose functions were looked at last.
     pub(super) reached: u64,
@@ -67,7 +67,7 @@ impl ElementSource for FeedBack<'_> {
 }
 
 impl Back {
-    /// The element that is so many on the way back.
+    /// The element that is so many back.
     pub(super) fn element(&self, back: u64) -> Option<u64> {
         (self.from + 1).checked_sub(back)
     }

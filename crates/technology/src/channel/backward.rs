@@ -1,8 +1,8 @@
-//! The way back along what was executed, and forward again over it.
+//! Backward motion along what was executed, and forward again over it.
 //!
-//! On the way back functions are output as MOS, those with BWD_SYNCH as MVS_SVS; forward again they have their own types
-//! [004:54] (public: backward motion). What is output ahead is output at the place it belongs to on the way back, and forward
-//! again ahead of it; where the path turns behind that, at once, as what does not come early enough (inferred).
+//! In backward motion functions are output as MOS, those with BWD_SYNCH as MVS_SVS; forward again they have their own types
+//! [004:54] (public: backward motion). What is output ahead is output at the place it belongs to in backward motion, and forward
+//! again ahead of it; where the path turns after that, at once, as what does not come early enough (inferred).
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -12,7 +12,7 @@ use super::Channel;
 use super::back::{Back, FeedBack};
 use super::order::{OrderId, State};
 use super::record::Moment;
-use super::track::Deed;
+use super::track::Action;
 use crate::synch::{Synch, SynchType};
 
 impl Channel<'_> {
@@ -55,7 +55,7 @@ impl Channel<'_> {
     fn whereabouts(&self) -> (u64, f64) {
         let number = self.motion.reached;
         let leg = self.plan.track.leg(number);
-        let along = leg.map_or(0.0, |leg| self.way() - leg.from);
+        let along = leg.map_or(0.0, |leg| self.distance() - leg.from);
         match number
             .checked_sub(1)
             .and_then(|before| self.plan.track.leg(before))
@@ -83,15 +83,15 @@ impl Channel<'_> {
         });
     }
 
-    /// The way along the path, mm, while it is run back.
-    pub(super) fn way_back(&self, path: &Interpolator<()>) -> Option<f64> {
+    /// The distance along the path, mm, while it is run back.
+    pub(super) fn backward_distance(&self, path: &Interpolator<()>) -> Option<f64> {
         let back = self.backward.back.as_ref()?;
         let number = path.element().and_then(|element| back.element(element.sequence));
         let leg = number.and_then(|number| self.plan.track.leg(number));
         Some(match leg {
             Some(leg) => leg.from + path.rest_mm(),
             None => self.plan.track.leg(back.from).map_or_else(
-                || self.plan.track.way(self.plan.track.first()),
+                || self.plan.track.distance(self.plan.track.first()),
                 |leg| leg.from + back.along,
             ),
         })
@@ -108,7 +108,7 @@ impl Channel<'_> {
         self.motion.path.prepare(&mut feed, usize::MAX);
         let (from, seen, reached) = (back.from, back.seen, back.reached);
         let waits = back.waits();
-        // The next place with a function that is waited for on the way back.
+        // The next place with a function that is waited for in backward motion.
         let first = self.plan.track.first();
         let known = (from + 2).saturating_sub(back.fed).max(first);
         let stop = (known..seen).rev().find(|place| self.waits_backward(*place));
@@ -126,25 +126,30 @@ impl Channel<'_> {
         self.drive_once(&drive, block)
     }
 
-    /// Whether the path stops at a place on the way back.
+    /// Whether the path stops at a place in backward motion.
     fn waits_backward(&self, place: u64) -> bool {
-        let deeds = self.plan.track.deeds(place);
-        deeds.iter().any(|deed| matches!(deed, Deed::BlockEnd))
-            && self.single.stops_at(self.plan.track.way(place), true)
+        let actions = self.plan.track.actions(place);
+        actions.iter().any(|action| matches!(action, Action::BlockEnd))
+            && self.single.stops_at(self.plan.track.distance(place), true)
             || self.of_place(place).into_iter().any(|id| {
                 let order = self.plan.orders.get(id);
                 order.is_some_and(|order| order.synch.backward)
             })
     }
 
-    /// The functions of a place that are output on the way back, in program order.
+    /// The functions of a place that are output in backward motion, in program order.
     fn of_place(&self, place: u64) -> Vec<OrderId> {
-        let outputs = self.plan.track.deeds(place).iter().filter_map(|deed| match deed {
-            Deed::Output(id) => Some(*id),
-            _ => None,
-        });
+        let outputs = self
+            .plan
+            .track
+            .actions(place)
+            .iter()
+            .filter_map(|action| match action {
+                Action::Output(id) => Some(*id),
+                _ => None,
+            });
         let mut ids: Vec<OrderId> = outputs.collect();
-        for id in self.plan.leads.of_place(self.plan.track.way(place)) {
+        for id in self.plan.leads.of_place(self.plan.track.distance(place)) {
             let at = ids.iter().position(|other| *other > id).unwrap_or(ids.len());
             ids.insert(at, id);
         }
@@ -163,7 +168,7 @@ impl Channel<'_> {
         }
     }
 
-    /// Outputs functions on the way back. Whether anything was done.
+    /// Outputs functions in backward motion. Whether anything was done.
     pub(super) fn act_backward(&mut self) -> bool {
         let Some(mut back) = self.backward.back.take() else {
             return false;
@@ -188,7 +193,7 @@ impl Channel<'_> {
                 let moves = !self.motion.still || back.reached < back.seen;
                 back.at_limit = self
                     .single
-                    .stands_at_end(self.plan.track.way(back.seen), true, moves);
+                    .stands_at_end(self.plan.track.distance(back.seen), true, moves);
                 any |= !back.at_limit;
             }
             if back.waits() || back.seen <= back.reached {
@@ -197,14 +202,14 @@ impl Channel<'_> {
             back.seen -= 1;
             any = true;
             back.queue = self.repeated(back.seen);
-            let limit = |deed: &Deed| matches!(deed, Deed::BlockEnd);
-            back.at_limit = self.plan.track.deeds(back.seen).iter().any(limit);
+            let limit = |action: &Action| matches!(action, Action::BlockEnd);
+            back.at_limit = self.plan.track.actions(back.seen).iter().any(limit);
         }
         self.backward.back = Some(back);
         any
     }
 
-    /// The functions of a place as they are output on the way back, the last one first.
+    /// The functions of a place as they are output in backward motion, the last one first.
     fn repeated(&mut self, place: u64) -> VecDeque<OrderId> {
         let mut queue = VecDeque::new();
         for id in self.of_place(place).into_iter().rev() {
@@ -217,7 +222,7 @@ impl Channel<'_> {
             } else {
                 SynchType::Mos
             };
-            // On the way back a simulated one is waited for all the same (public).
+            // In backward motion a simulated one is waited for all the same (public).
             order.synch = Synch {
                 kind,
                 forward: order.waits,
@@ -241,14 +246,14 @@ impl Channel<'_> {
 
     /// Goes forward again from where the path stands: what it comes over is output anew.
     fn turn_forward(&mut self) {
-        let way = self.way();
+        let distance = self.distance();
         let Some(back) = self.backward.back.take() else {
             return;
         };
         let number = back.reached.saturating_sub(1).max(self.plan.track.first());
         let (mut number, mut along) = match self.plan.track.leg(number) {
-            Some(leg) => (number, (way - leg.from).max(0.0)),
-            // There is no way to go back: it is still at the place where it turned.
+            Some(leg) => (number, (distance - leg.from).max(0.0)),
+            // There is nothing to go back: it is still at the place where it turned.
             None => (number, 0.0),
         };
         if self.plan.track.leg(number).is_some_and(|leg| along >= leg.length) {
@@ -261,11 +266,11 @@ impl Channel<'_> {
             .plan
             .track
             .leg(back.from)
-            .map_or(way, |leg| leg.from + back.along);
-        let ahead = self.plan.leads.repeat(turned, way);
+            .map_or(distance, |leg| leg.from + back.along);
+        let ahead = self.plan.leads.repeat(turned, distance);
         self.renew(first, self.gates.cursor.0, &ahead);
         let done = if along > 0.0 {
-            self.plan.track.deeds(number).len()
+            self.plan.track.actions(number).len()
         } else {
             0
         };
@@ -278,8 +283,8 @@ impl Channel<'_> {
     fn renew(&mut self, first: u64, last: u64, ahead: &[OrderId]) {
         let mut old: BTreeSet<OrderId> = ahead.iter().copied().collect();
         for place in first..=last {
-            for deed in self.plan.track.deeds(place) {
-                if let Deed::Output(id) | Deed::Command(id) = deed {
+            for action in self.plan.track.actions(place) {
+                if let Action::Output(id) | Action::Command(id) = action {
                     old.insert(*id);
                 }
             }
@@ -293,10 +298,10 @@ impl Channel<'_> {
         }
         let new = |id: &mut OrderId| *id = renewed.get(id).copied().unwrap_or(*id);
         for place in first..=self.plan.track.last() {
-            for deed in self.plan.track.deeds_mut(place) {
-                match deed {
-                    Deed::Output(id) | Deed::Command(id) | Deed::Stand(id) => new(id),
-                    Deed::Gate(ids) => ids.iter_mut().for_each(new),
+            for action in self.plan.track.actions_mut(place) {
+                match action {
+                    Action::Output(id) | Action::Command(id) | Action::Stand(id) => new(id),
+                    Action::Gate(ids) => ids.iter_mut().for_each(new),
                     _ => {}
                 }
             }

@@ -30,7 +30,7 @@ impl Decoding {
     }
 }
 
-/// Edge banding between G108 and G107: the way to where the path has passed the probe, mm.
+/// Edge banding between G108 and G107: the distance to where the path has passed the probe, mm.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edge {
     pub(super) probed: Option<f64>,

@@ -71,11 +71,11 @@ impl Channel<'_> {
 
     /// Drives a cycle. Whether anything moved.
     pub(super) fn drive_once(&mut self, drive: &Drive, block: Option<Arc<str>>) -> bool {
-        let (before, way) = (self.now(), self.way());
-        self.motion.way_before = way;
+        let (before, distance) = (self.now(), self.distance());
+        self.motion.distance_before = distance;
         let cycle = self.motion.path.cycle(drive);
         let (rest, speed) = (self.motion.path.rest_mm(), self.motion.speed());
-        // What lacks rounding alone to be there is there in this cycle, not in the next one.
+        // A distance to go within rounding counts as reached in this cycle, not in the next one.
         let arrives = rest > 0.0 && rest <= speed * ROUNDING_S + if speed > 0.0 { 0.0 } else { ROUNDING_MM };
         let here = self.motion.path.element().map(|element| element.sequence);
         let passed = self.motion.path.passed().last().map(|last| last.sequence);
@@ -83,7 +83,7 @@ impl Channel<'_> {
             self.pass(passed);
         }
         self.passed_leads(self.t() + self.cycle_s);
-        let moved = (self.way() - way).abs() > 2.0 * ROUNDING_MM;
+        let moved = (self.distance() - distance).abs() > 2.0 * ROUNDING_MM;
         self.motion.still = speed <= 0.0;
         if self.motion.stands && moved {
             self.record
@@ -92,7 +92,8 @@ impl Channel<'_> {
         }
         let ended = self.motion.cycle_independent(self.cycle_s);
         self.motion.held = cycle.state == State::Held;
-        self.record.sample(self.t() + self.cycle_s, self.way(), speed);
+        self.record
+            .sample(self.t() + self.cycle_s, self.distance(), speed);
         moved || ended || !self.motion.still || !self.motion.path.passed().is_empty()
     }
 
@@ -115,14 +116,14 @@ impl Channel<'_> {
 
     /// The block in which the path is, or at whose end.
     pub(super) fn block_now(&self) -> Arc<str> {
-        let at_place = self.way() <= self.plan.track.way(self.motion.reached) + SAME;
+        let at_place = self.distance() <= self.plan.track.distance(self.motion.reached) + SAME;
         match self.plan.track.leg(self.motion.reached).filter(|_| !at_place) {
             Some(leg) => leg.block.clone(),
             None => self.plan.track.block_before(self.motion.reached),
         }
     }
 
-    /// The path stands.
+    /// Notes that the path stands.
     pub(super) fn stop(&mut self, at: Moment) {
         let block = self.block_now();
         self.record.path(false, &block, at);

@@ -3,12 +3,12 @@
 use super::Channel;
 use super::order::{Order, OrderId, RangeId};
 use super::record::Moment;
-use super::track::Deed;
+use super::track::Action;
 use crate::plc::{self, Output, cycle_at};
 use crate::report::EventKind;
 use crate::synch::SynchType;
 
-/// What became of a deed.
+/// What became of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Done {
     Yes,
@@ -24,19 +24,19 @@ impl Channel<'_> {
         if let Some(message) = self.plc.take_fault() {
             self.progress.fault = Some(super::fault::named(&self.here(), "plc", message));
         }
-        while let Some(deed) = self.plc.next(self.cycle) {
+        while let Some(reaction) = self.plc.next(self.cycle) {
             any = true;
             let at = self.now();
-            match deed {
-                plc::Deed::Fetch(id) => {
+            match reaction {
+                plc::Reaction::Fetch(id) => {
                     self.plan.ranges.fetch(id, &mut self.plan.orders);
                     self.tell(EventKind::Fetch, id, at);
                 }
-                plc::Deed::Acknowledge(id) => {
+                plc::Reaction::Acknowledge(id) => {
                     self.plan.ranges.acknowledge(id, &mut self.plan.orders);
                     self.tell(EventKind::Acknowledge, id, at);
                 }
-                plc::Deed::Confirm(id) => {
+                plc::Reaction::Confirm(id) => {
                     if let Some(order) = self.plan.orders.get_mut(id) {
                         order.state.confirmed = true;
                     }
@@ -61,8 +61,8 @@ impl Channel<'_> {
             if place > self.motion.reached {
                 break;
             }
-            if index < self.plan.track.deeds(place).len() {
-                if self.deed(place, index) == Done::NotYet {
+            if index < self.plan.track.actions(place).len() {
+                if self.action(place, index) == Done::NotYet {
                     break;
                 }
                 self.gates.cursor.1 += 1;
@@ -77,17 +77,17 @@ impl Channel<'_> {
         any
     }
 
-    fn deed(&mut self, place: u64, index: usize) -> Done {
-        let Some(deed) = self.plan.track.deeds(place).get(index) else {
+    fn action(&mut self, place: u64, index: usize) -> Done {
+        let Some(action) = self.plan.track.actions(place).get(index) else {
             return Done::Yes;
         };
-        match deed {
-            Deed::Command(id) => {
+        match action {
+            Action::Command(id) => {
                 let id = *id;
                 self.command(id);
                 Done::Yes
             }
-            Deed::Output(id) => {
+            Action::Output(id) => {
                 let id = *id;
                 let blocked = self.range_of(id).and_then(|range| self.blocker(range));
                 if blocked.is_some() {
@@ -96,48 +96,48 @@ impl Channel<'_> {
                 self.output_at(id, place);
                 Done::Yes
             }
-            Deed::Gate(ids) => {
+            Action::Gate(ids) => {
                 if ids.iter().all(|id| self.is_open(*id)) {
                     Done::Yes
                 } else {
                     Done::NotYet
                 }
             }
-            Deed::Stand(id) if self.motion.stands || !self.stands_for(*id) => Done::Yes,
-            Deed::Stand(_) => Done::NotYet,
-            Deed::BlockEnd => {
+            Action::Stand(id) if self.motion.stands || !self.stands_for(*id) => Done::Yes,
+            Action::Stand(_) => Done::NotYet,
+            Action::BlockEnd => {
                 let moves = !self.motion.still || place < self.motion.reached;
                 if self
                     .single
-                    .stands_at_end(self.plan.track.way(place), false, moves)
+                    .stands_at_end(self.plan.track.distance(place), false, moves)
                 {
                     Done::NotYet
                 } else {
                     Done::Yes
                 }
             }
-            Deed::Dwell(seconds) => self.dwell(place, *seconds),
-            Deed::Independent(independent) => {
+            Action::Dwell(seconds) => self.dwell(place, *seconds),
+            Action::Independent(independent) => {
                 let independent = independent.as_ref().clone();
                 let at = self.now().position[independent.axis];
                 self.motion.begin_independent(independent, at);
                 Done::Yes
             }
-            Deed::AllEnded if self.motion.independent.is_empty() => Done::Yes,
-            Deed::AllEnded => Done::NotYet,
-            Deed::Fault(fault) => {
+            Action::AllEnded if self.motion.independent.is_empty() => Done::Yes,
+            Action::AllEnded => Done::NotYet,
+            Action::Fault(fault) => {
                 self.progress.fault = Some(fault.as_ref().clone());
                 Done::Yes
             }
-            Deed::End if !self.plan.leads.queue.is_empty() => Done::NotYet,
-            Deed::End => {
+            Action::End if !self.plan.leads.queue.is_empty() => Done::NotYet,
+            Action::End => {
                 self.progress.ended = true;
                 Done::Yes
             }
         }
     }
 
-    /// A dwell ends in the first cycle behind its time, which begins when the path comes to rest.
+    /// A dwell ends in the first cycle after its time, which begins when the path comes to rest.
     fn dwell(&mut self, place: u64, seconds: f64) -> Done {
         let cycle = self.cycle;
         let left = self.passed(place).map_or(0.0, |passed| passed.0);
@@ -255,15 +255,15 @@ impl Channel<'_> {
         order.is_done() || self.gates.simulated && !order.state.output && !order.synch.forward
     }
 
-    /// Whether the path has to stop at a place, looking from one of its deeds on.
+    /// Whether the path has to stop at a place, looking from one of its actions on.
     pub(super) fn is_closed(&self, place: u64, from: usize) -> bool {
-        let deeds = self.plan.track.deeds(place).get(from..).unwrap_or_default();
-        deeds.iter().any(|deed| match deed {
-            Deed::Gate(ids) => !ids.iter().all(|id| self.is_open(*id)),
-            Deed::Stand(id) => self.stands_for(*id),
-            Deed::BlockEnd => self.single.stops_at(self.plan.track.way(place), false),
-            Deed::Dwell(_) | Deed::AllEnded | Deed::End | Deed::Fault(_) => true,
-            Deed::Output(_) | Deed::Command(_) | Deed::Independent(_) => false,
+        let actions = self.plan.track.actions(place).get(from..).unwrap_or_default();
+        actions.iter().any(|action| match action {
+            Action::Gate(ids) => !ids.iter().all(|id| self.is_open(*id)),
+            Action::Stand(id) => self.stands_for(*id),
+            Action::BlockEnd => self.single.stops_at(self.plan.track.distance(place), false),
+            Action::Dwell(_) | Action::AllEnded | Action::End | Action::Fault(_) => true,
+            Action::Output(_) | Action::Command(_) | Action::Independent(_) => false,
         })
     }
 
@@ -284,9 +284,9 @@ impl Channel<'_> {
         // What is to be output next to a range whose last function is not fetched stops the path, too.
         let blocked = (cursor..place).find(|place| {
             let from = if *place == cursor { index } else { 0 };
-            let deeds = self.plan.track.deeds(*place).get(from..).unwrap_or_default();
-            deeds.iter().any(|deed| match deed {
-                Deed::Output(id) => self.range_of(*id).and_then(|range| self.blocker(range)).is_some(),
+            let actions = self.plan.track.actions(*place).get(from..).unwrap_or_default();
+            actions.iter().any(|action| match action {
+                Action::Output(id) => self.range_of(*id).and_then(|range| self.blocker(range)).is_some(),
                 _ => false,
             })
         });
@@ -306,11 +306,11 @@ impl Channel<'_> {
         let (place, index) = self.gates.cursor;
         let mut missing = Vec::new();
         if place <= self.motion.reached {
-            match self.plan.track.deeds(place).get(index) {
-                Some(Deed::Gate(ids)) => {
+            match self.plan.track.actions(place).get(index) {
+                Some(Action::Gate(ids)) => {
                     missing.extend(ids.iter().copied().filter(|id| !self.is_open(*id)));
                 }
-                Some(Deed::Output(id)) => {
+                Some(Action::Output(id)) => {
                     missing.extend(self.range_of(*id).and_then(|range| self.blocker(range)));
                 }
                 _ => {}
@@ -326,7 +326,7 @@ impl Channel<'_> {
             return true;
         }
         let (place, index) = self.gates.cursor;
-        let waits = |deed: &Deed| !matches!(deed, Deed::End | Deed::AllEnded);
-        place <= self.motion.reached && self.plan.track.deeds(place).get(index).is_some_and(waits)
+        let waits = |action: &Action| !matches!(action, Action::End | Action::AllEnded);
+        place <= self.motion.reached && self.plan.track.actions(place).get(index).is_some_and(waits)
     }
 }

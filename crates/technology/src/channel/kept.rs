@@ -1,4 +1,4 @@
-//! Whether a lead was kept: what went out later before its place than it should is told.
+//! Whether a lead was kept: what went out later before its place than it should is reported.
 //!
 //! A time ahead of a place where the path waits is planned with an end velocity of 0 there; when the acknowledgement comes in
 //! time the path does not stop, and is there sooner [004:87]. M functions that nobody waits for keep their lead (inferred).
@@ -22,15 +22,15 @@ impl Channel<'_> {
             planned_s,
         };
         match ahead.lead {
-            Lead::Time(_) if self.way() + SAME < ahead.point => {
+            Lead::Time(_) if self.distance() + SAME < ahead.point => {
                 self.plan.leads.watched.promises.push_back(promise)
             }
             Lead::Time(lead_s) => self.tell_lead(promise, (0.0, lead_s * PER_S), "ms"),
-            Lead::Way(lead) => {
+            Lead::Distance(lead) => {
                 let placed = self.plan.leads.placed(ahead.id).unwrap_or(ahead.point);
-                let way = ahead.point - placed;
-                if way + 2.0 * SAME < lead {
-                    self.tell_lead(promise, (way, lead), "mm");
+                let distance = ahead.point - placed;
+                if distance + 2.0 * SAME < lead {
+                    self.tell_lead(promise, (distance, lead), "mm");
                 }
             }
             Lead::None => {}
@@ -39,16 +39,17 @@ impl Channel<'_> {
 
     /// The path has come so far in a cycle that ends at a time, s.
     pub(super) fn passed_leads(&mut self, now_s: f64) {
-        let way = self.way();
+        let distance = self.distance();
         while let Some(promise) = self.plan.leads.watched.promises.front().copied()
-            && promise.ahead.point <= way + SAME
+            && promise.ahead.point <= distance + SAME
         {
             self.plan.leads.watched.promises.pop_front();
             let Lead::Time(lead_s) = promise.ahead.lead else {
                 continue;
             };
             let mut passed = self.motion.path.passed().iter();
-            let at = passed.find(|end| self.plan.track.way(end.sequence + 1) >= promise.ahead.point - SAME);
+            let at =
+                passed.find(|end| self.plan.track.distance(end.sequence + 1) >= promise.ahead.point - SAME);
             let was_s = now_s - at.map_or(0.0, |end| end.left_s) - promise.output_s;
             if was_s + self.cycle_s + ROUNDING_S < lead_s {
                 self.tell_lead(promise, (was_s * PER_S, lead_s * PER_S), "ms");
@@ -62,14 +63,14 @@ impl Channel<'_> {
             return;
         };
         let (label, place) = (order.label(), order.place.clone());
-        let told = &mut self.plan.leads.watched.told;
-        if !told.insert((label.clone(), place.program.clone(), place.line)) {
+        let reported = &mut self.plan.leads.watched.reported;
+        if !reported.insert((label.clone(), place.program.clone(), place.line)) {
             return;
         }
         let why = self.why(&promise);
         let digits = if unit == "ms" { 1.0 } else { 1e3 };
         let (is, asked) = ((is * digits).round() / digits, (asked * digits).round() / digits);
-        let (is, side) = (is.abs(), if is < 0.0 { "behind" } else { "before" });
+        let (is, side) = (is.abs(), if is < 0.0 { "after" } else { "before" });
         self.record.warnings.push(Warning {
             message: format!("{label} is output {is} {unit} {side} its place, not {asked} {unit}: {why}"),
             program: place.program.to_string(),

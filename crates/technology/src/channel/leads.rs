@@ -15,7 +15,7 @@ pub(super) struct Ahead {
     /// Count of executed blocks.
     pub(super) unit: u64,
     pub(super) lead: Lead,
-    /// Way along the path to the place where it is synchronised, mm.
+    /// Distance along the path to the place where it is synchronised, mm.
     pub(super) point: f64,
     /// It is not output before this, mm: the look-ahead reaches no farther back.
     pub(super) earliest: f64,
@@ -35,10 +35,10 @@ pub(super) enum Held {
 }
 
 impl Ahead {
-    /// Way along the path to where it is output, mm, for a lead along the path.
+    /// Distance along the path to where it is output, mm, for a lead along the path.
     pub(super) fn place(&self) -> f64 {
         match self.lead {
-            Lead::Way(way) => (self.point - way).max(self.earliest),
+            Lead::Distance(distance) => (self.point - distance).max(self.earliest),
             Lead::None => self.point,
             Lead::Time(_) => self.earliest,
         }
@@ -58,8 +58,8 @@ pub(super) struct Promise {
 #[derive(Debug, Default)]
 pub(super) struct Watched {
     pub(super) promises: VecDeque<Promise>,
-    /// What was told: a block that comes again is told once.
-    pub(super) told: BTreeSet<(String, Arc<str>, u32)>,
+    /// What was reported: a block that comes again is reported once.
+    pub(super) reported: BTreeSet<(String, Arc<str>, u32)>,
 }
 
 impl Watched {
@@ -75,9 +75,9 @@ pub(super) struct Leads {
     pub(super) queue: VecDeque<Ahead>,
     /// Those that were output and whose places are not passed yet.
     pub(super) watched: Watched,
-    /// Those that were output, by their places: for the way back.
+    /// Those that were output, by their places: for backward motion.
     taken: VecDeque<Ahead>,
-    /// Ways to the starts of the last blocks, as many as the look-ahead takes.
+    /// Distances to the starts of the last blocks, as many as the look-ahead takes.
     blocks: VecDeque<f64>,
     /// Nothing is output before this, mm: the path was to come to rest here.
     barrier: f64,
@@ -88,17 +88,17 @@ pub(super) struct Leads {
 }
 
 impl Leads {
-    /// A block with a movement begins at a way, mm; so many blocks are looked at.
-    pub(super) fn block(&mut self, way: f64, most: usize) {
-        self.blocks.push_back(way);
+    /// A block with a movement begins at a distance along the path, mm; so many blocks are looked at.
+    pub(super) fn block(&mut self, distance: f64, most: usize) {
+        self.blocks.push_back(distance);
         while self.blocks.len() > most {
             self.blocks.pop_front();
         }
     }
 
     /// Nothing is output across this place, mm.
-    pub(super) fn bar(&mut self, way: f64) {
-        self.barrier = way;
+    pub(super) fn bar(&mut self, distance: f64) {
+        self.barrier = distance;
         self.blocks.clear();
     }
 
@@ -140,7 +140,7 @@ impl Leads {
             .take_while(move |(_, ahead)| Some(ahead.unit) == unit && !held)
     }
 
-    /// One of them is output, at a way, mm.
+    /// One of them is output, at a distance along the path, mm.
     pub(super) fn take(&mut self, index: usize, one_by_one: bool, output: f64) {
         let Some(ahead) = self.queue.remove(index) else {
             return;
@@ -159,10 +159,10 @@ impl Leads {
     }
 
     /// One that is output does so at this place of the path, mm.
-    pub(super) fn output_at(&mut self, id: OrderId, way: f64) {
-        self.floor = way;
+    pub(super) fn output_at(&mut self, id: OrderId, distance: f64) {
+        self.floor = distance;
         if let Some(ahead) = self.taken.iter_mut().rev().find(|ahead| ahead.id == id) {
-            ahead.output = way;
+            ahead.output = distance;
         }
     }
 
@@ -173,16 +173,16 @@ impl Leads {
     }
 
     /// The functions that were output and belong to a place, mm.
-    pub(super) fn of_place(&self, way: f64) -> impl Iterator<Item = OrderId> {
-        let first = self.taken.partition_point(|ahead| ahead.point < way - SAME);
+    pub(super) fn of_place(&self, distance: f64) -> impl Iterator<Item = OrderId> {
+        let first = self.taken.partition_point(|ahead| ahead.point < distance - SAME);
         let here = self
             .taken
             .range(first..)
-            .take_while(move |ahead| ahead.point <= way + SAME);
+            .take_while(move |ahead| ahead.point <= distance + SAME);
         here.map(|ahead| ahead.id)
     }
 
-    /// The path has turned at a way, mm, and goes forward again from another one. What it comes over is still to be output:
+    /// The path has turned at a distance along the path, mm, and goes forward again from another one. What it comes over is still to be output:
     /// the place of a function, or where it was output. They are handed on.
     pub(super) fn repeat(&mut self, turned: f64, from: f64) -> Vec<OrderId> {
         let (again, over): (Vec<Ahead>, Vec<Ahead>) = self.taken.drain(..).partition(|ahead| {
@@ -207,17 +207,17 @@ impl Leads {
         self.queue.iter_mut().for_each(|ahead| new(&mut ahead.id));
     }
 
-    /// Nobody goes back to what lies before this way, mm; the first order that may still be asked for.
-    pub(super) fn forget_before(&mut self, way: f64) -> Option<OrderId> {
-        self.taken.retain(|ahead| ahead.point >= way);
+    /// Nobody goes back to what lies before this distance along the path, mm; the first order that may still be asked for.
+    pub(super) fn forget_before(&mut self, distance: f64) -> Option<OrderId> {
+        self.taken.retain(|ahead| ahead.point >= distance);
         self.taken.iter().map(|ahead| ahead.id).min()
     }
 
     /// The path begins anew.
-    pub(super) fn begin(&mut self, way: f64) {
+    pub(super) fn begin(&mut self, distance: f64) {
         *self = Leads {
-            barrier: way,
-            floor: way,
+            barrier: distance,
+            floor: distance,
             ..Leads::default()
         };
     }

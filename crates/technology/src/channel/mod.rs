@@ -1,7 +1,7 @@
 //! The channel: blocks become a path with places where functions are output and waited for; a cycle loop drives along it.
 //!
-//! `take` (in `prepare`) turns a block into elements and deeds; `gates` does what is to be done where the path is, `leads`
-//! what is to be done ahead of that, `drive` is a cycle of the path. `programs` runs one program behind the other.
+//! `take` (in `prepare`) turns a block into elements and actions; `gates` does what is to be done where the path is, `leads`
+//! what is to be done ahead of that, `drive` is a cycle of the path. `programs` runs one program after the other.
 
 mod back;
 mod backward;
@@ -54,15 +54,15 @@ struct Channel<'a> {
     progress: Progress,
 }
 
-/// Where deeds are done next, and where the path has to stop.
+/// Where actions are done next, and where the path has to stop.
 struct Gates {
-    /// The place at which deeds are done next, and which of them.
+    /// The place at which actions are done next, and which of them.
     cursor: (u64, usize),
     /// Places before this one do not stop the path.
     open_to: u64,
     /// The cycle in which a dwell ends.
     dwell: Option<u64>,
-    /// Functions are simulated.
+    /// Simulated forward motion: functions are output as MOS.
     simulated: bool,
 }
 
@@ -121,22 +121,22 @@ impl<'a> Channel<'a> {
         self.cycle as f64 * self.cycle_s
     }
 
-    /// Way along the path, mm.
-    fn way(&self) -> f64 {
-        self.way_of(&self.motion.path)
+    /// Distance along the path, mm.
+    fn distance(&self) -> f64 {
+        self.distance_of(&self.motion.path)
     }
 
-    /// Way along the path of an interpolator on it, mm.
-    fn way_of(&self, path: &Interpolator<()>) -> f64 {
-        if let Some(way) = self.way_back(path) {
-            return way;
+    /// Distance along the path of an interpolator on it, mm.
+    fn distance_of(&self, path: &Interpolator<()>) -> f64 {
+        if let Some(distance) = self.backward_distance(path) {
+            return distance;
         }
         let Some(element) = path.element() else {
-            return self.plan.track.way(self.motion.reached);
+            return self.plan.track.distance(self.motion.reached);
         };
         match self.plan.track.leg(element.sequence) {
             Some(leg) => leg.to() - path.rest_mm(),
-            None => self.plan.track.way(self.motion.reached),
+            None => self.plan.track.distance(self.motion.reached),
         }
     }
 

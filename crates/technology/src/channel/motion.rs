@@ -11,7 +11,7 @@ const LOOK_AHEAD: usize = 512;
 
 /// Nearer to a place the path is there, mm.
 pub(super) const ROUNDING_MM: f64 = 1e-9;
-/// Slower than this it stands, mm/s: it brakes over less than the way above.
+/// Slower than this it stands, mm/s: it brakes over less than the distance above.
 const STANDS_MM_S: f64 = 1e-3;
 
 /// The path and the axes that move.
@@ -26,11 +26,11 @@ pub(super) struct Motion<'a> {
     acceleration: f64,
     /// The place that the path has come to or stands at.
     pub(super) reached: u64,
-    /// Way along the path before the last cycle, mm.
-    pub(super) way_before: f64,
+    /// Distance along the path before the last cycle, mm.
+    pub(super) distance_before: f64,
     /// The path stood still in the last cycle.
     pub(super) still: bool,
-    /// That was said.
+    /// The standstill was reported.
     pub(super) stands: bool,
     /// It stands because it is held.
     pub(super) held: bool,
@@ -48,7 +48,7 @@ struct Feed<'a> {
     part: &'a mut Option<f64>,
     /// Elements with another path acceleration wait until the limits are others.
     acceleration: f64,
-    /// Nothing comes behind those that are known before the path has come to their end.
+    /// Nothing comes after those that are known before the path has come to their end.
     closed: bool,
 }
 
@@ -91,7 +91,7 @@ impl<'a> Motion<'a> {
             part: None,
             acceleration: f64::INFINITY,
             reached: 1,
-            way_before: 0.0,
+            distance_before: 0.0,
             still: true,
             stands: true,
             held: false,

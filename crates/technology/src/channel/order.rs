@@ -1,4 +1,4 @@
-//! A function that was programmed, on its way through the channel.
+//! A function that was programmed, as it goes through the channel.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -26,12 +26,12 @@ pub(crate) enum Letter {
 pub(crate) enum Lead {
     None,
     /// Along the path, mm.
-    Way(f64),
-    /// s.
+    Distance(f64),
+    /// By a time, s.
     Time(f64),
 }
 
-/// Which range.
+/// The range to which a function goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RangeId {
     Channel,

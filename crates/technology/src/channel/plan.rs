@@ -51,12 +51,12 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The path begins anew, somewhere, at a way along it, mm. Returns its first place.
-    pub(super) fn begin_path(&mut self, start: Position, way: f64) -> u64 {
+    /// The path begins anew, somewhere, at a distance along it, mm. Returns its first place.
+    pub(super) fn begin_path(&mut self, start: Position, distance: f64) -> u64 {
         let first = self.track.last() + 1;
-        self.track = Track::new(start, first, way);
-        self.window.begin(way);
-        self.leads.begin(way);
+        self.track = Track::new(start, first, distance);
+        self.window.begin(distance);
+        self.leads.begin(distance);
         first
     }
 
@@ -68,10 +68,10 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// What lies behind a place of the path is forgotten.
+    /// What lies before a place of the path is forgotten.
     pub(super) fn forget_before(&mut self, reached: u64) {
         let first = self.track.forget_before(reached);
-        let ahead = self.leads.forget_before(self.track.way(self.track.first()));
+        let ahead = self.leads.forget_before(self.track.distance(self.track.first()));
         let next = self.orders.next();
         let oldest = first.into_iter().chain(ahead).min().unwrap_or(next);
         self.orders.forget_before(oldest);

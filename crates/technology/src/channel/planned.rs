@@ -1,4 +1,4 @@
-//! What is done ahead of its place: output by way or by time, with the time that the path will take as planned.
+//! What is done ahead of its place: output by distance or by time, with the time that the path will take as planned.
 
 use bahn_motion::{Drive, State};
 
@@ -6,7 +6,7 @@ use super::Channel;
 use super::leads::{Ahead, SAME};
 use super::order::{Lead, OrderId};
 use super::record::Moment;
-use super::track::Deed;
+use super::track::Action;
 use crate::plc::cycle_at;
 use crate::report::ToGo;
 
@@ -30,17 +30,19 @@ impl Channel<'_> {
             if blocked.is_some() {
                 break;
             }
-            let way = self.way();
-            self.plan
-                .leads
-                .take(index, self.plan.in_force.settings.pre_output.value_to_go, way);
+            let distance = self.distance();
+            self.plan.leads.take(
+                index,
+                self.plan.in_force.settings.pre_output.value_to_go,
+                distance,
+            );
             any = true;
             let mut at = self.now();
             if !matches!(ahead.lead, Lead::Time(_)) {
                 // What could not go out at its place, for that was not known or another came before, does so where the path is.
-                let in_cycle = |place: &f64| (self.motion.way_before - SAME..=way).contains(place);
+                let in_cycle = |place: &f64| (self.motion.distance_before - SAME..=distance).contains(place);
                 let places = [ahead.place(), self.plan.leads.floor];
-                let place = places.into_iter().find(in_cycle).unwrap_or(way);
+                let place = places.into_iter().find(in_cycle).unwrap_or(distance);
                 self.plan.leads.output_at(ahead.id, place);
                 at = Moment {
                     position: self.plan.track.position_at(place, self.motion.reached + 1),
@@ -58,13 +60,13 @@ impl Channel<'_> {
 
     /// The next function that is due.
     fn next_ahead(&self, drive: &Drive) -> Option<(usize, Ahead)> {
-        let way = self.way();
+        let distance = self.distance();
         let passed = |point: f64, ids: &[OrderId]| {
-            way > point - SAME && ids.iter().all(|id| self.plan.orders.is_done(*id))
+            distance > point - SAME && ids.iter().all(|id| self.plan.orders.is_done(*id))
         };
         let one_by_one = self.plan.in_force.settings.pre_output.value_to_go;
         let mut candidates = self.plan.leads.next(one_by_one, passed);
-        let due = candidates.find(|(_, ahead)| self.is_due(ahead, way, drive));
+        let due = candidates.find(|(_, ahead)| self.is_due(ahead, distance, drive));
         due.map(|(index, ahead)| (index, *ahead))
     }
 
@@ -79,18 +81,18 @@ impl Channel<'_> {
         self.range_of(ahead.id).and_then(|range| self.blocker(range))
     }
 
-    fn is_due(&self, ahead: &Ahead, way: f64, drive: &Drive) -> bool {
-        if way + SAME < ahead.place() {
+    fn is_due(&self, ahead: &Ahead, distance: f64, drive: &Drive) -> bool {
+        if distance + SAME < ahead.place() {
             return false;
         }
         let Lead::Time(lead_s) = ahead.lead else {
             return true;
         };
-        if way + SAME >= ahead.point {
+        if distance + SAME >= ahead.point {
             return true;
         }
         let fastest = self.fastest(ahead.point, drive);
-        ahead.point - way <= fastest * lead_s
+        ahead.point - distance <= fastest * lead_s
             && self
                 .time_to(ahead.point, lead_s, drive)
                 .is_some_and(|time| time <= lead_s + ROUNDING_S)
@@ -117,10 +119,10 @@ impl Channel<'_> {
     fn time_to(&self, point: f64, most_s: f64, drive: &Drive) -> Option<f64> {
         let last = self.plan.track.last();
         let mut target = self.motion.reached + u64::from(self.motion.path.rest_mm() <= 0.0);
-        while target < last && self.plan.track.way(target) < point - SAME {
+        while target < last && self.plan.track.distance(target) < point - SAME {
             target += 1;
         }
-        if self.plan.track.way(target) < point - SAME {
+        if self.plan.track.distance(target) < point - SAME {
             return None;
         }
         let mut stops = (self.gates.open_to.max(self.motion.reached + 1)..=last)
@@ -155,11 +157,11 @@ impl Channel<'_> {
         None
     }
 
-    /// Cycles that the path dwells at a place to which it came so long before the end of a cycle, s, from one of its deeds on.
+    /// Cycles that the path dwells at a place to which it came so long before the end of a cycle, s, from one of its actions on.
     fn dwells(&self, place: u64, from: usize, left_s: f64) -> u64 {
-        let deeds = self.plan.track.deeds(place).get(from..).unwrap_or_default();
-        let dwell = deeds.iter().filter_map(|deed| match deed {
-            Deed::Dwell(seconds) => Some(cycle_at((seconds - left_s).max(0.0), self.cycle_s)),
+        let actions = self.plan.track.actions(place).get(from..).unwrap_or_default();
+        let dwell = actions.iter().filter_map(|action| match action {
+            Action::Dwell(seconds) => Some(cycle_at((seconds - left_s).max(0.0), self.cycle_s)),
             _ => None,
         });
         dwell.sum()
@@ -185,7 +187,7 @@ impl Channel<'_> {
     /// How long the path takes to the place of a function that is output a time ahead of it now, s, up to that time.
     fn planned_s(&self, ahead: &Ahead, drive: &Drive) -> f64 {
         match ahead.lead {
-            Lead::Time(lead_s) if self.way() + SAME < ahead.point => {
+            Lead::Time(lead_s) if self.distance() + SAME < ahead.point => {
                 self.time_to(ahead.point, lead_s, drive).unwrap_or(lead_s)
             }
             _ => 0.0,
@@ -198,14 +200,14 @@ impl Channel<'_> {
         if !self.plan.in_force.settings.pre_output.value_to_go || !order.waits {
             return None;
         }
-        let way = if matches!(ahead.lead, Lead::Time(_)) {
-            self.way()
+        let distance = if matches!(ahead.lead, Lead::Time(_)) {
+            self.distance()
         } else {
             ahead.place()
         };
         let time = self.time_to(ahead.point, LONGEST_S, drive).unwrap_or(0.0);
         Some(ToGo {
-            path: ((ahead.point - way) * PER_MM).round() as i64,
+            path: ((ahead.point - distance) * PER_MM).round() as i64,
             time: (time * PER_S).round() as i64,
         })
     }

@@ -8,7 +8,7 @@ use super::fault::{named, numbered};
 use super::order::{Lead, OrderId};
 use super::plan::{Around, Plan};
 use super::resolve::Resolve;
-use super::track::{Deed, Driving, Leg, VectorLimit};
+use super::track::{Action, Driving, Leg, VectorLimit};
 use super::window::{Held, JointFeed};
 use crate::plc::Script;
 use crate::report::{Fault, Warning};
@@ -26,15 +26,15 @@ struct Sorted {
     before: Vec<OrderId>,
     /// Waited for before it.
     gate: Vec<OrderId>,
-    /// Waited for behind it.
-    gate_behind: Vec<OrderId>,
-    /// Done behind it.
-    behind: Vec<Deed>,
-    /// Output ahead.
+    /// Waited for after it.
+    gate_after: Vec<OrderId>,
+    /// Done after the motion.
+    after: Vec<Action>,
+    /// Output ahead of the motion.
     ahead: Vec<OrderId>,
-    /// Micro Joints before the motion and behind it.
+    /// Micro Joints before the motion and after it.
     joints: Vec<OrderId>,
-    joints_behind: Vec<OrderId>,
+    joints_after: Vec<OrderId>,
     /// At the measuring event.
     measured: Option<OrderId>,
 }
@@ -63,23 +63,23 @@ impl Plan<'_> {
                 self.measured(id, unit);
             }
             // Nothing is output ahead across the place where such a function is waited for [004:135].
-            let waits_behind = |id: &&OrderId| {
+            let waits_after = |id: &&OrderId| {
                 let order = self.orders.get(**id);
                 moves && order.is_some_and(|order| order.synch.kind == SynchType::MvsSns)
             };
-            if sorted.gate_behind.iter().any(|id| waits_behind(&id)) {
+            if sorted.gate_after.iter().any(|id| waits_after(&id)) {
                 self.window.bar();
             }
         }
-        self.behind(&sorted, unit, around.warnings)?;
+        self.after(&sorted, unit, around.warnings)?;
         // An axis that moves on its own has ended with its block (inferred).
         let moves_alone = |command: &Command| matches!(command, Command::Independent(_));
         let alone = unit.commands.iter().any(moves_alone);
         if alone {
-            self.window.deed(Deed::AllEnded);
+            self.window.action(Action::AllEnded);
         }
         if (moves || alone) && !unit.ends {
-            self.window.deed(Deed::BlockEnd);
+            self.window.action(Action::BlockEnd);
         }
         if flush_and_wait || alone {
             self.flush(true);
@@ -93,7 +93,7 @@ impl Plan<'_> {
         Ok(())
     }
 
-    /// Whether a function holds decoding behind the block.
+    /// Whether a function holds decoding after the block.
     fn flush_and_wait(&self, ids: &[OrderId], unit: &Unit) -> Result<bool, Fault> {
         let of_block = ids.iter().filter_map(|id| self.orders.get(*id));
         let mut flushing = of_block.filter(|order| order.synch.flush_and_wait);
@@ -144,7 +144,8 @@ impl Plan<'_> {
                 Command::EdgeBanding(on) => self.decoding.edge = on.then(Edge::default),
                 Command::RadiusCompensation(on) => self.decoding.radius_compensation = *on,
                 Command::Independent(independent) => {
-                    self.window.deed(Deed::Independent(Box::new(independent.clone())));
+                    self.window
+                        .action(Action::Independent(Box::new(independent.clone())));
                 }
                 Command::Spindle(order) => {
                     let called = self.in_force.settings.spindle_called(&order.spindle);
@@ -163,14 +164,14 @@ impl Plan<'_> {
     pub(super) fn flush(&mut self, wait: bool) {
         self.window.bar();
         self.window.release(&mut self.track);
-        self.leads.bar(self.window.way());
+        self.leads.bar(self.window.distance());
         self.decoding.holds |= wait;
     }
 
     /// The path stands here until functions are done.
     fn gate(&mut self, ids: Vec<OrderId>) {
         if !ids.is_empty() {
-            self.window.deed(Deed::Gate(ids.into()));
+            self.window.action(Action::Gate(ids.into()));
         }
     }
 
@@ -192,7 +193,7 @@ impl Plan<'_> {
             }
             match kind {
                 SynchType::NoSynch => continue,
-                SynchType::MnsSns if joint => sorted.joints_behind.push(id),
+                SynchType::MnsSns if joint => sorted.joints_after.push(id),
                 _ if joint => sorted.joints.push(id),
                 SynchType::MepMos | SynchType::MetMos => sorted.ahead.push(id),
                 SynchType::MepSvs | SynchType::MetSvs => {
@@ -209,9 +210,9 @@ impl Plan<'_> {
                 }
                 SynchType::MnsSns => {
                     // The path stands in any case [004:66], also for a spindle that has confirmed by then.
-                    let deed = if is_output { Deed::Output } else { Deed::Stand };
-                    sorted.behind.push(deed(id));
-                    sorted.gate_behind.push(id);
+                    let action = if is_output { Action::Output } else { Action::Stand };
+                    sorted.after.push(action(id));
+                    sorted.gate_after.push(id);
                 }
                 _ if is_output => sorted.before.push(id),
                 _ => {}
@@ -219,7 +220,7 @@ impl Plan<'_> {
             match kind {
                 _ if joint => {}
                 SynchType::MvsSvs => sorted.gate.push(id),
-                SynchType::MvsSns => sorted.gate_behind.push(id),
+                SynchType::MvsSns => sorted.gate_after.push(id),
                 SynchType::MvsSlm => self.decoding.late[0].push(id),
                 SynchType::MvsSlp => self.decoding.late[1].push(id),
                 _ => {}
@@ -231,17 +232,17 @@ impl Plan<'_> {
     /// What is done before the motion.
     fn before(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
         for id in &sorted.commanded {
-            self.window.deed(Deed::Command(*id));
+            self.window.action(Action::Command(*id));
         }
         for id in &sorted.joints {
             self.joint(*id, unit, warnings)?;
         }
         for id in &sorted.before {
-            self.window.deed(Deed::Output(*id));
+            self.window.action(Action::Output(*id));
         }
         for id in &sorted.ahead {
             let lead = self.orders.get(*id).map_or(Lead::None, |order| order.lead);
-            let point = self.window.way();
+            let point = self.window.distance();
             self.leads.push(*id, self.decoding.units, lead, point);
         }
         let mut gate = sorted.gate.clone();
@@ -267,7 +268,7 @@ impl Plan<'_> {
             block: unit.place.block.clone(),
             unit: self.decoding.units,
             length: motion.curve.length(&motion.start, &motion.end),
-            from: self.window.way(),
+            from: self.window.distance(),
         };
         let blocks = settings.pre_output.blocks as usize;
         self.leads.block(leg.from, blocks);
@@ -285,18 +286,18 @@ impl Plan<'_> {
         self.window.leg(leg, most.max(1), &mut self.track);
     }
 
-    /// What is done behind the motion.
-    fn behind(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
+    /// What is done after the motion.
+    fn after(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
         if unit.dwell_s > 0.0 {
-            self.window.deed(Deed::Dwell(unit.dwell_s));
+            self.window.action(Action::Dwell(unit.dwell_s));
         }
-        for id in &sorted.joints_behind {
+        for id in &sorted.joints_after {
             self.joint(*id, unit, warnings)?;
         }
-        for deed in &sorted.behind {
-            self.window.deed(deed.clone());
+        for action in &sorted.after {
+            self.window.action(action.clone());
         }
-        self.gate(sorted.gate_behind.clone());
+        self.gate(sorted.gate_after.clone());
         Ok(())
     }
 
@@ -305,7 +306,7 @@ impl Plan<'_> {
         let Some(order) = self.orders.get(id) else {
             return Ok(());
         };
-        let Lead::Way(lead) = order.lead else {
+        let Lead::Distance(lead) = order.lead else {
             return Ok(());
         };
         let (waits, kind, label) = (order.waits, order.synch.kind, order.label());
@@ -319,7 +320,7 @@ impl Plan<'_> {
         let tolerance = f64::from(settings.tolerance) / PER_MM;
         if settings.tolerance > 0 && planned.deviation > tolerance {
             let message = format!(
-                "{label} is output {:.4} mm behind its planned place, more than {tolerance} mm",
+                "{label} is output {:.4} mm after its planned place, more than {tolerance} mm",
                 planned.deviation
             );
             return Err(numbered(&unit.place, 120_815, message));
@@ -327,31 +328,31 @@ impl Plan<'_> {
         if planned.held == Held::Window {
             warnings.push(Warning {
                 message: format!(
-                    "{label} is output {:.4} mm behind its planned place: the look-ahead ends there",
+                    "{label} is output {:.4} mm after its planned place: the look-ahead ends there",
                     planned.deviation
                 ),
                 program: unit.place.program.to_string(),
                 block: unit.place.block.to_string(),
             });
         }
-        let gate = || Deed::Gate(Box::new([id]));
-        let mut deeds = vec![Deed::Output(id)];
-        let behind = match kind {
+        let gate = || Action::Gate(Box::new([id]));
+        let mut actions = vec![Action::Output(id)];
+        let after = match kind {
             SynchType::MvsSns if waits => Some(gate()),
             _ => {
                 if waits {
-                    deeds.push(gate());
+                    actions.push(gate());
                 }
                 None
             }
         };
-        self.window.insert(planned.real, deeds, behind);
+        self.window.insert(planned.real, actions, after);
         self.window.bar();
         self.window.release(&mut self.track);
         Ok(())
     }
 
-    /// A function at the measuring event of edge banding, behind its distance to go [004:69].
+    /// A function at the measuring event of edge banding, after its distance to go [004:69].
     fn measured(&mut self, id: OrderId, unit: &Unit) {
         let label = self
             .orders
@@ -363,12 +364,12 @@ impl Plan<'_> {
         let Some(probed) = edge.probed.take() else {
             let message = format!("no measuring event for {label}");
             let fault = named(&unit.place, "probe-missing", message);
-            self.window.deed(Deed::Fault(Box::new(fault)));
+            self.window.action(Action::Fault(Box::new(fault)));
             return;
         };
         let place = probed + self.in_force.residual_mm;
-        let deeds = vec![Deed::Output(id), Deed::Gate(Box::new([id]))];
-        self.window.split_last(place, deeds);
+        let actions = vec![Action::Output(id), Action::Gate(Box::new([id]))];
+        self.window.split_last(place, actions);
         self.window.bar();
     }
 
@@ -381,13 +382,13 @@ impl Plan<'_> {
             late.iter_mut().for_each(Vec::clear);
             self.gate(ids);
         }
-        self.window.deed(Deed::AllEnded);
-        self.window.deed(Deed::End);
+        self.window.action(Action::AllEnded);
+        self.window.action(Action::End);
         self.flush(false);
         self.decoding.ended = true;
     }
 
-    /// A program begins. Late functions can be open here only behind an abort: with P-CHAN-00033 they are waited for [004:78].
+    /// A program begins. Late functions can be open here only after an abort: with P-CHAN-00033 they are waited for [004:78].
     pub(super) fn begin_program(&mut self) {
         self.decoding.begin();
         if self.in_force.settings.late_sync_ready {

@@ -1,4 +1,4 @@
-//! Programs one behind the other.
+//! Programs one after the other.
 
 use bahn_din::{Place, Unit};
 use bahn_path::Position;
@@ -11,7 +11,7 @@ use super::plan::Around;
 use super::record::{self, EVENTS};
 use super::single::braked;
 use super::skipped::Begun;
-use super::track::Deed;
+use super::track::Action;
 use crate::bounds::Bounds;
 use crate::plc::{PlcMemory, cycle_at};
 use crate::report::{Coordinates, Fault, ProgramEnd, Report, Warning};
@@ -19,12 +19,12 @@ use crate::run::{Blocks, Run};
 
 /// Elements of the path that are decoded ahead of it at most.
 const AHEAD: u64 = 300;
-/// Deeds at the end of what is known, and blocks at a time.
-const DEEDS: usize = 2000;
+/// Actions at the end of what is known, and blocks at a time.
+const ACTIONS: usize = 2000;
 const BLOCKS: usize = 2000;
 /// Rounds of decoding and doing in a cycle.
 const ROUNDS: usize = 8;
-/// What lies behind is forgotten every so many cycles.
+/// What the path has passed is forgotten every so many cycles.
 const FORGET: u64 = 1024;
 
 /// How a program ended.
@@ -37,7 +37,7 @@ enum Ended {
 }
 
 impl Run<'_> {
-    /// Runs them.
+    /// Runs the programs up to their end or an error.
     pub fn execute(self) -> Report {
         execute(&self, None)
     }
@@ -99,7 +99,7 @@ fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -
 }
 
 impl Channel<'_> {
-    /// Behind the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
+    /// After the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
     fn fetch_the_rest(&mut self) {
         self.plc.keep_fetches();
         while let Some(cycle) = self.plc.next_cycle(self.cycle, 0) {
@@ -165,7 +165,7 @@ impl Channel<'_> {
 
     /// The path begins anew, somewhere.
     pub(super) fn begin_path(&mut self, start: Position) {
-        let first = self.plan.begin_path(start, self.way());
+        let first = self.plan.begin_path(start, self.distance());
         self.motion.begin(start, first);
         (self.gates.cursor, self.gates.open_to) = ((first, 0), first);
         (self.gates.dwell, self.progress.ended) = (None, false);
@@ -258,10 +258,10 @@ impl Channel<'_> {
             } else {
                 0
             };
-            if last > self.motion.reached + AHEAD || self.plan.track.deeds(last).len() > DEEDS + done {
+            if last > self.motion.reached + AHEAD || self.plan.track.actions(last).len() > ACTIONS + done {
                 break;
             }
-            if done > DEEDS {
+            if done > ACTIONS {
                 self.plan.track.forget_done(done);
                 self.gates.cursor.1 = 0;
             }
@@ -277,7 +277,7 @@ impl Channel<'_> {
             };
             if let Err(fault) = taken {
                 self.plan.window.release(&mut self.plan.track);
-                self.plan.track.push_deed(Deed::Fault(Box::new(fault)));
+                self.plan.track.push_action(Action::Fault(Box::new(fault)));
                 self.plan.decoding.ended = true;
             }
         }
@@ -297,7 +297,7 @@ impl Channel<'_> {
     /// All that is decoded is executed.
     fn is_empty(&self) -> bool {
         let last = self.plan.track.last();
-        self.motion.reached == last && self.gates.cursor == (last, self.plan.track.deeds(last).len())
+        self.motion.reached == last && self.gates.cursor == (last, self.plan.track.actions(last).len())
     }
 
     /// Says which lists of active functions have changed.
@@ -333,8 +333,8 @@ impl Channel<'_> {
             self.gates.open_to = self.gates.cursor.0;
         }
         if self.single.is_unseen() {
-            let way = self.way_of(&braked(self.motion.path.clone()));
-            self.single.see(way);
+            let distance = self.distance_of(&braked(self.motion.path.clone()));
+            self.single.see(distance);
         }
         self.single.take_starts(script, self.cycle, self.cycle_s);
     }

@@ -11,7 +11,7 @@ const SAMPLES: usize = 20_000;
 pub(super) const EVENTS: usize = 5_000_000;
 /// Times are multiples of a cycle: what binary fractions add is less than this part of a second.
 const PER_S: f64 = 1e9;
-/// mm/s in mm/min.
+/// mm/s to mm/min.
 const PER_MIN: f64 = 60.0;
 
 #[derive(Debug, Default)]
@@ -130,7 +130,7 @@ impl Record {
         }
     }
 
-    pub(super) fn sample(&mut self, t: f64, way_mm: f64, speed_mm_s: f64) {
+    pub(super) fn sample(&mut self, t: f64, distance_mm: f64, speed_mm_s: f64) {
         self.skipped += 1;
         if self.skipped < self.every {
             return;
@@ -146,12 +146,12 @@ impl Record {
         }
         self.samples.push(Sample {
             t: time(t),
-            way_mm,
+            distance_mm,
             v: speed_mm_s * PER_MIN,
         });
     }
 
-    /// A stop behind which nothing goes any more is the end of the path, and none.
+    /// A stop after which nothing goes any more is the end of the path, and none.
     pub(super) fn drop_last_stop(&mut self) {
         let last = self
             .events

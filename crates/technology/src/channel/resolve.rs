@@ -28,7 +28,7 @@ pub(crate) struct Resolve<'a> {
 }
 
 /// Where a function goes and what is said of it there.
-struct Way {
+struct Handling {
     synch: Synch,
     range: Option<RangeId>,
     /// A spindle of the NC executes it.
@@ -87,26 +87,26 @@ impl Resolve<'_> {
             Kind::H(number) => (Letter::H, number),
             Kind::S(_) => (Letter::S, 0),
         };
-        let way = match function.kind {
+        let handling = match function.kind {
             Kind::S(_) => self.speed(function, place)?,
             _ => self.switch(letter, number, function.target.as_ref(), place)?,
         };
-        let Some(way) = way else {
+        let Some(handling) = handling else {
             return Ok(None);
         };
         let value = match (function.kind, function.value) {
             (Kind::S(rpm), _) => Value::Number(rpm),
-            (_, Some(_)) if way.reserved => {
+            (_, Some(_)) if handling.reserved => {
                 let message = format!("M{number} has no additive value");
                 return Err(named(place, "additive-value", message));
             }
             (_, Some(value)) => Value::Integer(value.into()),
             (_, None) => Value::None,
         };
-        if way.range.is_none() && way.spindle.is_none() {
+        if handling.range.is_none() && handling.spindle.is_none() {
             return Ok(None);
         }
-        if let Some(range) = way.range {
+        if let Some(range) = handling.range {
             let settings = self.settings;
             self.ranges.open(range, || names(range, settings));
         }
@@ -114,12 +114,12 @@ impl Resolve<'_> {
             letter,
             number,
             value,
-            synch: way.synch,
-            range: way.range,
-            spindle: way.spindle,
-            waits: way.waits,
-            lead: way.lead,
-            process_s: f64::from(way.process_us) / PER_S,
+            synch: handling.synch,
+            range: handling.range,
+            spindle: handling.spindle,
+            waits: handling.waits,
+            lead: handling.lead,
+            process_s: f64::from(handling.process_us) / PER_S,
             place: place.clone(),
             state: State::default(),
         }))
@@ -132,7 +132,7 @@ impl Resolve<'_> {
         number: u16,
         target: Option<&Target>,
         place: &Place,
-    ) -> Result<Option<Way>, Fault> {
+    ) -> Result<Option<Handling>, Fault> {
         let spindle = match target {
             Some(Target::Spindle(name)) => Some(self.spindle(Some(name), number, place)?),
             _ => None,
@@ -150,7 +150,7 @@ impl Resolve<'_> {
                     None => self.spindle(None, number, place)?,
                 };
                 let own = settings.m(number.into()).unwrap_or_default();
-                return Ok(Some(spindle_way(index, settings, own)));
+                return Ok(Some(spindle_handling(index, settings, own)));
             }
             Some(_) if of_gear => {
                 let message = format!("M{number} is of the main spindle and goes to no other range");
@@ -158,10 +158,10 @@ impl Resolve<'_> {
             }
             _ if of_gear => {
                 let (index, _) = self.spindle(None, number, place)?;
-                let way = self.ordinary(letter, number, Some(RangeId::Spindle(index)), place)?;
-                return Ok(way.map(|way| Way {
+                let handling = self.ordinary(letter, number, Some(RangeId::Spindle(index)), place)?;
+                return Ok(handling.map(|handling| Handling {
                     reserved: true,
-                    ..way
+                    ..handling
                 }));
             }
             _ => {}
@@ -183,7 +183,7 @@ impl Resolve<'_> {
         number: u16,
         range: Option<RangeId>,
         place: &Place,
-    ) -> Result<Option<Way>, Fault> {
+    ) -> Result<Option<Handling>, Fault> {
         let table = if letter == Letter::M {
             &self.settings.m
         } else {
@@ -202,7 +202,7 @@ impl Resolve<'_> {
             let message = format!("{letter:?}{number} has no synchronisation type");
             return Err(numbered(place, 20157, message));
         };
-        let Some(synch) = told(synch) else {
+        let Some(synch) = output_type(synch) else {
             return Ok(None);
         };
         let range = match (range, own.default_target.as_deref()) {
@@ -211,7 +211,7 @@ impl Resolve<'_> {
             (None, _) => RangeId::Channel,
         };
         let lead = self.lead(own, synch, range, place)?;
-        Ok(Some(Way {
+        Ok(Some(Handling {
             synch,
             range: Some(range),
             spindle: None,
@@ -229,13 +229,13 @@ impl Resolve<'_> {
         range: RangeId,
         place: &Place,
     ) -> Result<Lead, Fault> {
-        let way = f64::from(own.lead) / PER_MM;
+        let distance = f64::from(own.lead) / PER_MM;
         match synch.kind {
             kind if kind.leads_by_time() => Ok(Lead::Time((f64::from(own.lead) / PER_S).max(self.cycle_s))),
-            kind if kind.is_pre_output() => Ok(Lead::Way(way)),
+            kind if kind.is_pre_output() => Ok(Lead::Distance(distance)),
             kind if kind.takes_micro_joint() && own.lead > 0 => {
                 if self.settings.micro_joint.enabled && range == RangeId::Channel {
-                    return Ok(Lead::Way(way));
+                    return Ok(Lead::Distance(distance));
                 }
                 if self.settings.micro_joint.enabled {
                     let name = names(range, self.settings).into_iter().next().unwrap_or_default();
@@ -251,8 +251,8 @@ impl Resolve<'_> {
         }
     }
 
-    /// An S word.
-    fn speed(&self, function: &Function, place: &Place) -> Result<Option<Way>, Fault> {
+    /// How an S word is handed over.
+    fn speed(&self, function: &Function, place: &Place) -> Result<Option<Handling>, Fault> {
         let name = match &function.target {
             Some(Target::Spindle(name)) => Some(name.as_ref()),
             _ => None,
@@ -267,10 +267,10 @@ impl Resolve<'_> {
                 None => Ok(None),
             };
         };
-        let Some(synch) = told(settings.s.synch.unwrap_or_default()) else {
+        let Some(synch) = output_type(settings.s.synch.unwrap_or_default()) else {
             return Ok(None);
         };
-        Ok(Some(Way {
+        Ok(Some(Handling {
             synch,
             range: Some(range_of(index, settings)),
             spindle: None,
@@ -399,7 +399,7 @@ fn unknown_spindle(name: &str, place: &Place) -> Fault {
 
 /// What is output and has no type is not waited for; `NO_SYNCH` is not output. FAW_SYNCH is set in addition to a type and says
 /// itself that the function is output [004:54], so it stands alone as well (inferred).
-fn told(synch: Synch) -> Option<Synch> {
+fn output_type(synch: Synch) -> Option<Synch> {
     match synch.kind {
         SynchType::NoSynch if synch.flush_and_wait => Some(Synch {
             kind: SynchType::Mos,
@@ -420,19 +420,19 @@ fn range_of(index: usize, settings: &SpindleSettings) -> RangeId {
 }
 
 /// M3, M4, M5 and M19 in the set-ups of a spindle [004:159-171].
-fn spindle_way(index: usize, settings: &SpindleSettings, own: SpindleFunction) -> Way {
+fn spindle_handling(index: usize, settings: &SpindleSettings, own: SpindleFunction) -> Handling {
     let mut synch = own.synch.unwrap_or_default();
     let by_plc = settings.plc_spindle || settings.plc_control;
-    let told = by_plc || synch.plc_info;
-    let waits = told && synch.kind.is_waited_for();
+    let is_output = by_plc || synch.plc_info;
+    let waits = is_output && synch.kind.is_waited_for();
     let spindle = (!by_plc).then_some(index);
     // Without a type of its own it is output and not waited for.
-    if told && synch.kind == SynchType::NoSynch {
+    if is_output && synch.kind == SynchType::NoSynch {
         synch.kind = SynchType::Mos;
     }
-    Way {
+    Handling {
         synch,
-        range: told.then(|| range_of(index, settings)),
+        range: is_output.then(|| range_of(index, settings)),
         spindle,
         waits,
         lead: Lead::None,

@@ -12,7 +12,7 @@ use crate::plc::{Script, cycle_at};
 #[derive(Debug, Default)]
 pub(super) struct Single {
     on: bool,
-    /// Way along the path, mm, at which it can first come to a standstill: block ends before it are passed. Unknown as
+    /// Distance along the path, mm, at which it can first come to a standstill: block ends before it are passed. Unknown as
     /// long as nobody has looked.
     first: Option<f64>,
     /// The operator starts in this cycle, at this time, s.
@@ -54,9 +54,9 @@ impl Single {
         self.on && self.first.is_none()
     }
 
-    /// It can first come to a standstill at this way along it, mm.
-    pub(super) fn see(&mut self, way: f64) {
-        self.first = Some(way);
+    /// It can first come to a standstill at this distance along it, mm.
+    pub(super) fn see(&mut self, distance: f64) {
+        self.first = Some(distance);
     }
 
     /// Takes the starts of the script up to a cycle, whose length is in s.
@@ -71,12 +71,12 @@ impl Single {
     }
 
     /// In single block the path stops at this end of a block, mm along it, if it still can.
-    pub(super) fn stops_at(&self, way: f64, backward: bool) -> bool {
+    pub(super) fn stops_at(&self, distance: f64, backward: bool) -> bool {
         let can = |first: f64| {
             if backward {
-                way <= first + SAME
+                distance <= first + SAME
             } else {
-                way >= first - SAME
+                distance >= first - SAME
             }
         };
         self.on && self.first.is_none_or(can)
@@ -84,8 +84,8 @@ impl Single {
 
     /// Whether the path stands at this end of a block, mm along it, until the next start. It may still move or have run
     /// over it, if it could not stop any more: then it does so as soon as it can.
-    pub(super) fn stands_at_end(&mut self, way: f64, backward: bool, moves: bool) -> bool {
-        if !self.stops_at(way, backward) {
+    pub(super) fn stands_at_end(&mut self, distance: f64, backward: bool, moves: bool) -> bool {
+        if !self.stops_at(distance, backward) {
             return false;
         }
         if moves {

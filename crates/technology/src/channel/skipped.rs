@@ -31,7 +31,7 @@ pub(super) struct Begun<'a> {
 }
 
 impl Plan<'_> {
-    /// Looks for a block in the programs of the first file, one behind the other.
+    /// Looks for a block in the programs of the first file, one after the other.
     pub(super) fn search<'r>(
         &mut self,
         run: &'r Run<'_>,
@@ -122,7 +122,7 @@ impl Plan<'_> {
 }
 
 /// Keeps the last command of each kind that stays in force. The Micro Joint that a command shapes is that of the next
-/// function, so it is over behind one.
+/// function, so it is over after one.
 fn remember(commands: &mut Vec<Command>, unit: Unit) {
     if !unit.functions.is_empty() {
         commands.retain(|command| !matches!(command, Command::MicroJoint { .. }));

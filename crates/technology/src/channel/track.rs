@@ -10,7 +10,7 @@ use crate::report::Fault;
 
 /// What is done at a place of the path, one after the other.
 #[derive(Clone, Debug)]
-pub(crate) enum Deed {
+pub(crate) enum Action {
     /// The spindle is commanded.
     Command(OrderId),
     /// A function is output.
@@ -67,7 +67,7 @@ pub(crate) struct Leg {
     /// Count of executed blocks.
     pub(crate) unit: u64,
     pub(crate) length: f64,
-    /// Way along the path to its start, mm.
+    /// Distance along the path to its start, mm.
     pub(crate) from: f64,
 }
 
@@ -86,7 +86,7 @@ impl Leg {
         self.curve.position(&self.start, &self.end, part.clamp(0.0, 1.0))
     }
 
-    /// Its parts before and behind a place so far along it, mm.
+    /// Its parts before and after a place so far along it, mm.
     pub(crate) fn split(&self, along: f64) -> (Leg, Leg) {
         let at = along / self.length;
         let part = |from: f64, to: f64| {
@@ -107,7 +107,7 @@ impl Leg {
         (first, second)
     }
 
-    /// What is left of it behind a place so far along it, or, backward, the way back from there to its start.
+    /// What is left of it after a place so far along it, or, backward, what lies from there to its start.
     pub(crate) fn rest(&self, along: f64, backward: bool) -> Leg {
         let at = if self.length > 0.0 {
             along / self.length
@@ -152,14 +152,14 @@ impl Leg {
     }
 }
 
-/// A place of the path and the element behind it.
+/// A place of the path and the element after it.
 #[derive(Clone, Debug)]
 struct Stretch {
-    deeds: Vec<Deed>,
+    actions: Vec<Action>,
     leg: Leg,
 }
 
-/// Elements that were executed and are kept for the way back.
+/// Elements that were executed and are kept for backward motion.
 const HISTORY: u64 = 10_000;
 
 /// The path as far as it is known. Its places are numbered: place `n` is that before element `n`, the last one is where
@@ -170,20 +170,20 @@ pub(crate) struct Track {
     first: u64,
     stretches: VecDeque<Stretch>,
     /// What is to be done where it ends.
-    tail: Vec<Deed>,
-    way: f64,
+    tail: Vec<Action>,
+    distance: f64,
     end: Position,
     block: Arc<str>,
 }
 
 impl Track {
     /// A path that starts somewhere, with its first element numbered so.
-    pub(crate) fn new(start: Position, first: u64, way: f64) -> Track {
+    pub(crate) fn new(start: Position, first: u64, distance: f64) -> Track {
         Track {
             first,
             stretches: VecDeque::new(),
             tail: Vec::new(),
-            way,
+            distance,
             end: start,
             block: "".into(),
         }
@@ -205,21 +205,21 @@ impl Track {
     }
 
     /// What is to be done at a place.
-    pub(crate) fn deeds(&self, place: u64) -> &[Deed] {
+    pub(crate) fn actions(&self, place: u64) -> &[Action] {
         let stretch = self.index(place).and_then(|index| self.stretches.get(index));
         match stretch {
-            Some(stretch) => &stretch.deeds,
+            Some(stretch) => &stretch.actions,
             None if place == self.last() => &self.tail,
             None => &[],
         }
     }
 
-    /// To change that.
-    pub(crate) fn deeds_mut(&mut self, place: u64) -> &mut [Deed] {
+    /// The actions of a place, to change them.
+    pub(crate) fn actions_mut(&mut self, place: u64) -> &mut [Action] {
         let last = self.last();
         let index = self.index(place);
         match index.and_then(|index| self.stretches.get_mut(index)) {
-            Some(stretch) => &mut stretch.deeds,
+            Some(stretch) => &mut stretch.actions,
             None if place == last => &mut self.tail,
             None => &mut [],
         }
@@ -235,9 +235,9 @@ impl Track {
         self.leg(place).map_or(self.end, |leg| leg.start)
     }
 
-    /// The way along the path to a place, mm.
-    pub(crate) fn way(&self, place: u64) -> f64 {
-        self.leg(place).map_or(self.way, |leg| leg.from)
+    /// The distance along the path to a place, mm.
+    pub(crate) fn distance(&self, place: u64) -> f64 {
+        self.leg(place).map_or(self.distance, |leg| leg.from)
     }
 
     /// The block that leads to a place.
@@ -247,18 +247,19 @@ impl Track {
     }
 
     /// Where the path is so far along it, mm, looked for from an element backwards.
-    pub(crate) fn position_at(&self, way: f64, from: u64) -> Position {
+    pub(crate) fn position_at(&self, distance: f64, from: u64) -> Position {
         let mut number = from.min(self.last());
         while let Some(leg) = number.checked_sub(1).and_then(|before| self.leg(before)) {
-            if self.leg(number).is_some_and(|leg| leg.from <= way) {
+            if self.leg(number).is_some_and(|leg| leg.from <= distance) {
                 break;
             }
             number -= 1;
-            if leg.from <= way {
+            if leg.from <= distance {
                 break;
             }
         }
-        self.leg(number).map_or(self.end, |leg| leg.place(way - leg.from))
+        self.leg(number)
+            .map_or(self.end, |leg| leg.place(distance - leg.from))
     }
 
     /// It ends elsewhere, for axes moved on their own.
@@ -266,22 +267,22 @@ impl Track {
         self.end = position;
     }
 
-    pub(crate) fn push_deed(&mut self, deed: Deed) {
-        self.tail.push(deed);
+    pub(crate) fn push_action(&mut self, action: Action) {
+        self.tail.push(action);
     }
 
-    /// So many deeds where the path ends are done: blocks without a movement may go on for ever.
+    /// So many actions where the path ends are done: blocks without a movement may go on for ever.
     pub(crate) fn forget_done(&mut self, count: usize) {
         self.tail.drain(..count.min(self.tail.len()));
     }
 
     pub(crate) fn push_leg(&mut self, mut leg: Leg) {
-        leg.from = self.way;
-        self.way += leg.length;
+        leg.from = self.distance;
+        self.distance += leg.length;
         self.end = leg.end;
         self.block = leg.block.clone();
         self.stretches.push_back(Stretch {
-            deeds: std::mem::take(&mut self.tail),
+            actions: std::mem::take(&mut self.tail),
             leg,
         });
     }
@@ -291,11 +292,14 @@ impl Track {
         while self.first + HISTORY < place && self.stretches.pop_front().is_some() {
             self.first += 1;
         }
-        let first = self.stretches.iter().map(|stretch| &stretch.deeds);
-        first.chain([&self.tail]).flatten().find_map(|deed| match deed {
-            Deed::Command(id) | Deed::Output(id) | Deed::Stand(id) => Some(*id),
-            Deed::Gate(ids) => ids.first().copied(),
-            _ => None,
-        })
+        let first = self.stretches.iter().map(|stretch| &stretch.actions);
+        first
+            .chain([&self.tail])
+            .flatten()
+            .find_map(|action| match action {
+                Action::Command(id) | Action::Output(id) | Action::Stand(id) => Some(*id),
+                Action::Gate(ids) => ids.first().copied(),
+                _ => None,
+            })
     }
 }

@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 
-use super::track::{Deed, Leg, Track, VectorLimit};
+use super::track::{Action, Leg, Track, VectorLimit};
 
 /// Places nearer together than this are one, mm: a thousandth of the unit of a lead.
 const SAME: f64 = 1e-7;
 /// Length of the piece at whose feed the path enters a joint (`E=`), mm.
 const ENTRY: f64 = 1e-5;
 
-/// Elements and deeds that are kept at most.
+/// Elements and actions that are kept at most.
 const MOST: usize = 4000;
 
 /// What is decoded and may still be split.
@@ -17,8 +17,8 @@ const MOST: usize = 4000;
 pub(super) struct Window {
     pieces: VecDeque<Piece>,
     legs: usize,
-    /// Way along the path to its end, mm.
-    way: f64,
+    /// Distance along the path to its end, mm.
+    distance: f64,
     /// Nothing is output before this, mm.
     barrier: f64,
     /// How the next joint is driven.
@@ -32,7 +32,7 @@ pub(super) struct Window {
 #[derive(Debug)]
 enum Piece {
     Leg(Leg),
-    Deed(Deed),
+    Action(Action),
 }
 
 /// `#CHANNEL SET [M_PRE_OUTPUT ..]` [004:138].
@@ -48,7 +48,7 @@ pub(super) struct JointFeed {
 pub(super) enum Held {
     /// Nothing: it is where it was planned.
     No,
-    /// No more blocks, or no more way, are looked at.
+    /// No more blocks, or no greater distance, are looked at.
     Window,
     /// The start, a flush, another joint or a function that is still waited for.
     Barrier,
@@ -64,27 +64,27 @@ pub(super) struct Planned {
 
 impl Window {
     /// What is known of the path begins here.
-    pub(super) fn begin(&mut self, way: f64) {
+    pub(super) fn begin(&mut self, distance: f64) {
         *self = Window {
-            way,
-            barrier: way,
+            distance,
+            barrier: distance,
             ..Window::default()
         };
     }
 
-    /// Way along the path to its end, mm.
-    pub(super) fn way(&self) -> f64 {
-        self.way
+    /// Distance along the path to its end, mm.
+    pub(super) fn distance(&self) -> f64 {
+        self.distance
     }
 
-    pub(super) fn deed(&mut self, deed: Deed) {
-        self.pieces.push_back(Piece::Deed(deed));
+    pub(super) fn action(&mut self, action: Action) {
+        self.pieces.push_back(Piece::Action(action));
     }
 
     /// An element comes; more than so many are not kept.
     pub(super) fn leg(&mut self, mut leg: Leg, most: usize, track: &mut Track) {
-        leg.from = self.way;
-        self.way += leg.length;
+        leg.from = self.distance;
+        self.distance += leg.length;
         self.pieces.push_back(Piece::Leg(leg));
         self.legs += 1;
         while self.legs > most {
@@ -99,7 +99,7 @@ impl Window {
 
     /// Nothing is output before its end as it is now.
     pub(super) fn bar(&mut self) {
-        self.barrier = self.way;
+        self.barrier = self.distance;
     }
 
     fn release_one(&mut self, track: &mut Track) {
@@ -108,7 +108,7 @@ impl Window {
                 self.legs -= 1;
                 track.push_leg(leg);
             }
-            Some(Piece::Deed(deed)) => track.push_deed(deed),
+            Some(Piece::Action(action)) => track.push_action(action),
             None => self.legs = 0,
         }
     }
@@ -125,10 +125,10 @@ impl Window {
     pub(super) fn plan(&self, lead: f64, farthest: f64) -> Planned {
         let first = self.pieces.iter().find_map(|piece| match piece {
             Piece::Leg(leg) => Some(leg.from),
-            Piece::Deed(_) => None,
+            Piece::Action(_) => None,
         });
-        let window = first.unwrap_or(self.way).max(self.way - farthest);
-        let planned = self.way - lead;
+        let window = first.unwrap_or(self.distance).max(self.distance - farthest);
+        let planned = self.distance - lead;
         let floor = window.max(self.barrier);
         let real = planned.max(floor);
         let held = if real <= planned + SAME {
@@ -146,9 +146,9 @@ impl Window {
         }
     }
 
-    /// Puts what is to be done at a place, which is behind all that stands there already. Where an element is split for
-    /// it, `behind` is done at the end of its block, otherwise at once. The joint goes on to the end of what is kept.
-    pub(super) fn insert(&mut self, real: f64, deeds: Vec<Deed>, behind: Option<Deed>) {
+    /// Puts what is to be done at a place, which is after all that stands there already. Where an element is split for
+    /// it, `after` is done at the end of its block, otherwise at once. The joint goes on to the end of what is kept.
+    pub(super) fn insert(&mut self, real: f64, actions: Vec<Action>, after: Option<Action>) {
         let joint = self.next.take();
         let at = self
             .pieces
@@ -156,10 +156,10 @@ impl Window {
             .position(|piece| matches!(piece, Piece::Leg(leg) if leg.to() > real + SAME));
         let Some(mut at) = at else {
             self.pieces
-                .extend(deeds.into_iter().chain(behind).map(Piece::Deed));
+                .extend(actions.into_iter().chain(after).map(Piece::Action));
             return;
         };
-        let mut behind = behind;
+        let mut after = after;
         if let Some(Piece::Leg(leg)) = self.pieces.get(at)
             && leg.from < real - SAME
         {
@@ -168,14 +168,14 @@ impl Window {
             at += 1;
             self.pieces.insert(at, Piece::Leg(second));
             self.legs += 1;
-            if let Some(gate) = behind.take() {
+            if let Some(gate) = after.take() {
                 let of_block = |piece: &Piece| matches!(piece, Piece::Leg(leg) if leg.unit == unit);
                 let last = self.pieces.iter().rposition(of_block).unwrap_or(at);
-                self.pieces.insert(last + 1, Piece::Deed(gate));
+                self.pieces.insert(last + 1, Piece::Action(gate));
             }
         }
-        for deed in deeds.into_iter().chain(behind) {
-            self.pieces.insert(at, Piece::Deed(deed));
+        for action in actions.into_iter().chain(after) {
+            self.pieces.insert(at, Piece::Action(action));
             at += 1;
         }
         if let Some(joint) = joint {
@@ -207,7 +207,7 @@ impl Window {
     }
 
     /// Splits the last element at a place, mm, with what is to be done there.
-    pub(super) fn split_last(&mut self, place: f64, deeds: Vec<Deed>) {
+    pub(super) fn split_last(&mut self, place: f64, actions: Vec<Action>) {
         let last = |piece: &Piece| matches!(piece, Piece::Leg(_));
         let Some(mut at) = self.pieces.iter().rposition(last) else {
             return;
@@ -216,7 +216,7 @@ impl Window {
             return;
         };
         if place >= leg.to() - SAME {
-            self.pieces.extend(deeds.into_iter().map(Piece::Deed));
+            self.pieces.extend(actions.into_iter().map(Piece::Action));
             return;
         }
         if place > leg.from + SAME {
@@ -226,8 +226,8 @@ impl Window {
             self.pieces.insert(at, Piece::Leg(second));
             self.legs += 1;
         }
-        for deed in deeds {
-            self.pieces.insert(at, Piece::Deed(deed));
+        for action in actions {
+            self.pieces.insert(at, Piece::Action(action));
             at += 1;
         }
     }

@@ -68,7 +68,7 @@ struct OfFunction {
     field: &'static str,
 }
 
-/// `M25`.
+/// A function as it is written, `M25`.
 impl fmt::Display for OfFunction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", if self.is_m { 'M' } else { 'H' }, self.number)
@@ -348,7 +348,7 @@ mod tests {
     #[test]
     fn it_is_said_which_line_of_a_spindle_function_counts() {
         let both = "spindel[0].m3_synch MVS_SVS\nm_synch[3] MVS_SVS\n";
-        let told = |text: &str| -> Vec<(usize, String)> {
+        let warnings_of = |text: &str| -> Vec<(usize, String)> {
             let found = list(text);
             assert!(found.errors().is_empty(), "{:?}", found.errors());
             let warnings = found.warnings().iter();
@@ -356,19 +356,19 @@ mod tests {
                 .map(|fault| (fault.line, fault.message.clone()))
                 .collect()
         };
-        let [(line, message)] = told(both).try_into().unwrap();
+        let [(line, message)] = warnings_of(both).try_into().unwrap();
         assert_eq!(line, 2);
         assert!(message.contains("spindel[i].m3_synch counts"), "{message}");
         let free = format!("{both}m_synch[4] MOS\nm_synch[5] MOS\nspindle_m_fct_free 1\n");
-        let [(first, counts), (second, without)] = told(&free).try_into().unwrap();
+        let [(first, counts), (second, without)] = warnings_of(&free).try_into().unwrap();
         assert_eq!((first, second), (1, 5));
         assert!(counts.contains("m_synch[3] counts"), "{counts}");
         assert!(without.starts_with("M19 without m_synch"), "{without}");
-        assert!(told(&format!("{free}m_synch[19] MOS\n")).len() == 1);
+        assert!(warnings_of(&format!("{free}m_synch[19] MOS\n")).len() == 1);
     }
 
     #[test]
-    fn misspelt_functions_are_told() {
+    fn misspelt_functions_are_reported() {
         let found = list("configuration.path_preparation.function FCT_DEFAULT | FCT_M_PREOUTPUT\n");
         assert!(
             found.warnings()[0]

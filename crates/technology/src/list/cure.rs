@@ -37,7 +37,7 @@ pub(super) fn cure(line: &Line) -> Option<String> {
     }
 }
 
-/// The name of a parameter that is nearest to one that is none, with its indices.
+/// The name of a parameter that is nearest to an unknown one, with its indices.
 fn name(written: &str) -> Option<String> {
     let wanted = pattern(written);
     let names = Definition::all().iter().flat_map(Definition::names);

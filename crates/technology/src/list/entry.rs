@@ -12,7 +12,7 @@ pub struct ListFault {
     pub column: usize,
     /// How many characters are meant.
     pub length: usize,
-    /// What it is.
+    /// What is wrong, in words.
     pub message: String,
     /// What to do about it, where that can be guessed.
     pub help: Option<String>,
@@ -33,7 +33,7 @@ impl Place {
     }
 }
 
-/// What stands behind a name.
+/// What stands after a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Value {
     /// A synchronisation type; `None` is `NOT_VALID`.

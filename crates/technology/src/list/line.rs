@@ -1,4 +1,4 @@
-//! One line of a list: a name with its indices, and what stands behind it.
+//! One line of a list: a name with its indices, and what stands after it.
 
 use super::Place;
 use super::table::{Definition, canonical, pattern};
@@ -10,9 +10,9 @@ pub(super) struct Line<'a> {
     pub name: &'a str,
     /// Column of the name, from 1 on.
     pub name_column: usize,
-    /// What stands behind it, without blanks before and behind.
+    /// What stands after it, without blanks before and after.
     pub value: &'a str,
-    /// Column of the value; without one that behind the name.
+    /// Column of the value; without one that after the name.
     pub value_column: usize,
 }
 
@@ -29,10 +29,10 @@ pub(super) fn split(text: &str) -> Option<Line<'_>> {
     }
     let end = end_of_name(trimmed);
     let name = trimmed.get(..end).unwrap_or(trimmed);
-    let behind = trimmed.get(end..).unwrap_or_default();
-    let value = behind.trim_start();
+    let rest_of_line = trimmed.get(end..).unwrap_or_default();
+    let value = rest_of_line.trim_start();
     let name_column = text.chars().count() - trimmed.chars().count() + 1;
-    let blanks = behind.chars().count() - value.chars().count();
+    let blanks = rest_of_line.chars().count() - value.chars().count();
     let is_missing = value.is_empty() || value.starts_with(['#', ';']);
     Some(Line {
         name,
@@ -57,7 +57,7 @@ fn end_of_name(text: &str) -> usize {
     text.len()
 }
 
-/// Whether an index goes on behind a blank: `m_synch[ 25 ]`.
+/// Whether an index goes on after a blank: `m_synch[ 25 ]`.
 fn closes(text: &str, at: usize) -> bool {
     let rest = text.get(at..).unwrap_or_default().trim_start();
     let rest = rest.trim_start_matches(|c: char| c.is_ascii_digit());
@@ -97,9 +97,9 @@ fn indices(line: &Line) -> Result<Vec<(u32, usize, usize)>, Fault> {
     let mut found = Vec::new();
     let mut rest = line.name;
     let mut column = line.name_column;
-    while let Some((before, behind)) = rest.split_once('[') {
+    while let Some((before, rest_of_line)) = rest.split_once('[') {
         column += before.chars().count() + 1;
-        let Some((inside, after)) = behind.split_once(']') else {
+        let Some((inside, after)) = rest_of_line.split_once(']') else {
             let message = format!("{} lacks a closing bracket", line.name);
             return Err((column, 1, message));
         };

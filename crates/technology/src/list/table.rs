@@ -32,7 +32,7 @@ impl Owner {
         }
     }
 
-    /// For messages.
+    /// The name in messages.
     pub(super) fn text(self) -> &'static str {
         match self {
             Owner::M => "an M function",
@@ -55,11 +55,11 @@ pub enum Kind {
         /// Greatest value.
         max: u32,
     },
-    /// 0 or 1.
+    /// A flag, 0 or 1.
     Flag,
     /// A name of at most so many characters.
     Name {
-        /// Characters at most.
+        /// Length of the text, characters at most.
         max: usize,
     },
     /// Constants `FCT_...`, joined by `|`.
@@ -85,7 +85,7 @@ impl Kind {
 /// A parameter that a list may have.
 #[derive(Clone, Debug)]
 pub struct Definition {
-    /// `P-CHAN-00041`.
+    /// The number in the manual, `P-CHAN-00041`.
     pub id: &'static str,
     /// The name with `[i]` for an index: `spindel[i].m3_synch`.
     pub name: &'static str,
@@ -101,7 +101,7 @@ pub struct Definition {
     pub default: &'static str,
     /// Why it has no effect here; empty if it has.
     pub without_effect: &'static str,
-    /// What it means.
+    /// What the parameter does.
     pub meaning: &'static str,
     /// Where it is said: `004:54;004:60 (public: ...)`.
     pub source: &'static str,
@@ -229,9 +229,9 @@ fn definition(line: &'static str) -> Option<Definition> {
 /// What a synchronisation type or a bit does.
 #[derive(Clone, Debug)]
 pub struct SynchRow {
-    /// The constant.
+    /// The name of the type or bit, such as `MVS_SNS`.
     pub name: &'static str,
-    /// Its value.
+    /// The bits of the value that it sets.
     pub bits: u32,
     /// Whether it is OR-ed to a type.
     pub is_bit: bool,
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn all_types_and_bits_are_told() {
+    fn all_types_and_bits_are_named() {
         for kind in SynchType::all() {
             let row = SynchRow::find(kind.name()).unwrap();
             assert!(!row.is_bit && row.is_for(Owner::M), "{kind}");

@@ -1,4 +1,4 @@
-//! What stands behind a name: numbers, constants, names, and remarks that mean nothing.
+//! What stands after a name: numbers, constants, names, and remarks that mean nothing.
 
 use super::Value;
 use super::line::Fault;
@@ -107,7 +107,7 @@ struct Term<'a> {
     offset: usize,
 }
 
-/// Terms that are joined by `|`, how many characters they take, and the remark behind.
+/// Terms that are joined by `|`, how many characters they take, and the remark after.
 fn terms(text: &str, column: usize) -> Result<(Vec<Term<'_>>, usize, &str), Fault> {
     let mut found = Vec::new();
     let mut rest = text;
@@ -118,10 +118,10 @@ fn terms(text: &str, column: usize) -> Result<(Vec<Term<'_>>, usize, &str), Faul
             return Err((column + offset, 1, "a constant is missing at `|`".to_owned()));
         }
         found.push(Term { text: word, offset });
-        let behind = rest.get(word.len()..).unwrap_or_default();
-        match behind.trim_start().strip_prefix('|') {
+        let after = rest.get(word.len()..).unwrap_or_default();
+        match after.trim_start().strip_prefix('|') {
             Some(next) => rest = next.trim_start(),
-            None => return Ok((found, offset + word.chars().count(), behind.trim())),
+            None => return Ok((found, offset + word.chars().count(), after.trim())),
         }
     }
 }
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn remarks_stand_behind_values() {
+    fn remarks_stand_after_values() {
         let svs = Value::Synch(Some(SynchType::MvsSvs.into()));
         for text in [
             "0x00000002 MVS_SVS",

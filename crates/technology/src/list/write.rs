@@ -82,11 +82,11 @@ fn with_bits(synch: Synch) -> String {
     format!("{synch} 0x{:08X}", synch.bits())
 }
 
-/// A list to start from: each parameter that acts here, with what it means, behind `#`.
+/// A list to start from: each parameter that acts here, with what it means, after `#`.
 pub fn template() -> String {
     let mut text = "\
 # Channel parameter list.
-# A line is a name and a value; # and ; begin comments, and a remark may stand behind a value.
+# A line is a name and a value; # and ; begin comments, and a remark may stand after a value.
 # The lines below are those of an empty list: take the # away from what is to be changed.
 "
     .to_owned();
@@ -223,7 +223,7 @@ mod tests {
             forward: bits[2],
             flush_and_wait: bits[3],
         });
-        any.prop_filter("bits of the way back need a type", |synch| {
+        any.prop_filter("bits of backward motion need a type", |synch| {
             Synch::from_bits(synch.bits()).is_ok()
         })
     }
@@ -320,7 +320,7 @@ mod tests {
                     (main_spindle_axis, main_spindle_name),
                     flags,
                     ahead,
-                    ways,
+                    distances,
                     joint_blocks,
                 )| {
                     let mut settings = ChannelSettings {
@@ -339,11 +339,11 @@ mod tests {
                         micro_joint: MicroJoint {
                             enabled: flags[5],
                             blocks: joint_blocks,
-                            distance: ways[0],
-                            tolerance: ways[1],
+                            distance: distances[0],
+                            tolerance: distances[1],
                         },
                         edge_banding: EdgeBanding {
-                            residual_path: ways[2] / 2,
+                            residual_path: distances[2] / 2,
                         },
                         ..ChannelSettings::default()
                     };

@@ -11,7 +11,7 @@ pub struct ScriptError {
     pub column: usize,
     /// How many characters are meant.
     pub length: usize,
-    /// What.
+    /// What is wrong, in words.
     pub message: String,
     /// What to do about it, where that can be guessed.
     pub help: Option<String>,

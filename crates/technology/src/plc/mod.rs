@@ -22,10 +22,10 @@ pub(crate) use output::{Answer, Output};
 
 /// What happens on the other side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Deed {
+pub(crate) enum Reaction {
     /// The PLC fetches a function.
     Fetch(Id),
-    /// It acknowledges it.
+    /// The PLC acknowledges it.
     Acknowledge(Id),
     /// A spindle of the NC confirms it.
     Confirm(Id),
@@ -38,14 +38,14 @@ pub(crate) struct Plc<'a> {
     window: Option<Window<'a>>,
     cycle_s: f64,
     /// What comes, by cycle and in the order in which it was ordered.
-    due: BinaryHeap<Reverse<(u64, u64, Deed)>>,
+    due: BinaryHeap<Reverse<(u64, u64, Reaction)>>,
     count: u64,
 }
 
 /// What part of a cycle may be rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The first cycle at a time or behind it.
+/// The first cycle at a time or after it.
 pub(crate) fn cycle_at(time_s: f64, cycle_s: f64) -> u64 {
     (time_s / cycle_s - ROUNDING).ceil().max(0.0) as u64
 }
@@ -69,13 +69,13 @@ impl<'a> Plc<'a> {
         self.script
     }
 
-    fn plan(&mut self, cycle: u64, deed: Deed) {
+    fn plan(&mut self, cycle: u64, reaction: Reaction) {
         self.count += 1;
-        self.due.push(Reverse((cycle, self.count, deed)));
+        self.due.push(Reverse((cycle, self.count, reaction)));
     }
 
     /// The earliest cycle in which something can be over that was ordered in one and takes a time.
-    fn behind(&self, cycle: u64, after: After) -> Option<u64> {
+    fn earliest_cycle(&self, cycle: u64, after: After) -> Option<u64> {
         match after {
             After::Seconds(seconds) => Some((cycle + cycle_at(seconds, self.cycle_s)).max(cycle + 1)),
             After::Never => None,
@@ -95,11 +95,11 @@ impl<'a> Plc<'a> {
         let acknowledged = match reply {
             Reply::NoFetch => return,
             Reply::At(time_s) => Some(cycle_at(time_s, self.cycle_s).max(cycle + 1)),
-            Reply::Acknowledge(after) => self.behind(cycle, after),
+            Reply::Acknowledge(after) => self.earliest_cycle(cycle, after),
         };
-        self.plan(cycle + 1, Deed::Fetch(output.id));
+        self.plan(cycle + 1, Reaction::Fetch(output.id));
         if let Some(acknowledged) = acknowledged.filter(|_| output.waits) {
-            self.plan(acknowledged, Deed::Acknowledge(output.id));
+            self.plan(acknowledged, Reaction::Acknowledge(output.id));
         }
     }
 
@@ -109,8 +109,8 @@ impl<'a> Plc<'a> {
             Some(script) => script.ready(names),
             None => After::Seconds(process_s),
         };
-        if let Some(confirmed) = self.behind(cycle, after) {
-            self.plan(confirmed, Deed::Confirm(id));
+        if let Some(confirmed) = self.earliest_cycle(cycle, after) {
+            self.plan(confirmed, Reaction::Confirm(id));
         }
     }
 
@@ -128,22 +128,22 @@ impl<'a> Plc<'a> {
         };
         window.look(cycle, *cycle_s, |id, answer| {
             *count += 1;
-            let deed = match answer {
-                Answer::Fetched => Deed::Fetch(id),
-                Answer::Acknowledged => Deed::Acknowledge(id),
+            let reaction = match answer {
+                Answer::Fetched => Reaction::Fetch(id),
+                Answer::Acknowledged => Reaction::Acknowledge(id),
             };
-            due.push(Reverse((cycle, *count, deed)));
+            due.push(Reverse((cycle, *count, reaction)));
         });
     }
 
     /// What happens in a cycle, one after the other.
-    pub(crate) fn next(&mut self, cycle: u64) -> Option<Deed> {
+    pub(crate) fn next(&mut self, cycle: u64) -> Option<Reaction> {
         let Reverse((due, ..)) = self.due.peek()?;
         if *due > cycle {
             return None;
         }
-        let Reverse((_, _, deed)) = self.due.pop()?;
-        Some(deed)
+        let Reverse((_, _, reaction)) = self.due.pop()?;
+        Some(reaction)
     }
 
     /// The cycle of what comes next, when nothing has happened for some cycles.
@@ -162,7 +162,7 @@ impl<'a> Plc<'a> {
     /// Only fetches of the functions that were output last are left of what comes.
     pub(crate) fn keep_fetches(&mut self) {
         self.due
-            .retain(|Reverse((.., deed))| matches!(deed, Deed::Fetch(_)));
+            .retain(|Reverse((.., reaction))| matches!(reaction, Reaction::Fetch(_)));
         if let Some(window) = &mut self.window {
             window.end();
         }

@@ -35,8 +35,8 @@ const COUNTED: Id = 1 << 15;
 
 /// While the path stands, an answer of a PLC is waited for so long, s.
 const PATIENCE_S: f64 = 60.0;
-/// So often the PLC runs through behind the end of the path.
-const RUNS_BEHIND: u64 = 2;
+/// So often the PLC runs through after the end of the path.
+const RUNS_AFTER: u64 = 2;
 
 /// A PLC that runs beside the channel, and the bytes in which both see the functions.
 pub trait PlcMemory {
@@ -109,7 +109,7 @@ pub(crate) struct Window<'a> {
     run_seen: u64,
     /// The path has ended: so often the PLC runs through.
     end: Option<u64>,
-    /// It does not run any more, and why: that is told once.
+    /// It does not run any more, and why: that is reported once.
     stopped: bool,
     fault: Option<String>,
 }
@@ -147,7 +147,7 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// Lets the PLC go on to a cycle, and tells what it has answered since, in the order of output.
+    /// Lets the PLC go on to a cycle, and returns what it has answered since, in the order of output.
     pub(crate) fn look(&mut self, cycle: u64, cycle_s: f64, mut tell: impl FnMut(Id, Answer)) {
         if self.stopped {
             return;
@@ -209,7 +209,7 @@ impl<'a> Window<'a> {
 
     /// The path has ended: what was output last is still fetched.
     pub(crate) fn end(&mut self) {
-        self.end = Some(self.runs + RUNS_BEHIND);
+        self.end = Some(self.runs + RUNS_AFTER);
     }
 
     /// Drops all that stands in it: the PLC sees free slots.

@@ -52,7 +52,7 @@ pub fn settings(list: &str) -> ChannelSettings {
     list.settings().clone()
 }
 
-/// A run as it is told.
+/// A run as it is reported.
 #[derive(Clone, Debug)]
 pub struct Bench {
     pub programs: Vec<String>,
@@ -209,21 +209,21 @@ pub fn y(event: &Event) -> f64 {
     event.position.0[Axis::Y]
 }
 
-/// To 1 µm.
+/// Asserts a place within 1 µm.
 pub fn at(place: f64, expected: f64) {
     assert!((place - expected).abs() < 1e-3, "{place} mm is not {expected} mm");
 }
 
-/// To a cycle.
+/// Asserts a time within a cycle.
 pub fn when(t: f64, expected: f64) {
     assert!((t - expected).abs() <= T * 1.001, "{t} s is not {expected} s");
 }
 
-/// Time of a way from standstill to standstill, s.
-pub fn ramp_s(way: f64, v: f64) -> f64 {
-    if v * v / A >= way {
-        2.0 * (way / A).sqrt()
+/// Time of a movement from standstill to standstill, s.
+pub fn ramp_s(distance: f64, v: f64) -> f64 {
+    if v * v / A >= distance {
+        2.0 * (distance / A).sqrt()
     } else {
-        way / v + v / A
+        distance / v + v / A
     }
 }

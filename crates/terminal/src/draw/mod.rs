@@ -26,7 +26,7 @@ const LEAST: (u16, u16) = (60, 18);
 const ROOMY: u16 = 32;
 /// Columns of the status window.
 const STATUS: u16 = 30;
-/// Share of the rows behind [`ROOMY`] that messages, reasons and lesson may take: a third.
+/// Share of the rows beyond [`ROOMY`] that messages, reasons and lesson may take: a third.
 const SHARE: u16 = 3;
 
 /// Where something was drawn that others need.
@@ -40,7 +40,7 @@ pub(crate) struct Drawn {
     pub help_end: u16,
 }
 
-/// Draws everything.
+/// Draws the whole screen of the terminal.
 pub(crate) fn draw(frame: &mut Frame, scene: &Scene) -> Drawn {
     let area = frame.area();
     let mut drawn = Drawn::default();
@@ -118,7 +118,7 @@ fn headings(frame: &mut Frame, scene: &Scene, area: Rect, targets: &mut Targets)
     }
 }
 
-/// The dialogue line.
+/// Draws the line of the dialogue.
 fn prompt(frame: &mut Frame, scene: &Scene, area: Rect) {
     let dialogue = &scene.screen.dialogue;
     let mut spans = vec![Span::styled(

@@ -10,7 +10,7 @@ use crate::desk::Desk;
 use crate::graphics::Mosaic;
 use crate::palette::{Palette, Role};
 
-/// What is drawn.
+/// What the screen of the terminal is drawn from.
 pub(crate) struct Scene<'a> {
     /// The screen of the control.
     pub screen: &'a Screen,
@@ -18,7 +18,7 @@ pub(crate) struct Scene<'a> {
     pub desk: &'a Desk,
     /// The part as the graphics show it, when it was drawn.
     pub part: Option<&'a Mosaic>,
-    /// Colours.
+    /// The colours of the terminal.
     pub palette: Palette,
 }
 

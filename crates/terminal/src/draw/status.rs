@@ -115,7 +115,7 @@ fn feed(scene: &Scene, status: &Status) -> Line<'static> {
     Line::from(spans)
 }
 
-/// What stands out.
+/// The style of a text, inverse or not.
 fn inverse(inverse: bool) -> Style {
     match inverse {
         true => Style::new().add_modifier(Modifier::REVERSED),

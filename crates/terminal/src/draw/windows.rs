@@ -288,7 +288,7 @@ pub(super) fn why_height(reasons: &[String], width: u16) -> usize {
     heights.sum()
 }
 
-/// The lesson.
+/// Draws the task of a lesson.
 pub(super) fn lesson(frame: &mut Frame, scene: &Scene, area: Rect) {
     let Some(lesson) = &scene.screen.lesson else {
         return;

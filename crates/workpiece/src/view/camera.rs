@@ -22,7 +22,7 @@ pub struct View3d {
     pub height_factor: f64,
     /// What the colours tell.
     pub colouring: Colouring,
-    /// The way of the tool is drawn over the part; nothing unless
+    /// The tool path is drawn over the part; nothing unless
     /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
     pub tool_path: bool,
 }

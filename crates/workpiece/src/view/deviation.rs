@@ -11,7 +11,7 @@ use bahn_picture::{Colour, Image, mix};
 const GOOD: Colour = [222, 226, 222];
 const LEFT: Colour = [196, 48, 36];
 const MISSING: Colour = [32, 84, 190];
-/// Nothing to compare.
+/// Colour where there is nothing to compare.
 const NOTHING: Colour = [255, 255, 255];
 /// Fields of the legend on each side.
 const FIELDS: i32 = 4;

@@ -14,7 +14,7 @@ mod scheme;
 mod shade;
 mod solid;
 mod three_planes;
-mod way;
+mod tool_path;
 
 pub use camera::View3d;
 pub use colouring::{Colouring, CutBy};

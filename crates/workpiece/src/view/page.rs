@@ -26,9 +26,9 @@ pub struct Page {
 pub struct PageError;
 
 impl Page {
-    /// Shortest side, pixels.
+    /// Shortest side of a picture, pixels.
     pub const MIN_SIDE: u32 = 200;
-    /// Longest side, pixels.
+    /// Longest side of a picture, pixels.
     pub const MAX_SIDE: u32 = 8000;
 
     /// A page of a size in pixels. The title line shows `title` on the left, usually the name of the
@@ -118,8 +118,8 @@ impl Page {
         let width = f64::from(self.width);
         let bar = (2.4 * size).round();
         let own = self.scheme.map(|own| own.title);
-        let [behind, words, values] = own.unwrap_or([TITLE_BACKGROUND, TITLE_TEXT, TITLE_NOTE]);
-        image.rectangle([0.0, 0.0], [width, bar], behind);
+        let [background, words, values] = own.unwrap_or([TITLE_BACKGROUND, TITLE_TEXT, TITLE_NOTE]);
+        image.rectangle([0.0, 0.0], [width, bar], background);
         let inner = width - 2.0 * size;
         let note = Image::fitting(&self.note, size, 0.6 * inner);
         let note_width = bahn_picture::text_width(&note, size);

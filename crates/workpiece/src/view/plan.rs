@@ -3,7 +3,7 @@
 use super::colouring::{Colouring, Palette};
 use super::scale::Ruler;
 use super::scheme::Pens;
-use super::{Area, Page, fit, way};
+use super::{Area, Page, fit, tool_path};
 use crate::part::Part;
 use bahn_picture::{Colour, Image};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ pub struct PlanView {
     pub levels: u8,
     /// What the colours tell.
     pub colouring: Colouring,
-    /// The way of the tool is drawn over the part; nothing unless
+    /// The tool path is drawn over the part; nothing unless
     /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
     pub tool_path: bool,
 }
@@ -46,7 +46,7 @@ impl Part {
         let drawing = fit([self.setup.size[0], self.setup.size[1]], &inner);
         draw_plan(&mut image, self, &drawing, &palette, page);
         if options.tool_path {
-            draw_way(&mut image, self, &drawing, page);
+            draw_tool_path(&mut image, self, &drawing, page);
         }
         frame(&mut image, &drawing, page);
         rulers(&mut image, self, &drawing, size, pens);
@@ -99,8 +99,8 @@ fn plan_pixel(part: &Part, drawing: &Area, palette: &Palette, [px, py]: [usize; 
     sum.map(|value| (value / (SAMPLES * SAMPLES) as f64).round() as u8)
 }
 
-/// Draws the way of the tool from above: nothing of the part is over the tool.
-pub(super) fn draw_way(image: &mut Image, part: &Part, drawing: &Area, page: &Page) {
+/// Draws the tool path from above: nothing of the part is over the tool.
+pub(super) fn draw_tool_path(image: &mut Image, part: &Part, drawing: &Area, page: &Page) {
     let Some(trail) = &part.trail else { return };
     let ([width, height], size) = (drawing.size(), part.setup.size);
     let project = |[x, y, _]: [f64; 3]| {
@@ -110,7 +110,7 @@ pub(super) fn draw_way(image: &mut Image, part: &Part, drawing: &Area, page: &Pa
             0.0,
         ]
     };
-    way::draw(image, trail, project, &[], drawing, page);
+    tool_path::draw(image, trail, project, &[], drawing, page);
 }
 
 pub(super) fn frame(image: &mut Image, drawing: &Area, page: &Page) {

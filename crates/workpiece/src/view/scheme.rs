@@ -6,7 +6,7 @@ use bahn_picture::{Colour, mix};
 /// in colours of our own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheme {
-    /// Behind the part.
+    /// Colour behind the part.
     pub background: Colour,
     /// Words, rulers and lines over the part.
     pub text: Colour,
@@ -24,12 +24,12 @@ pub(super) struct Pens {
     pub ink: Colour,
     /// Lines that are not to be seen first.
     pub faint: Colour,
-    /// Sectional planes.
+    /// Colour of sectional planes.
     pub section: Colour,
     /// The face of a section and its hatching.
     pub cut: [Colour; 2],
     /// What is seen behind a section, near and far.
-    pub behind: [Colour; 2],
+    pub farther: [Colour; 2],
 }
 
 /// Our own: ink on paper.
@@ -39,7 +39,7 @@ const OWN: Pens = Pens {
     faint: [150, 160, 172],
     section: [190, 48, 44],
     cut: [[240, 222, 180], [176, 132, 62]],
-    behind: [[186, 200, 214], [232, 237, 242]],
+    farther: [[186, 200, 214], [232, 237, 242]],
 };
 
 impl Pens {
@@ -59,7 +59,7 @@ impl Scheme {
             faint: mix(self.text, self.background, 0.5),
             section: self.text,
             cut: [front, back(0.5)],
-            behind: [back(0.4), back(0.8)],
+            farther: [back(0.4), back(0.8)],
         }
     }
 }

@@ -9,7 +9,7 @@ use super::light::{screen, to_linear};
 use super::raycast::Caster;
 use super::scale::number;
 use super::shade::{SAMPLES, Shader};
-use super::{Area, Page, way};
+use super::{Area, Page, tool_path};
 use crate::part::Part;
 use bahn_picture::Anchor;
 use bahn_picture::{Colour, Image, mix};
@@ -27,7 +27,7 @@ impl Part {
         let camera = Camera::new(self, options, &free);
         let spots = self.render(&mut image, &area, &camera, &palette, page);
         if let (true, Some(trail)) = (options.tool_path, &self.trail) {
-            way::draw(
+            tool_path::draw(
                 &mut image,
                 trail,
                 |point| camera.project(point),
@@ -130,9 +130,9 @@ fn pixel_at(camera: &Camera, shader: &Shader, [x, y]: [usize; 2], background: Co
     if seen.iter().all(Option::is_none) {
         return (background, Spot::BACKGROUND);
     }
-    let behind = to_linear(background);
+    let backdrop = to_linear(background);
     let mut sum = [0.0; 3];
-    for light in seen.iter().map(|seen| seen.map_or(behind, |seen| seen.light)) {
+    for light in seen.iter().map(|seen| seen.map_or(backdrop, |seen| seen.light)) {
         for (sum, light) in sum.iter_mut().zip(light) {
             *sum += light;
         }

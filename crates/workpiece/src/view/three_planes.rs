@@ -1,10 +1,10 @@
 //! Projection in three planes: plan view and two sections.
 
 use super::colouring::{Colouring, Palette};
-use super::plan::{draw_plan, draw_way, frame};
+use super::plan::{draw_plan, draw_tool_path, frame};
 use super::scale::{Ruler, label_width, number};
 use super::scheme::Pens;
-use super::{Area, Page, way};
+use super::{Area, Page, tool_path};
 use crate::part::Part;
 use bahn_picture::Anchor;
 use bahn_picture::{Image, mix};
@@ -33,7 +33,7 @@ pub struct ThreePlanes {
     pub levels: u8,
     /// What the colours of the plan view tell.
     pub colouring: Colouring,
-    /// The way of the tool is drawn over all three views; nothing unless
+    /// The tool path is drawn over all three views; nothing unless
     /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
     pub tool_path: bool,
 }
@@ -64,8 +64,8 @@ impl Part {
         sheet.draw_front(&mut image, page);
         sheet.draw_side(&mut image, page);
         if options.tool_path {
-            draw_way(&mut image, self, &sheet.plan, page);
-            sheet.draw_ways(&mut image, page);
+            draw_tool_path(&mut image, self, &sheet.plan, page);
+            sheet.draw_tool_paths(&mut image, page);
         }
         if let Some(legend) = legend {
             let room = Area {
@@ -201,20 +201,20 @@ impl<'a> Sheet<'a> {
             self.hatch(image, x, pixel(cut), drawing.max[1]);
             let mut seen = cut;
             for back in 1.. {
-                let Some(behind) = height(share, back) else { break };
-                if behind > seen {
-                    let [near, far] = self.pens.behind;
+                let Some(farther) = height(share, back) else { break };
+                if farther > seen {
+                    let [near, far] = self.pens.farther;
                     let colour = mix(near, far, (back as f64 / depth).sqrt());
-                    image.rectangle([x, pixel(behind)], [x + 1.0, pixel(seen)], colour);
-                    seen = behind;
+                    image.rectangle([x, pixel(farther)], [x + 1.0, pixel(seen)], colour);
+                    seen = farther;
                 }
             }
         }
         self.contour(image, drawing, |share| height(share, 0));
     }
 
-    /// The way of the tool in front and side view, also before and behind the sections.
-    fn draw_ways(&self, image: &mut Image, page: &Page) {
+    /// The tool path in front and side view, also before and behind the sections.
+    fn draw_tool_paths(&self, image: &mut Image, page: &Page) {
         let Some(trail) = &self.part.trail else { return };
         let size = self.part.setup.size;
         let up = |view: &Area, z: f64| view.max[1] - view.size()[1] * z / size[2];
@@ -222,7 +222,7 @@ impl<'a> Sheet<'a> {
             let view = &self.front;
             [view.min[0] + view.size()[0] * x / size[0], up(view, z), 0.0]
         };
-        way::draw(image, trail, front, &[], &self.front, page);
+        tool_path::draw(image, trail, front, &[], &self.front, page);
         let side = |[_, y, z]: [f64; 3]| {
             let (view, share) = (&self.side, y / size[1]);
             let share = match self.projection {
@@ -231,7 +231,7 @@ impl<'a> Sheet<'a> {
             };
             [view.min[0] + view.size()[0] * share, up(view, z), 0.0]
         };
-        way::draw(image, trail, side, &[], &self.side, page);
+        tool_path::draw(image, trail, side, &[], &self.side, page);
     }
 
     /// Hatching at 45 degrees of the cut face in one column of pixels.

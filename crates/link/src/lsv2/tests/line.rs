@@ -78,7 +78,7 @@ fn a_damaged_telegram_is_sent_again() {
 }
 
 #[test]
-fn three_refusals_and_silence_are_told() {
+fn three_refusals_and_silence_are_reported() {
     let mut host = SerialLine::new(Side::Host);
     assert!(host.send(&telegram(b"R_VR"), NOW));
     assert!(!host.send(&telegram(b"R_PR"), NOW), "one after the other");

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::*;
 
-/// A device with a folder of its own, gone behind the test.
+/// A device with a folder of its own, gone after the test.
 pub(super) struct Desk {
     pub folder: PathBuf,
     pub device: Arc<StillDevice>,

@@ -62,7 +62,7 @@ fn only_inside(desk: &Desk) -> Result<(), TestCaseError> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Any telegrams in any order: each is answered by one telegram at most, and behind them the session answers.
+    /// Any telegrams in any order: each is answered by one telegram at most, and after them the session answers.
     #[test]
     fn any_telegrams(telegrams in proptest::collection::vec(bytes(), 1..60)) {
         let desk = Desk::new("any");
@@ -101,7 +101,7 @@ proptest! {
         prop_assert!(!reader.is_within());
     }
 
-    /// Noise on a serial line, with pauses: behind it, and a pause, the line answers.
+    /// Noise on a serial line, with pauses: after it, and a pause, the line answers.
     #[test]
     fn noise_on_a_line(noise in proptest::collection::vec((prop_oneof![any::<u8>(), Just(0x10), Just(0x02), Just(0x03), Just(0x05), Just(0x04)], 0_u64..2000), 0..300)) {
         let desk = Desk::new("noise");
@@ -145,7 +145,7 @@ fn ten_million_bytes() {
         }
         control.tick(Duration::from_millis(number));
         control.take_output();
-        // Lengths that may be: the stream goes on behind each telegram.
+        // Lengths that may be: the stream goes on after each telegram.
         reader.push(&[&[0, 0, 3, 0xe8 - 4], b"S_FL".as_slice(), &bytes[..996]].concat());
         while let Ok(Some(telegram)) = reader.telegram() {
             session.take(&telegram);

@@ -41,8 +41,8 @@ fn logins_say_what_is_allowed() {
             (b"R_VR", b"T_ER\x01\x31"),
         ],
     );
-    // The PLC is told when somebody takes its messages, and when nobody does any more.
-    assert_eq!(desk.device.take_deeds(), ["host true", "host false"]);
+    // The PLC gets a signal when somebody takes its messages, and when nobody does any more.
+    assert_eq!(desk.device.take_calls(), ["host true", "host false"]);
     let one = logged_in(&desk, &[Level::Inspect]);
     assert!(
         one.is_logged_in() && !session.is_logged_in(),
@@ -56,7 +56,7 @@ fn logins_say_what_is_allowed() {
 }
 
 #[test]
-fn the_run_is_told() {
+fn the_run_is_reported() {
     let desk = Desk::new("run");
     let mut session = logged_in(&desk, &[Level::Dnc, Level::Inspect]);
     let tool = [
@@ -202,7 +202,7 @@ fn parameters_keys_and_messages() {
     drop(session);
     converse(&mut other, &[(b"C_EK\x01\xae", b"T_OK")]);
     assert_eq!(
-        desk.device.take_deeds(),
+        desk.device.take_calls(),
         [
             "host true",
             "MP7230.0=0 false",
@@ -223,7 +223,7 @@ fn parameters_keys_and_messages() {
 fn a_message_of_the_plc_reads_back_as_itself() {
     let desk = Desk::new("messages");
     let mut session = logged_in(&desk, &[Level::Dnc]);
-    desk.device.take_deeds();
+    desk.device.take_calls();
     let texts: [&[u8]; 4] = [b"", b"ABC", b"ABCD", b"A LONG MESSAGE"];
     for message in [PlcMessage::Double(-2), PlcMessage::Double(0x4142_4300)]
         .into_iter()
@@ -231,7 +231,7 @@ fn a_message_of_the_plc_reads_back_as_itself() {
     {
         let telegram = super::super::machine_commands::from_plc(&message);
         session.take(&telegram);
-        assert_eq!(desk.device.take_deeds(), [format!("message {message:?}")]);
+        assert_eq!(desk.device.take_calls(), [format!("message {message:?}")]);
     }
 }
 
@@ -388,7 +388,7 @@ fn folders_files_and_attributes() {
     assert_eq!(name(&listed), (3, 0x03, "B.H".to_owned()));
     let many = session.take(&Telegram::new(Command(*b"R_DR")).byte(1)).unwrap();
     assert_eq!(many.data.len(), 16);
-    assert_eq!(desk.device.take_deeds().len(), 8, "each change is told once");
+    assert_eq!(desk.device.take_calls().len(), 8, "each change is reported once");
 }
 
 #[test]

@@ -114,7 +114,7 @@ fn there_are_limits() {
     assert_eq!(answer, b"\0\0\0\x02T_ER\x01\x50");
     drop(streams);
     until("there is room again", || server.connections() == 0);
-    // A telegram that is longer than any is told so, and the connection ends.
+    // A telegram that is longer than any is refused, and the connection ends.
     let mut stream = TcpStream::connect(server.address()).unwrap();
     stream.write_all(b"\x7f\xff\xff\xffA_LG").unwrap();
     answer.clear();

@@ -1,4 +1,4 @@
-//! The way of the tool over a view: feed solid, rapid traverse dashed, nothing where the part hides it.
+//! The tool path over a view: feed solid, rapid traverse dashed, nothing where the part hides it.
 
 use super::edges::Spot;
 use super::raycast::Vector;
@@ -9,7 +9,7 @@ use bahn_picture::{Colour, Image};
 /// A point of the picture and its distance from the eye, pixels.
 type Seen = [f64; 3];
 
-/// Draws the way in an area of the picture, all of it where there are no spots. `project` gives a point of the
+/// Draws the path in an area of the picture, all of it where there are no spots. `project` gives a point of the
 /// blank its place in the picture.
 pub(super) fn draw(
     image: &mut Image,
@@ -87,12 +87,12 @@ impl Pen<'_> {
     /// Whether the middle of a piece lies before the part, or on it.
     fn is_seen(&self, [a, b]: &[Seen; 2]) -> bool {
         /// The tip moves on the surface that it leaves: so far behind it is still seen, pixels.
-        const BEHIND: f64 = 3.0;
+        const DEPTH: f64 = 3.0;
         let middle = [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]));
         let (x, y) = (middle[0].max(0.0) as usize, middle[1].max(0.0) as usize);
         self.spots
             .get(y * self.columns + x.min(self.columns.saturating_sub(1)))
-            .is_none_or(|spot| middle[2] < f64::from(spot.distance()) + BEHIND)
+            .is_none_or(|spot| middle[2] < f64::from(spot.distance()) + DEPTH)
     }
 }
 

@@ -17,7 +17,7 @@ pub(super) struct Felt {
 /// How the tip is to move.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wish {
-    /// mm/s
+    /// Velocity of the tip, mm/s.
     pub velocity: ScanPoint,
     /// Axis that must not go beyond a coordinate in a direction.
     pub end: Option<(usize, f64, f64)>,
@@ -40,7 +40,7 @@ impl Wish {
     }
 }
 
-/// The plane in which a surface is followed: the way along it and the way off it, unit vectors.
+/// The plane in which a surface is followed: the direction along it and the one off it, unit vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tracking {
     pub along: ScanPoint,
