@@ -13,8 +13,8 @@ use serde::Serialize;
 
 use crate::files::{self, NewFile};
 use crate::options::Format;
-use crate::report::tidy;
 use crate::{Outcome, UsageError, console, diagnostics, machine_folder};
+use bahn_report::record::tidy;
 
 /// The assignment where machine.toml names none.
 const ASSIGNMENT: &str = "compensation.CMA";

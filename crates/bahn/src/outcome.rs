@@ -3,6 +3,7 @@
 use std::fmt;
 
 use bahn_host::HostError;
+use bahn_report::ReportError;
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +49,21 @@ impl From<HostError> for UsageError {
             }
             other => UsageError(other.to_string()),
         }
+    }
+}
+
+/// What does not fit was asked for with an option, which is named.
+impl From<ReportError> for UsageError {
+    fn from(error: ReportError) -> UsageError {
+        let option = match &error {
+            ReportError::Host(error) => return error.clone().into(),
+            ReportError::Unfit(_) => "",
+            ReportError::Workpiece(_) => "--resolution: ",
+            ReportError::NoSignal(..) => "--signals ",
+            ReportError::OutOfTime(..) => "--from, --to: ",
+            ReportError::NoWay(..) => "--xy: ",
+        };
+        UsageError(format!("{option}{error}"))
     }
 }
 

@@ -5,7 +5,6 @@
 
 mod library;
 mod options;
-mod report;
 mod set;
 
 use std::io::Write as _;
@@ -18,16 +17,17 @@ use bahn_interpreter::{Interpreter, Library, NoLibrary, Settings};
 use bahn_parameters::ParameterList;
 use bahn_path::Axis;
 use bahn_program::{FormatOptions, Program};
+use bahn_report::convert::{Report, Reports};
+use bahn_report::{Stop, convert as told, text};
 
 pub(crate) use options::{ConvertOptions, EXAMPLES};
 
 use crate::files::{self, FileLibrary, NewFile};
-use crate::interrupt::{Interrupt, Stop};
+use crate::interrupt::Interrupt;
 use crate::options::{FmtOptions, Format};
 use crate::settings::{self, Equipment};
-use crate::{Outcome, UsageError, console, diagnostics, shelf};
+use crate::{Outcome, UsageError, console, diagnostics, progress};
 use library::{Converted, TargetLibrary};
-use report::{Report, Reports};
 use set::Job;
 
 /// Converts, proves, writes and reports.
@@ -43,14 +43,14 @@ pub(crate) fn command(options: &ConvertOptions) -> Result<Outcome, UsageError> {
     };
     let (made, library) = bench.in_blocks(&jobs);
     let many = jobs.len() > 1 || options.input.is_dir();
-    let bar = many.then(|| shelf::bar(jobs.len()));
+    let bar = many.then(|| progress::of_programs(jobs.len()));
     let limit = options.run.time_limit.map(Duration::from_secs_f64);
     let mut reports = Vec::new();
     for (job, made) in jobs.iter().zip(made) {
         if interrupt.is_requested() {
             break;
         }
-        let stop = Stop::of_one(&interrupt, limit);
+        let stop = interrupt.stop_of_one(limit);
         let report = bench.finish(job, made, &library, &stop);
         stop.run_is_over();
         reports.push(report?);
@@ -73,21 +73,21 @@ pub(crate) fn command(options: &ConvertOptions) -> Result<Outcome, UsageError> {
 fn say(mut reports: Vec<Report>, many: bool, options: &ConvertOptions) -> Result<(), UsageError> {
     let ok = reports.iter().all(|report| report.ok);
     let text = match (options.format, many) {
-        (Format::Json, true) => console::json(&Reports {
+        (Format::Json, true) => text::json(&Reports {
             ok,
             programs: reports,
         })?,
         (Format::Json, false) => match reports.pop() {
-            Some(report) => console::json(&report)?,
+            Some(report) => text::json(&report)?,
             None => String::new(),
         },
         (Format::Text, true) => {
-            let mut text: String = reports.iter().map(|report| report::line(report) + "\n").collect();
+            let mut text: String = reports.iter().map(|report| told::line(report) + "\n").collect();
             let good = reports.iter().filter(|report| report.ok).count();
             text += &format!("{good} of {} programs are converted and proved\n", reports.len());
             text
         }
-        (Format::Text, false) => reports.iter().map(report::text).collect(),
+        (Format::Text, false) => reports.iter().map(told::text).collect(),
     };
     // What is converted goes to standard output itself.
     if options.output.as_deref() == Some(Path::new("-")) {

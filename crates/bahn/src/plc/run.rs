@@ -5,6 +5,7 @@ use std::path::Path;
 use bahn_exchange::Exchange;
 use bahn_host::Retained;
 use bahn_plc::ProcessingTime;
+use bahn_report::junit;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::bench::{self, Bench, Failure};
@@ -16,7 +17,6 @@ use super::source::Source;
 use super::trace::{Line, Trace};
 use crate::diagnostics::{self, PRINTED_MAX};
 use crate::interrupt::Interrupt;
-use crate::junit;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, files};
 use bahn_host::{Content, Operand};
@@ -77,12 +77,8 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     if let Some(path) = &options.junit {
         let stopped = report.error.as_ref().map(Stop::to_string);
         let suite = options.program.file.to_string_lossy();
-        written = written.and(junit::write(
-            path,
-            &suite,
-            &bench.play.expectations(),
-            stopped.as_deref(),
-        ));
+        let cases = junit::write(path, &suite, &bench.play.expectations(), stopped.as_deref());
+        written = written.and(cases.map_err(UsageError::from));
     }
     report.values = Values(
         options

@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::{ChangeRow, TuneOptions, change_rows, change_text, write};
 use crate::options::Format;
-use crate::report::tidy;
 use crate::{Outcome, UsageError, console, diagnostics};
+use bahn_report::record::tidy;
 
 #[derive(Serialize)]
 struct Report {

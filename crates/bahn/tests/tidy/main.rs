@@ -108,6 +108,30 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("server", &["panel", "viewer"]),
     ("terminal", &["panel"]),
     (
+        "report",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "reader",
+            "interpreter",
+            "motion",
+            "picture",
+            "workpiece",
+            "viewer",
+            "exchange",
+            "plc",
+            "servo",
+            "machine",
+            "control",
+            "host",
+            "panel",
+            "nc",
+            "technology",
+            "convert",
+        ],
+    ),
+    (
         "bahn",
         &[
             "path",
@@ -135,6 +159,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "technology",
             "convert",
             "lsp",
+            "report",
         ],
     ),
 ];
