@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use super::crew::Done;
 use super::row::{Row, Verdict};
 use super::{Shelf, csv};
 use crate::text::clock;
@@ -24,16 +23,6 @@ pub fn read(text: &str) -> Result<Option<Rows>, String> {
         };
     }
     Ok(csv::read(text).map(by_path))
-}
-
-/// Says of each program what changes from an earlier report to now.
-pub fn compare(earlier: &Rows, done: &mut [Done]) {
-    for Done { row, .. } in done {
-        row.changes = match earlier.get(&row.path) {
-            Some(before) => changes(before, row),
-            None => vec!["new".into()],
-        };
-    }
 }
 
 /// What changes from one run to the next, in words.

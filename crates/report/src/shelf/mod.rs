@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use bahn_host::files::{self, NewFile};
 use bahn_workpiece::{Page, View3d};
 
-pub use against::{Rows, compare, read};
+pub use against::{Rows, read};
 pub use crew::{Done, Work, run};
 pub use row::{Row, Verdict};
 pub use totals::{About, COLUMNS, Shelf, Totals};
@@ -62,6 +62,16 @@ pub fn mark_called(done: &mut [Done]) {
         if row.result == Verdict::Error && called.contains(&absolute(&row.path)) {
             row.result = Verdict::Called;
         }
+    }
+}
+
+/// Says of each program what changes from an earlier report to now.
+pub fn compare(earlier: &Rows, done: &mut [Done]) {
+    for Done { row, .. } in done {
+        row.changes = match earlier.get(&row.path) {
+            Some(before) => against::changes(before, row),
+            None => vec!["new".into()],
+        };
     }
 }
 
