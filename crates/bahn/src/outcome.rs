@@ -3,6 +3,7 @@
 use std::fmt;
 
 use bahn_host::HostError;
+use bahn_ports::PortError;
 use bahn_report::ReportError;
 
 /// How a command ended.
@@ -64,6 +65,16 @@ impl From<ReportError> for UsageError {
             ReportError::NoWay(..) => "--xy: ",
         };
         UsageError(format!("{option}{error}"))
+    }
+}
+
+impl From<PortError> for UsageError {
+    fn from(error: PortError) -> UsageError {
+        match error {
+            PortError::Host(error) => error.into(),
+            PortError::NoPrinter(name) => UsageError(format!("--print {name}: give --{name}, too")),
+            PortError::Failed(why) => UsageError(why),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 //! The face of this room:
 //! - [`test_run`]: programs run without a machine; [`shelf`]: many of them as a table;
 //! - [`run`]: a program on the simulated machine, with what is measured of it;
+//! - [`plc`]: PLC programs, on a bench or in a machine;
 //! - [`scope`]: recorded signals, drawn and summed up;
 //! - [`record`]: what is collected of a run, and its report; [`text`]: the report for people;
 //! - [`technology`], [`tune`], [`convert`]: what is told of a run with M functions, of a commissioning, of a conversion;
@@ -24,6 +25,7 @@ mod follower;
 pub mod junit;
 mod path_csv;
 mod path_svg;
+pub mod plc;
 pub mod record;
 pub mod run;
 pub mod scope;

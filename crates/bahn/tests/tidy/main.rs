@@ -108,6 +108,21 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("server", &["panel", "viewer"]),
     ("terminal", &["panel"]),
     (
+        "ports",
+        &[
+            "path",
+            "picture",
+            "parameters",
+            "exchange",
+            "plc",
+            "machine",
+            "control",
+            "host",
+            "link",
+            "panel",
+        ],
+    ),
+    (
         "report",
         &[
             "path",
@@ -157,6 +172,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "technology",
             "convert",
             "lsp",
+            "ports",
             "report",
         ],
     ),

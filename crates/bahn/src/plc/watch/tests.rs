@@ -6,7 +6,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::*;
-use crate::plc::bench::Bench;
+use crate::plc::bench::bench;
 use crate::plc::options::{BenchOptions, MachineOptions, ProgramOptions};
 
 fn watch(program: &str, operands: &str) -> Watch {
@@ -18,7 +18,7 @@ fn watch(program: &str, operands: &str) -> Watch {
         set: Vec::new(),
         script: None,
     };
-    let bench = Bench::new(
+    let bench = bench(
         program.into(),
         ParameterList::reference(ControlModel::Tnc415b),
         &options,

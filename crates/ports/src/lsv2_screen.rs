@@ -34,7 +34,7 @@ struct Sheet {
 }
 
 /// Draws the screen, with what the graphics show when they are looked at.
-pub(super) fn draw(screen: &Screen, picture: Option<&Picture>) -> Image {
+pub fn draw(screen: &Screen, picture: Option<&Picture>) -> Image {
     let colour = |name: &str, other: Colour| {
         let text = screen.look.colours.get(name).map(String::as_str);
         text.and_then(of_text).unwrap_or(other)
@@ -211,7 +211,7 @@ fn fitting(text: &str, columns: usize) -> String {
 }
 
 /// A picture as a BMP file: 24 bits for a pixel, the last row first.
-pub(super) fn bmp(image: &Image) -> Vec<u8> {
+pub fn bmp(image: &Image) -> Vec<u8> {
     /// Heads of file and picture.
     const HEAD: u32 = 14 + 40;
     /// 72 dots per inch, in dots per metre.

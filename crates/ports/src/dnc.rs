@@ -3,11 +3,8 @@
 use std::time::Duration;
 
 use bahn_control::{Command, Dnc, DripFeedState, Message, RunState};
-use bahn_host::{Answer, Deed, Host, Next, Notice, Reader, Source, Stamped};
+use bahn_host::{Answer, Deed, Host, HostError, Next, Notice, Reader, Source, Stamped};
 use bahn_link::dnc::{BlockLine, Drip, DripState, Executing};
-
-use crate::UsageError;
-use crate::interrupt::Interrupt;
 
 /// One look at the line.
 const LOOK: Duration = Duration::from_millis(20);
@@ -23,7 +20,7 @@ const START_US: u64 = 5_000_000;
 
 /// How a session ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Ended {
+pub enum Ended {
     /// The program came to its end.
     Completed,
     /// A message stands.
@@ -33,14 +30,18 @@ pub(super) enum Ended {
 }
 
 /// What is to be done.
-pub(super) struct Wishes {
+pub struct Wishes {
+    /// The program.
     pub name: String,
+    /// How often it is begun again when the line breaks.
     pub restarts: u32,
+    /// The machine keeps pace with the clock on the wall.
     pub realtime: bool,
 }
 
 /// A host and its line.
-pub(super) struct Session<'a> {
+pub struct Session<'a> {
+    /// The machine.
     pub host: Host,
     line: &'a mut dyn BlockLine,
     wishes: Wishes,
@@ -51,12 +52,14 @@ pub(super) struct Session<'a> {
     given_up: bool,
     /// The control refused what the operator wanted.
     refused: Option<String>,
+    /// When START was pressed, time of the machine, µs.
     pub start_us: Option<u64>,
     /// The run has begun.
     ran: bool,
 }
 
 impl<'a> Session<'a> {
+    /// A machine that is on, with the line that its program comes over.
     pub fn new(host: Host, line: &'a mut dyn BlockLine, wishes: Wishes) -> Session<'a> {
         Session {
             notices: host.notices(),
@@ -78,9 +81,12 @@ impl<'a> Session<'a> {
     }
 
     /// Runs to the end.
-    pub fn run(&mut self, interrupt: &Interrupt) -> Result<Ended, UsageError> {
+    ///
+    /// # Errors
+    /// When what survives power-off cannot be stored, or the machine not do what it is told.
+    pub fn run(&mut self, is_interrupted: &dyn Fn() -> bool) -> Result<Ended, HostError> {
         loop {
-            if interrupt.is_requested() {
+            if is_interrupted() {
                 self.line.give_up();
                 return Ok(Ended::Interrupted);
             }
@@ -111,7 +117,7 @@ impl<'a> Session<'a> {
     }
 
     /// Hands on what comes, and asks for it at first.
-    fn feed(&mut self) -> Result<(), UsageError> {
+    fn feed(&mut self) -> Result<(), HostError> {
         let stopped = self.host.control().run_state() == RunState::Stopped;
         if stopped && !self.wishes.realtime {
             // Somebody else presses START, by the clock on the wall.
@@ -166,7 +172,7 @@ impl<'a> Session<'a> {
     }
 
     /// Behind a broken line: START again, as often as the operator wants to; else what is known is executed.
-    fn go_on_broken(&mut self, message: String) -> Result<(), UsageError> {
+    fn go_on_broken(&mut self, message: String) -> Result<(), HostError> {
         if self.wishes.restarts > 0 {
             if !self.line.is_connected() {
                 self.line.look(LOOK);
@@ -188,7 +194,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    fn tell(&mut self, command: Command) -> Result<bool, UsageError> {
+    fn tell(&mut self, command: Command) -> Result<bool, HostError> {
         let answer = self.host.act(Source::Operator, Deed::Command(0, command))?;
         Ok(answer == Answer::Done)
     }

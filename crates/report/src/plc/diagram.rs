@@ -1,4 +1,4 @@
-//! Logic diagrams as text and as SVG.
+//! Logic diagrams as text, as SVG and as data.
 
 use bahn_host::logic_diagram::Diagram;
 use bahn_host::{Content, Operand};
@@ -15,7 +15,7 @@ const NAMES: usize = 70;
 
 /// For the terminal: a high line for 1, a low one for 0. Numbers and texts stand where they change; where
 /// there is no room for one, least, greatest and last number are given at the end of the row.
-pub(super) fn text(diagram: &Diagram) -> String {
+pub fn text(diagram: &Diagram) -> String {
     let mut text = String::new();
     let count = diagram.samples.len();
     for start in (0..count).step_by(COLUMNS) {
@@ -76,7 +76,7 @@ fn contents(diagram: &Diagram, index: usize, start: usize, end: usize) -> String
 }
 
 /// The drawing.
-pub(super) fn svg(diagram: &Diagram) -> String {
+pub fn svg(diagram: &Diagram) -> String {
     let width = NAMES + diagram.samples.len() * CYCLE + 10;
     let height = (diagram.operands.len() + 1) * ROW + 10;
     let mut svg = format!(
@@ -152,4 +152,38 @@ fn escaped(text: &str) -> String {
             c => c.to_string(),
         })
         .collect()
+}
+
+/// The diagram as data.
+#[derive(Debug, serde::Serialize)]
+pub struct Courses<'a> {
+    first_cycle: u64,
+    trigger_cycle: Option<u64>,
+    operands: Vec<Course<'a>>,
+}
+
+/// An operand after every cycle.
+#[derive(Debug, serde::Serialize)]
+struct Course<'a> {
+    operand: String,
+    values: Vec<&'a Content>,
+}
+
+impl Courses<'_> {
+    /// Those of a diagram.
+    pub fn new(diagram: &Diagram) -> Courses<'_> {
+        let course = |(index, operand): (usize, &Operand)| Course {
+            operand: operand.to_string(),
+            values: diagram
+                .samples
+                .iter()
+                .filter_map(|sample| sample.get(index))
+                .collect(),
+        };
+        Courses {
+            first_cycle: diagram.first,
+            trigger_cycle: diagram.trigger,
+            operands: diagram.operands.iter().enumerate().map(course).collect(),
+        }
+    }
 }

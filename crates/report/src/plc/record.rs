@@ -4,19 +4,23 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::bench::Bench;
-use crate::UsageError;
-use crate::files::{self, NewFile};
+use crate::ReportError;
+use bahn_host::files::{self, NewFile};
 use bahn_host::{Content, Operand};
 
 /// A table being written.
-pub(super) struct Record {
+pub struct Record {
     path: PathBuf,
     file: NewFile,
     operands: Vec<Operand>,
 }
 
 impl Record {
-    pub fn create(path: &Path, operands: Vec<Operand>) -> Result<Record, UsageError> {
+    /// Begins a table of operands.
+    ///
+    /// # Errors
+    /// When the file cannot be created.
+    pub fn create(path: &Path, operands: Vec<Operand>) -> Result<Record, ReportError> {
         let mut record = Record {
             path: path.to_owned(),
             file: NewFile::create(path)?,
@@ -28,7 +32,7 @@ impl Record {
     }
 
     /// Writes the row of a cycle.
-    pub fn cycle(&mut self, bench: &Bench) -> Result<(), UsageError> {
+    pub fn cycle(&mut self, bench: &Bench) -> Result<(), ReportError> {
         let values = self.operands.iter().map(|operand| match bench.read(*operand) {
             Content::Number(value) => value.to_string(),
             Content::Text(text) => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -37,11 +41,15 @@ impl Record {
         self.row(&bench.cycle.to_string(), values)
     }
 
-    pub fn finish(self) -> Result<(), UsageError> {
+    /// The table is whole.
+    ///
+    /// # Errors
+    /// When it could not be written.
+    pub fn finish(self) -> Result<(), ReportError> {
         Ok(self.file.finish()?)
     }
 
-    fn row(&mut self, first: &str, values: Vec<String>) -> Result<(), UsageError> {
+    fn row(&mut self, first: &str, values: Vec<String>) -> Result<(), ReportError> {
         let separator = if values.is_empty() { "" } else { "," };
         writeln!(self.file, "{first}{separator}{}", values.join(","))
             .map_err(|error| files::cannot("write", &self.path, &error).into())

@@ -4,7 +4,7 @@ use bahn_plc::RuntimeError;
 
 /// Why there is no further scan.
 #[derive(Debug)]
-pub(super) enum Halt {
+pub enum Halt {
     /// An error has stopped the PLC.
     Plc(RuntimeError),
     /// By `end` of the script.

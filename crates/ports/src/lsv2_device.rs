@@ -17,8 +17,9 @@ use bahn_parameters::{Definition, ListText, ParameterId};
 use bahn_path::Axis;
 use bahn_plc::HostMessage;
 
-use super::lsv2_log::LogBook;
-use super::lsv2_screen;
+use crate::lsv2_log::LogBook;
+use crate::lsv2_screen;
+use crate::open::plc_folder;
 
 /// What the identity begins with when nobody gives another one.
 const OWN: &str = "BAHN";
@@ -27,7 +28,7 @@ const BYTES: u32 = 1024;
 const STRINGS: u32 = 4;
 
 /// A machine that runs.
-pub(super) struct MachineDevice {
+pub struct MachineDevice {
     /// As soon as it runs.
     link: OnceLock<Link>,
     store: Store,
@@ -50,11 +51,7 @@ impl MachineDevice {
         let machine = station.machine();
         let root = machine.root.clone();
         let main = root.join(&machine.folder.plc);
-        // A main file beside machine.toml does not open the whole folder.
-        let plc = match main.parent().filter(|folder| **folder != root) {
-            Some(folder) => folder.to_owned(),
-            None => root.join("plc"),
-        };
+        let plc = plc_folder(machine);
         let programs = machine.programs(0);
         for folder in [&plc, &programs] {
             std::fs::create_dir_all(folder)

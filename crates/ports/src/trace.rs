@@ -7,13 +7,13 @@ use std::time::Duration;
 
 use bahn_host::files::NewFile;
 
-use crate::UsageError;
+use crate::PortError;
 
 /// Bytes in a line at most.
 const ROW: usize = 32;
 
 /// A trace that is being written, or none.
-pub(super) struct Trace {
+pub struct Trace {
     file: Option<NewFile>,
     row: Vec<u8>,
     sent: bool,
@@ -22,8 +22,11 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    /// Begins a trace.
-    pub fn open(path: Option<&Path>) -> Result<Trace, UsageError> {
+    /// Begins a trace; without a path nothing is written.
+    ///
+    /// # Errors
+    /// When the file cannot be created.
+    pub fn open(path: Option<&Path>) -> Result<Trace, PortError> {
         let file = path.map(NewFile::create).transpose()?;
         Ok(Trace {
             file,
@@ -34,7 +37,7 @@ impl Trace {
         })
     }
 
-    /// A byte has passed.
+    /// A byte has passed: it was sent, or came, at a time since the line was opened.
     pub fn byte(&mut self, sent: bool, byte: u8, now: Duration) {
         if self.file.is_none() {
             return;
@@ -61,10 +64,13 @@ impl Trace {
     }
 
     /// The trace is whole.
-    pub fn finish(mut self) -> Result<(), UsageError> {
+    ///
+    /// # Errors
+    /// When it could not be written.
+    pub fn finish(mut self) -> Result<(), PortError> {
         self.flush();
         if let Some(error) = self.failed {
-            return Err(UsageError::new(format!("cannot write the trace: {error}")));
+            return Err(PortError::Failed(format!("cannot write the trace: {error}")));
         }
         if let Some(file) = self.file {
             file.finish()?;

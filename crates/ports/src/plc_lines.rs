@@ -12,11 +12,11 @@ use bahn_link::{Mode, PlcHold, Settings};
 use bahn_panel::{Input, Link, Station};
 use bahn_parameters::ParameterList;
 
-use crate::{UsageError, diagnostics};
+use crate::{PortError, Tell};
 
 /// A port as the PLC may have it.
 #[derive(Clone)]
-pub(super) struct PlcPort {
+pub struct PlcPort {
     /// Its hold on the port.
     pub hold: PlcHold,
     /// What the operator has set up.
@@ -28,10 +28,11 @@ pub(super) struct PlcPort {
 }
 
 /// The two interfaces, RS-232-C and RS-422; one that has no port is never ready.
-pub(super) struct PlcLines {
+pub struct PlcLines {
     notices: Reader<Stamped>,
     ports: [Option<PlcPort>; 2],
     printer: Option<Printer>,
+    tell: Tell,
 }
 
 /// Where FN15 prints.
@@ -43,7 +44,7 @@ enum Printer {
 }
 
 impl Printer {
-    fn print(&self, line: &str) {
+    fn print(&self, line: &str, tell: &Tell) {
         let printed = match self {
             Printer::Port(hold) => match hold.print(line) {
                 true => Ok(()),
@@ -56,7 +57,7 @@ impl Printer {
                 .and_then(|mut file| writeln!(file, "{line}")),
         };
         if let Err(error) = printed {
-            diagnostics::print_line(&format!("`{line}` is not printed: {error}"));
+            tell(&format!("`{line}` is not printed: {error}"));
         }
     }
 }
@@ -70,10 +71,11 @@ impl PlcLines {
         station: &mut Station,
         ports: [Option<PlcPort>; 2],
         print: Option<&str>,
-    ) -> Result<PlcLines, UsageError> {
-        let at = |number: usize, name: &str| match ports.get(number).and_then(Option::as_ref) {
+        tell: Tell,
+    ) -> Result<PlcLines, PortError> {
+        let at = |number: usize, name: &'static str| match ports.get(number).and_then(Option::as_ref) {
             Some(port) => Ok(Printer::Port(port.hold.clone())),
-            None => Err(UsageError::new(format!("--print {name}: give --{name}, too"))),
+            None => Err(PortError::NoPrinter(name)),
         };
         let printer = match print {
             None => None,
@@ -88,6 +90,7 @@ impl PlcLines {
             notices: station.host().notices(),
             ports,
             printer,
+            tell,
         })
     }
 
@@ -109,13 +112,13 @@ impl PlcLines {
                     Notice::Line(order) => orders.push(order),
                     Notice::Printed(line) => {
                         if let Some(printer) = &self.printer {
-                            printer.print(&line);
+                            printer.print(&line, &self.tell);
                         }
                     }
                     _ => {}
                 },
                 Next::Missed(count) => {
-                    diagnostics::print_line(&format!("{count} notices of the machine went by unseen"));
+                    (self.tell)(&format!("{count} notices of the machine went by unseen"));
                 }
             }
         }

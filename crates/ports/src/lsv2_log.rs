@@ -9,7 +9,7 @@ use bahn_host::{Next, Notice, Reader, Stamped};
 use bahn_link::lsv2::{EVENTS, Event, EventKind};
 
 /// The log book, and where it reads what has happened.
-pub(super) struct LogBook {
+pub struct LogBook {
     notices: Mutex<Reader<Stamped>>,
     events: Mutex<VecDeque<Event>>,
 }

@@ -1,11 +1,10 @@
 //! Run-time errors of a PLC program, at their lines.
 
+use bahn_host::{FileFault, Marked, Severity};
 use bahn_plc::{PlcProgram, RuntimeError};
 
-use crate::diagnostics::{self, FileFault, Marked, Severity};
-
-/// Prints a run-time error with its line.
-pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
+/// A run-time error with its line.
+pub fn failure(program: &PlcProgram, error: &RuntimeError) -> FileFault {
     let file = program.files.iter().find(|file| file.name == error.file);
     let index = (error.line as usize).saturating_sub(1);
     let text = file
@@ -15,7 +14,7 @@ pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
     let code = bahn_plc::split_comment(&text).0;
     let start = code.chars().take_while(|c| c.is_whitespace()).count();
     let length = code.trim().chars().count();
-    diagnostics::print_fault(&FileFault {
+    FileFault {
         severity: Severity::Error,
         title: format!("{} {}", error.error.number(), error.error.text()),
         path: error.file.as_str().into(),
@@ -33,5 +32,5 @@ pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
         },
         help: Some(format!("{} {}", error.error.cause(), error.error.cure())),
         opened: None,
-    });
+    }
 }

@@ -7,7 +7,7 @@ use bahn_plc::Subject;
 /// Whether control or machine read what a program writes to an operand: outputs, starts of timers and
 /// counters, markers with a fixed meaning, the bytes from PLC to NC [000:11556-11584][000:10534-10968]. Markers that only
 /// the TNC 355 has are read by nobody [000:16442-16500].
-pub(super) fn is_read_outside(subject: Subject) -> bool {
+pub fn is_read_outside(subject: Subject) -> bool {
     const PLC_TO_NC: std::ops::Range<u16> = 512..768;
     match subject {
         Subject::Bit { indexed: true, .. } | Subject::Number { indexed: true, .. } => true,
@@ -29,7 +29,7 @@ pub(super) fn is_read_outside(subject: Subject) -> bool {
 }
 
 /// The name of an operand with a fixed meaning, or of the markers it belongs to.
-pub(super) fn fixed_name(subject: Subject) -> Option<&'static str> {
+pub fn fixed_name(subject: Subject) -> Option<&'static str> {
     let named = signal::all()
         .iter()
         .find(|signal| match (subject, signal.operand) {
