@@ -209,7 +209,7 @@ fn a_running_machine_is_watched() {
     let machine = MachineOptions {
         part: vec!["CIRCLE.H".into()],
     };
-    let subject = Subject::open(&program, &bench, &machine, || Ok(Exchange::default())).unwrap();
+    let subject = subject::open(&program, &bench, &machine, || Ok(Exchange::default())).unwrap();
     let operands = ["M900", "I3", "M2451"].map(|name| name.parse().unwrap());
     let mut watch = Watch::new(subject.unwrap(), operands.to_vec(), None);
     press(&mut watch, "c");
