@@ -170,7 +170,6 @@ const ROOMS: &[(&str, &[&str])] = &[
             "terminal",
             "din",
             "technology",
-            "convert",
             "lsp",
             "ports",
             "report",

@@ -7,11 +7,11 @@ use std::sync::Arc;
 use bahn_interpreter::Library;
 use bahn_program::Program;
 
-use crate::files::FileLibrary;
+use bahn_host::files::FileLibrary;
 
 /// The converted programs by the names of their sources.
 #[derive(Clone, Default)]
-pub(super) struct Converted {
+pub struct Converted {
     by_source: HashMap<String, Arc<Program>>,
     /// The names of the sources by those of the targets.
     sources: HashMap<String, String>,
@@ -19,7 +19,7 @@ pub(super) struct Converted {
 
 impl Converted {
     /// Adds a program.
-    pub fn add(&mut self, source: &Program, target: Arc<Program>) {
+    pub(super) fn add(&mut self, source: &Program, target: Arc<Program>) {
         self.sources
             .insert(target.name().to_owned(), source.name().to_owned());
         self.by_source.insert(source.name().to_owned(), target);
