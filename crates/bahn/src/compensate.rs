@@ -5,9 +5,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use bahn_host::LoadedMachine;
-use bahn_host::interferometer::{AxisResult, Compensated, TABLE_NAME, compensate};
 use bahn_machine::MachineFolder;
 use bahn_parameters::{Adjustment, ListText};
+use bahn_trials::interferometer::{AxisResult, Compensated, TABLE_NAME, compensate};
 use clap::{Args, ValueHint};
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! The circle test and a stop, before and after.
 
-use bahn_host::tuning::{AxisTest, Circle, Tuned};
 use bahn_picture::{Anchor, Colour};
+use bahn_trials::tuning::{AxisTest, Circle, Tuned};
 
 use crate::scope::Sheet;
 

@@ -6,7 +6,7 @@ mod spindle;
 
 use std::fmt::Write as _;
 
-use bahn_host::tuning::{AxisTest, Circle, Task, Tuned, tune};
+use bahn_trials::tuning::{AxisTest, Circle, Task, Tuned, tune};
 
 use serde::Serialize;
 

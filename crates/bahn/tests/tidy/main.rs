@@ -83,6 +83,20 @@ const ROOMS: &[(&str, &[&str])] = &[
             "control",
         ],
     ),
+    (
+        "trials",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "reader",
+            "exchange",
+            "servo",
+            "machine",
+            "control",
+            "host",
+        ],
+    ),
     ("link", &["parameters", "program", "control", "host"]),
     (
         "panel",
@@ -140,6 +154,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machine",
             "control",
             "host",
+            "trials",
             "panel",
             "nc",
             "technology",
@@ -164,6 +179,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machines",
             "control",
             "host",
+            "trials",
             "link",
             "panel",
             "server",
@@ -199,7 +215,7 @@ const CIRCLES: &[(&str, &str)] = &[
 /// Types of many fields with methods in several files, and these files. None should be.
 const TOO_MUCH: &[(&str, &str, &str)] = &[
     ("control", "PlcLink", "data_line plc_link"),
-    ("host", "Course", "torture::recovery torture::trial"),
+    ("trials", "Course", "torture::recovery torture::trial"),
     ("host", "Host", "host saved"),
     (
         "host",

@@ -7,7 +7,7 @@ use bahn_control::{Control, Remembered};
 use bahn_exchange::{Exchange, Image, MemoryStorage, Retention, RetentionError, RetentionStorage};
 
 use super::dice::Dice;
-use crate::machine_folder::{read_remembered, write_remembered};
+use bahn_host::{read_remembered, write_remembered};
 
 /// The longest piece of a journal in which a failure is tried, bytes.
 const PIECE: usize = 1600;

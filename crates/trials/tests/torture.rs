@@ -1,11 +1,12 @@
 //! The fault campaign over the shipped machines: a fixed set of seeds, and that it would find something.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+#[path = "../../host/tests/support/mod.rs"]
 mod support;
 
 use std::path::Path;
 
-use bahn_host::torture::{Campaign, Kind, Plan, Rule};
+use bahn_trials::torture::{Campaign, Kind, Plan, Rule};
 
 use support::Copy;
 

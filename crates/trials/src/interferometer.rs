@@ -7,8 +7,8 @@ use bahn_control::{CompensationAssignment, CompensationTable, Signal};
 use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::{Adjustment, PLC_AXIS_NAMES, ParameterList, PerPlcAxis};
 
-use crate::machine_folder::LoadedMachine;
 use crate::trial;
+use bahn_host::LoadedMachine;
 
 /// Points of a table at most: three axes share 640 [000:3770].
 const POINTS_MAX: usize = 100;

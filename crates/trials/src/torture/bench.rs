@@ -9,13 +9,13 @@ use bahn_reader::{Reader, Start};
 
 use super::contour::Contour;
 use super::led::Led;
-use crate::feed::Next;
-use crate::machine_folder::{FolderPrograms, LoadedMachine};
-use crate::notice::{Notice, Stamped};
-use crate::operator::{Attendance, Job, Operator};
-use crate::power_on::PowerOn;
-use crate::saved::Saved;
-use crate::{Host, HostError};
+use bahn_host::Next;
+use bahn_host::PowerOn;
+use bahn_host::Saved;
+use bahn_host::{Attendance, Job, Operator};
+use bahn_host::{FolderPrograms, LoadedMachine};
+use bahn_host::{Host, HostError};
+use bahn_host::{Notice, Stamped};
 
 /// Moments that are kept of a program at most.
 const MOMENTS_MAX: usize = 96;
@@ -71,7 +71,7 @@ impl Bench {
             if bench.is_stuck() {
                 let shown = bench.host.control().shown().first();
                 let why = shown.map_or_else(String::new, |shown| bench.host.control().shown_text(shown));
-                return Err(HostError::new(format!(
+                return Err(HostError::File(format!(
                     "{program} does not come to its end undisturbed: {why}"
                 )));
             }
@@ -101,7 +101,7 @@ impl Bench {
             }
         }
         if bench.contours.iter().all(Contour::is_empty) {
-            return Err(HostError::new(format!("{program} moves no axis")));
+            return Err(HostError::File(format!("{program} moves no axis")));
         }
         Ok(bench)
     }

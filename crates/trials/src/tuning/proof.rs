@@ -8,8 +8,8 @@ use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
 use bahn_parameters::axis::AxisParameters;
 
-use crate::machine_folder::LoadedMachine;
 use crate::trial;
+use bahn_host::LoadedMachine;
 
 /// What must be left between a trial and the ends of the travel, mm.
 const MARGIN_MM: f64 = 1.0;

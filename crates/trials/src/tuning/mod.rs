@@ -8,7 +8,7 @@ use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::{Adjustment, Definition, ParameterId, ParameterList, PerPlcAxis};
 use bahn_servo::Characteristic;
 
-use crate::machine_folder::LoadedMachine;
+use bahn_host::LoadedMachine;
 use proof::Subject;
 pub use proof::{AxisTest, Circle};
 pub use spindle::{ThreadTest, TunedSpindle, tune_spindle};

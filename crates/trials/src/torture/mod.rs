@@ -28,9 +28,9 @@ pub use plan::{Happening, Plan};
 pub use rule::{Rule, Violation};
 pub use trial::Trial;
 
-use crate::deed::Deed;
-use crate::machine_folder::LoadedMachine;
-use crate::{FileFault, HostError};
+use bahn_host::Deed;
+use bahn_host::LoadedMachine;
+use bahn_host::{FileFault, HostError};
 use bench::Bench;
 use catalogue::Catalogue;
 use plan::{Choice, Scene};
@@ -79,7 +79,7 @@ impl Campaign {
     /// When a script could not have it.
     pub fn also(&mut self, what: &str) -> Result<(), HostError> {
         for part in what.split(',') {
-            Deed::parse(part.trim()).map_err(|error| HostError::new(format!("{part}: {error}")))?;
+            Deed::parse(part.trim()).map_err(|error| HostError::File(format!("{part}: {error}")))?;
         }
         self.catalogue.also(what);
         Ok(())
@@ -182,7 +182,8 @@ impl Worker<'_> {
 
 /// The programs of a folder, by name.
 fn programs_in(folder: &Path) -> Result<Vec<String>, HostError> {
-    let entries = std::fs::read_dir(folder).map_err(|error| crate::files::cannot("read", folder, &error))?;
+    let entries =
+        std::fs::read_dir(folder).map_err(|error| bahn_host::files::cannot("read", folder, &error))?;
     let names = entries
         .flatten()
         .map(|entry| entry.file_name().to_string_lossy().into_owned());
@@ -191,7 +192,7 @@ fn programs_in(folder: &Path) -> Result<Vec<String>, HostError> {
         .collect();
     names.sort();
     if names.is_empty() {
-        return Err(HostError::new(format!(
+        return Err(HostError::File(format!(
             "there is no program in {}",
             folder.display()
         )));

@@ -5,7 +5,7 @@ use bahn_machine::Machine;
 use bahn_path::Axis;
 
 use super::dice::Dice;
-use crate::LoadedMachine;
+use bahn_host::LoadedMachine;
 
 /// What kind of thing happens, and so what may come of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -7,10 +7,10 @@ use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
 use bahn_program::Program;
 
-use crate::host::Host;
-use crate::machine_folder::LoadedMachine;
-use crate::operator::{Attendance, Job, Operator};
-use crate::power_on::PowerOn;
+use bahn_host::Host;
+use bahn_host::LoadedMachine;
+use bahn_host::PowerOn;
+use bahn_host::{Attendance, Job, Operator};
 
 /// Time of the machine after which a trial is given up, µs.
 const TIME_MAX_US: u64 = 86_400_000_000;

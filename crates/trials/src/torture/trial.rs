@@ -14,9 +14,9 @@ use super::messages::{Messages, is_fatal};
 use super::plan::{Happening, Plan};
 use super::rule::{Rule, Violation};
 use super::ways::Ways;
-use crate::deed::{Answer, Deed, Source};
-use crate::feed::{Next, Reader};
-use crate::notice::{Notice, Stamped};
+use bahn_host::{Answer, Deed, Source};
+use bahn_host::{Next, Reader};
+use bahn_host::{Notice, Stamped};
 
 /// The path of a disturbed run may be so far from that of the undisturbed one, mm or degrees.
 const CONTOUR: f64 = 1e-4;

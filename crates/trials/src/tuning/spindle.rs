@@ -6,9 +6,9 @@ use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::Axis;
 
 use super::{BETTER, Change, changes};
-use crate::machine_folder::LoadedMachine;
-use crate::threads::Threads;
 use crate::trial;
+use bahn_host::LoadedMachine;
+use bahn_host::Threads;
 
 /// A thread ends so near to its depth, mm: "spindle overshoot is to be avoided" [000:6128].
 const DEPTH_WITHIN_MM: f64 = 0.01;
@@ -149,7 +149,7 @@ fn prove(
     if cuts.len() != 2 * gears.len() {
         return Err("the threads were not cut".to_owned());
     }
-    let greatest = |of: &dyn Fn(&crate::ThreadCut) -> f64| cuts.iter().map(of).fold(0.0, f64::max);
+    let greatest = |of: &dyn Fn(&bahn_host::ThreadCut) -> f64| cuts.iter().map(of).fold(0.0, f64::max);
     let both = gears.iter().copied().zip(cuts.chunks(2));
     Ok(ThreadTest {
         beyond_mm: greatest(&|cut| (cut.reached_mm - cut.depth_mm).abs()),
