@@ -5,16 +5,16 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use bahn_host::LoadedMachine;
-use bahn_host::interferometer::{AxisResult, Compensated, TABLE_NAME, compensate};
 use bahn_machine::MachineFolder;
 use bahn_parameters::{Adjustment, ListText};
+use bahn_trials::interferometer::{AxisResult, Compensated, TABLE_NAME, compensate};
 use clap::{Args, ValueHint};
 use serde::Serialize;
 
 use crate::files::{self, NewFile};
 use crate::options::Format;
-use crate::report::tidy;
 use crate::{Outcome, UsageError, console, diagnostics, machine_folder};
+use bahn_report::record::tidy;
 
 /// The assignment where machine.toml names none.
 const ASSIGNMENT: &str = "compensation.CMA";

@@ -2,6 +2,7 @@
 
 use bahn_parameters::ControlModel;
 use bahn_parameters::conformance::{Effect, Entry, Kind, all};
+use bahn_report::text;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -69,7 +70,7 @@ pub(crate) fn command(options: &ConformanceOptions) -> Result<Outcome, UsageErro
     let text = match options.format {
         TableFormat::Text => table.text(),
         TableFormat::Markdown => table.markdown(),
-        TableFormat::Json => console::json(&table)?,
+        TableFormat::Json => text::json(&table)?,
     };
     console::print(&text)?;
     Ok(Outcome::Fine)

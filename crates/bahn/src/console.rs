@@ -28,16 +28,9 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), UsageError> {
     finish(out.write_all(bytes).and_then(|()| out.flush()))
 }
 
-/// A report as JSON, with a line end.
-pub(crate) fn json(report: &impl serde::Serialize) -> Result<String, UsageError> {
-    serde_json::to_string_pretty(report)
-        .map(|text| text + "\n")
-        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))
-}
-
 /// Prints a report as JSON.
 pub(crate) fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
-    print_bytes(json(report)?.as_bytes())
+    print_bytes(bahn_report::text::json(report)?.as_bytes())
 }
 
 /// Prints a value as one line of JSON, since lines of others may stand before it and behind it.

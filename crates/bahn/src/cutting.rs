@@ -4,16 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bahn_path::BlockRef;
 use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
-    Colouring, Deviation, Hears, Memory, MeshError, Page, Part, PlanView, Projection, Remark, ThreePlanes,
-    View3d, WorkpieceError,
+    Colouring, Deviation, Memory, MeshError, Page, Part, PlanView, Projection, ThreePlanes, View3d,
 };
 
 use crate::files::NewFile;
 use crate::options::{ColorOption, OutputOptions, View};
-use crate::report::{Notice, Record};
 use crate::{UsageError, diagnostics, files};
 
 /// What a picture needs to know beside the material.
@@ -21,23 +18,6 @@ pub(crate) fn memory(options: &OutputOptions) -> Memory {
     Memory {
         tools: options.color == Some(ColorOption::Tool),
         path: options.toolpath,
-    }
-}
-
-/// A blank that the wanted resolution does not fit is wrong use.
-pub(crate) fn no_workpiece(error: WorkpieceError) -> UsageError {
-    UsageError::new(format!("--resolution: {error}"))
-}
-
-impl Hears for Record {
-    fn hear(&mut self, block: BlockRef, remark: Remark, count: u64) {
-        let notice = match remark {
-            Remark::Cut(kind) => Notice::Cut(kind),
-            Remark::Tool { tool, kind } => Notice::Tool { tool, kind },
-            Remark::BelowBlank { tool, last } => Notice::BelowBlank { tool, last },
-            Remark::BlankRedefined => Notice::BlankRedefined,
-        };
-        self.warn(block, notice, count);
     }
 }
 
@@ -120,7 +100,7 @@ pub(crate) fn write(
 
 /// Says how far the part is from a solid.
 fn compare(part: &Part, path: &Path, options: &OutputOptions) -> Result<Deviation, UsageError> {
-    let solid = crate::solid::read(path, options.resolution)?;
+    let solid = bahn_report::solid::read(path, options.resolution)?;
     let deviation = part.deviation(&solid);
     let Some(mean) = deviation.mean_mm() else {
         return Err(UsageError::new(format!(

@@ -2,6 +2,7 @@
 
 use bahn_parameters::ControlModel;
 use bahn_parameters::fault::{Fault, FaultId};
+use bahn_report::text;
 use clap::Args;
 use serde::Serialize;
 
@@ -78,7 +79,7 @@ pub(crate) fn command(options: &FaultsOptions) -> Result<Outcome, UsageError> {
         .map(|id| Row::of(id.row(), options.model))
         .collect();
     let text = match options.format {
-        TableFormat::Json => console::json(&rows)?,
+        TableFormat::Json => text::json(&rows)?,
         TableFormat::Markdown => markdown(&rows),
         TableFormat::Text => rows.iter().map(text).collect(),
     };

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Duration;
 
+use bahn_report::Stop;
+
 use crate::{Outcome, files};
 
 /// How long a run may take to notice that it is to end, when it is asked twice.
@@ -73,36 +75,22 @@ impl Interrupt {
             self.flag()
         }
     }
-}
 
-/// Ends one run: by Ctrl-C, or because its time is over.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Stop {
-    flag: Arc<AtomicBool>,
-    late: Arc<AtomicBool>,
-    over: Arc<AtomicBool>,
-}
-
-impl Stop {
     /// Ctrl-C ends the run.
-    pub fn by(interrupt: &Interrupt) -> Stop {
-        Stop {
-            flag: interrupt.flag(),
-            late: Arc::default(),
-            over: Arc::default(),
-        }
+    pub fn stop(&self) -> Stop {
+        Stop::by(self.flag())
     }
 
     /// Ends one of several runs: by Ctrl-C, or when its own time has passed.
-    pub fn of_one(interrupt: &Interrupt, limit: Option<Duration>) -> Stop {
+    pub fn stop_of_one(&self, limit: Option<Duration>) -> Stop {
         let Some(limit) = limit else {
-            return Stop::by(interrupt);
+            return self.stop();
         };
         let stop = Stop::default();
         stop.after(limit);
-        let (watching, interrupt) = (stop.clone(), interrupt.clone());
+        let (watching, interrupt) = (stop.clone(), self.clone());
         std::thread::spawn(move || {
-            while !watching.is_requested() && !watching.over.load(Ordering::Relaxed) {
+            while !watching.is_requested() && !watching.is_over() {
                 std::thread::sleep(WATCH);
                 if interrupt.is_requested() {
                     watching.end();
@@ -110,50 +98,6 @@ impl Stop {
             }
         });
         stop
-    }
-
-    /// Ends the run when this time has passed.
-    pub fn after(&self, limit: Duration) {
-        let stop = self.clone();
-        std::thread::spawn(move || {
-            std::thread::sleep(limit);
-            stop.end_late();
-        });
-    }
-
-    /// Ends the run.
-    pub fn end(&self) {
-        self.flag.store(true, Ordering::Relaxed);
-    }
-
-    /// The run has ended: no time limit counts any more.
-    pub fn run_is_over(&self) {
-        self.over.store(true, Ordering::Relaxed);
-    }
-
-    /// Ends the run because its time is over.
-    pub fn end_late(&self) {
-        if self.over.load(Ordering::Relaxed) {
-            return;
-        }
-        self.late.store(true, Ordering::Relaxed);
-        self.end();
-    }
-
-    /// Whether the run shall end.
-    #[inline]
-    pub fn is_requested(&self) -> bool {
-        self.flag.load(Ordering::Relaxed)
-    }
-
-    /// Whether its time is over.
-    pub fn is_late(&self) -> bool {
-        self.late.load(Ordering::Relaxed)
-    }
-
-    /// The flag, for rooms that watch it themselves.
-    pub fn flag(&self) -> Arc<AtomicBool> {
-        self.flag.clone()
     }
 }
 

@@ -27,7 +27,6 @@
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 
-mod block_time;
 mod channel;
 mod check;
 mod cli;
@@ -35,7 +34,6 @@ mod compensate;
 mod conformance;
 mod console;
 mod convert;
-mod count;
 mod cutting;
 mod diagnostics;
 mod explain;
@@ -43,7 +41,6 @@ mod faults;
 mod files;
 mod format;
 mod interrupt;
-mod junit;
 mod link;
 mod lsp;
 mod machine_folder;
@@ -54,19 +51,14 @@ mod options;
 mod outcome;
 mod panel;
 mod paragraph;
-mod path_csv;
-mod path_svg;
 mod plc;
 mod progress;
 mod refused;
-mod report;
-mod report_text;
 mod reports;
 mod run;
 mod scope;
 mod settings;
 mod shelf;
-mod solid;
 mod style;
 mod table;
 mod technology;
@@ -77,7 +69,7 @@ mod tune;
 #[doc(hidden)]
 pub use bahn_host::{check_nc_tables, check_script, check_state, check_tool_table};
 #[doc(hidden)]
-pub use scope::check_recording;
+pub use bahn_report::scope::check_recording;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

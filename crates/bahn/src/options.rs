@@ -6,6 +6,8 @@ use bahn_parameters::{ControlModel, InchFeed};
 use bahn_workpiece::Colouring;
 use clap::{Args, ValueEnum, ValueHint};
 
+use bahn_report::test_run::PathFile;
+
 use crate::files;
 
 pub(crate) const CHECK_EXAMPLES: &str = "\
@@ -332,13 +334,6 @@ impl From<ColorOption> for Colouring {
             ColorOption::Deviation => Colouring::Part,
         }
     }
-}
-
-/// A file for the tool path.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum PathFile {
-    Csv(PathBuf),
-    Svg(PathBuf),
 }
 
 pub(crate) fn model_parser() -> impl clap::builder::TypedValueParser<Value = ControlModel> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use bahn_control::{Tool, datum_shifts};
 use bahn_host::tool_table;
 use bahn_interpreter::{AbsentAxes, MachineTexts, Q_VALUE_MAX, Rules};
-use bahn_motion::{AuxiliaryTimes, Limits};
+use bahn_motion::AuxiliaryTimes;
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, ListText, ParameterId, ParameterList, conformance};
 use bahn_path::{Axis, PerAxis, Position};
@@ -225,22 +225,6 @@ fn machine_zero(list: &ParameterList, datum: &Position) -> Position {
         (None, machine_datum) => machine_datum,
     };
     PerAxis::from_fn(zero).into()
-}
-
-/// The limits of motion.
-pub(crate) fn limits(list: &ParameterList, machine: &MachineOptions) -> Limits {
-    Limits {
-        max_feed_mm_min: PerAxis::from_fn(|axis| list.rapid_traverse_mm_min(axis)),
-        acceleration_m_s2: PerAxis::from_fn(|axis| list.acceleration_m_s2(axis)),
-        radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
-        corner_angle_deg: list.corner_angle_deg(),
-        servo_lag: !list.feed_precontrol(),
-        cycle_s: f64::from(list.model().limits().contour_cycle_us) * 1e-6,
-        servo_window_s: bahn_motion::SERVO_WINDOW_S,
-        spindle: list.spindle_parameters().rigid_ramps().map(Into::into),
-        feed_override_percent: machine.override_percent,
-        rapid_override_percent: machine.override_percent,
-    }
 }
 
 /// Times of what is no movement.

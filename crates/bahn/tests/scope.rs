@@ -91,12 +91,19 @@ fn wrong_recordings_are_refused_with_their_line() {
     );
     let none = folder.bahn("scope r.csv --signals Y.lag");
     assert!(
-        none.err().contains("there are X.actual, X.lag, M2045"),
+        none.err()
+            .contains("--signals Y.lag: the recording has no such signal; there are X.actual, X.lag, M2045"),
         "{}",
         none.err()
     );
     let early = folder.bahn("scope r.csv --from 9");
-    assert!(early.err().contains("from 0 to 1.999 s"), "{}", early.err());
+    assert!(
+        early
+            .err()
+            .contains("--from, --to: the recording runs from 0 to 1.999 s"),
+        "{}",
+        early.err()
+    );
     assert_eq!(folder.bahn("scope r.csv -o r.gif").code(), 2);
     assert_eq!(folder.bahn("scope r.csv --cursor 1,2,3").code(), 2);
     let circle = folder.bahn("scope r.csv --circle X,Y");

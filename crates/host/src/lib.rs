@@ -60,7 +60,6 @@ mod fault;
 mod feed;
 pub mod files;
 mod host;
-pub mod interferometer;
 mod journal;
 mod kept;
 pub mod lists;
@@ -89,9 +88,6 @@ mod table_kind;
 mod text;
 mod threads;
 pub mod tool_table;
-pub mod torture;
-mod trial;
-pub mod tuning;
 
 pub use called::called_program;
 pub use columns::{Cell, TableFault, TextRow, TextTable, canonical};
@@ -105,6 +101,7 @@ pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};
 pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode};
+pub use machine_folder::{read_remembered, write_remembered};
 pub use threads::{ThreadCut, Threads};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]

@@ -7,10 +7,10 @@ use serde::{Serialize, Serializer};
 
 use super::faults::{Report, faults};
 use super::options::CheckOptions;
-use crate::count::count;
 use crate::options::Format;
 use crate::reports::Reports;
 use crate::{Outcome, UsageError, console, diagnostics, files};
+use bahn_report::count;
 
 /// Checks lists and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {

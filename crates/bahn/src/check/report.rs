@@ -2,8 +2,8 @@
 
 use bahn_interpreter::Complete;
 
-use crate::count::count;
 use crate::diagnostics;
+use bahn_report::count;
 
 /// What is wrong with one file.
 #[derive(Debug, serde::Serialize)]

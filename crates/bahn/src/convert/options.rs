@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use bahn_parameters::ControlModel;
+use bahn_report::convert::Target;
 use clap::{Args, ValueEnum, ValueHint};
 
 use crate::options::{Format, MachineOptions, RunOptions, model_parser};
@@ -48,7 +49,7 @@ pub(crate) struct ConvertOptions {
     pub input: PathBuf,
     /// The language to write.
     #[arg(long, value_name = "LANGUAGE", value_enum)]
-    pub to: Target,
+    pub to: TargetOption,
     /// The file to write, or the folder; beside the input with another ending by default, - for standard output.
     #[arg(long, short, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: Option<PathBuf>,
@@ -93,7 +94,7 @@ pub(crate) struct ConvertOptions {
 
 /// A language to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Target {
+pub(crate) enum TargetOption {
     /// HEIDENHAIN plain language.
     Plain,
     /// DIN/ISO.
@@ -102,27 +103,12 @@ pub(crate) enum Target {
     Gcode,
 }
 
-impl Target {
-    /// The language of the control, if it is one.
-    pub fn language(self) -> Option<bahn_convert::Language> {
-        match self {
-            Target::Plain => Some(bahn_convert::Language::Plain),
-            Target::Iso => Some(bahn_convert::Language::Iso),
-            Target::Gcode => None,
-        }
-    }
-
-    /// What the names of its files end with.
-    pub fn ending(self) -> &'static str {
-        self.language().map_or("ngc", bahn_convert::Language::ending)
-    }
-
-    /// Its name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Target::Plain => "plain",
-            Target::Iso => "iso",
-            Target::Gcode => "gcode",
+impl From<TargetOption> for Target {
+    fn from(option: TargetOption) -> Target {
+        match option {
+            TargetOption::Plain => Target::Plain,
+            TargetOption::Iso => Target::Iso,
+            TargetOption::Gcode => Target::Gcode,
         }
     }
 }

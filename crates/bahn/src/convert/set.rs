@@ -2,37 +2,15 @@
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use bahn_interpreter::Library;
 use bahn_program::{CycleWord, Operation, Program};
 
-use super::options::{ConvertOptions, Target};
+use bahn_report::convert::{Job, Target, is_iso};
+
+use super::options::{ConvertOptions, TargetOption};
 use crate::files::{self, FileLibrary, Loaded};
 use crate::{UsageError, shelf};
-
-/// A program and where it goes.
-pub(super) struct Job {
-    pub program: Arc<Program>,
-    /// As people gave it.
-    pub source: PathBuf,
-    /// `None` for standard output.
-    pub target: Option<PathBuf>,
-    /// Another program of the set, in DIN/ISO, calls it.
-    pub called: bool,
-}
-
-impl Job {
-    /// Whether it is in DIN/ISO.
-    pub fn is_iso(&self) -> bool {
-        is_iso(&self.program)
-    }
-}
-
-/// Whether a program is in DIN/ISO.
-pub(super) fn is_iso(program: &Program) -> bool {
-    files::extension(Path::new(program.name())) == "i"
-}
 
 /// The programs of the command line, each once, those in the target language left out.
 pub(super) fn jobs(options: &ConvertOptions) -> Result<Vec<Job>, UsageError> {
@@ -56,7 +34,7 @@ pub(super) fn jobs(options: &ConvertOptions) -> Result<Vec<Job>, UsageError> {
         )));
     }
     // The path has what called programs do.
-    if options.with_calls && options.to != Target::Gcode {
+    if options.with_calls && options.to != TargetOption::Gcode {
         add_called(options, &mut jobs)?;
     }
     mark_called(&mut jobs);
@@ -93,7 +71,7 @@ fn add(
         let why = "a program of DIN 66025 (.nc) has its own axes and functions: it is not converted";
         return Err(UsageError::new(format!("{}: {why}", source.display())));
     }
-    let already = match options.to {
+    let already = match Target::from(options.to) {
         Target::Plain => !is_iso(&program),
         Target::Iso => is_iso(&program),
         Target::Gcode => false,
@@ -113,8 +91,8 @@ fn add(
 
 /// Where a program goes.
 fn target(options: &ConvertOptions, source: &Path, below: &Path) -> Option<PathBuf> {
-    let ending = options.to.ending();
-    let many = options.input.is_dir() || (options.with_calls && options.to != Target::Gcode);
+    let ending = Target::from(options.to).ending();
+    let many = options.input.is_dir() || (options.with_calls && options.to != TargetOption::Gcode);
     match &options.output {
         Some(path) if path.as_os_str() == "-" => None,
         Some(folder) if many || folder.is_dir() => Some(folder.join(below).with_extension(ending)),

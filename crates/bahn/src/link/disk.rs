@@ -9,10 +9,10 @@ use clap::{Args, ValueHint};
 
 use super::desk::{Answer, Desk, Until};
 use super::port;
-use super::trace::Trace;
 use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
+use bahn_ports::Trace;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:

@@ -1,32 +1,28 @@
 //! `bahn link`: the data interfaces.
 //!
 //! - `options`: options and help texts;
-//! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer; `trace`: what passes;
+//! - `port`: ports as they are written, opened and set up; `desk`: who attends a transfer;
 //! - `transfer`: `receive`, `send` and `list`; `disk`: a floppy disk unit; `monitor`: what passes over a line;
 //! - `dnc`: programs that are executed while they are transferred, from both sides;
 //! - `backup`: all of a machine as one file; `print`: a picture on a printer;
-//! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones, `plc_lines` its PLC at them;
+//! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones;
 //! - `panel_ports`: the interfaces of an operating panel;
-//! - `lsv2`: a host that asks a control by LSV/2; `lsv2_device` is a running machine as such a host sees it, `lsv2_log`
-//!   its log book, `lsv2_screen` its screen as a picture.
+//! - `lsv2`: a host that asks a control by LSV/2.
+//!
+//! What a machine that is on does at its interfaces is [`bahn_ports`].
 
 mod backup;
 mod desk;
 mod disk;
 mod dnc;
 mod lsv2;
-mod lsv2_device;
-mod lsv2_log;
-mod lsv2_screen;
 mod monitor;
 mod options;
 mod panel_ports;
-mod plc_lines;
 mod port;
 mod print;
 mod serial_ports;
 mod serve;
-mod trace;
 mod transfer;
 
 pub(crate) use options::LinkOptions;

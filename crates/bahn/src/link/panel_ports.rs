@@ -17,7 +17,8 @@ use bahn_link::{
 use bahn_panel::{Input, Link, Live, Station, TransferDeed, TransferFiles, TransferNews, TransferOrder};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 
-use super::plc_lines::PlcLines;
+use bahn_ports::PlcLines;
+
 use super::port::{self, Refused};
 use super::serial_ports::{self, Port};
 use crate::{UsageError, diagnostics};
@@ -90,7 +91,7 @@ impl PanelPorts {
         station: &mut Station,
         print: Option<&str>,
     ) -> Result<ConnectedPorts, UsageError> {
-        let lines = PlcLines::new(station, serial_ports::of_plc(&self.ports), print)?;
+        let lines = PlcLines::new(station, serial_ports::of_plc(&self.ports), print, port::tell())?;
         Ok(ConnectedPorts {
             orders: station.transfer_orders(),
             lines,

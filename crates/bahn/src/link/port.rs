@@ -1,12 +1,13 @@
 //! Ports of the commands: written as SPEC, opened, set up as machine parameters say.
 
-use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 
-use bahn_host::LoadedMachine;
 use bahn_link::store::Store;
-use bahn_link::{Channel, Line, Settings, Spec};
-use bahn_parameters::{ControlModel, MessageId, ParameterList};
+use bahn_link::{Channel, Settings, Spec};
+use bahn_parameters::{ControlModel, ParameterList};
+pub(super) use bahn_ports::open::{plc_folder, settings};
+use bahn_ports::{Tell, open};
 
 use crate::{UsageError, diagnostics, machine_folder};
 
@@ -21,50 +22,30 @@ impl Refused {
     }
 }
 
-/// Reads a port.
-pub(super) fn spec(option: &str, text: &str) -> Result<Spec, Refused> {
-    text.parse()
-        .map_err(|error| Refused::because(&format!("{option} {text}: {error}")))
+/// Tells it: what the control says as it says messages, the rest as an error.
+impl From<open::Refused> for Refused {
+    fn from(refused: open::Refused) -> Refused {
+        if let Some(message) = refused.message {
+            // Whoever has closed the output knows.
+            let _ = crate::console::print_line(message);
+        }
+        refused.why.map_or(Refused, |why| Refused::because(&why))
+    }
 }
 
-/// What a list says for a port.
-pub(super) fn settings(list: &ParameterList, spec: &Spec) -> Settings {
-    Settings::of(list, spec.mode).on(spec.baud, spec.timeout)
+/// Lines of the interfaces for people.
+pub(super) fn tell() -> Tell {
+    Arc::new(diagnostics::print_line)
+}
+
+/// Reads a port.
+pub(super) fn spec(option: &str, text: &str) -> Result<Spec, Refused> {
+    open::spec(option, text).map_err(Refused::from)
 }
 
 /// Opens a port and tells where the other side finds it, when that is not what was written.
 pub(super) fn open(spec: &Spec, settings: &Settings) -> Result<Channel, Refused> {
-    let channel = Channel::open(spec, settings.characters).map_err(|error| {
-        let message = match &spec.line {
-            _ if error.is_taken => Some(MessageId::InterfaceAlreadyAssigned),
-            // A device that nobody has switched on.
-            Line::Connect(_) | Line::Serial(_) => Some(MessageId::ExtInOutputNotReady),
-            Line::Listen(_) | Line::Pty(_) => None,
-        };
-        if let Some(message) = message {
-            // Whoever has closed the output knows.
-            let _ = crate::console::print_line(message.text(settings.model));
-        }
-        Refused::because(&error.to_string())
-    })?;
-    let place = channel.place();
-    if place != spec.line.to_string() && !spec.line.to_string().ends_with(&place) {
-        diagnostics::print_line(&format!("{} is {place}", spec.line));
-    }
-    warn_of_others(&spec.line, &place);
-    Ok(channel)
-}
-
-/// Whoever listens beyond this computer is told so: a data interface asks nobody for a password.
-fn warn_of_others(line: &Line, place: &str) {
-    let address = place.parse::<SocketAddr>();
-    if matches!(line, Line::Listen(_))
-        && !address.is_ok_and(|address| address.ip().to_canonical().is_loopback())
-    {
-        diagnostics::print_line(&format!(
-            "warning: {line} can be reached by others: whoever connects reads and writes there without a password"
-        ));
-    }
+    open::open(spec, settings, &tell()).map_err(Refused::from)
 }
 
 /// The list of a file, or that of the usual control: for hosts and disks, which have no machine.
@@ -102,15 +83,6 @@ pub(super) fn machine(folder: &Path) -> Result<Option<MachineFiles>, UsageError>
         list: machine.parameters,
         store,
     }))
-}
-
-/// The folder of the PLC program; a main file beside machine.toml does not open the whole folder.
-pub(super) fn plc_folder(machine: &LoadedMachine) -> PathBuf {
-    let main = machine.root.join(&machine.folder.plc);
-    match main.parent().filter(|folder| **folder != machine.root) {
-        Some(folder) => folder.to_owned(),
-        None => machine.root.join("plc"),
-    }
 }
 
 /// The folder of a host or disk.

@@ -7,12 +7,15 @@ use std::time::Duration;
 use bahn_host::HostError;
 use bahn_link::lsv2::{OpenPort, Passwords, ServerOptions, Site};
 use bahn_panel::{Live, Station};
+use bahn_ports::serial_ports::{Attendance, Serving};
+use bahn_ports::{MachineDevice, PlcLines};
 
-use super::lsv2_device::MachineDevice;
+use super::desk::{Answer, Desk, Until};
 use super::options::ServeOptions;
-use super::plc_lines::PlcLines;
-use super::serial_ports::{self, Serving};
+use super::port::tell;
+use super::serial_ports;
 use crate::interrupt::Interrupt;
+use crate::options::Format;
 use crate::{Outcome, UsageError, diagnostics, machine_folder};
 
 /// How often Ctrl-C is looked for, and what the PLC wants of its lines.
@@ -54,13 +57,14 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
         &mut station,
         serial_ports::of_plc(&ports),
         options.print.as_deref(),
+        tell(),
     )?;
     let live = Live::start(station);
     device.connect(live.link());
     let site = Arc::new(Site::new(device, passwords));
     let server = lsv2.map(|port| port.serve(Arc::clone(&site))).transpose();
     let server = server.map_err(|error| UsageError::new(error.to_string()))?;
-    let serving = Serving::start(ports, &site, options.answer, options.trace.as_ref())?;
+    let serving = Serving::start(ports, &site, &attendance(options.answer), options.trace.as_ref())?;
     // Whoever has closed the output knows.
     let _ = writeln!(std::io::stdout(), "ready").and_then(|()| std::io::stdout().flush());
     let link = live.link();
@@ -73,6 +77,18 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
     serving.end()?;
     live.end().map_err(UsageError::new)?;
     Ok(Outcome::Fine)
+}
+
+/// Who attends the ports, and answers what is asked there.
+fn attendance(answer: Answer) -> Attendance {
+    Attendance {
+        asks: answer != Answer::Yes,
+        attendant: Arc::new(move |model, name, stored| {
+            let desk = Desk::new(model, answer, Format::Text, Until::Stopped);
+            Box::new(desk.of_port(name).when_stored(stored))
+        }),
+        tell: tell(),
+    }
 }
 
 /// Where LSV/2 answers, and to whom.

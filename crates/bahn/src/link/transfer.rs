@@ -11,10 +11,10 @@ use clap::{Args, ValueEnum, ValueHint};
 
 use super::desk::{Answer, Desk, Until};
 use super::port::{self, Refused};
-use super::trace::Trace;
 use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
+use bahn_ports::Trace;
 
 /// How long a host waits behind EOT whether something more comes *(inferred)*.
 const LINGER: Duration = Duration::from_secs(1);

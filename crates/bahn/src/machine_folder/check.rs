@@ -12,12 +12,12 @@ use bahn_parameters::ParameterList;
 use super::load;
 use super::options::CheckOptions;
 use crate::check::{self, Check, CheckReport};
-use crate::count::count;
 use crate::diagnostics::{self, FileFault, Severity};
 use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::reports::{OfFile, Reports};
 use crate::{Outcome, UsageError};
+use bahn_report::count;
 
 #[derive(Debug, Serialize)]
 struct Report {

@@ -9,11 +9,11 @@ use serde::Serialize;
 
 use super::options::CheckOptions;
 use super::source;
-use crate::count::count;
 use crate::diagnostics::{self, FileFault};
 use crate::options::Format;
 use crate::reports::Reports;
 use crate::{Outcome, UsageError, files};
+use bahn_report::count;
 
 /// Checks lists and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {

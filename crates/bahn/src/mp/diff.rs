@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::list::Row;
 use super::options::DiffOptions;
 use super::{explain, source};
-use crate::count::count;
 use crate::options::Format;
 use crate::style::Style;
 use crate::{Outcome, UsageError, console};
+use bahn_report::count;
 
 /// Compares two lists, parameter by parameter.
 pub(super) fn command(options: &DiffOptions) -> Result<Outcome, UsageError> {

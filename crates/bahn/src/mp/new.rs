@@ -6,9 +6,9 @@ use bahn_parameters::{ControlModel, ListText, ParameterList};
 
 use super::options::NewOptions;
 use super::source;
-use crate::count::count;
 use crate::files::{self, NewFile};
 use crate::{Outcome, UsageError, console, diagnostics};
+use bahn_report::count;
 
 /// Writes a list to standard output or to a file.
 pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {

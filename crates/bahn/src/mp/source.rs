@@ -6,8 +6,8 @@ use bahn_machine::MachineFolder;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 
 use super::options::ValueOptions;
-use crate::count::count;
 use crate::{UsageError, files};
+use bahn_report::count;
 
 /// Reads a list for the given control, otherwise for that of the machine in whose folder it lies, otherwise for
 /// the one that it names.

@@ -1,12 +1,12 @@
 //! `bahn plc check`: compile and say what is wrong.
 
-use bahn_plc::Diagnostic as Fault;
+use bahn_report::plc::Entry;
 
 use super::options::CheckOptions;
 use super::source::Source;
-use crate::count::count;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
+use bahn_report::count;
 
 /// Compiles a program and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
@@ -69,26 +69,4 @@ struct Report {
 
 fn is_zero(count: &usize) -> bool {
     *count == 0
-}
-
-/// An error or a warning.
-#[derive(Debug, serde::Serialize)]
-pub(super) struct Entry {
-    pub number: u8,
-    file: String,
-    line: u32,
-    column: u32,
-    pub message: String,
-}
-
-impl Entry {
-    pub fn new(fault: &Fault) -> Entry {
-        Entry {
-            number: fault.error.number(),
-            file: fault.file.clone(),
-            line: fault.line,
-            column: fault.column,
-            message: fault.message.clone(),
-        }
-    }
 }

@@ -3,14 +3,14 @@
 use std::io::Write;
 
 use bahn_exchange::Exchange;
+use bahn_report::plc::diagram::{Courses, svg, text};
 
-use super::drawing;
 use super::options::DiagramOptions;
-use super::subject::Subject;
+use super::subject;
 use crate::files::{self, NewFile};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
-use bahn_host::logic_diagram::{Diagram, DiagramRecorder, OPERANDS_MAX, Trigger};
+use bahn_host::logic_diagram::{DiagramRecorder, OPERANDS_MAX, Trigger};
 use bahn_host::{Assignment, Content, Operand};
 
 /// Runs a program and draws operands.
@@ -21,7 +21,7 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
         )));
     }
     let trigger = options.trigger.as_deref().map(trigger).transpose()?;
-    let open = Subject::open(&options.program, &options.bench, &options.machine, || {
+    let open = subject::open(&options.program, &options.bench, &options.machine, || {
         Ok(Exchange::default())
     })?;
     let Some(mut subject) = open else {
@@ -35,7 +35,7 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
     let mut outcome = Outcome::Fine;
     while !recorder.is_over() && (recorder.is_triggered() || subject.cycle() < options.limit) {
         if let Err(halt) = subject.scan(None) {
-            outcome = subject.say(&halt);
+            outcome = subject::say(&subject, &halt);
             break;
         }
         recorder.scan(|operand| subject.read(operand));
@@ -47,19 +47,19 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
         ));
         return Ok(Outcome::ProgramError);
     }
-    if let Outcome::ProgramError = subject.finish() {
+    if let Outcome::ProgramError = subject::finish(&subject) {
         outcome = Outcome::ProgramError;
     }
     let diagram = recorder.into_diagram();
     match (&options.svg, options.format) {
         (Some(path), _) => {
             let mut file = NewFile::create(path)?;
-            file.write_all(drawing::svg(&diagram).as_bytes())
+            file.write_all(svg(&diagram).as_bytes())
                 .map_err(|error| files::cannot("write", path, &error))?;
             file.finish()?;
         }
-        (None, Format::Text) => console::print(&drawing::text(&diagram))?,
-        (None, Format::Json) => console::print_json(&Report::new(&diagram))?,
+        (None, Format::Text) => console::print(&text(&diagram))?,
+        (None, Format::Json) => console::print_json(&Courses::new(&diagram))?,
     }
     Ok(outcome)
 }
@@ -69,38 +69,5 @@ pub(super) fn trigger(text: &str) -> Result<(Operand, Content), UsageError> {
         Ok(Assignment::Operand(operand, content)) => Ok((operand, content)),
         Ok(Assignment::Parameter(_)) => Err(UsageError::new("--trigger takes an operand")),
         Err(error) => Err(UsageError::new(format!("--trigger {text}: {error}"))),
-    }
-}
-
-/// The diagram as data.
-#[derive(Debug, serde::Serialize)]
-struct Report<'a> {
-    first_cycle: u64,
-    trigger_cycle: Option<u64>,
-    operands: Vec<Course<'a>>,
-}
-
-/// An operand after every cycle.
-#[derive(Debug, serde::Serialize)]
-struct Course<'a> {
-    operand: String,
-    values: Vec<&'a Content>,
-}
-
-impl Report<'_> {
-    fn new(diagram: &Diagram) -> Report<'_> {
-        let course = |(index, operand): (usize, &Operand)| Course {
-            operand: operand.to_string(),
-            values: diagram
-                .samples
-                .iter()
-                .filter_map(|sample| sample.get(index))
-                .collect(),
-        };
-        Report {
-            first_cycle: diagram.first,
-            trigger_cycle: diagram.trigger,
-            operands: diagram.operands.iter().enumerate().map(course).collect(),
-        }
     }
 }

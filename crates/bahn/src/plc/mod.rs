@@ -2,28 +2,17 @@
 //!
 //! - `options`: options and help texts;
 //! - `source`: the program, compile errors as rustc prints them;
-//! - `bench`: program, memory and stand-in for the control together;
-//! - `live`: the program in the control of a machine; `subject`: one of the two;
+//! - `bench`: from options to a program on its bench; `live`: to one in the control of a machine; `subject`: one of the two;
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
+//!
+//! What runs and is told of it is [`bahn_report::plc`].
 
-#[cfg_attr(
-    not(feature = "terminal"),
-    expect(dead_code, reason = "what steps a program serves the screen alone")
-)]
 mod bench;
 mod check;
 mod diagram;
-mod drawing;
-mod failure;
-mod halt;
 mod list;
-#[cfg_attr(
-    not(feature = "terminal"),
-    expect(dead_code, reason = "part of it serves the screen alone")
-)]
 mod live;
 mod options;
-mod record;
 mod retained;
 mod run;
 mod signals;

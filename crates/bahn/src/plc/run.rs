@@ -3,27 +3,17 @@
 use std::path::Path;
 
 use bahn_exchange::Exchange;
-use bahn_host::Retained;
-use bahn_plc::ProcessingTime;
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use bahn_host::{Operand, Retained};
+use bahn_report::junit;
+use bahn_report::plc::{Bench, Record, Report, Scans, Stop, failure, last_cycle, operands};
 
-use super::bench::{self, Bench, Failure};
-use super::failure;
+use super::bench::bench;
 use super::live;
 use super::options::RunOptions;
-use super::record::Record;
 use super::source::Source;
-use super::trace::{Line, Trace};
-use crate::count::count;
-use crate::diagnostics::{self, PRINTED_MAX};
 use crate::interrupt::Interrupt;
-use crate::junit;
 use crate::options::Format;
-use crate::{Outcome, UsageError, console, files};
-use bahn_host::{Content, Operand};
-
-/// So many cycles a script waits for a condition behind the last thing that it did: a minute of 20 ms.
-const CYCLES_IN_VAIN: u64 = 3000;
+use crate::{Outcome, UsageError, console, diagnostics, files};
 
 /// Runs a program and shows what came out.
 pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
@@ -46,61 +36,39 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     let exchange = retained
         .as_ref()
         .map_or_else(Exchange::default, Retained::restore);
-    let bench = Bench::new(program, parameters, &options.bench, exchange)?;
+    let bench = bench(program, parameters, &options.bench, exchange)?;
     let record = options
         .record
         .as_deref()
         .map(|path| Record::create(path, recorded(options, &bench)))
         .transpose()?;
 
-    let last = bench::last_cycle(bench.play.script(), bench.cycle_time());
+    let last = last_cycle(bench.play.script(), bench.cycle_time());
     if let Some(cycles) = options.cycles.filter(|cycles| *cycles < last) {
         diagnostics::print_line(&format!(
             "warning: the script goes on to cycle {last}, the run ends with cycle {cycles}"
         ));
     }
-    let mut scans = Scans {
-        bench,
-        record,
-        retained,
-        report: Report::not_run(None),
-        trace: Trace::default(),
-    };
+    let mut scans = Scans::new(bench, record, retained);
     let interrupt = Interrupt::on_ctrl_c();
-    let mut written = scans.run(options, &interrupt);
-    scans.print_failures();
-    let Scans {
-        bench,
-        mut report,
-        trace,
-        ..
-    } = scans;
-    if let Some(path) = &options.junit {
-        let stopped = report.error.as_ref().map(Stop::to_string);
-        let suite = options.program.file.to_string_lossy();
-        written = written.and(junit::write(
-            path,
-            &suite,
-            &bench.play.expectations(),
-            stopped.as_deref(),
-        ));
+    let is_traced = |cycle| options.trace.is_some_and(|range| range.contains(cycle));
+    let ran = scans.run(options.cycles, &is_traced, &|| interrupt.is_requested());
+    let mut written = ran.map_err(UsageError::from);
+    if let Some(error) = scans.error() {
+        diagnostics::print_fault(&failure(scans.bench.machine.program(), error));
     }
-    report.values = Values(
-        options
-            .show
-            .iter()
-            .map(|operand| (*operand, bench.read(*operand)))
-            .collect(),
-    );
-    report.processing_percent = bench.machine.time().into();
-    let fine = report.error.is_none() && bench.play.failed.is_empty();
+    diagnostics::print_faults(&scans.failures());
+    let fine = scans.error().is_none() && scans.bench.play.failed.is_empty();
+    let expectations = scans.bench.play.expectations();
+    let report = scans.into_report(&options.show, options.trace.is_some());
+    if let Some(path) = &options.junit {
+        let suite = options.program.file.to_string_lossy();
+        let cases = junit::write(path, &suite, &expectations, report.stopped().as_deref());
+        written = written.and(cases.map_err(UsageError::from));
+    }
     match options.format {
-        Format::Json => {
-            report.trace_left_off = options.trace.map(|_| trace.left_off);
-            report.trace = options.trace.map(|_| trace.lines);
-            console::print_json(&report)?;
-        }
-        Format::Text => console::print(&(trace.text() + &report.text()))?,
+        Format::Json => console::print_json(&report)?,
+        Format::Text => console::print(&report.text())?,
     }
     written.map(|()| match fine {
         true if interrupt.is_requested() => Outcome::Interrupted,
@@ -120,173 +88,11 @@ fn refuse_machine(path: &Path) -> Result<(), UsageError> {
     )))
 }
 
-/// The cycles of a run, and what is written meanwhile.
-struct Scans {
-    bench: Bench,
-    record: Option<Record>,
-    retained: Option<Retained>,
-    report: Report,
-    trace: Trace,
-}
-
-impl Scans {
-    /// Runs up to the last cycle, or to the first error.
-    ///
-    /// # Errors
-    /// When a file cannot be written. It loses neither the others nor the report.
-    fn run(&mut self, options: &RunOptions, interrupt: &Interrupt) -> Result<(), UsageError> {
-        let mut written = Ok(());
-        while !self.is_over(options) && !interrupt.is_requested() && written.is_ok() {
-            self.trace.cycle = self.bench.cycle + 1;
-            let traced = options
-                .trace
-                .is_some_and(|range| range.contains(self.trace.cycle));
-            if let Err(error) = self.bench.scan(traced.then_some(&mut self.trace)) {
-                failure::print(self.bench.machine.program(), &error);
-                self.report.error = Some(Stop {
-                    number: error.error.number(),
-                    file: error.file,
-                    line: error.line,
-                });
-                break;
-            }
-            self.report.cycles += 1;
-            written = self
-                .record
-                .as_mut()
-                .map_or(Ok(()), |record| record.cycle(&self.bench));
-            if let Some(retained) = &mut self.retained {
-                let kept = retained.tick(self.bench.exchange.plc());
-                written = written.and(kept.map_err(UsageError::from));
-            }
-        }
-        self.bench.finish();
-        self.report.failed_expectations = self.bench.take_failures();
-        if let Some(retained) = &mut self.retained {
-            let kept = retained.flush(self.bench.exchange.plc());
-            written = written.and(kept.map_err(UsageError::from));
-        }
-        written.and(self.record.take().map_or(Ok(()), Record::finish))
-    }
-
-    /// The last cycle has run: that of `--cycles`, or the last one of the script.
-    fn is_over(&mut self, options: &RunOptions) -> bool {
-        if options.cycles.is_some_and(|cycles| self.bench.cycle >= cycles) {
-            return true;
-        }
-        self.bench.stimulate();
-        match options.cycles {
-            Some(_) => self.bench.has_ended(),
-            None => self.bench.is_over() || self.bench.waits_in_vain(CYCLES_IN_VAIN),
-        }
-    }
-
-    /// Prints the expectations that did not hold, with their lines of the script.
-    fn print_failures(&self) {
-        let failures = &self.report.failed_expectations;
-        for failure in failures.iter().take(PRINTED_MAX) {
-            let title = failure.to_string();
-            let found = format!("found {}", failure.found);
-            let script = self.bench.play.script();
-            let fault = script.failure_of(failure.line, &failure.operand, &title, found);
-            diagnostics::print_fault(&fault);
-        }
-        diagnostics::print_rest(failures.len().saturating_sub(PRINTED_MAX));
-    }
-}
-
 /// The columns of `--record`.
 fn recorded(options: &RunOptions, bench: &Bench) -> Vec<Operand> {
     if options.show.is_empty() {
-        bench::operands(bench.play.script())
+        operands(bench.play.script())
     } else {
         options.show.clone()
-    }
-}
-
-#[derive(Debug, serde::Serialize)]
-struct Report {
-    /// Cycles that ran to their end.
-    cycles: u64,
-    values: Values,
-    processing_percent: Percent,
-    error: Option<Stop>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    failed_expectations: Vec<Failure>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    trace: Option<Vec<Line>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    trace_left_off: Option<u64>,
-}
-
-#[derive(Debug, serde::Serialize)]
-struct Stop {
-    number: u8,
-    file: String,
-    line: u32,
-}
-
-impl std::fmt::Display for Stop {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}:{}: PLC error {}", self.file, self.line, self.number)
-    }
-}
-
-#[derive(Debug, Default, serde::Serialize)]
-struct Percent {
-    current: f64,
-    maximum: f64,
-}
-
-impl From<ProcessingTime> for Percent {
-    fn from(time: ProcessingTime) -> Percent {
-        Percent {
-            current: time.current_percent(),
-            maximum: time.maximum_percent(),
-        }
-    }
-}
-
-/// Operands in the order of `--show`.
-#[derive(Debug, Default)]
-struct Values(Vec<(Operand, Content)>);
-
-impl Serialize for Values {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (operand, content) in &self.0 {
-            map.serialize_entry(&operand.to_string(), content)?;
-        }
-        map.end()
-    }
-}
-
-impl Report {
-    fn not_run(error: Option<Stop>) -> Report {
-        Report {
-            cycles: 0,
-            values: Values::default(),
-            processing_percent: Percent::default(),
-            error,
-            failed_expectations: Vec::new(),
-            trace: None,
-            trace_left_off: None,
-        }
-    }
-
-    fn text(&self) -> String {
-        let mut text: String = self
-            .values
-            .0
-            .iter()
-            .map(|(operand, content)| format!("{operand} = {content}\n"))
-            .collect();
-        text += &format!(
-            "{}, processing time {:.2} %, maximum {:.2} %\n",
-            count(self.cycles, "cycle"),
-            self.processing_percent.current,
-            self.processing_percent.maximum
-        );
-        text
     }
 }

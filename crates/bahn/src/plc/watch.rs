@@ -16,10 +16,11 @@ use bahn_host::Retained;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use super::bench::{self, set_operands};
-use super::halt::Halt;
+use bahn_report::plc::{Halt, Subject, operands as named_by};
+
+use super::bench::set_operands;
 use super::options::WatchOptions;
-use super::subject::Subject;
+use super::subject;
 use crate::{Outcome, UsageError};
 use bahn_host::{Assignment, Content, Operand};
 use breakpoint::Breakpoints;
@@ -40,7 +41,7 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
             .as_ref()
             .map_or_else(Exchange::default, Retained::restore))
     };
-    let open = Subject::open(&options.program, &options.bench, &options.machine, exchange)?;
+    let open = subject::open(&options.program, &options.bench, &options.machine, exchange)?;
     let Some(subject) = open else {
         return Ok(Outcome::ProgramError);
     };
@@ -56,7 +57,7 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
             Assignment::Operand(operand, _) => Some(*operand),
             Assignment::Parameter(_) => None,
         }));
-        for operand in bench::operands(subject.script()) {
+        for operand in named_by(subject.script()) {
             if !operands.contains(&operand) {
                 operands.push(operand);
             }
@@ -71,7 +72,7 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
     if let (Some(retained), Some(bench)) = (&mut watch.retained, watch.subject.bench()) {
         retained.flush(bench.exchange.plc())?;
     }
-    Ok(watch.subject.finish())
+    Ok(subject::finish(&watch.subject))
 }
 
 /// What is said of keys that a running machine does not have.

@@ -1,27 +1,11 @@
 //! `bahn run`: a part program on the simulated machine.
 //!
-//! - `options`: options and help text;
-//! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it; `standstill`: whether it comes on;
-//! - `beside`: the channels beside the first one; `executed`: what was done of the path; `measured`: `deviation`, `threads` and `times`; `listed`: messages and keys;
-//!   `recording`: signals over time;
-//! - `report`: what is said in the end.
+//! - `options`: options and help text; `oscilloscope`: what is asked of the control's oscilloscope.
+//!
+//! What is seen of the run and said in the end is [`bahn_report::run`].
 
-mod beside;
-mod cause;
-mod deviation;
-mod executed;
-mod listed;
-mod measured;
 mod options;
 mod oscilloscope;
-mod recording;
-mod report;
-mod session;
-mod standstill;
-mod table;
-mod threads;
-mod times;
-mod turning;
 
 pub(crate) use options::{EXAMPLES, RunMachineOptions};
 
@@ -34,25 +18,20 @@ use bahn_host::{
     Operator, Play, PowerOn, Script, Source, Stage, is_whole,
 };
 use bahn_panel::Waits;
-use bahn_workpiece::Projection;
+use bahn_report::record::ErrorReport;
+use bahn_report::run::{Ended, Executed, Patience, Recording, Session, Table, Told, usual_signals};
+use bahn_report::test_run::Outputs;
+use bahn_report::{Follower, junit, solid};
+use bahn_workpiece::{Columns, Cutting, Projection};
 
 use crate::cutting::{self, Written};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
-use crate::junit;
 use crate::machine_folder;
 use crate::options::Format;
 use crate::progress::Progress;
-use crate::report::{End, ErrorReport, Place, Record};
-use crate::test_run::{Outputs, print_error};
-use crate::{Outcome, UsageError, console, files, report_text, settings, solid};
-use bahn_workpiece::{Columns, Cutting};
-use executed::Executed;
-use oscilloscope::Scoped;
-use recording::Recording;
-use report::{ChannelReport, ProgramReport, RunReport};
-use session::{Ended, Patience, Session};
-use table::Table;
+use crate::test_run::print_error;
+use crate::{Outcome, UsageError, console, files, settings};
 
 /// Runs a program on a machine and reports.
 pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
@@ -107,8 +86,9 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         )
     });
     let recording = recording(options, &machine, host.control())?;
-    let oscilloscope = Scoped::of(&options.oscilloscope, host.control())?;
-    let executed = Executed::new(0, cutting, Outputs::create(&options.output)?);
+    let oscilloscope = oscilloscope::scoped(&options.oscilloscope, host.control())?;
+    let outputs = Outputs::create(&options.output.path, options.output.print.as_deref())?;
+    let executed = Executed::new(0, cutting, outputs);
     let patience = Patience {
         time_us: (options.run.max_time * 1e6) as u64,
         wait_us: (options.run.max_wait * 1e6) as u64,
@@ -126,9 +106,10 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     session.table = table;
     session.waits = Some(Waits::new(&machine));
     let blocks = programs.main().map_or(0, |main| main.block_count());
-    let mut progress = Progress::new(blocks);
+    let mut progress = Progress::new(&interrupt);
+    progress.begin(blocks);
     // A file that cannot be written loses no report.
-    let ended = session.run(&interrupt, &mut progress, &machine);
+    let ended = session.run(&mut progress, &machine);
     let ended = ended.unwrap_or_else(|error| Ended::Failed(error.to_string()));
     drop(progress);
     let switched_off = session.host.store();
@@ -320,12 +301,12 @@ fn recording(
         }
     }
     let signals = if wanted.signals.is_empty() {
-        recording::usual_signals(control)
+        usual_signals(control)
     } else {
         wanted.signals.clone()
     };
     let every_us = wanted.every.map_or(0, |ms| u64::from(ms) * 1000);
-    Recording::create(path, signals, every_us).map(Some)
+    Ok(Some(Recording::create(path, signals, every_us)?))
 }
 
 /// Writes all files and the report.
@@ -338,38 +319,22 @@ fn finish(
     interrupt: &Interrupt,
 ) -> Result<Outcome, UsageError> {
     let model = machine.parameters.model();
-    let mut written = session.finish_files();
+    let mut written = session
+        .finish_files(&mut Progress::new(interrupt))
+        .map_err(UsageError::from);
     diagnostics::print_faults(&session.play.failures());
-    let executed = &mut session.executed;
-    let cutting = executed.cutting.take();
-    let part = cutting.and_then(|cutting| cutting.finish(&mut executed.record));
+    let part = session.take_part();
     let removed_mm3 = part.as_ref().map(|part| part.removed_mm3());
-    let failed_in = failed_channel(&ended);
-    let (end, failure) = end_of_first(&session, &ended);
-    let record = &mut session.executed.record;
-    let mut record = std::mem::replace(record, Record::new(bahn_path::Position::UNKNOWN));
-    record.machining_time_s = session.measured.program_us as f64 * 1e-6;
-    let run = session.host.control().reader();
-    let run = run.filter(|_| programs.main().is_some());
-    let program = match run {
-        Some(run) => ProgramReport::Ran(Box::new(record.report(run, end, removed_mm3, model))),
-        None => ProgramReport::Bare {
-            completed: ended == Ended::Completed,
-            error: failure.as_deref().cloned(),
-        },
-    };
-    if let Some(error) = &failure {
-        say_failure(error, failed_in, &session, programs);
-    }
-    let mut report = RunReport::new(&session, program, &machine.folder.name, model);
-    for channel in &mut session.beside {
-        let error = failure
-            .as_deref()
-            .filter(|_| channel.channel == failed_in)
-            .cloned();
-        report
-            .channels
-            .extend(ChannelReport::of(channel, &session.host, error, model));
+    let has_program = programs.main().is_some();
+    let told = Told::of(
+        &mut session,
+        &ended,
+        &machine.folder.name,
+        has_program,
+        removed_mm3,
+    );
+    if let Some(error) = &told.failure {
+        say_failure(error, told.failed_in, &session, programs);
     }
     let outcome = match &ended {
         Ended::Completed if session.play.failed.is_empty() => Outcome::Fine,
@@ -384,16 +349,11 @@ fn finish(
         }
         _ => Outcome::ProgramError,
     };
-    if let Ended::Hangs(what, _) = &ended {
-        report.waits_for = Some(what.clone());
-    }
-    let result = failure
-        .as_ref()
-        .map_or("completed", |error| error.message.as_str());
     if let Some(path) = &options.run.junit {
         let suite = programs.main_name().unwrap_or("no program");
-        let stopped = failure.as_ref().map(|error| error.message.as_str());
-        written = written.and(junit::write(path, suite, &session.play.expectations(), stopped));
+        let stopped = told.failure.as_ref().map(|error| error.message.as_str());
+        let cases = junit::write(path, suite, &session.play.expectations(), stopped);
+        written = written.and(cases.map_err(UsageError::from));
     }
     let projection = if machine.parameters.graphics().third_angle {
         Projection::ThirdAngle
@@ -404,107 +364,12 @@ fn finish(
     let stop = interrupt.after_run();
     let drawn = cutting::write(part.as_ref(), &options.output, &title, projection, &stop);
     let all = matches!(drawn, Ok(Written::All)) && written.is_ok();
-    print_report(&report, result, model, options, all)?;
+    print_report(&told, model, options, all)?;
     written?;
     Ok(match drawn? {
         Written::All => outcome,
         Written::Interrupted => Outcome::Interrupted,
     })
-}
-
-/// How the run of the first channel ended, and what broke the run of all off.
-fn end_of_first(session: &Session, ended: &Ended) -> (End, Option<Box<ErrorReport>>) {
-    let failure = match ended {
-        Ended::Completed | Ended::Interrupted => None,
-        Ended::Stopped
-        | Ended::TooLong
-        | Ended::Broken(_)
-        | Ended::Hangs(..)
-        | Ended::NotStored(_)
-        | Ended::Failed(_)
-        | Ended::Restart(_) => Some(Box::new(error(session, ended))),
-    };
-    // What another channel ended is no fault of the first one.
-    let end = match &failure {
-        Some(failure) if failed_channel(ended) == 0 => End::Failed(failure.clone()),
-        Some(_) if !session.host.control().has_ended() => End::Interrupted,
-        None if *ended == Ended::Interrupted => End::Interrupted,
-        Some(_) | None => End::Completed,
-    };
-    (end, failure)
-}
-
-/// The channel, from 0, whose message broke the run off.
-fn failed_channel(ended: &Ended) -> usize {
-    match ended {
-        Ended::Broken(Some(shown)) | Ended::Hangs(_, Some(shown)) => shown.channel.unwrap_or(0),
-        _ => 0,
-    }
-}
-
-/// What broke the run off.
-fn error(session: &Session, ended: &Ended) -> ErrorReport {
-    use bahn_control::Message;
-    let channel = session.host.control().channel(failed_channel(ended));
-    let run = channel.and_then(|channel| channel.reader());
-    let mut at = session.block().unwrap_or_default();
-    let shown = match ended {
-        Ended::Broken(shown) | Ended::Hangs(_, shown) => shown.as_deref(),
-        _ => None,
-    };
-    if let Some(block) = shown.and_then(|shown| shown.block) {
-        at = block;
-    }
-    let (message, detail) = match ended {
-        Ended::Broken(Some(shown)) => {
-            let text = session.host.control().shown_text(shown);
-            match &shown.message {
-                Message::Program(error) => (text, error.detail.clone()),
-                other => (text, other.place().unwrap_or_default()),
-            }
-        }
-        Ended::Stopped => (
-            "the script ended the run before it was complete".to_owned(),
-            String::new(),
-        ),
-        Ended::Hangs(what, Some(shown)) => (session.host.control().shown_text(shown), what.clone()),
-        Ended::TooLong => (
-            "the time allowed is over".to_owned(),
-            "--max-time allows more".to_owned(),
-        ),
-        Ended::Hangs(what, None) => ("nothing moves any more".to_owned(), what.clone()),
-        Ended::Restart(list) => (
-            "the control restarts with other machine parameters".to_owned(),
-            format!("module 9033 has selected {list}; the next run begins with it"),
-        ),
-        Ended::NotStored(what) => (
-            "what survives power-off cannot be stored".to_owned(),
-            what.clone(),
-        ),
-        Ended::Failed(what) => ("the run was broken off".to_owned(), what.clone()),
-        _ => ("the run was broken off".to_owned(), String::new()),
-    };
-    let place = run.map(|run| Place::of(run, at));
-    let remedy = shown.and_then(|shown| match &shown.message {
-        Message::Program(error) => match &error.message {
-            bahn_interpreter::Message::Control(id) => Some(id.remedy()),
-            bahn_interpreter::Message::Numbered(_) => None,
-        },
-        Message::Plain(id) | Message::Axis { id, .. } => Some(id.remedy()),
-        _ => None,
-    });
-    ErrorReport {
-        message,
-        program: place
-            .as_ref()
-            .map(|place| place.program.clone())
-            .unwrap_or_default(),
-        block: place.as_ref().map_or(at.block, |place| place.block),
-        line: place.map_or(0, |place| place.line),
-        detail,
-        at,
-        remedy,
-    }
 }
 
 /// Says it with the block where that is known.
@@ -523,16 +388,15 @@ fn say_failure(error: &ErrorReport, channel: usize, session: &Session, programs:
 }
 
 fn print_report(
-    report: &RunReport,
-    result: &str,
+    told: &Told,
     model: bahn_parameters::ControlModel,
     options: &RunMachineOptions,
     drawn: bool,
 ) -> Result<(), UsageError> {
     if options.format == Format::Json {
-        return console::print_json(report);
+        return console::print_json(&told.report);
     }
-    let mut written = report_text::written(&options.output, drawn);
+    let mut written = options.output.names(drawn);
     let scope = &options.oscilloscope.oscilloscope;
     let files = options
         .recording
@@ -541,5 +405,5 @@ fn print_report(
         .chain(scope)
         .chain(&options.run.log);
     written.extend(files.map(|path| path.display().to_string()));
-    console::print(&report.text(model, result, &written))
+    console::print(&told.report.text(model, told.result(), &written))
 }

@@ -1,21 +1,18 @@
 //! The oscilloscope of the control beside a run [000:18638-18794].
 
-use std::io::Write as _;
 use std::path::PathBuf;
 
-use bahn_control::{Control, OscilloscopeKeys, ServoSampler, ServoSignal};
-use bahn_host::oscilloscope::{
-    CHANNELS, Curve, Oscilloscope, OscilloscopeRecord, OscilloscopeSetup, Trigger,
-};
+use bahn_control::{Control, ServoSignal};
+use bahn_host::oscilloscope::{CHANNELS, Curve, OscilloscopeSetup, Trigger};
+use bahn_report::run::Scoped;
 use clap::{Args, ValueHint};
 
 use crate::UsageError;
-use crate::files::{self, NewFile};
 
 /// What the oscilloscope records.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Oscilloscope")]
-pub(crate) struct OscilloscopeOptions {
+pub struct OscilloscopeOptions {
     /// Write the memory of the control's oscilloscope, 4096 samples of up to four channels in servo steps; START is the
     /// start of the program, without one the end of the reference run; a script that has entered `code 688379` says
     /// `oscilloscope start` and `oscilloscope stop`. `bahn scope` draws it.
@@ -47,100 +44,57 @@ pub(crate) struct OscilloscopeOptions {
     pub pre_trigger: u8,
 }
 
-/// An oscilloscope and the file of its memory.
-pub(super) struct Scoped {
-    path: PathBuf,
-    file: NewFile,
-    scope: Oscilloscope,
-    /// How often START was pressed.
-    starts: u32,
-}
-
-impl Scoped {
-    /// The oscilloscope that is asked for.
-    pub fn of(options: &OscilloscopeOptions, control: &Control) -> Result<Option<Scoped>, UsageError> {
-        let Some(path) = &options.oscilloscope else {
-            return Ok(None);
-        };
-        if !control.model().has_oscilloscope() {
+/// The oscilloscope that is asked for.
+pub(super) fn scoped(options: &OscilloscopeOptions, control: &Control) -> Result<Option<Scoped>, UsageError> {
+    let Some(path) = &options.oscilloscope else {
+        return Ok(None);
+    };
+    if !control.model().has_oscilloscope() {
+        return Err(UsageError::new(format!(
+            "--oscilloscope: the {} has none; tnc407, tnc415b and tnc425 have",
+            control.model()
+        )));
+    }
+    let step_us = control.model().timing().step_us();
+    let sample_us = options
+        .sample_time
+        .map_or(step_us, |ms| (ms * 1000.0).round().clamp(0.0, 1e9) as u32);
+    if !sample_us.is_multiple_of(step_us) {
+        return Err(UsageError::new(format!(
+            "--sample-time: a servo step of the {} is {} ms; the time is a multiple of it",
+            control.model(),
+            f64::from(step_us) * 1e-3
+        )));
+    }
+    let channels = match options.channels.is_empty() {
+        true => usual(control),
+        false => options.channels.clone(),
+    };
+    let view = control.servo_view();
+    for curve in &channels {
+        let known: Vec<char> = control.axis_letters().collect();
+        if !known.contains(&curve.axis) {
+            let known: Vec<String> = known.iter().map(char::to_string).collect();
             return Err(UsageError::new(format!(
-                "--oscilloscope: the {} has none; tnc407, tnc415b and tnc425 have",
-                control.model()
+                "--channels {curve}: the machine has no axis {}; there are {}",
+                curve.axis,
+                known.join(", ")
             )));
         }
-        let step_us = control.model().timing().step_us();
-        let sample_us = options
-            .sample_time
-            .map_or(step_us, |ms| (ms * 1000.0).round().clamp(0.0, 1e9) as u32);
-        if !sample_us.is_multiple_of(step_us) {
+        if curve.signal.is_digital() && !view.is_digital(curve.axis) {
             return Err(UsageError::new(format!(
-                "--sample-time: a servo step of the {} is {} ms; the time is a multiple of it",
-                control.model(),
-                f64::from(step_us) * 1e-3
+                "--channels {curve}: {} has no digital speed controller (MP1900)",
+                curve.axis
             )));
         }
-        let channels = match options.channels.is_empty() {
-            true => usual(control),
-            false => options.channels.clone(),
-        };
-        let view = control.servo_view();
-        for curve in &channels {
-            let known: Vec<char> = control.axis_letters().collect();
-            if !known.contains(&curve.axis) {
-                let known: Vec<String> = known.iter().map(char::to_string).collect();
-                return Err(UsageError::new(format!(
-                    "--channels {curve}: the machine has no axis {}; there are {}",
-                    curve.axis,
-                    known.join(", ")
-                )));
-            }
-            if curve.signal.is_digital() && !view.is_digital(curve.axis) {
-                return Err(UsageError::new(format!(
-                    "--channels {curve}: {} has no digital speed controller (MP1900)",
-                    curve.axis
-                )));
-            }
-        }
-        let setup = OscilloscopeSetup {
-            channels,
-            sample_us,
-            trigger: options.trigger,
-            pre_trigger_percent: options.pre_trigger,
-        };
-        let scope = Oscilloscope::new(setup).map_err(UsageError::new)?;
-        Ok(Some(Scoped {
-            file: NewFile::create(path)?,
-            path: path.clone(),
-            scope,
-            starts: 0,
-        }))
     }
-
-    /// Who looks at the servo steps, from START on: that of the operator once the code number was entered, else that of
-    /// the program.
-    pub fn sampler(&mut self, started: bool, keys: OscilloscopeKeys) -> &mut dyn ServoSampler {
-        if !keys.open {
-            if started {
-                self.scope.start();
-            }
-        } else if !keys.records {
-            self.scope.stop();
-        } else if keys.starts != self.starts {
-            self.starts = keys.starts;
-            self.scope.start_anew();
-        }
-        &mut self.scope
-    }
-
-    /// Writes the memory.
-    pub fn finish(mut self) -> Result<(), UsageError> {
-        let record = self.scope.record();
-        self.file
-            .write_all(record.csv().as_bytes())
-            .map_err(|error| files::cannot("write", &self.path, &error))?;
-        crate::diagnostics::print_line(&said(&record));
-        Ok(self.file.finish()?)
-    }
+    let setup = OscilloscopeSetup {
+        channels,
+        sample_us,
+        trigger: options.trigger,
+        pre_trigger_percent: options.pre_trigger,
+    };
+    Scoped::new(path, setup).map(Some).map_err(UsageError::from)
 }
 
 /// Feeds, trailing error and voltage of the first axis.
@@ -153,16 +107,4 @@ fn usual(control: &Control) -> Vec<Curve> {
     ];
     let axis = control.axis_letters().next().unwrap_or('X');
     signals.map(|signal| Curve { axis, signal }).into()
-}
-
-/// What the memory holds.
-fn said(record: &OscilloscopeRecord) -> String {
-    let count = record.samples.len();
-    let sample_ms = f64::from(record.sample_us) * 1e-3;
-    let seconds = count as f64 * sample_ms * 1e-3;
-    let trigger = match record.trigger {
-        Some(sample) => format!("trigger at sample {sample}"),
-        None => "no trigger".to_owned(),
-    };
-    format!("oscilloscope: {count} samples of {sample_ms} ms ({seconds:.4} s), {trigger}")
 }

@@ -1,11 +1,11 @@
 //! Options and help texts of `bahn scope`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use bahn_control::split_channel;
+use bahn_report::scope::Picture;
 use clap::{Args, ValueHint};
 
-use crate::files;
 use crate::options::{Format, image_size, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -110,26 +110,6 @@ fn positive(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "a length greater than 0, mm".to_owned())
 }
 
-/// A drawing by the end of its name.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Picture {
-    Svg(PathBuf),
-    Png(PathBuf),
-}
-
-impl Picture {
-    /// Where it is written.
-    pub fn path(&self) -> &Path {
-        let (Picture::Svg(path) | Picture::Png(path)) = self;
-        path
-    }
-}
-
 pub(crate) fn picture(text: &str) -> Result<Picture, String> {
-    let path = PathBuf::from(text);
-    match files::extension(&path).as_str() {
-        "svg" => Ok(Picture::Svg(path)),
-        "png" => Ok(Picture::Png(path)),
-        _ => Err("the name must end in .svg or .png".to_owned()),
-    }
+    Picture::of(PathBuf::from(text)).ok_or_else(|| "the name must end in .svg or .png".to_owned())
 }

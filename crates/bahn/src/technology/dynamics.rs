@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use bahn_motion::{Limits, SERVO_WINDOW_S};
+use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_path::PerAxis;
+use bahn_report::test_run;
 
 use crate::{UsageError, files, settings};
 
@@ -36,18 +36,7 @@ pub(super) fn limits(list: Option<&Path>) -> Result<Limits, UsageError> {
     if let Some((path, bytes)) = list.zip(bytes) {
         settings::read_lines(&mut parameters, path, &bytes)?;
     }
-    Ok(Limits {
-        max_feed_mm_min: PerAxis::from_fn(|axis| parameters.rapid_traverse_mm_min(axis)),
-        acceleration_m_s2: PerAxis::from_fn(|axis| parameters.acceleration_m_s2(axis)),
-        radial_acceleration_m_s2: parameters.radial_acceleration_m_s2(),
-        corner_angle_deg: parameters.corner_angle_deg(),
-        servo_lag: !parameters.feed_precontrol(),
-        cycle_s: f64::from(model.limits().contour_cycle_us) * 1e-6,
-        servo_window_s: SERVO_WINDOW_S,
-        spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
-        feed_override_percent: 100.0,
-        rapid_override_percent: 100.0,
-    })
+    Ok(test_run::limits(&parameters, 100.0))
 }
 
 #[cfg(test)]

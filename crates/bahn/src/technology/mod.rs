@@ -4,17 +4,14 @@
 //! - `dynamics`: from a list of machine parameters to the limits of motion;
 //! - `answering`: who answers the functions; `machine`: the PLC of a machine folder that does;
 //! - `faults`: what is wrong in the files, with its place;
-//! - `programs`: programs and subroutines from files;
-//! - `text`: the report for people; `picture`: velocity, outputs and waits as a drawing.
+//! - `programs`: programs and subroutines from files.
 
 mod answering;
 mod dynamics;
 mod faults;
 mod machine;
 mod options;
-mod picture;
 mod programs;
-mod text;
 
 pub(crate) use options::{EXAMPLES, TechnologyOptions};
 
@@ -23,11 +20,13 @@ use std::path::{Path, PathBuf};
 use bahn_motion::Limits;
 use bahn_parameters::ControlModel;
 use bahn_path::Position;
+use bahn_report::scope::write;
+use bahn_report::technology::{sheet, text};
 use bahn_technology::{Bounds, ChannelList, Coordinates, Fault, ListFault, NcPrograms, Report, Run};
 
 use crate::diagnostics::{self, FileFault};
 use crate::options::Format;
-use crate::{Outcome, UsageError, console, files, scope, settings};
+use crate::{Outcome, UsageError, console, files, settings};
 use answering::Answering;
 
 /// Runs programs in turn on one channel and reports what was output and waited for.
@@ -80,10 +79,10 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
     }
     if let Some(picture) = &options.image {
         let title = programs::title(&options.programs);
-        scope::write(&picture::sheet(&report, &title), picture)?;
+        write(&sheet(&report, &title), picture)?;
     }
     match options.format {
-        Format::Text => console::print(&text::text(&report))?,
+        Format::Text => console::print(&text(&report))?,
         Format::Json => console::print_json(&WithFaults {
             report: &report,
             diagnostics: faults::items(&faults),

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use bahn_report::scope::Picture;
 use clap::{Args, ValueHint};
 
 use super::machine;
 use crate::options::{Format, time_limit};
-use crate::scope::{Picture, picture};
+use crate::scope::picture;
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:

@@ -1,37 +1,33 @@
 //! `bahn test`: one program with its report, or a shelf of them as a table.
 //!
-//! - `options`: options and help; `bench`: one program run to its end, silently; `outputs`: files of the path;
-//!   `part_page`: the page for a browser; `survey`: what a table says beyond the report;
+//! - `options`: options and help; `bench`: from them to what programs run on;
 //! - here: what is said of a single program. The table of many is [`crate::shelf`].
 
 mod bench;
-mod digitizing;
 mod options;
-mod outputs;
-mod part_page;
-mod survey;
 
-use bahn_reader::Reader;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use bahn_reader::Reader;
+use bahn_report::record::{End, ErrorReport, Report};
+use bahn_report::test_run::{Bench, Company, Outputs, Tested, write_page};
+use bahn_report::text;
 use bahn_viewer::Recording;
 use bahn_workpiece::{Columns, Projection};
 
-pub(crate) use bench::{Bench, Company, Tested, stop_function};
-pub(crate) use options::{EXAMPLES, ReportFile, TestOptions};
-pub(crate) use outputs::Outputs;
-pub(crate) use survey::Survey;
+pub(crate) use bench::bench;
+pub(crate) use options::{EXAMPLES, TestOptions};
 
 use crate::cutting::{self, Written};
 use crate::diagnostics::{self, FileFault, Marked, Severity};
-use crate::interrupt::{Interrupt, Stop};
+use crate::interrupt::Interrupt;
 use crate::options::Format;
-use crate::report::{End, ErrorReport, Report};
+use crate::progress::Progress;
 use crate::settings::{self, Equipment};
-use crate::{Outcome, UsageError, console, files, report_text};
+use crate::{Outcome, UsageError, console, files};
 
 /// What tests a shelf of programs.
 type Shelf = fn(&TestOptions, Equipment) -> Result<Outcome, UsageError>;
@@ -52,15 +48,15 @@ pub(crate) fn command(mut options: TestOptions, shelf: Shelf) -> Result<Outcome,
 }
 
 fn single(options: &TestOptions, equipment: Equipment, file: &Path) -> Result<Outcome, UsageError> {
-    let bench = Bench::new(options, equipment, Columns::BySize)?;
+    let bench = bench(options, equipment, Columns::BySize)?;
     let interrupt = Interrupt::on_ctrl_c();
-    let stop = Stop::by(&interrupt);
+    let stop = interrupt.stop();
     if let Some(limit) = options.run.time_limit {
         stop.after(Duration::from_secs_f64(limit));
     }
     let company = Company {
-        outputs: Outputs::create(&options.output)?,
-        progress: true,
+        outputs: Outputs::create(&options.output.path, options.output.print.as_deref())?,
+        follower: Some(Box::new(Progress::new(&interrupt))),
         survey: None,
         recording: options.html.as_ref().map(|_| Recording::default()),
         stop: stop.clone(),
@@ -69,7 +65,7 @@ fn single(options: &TestOptions, equipment: Equipment, file: &Path) -> Result<Ou
     stop.run_is_over();
     let unwritten = tested.unwritten.take();
     let outcome = say(&mut tested, &bench, options, file, &interrupt.after_run())?;
-    unwritten.map_or(Ok(outcome), Err)
+    unwritten.map_or(Ok(outcome), |error| Err(error.into()))
 }
 
 /// Prints the report and writes picture and mesh.
@@ -97,7 +93,7 @@ fn say(
         stop,
     );
     if let (Some(path), Some(recording)) = (&options.html, tested.recording.take()) {
-        part_page::write(path, recording, tested, options.model)?;
+        write_page(path, recording, tested, options.model)?;
     }
     let report = &tested.report;
     print_report(report, options, matches!(drawn, Ok(Written::All)))?;
@@ -150,9 +146,9 @@ pub(crate) fn print_error(error: &ErrorReport, run: &dyn Reader, main: &Path) {
 fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(), UsageError> {
     match options.format {
         Format::Text => {
-            let mut written = report_text::written(&options.output, drawn);
+            let mut written = options.output.names(drawn);
             written.extend(options.html.iter().map(|path| path.display().to_string()));
-            console::print(&report_text::render(report, options.model, &written))
+            console::print(&text::render(report, options.model, &written))
         }
         Format::Json => console::print_json(report),
     }

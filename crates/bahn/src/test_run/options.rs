@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use bahn_parameters::ControlModel;
 use clap::{Args, ValueHint};
 
+use bahn_report::shelf::ReportFile;
+use bahn_report::test_run::PathFile;
+
 use crate::files;
-use crate::options::{Format, MachineOptions, OutputOptions, PathFile, RunOptions, model_parser, positive};
+use crate::options::{Format, MachineOptions, OutputOptions, RunOptions, model_parser, positive};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -127,22 +130,6 @@ pub(crate) struct TableOptions {
     pub against: Option<PathBuf>,
 }
 
-/// A file for the table.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum ReportFile {
-    Csv(PathBuf),
-    Json(PathBuf),
-    Html(PathBuf),
-}
-
-impl ReportFile {
-    pub fn path(&self) -> &Path {
-        match self {
-            ReportFile::Csv(path) | ReportFile::Json(path) | ReportFile::Html(path) => path,
-        }
-    }
-}
-
 impl TestOptions {
     /// The program, when it is a single one that gets a report.
     pub fn single(&self) -> Option<&Path> {
@@ -185,6 +172,17 @@ impl OutputOptions {
         let mesh = self.mesh.iter().map(|path| ("--mesh", path.as_path()));
         let print = self.print.iter().map(|path| ("--print", path.as_path()));
         paths.chain(image).chain(mesh).chain(print)
+    }
+
+    /// The names of the files that are written; picture and mesh when the `part` was drawn.
+    pub fn names(&self, part: bool) -> Vec<String> {
+        let paths = self.path.iter().map(|file| match file {
+            PathFile::Csv(path) | PathFile::Svg(path) => path,
+        });
+        let paths = paths.chain(&self.print);
+        let of_the_part = self.image.iter().chain(&self.mesh).filter(|_| part);
+        let all = paths.chain(of_the_part);
+        all.map(|path| path.display().to_string()).collect()
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
 use bahn_host::HostError;
-use bahn_host::torture::{Campaign, Plan, Rule, Trial, Violation, Worker};
+use bahn_trials::torture::{Campaign, Plan, Rule, Trial, Violation, Worker};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::UsageError;

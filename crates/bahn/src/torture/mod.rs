@@ -1,4 +1,4 @@
-//! `bahn torture`: the fault campaign. What it does to a machine and what it holds it to is in [`bahn_host::torture`].
+//! `bahn torture`: the fault campaign. What it does to a machine and what it holds it to is in [`bahn_trials::torture`].
 
 mod crew;
 mod options;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use bahn_host::LoadedMachine;
-use bahn_host::torture::{Campaign, Happening, Rule};
+use bahn_trials::torture::{Campaign, Happening, Rule};
 use serde::Serialize;
 
 use crate::interrupt::Interrupt;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 
-use bahn_host::tuning::Change;
 use bahn_parameters::{Definition, ListText, ParameterList};
+use bahn_trials::tuning::Change;
 use serde::Serialize;
 
 use crate::files::NewFile;

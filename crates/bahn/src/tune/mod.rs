@@ -2,19 +2,19 @@
 
 mod changes;
 mod options;
-mod picture;
 mod spindle;
 
 use std::fmt::Write as _;
 
-use bahn_host::tuning::{AxisTest, Circle, Task, Tuned, tune};
+use bahn_trials::tuning::{AxisTest, Circle, Task, Tuned, tune};
 
 use serde::Serialize;
 
-use crate::files;
 use crate::options::Format;
-use crate::report::tidy;
 use crate::{Outcome, UsageError, console, diagnostics, machine_folder, settings};
+use bahn_report::record::tidy;
+use bahn_report::scope::{self, Picture};
+use bahn_report::tune::sheet;
 
 pub(crate) use options::TuneOptions;
 
@@ -99,11 +99,10 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
     if options.machining_feed.is_some_and(|feed| !positive(feed)) {
         return Err(UsageError::new("--machining-feed is greater than 0"));
     }
-    if let Some(path) = &options.picture
-        && !matches!(files::extension(path).as_str(), "png" | "svg")
-    {
-        return Err(UsageError::new("--picture: the name must end in .svg or .png"));
-    }
+    let picture = options.picture.clone().map(|path| {
+        Picture::of(path).ok_or_else(|| UsageError::new("--picture: the name must end in .svg or .png"))
+    });
+    let picture = picture.transpose()?;
     let machine = match machine_folder::load(&options.folder)? {
         Ok(machine) => machine,
         Err(faults) => {
@@ -136,8 +135,8 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
     if options.write {
         write(&machine, &tuned.changes, &options.mp)?;
     }
-    if let Some(path) = &options.picture {
-        picture::write(path, &tuned, circle)?;
+    if let Some(picture) = &picture {
+        scope::write(&sheet(&tuned, circle), picture)?;
     }
     let report = report(&tuned, circle, &list, options.write);
     match options.format {

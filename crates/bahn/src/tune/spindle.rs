@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 
 use bahn_host::LoadedMachine;
-use bahn_host::tuning::{ThreadTest, TunedSpindle, tune_spindle};
 use bahn_parameters::ParameterList;
+use bahn_trials::tuning::{ThreadTest, TunedSpindle, tune_spindle};
 use serde::Serialize;
 
 use super::{ChangeRow, TuneOptions, change_rows, change_text, write};
 use crate::options::Format;
-use crate::report::tidy;
 use crate::{Outcome, UsageError, console, diagnostics};
+use bahn_report::record::tidy;
 
 #[derive(Serialize)]
 struct Report {

@@ -18,7 +18,7 @@ mod tool_files;
 pub use channel::LoadedChannel;
 pub use load::{LoadedMachine, decode};
 pub use programs::FolderPrograms;
-pub(crate) use remembered::{read as read_remembered, write as write_remembered};
+pub use remembered::{read as read_remembered, write as write_remembered};
 pub use state::{Found, FoundMechanics, State};
 
 use crate::columns::TableFault;

@@ -50,7 +50,7 @@ struct Form {
 }
 
 /// What the control remembers as a file, with its end mark.
-pub(crate) fn write(remembered: &Remembered) -> String {
+pub fn write(remembered: &Remembered) -> String {
     with_end(text(remembered))
 }
 
@@ -64,7 +64,7 @@ pub(super) fn with_end(text: String) -> String {
 ///
 /// # Errors
 /// What of it is damaged.
-pub(crate) fn read(file: &[u8]) -> Result<Remembered, String> {
+pub fn read(file: &[u8]) -> Result<Remembered, String> {
     content_of(whole(file)?)
 }
 

@@ -1,7 +1,8 @@
 //! `bahn link dnc`: blockwise transfer with execution, as the control and as its peripheral.
 //!
 //! - `options`: options and help texts; `port`: the port as it is written, opened;
-//! - `run`: a machine executes a program while it is transferred; `session` is its loop, `report` what is said in the end;
+//! - `run`: a machine executes a program while it is transferred; its loop is [`bahn_ports::dnc`], `report` what is said in the
+//!   end;
 //! - `send`: a folder of programs for a control that does.
 
 mod options;
@@ -9,7 +10,6 @@ mod port;
 mod report;
 mod run;
 mod send;
-mod session;
 
 pub(crate) use options::DncOptions;
 

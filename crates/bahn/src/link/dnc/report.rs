@@ -38,7 +38,7 @@ impl DncReport {
             self.blocks,
             self.executed,
             position.join(" "),
-            crate::report_text::clock(self.machining_time_s)
+            bahn_report::text::clock(self.machining_time_s)
         )
     }
 }

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use bahn_control::Mode;
 use bahn_host::{Attendance, Clock, FolderPrograms, Host, Job, LoadedMachine, Operator, PowerOn};
 use bahn_link::dnc::ProtocolLine;
+use bahn_ports::dnc::{Ended, Session, Wishes};
 
 use super::options::DncRunOptions;
 use super::port;
 use super::report::DncReport;
-use super::session::{Ended, Session, Wishes};
 use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics, machine_folder, settings};
@@ -48,7 +48,7 @@ pub(super) fn command(options: &DncRunOptions) -> Result<Outcome, UsageError> {
     if options.realtime {
         session.host.set_clock(Clock::Wall(1.0));
     }
-    let ended = session.run(&interrupt)?;
+    let ended = session.run(&|| interrupt.is_requested())?;
     let stored = session.host.store();
     print(&report(&session, &ended, options), options)?;
     stored?;

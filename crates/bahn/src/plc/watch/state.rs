@@ -2,8 +2,8 @@
 
 use bahn_host::{Operand, Retained};
 use bahn_plc::{TraceStep, Tracer};
+use bahn_report::plc::Subject;
 
-use super::super::subject::Subject;
 use super::breakpoint::Breakpoints;
 use super::entry::Entry;
 use super::trend::Trend;

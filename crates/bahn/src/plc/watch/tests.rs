@@ -6,7 +6,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::*;
-use crate::plc::bench::Bench;
+use crate::plc::bench::bench;
 use crate::plc::options::{BenchOptions, MachineOptions, ProgramOptions};
 
 fn watch(program: &str, operands: &str) -> Watch {
@@ -18,7 +18,7 @@ fn watch(program: &str, operands: &str) -> Watch {
         set: Vec::new(),
         script: None,
     };
-    let bench = Bench::new(
+    let bench = bench(
         program.into(),
         ParameterList::reference(ControlModel::Tnc415b),
         &options,
@@ -209,7 +209,7 @@ fn a_running_machine_is_watched() {
     let machine = MachineOptions {
         part: vec!["CIRCLE.H".into()],
     };
-    let subject = Subject::open(&program, &bench, &machine, || Ok(Exchange::default())).unwrap();
+    let subject = subject::open(&program, &bench, &machine, || Ok(Exchange::default())).unwrap();
     let operands = ["M900", "I3", "M2451"].map(|name| name.parse().unwrap());
     let mut watch = Watch::new(subject.unwrap(), operands.to_vec(), None);
     press(&mut watch, "c");

@@ -1,0 +1,33 @@
+//! A machine that is on at its data interfaces: what [`bahn_link`] carries goes to the machine, and what the machine has to
+//! say goes over the line.
+//!
+//! The face of this room:
+//! - [`open`]: ports as they are written, opened and set up as machine parameters say;
+//! - [`serial_ports`]: RS-232-C and RS-422 of a machine that answers; [`PlcLines`]: its PLC at them;
+//! - [`MachineDevice`]: a machine that is on as a host with LSV/2 sees it;
+//! - [`dnc`]: a machine that executes a program while it is transferred; [`Trace`]: what passes over a line.
+//!
+//! ```
+//! use bahn_link::Line;
+//!
+//! let spec = bahn_ports::open::spec("--port", "tcp:127.0.0.1:19000").unwrap();
+//! assert!(matches!(spec.line, Line::Listen(_)));
+//! assert!(bahn_ports::open::spec("--port", "somewhere").is_err());
+//! ```
+//!
+//! Nothing here prints: lines for people go to a [`Tell`].
+
+pub mod dnc;
+mod error;
+mod lsv2_device;
+mod lsv2_log;
+mod lsv2_screen;
+pub mod open;
+mod plc_lines;
+pub mod serial_ports;
+mod trace;
+
+pub use error::{PortError, Tell};
+pub use lsv2_device::MachineDevice;
+pub use plc_lines::{PlcLines, PlcPort};
+pub use trace::Trace;

@@ -1,0 +1,175 @@
+//! The PLC of a running machine at the ports: its orders go to them, what comes over them goes to it; what its programs
+//! print goes where it is wanted.
+
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use bahn_control::{DataLineEvent, DataLineOrder, LineEvent};
+use bahn_host::{Next, Notice, Reader, Stamped};
+use bahn_link::{Mode, PlcHold, Settings};
+use bahn_panel::{Input, Link, Station};
+use bahn_parameters::ParameterList;
+
+use crate::{PortError, Tell};
+
+/// A port as the PLC may have it.
+#[derive(Clone)]
+pub struct PlcPort {
+    /// Its hold on the port.
+    pub hold: PlcHold,
+    /// What the operator has set up.
+    pub mode: Mode,
+    /// Baud rate of the port, if it has one.
+    pub baud: Option<u32>,
+    /// Time of a dead device.
+    pub patience: Duration,
+}
+
+/// The two interfaces, RS-232-C and RS-422; one that has no port is never ready.
+pub struct PlcLines {
+    notices: Reader<Stamped>,
+    ports: [Option<PlcPort>; 2],
+    printer: Option<Printer>,
+    tell: Tell,
+}
+
+/// Where FN15 prints.
+enum Printer {
+    /// At a port.
+    Port(PlcHold),
+    /// Lines are added to a file.
+    File(PathBuf),
+}
+
+impl Printer {
+    fn print(&self, line: &str, tell: &Tell) {
+        let printed = match self {
+            Printer::Port(hold) => match hold.print(line) {
+                true => Ok(()),
+                false => Err(io::Error::other("the printer is too slow")),
+            },
+            Printer::File(path) => File::options()
+                .create(true)
+                .append(true)
+                .open(path)
+                .and_then(|mut file| writeln!(file, "{line}")),
+        };
+        if let Err(error) = printed {
+            tell(&format!("`{line}` is not printed: {error}"));
+        }
+    }
+}
+
+impl PlcLines {
+    /// The lines of a machine that is about to run.
+    ///
+    /// # Errors
+    /// When FN15 is to print at a port that is not open.
+    pub fn new(
+        station: &mut Station,
+        ports: [Option<PlcPort>; 2],
+        print: Option<&str>,
+        tell: Tell,
+    ) -> Result<PlcLines, PortError> {
+        let at = |number: usize, name: &'static str| match ports.get(number).and_then(Option::as_ref) {
+            Some(port) => Ok(Printer::Port(port.hold.clone())),
+            None => Err(PortError::NoPrinter(name)),
+        };
+        let printer = match print {
+            None => None,
+            Some("rs232") => Some(at(0, "rs232")?),
+            Some("rs422") => Some(at(1, "rs422")?),
+            Some(path) => Some(Printer::File(path.into())),
+        };
+        // Into a file only FN15 prints: what is digitized stays a program of the memory.
+        let at_port = matches!(printer, Some(Printer::Port(_)));
+        station.host().print_digitized(at_port);
+        Ok(PlcLines {
+            notices: station.host().notices(),
+            ports,
+            printer,
+            tell,
+        })
+    }
+
+    /// The control learns the baud rates of the modes that are set up.
+    pub fn begin(&self, link: &Link) {
+        for (line, port) in self.ports() {
+            if let Some(baud) = port.baud {
+                tell(link, line, LineEvent::ModeBaud(baud));
+            }
+        }
+    }
+
+    /// Carries on what has happened since the last call.
+    pub fn carry(&mut self, link: &Link) {
+        let mut orders = Vec::new();
+        for next in self.notices.by_ref() {
+            match next {
+                Next::Item(stamped) => match stamped.notice {
+                    Notice::Line(order) => orders.push(order),
+                    Notice::Printed(line) => {
+                        if let Some(printer) = &self.printer {
+                            printer.print(&line, &self.tell);
+                        }
+                    }
+                    _ => {}
+                },
+                Next::Missed(count) => {
+                    (self.tell)(&format!("{count} notices of the machine went by unseen"));
+                }
+            }
+        }
+        for order in orders {
+            self.obey(order, link);
+        }
+        for (line, port) in self.ports() {
+            for event in port.hold.take_events() {
+                tell(link, line, event);
+            }
+        }
+    }
+
+    fn obey(&self, order: DataLineOrder, link: &Link) {
+        let (DataLineOrder::Assigned { line, .. }
+        | DataLineOrder::Send { line, .. }
+        | DataLineOrder::Taken { line }) = order;
+        let Some(port) = self.ports.get(line).and_then(Option::as_ref) else {
+            return;
+        };
+        match order {
+            DataLineOrder::Assigned { setup, .. } => {
+                let list = setup.and_then(|setup| Some((setup, list(link)?)));
+                let settings = list.map(|(setup, list)| {
+                    let settings = match setup.of_mode {
+                        true => Settings::of(&list, port.mode),
+                        false => Settings::of_plc(&list),
+                    };
+                    settings.on(port.baud, port.patience)
+                });
+                port.hold.assign(settings);
+            }
+            DataLineOrder::Send { text, .. } => port.hold.transmit(&text),
+            DataLineOrder::Taken { .. } => port.hold.taken(),
+        }
+    }
+
+    fn ports(&self) -> impl Iterator<Item = (usize, &PlcPort)> {
+        let ports = self.ports.iter().enumerate();
+        ports.filter_map(|(line, port)| Some((line, port.as_ref()?)))
+    }
+}
+
+/// The machine parameters as they are now.
+fn list(link: &Link) -> Option<ParameterList> {
+    link.look(|station| station.control().first().edited_list().clone())
+        .ok()
+}
+
+/// The control is told what happens at a line; one that has ended needs it no more, and what it refuses it does not want.
+fn tell(link: &Link, line: usize, event: LineEvent) {
+    let event = DataLineEvent::Line(line, event);
+    let _ = link.input(Input::Deed(event.to_string()));
+}

@@ -1,0 +1,34 @@
+//! A part program on the simulated machine: what is seen of it cycle after cycle, and what is said in the end.
+//!
+//! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it; `standstill`: whether it
+//!   comes on;
+//! - `beside`: the channels beside the first one; `executed`: what was done of the path, with `turning`, how the spindle
+//!   turned there; `table`: what lies on the table of the machine;
+//! - `measured`: `deviation` from the contour with its `cause`, `threads` and `times`; `listed`: messages and keys;
+//! - `recording`: signals over time; `scoped`: the control's oscilloscope;
+//! - `report` and `told`: what is said in the end.
+
+mod beside;
+mod cause;
+mod deviation;
+mod executed;
+mod listed;
+mod measured;
+mod recording;
+mod report;
+mod scoped;
+mod session;
+mod standstill;
+mod table;
+mod threads;
+mod times;
+mod told;
+mod turning;
+
+pub use executed::Executed;
+pub use recording::{Recording, usual_signals};
+pub use report::RunReport;
+pub use scoped::Scoped;
+pub use session::{Ended, Patience, Session};
+pub use table::Table;
+pub use told::Told;

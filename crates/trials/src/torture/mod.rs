@@ -1,0 +1,201 @@
+//! The fault campaign: the programs of a machine run while random things happen to it, and every contour cycle is held
+//! to rules.
+//!
+//! A seed says everything: the program, the moment of its undisturbed run, and what happens from there on ([`Plan`]). A
+//! [`Campaign`] knows a machine; each of its [`Worker`]s, one for a thread, tries seeds one after another, and tells
+//! what came of each as a [`Trial`]. Of a seed that breaks a [`Rule`] it finds the few happenings that do it.
+
+mod axes;
+mod bench;
+mod catalogue;
+mod contour;
+mod dice;
+mod led;
+mod medium;
+mod messages;
+mod plan;
+mod recovery;
+mod rule;
+mod shrink;
+mod trial;
+mod ways;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+pub use catalogue::Kind;
+pub use plan::{Happening, Plan};
+pub use rule::{Rule, Violation};
+pub use trial::Trial;
+
+use bahn_host::Deed;
+use bahn_host::LoadedMachine;
+use bahn_host::{FileFault, HostError};
+use bench::Bench;
+use catalogue::Catalogue;
+use plan::{Choice, Scene};
+
+/// A machine that is tried, and its programs.
+pub struct Campaign {
+    machine: LoadedMachine,
+    catalogue: Catalogue,
+    programs: Vec<String>,
+}
+
+impl Campaign {
+    /// Takes a machine with all programs of its first channel, or with those that are named. The other channels run their own.
+    ///
+    /// # Errors
+    /// When the folder of its programs cannot be read.
+    pub fn new(machine: LoadedMachine, named: &[String]) -> Result<Campaign, HostError> {
+        let mut programs = named.to_vec();
+        if named.is_empty() {
+            let others = (1..=machine.channels.len()).filter_map(|other| machine.usual_program(other));
+            programs = programs_in(&machine.programs(0))?;
+            programs.retain(|name| !others.clone().any(|other| other == name));
+        }
+        Ok(Campaign {
+            catalogue: Catalogue::of(&machine),
+            machine,
+            programs,
+        })
+    }
+
+    /// Loads the machine of a folder; the inner `Err` holds every fault of every file.
+    ///
+    /// # Errors
+    /// When there is no such folder, or its programs cannot be read.
+    pub fn load(folder: &Path, named: &[String]) -> Result<Result<Campaign, Vec<FileFault>>, HostError> {
+        Ok(match LoadedMachine::load(folder)? {
+            Ok(machine) => Ok(Campaign::new(machine, named)?),
+            Err(faults) => Err(faults),
+        })
+    }
+
+    /// Adds an event of the machine's own to what the PLC does not expect: operands, as a script has them. A marker by which
+    /// a copy of the PLC program is made to fail, for example; power-off is to reset it.
+    ///
+    /// # Errors
+    /// When a script could not have it.
+    pub fn also(&mut self, what: &str) -> Result<(), HostError> {
+        for part in what.split(',') {
+            Deed::parse(part.trim()).map_err(|error| HostError::File(format!("{part}: {error}")))?;
+        }
+        self.catalogue.also(what);
+        Ok(())
+    }
+
+    /// The name of the machine.
+    pub fn name(&self) -> &str {
+        &self.machine.folder.name
+    }
+
+    /// The programs.
+    pub fn programs(&self) -> &[String] {
+        &self.programs
+    }
+
+    /// Somebody who tries seeds: every program is run once, undisturbed.
+    ///
+    /// # Errors
+    /// When a program does not come to its end by itself.
+    pub fn worker(&self) -> Result<Worker<'_>, HostError> {
+        let benches = self
+            .programs
+            .iter()
+            .map(|program| Bench::new(&self.machine, program));
+        let benches: Vec<Bench> = benches.collect::<Result<_, _>>()?;
+        Ok(Worker {
+            campaign: self,
+            scenes: benches.iter().map(Scene::of).collect(),
+            benches,
+        })
+    }
+
+    /// What was done as a script: `bahn run` repeats it.
+    pub fn script(&self, plan: &Plan, trial: &Trial, folder: &str) -> String {
+        let program = self.programs.get(plan.program).map_or("", String::as_str);
+        let mut text = format!(
+            "; seed {} on {}\n; bahn run {program} --machine {folder} --fresh --operator full --script THIS-FILE\n",
+            plan.seed,
+            self.name()
+        );
+        if let Some(violation) = &trial.violation {
+            let _ = writeln!(
+                text,
+                "; {} at {:.6}: {}",
+                violation.rule.name(),
+                violation.time_s,
+                violation.values.replace('\n', " ")
+            );
+        }
+        for happening in &trial.done {
+            for part in happening.what.split(", ") {
+                let _ = writeln!(text, "{:.6}: {part}", happening.time_us as f64 * 1e-6);
+            }
+        }
+        text
+    }
+}
+
+/// See [`Campaign::worker`].
+pub struct Worker<'a> {
+    campaign: &'a Campaign,
+    benches: Vec<Bench>,
+    scenes: Vec<Scene>,
+}
+
+impl Worker<'_> {
+    /// What a seed says.
+    pub fn plan(&self, seed: u64) -> Plan {
+        let choice = Choice {
+            catalogue: &self.campaign.catalogue,
+            scenes: &self.scenes,
+        };
+        choice.plan(seed)
+    }
+
+    /// Tries a plan.
+    pub fn run(&mut self, plan: &Plan) -> Trial {
+        self.part(plan, &plan.happenings)
+    }
+
+    fn part(&mut self, plan: &Plan, happenings: &[Happening]) -> Trial {
+        match self.benches.get_mut(plan.program) {
+            Some(bench) => trial::run(bench, &self.campaign.catalogue, plan, happenings),
+            None => Trial::default(),
+        }
+    }
+
+    /// The plan with the few happenings that break the same rule.
+    pub fn shrink(&mut self, plan: &Plan, rule: Rule) -> Plan {
+        let happenings = shrink::shrink(&plan.happenings, |part| {
+            let violation = self.part(plan, part).violation;
+            violation.is_some_and(|violation| violation.rule == rule)
+        });
+        Plan {
+            happenings,
+            ..plan.clone()
+        }
+    }
+}
+
+/// The programs of a folder, by name.
+fn programs_in(folder: &Path) -> Result<Vec<String>, HostError> {
+    let entries =
+        std::fs::read_dir(folder).map_err(|error| bahn_host::files::cannot("read", folder, &error))?;
+    let names = entries
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names
+        .filter(|name| name.ends_with(".H") || name.ends_with(".h"))
+        .collect();
+    names.sort();
+    if names.is_empty() {
+        return Err(HostError::File(format!(
+            "there is no program in {}",
+            folder.display()
+        )));
+    }
+    Ok(names)
+}
