@@ -2,7 +2,6 @@
 //!
 //! While it is on its way the file lies in the program memory, which the data interfaces read and write.
 
-use bahn_control::RunState;
 use bahn_host::backup::{BACKUP_NAME, Restore, back_up};
 use bahn_parameters::MessageId;
 
@@ -40,7 +39,7 @@ fn written(site: &mut Site) -> Result<(), String> {
 
 /// RESTORE DATA replaces what is there: it is asked for.
 pub(crate) fn ask_to_restore(site: &Site) -> Turn {
-    if site.control().run_state() != RunState::Idle {
+    if !site.is_idle() {
         return Turn::Say(site.message(MessageId::KeyNonFunctional));
     }
     let erase = site.message(MessageId::EraseOverread);
@@ -77,7 +76,7 @@ pub(crate) fn ended(site: &mut Site) {
 /// # Errors
 /// In words: it is damaged, or a program runs.
 pub(crate) fn restored(site: &Site) -> Result<Restore, String> {
-    if site.control().run_state() != RunState::Idle {
+    if !site.is_idle() {
         return Err(site.message(MessageId::KeyNonFunctional));
     }
     let text = site.programs.text(&name()).unwrap_or_default();

@@ -137,9 +137,9 @@ impl ListFile {
         }
     }
 
-    /// The whole list goes into effect [000:10072-10074].
-    pub fn put_into_effect(&self, list: ParameterList, site: &mut Site) {
+    /// The whole list goes into effect [000:10072-10074]; `false` when that is not possible now.
+    pub fn put_into_effect(&self, list: ParameterList, site: &mut Site) -> bool {
         let name = (self.name != site.machine.folder.parameters).then(|| self.name.clone());
-        site.host.renew(Renewed::List(name, Box::new(list)));
+        site.host.renew(Renewed::List(name, Box::new(list)))
     }
 }
