@@ -18,14 +18,18 @@ fn name() -> String {
 
 /// BACKUP DATA.
 pub(crate) fn save(site: &mut Site) -> Turn {
-    match written(site) {
+    let written = everything(site).and_then(|text| site.programs.write(&name(), text.as_bytes()));
+    match written {
         Ok(()) => begun(TransferDeed::Write(vec![name()]), site),
         Err(why) => Turn::Say(why),
     }
 }
 
 /// All files of the machine as they are now.
-fn written(site: &mut Site) -> Result<(), String> {
+///
+/// # Errors
+/// In words: one of them cannot be written, read or carried.
+pub(crate) fn everything(site: &mut Site) -> Result<String, String> {
     site.host.store().map_err(|error| error.to_string())?;
     let mut text = String::new();
     let count = back_up(&site.machine.root, &site.machine.folder.name, |line| {
@@ -34,7 +38,7 @@ fn written(site: &mut Site) -> Result<(), String> {
         Ok(())
     });
     count.map_err(|error| error.to_string())?;
-    site.programs.write(&name(), text.as_bytes())
+    Ok(text)
 }
 
 /// RESTORE DATA replaces what is there: it is asked for.

@@ -81,13 +81,11 @@ impl ListFile {
     /// What stands in it; nothing where there is no file yet.
     pub fn text(&self, site: &Site) -> Result<ListText, String> {
         let model = site.control().model();
-        match self.path.exists() {
-            true => {
-                let bytes = files::read_table(&self.path).map_err(|error| error.to_string())?;
-                Ok(ListText::from_bytes(model, &bytes))
-            }
-            false => Ok(ListText::from_bytes(model, b"")),
-        }
+        let bytes = match self.path.try_exists() {
+            Ok(false) => Ok(Vec::new()),
+            _ => files::read_table(&self.path).map_err(|error| error.to_string()),
+        };
+        Ok(ListText::from_bytes(model, &bytes?))
     }
 
     /// What stands in it by now, with what was entered; its comments stay.
