@@ -2,13 +2,13 @@
 //! [000:3809-3853]. Only the kinks are entered.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bahn_dialogue::Key;
-use bahn_parameters::MessageId;
+use bahn_parameters::PLC_AXIS_NAMES as AXES;
 
 use super::head::{self, Field};
-use super::text::{AXES, lines, read, store};
+use super::text::{ErrorFile, Kind};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
@@ -38,7 +38,7 @@ const WIDTHS: [usize; 3] = [5, 12, 11];
 /// The editor.
 struct Table {
     name: String,
-    path: PathBuf,
+    file: ErrorFile,
     head: Vec<String>,
     points: BTreeMap<usize, BTreeMap<String, String>>,
     row: usize,
@@ -52,7 +52,7 @@ struct Table {
 pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
     let mut table = Table {
         name: name.to_owned(),
-        path: path.to_owned(),
+        file: ErrorFile::new(Kind::Table, path),
         head: Vec::new(),
         points: BTreeMap::new(),
         row: 0,
@@ -65,18 +65,30 @@ pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
 }
 
 impl Table {
+    /// What stands in the file; a name of an axis may be written in small letters.
     fn renew(&mut self) -> Result<(), String> {
-        let lines = lines(&read(&self.path)?);
+        let lines = self.file.lines()?;
         let mut lines = lines.iter().map(|line| line.split_whitespace());
-        self.head = lines.next().into_iter().flatten().map(str::to_owned).collect();
+        let words = lines.next().into_iter().flatten().enumerate();
+        let head = words.map(|(place, word)| match place < COLUMNS {
+            true => word.to_owned(),
+            false => word.to_uppercase(),
+        });
+        self.head = head.collect();
         self.points.clear();
         for mut words in lines {
-            let Some(number) = words.next().and_then(|word| word.parse().ok()) else {
-                continue;
+            let number = words.next().and_then(|word| word.parse().ok());
+            let cells = words.map(|word| word.split_once('='));
+            let (Some(number), Some(cells)) = (number, cells.collect::<Option<Vec<_>>>()) else {
+                return Err(format!("{}: a line of it is none of a table", self.name));
             };
-            let cells = words.filter_map(|word| word.split_once('='));
-            let cells = cells.map(|(axis, value)| (axis.to_owned(), value.to_owned()));
-            self.points.insert(number, cells.collect());
+            let cells = cells
+                .into_iter()
+                .map(|(axis, value)| (axis.to_uppercase(), value.to_owned()));
+            self.points
+                .entry(number)
+                .or_insert_with(BTreeMap::new)
+                .extend(cells);
         }
         self.column = self.column.min(self.columns().len().saturating_sub(1));
         Ok(())
@@ -102,14 +114,14 @@ impl Table {
     fn change(&mut self, what: impl FnOnce(&mut Table), site: &mut Site) -> Turn {
         let before = self.points.clone();
         what(self);
-        match store(&self.path, &self.written(), site) {
+        match self.file.store(&self.written(), site) {
             Ok(()) => {
                 self.entry = Entry::default();
                 Turn::Done
             }
             Err(why) => {
                 self.points = before;
-                Turn::Say(format!("{}: {why}", site.message(MessageId::EntryValueIncorrect)))
+                Turn::Say(why)
             }
         }
     }
@@ -162,7 +174,7 @@ impl Table {
         self.heads = true;
         let columns = (0..AXES.len()).map(|axis| Field::Column(axis, COLUMNS));
         let fields = [Field::Number("DATUM", 3), Field::Number("DIST", 5)];
-        head::open(self.path.clone(), 0, fields.into_iter().chain(columns).collect())
+        head::open(self.file.clone(), 0, fields.into_iter().chain(columns).collect())
     }
 
     fn go(&mut self, rows: isize) -> Turn {
