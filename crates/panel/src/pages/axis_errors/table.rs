@@ -6,6 +6,7 @@ use std::path::Path;
 
 use bahn_dialogue::Key;
 use bahn_parameters::PLC_AXIS_NAMES as AXES;
+use bahn_servo::ErrorTable;
 
 use super::head::{self, Field};
 use super::text::{ErrorFile, Kind};
@@ -26,10 +27,6 @@ const SOFT_KEYS: [&str; 8] = [
     "HEAD LINE",
     "END",
 ];
-/// Points of a table at most [000:3770].
-const POINTS_MAX: usize = 256;
-/// Unit of the spacing, mm: DIST is its exponent of two [000:3777].
-const UNIT_MM: f64 = 1e-4;
 /// Words of the head line before its columns.
 const COLUMNS: usize = 6;
 /// Width of number, position and column in the window.
@@ -40,6 +37,8 @@ struct Table {
     name: String,
     file: ErrorFile,
     head: Vec<String>,
+    /// Where the points stand.
+    places: Option<ErrorTable>,
     points: BTreeMap<usize, BTreeMap<String, String>>,
     row: usize,
     column: usize,
@@ -54,6 +53,7 @@ pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
         name: name.to_owned(),
         file: ErrorFile::new(Kind::Table, path),
         head: Vec::new(),
+        places: None,
         points: BTreeMap::new(),
         row: 0,
         column: 0,
@@ -75,6 +75,12 @@ impl Table {
             false => word.to_uppercase(),
         });
         self.head = head.collect();
+        let [datum, exponent] = [3, 5].map(|place| self.head.get(place).map_or("", String::as_str));
+        let (datum, exponent) = (
+            datum.parse().unwrap_or_default(),
+            exponent.parse().unwrap_or_default(),
+        );
+        self.places = ErrorTable::new(datum, exponent, &[]);
         self.points.clear();
         for mut words in lines {
             let number = words.next().and_then(|word| word.parse().ok());
@@ -149,7 +155,7 @@ impl Table {
     /// A line comes in between, or goes: those behind it move by one point.
     fn shift(&mut self, on: bool, site: &mut Site) -> Turn {
         let row = self.row;
-        if on && self.points.contains_key(&(POINTS_MAX - 1)) {
+        if on && self.points.contains_key(&(ErrorTable::POINTS_MAX - 1)) {
             return Turn::Refused;
         }
         self.change(
@@ -178,21 +184,15 @@ impl Table {
     }
 
     fn go(&mut self, rows: isize) -> Turn {
-        self.row = list::moved(self.row, rows, POINTS_MAX);
+        self.row = list::moved(self.row, rows, ErrorTable::POINTS_MAX);
         self.entry = Entry::default();
         Turn::Done
     }
 
-    /// The place of a point, mm from the machine datum.
-    fn position(&self, point: usize) -> f64 {
-        let number = |place: usize| self.head.get(place).and_then(|word| word.parse::<f64>().ok());
-        let (datum, exponent) = (number(3).unwrap_or(0.0), number(5).unwrap_or(0.0));
-        datum + point as f64 * exponent.exp2() * UNIT_MM
-    }
-
     fn line(&self, point: usize) -> Line {
         let [number, position, width] = WIDTHS;
-        let place = format!("{:.4}", self.position(point));
+        let places = self.places.as_ref();
+        let place = format!("{:.4}", places.map_or(0.0, |places| places.position_mm(point)));
         let place = place.trim_end_matches('0').trim_end_matches('.');
         let head = format!("{point:<number$}{place:<position$}");
         let cells = self.points.get(&point);
@@ -252,7 +252,7 @@ impl Page for Table {
             self.name,
             columns.join(" ")
         );
-        let cursor = (self.row, POINTS_MAX);
+        let cursor = (self.row, ErrorTable::POINTS_MAX);
         View {
             window: Some(list::window(title, WindowKind::Table, cursor, lines, |point| {
                 self.line(point)
