@@ -521,8 +521,35 @@ fn the_plc_is_told_what_the_screen_shows() {
     );
     trainee.press("PGM_NR");
     assert_eq!(screen(&mut trainee).editing, 2);
+    // The tool table is a file of that screen (.T is 3), not something that lies over it.
+    trainee.press("0 ENT");
+    let tools = screen(&mut trainee);
+    assert_eq!((tools.editing, tools.file), (0, 3));
+    // The machine parameter editor is 3 there and the PLC editor 4; the machine screen has codes for neither, so it is MOD (1)
+    // from which they were reached.
+    for (number, code) in [("95148", 3), ("807667", 4)] {
+        trainee.press("END PROGRAM MOD ENT").number(number).press("ENT");
+        assert_eq!(
+            (screen(&mut trainee).editing, screen(&mut trainee).machine),
+            (code, 0)
+        );
+        trainee.press("END END MANUAL MOD");
+        trainee.down_to("CODE NUMBER");
+        trainee.press("ENT").number(number).press("ENT");
+        assert_eq!(screen(&mut trainee).machine, 1);
+        trainee.press("END END");
+    }
+    // A compensation table and its assignment are files of kind 7.
+    trainee.write("plc/ACHSE-Y.COM", "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n");
+    trainee.write("plc/CONFIG.CMA", "0 Y=ACHSE-Y\n");
+    for name in ["ACHSE-Y.COM", "CONFIG.CMA"] {
+        edit(&mut trainee, name);
+        let told = screen(&mut trainee);
+        assert_eq!((told.editing, told.file), (4, 7), "{name}");
+        trainee.press("END END END END");
+    }
     // A control that is switched on anew is told again.
-    trainee.press("END");
+    trainee.press("PROGRAM PGM_NR 4 7 1 1 ENT");
     let told = screen(&mut trainee);
     trainee.give("{\"power\":false}").wait(1.0);
     trainee.give("{\"power\":true}").wait(1.0);

@@ -171,6 +171,10 @@ impl Assignment {
 }
 
 impl Page for Assignment {
+    fn file(&self) -> Option<&str> {
+        Some(&self.name)
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if let Some(rows) = list::way_of_key(key) {
             self.row = list::moved(self.row, rows, self.rows.len());

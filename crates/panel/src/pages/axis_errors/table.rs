@@ -204,6 +204,10 @@ impl Table {
 }
 
 impl Page for Table {
+    fn file(&self) -> Option<&str> {
+        Some(&self.name)
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if let Some(rows) = list::way_of_key(key) {
             return self.go(rows);

@@ -552,7 +552,7 @@ fn said(error: &bahn_parameters::ParameterError, site: &Site) -> String {
 
 impl Page for Parameters {
     fn overlay(&self) -> Overlay {
-        Overlay::Table
+        Overlay::Parameters
     }
 
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
