@@ -663,11 +663,14 @@ impl Station {
         let answer = self.host.act(Source::Client("panel".to_owned()), deed);
         match answer.map_err(|error| Refusal(error.to_string()))? {
             Answer::Done => Ok(()),
-            Answer::Refused => Err(Refusal(
-                MessageId::KeyNonFunctional.text(self.control().model()).into(),
-            )),
+            Answer::Refused => Err(self.refusal()),
             Answer::Impossible(why) => Err(Refusal(why)),
         }
+    }
+
+    /// The control does not do it now.
+    fn refusal(&self) -> Refusal {
+        Refusal(MessageId::KeyNonFunctional.text(self.control().model()).into())
     }
 
     /// What the operator chose is kept as soon as it is another one.

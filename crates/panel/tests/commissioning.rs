@@ -8,7 +8,7 @@ mod support;
 use std::path::Path;
 
 use bahn_host::backup::Restore;
-use bahn_panel::{TransferDeed, TransferFiles};
+use bahn_panel::{Input, TransferDeed, TransferFiles};
 use support::Trainee;
 
 /// The mill with something else in its list.
@@ -92,6 +92,21 @@ fn a_faulty_list_is_presented_and_the_control_goes_on_when_it_is_whole() {
         trainee.station.control().first().edited_list().get(1020, 1),
         Some(600.0)
     );
+}
+
+/// While the list is entered nobody goes to another moment, or begins a lesson: nothing goes on before it is whole.
+#[test]
+fn nobody_goes_elsewhere_while_the_list_is_entered() {
+    let mut trainee = with(|list| list.replace("MP10     : %01111", "MP10 : ?"));
+    trainee.wait(0.5);
+    let refused = trainee.station.go_to(0.1).unwrap_err();
+    assert_eq!(refused.to_string(), "KEY NON-FUNCTIONAL");
+    let lesson = trainee.station.lessons()[0].0.clone();
+    let refused = trainee.station.input(&Input::Lesson(Some(lesson))).unwrap_err();
+    assert_eq!(refused.to_string(), "KEY NON-FUNCTIONAL");
+    trainee.wait(0.1);
+    assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+    assert!(trainee.station.control().is_off());
 }
 
 /// What the machine kept is what it was: the datum that was set before the list was damaged.

@@ -471,6 +471,34 @@ fn the_plane_of_the_swivel_axes_is_switched_by_hand() {
     assert_eq!(key(&mut trainee), "");
 }
 
+/// "The 3D ROT soft key can be used to activate the swivelled machining plane for Manual and Program Run separately. The
+/// position of the swivel axes can be edited" [000:4256]: each keeps its own positions but of the axis that is edited.
+#[test]
+fn an_axis_of_the_plane_is_edited_alone() {
+    // Behind the head B a rotation about C.
+    let mut trainee = Trainee::with("gantry", |folder| {
+        let path = folder.join("parameters.mp");
+        let list = std::fs::read_to_string(&path).unwrap();
+        let with_c = list.replace("MP7540   : %000000", "MP7540   : %100000");
+        assert_ne!(list, with_c);
+        std::fs::write(path, with_c).unwrap();
+    });
+    trainee.ready();
+    trainee.give(r#"{"deed":"3d-rot run on B+10 C+20"}"#);
+    trainee.give(r#"{"deed":"3d-rot on B+30 C+40"}"#).wait(0.1);
+    trainee.press("SK6").wait(0.1);
+    let stands = |trainee: &mut Trainee| ["B", "C"].map(|name| trainee.menu_value(name));
+    assert_eq!(stands(&mut trainee), ["+30.000", "+40.000"]);
+    trainee.down_to("C");
+    trainee.press("ENT").number("5").press("ENT").wait(0.1);
+    // A, B and C of both.
+    let planes = |trainee: &Trainee| {
+        let channel = trainee.station.control().first();
+        [true, false].map(|run| channel.plane(run))
+    };
+    assert_eq!(planes(&trainee), [Some([0.0, 10.0, 5.0]), Some([0.0, 30.0, 5.0])]);
+}
+
 #[test]
 fn messages_are_in_the_language_of_the_dialogue() {
     let mut trainee = Trainee::at("mill");

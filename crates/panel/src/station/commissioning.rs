@@ -11,6 +11,7 @@ use bahn_host::{Attendance, Deed, LoadedMachine, Operator, PowerOn, Source, Stat
 
 use super::Station;
 use crate::console::Console;
+use crate::input::Refusal;
 use crate::pages;
 use crate::programs::ProgramMemory;
 use crate::settings::Settings;
@@ -58,6 +59,17 @@ impl Station {
         let own = self.commissioning.as_ref();
         if own.is_some_and(|own| own.is_presented) && !self.console.enters() {
             self.load_anew();
+        }
+    }
+
+    /// Nothing goes on, and nothing was, before the list is whole: no lesson begins, and nobody goes to another moment.
+    ///
+    /// # Errors
+    /// The list is entered.
+    pub(super) fn has_its_list(&self) -> Result<(), Refusal> {
+        match self.commissioning {
+            Some(_) => Err(self.refusal()),
+            None => Ok(()),
         }
     }
 
