@@ -151,7 +151,7 @@ fn a_list_that_cannot_be_read_is_a_fault_of_the_folder() {
     let too_large = bahn_panel::load(&folder).err().unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
     for text in [refused, too_large] {
-        assert!(text.contains("machine's description is wrong"), "{text}");
+        assert!(text.contains("parameters.mp"), "{text}");
     }
 }
 

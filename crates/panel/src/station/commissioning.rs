@@ -178,7 +178,7 @@ pub(super) fn operator_of(machine: &LoadedMachine) -> Operator {
 pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
     let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
     loaded.map_err(|faults| {
-        let lines = faults.iter().map(|fault| fault.title.clone());
+        let lines = faults.iter().map(pages::fault_in_words);
         lines.collect::<Vec<_>>().join("\n")
     })
 }

@@ -7,6 +7,7 @@ use bahn_control::Renewed;
 use bahn_host::{LoadedMachine, files};
 use bahn_parameters::{ListError, ListText, ParameterId, ParameterList};
 
+use crate::pages::description::in_words;
 use crate::site::Site;
 
 /// The lists of the machine: the usual one, and the files `NAME.MP` of its folder [000:14894-14896].
@@ -127,10 +128,8 @@ impl ListFile {
         match loaded.map_err(|error| Refused::Words(error.to_string()))? {
             Ok(_) => Ok(list),
             Err(faults) => {
-                let fault = faults
-                    .first()
-                    .map(|fault| format!("{}: {}", fault.title, fault.label));
-                Err(Refused::Words(fault.unwrap_or_default()))
+                let first = faults.first().map(in_words);
+                Err(Refused::Words(first.unwrap_or_default()))
             }
         }
     }
