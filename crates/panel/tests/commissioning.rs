@@ -413,3 +413,45 @@ fn everything_is_backed_up_and_restored() {
     assert_eq!(trainee.file("parameters.mp"), list);
     assert!(!trainee.station.control().is_off());
 }
+
+/// The right channel runs a program: no list is written or goes into effect, and the editor says so.
+#[test]
+fn no_list_goes_into_effect_while_another_channel_runs() {
+    let mut trainee = Trainee::with("twin", |folder| {
+        let list = std::fs::read_to_string(folder.join("left.mp")).unwrap();
+        std::fs::write(folder.join("SLOW.MP"), list).unwrap();
+    });
+    trainee.ready();
+    let before = trainee.file("left.mp");
+    code(&mut trainee, "95148");
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
+    trainee.number("450").press("ENT");
+    // Its axes pass their reference marks, too.
+    trainee.give(r#"{"deed":"key START2 tap"}"#).wait(60.0);
+    trainee.give(r#"{"deed":"2: mode full"}"#).wait(0.5);
+    trainee.give(r#"{"deed":"2: select RIGHT.H"}"#);
+    trainee.give(r#"{"deed":"key START2 tap"}"#).wait(2.0);
+    let runs = |trainee: &Trainee| trainee.station.control().channel(1).unwrap().is_active();
+    let right = trainee.station.control().channel(1).unwrap();
+    assert!(runs(&trainee), "{:?} {:?}", right.mode(), trainee.station.control().shown());
+    for list in ["", "SLOW.MP"] {
+        if !list.is_empty() {
+            trainee.press("CE PGM_NR");
+            trainee.down_to(list);
+            trainee.soft("SELECT");
+            trainee.wait(0.1);
+        }
+        trainee.press("END").wait(0.1);
+        assert!(
+            trainee.messages().contains(&"KEY NON-FUNCTIONAL".to_owned()),
+            "{:?}",
+            trainee.messages()
+        );
+        assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+        assert_eq!(trainee.file("left.mp"), before);
+        assert!(runs(&trainee));
+    }
+    // Nothing was entered: the other list is shown, and does not go into effect, either.
+    trainee.press("CE CE");
+    trainee.soft("QUIT");
+}
