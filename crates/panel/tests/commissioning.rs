@@ -433,7 +433,12 @@ fn no_list_goes_into_effect_while_another_channel_runs() {
     trainee.give(r#"{"deed":"key START2 tap"}"#).wait(2.0);
     let runs = |trainee: &Trainee| trainee.station.control().channel(1).unwrap().is_active();
     let right = trainee.station.control().channel(1).unwrap();
-    assert!(runs(&trainee), "{:?} {:?}", right.mode(), trainee.station.control().shown());
+    assert!(
+        runs(&trainee),
+        "{:?} {:?}",
+        right.mode(),
+        trainee.station.control().shown()
+    );
     for list in ["", "SLOW.MP"] {
         if !list.is_empty() {
             trainee.press("CE PGM_NR");
