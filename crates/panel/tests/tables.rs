@@ -255,23 +255,8 @@ fn edit(trainee: &mut Trainee, name: &str) {
     trainee.soft("SELECT");
 }
 
-/// The manual's example: ACHSE-Y and ACHSE-Z are assigned in CONFIG.CMA, line 0 is active [000:3787-3865]. MP730 selects Y
-/// and Z: the error acts at once, and no more when the line is cleared.
-#[test]
-fn axis_errors_are_entered_assigned_and_activated() {
-    let mut trainee = compensating(&[]);
-    // Y to the third point of the table, -76.8928 mm from the machine datum.
-    trainee.give(r#"{"deed":"mode mdi"}"#);
-    trainee.give(r#"{"deed":"mdi L Y-76.8928 R0 F3000 M91"}"#);
-    trainee.press("NC_START").wait(10.0);
-    // How far the table of the machine stands from there, mm. The scales of the mill are right.
-    let off = |trainee: &mut Trainee| {
-        trainee.wait(1.0);
-        trainee.station.host().plant().axis('Y').unwrap().position + 76.8928
-    };
-    let close = |is: f64, wanted: f64| assert!((is - wanted).abs() < 0.0005, "{is} is not {wanted}");
-    let still = off(&mut trainee);
-    assert!(still.abs() < 0.002, "{still}");
+/// Makes ACHSE-Y.COM and CONFIG.CMA, and enters the first points of the manual's table [000:3809-3853].
+fn enter_table(trainee: &mut Trainee) {
     trainee.press("PROGRAM MOD ENT").number("807667").press("ENT");
     trainee.soft("EDIT");
     for name in ["ACHSE-Y.COM", "CONFIG.CMA"] {
@@ -313,6 +298,26 @@ fn axis_errors_are_entered_assigned_and_activated() {
         trainee.file("plc/ACHSE-Y.COM"),
         "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n0 Z=-0.01\n2 Y=0.005 Z=-0.02\n"
     );
+}
+
+/// The manual's example: ACHSE-Y and ACHSE-Z are assigned in CONFIG.CMA, line 0 is active [000:3787-3865]. MP730 selects Y
+/// and Z: the error acts at once, and no more when the line is cleared.
+#[test]
+fn axis_errors_are_entered_assigned_and_activated() {
+    let mut trainee = compensating(&[]);
+    // Y to the third point of the table, -76.8928 mm from the machine datum.
+    trainee.give(r#"{"deed":"mode mdi"}"#);
+    trainee.give(r#"{"deed":"mdi L Y-76.8928 R0 F3000 M91"}"#);
+    trainee.press("NC_START").wait(10.0);
+    // How far the table of the machine stands from there, mm. The scales of the mill are right.
+    let off = |trainee: &mut Trainee| {
+        trainee.wait(1.0);
+        trainee.station.host().plant().axis('Y').unwrap().position + 76.8928
+    };
+    let close = |is: f64, wanted: f64| assert!((is - wanted).abs() < 0.0005, "{is} is not {wanted}");
+    let still = off(&mut trainee);
+    assert!(still.abs() < 0.002, "{still}");
+    enter_table(&mut trainee);
     trainee.press("END");
     trainee.soft("EDIT");
     trainee.down_to("CONFIG.CMA");

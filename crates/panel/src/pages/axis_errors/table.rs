@@ -91,10 +91,7 @@ impl Table {
             let cells = cells
                 .into_iter()
                 .map(|(axis, value)| (axis.to_uppercase(), value.to_owned()));
-            self.points
-                .entry(number)
-                .or_insert_with(BTreeMap::new)
-                .extend(cells);
+            self.points.entry(number).or_default().extend(cells);
         }
         self.column = self.column.min(self.columns().len().saturating_sub(1));
         Ok(())
