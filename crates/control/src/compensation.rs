@@ -94,38 +94,36 @@ impl Compensation {
 
     /// Corrects each axis with MP730 = 1 by the sum of the tables that have a column for it, over the
     /// positions of their driving axes; a rotary axis counts within one turn [000:3751-3758] [000:3871-3873].
+    /// An axis that no table corrects any more is where its encoder says.
     pub fn correct(&self, axes: &mut Axes) {
-        if self.corrections.is_empty() {
-            return;
-        }
         for place in 0..axes.count() {
-            let Some(unit) = axes.get(place) else {
-                continue;
-            };
-            if !(unit.parameters.compensation.nonlinear && unit.referenced) {
-                continue;
-            }
-            let mut error_mm = 0.0;
-            for correction in &self.corrections {
-                if correction.corrected != usize::from(unit.id.number()) {
-                    continue;
-                }
-                let driving = axes
-                    .iter()
-                    .find(|unit| usize::from(unit.id.number()) == correction.driving);
-                let Some(driving) = driving.filter(|unit| unit.referenced) else {
-                    continue;
-                };
-                let position = driving.servo.actual_mm();
-                let position = match driving.parameters.travel.modulo {
-                    Some(modulo) => position.rem_euclid(modulo.deg),
-                    None => position,
-                };
-                error_mm += correction.table.error_mm(position);
-            }
+            let error_mm = self.error_mm(axes, place);
             if let Some(unit) = axes.get_mut(place) {
                 unit.servo.set_error(error_mm);
             }
         }
+    }
+
+    /// The error of an axis where the driving axes stand, mm.
+    fn error_mm(&self, axes: &Axes, place: usize) -> f64 {
+        let unit = axes.get(place);
+        let unit = unit.filter(|unit| unit.parameters.compensation.nonlinear && unit.referenced);
+        let Some(corrected) = unit.map(|unit| usize::from(unit.id.number())) else {
+            return 0.0;
+        };
+        let columns = self.corrections.iter();
+        let own = columns.filter(|correction| correction.corrected == corrected);
+        let error = |correction: &Correction| {
+            let mut units = axes.iter();
+            let driving = units.find(|unit| usize::from(unit.id.number()) == correction.driving)?;
+            let position = driving.servo.actual_mm();
+            let position = match driving.parameters.travel.modulo {
+                Some(modulo) => position.rem_euclid(modulo.deg),
+                None => position,
+            };
+            driving.referenced.then(|| correction.table.error_mm(position))
+        };
+        // Added from 0 on, so that no error is no negative zero.
+        own.filter_map(error).fold(0.0, |sum, error| sum + error)
     }
 }

@@ -48,11 +48,10 @@ struct Reading {
     driving: usize,
     datum_mm: f64,
     exponent: u32,
+    spacing_mm: f64,
     entries: Vec<(usize, f64)>,
 }
 
-/// Unit of DIST, mm [000:3777].
-const DIST_UNIT_MM: f64 = 1e-4;
 /// The difference of two errors in mm is exact to so much.
 const ROUNDING_MM: f64 = 1e-9;
 
@@ -92,7 +91,7 @@ impl CorrectionTables {
         }
         let table = ErrorTable::new(reading.datum_mm, reading.exponent, &reading.entries);
         let (Some(place), Some(table)) = (self.tables.get_mut(reading.corrected), table) else {
-            return error(reading.line, "DIST is 0 to 23");
+            return error(reading.line, DIST);
         };
         if place.is_some() {
             return error(reading.line, "an axis has one table only");
@@ -131,6 +130,8 @@ impl CorrectionTables {
 const HEAD: &str =
     "a table begins with AXIS OVER AXIS MM DATUM mm DIST exponent; the axes are X, Y, Z, 4 and 5";
 
+const DIST: &str = "DIST is 0 to 23";
+
 impl Reading {
     fn begin(line: usize, head: &[&str]) -> Result<Reading, CompensationError> {
         let [corrected, "OVER", driving, "MM", "DATUM", datum, "DIST", exponent] = *head else {
@@ -138,17 +139,23 @@ impl Reading {
         };
         let axes = (axis_named(corrected), axis_named(driving));
         let (datum_mm, exponent) = (datum.parse::<f64>().ok(), exponent.parse::<u32>().ok());
-        match (axes, datum_mm.filter(|datum| datum.is_finite()), exponent) {
-            ((Some(corrected), Some(driving)), Some(datum_mm), Some(exponent)) => Ok(Reading {
-                line,
-                corrected,
-                driving,
-                datum_mm,
-                exponent: exponent.min(ErrorTable::EXPONENT_MAX + 1),
-                entries: Vec::new(),
-            }),
-            _ => error(line, HEAD),
-        }
+        let datum_mm = datum_mm.filter(|datum| datum.is_finite());
+        let ((Some(corrected), Some(driving)), Some(datum_mm), Some(exponent)) = (axes, datum_mm, exponent)
+        else {
+            return error(line, HEAD);
+        };
+        let Some(spacing_mm) = ErrorTable::spacing_mm(exponent) else {
+            return error(line, DIST);
+        };
+        Ok(Reading {
+            line,
+            corrected,
+            driving,
+            datum_mm,
+            exponent,
+            spacing_mm,
+            entries: Vec::new(),
+        })
     }
 
     /// A point with its error, in their order.
@@ -162,8 +169,7 @@ impl Reading {
         let Some(value) = value.parse::<f64>().ok().filter(|value| value.is_finite()) else {
             return error(line, "the value is no number");
         };
-        let spacing_mm = f64::from(1u32 << self.exponent) * DIST_UNIT_MM;
-        let step_max_mm = spacing_mm / CorrectionTables::POINTS as f64 + ROUNDING_MM;
+        let step_max_mm = self.spacing_mm / CorrectionTables::POINTS as f64 + ROUNDING_MM;
         let before = self.entries.last().map_or(value, |(_, error)| *error);
         if (value - before).abs() > step_max_mm {
             return error(

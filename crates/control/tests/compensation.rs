@@ -3,7 +3,10 @@
 
 mod support;
 
-use bahn_control::{CompensationAssignment, CompensationTable, Control, CorrectionTables, Remembered};
+use bahn_control::{
+    CompensationAssignment, CompensationFiles, CompensationTable, Control, CorrectionTables, Remembered,
+    Renewed,
+};
 use support::bench::*;
 use support::*;
 
@@ -80,6 +83,25 @@ fn mp730_and_the_active_line_are_needed() {
     let [y, z] = errors(&mut rig(0b110, "0 Y=ACHSE-Y Z=ACHSE-Z\n"));
     close(y, 0.0, 0.001);
     close(z, 0.0, 0.001);
+}
+
+/// CLEAR ACTIV LINE, and files that go: what is compensated no more is corrected no more, at once, where the axis stands.
+#[test]
+fn without_an_active_line_the_correction_ends() {
+    let mut rig = rig(0b110, "0 Y=ACHSE-Y Z=ACHSE-Z\nACTIVE 0\n");
+    let [y, z] = errors(&mut rig);
+    close(y, -0.005, 0.001);
+    close(z, 0.015, 0.001);
+    let assignment = CompensationAssignment::read("0 Y=ACHSE-Y Z=ACHSE-Z\n").unwrap();
+    let files = CompensationFiles {
+        assignment: Some(assignment),
+        ..CompensationFiles::default()
+    };
+    assert!(rig.control.renew(Renewed::Compensation(Box::new(files))));
+    rig.seconds(1.0);
+    close(rig.axis('Y').machine, 13.1072, 0.0005);
+    close(rig.table('Y'), 13.1072, 0.001);
+    close(rig.table('Z'), 32.768, 0.001);
 }
 
 /// Module 9095 makes another line active: only Z over itself [000:15547-15580].

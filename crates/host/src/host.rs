@@ -95,6 +95,11 @@ impl Host {
         self.state = None;
     }
 
+    /// What survives power-off is kept there from now on.
+    pub fn keep_in(&mut self, state: State) {
+        self.state = Some(state);
+    }
+
     /// Another machine takes the place of this one, as its files are by now: time goes on, whoever follows and orders stays,
     /// and what was given before is forgotten.
     pub fn replace(

@@ -6,7 +6,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::{ControlModel, MessageId};
 
 use crate::graphics::Subject;
-use crate::page::{Overlay, Page, Side, Turn, View};
+use crate::page::{Page, Side, Turn, View};
 use crate::pages;
 use crate::screen::{Heading, SoftKeys};
 use crate::site::Site;
@@ -60,13 +60,11 @@ impl Stack {
         view
     }
 
-    /// What lies over the mode.
-    fn overlay(&self) -> Overlay {
-        let opened = self.opened.iter().rev().map(|page| page.overlay());
-        opened
-            .into_iter()
-            .find(|overlay| *overlay != Overlay::None)
-            .unwrap_or_default()
+    /// The code of what lies over the mode, on a side.
+    fn overlay(&self, side: Side) -> u8 {
+        let mut opened = self.opened.iter().rev();
+        let code = opened.find_map(|page| page.overlay().code(side));
+        code.unwrap_or_default()
     }
 
     /// The file that is edited or tested.
@@ -402,7 +400,6 @@ impl Console {
     pub fn shown(&self, site: &Site, has_plc_window: bool) -> ScreenCommand {
         let programming = self.programming.as_ref().map(|(_, stack)| stack);
         let kind = programming.and_then(Stack::file).map_or(0, kind_of_file);
-        let overlay = |stack: Option<&Stack>| stack.map_or(Overlay::None, Stack::overlay);
         let both = self.split && programming.is_some();
         let side = |side: Side, stack: Option<&Stack>| {
             let is_there = stack.is_some() && (both || self.front() == side);
@@ -418,8 +415,8 @@ impl Console {
             bits.fold(0u16, |windows, (bit, _)| windows | 1 << bit)
         };
         ScreenCommand {
-            editing: overlay(programming) as u8,
-            machine: (overlay(Some(&self.machine)) as u8).min(Overlay::Table as u8),
+            editing: programming.map_or(0, |stack| stack.overlay(Side::Programming)),
+            machine: self.machine.overlay(Side::Machine),
             windows: side(Side::Programming, programming) | side(Side::Machine, Some(&self.machine)) << 8,
             file: kind,
             inch: site.settings.inch,
@@ -449,12 +446,25 @@ impl Console {
     }
 }
 
-/// The kind of a file as module 9035 codes it by its ending; 0 for others.
+/// Kinds of files in item 5 of module 9035 by their endings [000:14902]. The compensation table of kind 7 has the letter .S
+/// there, which is that of .CMA at the interface [000:3867-3869]; its tables (.COM) are one, too (inferred).
+const KINDS: [(&str, u8); 8] = [
+    ("H", 1),
+    ("I", 2),
+    ("T", 3),
+    ("D", 4),
+    ("P", 5),
+    ("A", 6),
+    ("CMA", 7),
+    ("COM", 7),
+];
+
+/// The kind of a file by its ending; 0 for others.
 fn kind_of_file(name: &str) -> u8 {
-    const KINDS: [&str; 7] = ["H", "I", "T", "D", "P", "A", "S"];
     let ending = name.rsplit_once('.').map_or("H", |(_, ending)| ending);
-    let place = KINDS.iter().position(|kind| kind.eq_ignore_ascii_case(ending));
-    place.map_or(0, |place| place as u8 + 1)
+    let mut kinds = KINDS.iter();
+    let own = kinds.find(|(kind, _)| kind.eq_ignore_ascii_case(ending));
+    own.map_or(0, |(_, code)| *code)
 }
 
 /// The machine operating mode of a key.

@@ -97,7 +97,7 @@ pub(crate) trait Page: Send {
     }
 }
 
-/// What lies over an operating mode, as module 9035 codes it in items 2 and 3 [000:14899-14900].
+/// What lies over an operating mode, for module 9035 [000:14899-14900].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Overlay {
     /// Nothing, or what belongs to the mode.
@@ -107,10 +107,27 @@ pub(crate) enum Overlay {
     Mode,
     /// A directory, or EXT.
     Directory,
-    /// On the editing screen the machine parameters, on the machine screen the tool table.
+    /// The machine parameters.
+    Parameters,
+    /// A table: that of the tools on the machine screen, a file of the mode on the editing screen.
     Table,
     /// The PLC mode.
     Plc,
+}
+
+impl Overlay {
+    /// Its code in item 2 for the editing screen, or in item 3 for the machine screen; `None` where what lies below says it:
+    /// the machine screen has codes for MOD alone, not for what its code numbers open.
+    pub fn code(self, side: Side) -> Option<u8> {
+        match (self, side) {
+            (Overlay::None, _) | (Overlay::Parameters | Overlay::Plc, Side::Machine) => None,
+            (Overlay::Table, Side::Programming) => Some(0),
+            (Overlay::Mode, _) => Some(1),
+            (Overlay::Directory, _) => Some(2),
+            (Overlay::Parameters, Side::Programming) | (Overlay::Table, Side::Machine) => Some(3),
+            (Overlay::Plc, Side::Programming) => Some(4),
+        }
+    }
 }
 
 /// What a page shows.

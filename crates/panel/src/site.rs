@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bahn_control::{AxisState, Command, Control, Mode, Shown};
+use bahn_control::{AxisState, ChannelView, Command, Control, Mode, RunState, Shown};
 use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
@@ -62,6 +62,14 @@ impl Site<'_> {
     /// The control.
     pub fn control(&self) -> &Control {
         self.host.control()
+    }
+
+    /// No program runs or is interrupted, in any channel.
+    pub fn is_idle(&self) -> bool {
+        let control = self.control();
+        let channels = (0..control.channels()).filter_map(|number| control.channel(number));
+        let rests = |channel: ChannelView<'_>| channel.run_state() == RunState::Idle && !channel.is_active();
+        channels.into_iter().all(rests)
     }
 
     /// The machine parameters as they are edited.

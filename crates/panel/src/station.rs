@@ -100,10 +100,9 @@ impl Station {
         // Sessions and the time line repeat what was.
         host.be_exact();
         let state_folder = machine.root.join(&machine.folder.state);
-        let (settings, unread) = Settings::read(&state_folder);
         let mut station = Station {
             console: Console::new(host.control().mode(), host.control().model()),
-            stored: settings.clone(),
+            stored: Settings::default(),
             speed: 1.0,
             by_the_wall: false,
             paused: false,
@@ -123,20 +122,10 @@ impl Station {
             host,
             machine,
             programs,
-            settings,
+            settings: Settings::default(),
             state_folder,
         };
-        if let Some(wrong) = unread {
-            let english = station
-                .control()
-                .first()
-                .edited_list()
-                .operation_parameters()
-                .english;
-            let language = station.settings.language(english);
-            let words = texts::words(language, "WHAT THE OPERATOR HAS CHOSEN CANNOT BE READ");
-            station.console.say(format!("{words}: {wrong}"));
-        }
+        station.read_settings();
         station.commission();
         station
     }
@@ -655,6 +644,9 @@ impl Station {
     }
 
     fn power(&mut self, on: bool) {
+        if on && self.try_again() {
+            return;
+        }
         // A control that is on stays on.
         let _ = self.act(Deed::Command(0, Command::Power(on)));
     }
@@ -671,11 +663,14 @@ impl Station {
         let answer = self.host.act(Source::Client("panel".to_owned()), deed);
         match answer.map_err(|error| Refusal(error.to_string()))? {
             Answer::Done => Ok(()),
-            Answer::Refused => Err(Refusal(
-                MessageId::KeyNonFunctional.text(self.control().model()).into(),
-            )),
+            Answer::Refused => Err(self.refusal()),
             Answer::Impossible(why) => Err(Refusal(why)),
         }
+    }
+
+    /// The control does not do it now.
+    fn refusal(&self) -> Refusal {
+        Refusal(MessageId::KeyNonFunctional.text(self.control().model()).into())
     }
 
     /// What the operator chose is kept as soon as it is another one.

@@ -41,6 +41,29 @@ pub enum TransferFiles {
     Backup,
 }
 
+impl TransferFiles {
+    /// The types of these files by their endings, where they are in a folder in which there are others, too
+    /// [000:16895-16913].
+    pub fn extensions(self) -> Option<&'static [&'static str]> {
+        match self {
+            TransferFiles::Programs | TransferFiles::Backup => None,
+            TransferFiles::Lists => Some(&["MP"]),
+            TransferFiles::Plc => Some(&["PLC", "CMA", "COM", "HLP", "A", "ER1", "ERE", "DI1", "DIE"]),
+        }
+    }
+
+    /// The type of a file where its name says none.
+    pub(crate) fn usual(self, iso: bool) -> &'static str {
+        match self {
+            TransferFiles::Programs if iso => "I",
+            TransferFiles::Programs => "H",
+            TransferFiles::Lists => "MP",
+            TransferFiles::Plc => "PLC",
+            TransferFiles::Backup => "A",
+        }
+    }
+}
+
 /// What is to be done at an interface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TransferDeed {

@@ -8,7 +8,7 @@ mod support;
 use std::path::Path;
 
 use bahn_host::backup::Restore;
-use bahn_panel::{TransferDeed, TransferFiles};
+use bahn_panel::{Input, TransferDeed, TransferFiles};
 use support::Trainee;
 
 /// The mill with something else in its list.
@@ -73,6 +73,11 @@ fn a_faulty_list_is_presented_and_the_control_goes_on_when_it_is_whole() {
         trainee.messages()
     );
     assert!(current(&mut trainee).ends_with("MP9 : 1"));
+    // A comment belongs to a parameter, which this line has not.
+    trainee.press("CE");
+    trainee.soft(";");
+    assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
+    assert_ne!(trainee.screen().dialogue.prompt, ";");
     trainee.press("CE DEL END");
     // It is whole: as after any power-on.
     trainee.ready();
@@ -87,6 +92,21 @@ fn a_faulty_list_is_presented_and_the_control_goes_on_when_it_is_whole() {
         trainee.station.control().first().edited_list().get(1020, 1),
         Some(600.0)
     );
+}
+
+/// While the list is entered nobody goes to another moment, or begins a lesson: nothing goes on before it is whole.
+#[test]
+fn nobody_goes_elsewhere_while_the_list_is_entered() {
+    let mut trainee = with(|list| list.replace("MP10     : %01111", "MP10 : ?"));
+    trainee.wait(0.5);
+    let refused = trainee.station.go_to(0.1).unwrap_err();
+    assert_eq!(refused.to_string(), "KEY NON-FUNCTIONAL");
+    let lesson = trainee.station.lessons()[0].0.clone();
+    let refused = trainee.station.input(&Input::Lesson(Some(lesson))).unwrap_err();
+    assert_eq!(refused.to_string(), "KEY NON-FUNCTIONAL");
+    trainee.wait(0.1);
+    assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+    assert!(trainee.station.control().is_off());
 }
 
 /// What the machine kept is what it was: the datum that was set before the list was damaged.
@@ -161,8 +181,11 @@ fn one_of_several_lists_is_selected() {
     });
     trainee.ready();
     let starts = trainee.station.control().starts();
+    let feed = |trainee: &Trainee| trainee.station.control().first().edited_list().get(1020, 1);
     code(&mut trainee, "95148");
-    trainee.press("PGM_NR");
+    // What was entered into the list in force acts when another one is chosen, as with END.
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
+    trainee.number("2900").press("ENT PGM_NR");
     assert_eq!(trainee.screen().program.title, "MACHINE PARAMETER LISTS");
     assert!(current(&mut trainee).starts_with("parameters.mp") && current(&mut trainee).ends_with("ACTIVE"));
     // A faulty list goes into no effect, and what is wrong stands there.
@@ -175,6 +198,8 @@ fn one_of_several_lists_is_selected() {
         trainee.messages()
     );
     assert_eq!(trainee.station.control().starts(), starts);
+    assert_eq!(feed(&trainee), Some(2900.0));
+    assert!(trainee.file("parameters.mp").contains("MP1020.1 : 2900"));
     trainee.press("CE PGM_NR");
     trainee.down_to("SLOW.MP");
     trainee.soft("SELECT");
@@ -185,9 +210,8 @@ fn one_of_several_lists_is_selected() {
     // What is entered belongs to this list.
     trainee.number("450").press("END").wait(0.1);
     assert_eq!(trainee.station.control().starts(), starts + 1);
-    let feed = |trainee: &Trainee| trainee.station.control().first().edited_list().get(1020, 1);
     assert_eq!(feed(&trainee), Some(450.0));
-    assert!(trainee.file("parameters.mp").contains("MP1020.1 : 3000"));
+    assert!(trainee.file("parameters.mp").contains("MP1020.1 : 2900"));
     // It stays selected over power-off.
     trainee.wait(0.5).station.store().unwrap();
     let mut trainee = trainee.killed();
@@ -198,8 +222,61 @@ fn one_of_several_lists_is_selected() {
     code(&mut trainee, "95148");
     trainee.press("PGM_NR UP UP ENT").wait(0.1);
     trainee.press("END").wait(0.1);
-    assert_eq!(feed(&trainee), Some(3000.0));
+    assert_eq!(feed(&trainee), Some(2900.0));
     assert_eq!(trainee.station.control().remember().parameter_list, None);
+}
+
+/// PGM NAME leaves a list as END does: "Missing or incorrect entries result in error messages that prompt you to correct your
+/// entry" [000:10050-10062], and what is half typed belongs to the list in which it was typed.
+#[test]
+fn a_list_that_pgm_name_leaves_is_checked() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let list = std::fs::read_to_string(folder.join("parameters.mp")).unwrap();
+        std::fs::write(folder.join("SLOW.MP"), list).unwrap();
+    });
+    trainee.ready();
+    let before = trainee.file("parameters.mp");
+    code(&mut trainee, "95148");
+    // X follows the 5th axis, which there is not (MP10): no machine can be so [000:4467-4486].
+    trainee.press("GOTO 8 5 0 ENT").wait(0.1);
+    trainee.number("5").press("ENT PGM_NR");
+    trainee.down_to("SLOW.MP");
+    trainee.soft("SELECT");
+    trainee.wait(0.1);
+    assert!(
+        trainee.messages().iter().any(|text| text.starts_with("MP850")),
+        "{:?}",
+        trainee.messages()
+    );
+    assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+    assert_eq!(trainee.file("parameters.mp"), before);
+    // Corrected, it is left. What is typed there without ENT is taken, and does not appear in the other list.
+    trainee.press("CE GOTO 8 5 0 ENT").wait(0.1);
+    trainee.number("0").press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
+    trainee.number("2800").press("PGM_NR");
+    trainee.down_to("SLOW.MP");
+    trainee.soft("SELECT");
+    trainee.wait(0.1);
+    assert_eq!(trainee.messages(), [""; 0]);
+    let screen = trainee.screen();
+    assert_eq!(
+        (screen.program.title.as_str(), screen.dialogue.entry.as_str()),
+        ("MACHINE PARAMETERS  SLOW.MP", "")
+    );
+    assert!(trainee.file("parameters.mp").contains("MP1020.1 : 2800"));
+    let feed = |trainee: &Trainee| trainee.station.control().first().edited_list().get(1020, 1);
+    assert_eq!(feed(&trainee), Some(2800.0));
+    assert_eq!(trainee.station.control().remember().parameter_list, None);
+    // What is typed and out of its range stays where it was typed.
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
+    trainee.number("999999").press("PGM_NR UP UP ENT").wait(0.1);
+    assert!(
+        trainee.messages()[0].contains("3 Entry value incorrect"),
+        "{:?}",
+        trainee.messages()
+    );
+    assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS  SLOW.MP");
+    assert!(trainee.file("SLOW.MP").contains("MP1020.1 : 3000"));
 }
 
 /// "The data interface is activated by pressing the EXT key": FE1 with 9600 baud at first [000:10011].
@@ -210,6 +287,7 @@ fn lists_are_transferred() {
     trainee.ready();
     news(&mut trainee, "connected 0");
     code(&mut trainee, "95148");
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT");
     trainee.press("EXT DOWN DOWN DOWN ENT");
     assert_eq!(trainee.screen().dialogue.prompt, "FILE NAME =");
     trainee.typed("NEW").press("ENT");
@@ -232,7 +310,15 @@ fn lists_are_transferred() {
         "parameters.mp",
         &list.replace("MP1020.1 : 3000", "MP1020.1 : 700"),
     );
-    trainee.press("END END END").wait(0.1);
+    trainee.press("END END").wait(0.1);
+    // It stands there as soon as the editor has the keys again.
+    assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+    assert!(
+        current(&mut trainee).contains(": 700"),
+        "{}",
+        current(&mut trainee)
+    );
+    trainee.press("END").wait(0.1);
     assert_eq!(
         trainee.station.control().first().edited_list().get(1020, 1),
         Some(700.0)
@@ -369,4 +455,51 @@ fn a_faulty_list_of_a_further_channel_is_presented() {
         assert_eq!(trainee.messages(), ["POWER INTERRUPTED"]);
         assert_eq!(trainee.file("machine.toml"), whole);
     }
+}
+
+/// The right channel runs a program: no list is written or goes into effect, and the editor says so.
+#[test]
+fn no_list_goes_into_effect_while_another_channel_runs() {
+    let mut trainee = Trainee::with("twin", |folder| {
+        let list = std::fs::read_to_string(folder.join("left.mp")).unwrap();
+        std::fs::write(folder.join("SLOW.MP"), list).unwrap();
+    });
+    trainee.ready();
+    let before = trainee.file("left.mp");
+    code(&mut trainee, "95148");
+    trainee.press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
+    trainee.number("450").press("ENT");
+    // Its axes pass their reference marks, too.
+    trainee.give(r#"{"deed":"key START2 tap"}"#).wait(60.0);
+    trainee.give(r#"{"deed":"2: mode full"}"#).wait(0.5);
+    trainee.give(r#"{"deed":"2: select RIGHT.H"}"#);
+    trainee.give(r#"{"deed":"key START2 tap"}"#).wait(2.0);
+    let runs = |trainee: &Trainee| trainee.station.control().channel(1).unwrap().is_active();
+    let right = trainee.station.control().channel(1).unwrap();
+    assert!(
+        runs(&trainee),
+        "{:?} {:?}",
+        right.mode(),
+        trainee.station.control().shown()
+    );
+    for list in ["", "SLOW.MP"] {
+        if !list.is_empty() {
+            trainee.press("CE PGM_NR");
+            trainee.down_to(list);
+            trainee.soft("SELECT");
+            trainee.wait(0.1);
+        }
+        trainee.press("END").wait(0.1);
+        assert!(
+            trainee.messages().contains(&"KEY NON-FUNCTIONAL".to_owned()),
+            "{:?}",
+            trainee.messages()
+        );
+        assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
+        assert_eq!(trainee.file("left.mp"), before);
+        assert!(runs(&trainee));
+    }
+    // Nothing was entered: the other list is shown, and does not go into effect, either.
+    trainee.press("CE CE");
+    trainee.soft("QUIT");
 }

@@ -224,4 +224,11 @@ fn programs_of_a_protected_type_are_not_edited() {
         trainee.messages()
     );
     assert_eq!(trainee.file("programs/9.H"), before);
+    trainee.press("CE CE CE PGM_NR 8 POINT I ENT");
+    assert_eq!(trainee.screen().program.title, "8.I");
+    trainee.give(r#"{"text":"M3"}"#).press("END").wait(0.1);
+    assert_eq!(trainee.messages(), [""; 0]);
+    let iso = trainee.file("programs/8.I");
+    let blocks: Vec<&str> = iso.lines().collect();
+    assert!(blocks.len() == 3 && blocks[1].contains("M3"), "{iso}");
 }

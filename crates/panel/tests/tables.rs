@@ -217,16 +217,46 @@ fn correction_tables_are_made_by_their_code_number() {
     assert_eq!(tables.error_mm(2, -90.0), 0.1);
 }
 
-/// The manual's example: ACHSE-Y and ACHSE-Z are assigned in CONFIG.CMA, line 0 is active [000:3787-3865]. MP730 selects Y
-/// and Z: the error acts at once, and no more when the line is cleared.
-#[test]
-fn axis_errors_are_entered_assigned_and_activated() {
+/// The mill, whose Y goes as far as the manual's table does, compensating Y and Z (MP730).
+fn compensating(files: &[(&str, &str)]) -> Trainee {
+    let replaced = |folder: &std::path::Path, name: &str, from: &str, to: &str| {
+        let text = std::fs::read_to_string(folder.join(name)).unwrap();
+        assert!(text.contains(from), "{name}: {from}");
+        std::fs::write(folder.join(name), text.replace(from, to)).unwrap();
+    };
     let mut trainee = Trainee::with("mill", |folder| {
-        let path = folder.join("parameters.mp");
-        let list = std::fs::read_to_string(&path).unwrap();
-        std::fs::write(path, list.replace("MP730    : %00000", "MP730    : %00110")).unwrap();
+        replaced(folder, "parameters.mp", "MP730    : %00000", "MP730    : %00110");
+        replaced(folder, "parameters.mp", "MP920.1  : -10", "MP920.1  : -110");
+        replaced(
+            folder,
+            "plant.toml",
+            "travel = [-20, 420]",
+            "travel = [-120, 420]",
+        );
+        replaced(
+            folder,
+            "plant.toml",
+            "limit_minus = { at = -15 }\nlimit_plus = { at = 415 }",
+            "limit_minus = { at = -115 }\nlimit_plus = { at = 415 }",
+        );
+        for (name, text) in files {
+            std::fs::write(folder.join(name), text).unwrap();
+        }
     });
     trainee.ready();
+    trainee
+}
+
+/// The files of the PLC, with the cursor on one of them, opened.
+fn edit(trainee: &mut Trainee, name: &str) {
+    trainee.press("PROGRAM MOD ENT").number("807667").press("ENT");
+    trainee.soft("EDIT");
+    trainee.down_to(name);
+    trainee.soft("SELECT");
+}
+
+/// Makes ACHSE-Y.COM and CONFIG.CMA, and enters the first points of the manual's table [000:3809-3853].
+fn enter_table(trainee: &mut Trainee) {
     trainee.press("PROGRAM MOD ENT").number("807667").press("ENT");
     trainee.soft("EDIT");
     for name in ["ACHSE-Y.COM", "CONFIG.CMA"] {
@@ -268,6 +298,26 @@ fn axis_errors_are_entered_assigned_and_activated() {
         trainee.file("plc/ACHSE-Y.COM"),
         "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n0 Z=-0.01\n2 Y=0.005 Z=-0.02\n"
     );
+}
+
+/// The manual's example: ACHSE-Y and ACHSE-Z are assigned in CONFIG.CMA, line 0 is active [000:3787-3865]. MP730 selects Y
+/// and Z: the error acts at once, and no more when the line is cleared.
+#[test]
+fn axis_errors_are_entered_assigned_and_activated() {
+    let mut trainee = compensating(&[]);
+    // Y to the third point of the table, -76.8928 mm from the machine datum.
+    trainee.give(r#"{"deed":"mode mdi"}"#);
+    trainee.give(r#"{"deed":"mdi L Y-76.8928 R0 F3000 M91"}"#);
+    trainee.press("NC_START").wait(10.0);
+    // How far the table of the machine stands from there, mm. The scales of the mill are right.
+    let off = |trainee: &mut Trainee| {
+        trainee.wait(1.0);
+        trainee.station.host().plant().axis('Y').unwrap().position + 76.8928
+    };
+    let close = |is: f64, wanted: f64| assert!((is - wanted).abs() < 0.0005, "{is} is not {wanted}");
+    let still = off(&mut trainee);
+    assert!(still.abs() < 0.002, "{still}");
+    enter_table(&mut trainee);
     trainee.press("END");
     trainee.soft("EDIT");
     trainee.down_to("CONFIG.CMA");
@@ -290,8 +340,11 @@ fn axis_errors_are_entered_assigned_and_activated() {
             .contains("compensation = \"plc/CONFIG.CMA\"")
     );
     assert!(trainee.screen().program.lines[0].text.contains(">>"));
+    // There Y travels 0.005 mm too far: the control takes it off, at once.
+    close(off(&mut trainee), still - 0.005);
     trainee.soft("CLEAR ACTIV LINE");
     assert_eq!(active(&trainee), None);
+    close(off(&mut trainee), still);
     // A table that is not there cannot be active.
     trainee.press("RIGHT");
     trainee
@@ -302,6 +355,94 @@ fn axis_errors_are_entered_assigned_and_activated() {
         .wait(0.1);
     assert!(!trainee.messages().is_empty());
     assert_eq!(trainee.file("plc/CONFIG.CMA"), "0 Y=ACHSE-Y\n");
+}
+
+/// DIST is 23 at most [000:3777], and a value belongs to a column: what cannot be read is not stored, also of a table that
+/// nothing uses yet.
+#[test]
+fn a_table_that_cannot_be_read_is_not_stored() {
+    let table = "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n0 Z=-0.01\n2 Y=0.005 Z=-0.02\n";
+    let mut trainee = compensating(&[("plc/ACHSE-Y.COM", table)]);
+    edit(&mut trainee, "ACHSE-Y.COM");
+    trainee.soft("HEAD LINE");
+    trainee.press("DOWN ENT").number("99").press("ENT");
+    let said = trainee.messages();
+    assert!(said[0].starts_with("ENTRY VALUE INCORRECT"), "{said:?}");
+    assert_eq!(trainee.file("plc/ACHSE-Y.COM"), table);
+    // The column of Z, in which there are values, goes with none of them.
+    trainee.press("CE CE END UP UP UP UP DOWN DOWN DOWN DOWN ENT");
+    let said = trainee.messages();
+    assert!(said[0].starts_with("ENTRY VALUE INCORRECT"), "{said:?}");
+    assert_eq!(trainee.file("plc/ACHSE-Y.COM"), table);
+    trainee.press("CE END").wait(0.1);
+    // Without its values it goes.
+    trainee.press("RIGHT NO_ENT DOWN DOWN NO_ENT");
+    trainee.soft("HEAD LINE");
+    trainee.press("DOWN DOWN DOWN DOWN ENT");
+    assert_eq!(trainee.messages(), [""; 0]);
+    assert_eq!(
+        trainee.file("plc/ACHSE-Y.COM"),
+        "ACHSE-Y MM DATUM -90 DIST 16 Y\n2 Y=0.005\n"
+    );
+}
+
+/// A file that came over the data interface with a line that cannot be read is not opened: it would go with the next entry.
+#[test]
+fn a_table_with_a_fault_is_not_opened() {
+    let table = "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n0 Z=-0.01\n2 Y:0.005\n";
+    let mut trainee = compensating(&[("plc/ACHSE-Y.COM", table)]);
+    edit(&mut trainee, "ACHSE-Y.COM");
+    let said = trainee.messages();
+    assert!(said[0].contains("line 3"), "{said:?}");
+    assert!(!trainee.screen().program.title.starts_with("FILE"));
+    // Neither does it come while it is edited.
+    trainee.write("plc/ACHSE-Y.COM", &table.replace(':', "="));
+    trainee.press("CE");
+    trainee.soft("SELECT");
+    trainee.soft("HEAD LINE");
+    trainee.write("plc/ACHSE-Y.COM", table);
+    trainee.press("END").wait(0.1);
+    assert!(
+        trainee.messages()[0].contains("line 3"),
+        "{:?}",
+        trainee.messages()
+    );
+}
+
+/// INSERT LINE makes a line at the cursor, and the active one stays the active one.
+#[test]
+fn a_line_of_the_assignment_comes_in_at_the_cursor() {
+    let files = [("plc/CONFIG.CMA", "0 Y=ACHSE-Y\n1 Z=ACHSE-Z\nACTIVE 1\n")];
+    let mut trainee = compensating(&files);
+    edit(&mut trainee, "CONFIG.CMA");
+    trainee.soft("INSERT LINE");
+    assert_eq!(
+        trainee.file("plc/CONFIG.CMA"),
+        "0\n1 Y=ACHSE-Y\n2 Z=ACHSE-Z\nACTIVE 2\n"
+    );
+    let lines = trainee.screen().program.lines;
+    assert!(lines[0].current, "{lines:#?}");
+    // Behind the active one it is another matter.
+    trainee.press("DOWN DOWN DOWN");
+    trainee.soft("DELETE LINE");
+    trainee.press("UP");
+    trainee.soft("INSERT LINE");
+    assert_eq!(trainee.file("plc/CONFIG.CMA"), "0\n1\n2 Y=ACHSE-Y\n");
+}
+
+/// The file went while it was edited: SET ACTIV LINE says so, and makes no empty one in its place.
+#[test]
+fn an_assignment_that_cannot_be_read_is_not_activated() {
+    let mut trainee = compensating(&[("plc/CONFIG.CMA", "0 Y=NONE\n")]);
+    edit(&mut trainee, "CONFIG.CMA");
+    std::fs::remove_file(trainee.folder().join("plc/CONFIG.CMA")).unwrap();
+    trainee.soft("SET ACTIV LINE");
+    assert!(
+        trainee.messages()[0].contains("cannot read"),
+        "{:?}",
+        trainee.messages()
+    );
+    assert!(!trainee.has("plc/CONFIG.CMA"));
 }
 
 #[test]
@@ -333,6 +474,34 @@ fn the_plane_of_the_swivel_axes_is_switched_by_hand() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     assert_eq!(key(&mut trainee), "");
+}
+
+/// "The 3D ROT soft key can be used to activate the swivelled machining plane for Manual and Program Run separately. The
+/// position of the swivel axes can be edited" [000:4256]: each keeps its own positions but of the axis that is edited.
+#[test]
+fn an_axis_of_the_plane_is_edited_alone() {
+    // Behind the head B a rotation about C.
+    let mut trainee = Trainee::with("gantry", |folder| {
+        let path = folder.join("parameters.mp");
+        let list = std::fs::read_to_string(&path).unwrap();
+        let with_c = list.replace("MP7540   : %000000", "MP7540   : %100000");
+        assert_ne!(list, with_c);
+        std::fs::write(path, with_c).unwrap();
+    });
+    trainee.ready();
+    trainee.give(r#"{"deed":"3d-rot run on B+10 C+20"}"#);
+    trainee.give(r#"{"deed":"3d-rot on B+30 C+40"}"#).wait(0.1);
+    trainee.press("SK6").wait(0.1);
+    let stands = |trainee: &mut Trainee| ["B", "C"].map(|name| trainee.menu_value(name));
+    assert_eq!(stands(&mut trainee), ["+30.000", "+40.000"]);
+    trainee.down_to("C");
+    trainee.press("ENT").number("5").press("ENT").wait(0.1);
+    // A, B and C of both.
+    let planes = |trainee: &Trainee| {
+        let channel = trainee.station.control().first();
+        [true, false].map(|run| channel.plane(run))
+    };
+    assert_eq!(planes(&trainee), [Some([0.0, 10.0, 5.0]), Some([0.0, 30.0, 5.0])]);
 }
 
 #[test]
@@ -385,8 +554,35 @@ fn the_plc_is_told_what_the_screen_shows() {
     );
     trainee.press("PGM_NR");
     assert_eq!(screen(&mut trainee).editing, 2);
+    // The tool table is a file of that screen (.T is 3), not something that lies over it.
+    trainee.press("0 ENT");
+    let tools = screen(&mut trainee);
+    assert_eq!((tools.editing, tools.file), (0, 3));
+    // The machine parameter editor is 3 there and the PLC editor 4; the machine screen has codes for neither, so it is MOD (1)
+    // from which they were reached.
+    for (number, code) in [("95148", 3), ("807667", 4)] {
+        trainee.press("END PROGRAM MOD ENT").number(number).press("ENT");
+        assert_eq!(
+            (screen(&mut trainee).editing, screen(&mut trainee).machine),
+            (code, 0)
+        );
+        trainee.press("END END MANUAL MOD");
+        trainee.down_to("CODE NUMBER");
+        trainee.press("ENT").number(number).press("ENT");
+        assert_eq!(screen(&mut trainee).machine, 1);
+        trainee.press("END END");
+    }
+    // A compensation table and its assignment are files of kind 7.
+    trainee.write("plc/ACHSE-Y.COM", "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n");
+    trainee.write("plc/CONFIG.CMA", "0 Y=ACHSE-Y\n");
+    for name in ["ACHSE-Y.COM", "CONFIG.CMA"] {
+        edit(&mut trainee, name);
+        let told = screen(&mut trainee);
+        assert_eq!((told.editing, told.file), (4, 7), "{name}");
+        trainee.press("END END END END");
+    }
     // A control that is switched on anew is told again.
-    trainee.press("END");
+    trainee.press("PROGRAM PGM_NR 4 7 1 1 ENT");
     let told = screen(&mut trainee);
     trainee.give("{\"power\":false}").wait(1.0);
     trainee.give("{\"power\":true}").wait(1.0);

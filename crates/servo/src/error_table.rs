@@ -26,7 +26,7 @@ impl ErrorTable {
     /// point the later counts. `None` when the exponent or a number is too large or an entry is no number.
     pub fn new(start_mm: f64, exponent: u32, entries: &[(usize, f64)]) -> Option<ErrorTable> {
         let sound = |&(number, error): &(usize, f64)| number < Self::POINTS_MAX && error.is_finite();
-        if exponent > Self::EXPONENT_MAX || !start_mm.is_finite() || !entries.iter().all(sound) {
+        if !start_mm.is_finite() || !entries.iter().all(sound) {
             return None;
         }
         let mut kinks = [None; Self::POINTS_MAX];
@@ -48,10 +48,15 @@ impl ErrorTable {
         }
         Some(ErrorTable {
             start_mm,
-            spacing_mm: f64::from(1u32 << exponent) * 1e-4,
+            spacing_mm: Self::spacing_mm(exponent)?,
             first: first.unwrap_or_default().0,
             errors_mm,
         })
+    }
+
+    /// The distance of two points by its exponent, mm: 2^exponent times 0.1 µm [000:3777]; `None` of one that is too large.
+    pub fn spacing_mm(exponent: u32) -> Option<f64> {
+        (exponent <= Self::EXPONENT_MAX).then(|| f64::from(1u32 << exponent) * 1e-4)
     }
 
     /// The error at a position of the driving axis, mm both; a rotary axis gives its position within one

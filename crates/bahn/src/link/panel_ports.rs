@@ -52,13 +52,12 @@ impl Memory {
 
     /// Those among which an order is carried out; each knows its own types alone.
     fn files(&self, files: TransferFiles) -> Box<dyn Files> {
-        let (store, kinds): (&Option<Store>, &[&str]) = match files {
-            TransferFiles::Programs | TransferFiles::Backup => return Box::new(self.programs.clone()),
-            TransferFiles::Plc => (
-                &self.plc,
-                &["PLC", "ER1", "ERE", "DI1", "DIE", "A", "HLP", "COM", "CMA"],
-            ),
-            TransferFiles::Lists => (&self.lists, &["MP"]),
+        let Some(kinds) = files.extensions() else {
+            return Box::new(self.programs.clone());
+        };
+        let store = match files {
+            TransferFiles::Lists => &self.lists,
+            _ => &self.plc,
         };
         match store {
             Some(store) => Box::new(OfKinds::new(store.clone(), kinds)),
@@ -406,5 +405,20 @@ impl Attendant for Carrier<'_> {
 
     fn is_over(&mut self, _connected: bool, _now: Duration) -> bool {
         self.ended
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the panel transfers are types of the interface.
+    #[test]
+    fn types_of_the_panel_are_those_of_the_interface() {
+        for files in [TransferFiles::Plc, TransferFiles::Lists] {
+            for extension in files.extensions().into_iter().flatten() {
+                assert!(FileType::of_extension(extension).is_some(), "{extension}");
+            }
+        }
     }
 }

@@ -381,11 +381,15 @@ impl Loader<'_> {
         self.list_at(line, &folder.parameters, model)
     }
 
-    /// A list that may be entered: what can be read of it, unless no machine can be so.
-    fn list_to_enter(&mut self, name: &str, model: ControlModel) -> ParameterList {
+    /// A list that may be entered: what can be read of it, unless no machine can be so. One that is not there is empty; a
+    /// file that cannot be read is a fault, since nobody knows what is in it.
+    fn list_to_enter(&mut self, line: usize, name: &str, model: ControlModel) -> Option<ParameterList> {
         let path = self.root.join(name);
-        let bytes = files::read_table(&path);
-        let text = ListText::from_bytes(model, bytes.as_deref().unwrap_or_default());
+        let bytes = match path.try_exists() {
+            Ok(false) => Vec::new(),
+            _ => self.read_at(line, name, files::read_table)?.1,
+        };
+        let text = ListText::from_bytes(model, &bytes);
         let mut list = ParameterList::reference(model);
         list.take(&text);
         let found = lists::machine_list(&text, &list, &path);
@@ -397,15 +401,15 @@ impl Loader<'_> {
             false => self.warnings.extend(found),
         }
         match list.inconsistencies().iter().any(|found| found.impossible) {
-            true => ParameterList::reference(model),
-            false => list,
+            true => Some(ParameterList::reference(model)),
+            false => Some(list),
         }
     }
 
     /// A list of machine parameters that a line of `machine.toml` names.
     pub(super) fn list_at(&mut self, line: usize, name: &str, model: ControlModel) -> Option<ParameterList> {
         if self.enters && !name.is_empty() && self.stays_inside("parameters", name) {
-            return Some(self.list_to_enter(name, model));
+            return self.list_to_enter(line, name, model);
         }
         let (path, bytes) = self.read_at(line, name, files::read_table)?;
         let text = ListText::from_bytes(model, &bytes);

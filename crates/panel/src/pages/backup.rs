@@ -5,7 +5,6 @@
 use std::fs::File;
 use std::io::BufReader;
 
-use bahn_control::RunState;
 use bahn_host::backup::{BACKUP_NAME, BackupError, Restore, back_up};
 use bahn_host::files;
 use bahn_parameters::MessageId;
@@ -23,14 +22,18 @@ fn name() -> String {
 
 /// BACKUP DATA.
 pub(crate) fn save(site: &mut Site) -> Turn {
-    match written(site) {
+    let written = everything(site).and_then(|text| site.programs.write(&name(), text.as_bytes()));
+    match written {
         Ok(()) => begun(TransferDeed::Write(vec![name()]), site),
         Err(why) => Turn::Say(why),
     }
 }
 
 /// All files of the machine as they are now.
-fn written(site: &mut Site) -> Result<(), String> {
+///
+/// # Errors
+/// In words: one of them cannot be written, read or carried.
+pub(crate) fn everything(site: &mut Site) -> Result<String, String> {
     site.host.store().map_err(|error| error.to_string())?;
     let mut text = String::new();
     let count = back_up(&site.machine.root, &site.machine.folder.name, |line| {
@@ -39,12 +42,12 @@ fn written(site: &mut Site) -> Result<(), String> {
         Ok(())
     });
     count.map_err(|error| error.to_string())?;
-    site.programs.write(&name(), text.as_bytes())
+    Ok(text)
 }
 
 /// RESTORE DATA replaces what is there: it is asked for.
 pub(crate) fn ask_to_restore(site: &Site) -> Turn {
-    if site.control().run_state() != RunState::Idle {
+    if !site.is_idle() {
         return Turn::Say(site.message(MessageId::KeyNonFunctional));
     }
     let erase = site.message(MessageId::EraseOverread);
@@ -81,7 +84,7 @@ pub(crate) fn ended(site: &mut Site) {
 /// # Errors
 /// In words: it is damaged, or a program runs.
 pub(crate) fn restored(site: &Site) -> Result<Restore, String> {
-    if site.control().run_state() != RunState::Idle {
+    if !site.is_idle() {
         return Err(site.message(MessageId::KeyNonFunctional));
     }
     let path = site.programs.path(&name()).unwrap_or_default();

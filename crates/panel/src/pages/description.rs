@@ -1,6 +1,6 @@
 //! `machine.toml`, which names the files that belong to a machine: what an editor reads and writes of it.
 
-use bahn_host::{LoadedMachine, files};
+use bahn_host::{FileFault, LoadedMachine, files};
 
 use crate::site::Site;
 
@@ -36,19 +36,27 @@ pub(crate) fn set(key: &str, value: &str, site: &Site) -> Result<LoadedMachine, 
 pub(crate) fn loaded(site: &Site) -> Result<LoadedMachine, String> {
     match LoadedMachine::load(&site.machine.root) {
         Ok(Ok(machine)) => Ok(machine),
-        Ok(Err(faults)) => Err(faults
-            .first()
-            .map_or_else(String::new, |fault| format!("{}: {}", fault.title, fault.label))),
+        Ok(Err(faults)) => Err(faults.first().map_or_else(String::new, in_words)),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// A fault of a file: what is wrong, and why.
+pub(crate) fn in_words(fault: &FileFault) -> String {
+    format!("{}: {}", fault.title, fault.label)
 }
 
 /// The value of an entry: a string of either kind, in one line.
 fn entry_of<'t>(text: &'t str, key: &str) -> Option<&'t str> {
     let line = text.lines().find(|line| is_entry(line, key))?;
+    split(line).map(|(value, _)| value)
+}
+
+/// The string of an entry, and what stands behind it.
+fn split(line: &str) -> Option<(&str, &str)> {
     let value = line.split_once('=')?.1.trim_start();
     let quote = value.chars().next().filter(|first| matches!(first, '"' | '\''))?;
-    value.get(1..)?.split(quote).next()
+    value.get(1..)?.split_once(quote)
 }
 
 fn is_entry(line: &str, key: &str) -> bool {
@@ -65,7 +73,9 @@ fn with_entry(text: &str, key: &str, value: &str) -> String {
     match own {
         Some(at) => {
             if let Some(line) = lines.get_mut(at) {
-                let comment = line.find('#').and_then(|at| line.get(at..));
+                // A # within the string begins no comment.
+                let behind = split(line).map_or(line.as_str(), |(_, behind)| behind);
+                let comment = behind.find('#').and_then(|at| behind.get(at..));
                 *line = comment.map_or_else(|| entry.clone(), |comment| format!("{entry}  {comment}"));
             }
         }
@@ -91,6 +101,11 @@ mod tests {
         let text = "name = \"M\"\nplc_messages = \"plc/A.ER1\"   # messages\n\n[datum]\nX = 1\n";
         let other = "name = \"M\"\nplc_messages = \"plc/B.ER1\"  # messages\n\n[datum]\nX = 1\n";
         assert_eq!(with_entry(text, "plc_messages", "plc/B.ER1"), other);
+        let hash = "plc = 'plc/A#1.PLC' # main file\nplc_messages = \"plc/#.ER1\"\n";
+        let other = "plc = \"plc/B.PLC\"  # main file\nplc_messages = \"plc/#.ER1\"\n";
+        assert_eq!(with_entry(hash, "plc", "plc/B.PLC"), other);
+        let bare = "plc = 'plc/A#1.PLC' # main file\nplc_messages = \"plc/B.ER1\"\n";
+        assert_eq!(with_entry(hash, "plc_messages", "plc/B.ER1"), bare);
         let new = "name = \"M\"\nplc_messages = \"plc/A.ER1\"   # messages\n\nplc_dialogues = \"plc/D.DI1\"\n[datum]\nX = 1\n";
         assert_eq!(with_entry(text, "plc_dialogues", "plc/D.DI1"), new);
     }

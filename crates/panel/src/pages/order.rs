@@ -36,13 +36,7 @@ pub(crate) fn order(
         port,
         mode,
         baud: baud(port, site),
-        kind: match files {
-            TransferFiles::Programs if site.settings.iso => "I",
-            TransferFiles::Programs => "H",
-            TransferFiles::Lists => "MP",
-            TransferFiles::Plc => "PLC",
-            TransferFiles::Backup => "A",
-        },
+        kind: files.usual(site.settings.iso),
         files,
         deed,
     })

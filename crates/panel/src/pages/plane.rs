@@ -28,10 +28,8 @@ fn swivel_axes(site: &Site) -> Vec<usize> {
         .collect()
 }
 
-/// The position of a swivel axis in the plane that is on, of manual operation first, else where it stands, degrees.
-fn angle(place: usize, site: &Site) -> f64 {
-    let channel = site.control().first();
-    let plane = channel.plane(false).or_else(|| channel.plane(true));
+/// The position of a swivel axis in a plane, or else where it stands, degrees.
+fn angle_in(plane: Option<[f64; 3]>, place: usize, site: &Site) -> f64 {
     let of_plane = plane.and_then(|angles| angles.get(place).copied());
     let letter = LETTERS.get(place).copied().unwrap_or_default();
     of_plane
@@ -39,29 +37,37 @@ fn angle(place: usize, site: &Site) -> f64 {
         .unwrap_or_default()
 }
 
-fn angles(site: &Site) -> [Option<f64>; 3] {
+/// The plane that is shown: the one that is on, of manual operation first.
+fn shown(site: &Site) -> Option<[f64; 3]> {
+    let channel = site.control().first();
+    channel.plane(false).or_else(|| channel.plane(true))
+}
+
+/// The positions of all swivel axes of the machine in a plane.
+fn angles(plane: Option<[f64; 3]>, site: &Site) -> [Option<f64>; 3] {
     let axes = swivel_axes(site);
-    [0, 1, 2].map(|place| axes.contains(&place).then(|| angle(place, site)))
+    [0, 1, 2].map(|place| axes.contains(&place).then(|| angle_in(plane, place, site)))
 }
 
 fn switch(run: bool, angles: Option<[Option<f64>; 3]>, site: &mut Site) -> bool {
     site.command(Command::WorkingPlane(PlaneCommand { run, angles }))
 }
 
-/// Another position of a swivel axis, for what is on; where nothing is, manual operation is switched on with it.
+/// Another position of a swivel axis, in each plane that is on; where none is, manual operation is switched on with it.
 fn edit(place: usize, value: f64, site: &mut Site) -> bool {
-    let mut wanted = angles(site);
-    if let Some(angle) = wanted.get_mut(place) {
-        *angle = Some(value);
-    }
     let channel = site.control().first();
-    let [by_hand, run] = [false, true].map(|run| channel.plane(run).is_some());
+    let [by_hand, run] = [false, true].map(|run| channel.plane(run));
+    let edited = [
+        (false, by_hand, by_hand.is_some() || run.is_none()),
+        (true, run, run.is_some()),
+    ];
     let mut done = true;
-    if by_hand || !run {
-        done &= switch(false, Some(wanted), site);
-    }
-    if run {
-        done &= switch(true, Some(wanted), site);
+    for (is_run, plane, _) in edited.into_iter().filter(|(.., is_edited)| *is_edited) {
+        let mut wanted = angles(plane, site);
+        if let Some(angle) = wanted.get_mut(place) {
+            *angle = Some(value);
+        }
+        done &= switch(is_run, Some(wanted), site);
     }
     done
 }
@@ -80,11 +86,12 @@ impl Items for Plane {
                 site.words(if on { "ACTIVE" } else { "INACTIVE" }),
             )
         });
+        let plane = shown(site);
         let axes = swivel_axes(site).into_iter().filter_map(|place| {
             let letter = LETTERS.get(place)?;
             Some(Item::new(
                 letter.to_string(),
-                format!("{:+.3}", angle(place, site)),
+                format!("{:+.3}", angle_in(plane, place, site)),
             ))
         });
         switches.into_iter().chain(axes).collect()
@@ -93,7 +100,7 @@ impl Items for Plane {
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
         if let Some((_, run)) = SWITCHES.get(place).copied() {
             let on = site.control().first().plane(run).is_none();
-            let wanted = on.then(|| angles(site));
+            let wanted = on.then(|| angles(shown(site), site));
             return match switch(run, wanted, site) {
                 true => Turn::Done,
                 false => Turn::Refused,

@@ -11,23 +11,28 @@ use bahn_host::{Attendance, Deed, LoadedMachine, Operator, PowerOn, Source, Stat
 
 use super::Station;
 use crate::console::Console;
+use crate::input::Refusal;
 use crate::pages;
 use crate::programs::ProgramMemory;
 use crate::settings::Settings;
+use crate::texts;
 use crate::timeline::Past;
 use crate::why::Waits;
 
 /// The list is entered: the control is off, and what it kept stays as it is.
 pub(super) struct Commissioning {
     /// Held, so that nobody else switches the machine on.
-    _state: Option<State>,
+    state: Option<State>,
+    /// The editor was presented: the control goes on when it is left.
+    is_presented: bool,
 }
 
 impl Commissioning {
     /// Takes what the control kept out of its hands, when the list of a machine is to be entered.
     pub fn of(machine: &LoadedMachine, power_on: &mut PowerOn) -> Option<Commissioning> {
         machine.to_be_entered.as_ref().map(|_| Commissioning {
-            _state: power_on.state.take(),
+            state: power_on.state.take(),
+            is_presented: false,
         })
     }
 }
@@ -42,44 +47,93 @@ impl Station {
         let _ = self.host.act(Source::Client("panel".to_owned()), off);
         self.is_on = false;
         let (console, site) = self.parts();
-        match pages::commission(&site) {
-            Ok(page) => console.enter(page),
-            Err(why) => console.say(why),
+        let presented = pages::commission(&site).map(|page| console.enter(page));
+        let is_presented = presented.map_err(|why| console.say(why)).is_ok();
+        if let Some(own) = &mut self.commissioning {
+            own.is_presented = is_presented;
         }
     }
 
     /// The list was left: it is whole, and the control goes on.
     pub(super) fn follow_commissioning(&mut self) {
-        if self.commissioning.is_some() && !self.console.enters() {
+        let own = self.commissioning.as_ref();
+        if own.is_some_and(|own| own.is_presented) && !self.console.enters() {
             self.load_anew();
         }
     }
 
-    /// The machine is switched on as its files are now; what cannot be read of them is said, and it stays as it is.
-    pub(super) fn load_anew(&mut self) {
-        match self.loaded_anew() {
-            Ok(()) => self.commission(),
-            Err(why) => {
-                self.console.say(why);
-                self.commission();
-            }
+    /// Nothing goes on, and nothing was, before the list is whole: no lesson begins, and nobody goes to another moment.
+    ///
+    /// # Errors
+    /// The list is entered.
+    pub(super) fn has_its_list(&self) -> Result<(), Refusal> {
+        match self.commissioning {
+            Some(_) => Err(self.refusal()),
+            None => Ok(()),
         }
     }
 
-    /// The machine becomes what it was when a backup was made.
-    pub(super) fn restore(&mut self, restore: Restore) {
-        // What the control keeps is not written over what is restored.
-        self.host.release_state();
-        match restore.commit() {
-            Ok(_) => self.load_anew(),
-            Err(error) => self.console.say(error.to_string()),
+    /// The supply is switched on once more, where the list could not be presented; whether that was so.
+    pub(super) fn try_again(&mut self) -> bool {
+        let own = self.commissioning.as_ref();
+        let tries = own.is_some_and(|own| !own.is_presented);
+        if tries {
+            self.load_anew();
         }
+        tries
+    }
+
+    /// The machine is switched on as its files are now; what cannot be read of them is said, and it stays as it is.
+    fn load_anew(&mut self) {
+        if let Err(why) = self.loaded_anew() {
+            self.console.say(why);
+        }
+        self.commission();
+    }
+
+    /// The machine becomes what it was when a backup was made; where it cannot be switched on with that it stays what it is,
+    /// its files, too.
+    pub(super) fn restore(&mut self, restore: Restore) {
+        let (_, mut site) = self.parts();
+        let before = match pages::everything(&mut site) {
+            Ok(before) => before,
+            Err(why) => return self.console.say(why),
+        };
+        let restored = restore.commit().map_err(|error| error.to_string());
+        if let Err(why) = restored.and_then(|_| self.loaded_anew()) {
+            self.console.say(why);
+            if let Err(why) = self.bring_back(&before) {
+                self.console.say(why);
+            }
+        }
+        self.commission();
+    }
+
+    /// The files of a backup are there again, and what is kept is kept in them: those that were open are gone.
+    fn bring_back(&mut self, before: &str) -> Result<(), String> {
+        let mut restore = Restore::new(&self.machine.root);
+        let read = before.lines().try_for_each(|line| restore.line(line));
+        read.and_then(|()| restore.commit())
+            .map_err(|error| error.to_string())?;
+        if let Some(own) = &mut self.commissioning {
+            own.state = None;
+        }
+        self.host.release_state();
+        let found = PowerOn::kept(&self.machine).map_err(|error| error.to_string())?;
+        match (&mut self.commissioning, found.state) {
+            (Some(own), state) => own.state = state,
+            (None, Some(state)) => self.host.keep_in(state),
+            (None, None) => {}
+        }
+        Ok(())
     }
 
     fn loaded_anew(&mut self) -> Result<(), String> {
         let machine = load(&self.machine.root)?;
         // The state is free before it is taken again.
-        self.commissioning = None;
+        if let Some(own) = &mut self.commissioning {
+            own.state = None;
+        }
         self.host.release_state();
         let mut power_on = PowerOn::kept(&machine).map_err(|error| error.to_string())?;
         self.commissioning = Commissioning::of(&machine, &mut power_on);
@@ -88,17 +142,26 @@ impl Station {
         self.host
             .replace(&machine, power_on, shared, operator_of(&machine));
         self.state_folder = machine.root.join(&machine.folder.state);
-        let (settings, _) = Settings::read(&self.state_folder);
-        self.stored = settings.clone();
-        self.settings = settings;
         self.machine = machine;
         self.is_on = true;
         let control = self.host.control();
         self.console = Console::new(control.mode(), control.model());
+        self.read_settings();
         self.plc.power_off();
         self.waits = Waits::new(&self.machine);
         self.past = Past::new(&mut self.host);
         Ok(())
+    }
+
+    /// What the operator has chosen is what was kept of it; what cannot be read is said.
+    pub(super) fn read_settings(&mut self) {
+        let (settings, unread) = Settings::read(&self.state_folder);
+        self.stored = settings.clone();
+        self.settings = settings;
+        if let Some(wrong) = unread {
+            let words = texts::words(self.language(), "WHAT THE OPERATOR HAS CHOSEN CANNOT BE READ");
+            self.console.say(format!("{words}: {wrong}"));
+        }
     }
 }
 
@@ -115,7 +178,7 @@ pub(super) fn operator_of(machine: &LoadedMachine) -> Operator {
 pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
     let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
     loaded.map_err(|faults| {
-        let lines = faults.iter().map(|fault| fault.title.clone());
+        let lines = faults.iter().map(pages::fault_in_words);
         lines.collect::<Vec<_>>().join("\n")
     })
 }

@@ -35,12 +35,13 @@ impl Station {
     /// kept as a branch.
     ///
     /// # Errors
-    /// When the moment is forgotten.
+    /// When the moment is forgotten, or the list of machine parameters is entered.
     pub fn go_to(&mut self, time_s: f64) -> Result<(), Refusal> {
         self.input(&Input::GoTo(time_s, None))
     }
 
     pub(super) fn go_to_in(&mut self, time_s: f64, branch: Option<u32>) -> Result<(), Refusal> {
+        self.has_its_list()?;
         // A number that is none is the beginning.
         let time_us = (time_s.max(0.0) * 1e6).round() as u64;
         let gone = self.past.go_to(&mut self.host, &mut self.lesson, time_us, branch);
@@ -109,6 +110,9 @@ impl Station {
     pub(super) fn begin_lesson(&mut self, name: Option<&str>) -> Result<(), Refusal> {
         let lesson = name.map(|name| lesson::load(&self.machine, name)).transpose();
         let lesson = lesson.map_err(Refusal)?;
+        if lesson.is_some() {
+            self.has_its_list()?;
+        }
         self.lesson = None;
         let Some(lesson) = lesson else {
             return Ok(());

@@ -1,12 +1,12 @@
 //! The assignment (.CMA): in each line the table of each axis, and which line is active [000:3781] [000:3855-3865].
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bahn_control::CompensationAssignment;
 use bahn_dialogue::Key;
-use bahn_host::files;
+use bahn_parameters::PLC_AXIS_NAMES as AXES;
 
-use super::text::{AXES, act, lines, read, store, text_of};
+use super::text::{ErrorFile, Kind, text_of};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Name;
 use crate::pages::{description, list};
@@ -33,7 +33,7 @@ const WIDTH: usize = 12;
 /// The editor.
 struct Assignment {
     name: String,
-    path: PathBuf,
+    file: ErrorFile,
     rows: Vec<[String; 5]>,
     active: Option<usize>,
     row: usize,
@@ -46,7 +46,7 @@ struct Assignment {
 pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
     let mut assignment = Assignment {
         name: name.to_owned(),
-        path: path.to_owned(),
+        file: ErrorFile::new(Kind::Assignment, path),
         rows: Vec::new(),
         active: None,
         row: 0,
@@ -70,7 +70,7 @@ fn text(rows: &[[String; 5]], active: Option<usize>) -> String {
 
 impl Assignment {
     fn renew(&mut self) -> Result<(), String> {
-        let read = CompensationAssignment::read(&lines(&read(&self.path)?).join("\n"));
+        let read = CompensationAssignment::read(&self.file.lines()?.join("\n"));
         let read = read.map_err(|error| error.to_string())?;
         let names = |line: &bahn_parameters::PerPlcAxis<Option<String>>| {
             let mut names = <[String; 5]>::default();
@@ -87,16 +87,14 @@ impl Assignment {
 
     /// Writes other lines; a file in use acts at once.
     fn take(&mut self, rows: Vec<[String; 5]>, active: Option<usize>, site: &mut Site) -> Turn {
-        match store(&self.path, &text(&rows, active), site).and_then(|()| self.renew()) {
+        match self
+            .file
+            .store(&text(&rows, active), site)
+            .and_then(|()| self.renew())
+        {
             Ok(()) => Turn::Done,
             Err(why) => Turn::Say(why),
         }
-    }
-
-    /// How machine.toml names the file.
-    fn named(&self, site: &Site) -> String {
-        let path = self.path.strip_prefix(&site.machine.root).unwrap_or(&self.path);
-        path.to_string_lossy().replace('\\', "/")
     }
 
     /// SET ACTIV LINE: the file is the one in use from now on, and this line of it acts.
@@ -104,34 +102,27 @@ impl Assignment {
         if self.rows.get(self.row).is_none() {
             return Turn::Refused;
         }
-        let own = self.named(site);
+        let own = self.file.named(site);
         if description::value(KEY, site).as_ref() == Some(&own) {
             return self.take(self.rows.clone(), Some(self.row), site);
         }
         // Its line and the entry that names it go together, or neither does.
-        let before = files::read_table(&self.path).unwrap_or_default();
         let text = text(&self.rows, Some(self.row));
-        if let Err(error) = files::write_whole(&self.path, text.as_bytes()) {
-            return Turn::Say(error.to_string());
-        }
-        match description::set(KEY, &own, site) {
-            Ok(machine) => {
-                act(machine, site);
-                self.renew().map_or_else(Turn::Say, |()| Turn::Done)
-            }
-            Err(why) => match files::write_whole(&self.path, &before) {
-                Ok(()) => Turn::Say(why),
-                Err(error) => Turn::Say(error.to_string()),
-            },
+        let named = |site: &Site| description::set(KEY, &own, site);
+        let stored = self.file.store_by(named, &text, site);
+        match stored.and_then(|()| self.renew()) {
+            Ok(()) => Turn::Done,
+            Err(why) => Turn::Say(why),
         }
     }
 
+    /// A line comes in at the cursor; the active one stays active.
     fn insert(&mut self, site: &mut Site) -> Turn {
+        let at = self.row.min(self.rows.len());
         let mut rows = self.rows.clone();
-        rows.push(Default::default());
-        let turn = self.take(rows, self.active, site);
-        self.row = self.rows.len().saturating_sub(1);
-        turn
+        rows.insert(at, Default::default());
+        let active = self.active.map(|active| active + usize::from(active >= at));
+        self.take(rows, active, site)
     }
 
     /// The active line keeps its place when one before it goes.
@@ -150,7 +141,7 @@ impl Assignment {
     fn ask(&mut self, key: Key, site: &Site) -> Turn {
         self.asks = true;
         let axis = AXES.get(self.column).copied().unwrap_or_default();
-        let (path, rows) = (self.path.clone(), self.rows.clone());
+        let (file, rows) = (self.file.clone(), self.rows.clone());
         let (row, column, active) = (self.row, self.column, self.active);
         let mut ask = Name::ask(
             format!("{axis}: {}", site.words("FILE NAME =")),
@@ -161,7 +152,7 @@ impl Assignment {
                 if let Some(cell) = cell {
                     name.trim_end_matches(".COM").clone_into(cell);
                 }
-                match store(&path, &text(&rows, active), site) {
+                match file.store(&text(&rows, active), site) {
                     Ok(()) => Turn::Close,
                     Err(why) => Turn::Say(why),
                 }
@@ -180,6 +171,10 @@ impl Assignment {
 }
 
 impl Page for Assignment {
+    fn file(&self) -> Option<&str> {
+        Some(&self.name)
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if let Some(rows) = list::way_of_key(key) {
             self.row = list::moved(self.row, rows, self.rows.len());

@@ -1,14 +1,12 @@
 //! Code number 105 296: the correction tables of nonlinear axis errors, point by point [000:3885-3960].
 
-use std::path::PathBuf;
-
 use bahn_control::CorrectionTables;
 use bahn_dialogue::Key;
 use bahn_host::files;
-use bahn_parameters::MessageId;
+use bahn_parameters::PLC_AXIS_NAMES as AXES;
 
 use super::head::{self, Field};
-use super::text::{AXES, NEW_HEAD, act, lines, read, text_of};
+use super::text::{ErrorFile, Kind, NEW_HEAD, act, text_of};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Choice;
@@ -28,7 +26,7 @@ const SOFT_KEYS: [&str; 6] = [
 
 /// The file of the correction tables.
 struct Corrections {
-    path: PathBuf,
+    file: ErrorFile,
     name: String,
     lines: Vec<String>,
     current: usize,
@@ -77,10 +75,10 @@ fn made(site: &mut Site) -> Result<Box<dyn Page>, String> {
 }
 
 fn opened(name: &str, site: &Site) -> Result<Box<dyn Page>, String> {
-    let path = site.machine.root.join(name);
-    let lines = lines(&read(&path)?);
+    let file = ErrorFile::new(Kind::Corrections, &site.machine.root.join(name));
+    let lines = file.lines()?;
     Ok(Box::new(Corrections {
-        path,
+        file,
         name: name.to_owned(),
         lines,
         current: 0,
@@ -115,14 +113,9 @@ impl Corrections {
         turn
     }
 
-    /// Other lines: checked, on the medium, and they act.
+    /// Other lines: on the medium, and they act.
     fn store(&mut self, lines: Vec<String>, site: &mut Site) -> Turn {
-        let text = text_of(&lines);
-        if let Err(error) = CorrectionTables::read(&text) {
-            let incorrect = site.message(MessageId::EntryValueIncorrect);
-            return Turn::Say(format!("{incorrect}: {}", error.what));
-        }
-        match super::text::store(&self.path, &text, site) {
+        match self.file.store(&text_of(&lines), site) {
             Ok(()) => {
                 self.lines = lines;
                 Turn::Done
@@ -151,7 +144,7 @@ impl Corrections {
             Field::Number("DATUM", 5),
             Field::Number("DIST", 7),
         ];
-        head::open(self.path.clone(), self.table().start, fields)
+        head::open(self.file.clone(), self.table().start, fields)
     }
 
     /// A table of the first axis that has none: one for each axis at most [000:3883].
@@ -216,16 +209,16 @@ impl Page for Corrections {
         }
     }
 
-    fn tick(&mut self, site: &mut Site) -> Turn {
+    fn tick(&mut self, _site: &mut Site) -> Turn {
         if !std::mem::take(&mut self.heads) {
             return Turn::Done;
         }
-        match read(&self.path) {
-            Ok(text) => {
-                self.lines = lines(&text);
+        match self.file.lines() {
+            Ok(lines) => {
+                self.lines = lines;
                 Turn::Done
             }
-            Err(why) => Turn::Say(format!("{}: {why}", site.words("FILE"))),
+            Err(why) => Turn::Say(why),
         }
     }
 

@@ -1,8 +1,8 @@
 //! HEAD LINE: what stands in the head of a table, each word of it entered by itself [000:3772-3779].
 
-use std::path::PathBuf;
+use bahn_parameters::PLC_AXIS_NAMES as AXES;
 
-use super::text::{AXES, lines, read, store, text_of};
+use super::text::{ErrorFile, text_of};
 use crate::page::Turn;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::number::Number;
@@ -21,30 +21,30 @@ pub(super) enum Field {
 
 /// The head line of a table.
 pub(super) struct Head {
-    path: PathBuf,
+    file: ErrorFile,
     /// The line of the file, without empty ones.
     line: usize,
     fields: Vec<Field>,
 }
 
 /// Opens it.
-pub(super) fn open(path: PathBuf, line: usize, fields: Vec<Field>) -> Turn {
-    Turn::Open(Box::new(Menu::new(Head { path, line, fields })))
+pub(super) fn open(file: ErrorFile, line: usize, fields: Vec<Field>) -> Turn {
+    Turn::Open(Box::new(Menu::new(Head { file, line, fields })))
 }
 
-fn words(path: &std::path::Path, line: usize) -> Vec<String> {
-    let text = read(path).unwrap_or_default();
-    let lines = lines(&text);
+/// The words of a head line; none of a file that cannot be read.
+fn words(file: &ErrorFile, line: usize) -> Vec<String> {
+    let lines = file.lines().unwrap_or_default();
     let words = lines.get(line).map(|line| line.split_whitespace());
     words.into_iter().flatten().map(str::to_owned).collect()
 }
 
-fn write(path: &std::path::Path, line: usize, words: &[String], site: &mut Site) -> Result<(), String> {
-    let mut lines = lines(&read(path)?);
+fn write(file: &ErrorFile, line: usize, words: &[String], site: &mut Site) -> Result<(), String> {
+    let mut lines = file.lines()?;
     if let Some(own) = lines.get_mut(line) {
         *own = words.join(" ");
     }
-    store(path, &text_of(&lines), site)
+    file.store(&text_of(&lines), site)
 }
 
 impl Items for Head {
@@ -53,7 +53,7 @@ impl Items for Head {
     }
 
     fn items(&self, site: &Site) -> Vec<Item> {
-        let words = words(&self.path, self.line);
+        let words = words(&self.file, self.line);
         let word = |place: usize| words.get(place).cloned().unwrap_or_default();
         let item = |field: &Field| match *field {
             Field::Number(name, place) => Item::new(name, word(place)),
@@ -71,7 +71,7 @@ impl Items for Head {
     }
 
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
-        let mut words = words(&self.path, self.line);
+        let mut words = words(&self.file, self.line);
         match self.fields.get(place).copied() {
             Some(Field::Number(name, at)) => return self.ask(name, at),
             Some(Field::Axis(_, at)) => {
@@ -91,7 +91,7 @@ impl Items for Head {
             }
             None => return Turn::Refused,
         }
-        match write(&self.path, self.line, &words, site) {
+        match write(&self.file, self.line, &words, site) {
             Ok(()) => Turn::Done,
             Err(why) => Turn::Say(why),
         }
@@ -100,13 +100,13 @@ impl Items for Head {
 
 impl Head {
     fn ask(&self, name: &str, at: usize) -> Turn {
-        let (path, line) = (self.path.clone(), self.line);
+        let (file, line) = (self.file.clone(), self.line);
         Turn::Open(Number::turning(format!("{name} ="), move |value, site| {
-            let mut words = words(&path, line);
+            let mut words = words(&file, line);
             if let Some(word) = words.get_mut(at) {
                 *word = value.to_string();
             }
-            match write(&path, line, &words, site) {
+            match write(&file, line, &words, site) {
                 Ok(()) => Turn::Close,
                 Err(why) => Turn::Say(why),
             }

@@ -2,13 +2,14 @@
 //! [000:3809-3853]. Only the kinks are entered.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bahn_dialogue::Key;
-use bahn_parameters::MessageId;
+use bahn_parameters::PLC_AXIS_NAMES as AXES;
+use bahn_servo::ErrorTable;
 
 use super::head::{self, Field};
-use super::text::{AXES, lines, read, store};
+use super::text::{ErrorFile, Kind};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
@@ -26,10 +27,6 @@ const SOFT_KEYS: [&str; 8] = [
     "HEAD LINE",
     "END",
 ];
-/// Points of a table at most [000:3770].
-const POINTS_MAX: usize = 256;
-/// Unit of the spacing, mm: DIST is its exponent of two [000:3777].
-const UNIT_MM: f64 = 1e-4;
 /// Words of the head line before its columns.
 const COLUMNS: usize = 6;
 /// Width of number, position and column in the window.
@@ -38,8 +35,10 @@ const WIDTHS: [usize; 3] = [5, 12, 11];
 /// The editor.
 struct Table {
     name: String,
-    path: PathBuf,
+    file: ErrorFile,
     head: Vec<String>,
+    /// Where the points stand.
+    places: Option<ErrorTable>,
     points: BTreeMap<usize, BTreeMap<String, String>>,
     row: usize,
     column: usize,
@@ -52,8 +51,9 @@ struct Table {
 pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
     let mut table = Table {
         name: name.to_owned(),
-        path: path.to_owned(),
+        file: ErrorFile::new(Kind::Table, path),
         head: Vec::new(),
+        places: None,
         points: BTreeMap::new(),
         row: 0,
         column: 0,
@@ -65,18 +65,33 @@ pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
 }
 
 impl Table {
+    /// What stands in the file; a name of an axis may be written in small letters.
     fn renew(&mut self) -> Result<(), String> {
-        let lines = lines(&read(&self.path)?);
+        let lines = self.file.lines()?;
         let mut lines = lines.iter().map(|line| line.split_whitespace());
-        self.head = lines.next().into_iter().flatten().map(str::to_owned).collect();
+        let words = lines.next().into_iter().flatten().enumerate();
+        let head = words.map(|(place, word)| match place < COLUMNS {
+            true => word.to_owned(),
+            false => word.to_uppercase(),
+        });
+        self.head = head.collect();
+        let [datum, exponent] = [3, 5].map(|place| self.head.get(place).map_or("", String::as_str));
+        let (datum, exponent) = (
+            datum.parse().unwrap_or_default(),
+            exponent.parse().unwrap_or_default(),
+        );
+        self.places = ErrorTable::new(datum, exponent, &[]);
         self.points.clear();
         for mut words in lines {
-            let Some(number) = words.next().and_then(|word| word.parse().ok()) else {
-                continue;
+            let number = words.next().and_then(|word| word.parse().ok());
+            let cells = words.map(|word| word.split_once('='));
+            let (Some(number), Some(cells)) = (number, cells.collect::<Option<Vec<_>>>()) else {
+                return Err(format!("{}: a line of it is none of a table", self.name));
             };
-            let cells = words.filter_map(|word| word.split_once('='));
-            let cells = cells.map(|(axis, value)| (axis.to_owned(), value.to_owned()));
-            self.points.insert(number, cells.collect());
+            let cells = cells
+                .into_iter()
+                .map(|(axis, value)| (axis.to_uppercase(), value.to_owned()));
+            self.points.entry(number).or_default().extend(cells);
         }
         self.column = self.column.min(self.columns().len().saturating_sub(1));
         Ok(())
@@ -102,14 +117,14 @@ impl Table {
     fn change(&mut self, what: impl FnOnce(&mut Table), site: &mut Site) -> Turn {
         let before = self.points.clone();
         what(self);
-        match store(&self.path, &self.written(), site) {
+        match self.file.store(&self.written(), site) {
             Ok(()) => {
                 self.entry = Entry::default();
                 Turn::Done
             }
             Err(why) => {
                 self.points = before;
-                Turn::Say(format!("{}: {why}", site.message(MessageId::EntryValueIncorrect)))
+                Turn::Say(why)
             }
         }
     }
@@ -137,7 +152,7 @@ impl Table {
     /// A line comes in between, or goes: those behind it move by one point.
     fn shift(&mut self, on: bool, site: &mut Site) -> Turn {
         let row = self.row;
-        if on && self.points.contains_key(&(POINTS_MAX - 1)) {
+        if on && self.points.contains_key(&(ErrorTable::POINTS_MAX - 1)) {
             return Turn::Refused;
         }
         self.change(
@@ -162,25 +177,19 @@ impl Table {
         self.heads = true;
         let columns = (0..AXES.len()).map(|axis| Field::Column(axis, COLUMNS));
         let fields = [Field::Number("DATUM", 3), Field::Number("DIST", 5)];
-        head::open(self.path.clone(), 0, fields.into_iter().chain(columns).collect())
+        head::open(self.file.clone(), 0, fields.into_iter().chain(columns).collect())
     }
 
     fn go(&mut self, rows: isize) -> Turn {
-        self.row = list::moved(self.row, rows, POINTS_MAX);
+        self.row = list::moved(self.row, rows, ErrorTable::POINTS_MAX);
         self.entry = Entry::default();
         Turn::Done
     }
 
-    /// The place of a point, mm from the machine datum.
-    fn position(&self, point: usize) -> f64 {
-        let number = |place: usize| self.head.get(place).and_then(|word| word.parse::<f64>().ok());
-        let (datum, exponent) = (number(3).unwrap_or(0.0), number(5).unwrap_or(0.0));
-        datum + point as f64 * exponent.exp2() * UNIT_MM
-    }
-
     fn line(&self, point: usize) -> Line {
         let [number, position, width] = WIDTHS;
-        let place = format!("{:.4}", self.position(point));
+        let places = self.places.as_ref();
+        let place = format!("{:.4}", places.map_or(0.0, |places| places.position_mm(point)));
         let place = place.trim_end_matches('0').trim_end_matches('.');
         let head = format!("{point:<number$}{place:<position$}");
         let cells = self.points.get(&point);
@@ -192,6 +201,10 @@ impl Table {
 }
 
 impl Page for Table {
+    fn file(&self) -> Option<&str> {
+        Some(&self.name)
+    }
+
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         if let Some(rows) = list::way_of_key(key) {
             return self.go(rows);
@@ -240,7 +253,7 @@ impl Page for Table {
             self.name,
             columns.join(" ")
         );
-        let cursor = (self.row, POINTS_MAX);
+        let cursor = (self.row, ErrorTable::POINTS_MAX);
         View {
             window: Some(list::window(title, WindowKind::Table, cursor, lines, |point| {
                 self.line(point)

@@ -7,6 +7,7 @@ use bahn_control::Renewed;
 use bahn_host::{FileFault, LoadedMachine, files};
 use bahn_parameters::{ListError, ListText, ParameterId, ParameterList};
 
+use crate::pages::description::in_words;
 use crate::site::Site;
 
 /// The lists of the machine: the usual one, and the files `NAME.MP` of its folder [000:14894-14896].
@@ -81,13 +82,11 @@ impl ListFile {
     /// What stands in it; nothing where there is no file yet.
     pub fn text(&self, site: &Site) -> Result<ListText, String> {
         let model = site.control().model();
-        match self.path.exists() {
-            true => {
-                let bytes = files::read_table(&self.path).map_err(|error| error.to_string())?;
-                Ok(ListText::from_bytes(model, &bytes))
-            }
-            false => Ok(ListText::from_bytes(model, b"")),
-        }
+        let bytes = match self.path.try_exists() {
+            Ok(false) => Ok(Vec::new()),
+            _ => files::read_table(&self.path).map_err(|error| error.to_string()),
+        };
+        Ok(ListText::from_bytes(model, &bytes?))
     }
 
     /// What stands in it by now, with what was entered; its comments stay.
@@ -135,14 +134,14 @@ impl ListFile {
         let is_elsewhere = |fault: &FileFault| lists.iter().any(|name| root.join(name) == fault.path);
         let mut faults = faults.into_iter().flatten();
         match faults.find(|fault| !is_elsewhere(fault)) {
-            Some(fault) => Err(Refused::Words(format!("{}: {}", fault.title, fault.label))),
+            Some(fault) => Err(Refused::Words(in_words(&fault))),
             None => Ok(list),
         }
     }
 
-    /// The whole list goes into effect [000:10072-10074].
-    pub fn put_into_effect(&self, list: ParameterList, site: &mut Site) {
+    /// The whole list goes into effect [000:10072-10074]; `false` when that is not possible now.
+    pub fn put_into_effect(&self, list: ParameterList, site: &mut Site) -> bool {
         let name = (self.name != site.machine.folder.parameters).then(|| self.name.clone());
-        site.host.renew(Renewed::List(name, Box::new(list)));
+        site.host.renew(Renewed::List(name, Box::new(list)))
     }
 }

@@ -7,7 +7,7 @@
 mod file;
 mod lists;
 
-use bahn_control::{Command, RunState};
+use bahn_control::Command;
 use bahn_dialogue::Key;
 use bahn_parameters::{Definition, ListError, MessageId, ParameterList, Reaction};
 
@@ -132,7 +132,7 @@ fn editor(site: &Site, is_meant: impl Fn(&Definition) -> bool) -> Turn {
 
 /// Parameters are edited while no program runs.
 fn opened(rows: Vec<Row>, site: &Site) -> Turn {
-    if site.control().run_state() != RunState::Idle {
+    if !site.is_idle() {
         return Turn::Say(site.message(MessageId::KeyNonFunctional));
     }
     if rows.is_empty() {
@@ -206,6 +206,11 @@ impl Parameters {
         self.rows.get(self.current)
     }
 
+    /// The parameter under the cursor; a line that names none has none.
+    fn definition(&self) -> Option<&'static Definition> {
+        self.row().and_then(|row| row.definition)
+    }
+
     /// The value of a parameter as it is best written.
     fn value(&self, definition: &Definition) -> String {
         let id = definition.id;
@@ -218,7 +223,7 @@ impl Parameters {
         let Some(entry) = self.entry.clone() else {
             return Turn::Done;
         };
-        let Some(id) = self.row().and_then(|row| row.definition).map(|own| own.id) else {
+        let Some(id) = self.definition().map(|own| own.id) else {
             return Turn::Refused;
         };
         // A comment may stand behind the value, or alone.
@@ -261,56 +266,75 @@ impl Parameters {
         Turn::Done
     }
 
-    fn go(&mut self, rows: isize, site: &Site) -> Turn {
-        let turn = self.take(site);
-        if matches!(turn, Turn::Done) {
-            self.current = list::moved(self.current, rows, self.rows.len());
+    /// Goes on when what was entered is taken: it belongs to the line and the list in which it was entered.
+    fn taken<'s>(
+        &mut self,
+        site: &mut Site<'s>,
+        on: impl FnOnce(&mut Parameters, &mut Site<'s>) -> Turn,
+    ) -> Turn {
+        match self.take(site) {
+            Turn::Done => on(self, site),
+            turn => turn,
         }
-        turn
+    }
+
+    fn go(&mut self, rows: isize) -> Turn {
+        self.current = list::moved(self.current, rows, self.rows.len());
+        Turn::Done
+    }
+
+    /// Another list than the control has: it was selected, or came over a data interface meanwhile.
+    fn is_other(&self, site: &Site) -> bool {
+        self.file.name != file::in_force(site) || self.file.was_written()
     }
 
     /// END: the list is checked as a whole, written and taken over.
     fn finish(&mut self, site: &mut Site) -> Turn {
-        let turn = self.take(site);
-        if !matches!(turn, Turn::Done) {
-            return turn;
-        }
-        // Another list than the control has: it was selected, or came over a data interface meanwhile.
-        let is_other = self.file.name != file::in_force(site) || self.file.was_written();
+        let is_other = self.is_other(site);
         if self.entered.is_empty() && !is_other && !self.commissions {
             return Turn::Close;
         }
-        if site.control().run_state() != RunState::Idle {
+        let list = match self.store(site) {
+            Ok(list) => list,
+            Err(turn) => return turn,
+        };
+        if !self.act(&list, is_other, site) {
             return Turn::Say(site.message(MessageId::KeyNonFunctional));
         }
-        let mut text = match self.file.with(&self.entered, site) {
-            Ok(text) => text,
-            Err(why) => return Turn::Say(why),
-        };
+        let own = |id| self.entered.values.contains_key(&id);
+        match list.inconsistencies().iter().find(|found| own(found.id)) {
+            Some(found) => Turn::CloseSaying(format!("{}: {}", found.id, found.rule)),
+            None => Turn::Close,
+        }
+    }
+
+    /// The list with what was entered is checked and on the medium; else what is to be said. A faulty list is not
+    /// written: no control is switched on with it.
+    fn store(&mut self, site: &mut Site) -> Result<ParameterList, Turn> {
+        if !site.is_idle() {
+            return Err(Turn::Say(site.message(MessageId::KeyNonFunctional)));
+        }
+        let mut text = self.file.with(&self.entered, site).map_err(Turn::Say)?;
         // A list without any entry becomes the one that the control makes by itself: a programming station
         // [000:10066-10070].
         if self.commissions && text.entries().is_empty() && text.faults().is_empty() {
             text.complete();
         }
-        // No control is switched on with a faulty list: it is not written, and the editor stays open.
-        let list = match self.file.check(&text, site) {
-            Ok(list) => list,
-            Err(Refused::Words(why)) => return Turn::Say(why),
-            Err(Refused::Line(fault)) => return self.refused(&fault, site),
-        };
-        if let Err(why) = self.file.write(&text) {
-            return Turn::Say(why);
-        }
-        let found = list.inconsistencies();
+        let list = self.file.check(&text, site).map_err(|refused| match refused {
+            Refused::Words(why) => Turn::Say(why),
+            Refused::Line(fault) => self.refused(&fault, site),
+        })?;
+        self.file.write(&text).map_err(Turn::Say)?;
+        Ok(list)
+    }
+
+    /// The list that was written goes into effect, as a whole where it is another one than the control has; `false` when
+    /// that is not possible now.
+    fn act(&self, list: &ParameterList, is_other: bool, site: &mut Site) -> bool {
         match (self.commissions, is_other) {
-            (true, _) => {}
-            (false, true) => self.file.put_into_effect(list, site),
+            (true, _) => true,
+            (false, true) => self.file.put_into_effect(list.clone(), site),
             (false, false) => self.take_over(site),
-        }
-        let own = |id| self.entered.values.contains_key(&id);
-        match found.iter().find(|found| own(found.id)) {
-            Some(found) => Turn::CloseSaying(format!("{}: {}", found.id, found.rule)),
-            None => Turn::Close,
         }
     }
 
@@ -323,12 +347,17 @@ impl Parameters {
         Turn::Say(format!("{}: {}", fault.line, said(&fault.error, site)))
     }
 
-    /// Another list is edited from now on; what was entered into the one before is on the medium.
-    fn edit_other(&mut self, name: String, site: &Site) -> Turn {
+    /// Another list is edited from now on. The one before is left as with END; one that is not in force is written, and
+    /// goes into no effect.
+    fn edit_other(&mut self, name: String, site: &mut Site) -> Turn {
         if !self.entered.is_empty() {
-            let written = self.file.with(&self.entered, site);
-            if let Err(why) = written.and_then(|text| self.file.write(&text)) {
-                return Turn::Say(why);
+            let was_written = self.file.was_written();
+            let list = match self.store(site) {
+                Ok(list) => list,
+                Err(turn) => return turn,
+            };
+            if self.file.name == file::in_force(site) && !self.act(&list, was_written, site) {
+                return Turn::Say(site.message(MessageId::KeyNonFunctional));
             }
         }
         self.file = ListFile::new(name, site);
@@ -343,8 +372,9 @@ impl Parameters {
         }
     }
 
-    /// The control takes over what has changed: at once, with the reference marks, with a reset, in this order.
-    fn take_over(&self, site: &mut Site) {
+    /// The control takes over what has changed: at once, with the reference marks, with a reset, in this order. `false`
+    /// when it refuses something.
+    fn take_over(&self, site: &mut Site) -> bool {
         let mut changed: Vec<&Definition> = self
             .entered
             .values
@@ -356,12 +386,12 @@ impl Parameters {
             Reaction::ReferenceMarks => 1,
             Reaction::Reset => 2,
         });
-        for definition in changed {
+        let taken = |definition: &&Definition| {
             let text = format!("{}={}", definition.id, self.value(definition));
-            if let Ok(command) = text.parse::<Command>() {
-                site.command(command);
-            }
-        }
+            let command = text.parse::<Command>();
+            command.is_ok_and(|command| site.command(command))
+        };
+        changed.iter().map(taken).fold(true, |all, taken| all & taken)
     }
 
     /// GOTO goes to a number, or the next greater one.
@@ -527,32 +557,26 @@ fn said(error: &bahn_parameters::ParameterError, site: &Site) -> String {
 
 impl Page for Parameters {
     fn overlay(&self) -> Overlay {
-        Overlay::Table
+        Overlay::Parameters
     }
 
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
-        if std::mem::take(&mut self.exchanged)
-            && self.file.was_written()
-            && let Err(why) = self.read(site)
-        {
-            return Turn::Say(why);
-        }
         match key {
-            Key::Up => self.go(-1, site),
-            Key::Down | Key::Ent => self.go(1, site),
-            Key::End => self.finish(site),
+            Key::Up => self.taken(site, |own, _| own.go(-1)),
+            Key::Down | Key::Ent => self.taken(site, |own, _| own.go(1)),
+            Key::End => self.taken(site, Parameters::finish),
             Key::Ce | Key::NoEnt | Key::Del if self.entry.is_some() => {
                 self.entry = None;
                 Turn::Done
             }
             Key::Del => self.remove(),
-            Key::PgmNr => lists::ask(&self.file.name, &self.chosen, site),
-            Key::Ext => {
-                self.exchanged = true;
+            Key::PgmNr => self.taken(site, |own, site| lists::ask(&own.file.name, &own.chosen, site)),
+            Key::Ext => self.taken(site, |own, site| {
+                own.exchanged = true;
                 external::of(LISTS, site)
-            }
+            }),
             Key::Mod => Turn::Open(interface::with_backup()),
-            Key::Goto => self.goto.ask(site.words("GOTO: NUMBER ="), 8),
+            Key::Goto => self.taken(site, |own, site| own.goto.ask(site.words("GOTO: NUMBER ="), 8)),
             key => self.typed(key),
         }
     }
@@ -565,13 +589,15 @@ impl Page for Parameters {
         match list::name_at(&SOFT_KEYS, place) {
             "%" => self.radix('%'),
             "$" => self.radix('$'),
-            "FIND" => self.find.ask(site.words("FIND ="), 24),
+            "FIND" => self.taken(site, |own, site| own.find.ask(site.words("FIND ="), 24)),
+            // A comment belongs to a parameter.
+            ";" if self.definition().is_none() => Turn::Refused,
             ";" => self.comment.ask(";".to_owned(), COMMENT_MAX),
             "QUIT" if self.commissions => Turn::Refused,
             "QUIT" => Turn::Close,
             name => match list::way_of(name) {
-                Some(rows) => self.go(rows, site),
-                None => self.finish(site),
+                Some(rows) => self.taken(site, |own, _| own.go(rows)),
+                None => self.taken(site, Parameters::finish),
             },
         }
     }
@@ -600,8 +626,7 @@ impl Page for Parameters {
         };
         let mut window = list::window(title, WindowKind::Table, cursor, rows, line);
         window.lines.extend(self.meaning(site));
-        let definition = self.row().and_then(|row| row.definition);
-        let prompt = definition.map(|own| format!("{} =", own.id));
+        let prompt = self.definition().map(|own| format!("{} =", own.id));
         View {
             window: Some(window),
             dialogue: Dialogue {
@@ -613,10 +638,15 @@ impl Page for Parameters {
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {
+        if std::mem::take(&mut self.exchanged)
+            && self.file.was_written()
+            && let Err(why) = self.read(site)
+        {
+            return Turn::Say(why);
+        }
         let gone = self.goto.take().is_some_and(|text| !self.goto(&text));
         let lost = self.find.take().is_some_and(|word| !self.find(&word));
-        let definition = self.row().and_then(|row| row.definition);
-        if let (Some(comment), Some(definition)) = (self.comment.take(), definition) {
+        if let (Some(comment), Some(definition)) = (self.comment.take(), self.definition()) {
             self.entered.comments.insert(definition.id, comment);
         }
         if let Some(name) = self.chosen.take() {

@@ -152,47 +152,44 @@ pub(super) fn named(name: &str, site: &Site) -> String {
     folder.map_or_else(|| name.to_owned(), |(folder, _)| format!("{folder}/{name}"))
 }
 
-/// Endings of what is no program: texts, lists, tables, binary code [000:11335-11350].
-const NO_SOURCE: [&str; 9] = ["ER1", "ERE", "DI1", "DIE", "A", "HLP", "BIN", "COM", "CMA"];
+/// The type of programs.
+const PROGRAM: &str = "PLC";
+/// Binary code of EPROMs, which no interface knows [000:11335-11350].
+const BINARY: &str = "BIN";
+/// The letters of types at the interface, of those that have one of their own there [000:16895-16913] [000:3867-3869].
+const LETTERS: [(&str, &str); 4] = [("P", PROGRAM), ("S", "CMA"), ("V", "COM"), ("J", "HLP")];
 
-/// Whether a file is a PLC program, or a part of one, by its name.
-pub(super) fn is_source(name: &str) -> bool {
-    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-    !NO_SOURCE.iter().any(|other| other.eq_ignore_ascii_case(ending))
+fn ending(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(_, ending)| ending)
 }
 
-/// The types that data interfaces know, and the letters of those that have one of their own there [000:16895-16913]
-/// [000:3867-3869].
-const TRANSFERRED: [(&str, Option<&str>); 9] = [
-    ("PLC", Some("P")),
-    ("CMA", Some("S")),
-    ("COM", Some("V")),
-    ("HLP", Some("J")),
-    ("A", None),
-    ("ER1", None),
-    ("ERE", None),
-    ("DI1", None),
-    ("DIE", None),
-];
+/// Whether an ending is one of the types that data interfaces know.
+fn is_known(ending: &str) -> bool {
+    let mut types = TransferFiles::Plc.extensions().into_iter().flatten();
+    types.any(|own| own.eq_ignore_ascii_case(ending))
+}
+
+/// Whether a file is a PLC program, or a part of one, by its name: what is no text, list, table or binary code.
+pub(super) fn is_source(name: &str) -> bool {
+    let ending = ending(name);
+    let is = |kind: &str| kind.eq_ignore_ascii_case(ending);
+    is(PROGRAM) || !(is_known(ending) || is(BINARY))
+}
 
 /// The files that data interfaces transfer.
 pub(super) fn transferable(site: &Site) -> Vec<String> {
-    let known = |name: &String| {
-        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-        let mut types = TRANSFERRED.iter();
-        types.any(|(own, _)| own.eq_ignore_ascii_case(ending))
-    };
-    list(site).into_iter().filter(known).collect()
+    let names = list(site).into_iter();
+    names.filter(|name| is_known(ending(name))).collect()
 }
 
 /// A file by the name that is entered for a transfer: programs need no type, and a letter stands for its type.
 pub(super) fn named_at_interface(name: &str) -> String {
     let Some((stem, ending)) = name.rsplit_once('.') else {
-        return format!("{name}.PLC");
+        return format!("{name}.{PROGRAM}");
     };
-    let mut types = TRANSFERRED.iter();
-    let own = types.find(|(_, letter)| letter.is_some_and(|letter| letter.eq_ignore_ascii_case(ending)));
-    own.map_or_else(|| name.to_owned(), |(own, _)| format!("{stem}.{own}"))
+    let mut letters = LETTERS.iter();
+    let own = letters.find(|(letter, _)| letter.eq_ignore_ascii_case(ending));
+    own.map_or_else(|| name.to_owned(), |(_, own)| format!("{stem}.{own}"))
 }
 
 /// Where a main file lies; its name comes from [`list`].
