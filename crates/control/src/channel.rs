@@ -325,7 +325,7 @@ impl Channel {
     pub fn inform(&self, machine: &mut MachineSide) {
         let (axes, link) = (machine.core.axes.owned(self.number), &mut machine.link);
         let spindle = machine.spindles.of(self.number);
-        status::coordinates(axes, &self.datums.chain, &self.run, &self.desk, link);
+        status::coordinates(axes, &self.datums.chain, &self.run, self.desk.by_hand(), link);
         let executed = self.run.selection.program.as_deref();
         let tested = self.test.as_ref().map(TestRun::program);
         status::items(self.desk.mode(), &self.desk.manual, executed, tested, link);
@@ -441,8 +441,7 @@ impl Channel {
         axes.set_parameters(list);
         self.datums.limit(&mut axes);
         let intervals = axes.iter().map(|unit| unit.parameters.offset_interval_s);
-        let interval = intervals.last().unwrap_or(0.0);
-        machine.offsets.set_interval(interval);
+        machine.offsets.set_interval(intervals.last().unwrap_or(0.0));
         self.run.track.limits_changed = true;
     }
 

@@ -22,7 +22,7 @@ use crate::plane_command::PlaneCommand;
 use crate::probing::{Guarded, Probe, Stylus};
 use crate::reach::Reach;
 use crate::reference::ReferenceRun;
-use crate::status;
+use crate::status::{self, ByHand};
 
 /// Code numbers [000:6928-6947].
 const ERASE_MEMORY: u32 = 531_210;
@@ -278,9 +278,12 @@ impl Desk {
         });
     }
 
-    /// How far a measuring probe is deflected along its own axes, mm.
-    pub fn deflection_mm(&self) -> [f64; 3] {
-        self.stylus.touch.deflection_mm
+    /// What modules of the PLC read of moving by hand.
+    pub fn by_hand(&self) -> ByHand {
+        ByHand {
+            leans: self.leaning.is_on(),
+            deflection_mm: self.stylus.touch.deflection_mm,
+        }
     }
 
     /// Follows NC stop, once in each contour cycle; in the TOUCH PROBE menu it is one of the probing alone.

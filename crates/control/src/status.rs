@@ -9,7 +9,6 @@ use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 
 use crate::command::Mode;
-use crate::desk::Desk;
 use crate::manual::Manual;
 use crate::markers::{
     ANALOGUE, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
@@ -163,12 +162,21 @@ pub(crate) fn run(run: &ProgramRun, waits: bool, exchange: &mut Exchange) {
     exchange.nc_put_number(signal::CURRENT_FEED, feed as i32);
 }
 
+/// What the operator moves by hand with, whatever the mode.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ByHand {
+    /// 3D ROT is on.
+    pub leans: bool,
+    /// How far a measuring probe is deflected along its own axes, mm.
+    pub deflection_mm: [f64; 3],
+}
+
 /// The coordinates that modules 9040 and 9041 read in the next scan.
 pub(crate) fn coordinates<'a>(
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     chain: &Chain,
     run: &ProgramRun,
-    desk: &Desk,
+    by_hand: ByHand,
     link: &mut PlcLink,
 ) {
     /// Kinds of coordinates that each axis has, in the order of [`CoordinateKind`]: actual and nominal from the datum,
@@ -201,7 +209,7 @@ pub(crate) fn coordinates<'a>(
         link.set_coordinates(*kind, row);
     }
     let along =
-        |probe: MeasuringProbe| deflection_along_axes(&desk.deflection_mm(), probe.axes, probe.reversed);
+        |probe: MeasuringProbe| deflection_along_axes(&by_hand.deflection_mm, probe.axes, probe.reversed);
     let deflection = link.list().measuring_probe().map_or([0.0; 3], along);
     let deflection =
         PerPlcAxis::from_fn(|axis| deflection.get(usize::from(axis)).copied().unwrap_or_default());
@@ -218,7 +226,7 @@ pub(crate) fn coordinates<'a>(
     };
     link.set_status(
         StatusItem::WorkingPlane,
-        i32::from(tilted) | i32::from(desk.leaning.is_on()) << 1 | i32::from(by_program) << 2,
+        i32::from(tilted) | i32::from(by_hand.leans) << 1 | i32::from(by_program) << 2,
     );
 }
 
