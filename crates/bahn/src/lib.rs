@@ -10,8 +10,7 @@
 //!
 //! Where things are:
 //! - `cli`: options and help texts; `settings` turns them into the settings of the other rooms;
-//! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
-//!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
+//! - `test_run` and `shelf`: programs without a machine, one or many; `cutting`: pictures of the part;
 //! - `technology`: programs with functions that the path waits for;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
@@ -21,9 +20,11 @@
 //!   `lsp`: the language server;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
-//! - `paragraph`: labelled text in 80 columns, `count`: how many, `style`: its colours; `junit`: expectations for build servers;
+//! - `paragraph`: labelled text in 80 columns, `style`: its colours; `progress`: how far a run is;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close;
 //!   `refused` and `reports`: what cannot be done, as JSON.
+//!
+//! What is found out and told of programs is [`bahn_report`]: here it is asked for, shown and written.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 

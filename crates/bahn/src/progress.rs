@@ -53,7 +53,8 @@ impl Progress {
 
 impl Follower for Progress {
     fn begin(&mut self, blocks: u32) {
-        self.blocks = blocks;
+        // Reading a large program is no part of its run.
+        (self.started, self.blocks) = (Instant::now(), blocks);
     }
 
     #[inline]
