@@ -187,8 +187,8 @@ fn limits_and_feed_enable_count() {
     moves_at(&rig, [-FEED, 0.0, 0.0]);
 }
 
-/// NC stop, EMERGENCY STOP, another operating mode, changed machine parameters and the key itself end it on the ramp of the axes; nothing moves when
-/// they have passed.
+/// NC stop, EMERGENCY STOP, another operating mode, changed machine parameters and the key itself end it on the ramp of the
+/// axes; nothing moves when they have passed.
 #[test]
 fn what_stops_axes_ends_it() {
     type Deed = fn(&mut Rig);

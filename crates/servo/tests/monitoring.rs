@@ -289,7 +289,8 @@ fn an_axis_that_does_not_stop_at_0_v_is_found() {
         let farther = (bench.table_mm - found.unwrap()).abs();
         assert!((2.4..=4.2).contains(&farther), "{method:?}: {farther}");
     }
-    // A drive of 20 ms, which the voltage has left at 6 m/min, stops within 2 mm: CE clears the error, and where the axis stands it is held.
+    // A drive of 20 ms, which the voltage has left at 6 m/min, stops within 2 mm: CE clears the error, and where the axis
+    // stands it is held.
     let mut bench = bench(Method::Lag, limits);
     bench.drive_s = 0.020;
     bench.run(6000.0, 0.5);

@@ -325,8 +325,8 @@ fn the_encoder_is_evaluated_fourfold() {
     assert_eq!(bench.spindle.angle_deg(), Some(360.0 - 4.0 * STEP_DEG));
 }
 
-/// A step in a cycle is 60 / 4096 / 0.003 = 4.9 rpm on a TNC 415, 2.4 rpm in the 6 ms of a TNC 407. At a steady speed it is divided among 16 cycles;
-/// a spindle that stands on an edge and trembles about it stands.
+/// A step in a cycle is 60 / 4096 / 0.003 = 4.9 rpm on a TNC 415, 2.4 rpm in the 6 ms of a TNC 407. At a steady speed it is
+/// divided among 16 cycles; a spindle that stands on an edge and trembles about it stands.
 #[test]
 fn the_speed_is_finer_than_a_step_in_a_cycle() {
     for model in [Tnc407, Tnc415b] {
@@ -368,8 +368,8 @@ fn the_speed_is_finer_than_a_step_in_a_cycle() {
     }
 }
 
-/// On a ramp nothing is divided: 5000 rpm/s, that of the mill, are 15 rpm in a cycle of 3 ms, of which the speed is the mean: 7.5 rpm and
-/// a step behind the end of the cycle at most.
+/// On a ramp nothing is divided: 5000 rpm/s, that of the mill, are 15 rpm in a cycle of 3 ms, of which the speed is the mean:
+/// 7.5 rpm and a step behind the end of the cycle at most.
 #[test]
 fn on_a_ramp_the_speed_is_that_of_the_last_cycle() {
     let mut bench = Bench::new(&[]);
