@@ -66,13 +66,13 @@ impl Found {
         });
         // The longest text wins: GROSS POSITIONING ERROR is no POSITIONING ERROR.
         texts
-            .filter_map(|(id, text)| Some((text.len(), Found::behind(id, text, &written)?)))
+            .filter_map(|(id, text)| Some((text.len(), Found::after(id, text, &written)?)))
             .max_by_key(|(length, _)| *length)
             .map(|(_, found)| found)
     }
 
     /// Reads the words as this text: `#` is an axis or nothing, behind it stand axis and code.
-    fn behind(id: MessageId, text: &str, written: &[String]) -> Option<Found> {
+    fn after(id: MessageId, text: &str, written: &[String]) -> Option<Found> {
         let mut axis = None;
         let mut rest = written.iter().peekable();
         for word in words(text) {

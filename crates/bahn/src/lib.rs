@@ -85,10 +85,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     refused::begin(&arguments);
     let outcome = cli::parse(arguments).map_or_else(|outcome| outcome, execute);
     if outcome != Outcome::Fine
-        && let Some(told) = refused::end()
+        && let Some(reported) = refused::end()
     {
         // Whoever has closed the output knows.
-        let _ = console::print_json(&told);
+        let _ = console::print_json(&reported);
     }
     outcome.into()
 }

@@ -12,7 +12,7 @@ static WANTED: AtomicBool = AtomicBool::new(false);
 /// It is, and nothing has been printed.
 static OPEN: AtomicBool = AtomicBool::new(false);
 /// What was told meanwhile.
-static TOLD: Mutex<Told> = Mutex::new(Told {
+static REPORTED: Mutex<Reported> = Mutex::new(Reported {
     completed: false,
     error: None,
     message: None,
@@ -20,7 +20,7 @@ static TOLD: Mutex<Told> = Mutex::new(Told {
 });
 
 #[derive(Debug, Serialize)]
-struct Told {
+struct Reported {
     /// A command that is refused completes nothing.
     completed: bool,
     /// What is wrong, in words.
@@ -64,9 +64,9 @@ pub(crate) fn has_printed() {
 /// A fault of a file was told; so many are kept at most.
 pub(crate) fn fault(fault: impl FnOnce() -> FaultReport, most: usize) {
     if OPEN.load(Ordering::Relaxed) {
-        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.faults.len() < most {
-            told.faults.push(fault());
+        let mut reported = REPORTED.lock().unwrap_or_else(PoisonError::into_inner);
+        if reported.faults.len() < most {
+            reported.faults.push(fault());
         }
     }
 }
@@ -74,30 +74,30 @@ pub(crate) fn fault(fault: impl FnOnce() -> FaultReport, most: usize) {
 /// What is wrong was told; what was told first counts.
 pub(crate) fn error(text: &str) {
     if OPEN.load(Ordering::Relaxed) {
-        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut reported = REPORTED.lock().unwrap_or_else(PoisonError::into_inner);
         let text = text.strip_prefix("error: ").unwrap_or(text);
-        told.error.get_or_insert_with(|| text.to_owned());
+        reported.error.get_or_insert_with(|| text.to_owned());
     }
 }
 
 /// The control has said something.
 pub(crate) fn message(text: &str) {
     if OPEN.load(Ordering::Relaxed) {
-        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
-        told.message.get_or_insert_with(|| text.to_owned());
+        let mut reported = REPORTED.lock().unwrap_or_else(PoisonError::into_inner);
+        reported.message.get_or_insert_with(|| text.to_owned());
     }
 }
 
 /// A command has ended without success: what was told, to go out as JSON when that is wanted and nothing else was printed.
 pub(crate) fn end() -> Option<impl Serialize> {
     OPEN.swap(false, Ordering::Relaxed).then(|| {
-        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
-        let first = told.faults.first().map(|fault| fault.title.clone());
-        Told {
+        let mut reported = REPORTED.lock().unwrap_or_else(PoisonError::into_inner);
+        let first = reported.faults.first().map(|fault| fault.title.clone());
+        Reported {
             completed: false,
-            error: told.error.take().or(first).or(told.message.take()),
+            error: reported.error.take().or(first).or(reported.message.take()),
             message: None,
-            faults: std::mem::take(&mut told.faults),
+            faults: std::mem::take(&mut reported.faults),
         }
     })
 }

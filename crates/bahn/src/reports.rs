@@ -28,7 +28,7 @@ pub(crate) struct Refused {
 
 impl<T> OfFile<T> {
     /// What came out; what is wrong is told.
-    pub fn told(file: &Path, result: Result<T, UsageError>) -> OfFile<T> {
+    pub fn reported(file: &Path, result: Result<T, UsageError>) -> OfFile<T> {
         match result {
             Ok(report) => OfFile::Report(report),
             Err(error) => {
@@ -63,7 +63,7 @@ impl<T: Serialize> Reports<T> {
 
     /// Takes what came out of the next file; the others are looked at all the same.
     pub fn add(&mut self, file: &Path, result: Result<T, UsageError>) {
-        self.0.push(OfFile::told(file, result));
+        self.0.push(OfFile::reported(file, result));
     }
 
     /// The reports of those that could be read.

@@ -16,7 +16,7 @@ fn every_fault_of_a_program_and_of_what_it_calls_is_shown() {
     let run = folder.bahn("check part.nc");
     assert_eq!(run.code(), 1);
     let err = run.err();
-    for told in [
+    for reported in [
         "unknown command #HSC ON",
         "part.nc:4:7",
         "unknown word T1",
@@ -27,7 +27,7 @@ fn every_fault_of_a_program_and_of_what_it_calls_is_shown() {
         "sub.nc:2:1",
         "part.nc: 5 blocks, 4 errors, 0 warnings; loops were not followed to their end",
     ] {
-        assert!(err.contains(told), "{told} is missing in\n{err}");
+        assert!(err.contains(reported), "{reported} is missing in\n{err}");
     }
 }
 

@@ -118,7 +118,7 @@ fn names_title(text: &str, number: &str) -> bool {
     titles.any(|title| {
         let title = title.trim_end_matches(", ");
         patterns.iter().any(|pattern| match pattern.split_once('*') {
-            Some((before, behind)) => title.starts_with(before) && title.ends_with(behind),
+            Some((before, after)) => title.starts_with(before) && title.ends_with(after),
             None => *pattern == title,
         })
     })

@@ -110,7 +110,7 @@ fn friction_shows_at_the_reversal() {
 /// A slope with feed precontrol and a table X that carries three tons more than its drive was adjusted for:
 /// it follows later as long as the speed changes.
 #[test]
-fn a_heavy_table_falls_behind_while_it_accelerates() {
+fn a_heavy_table_lags_while_it_accelerates() {
     let mill = Mill::new(
         &format!("{START}L X+5 Y+5 FMAX\nL X+60 Y+60 F6000\nL Z+60 FMAX M2"),
         &[("# load = 300 ", "load = 3000 ")],

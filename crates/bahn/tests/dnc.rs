@@ -205,7 +205,7 @@ fn a_full_memory_gives_no_acknowledgement() {
 
 /// START again behind a broken line: the device sends everything anew, and no block is executed twice.
 #[test]
-fn start_again_behind_a_broken_line() {
+fn start_again_after_a_broken_line() {
     let folder = mill();
     let mut child = folder
         .command()
@@ -305,13 +305,13 @@ fn both_sides() {
             "{mode}"
         );
         let output = sender.wait_with_output().unwrap();
-        let told = String::from_utf8(output.stdout).unwrap();
-        assert!(output.status.success(), "{mode}: {told}");
-        let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
+        let reported = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success(), "{mode}: {reported}");
+        let last: Value = serde_json::from_str(reported.lines().last().unwrap()).unwrap();
         assert_eq!(
             (&last["event"], &last["blocks"]),
             (&"done".into(), &1002.into()),
-            "{mode}: {told}"
+            "{mode}: {reported}"
         );
     }
 }
@@ -319,7 +319,7 @@ fn both_sides() {
 /// A control that is played by the test: broken off and asked again it gets the program from its beginning, with `--resume`
 /// from the block on that it has not acknowledged.
 #[test]
-fn the_sender_goes_on_behind_a_broken_line() {
+fn the_sender_goes_on_after_a_broken_line() {
     for (option, expected) in [
         ("", &BLOCKS[..]),
         ("--resume", &[BLOCKS[0], BLOCKS[3], BLOCKS[4], BLOCKS[5]]),
@@ -360,17 +360,17 @@ fn the_sender_goes_on_behind_a_broken_line() {
         assert_eq!(device.answer(), ETX);
         device.0.write_all(&[EOT]).unwrap();
         let output = sender.wait_with_output().unwrap();
-        let told = String::from_utf8(output.stdout).unwrap();
-        assert!(output.status.success(), "{told}");
-        let events: Vec<Value> = told
+        let reported = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success(), "{reported}");
+        let events: Vec<Value> = reported
             .lines()
             .map(|line| serde_json::from_str(line).unwrap())
             .collect();
         let broken = events
             .iter()
             .find(|event| event["event"] == "broken" && event["blocks"] == 3);
-        assert!(broken.is_some(), "{told}");
-        assert_eq!(events.last().unwrap()["complete"], true, "{told}");
+        assert!(broken.is_some(), "{reported}");
+        assert_eq!(events.last().unwrap()["complete"], true, "{reported}");
     }
 }
 
@@ -461,14 +461,14 @@ fn the_sender_connects_again() {
             device.0.write_all(&[EOT]).unwrap();
         }
         let output = sender.wait_with_output().unwrap();
-        let told = String::from_utf8(output.stdout).unwrap();
-        assert_eq!(output.status.code(), Some(i32::from(!comes_back)), "{told}");
+        let reported = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(i32::from(!comes_back)), "{reported}");
         assert!(
-            told.contains(r#""event":"broken","program":"15.H","blocks":2"#),
-            "{told}"
+            reported.contains(r#""event":"broken","program":"15.H","blocks":2"#),
+            "{reported}"
         );
-        let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
-        assert_eq!(last["complete"], comes_back, "{told}");
+        let last: Value = serde_json::from_str(reported.lines().last().unwrap()).unwrap();
+        assert_eq!(last["complete"], comes_back, "{reported}");
     }
 }
 

@@ -345,7 +345,7 @@ fn a_trace_is_bounded() {
 
 /// Expectations cost no more when there are many.
 #[test]
-fn a_hundred_thousand_expectations_are_told_at_once() {
+fn a_hundred_thousand_expectations_are_reported_at_once() {
     let folder = Folder::with_program("TOOL CALL 1 Z S500\nL X+0 R0 F100");
     folder.write("MAIN.PLC", "L M1\n= M2\nEM\n");
     folder.write("p.txt", "1: expect M2=1\n".repeat(100_000));

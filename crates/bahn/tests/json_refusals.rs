@@ -260,16 +260,16 @@ fn a_faulty_plc() {
         "       L     M0\n       NONSENSE\n       EM\n",
     );
     let run = folder.bahn("technology part.nc --channel glue.lis --plc mill --format json");
-    let told = run.json();
+    let reported = run.json();
     assert_eq!(
-        (run.code(), &told["completed"]),
+        (run.code(), &reported["completed"]),
         (1, &Value::Bool(false)),
-        "{told:#}"
+        "{reported:#}"
     );
-    let fault = &told["faults"][0];
+    let fault = &reported["faults"][0];
     assert!(
         fault["file"].as_str().unwrap().ends_with("MAIN.PLC") && fault["line"] == 2,
-        "{told:#}"
+        "{reported:#}"
     );
 }
 

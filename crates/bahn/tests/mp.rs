@@ -145,7 +145,7 @@ fn check_reports_as_json() {
 }
 
 #[test]
-fn check_goes_on_behind_files_that_cannot_be_read() {
+fn check_goes_on_after_files_that_cannot_be_read() {
     let folder = mill();
     let run = folder.bahn("mp check nothing.mp mill.mp");
     assert_eq!(run.code(), 2);

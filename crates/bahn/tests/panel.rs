@@ -95,7 +95,7 @@ fn a_killed_panel_has_lost_nothing_of_a_program() {
 }
 /// A second panel of the same machine is told what helps; it has no option that runs beside the first.
 #[test]
-fn a_second_panel_is_told_what_helps() {
+fn a_second_panel_is_shown_what_helps() {
     let folder = std::env::temp_dir().join(format!("bahn-panel-second-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let (first, _) = start_panel(&folder, &[]);

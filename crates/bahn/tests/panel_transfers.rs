@@ -61,8 +61,8 @@ impl Bench {
     fn down_to(&self, name: &str) {
         let named = format!("\"text\":\"{name}");
         let at_cursor = |screen: &str| {
-            let mut behind = screen.split(&named).skip(1);
-            behind.any(|text| {
+            let mut after = screen.split(&named).skip(1);
+            after.any(|text| {
                 let line = text.split('}').next().unwrap_or_default();
                 line.contains("\"current\":true")
             })

@@ -198,8 +198,8 @@ fn measuring_and_sections_are_true() {
             let at = pixel(page, point);
             page.click_at(at).unwrap();
         }
-        let told = page.text("[data-readout]").unwrap();
-        let numbers = told
+        let reported = page.text("[data-readout]").unwrap();
+        let numbers = reported
             .split_whitespace()
             .filter_map(|word| word.replace('\u{2212}', "-").parse().ok());
         numbers.collect()

@@ -173,7 +173,7 @@ fn voltages_forces_and_the_circuit() {
 
 /// A marker that is set and reset within a scan shows nothing at its ends: the event column tells of it.
 #[test]
-fn pulses_inside_a_scan_are_told() {
+fn pulses_inside_a_scan_are_reported() {
     let folder = Folder::with_mill("L X+1 R0 F1000");
     let plc = folder.read("mill/plc/MAIN.PLC");
     let begin = "; ---- Main program ----\n";
@@ -191,8 +191,8 @@ fn pulses_inside_a_scan_are_told() {
     let (_, recorded) = recorded(&folder, "--script s.txt --signals M900,M901,W902,W904");
     assert!(recorded.column("M900").iter().all(|value| *value == 0.0));
     assert!(recorded.column("W902").iter().all(|value| *value == 0.0));
-    let told = |what: &str| recorded.events().filter(|event| event.contains(what)).count();
-    assert_eq!(told("M900 pulse"), 2);
+    let reported = |what: &str| recorded.events().filter(|event| event.contains(what)).count();
+    assert_eq!(reported("M900 pulse"), 2);
     // A scan of 20 ms in ten.
     let scans = recorded
         .column("W904")
@@ -200,9 +200,9 @@ fn pulses_inside_a_scan_are_told() {
         .filter(|pair| pair[0] != pair[1])
         .count();
     assert!(
-        (told("W902 pulse") as i64 - scans as i64 / 10).abs() <= 1,
+        (reported("W902 pulse") as i64 - scans as i64 / 10).abs() <= 1,
         "{} {scans}",
-        told("W902 pulse")
+        reported("W902 pulse")
     );
     // The drawing has a line for each.
     let table = folder.read("r.csv");

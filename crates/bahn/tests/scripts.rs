@@ -86,7 +86,7 @@ fn a_condition_that_never_comes_true_fails_the_run() {
 }
 
 #[test]
-fn a_script_goes_on_behind_an_error_of_the_program() {
+fn a_script_goes_on_after_an_error_of_the_program() {
     let by_hand = "after message PROGRAM NOT FOUND: expect run interrupted\n+0.5: ce\n+0.5: mode manual\n\
         +0.5: key X+ press\n+1: key X+ release\n+2: expect X.actual>215\n+0: expect no message\n";
     let another =

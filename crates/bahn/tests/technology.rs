@@ -300,7 +300,7 @@ fn a_run_that_can_go_nowhere_ends() {
 
 /// Whatever cannot be read is wrong use, and nothing that is read is written over.
 #[test]
-fn wrong_use_is_told() {
+fn wrong_use_is_reported() {
     let folder = folder(BLOCKS, "m_synch[25] 2\n", "M25 ack soon\n");
     for options in [
         "--plc a.txt",
@@ -514,7 +514,7 @@ fn what_is_wrong_has_its_place() {
         assert!(text.contains(words), "{words}: {text}");
     }
     let script = folder.bahn("technology a.nc --channel a.lis --plc a.txt");
-    let told = script.err();
+    let reported = script.err();
     for words in [
         "--> a.txt:1:4",
         "did you mean `ack`?",
@@ -522,7 +522,7 @@ fn what_is_wrong_has_its_place() {
         "did you mean `M7`?",
         "--> a.txt:3:9",
     ] {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(reported.contains(words), "{words}: {reported}");
     }
     assert_eq!(script.code(), 2);
     let (code, report) = run(&folder, "--plc a.txt");

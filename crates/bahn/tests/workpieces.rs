@@ -53,19 +53,19 @@ impl Done {
 
     /// Columns of the record while a block is executed.
     fn in_block<const N: usize>(&self, block: u32, columns: [&str; N]) -> Vec<[f64; N]> {
-        self.behind(0, block, columns)
+        self.after(0, block, columns)
     }
 
     /// The same behind the first time that another block was.
-    fn behind<const N: usize>(&self, before: u32, block: u32, columns: [&str; N]) -> Vec<[f64; N]> {
+    fn after<const N: usize>(&self, before: u32, block: u32, columns: [&str; N]) -> Vec<[f64; N]> {
         let (head, rows) = (self.record.lines().next().unwrap(), rows(&self.record));
         let place = |name: &str| {
             let is = |head: &&str| head.split_whitespace().next() == Some(name);
             head.split(',').position(|head| is(&head)).unwrap()
         };
         let (at, places) = (place("path.block"), columns.map(place));
-        let behind = rows.iter().skip_while(|row| row[at].parse() != Ok(before));
-        let own = behind.filter(|row| row[at].parse() == Ok(block));
+        let after = rows.iter().skip_while(|row| row[at].parse() != Ok(before));
+        let own = after.filter(|row| row[at].parse() == Ok(block));
         own.map(|row| places.map(|place| row[place].parse().unwrap()))
             .collect()
     }
@@ -192,7 +192,7 @@ fn the_plate_is_tapped_as_deep_as_its_face_lies() {
     near(plate.q(1), -1.35 - 0.0125, 0.0135);
     near(plate.q(2), -1.35 - 0.0125, 0.0135);
     for block in [43, 44, 45] {
-        let tapped = plate.behind(28, block, ["Z.actual"]);
+        let tapped = plate.after(28, block, ["Z.actual"]);
         let depth = least(tapped.iter().map(|sample| sample[0])) - (65.0 - 221.5 + plate.q(3));
         near(depth, -12.0, 0.21);
     }
@@ -205,7 +205,7 @@ fn the_plate_of_the_twin_is_tapped_as_deep_as_its_face_lies() {
     let plate = run("twin", "TAPS.H RIGHT.H", "Z.actual,path.block");
     near(plate.q(1), -1.2, 0.0035);
     for block in [41, 42, 43, 44] {
-        let tapped = plate.behind(25, block, ["Z.actual"]);
+        let tapped = plate.after(25, block, ["Z.actual"]);
         let depth = least(tapped.iter().map(|sample| sample[0])) - (100.0 + 118.8);
         near(depth, -12.0, 0.02);
     }
@@ -216,7 +216,7 @@ fn the_plate_of_the_twin_is_tapped_as_deep_as_its_face_lies() {
 fn the_threads_of_the_roof_stand_upright_in_it() {
     let roof = run("gantry", "THREADS.H", "X.actual,Z.actual,S.rpm,path.block");
     for block in [30, 31, 32] {
-        let samples = roof.behind(17, block, ["X.actual", "Z.actual"]);
+        let samples = roof.after(17, block, ["X.actual", "Z.actual"]);
         let (sin, cos) = 30.0_f64.to_radians().sin_cos();
         // The way to the hole is before that.
         let half = &samples[samples.len() / 2..];

@@ -371,7 +371,7 @@ impl Channel {
         }
         strobes::take_actual_values(now.mode, &mut axes, exchange.nc());
         // A key waits for the program that is read elsewhere.
-        let key = strobes::key(exchange.nc()).filter(|_| !self.run.source.is_lent());
+        let key = strobes::key(exchange.nc()).filter(|_| !self.run.source.is_handed_over());
         if let Some(command) = key {
             let done = command.is_some_and(|command| self.execute(command, machine));
             strobes::end_key(done, machine.memory.of_mut(self.number));
@@ -394,7 +394,7 @@ impl Channel {
         let requests = &mut machine.link.requests;
         self.positioning.take_requests(requests);
         self.desk.manual.take_status(std::mem::take(&mut requests.status));
-        if let Some(request) = requests.pallet.take_if(|_| !self.run.source.is_lent()) {
+        if let Some(request) = requests.pallet.take_if(|_| !self.run.source.is_handed_over()) {
             self.select_pallet(request, machine);
         }
         if let Some(call) = machine.link.requests.tool_call.take() {
@@ -467,7 +467,7 @@ impl Channel {
         self.datums_changed |= datums_changed;
         let by_hand = self.desk.is_by_hand() && !self.run.progress().is_on_its_way();
         self.desk.leaning.refresh(by_hand, &mut self.datums.chain);
-        if self.run.source.is_lent() {
+        if self.run.source.is_handed_over() {
             return self.prepare_test(machine);
         }
         let datums_changed = std::mem::take(&mut self.datums_changed);
@@ -492,9 +492,9 @@ impl Channel {
     }
 
     /// Its program, to be read beside the control, and the number of the loan.
-    pub fn lend(&mut self) -> Option<(Feeder, u64)> {
+    pub fn hand_over_program(&mut self) -> Option<(Feeder, u64)> {
         let runs = self.run.progress().is_on_its_way();
-        runs.then(|| self.run.source.lend()).flatten()
+        runs.then(|| self.run.source.hand_over_program()).flatten()
     }
 
     /// The programs that are read: that of the run, and that of a test run.
@@ -507,7 +507,7 @@ impl Channel {
     pub fn execute(&mut self, command: Command, machine: &mut MachineSide) -> bool {
         let rules = self.desk.rules().restart;
         let probes = self.desk.is_by_hand() && self.run.probe.is_on();
-        if self.run.source.is_lent() && command.needs_program() || probes && command.needs_axes() {
+        if self.run.source.is_handed_over() && command.needs_program() || probes && command.needs_axes() {
             return false;
         }
         match command {

@@ -292,11 +292,11 @@ impl Control {
     /// The program of a channel that wants to be read ahead. Until it is [back](Control::take_back) the cycles go on with
     /// what was read before; commands that need the program are not possible, a clone of the control is without it,
     /// and [`Control::interpreter`] and [`Control::remember`] do not know what it came to.
-    pub fn lend_reading(&mut self) -> Option<ReadAhead> {
+    pub fn hand_over_reading(&mut self) -> Option<ReadAhead> {
         (0..)
             .zip(self.tnc.channels.iter_mut())
-            .find_map(|(channel, lender)| {
-                let (feeder, loan) = lender.lend()?;
+            .find_map(|(channel, owner)| {
+                let (feeder, loan) = owner.hand_over_program()?;
                 Some(ReadAhead {
                     channel,
                     loan,

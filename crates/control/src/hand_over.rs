@@ -37,12 +37,15 @@ pub struct HandOver {
 pub(crate) struct Ordered {
     what: HandOver,
     /// A refusal was shown since the order stands.
-    told: bool,
+    reported: bool,
 }
 
 impl Ordered {
     pub fn new(what: HandOver) -> Ordered {
-        Ordered { what, told: false }
+        Ordered {
+            what,
+            reported: false,
+        }
     }
 
     /// Follows the marker of the PLC, outside the cycle.
@@ -53,7 +56,7 @@ impl Ordered {
         let memory = machine.memory.first_mut();
         let (ordered, is_done) = (memory.nc().bit(order), memory.nc().bit(done));
         if !ordered {
-            self.told = false;
+            self.reported = false;
             if is_done {
                 memory.nc_set(done, false);
             }
@@ -66,8 +69,8 @@ impl Ordered {
             Ok(()) => machine.memory.first_mut().nc_set(done, true),
             // What follows the M function is not known yet.
             Err(HandOverError::Running) if self.channels(machine).any(|number| reads(channels, number)) => {}
-            Err(why) if !self.told => {
-                self.told = true;
+            Err(why) if !self.reported => {
+                self.reported = true;
                 let message = Message::HandOver {
                     axis: axis.number(),
                     why,
@@ -131,7 +134,7 @@ fn rests(channel: &Channel) -> bool {
     );
     let stopped = channel.run.progress().state() == RunState::Stopped;
     let at_strobe = channel.handshakes.strobe_is_set() && closed && stands_at_last(channel);
-    !channel.run.is_active() || (stopped || at_strobe) && !channel.run.source.is_lent()
+    !channel.run.is_active() || (stopped || at_strobe) && !channel.run.source.is_handed_over()
 }
 
 /// The path has nothing more to move before what is not read yet.
@@ -144,5 +147,6 @@ fn stands_at_last(channel: &Channel) -> bool {
 fn reads(channels: &PerChannel<Channel>, number: usize) -> bool {
     let channel = channels.of(number);
     let open = channel.run.track.path.stop().is_none();
-    channel.run.source.is_lent() || channel.handshakes.strobe_is_set() && open && stands_at_last(channel)
+    channel.run.source.is_handed_over()
+        || channel.handshakes.strobe_is_set() && open && stands_at_last(channel)
 }

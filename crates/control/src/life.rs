@@ -21,7 +21,7 @@ pub(crate) struct LifeCount {
     uncounted_us: u64,
     tool: u32,
     /// The tool for which M2094 was set.
-    told: Option<u32>,
+    reported: Option<u32>,
 }
 
 /// What counts in a contour cycle.
@@ -77,8 +77,8 @@ impl LifeCount {
     /// M2094 follows TIME1 of the tool in the spindle on its edges: the PLC may reset it, too [000:9173].
     fn tell_time1(&mut self, number: u32, magazine: &Magazine, exchange: &mut Exchange) {
         let elapsed = magazine.life(number).time1_elapsed().then_some(number);
-        if elapsed != self.told {
-            self.told = elapsed;
+        if elapsed != self.reported {
+            self.reported = elapsed;
             exchange.nc_set(signal::TOOL_LIFE_TIME1_ELAPSED, elapsed.is_some());
         }
     }

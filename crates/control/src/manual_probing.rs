@@ -559,8 +559,8 @@ fn turn_by_180(turn: ProbeTurn, back: bool, site: &mut Site) -> bool {
     match turn {
         ProbeTurn::Off => false,
         ProbeTurn::ByControl => {
-            let way_deg = if back { -180.0 } else { 180.0 };
-            site.spindle.turn_by(way_deg, site.exchange)
+            let turn_deg = if back { -180.0 } else { 180.0 };
+            site.spindle.turn_by(turn_deg, site.exchange)
         }
         ProbeTurn::ByPlc(code) => {
             site.handshakes.push(Transfer::M(code));

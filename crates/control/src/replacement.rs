@@ -95,10 +95,10 @@ impl Replacement {
         let (Wear::Replace(tool), Some(feeder)) = (Wear::of(site.tools, site.magazine), feeder) else {
             return;
         };
-        let Some(behind) = track.path.element().map(|element| element.sequence) else {
+        let Some(after) = track.path.element().map(|element| element.sequence) else {
             return;
         };
-        self.before = feeder.next_replacement(behind, site.tools.number);
+        self.before = feeder.next_replacement(after, site.tools.number);
         let next = track.path.next_element().map(|element| element.sequence);
         if let Some((place, next)) = self.before.zip(next)
             && due

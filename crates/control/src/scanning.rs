@@ -58,7 +58,7 @@ pub(crate) struct Scanning {
     touch: Option<ScanPoint>,
     /// Where the tip is, nominal for the axes without an encoder.
     tip: ScanPoint,
-    battery_told: bool,
+    battery_reported: bool,
     /// Lines that had ended when the battery was looked at.
     lines: u32,
     /// The cycle that moved it last, µs.
@@ -94,7 +94,7 @@ impl Scanning {
             enabled: false,
             deflected: false,
             touch: None,
-            battery_told: false,
+            battery_reported: false,
             lines: 0,
             moved_us: site.now.us,
         }
@@ -207,8 +207,8 @@ impl Scanning {
         }
         let ended = self.scan.lines_ended();
         let at_line_end = std::mem::replace(&mut self.lines, ended) != ended;
-        if probe.battery_low && at_line_end && !self.battery_told {
-            self.battery_told = true;
+        if probe.battery_low && at_line_end && !self.battery_reported {
+            self.battery_reported = true;
             let message = Message::Plain(MessageId::ExchangeTouchProbeBattery);
             site.messages.show(message, Some(self.block));
         }

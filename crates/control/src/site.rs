@@ -2,7 +2,7 @@
 
 use bahn_exchange::Exchange;
 use bahn_kernel::{AxisId, Chain, Direction, Leading, Moment, Outputs, OwnAxes, Standing};
-use bahn_parameters::technology::{Deed, Output, Technology};
+use bahn_parameters::technology::{ControlAction, Output, Technology};
 use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall, Voltage};
 
 use crate::handshake::{Handshakes, Transfer};
@@ -104,8 +104,8 @@ impl<'a> Site<'a> {
 
     /// An M function that the operator enters: to whom it goes says its row.
     pub fn m_by_hand(&mut self, technology: &Technology, code: u16) {
-        for deed in technology.deeds() {
-            if let Deed::Control(function) = deed {
+        for action in technology.actions() {
+            if let ControlAction::Control(function) = action {
                 self.control(function);
             }
         }

@@ -144,7 +144,7 @@ impl Source {
     }
 
     /// The program, to be read elsewhere, and the number of the loan; `None` when there is nothing to read.
-    pub fn lend(&mut self) -> Option<(Feeder, u64)> {
+    pub fn hand_over_program(&mut self) -> Option<(Feeder, u64)> {
         let feeder = self.feeder.take_if(|feeder| feeder.wants_reading())?;
         self.loans += 1;
         self.loan = Some(Loan::new(self.loans, &feeder));
@@ -160,7 +160,7 @@ impl Source {
     }
 
     /// The program is read elsewhere.
-    pub fn is_lent(&self) -> bool {
+    pub fn is_handed_over(&self) -> bool {
         self.loan.is_some()
     }
 
@@ -405,7 +405,7 @@ impl Source {
     /// The transformations before the block of a sequence, else where a run that was broken off goes on or the interpreter is,
     /// else as the last run has left them; `None` while the program is lent.
     pub fn frame(&self, ended: bool, sequence: Option<u64>) -> Option<Frame> {
-        if self.is_lent() {
+        if self.is_handed_over() {
             return None;
         }
         let broken_off = match self.resume_from {

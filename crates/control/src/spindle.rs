@@ -301,8 +301,8 @@ impl SpindleUnit {
     }
 
     /// Turns it by a way from where it stands, degrees: M2712 until it is there. `false` when it cannot be.
-    pub fn turn_by(&mut self, way_deg: f64, exchange: &mut Exchange) -> bool {
-        let turns = self.drive.can_be_led() && self.drive.servo.turn_by(way_deg);
+    pub fn turn_by(&mut self, turn_deg: f64, exchange: &mut Exchange) -> bool {
+        let turns = self.drive.can_be_led() && self.drive.servo.turn_by(turn_deg);
         if turns {
             self.orienting = true;
             exchange.nc_set(signal::ORIENT_SPINDLE, true);

@@ -543,12 +543,15 @@ fn the_command_log_knows_the_channels() {
     .map(|(time, channel, text)| (begin + time, channel, text.parse().unwrap()))
     .into();
     let (log, seen) = drive(&given);
-    let told: Vec<(usize, String)> = log
+    let reported: Vec<(usize, String)> = log
         .iter()
         .map(|(_, channel, command)| (*channel, command.to_string()))
         .collect();
     let expected = [(1, "jog 2"), (0, "ce"), (1, "mode manual"), (1, "datum X 12.5")];
-    assert_eq!(told, expected.map(|(channel, text)| (channel, text.to_owned())));
+    assert_eq!(
+        reported,
+        expected.map(|(channel, text)| (channel, text.to_owned()))
+    );
     let (again, repeated) = drive(&log);
     assert_eq!((again, repeated == seen), (log, true));
     assert!(!seen.last().unwrap()[0].contains("12.5") && seen.last().unwrap()[1].contains("12.5"));
@@ -644,7 +647,7 @@ fn leaning(program: &str, parameters_of_it: &[&str]) -> Rig {
 /// X of the leaning portal takes 3000 mm/min and 0.5 m/s²; going at 45 degrees it moves one and a half times as fast as
 /// the path does in X. It keeps to its limits, and comes near them.
 #[test]
-fn feed_and_acceleration_are_limited_behind_the_kinematics() {
+fn feed_and_acceleration_are_limited_after_the_kinematics() {
     let program = "L X+40 Y+40 R0 FMAX\nL X+60 Y+60 FMAX";
     let mut rig = leaning(program, &["1010.0=3000", "1050.0=4.5", "1060.0=0.5"]);
     rig.event("key START2 press");
@@ -672,7 +675,7 @@ fn feed_and_acceleration_are_limited_behind_the_kinematics() {
 /// The second channel has X and Y on the leaning portal: X+60 Y+80 is X at 60 + 40 = 100 mm. X+120 Y+110 would be X at
 /// 175 mm, beyond its limit of 170 mm, while X+110 Y+110 at 165 mm is not.
 #[test]
-fn limits_are_checked_behind_the_kinematics() {
+fn limits_are_checked_after_the_kinematics() {
     let program = "L X+60 Y+80 R0 F3000\nL X+110 Y+110\nL X+120 Y+110";
     let mut rig = leaning(program, &[]);
     let machine_x = |rig: &Rig| {

@@ -62,7 +62,7 @@ fn transformations_stay_as_mp7300_says() {
 /// GOTO behind the end of a program starts with the Q parameters that are left then: without those that MP7300
 /// cancelled at the end, and with what the PLC has written since.
 #[test]
-fn goto_behind_the_end_brings_nothing_back() {
+fn goto_after_the_end_brings_nothing_back() {
     for (mp7300, x) in [(1, 0.0), (2, 20.0)] {
         let program = "FN 0: Q1 = +20\nL X+Q1 R0 F6000";
         let build = bench(ACKNOWLEDGE).program("1.H", program);

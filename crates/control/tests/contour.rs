@@ -160,10 +160,10 @@ fn reversal_peaks() {
         while !rig.control.snapshot().ended {
             rig.cycle();
             // What the loop was told for the end of the last cycle, and where the path was then.
-            let told = rig.control.observe(&signal) - offset;
+            let reported = rig.control.observe(&signal) - offset;
             let now = nominal(&rig, 'X');
             if (now - last).abs() < 0.01 && rig.control.snapshot().feed_mm_min > 0.0 {
-                worst = worst.max((told - now).abs() - (now - last).abs());
+                worst = worst.max((reported - now).abs() - (now - last).abs());
             }
             last = now;
         }

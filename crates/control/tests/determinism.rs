@@ -15,7 +15,7 @@ const PROGRAM: &str = "TOOL CALL 0 Z S1000\nL X+60 Y+55 R0 F6000 M3\nCC X+60 Y+7
 const END: [f64; 3] = [70.0, 53.0, 40.0];
 
 #[derive(Clone, Debug)]
-enum Deed {
+enum Action {
     Stop,
     InternalStop,
     Start,
@@ -24,14 +24,14 @@ enum Deed {
     Full,
 }
 
-fn deed() -> impl Strategy<Value = Deed> {
+fn action() -> impl Strategy<Value = Action> {
     prop_oneof![
-        3 => Just(Deed::Stop),
-        1 => Just(Deed::InternalStop),
-        4 => Just(Deed::Start),
-        2 => (0u8..=150).prop_map(Deed::Override),
-        1 => Just(Deed::Single),
-        1 => Just(Deed::Full),
+        3 => Just(Action::Stop),
+        1 => Just(Action::InternalStop),
+        4 => Just(Action::Start),
+        2 => (0u8..=150).prop_map(Action::Override),
+        1 => Just(Action::Single),
+        1 => Just(Action::Full),
     ]
 }
 
@@ -68,25 +68,25 @@ impl Trace {
     }
 }
 
-fn disturbed(deeds: &[(u16, Deed)]) -> (Rig, Trace) {
+fn disturbed(actions: &[(u16, Action)]) -> (Rig, Trace) {
     let mut rig = bench_with(ACKNOWLEDGE, PROGRAM);
     let mut trace = Trace::new(&rig);
     rig.start();
-    for (cycles, deed) in deeds {
+    for (cycles, action) in actions {
         for _ in 0..*cycles {
             rig.cycle();
             trace.note(&rig);
         }
-        match deed {
-            Deed::Stop => rig.event("key NC_STOP tap"),
-            Deed::InternalStop => {
+        match action {
+            Action::Stop => rig.event("key NC_STOP tap"),
+            Action::InternalStop => {
                 rig.control.command(Command::InternalStop);
                 rig.control.command(Command::Ce);
             }
-            Deed::Start => rig.start(),
-            Deed::Override(percent) => rig.event(&format!("override feed {percent}")),
-            Deed::Single => rig.command("mode single"),
-            Deed::Full => rig.command("mode full"),
+            Action::Start => rig.start(),
+            Action::Override(percent) => rig.event(&format!("override feed {percent}")),
+            Action::Single => rig.command("mode single"),
+            Action::Full => rig.command("mode full"),
         }
     }
     rig.command("mode full");
@@ -110,14 +110,14 @@ proptest! {
     /// Whatever the operator does, the program ends where it says; no axis exceeds sqrt(MP1060² + MP1070²) =
     /// 1414 mm/s²; and the same again gives the same bits.
     #[test]
-    fn disturbed_runs(deeds in prop::collection::vec((1u16..300, deed()), 0..12)) {
-        let (rig, trace) = disturbed(&deeds);
+    fn disturbed_runs(actions in prop::collection::vec((1u16..300, action()), 0..12)) {
+        let (rig, trace) = disturbed(&actions);
         prop_assert!(rig.control.snapshot().ended, "{:?}", rig.messages());
         for (axis, end) in ['X', 'Y', 'Z'].into_iter().zip(END) {
             prop_assert!((nominal(&rig, axis) - end).abs() < 1e-6, "{} {}", axis, nominal(&rig, axis));
         }
         prop_assert!(trace.worst < 1415.0, "{}", trace.worst);
-        let (_, again) = disturbed(&deeds);
+        let (_, again) = disturbed(&actions);
         prop_assert_eq!(trace.hash, again.hash);
     }
 }

@@ -20,9 +20,9 @@ const PROGRAM: &str = "L X+60 R0 F3000\nL X+70 M40\nL X+80\nL X+90\nL X+100 FMAX
 
 /// Where X was, on the path, when M40 went out, and where the path stands as long as nobody acknowledges it; it then
 /// comes to its end.
-fn without_answer(program: &str, synchronisation: &str, way_mm: Option<f64>) -> (f64, f64) {
+fn without_answer(program: &str, synchronisation: &str, distance_mm: Option<f64>) -> (f64, f64) {
     let build = bench(&format!("{ACKNOWLEDGE_BUT_M}{BY_HAND}"))
-        .function(40, synchronisation, way_mm)
+        .function(40, synchronisation, distance_mm)
         .function(41, "EXPL_SYN", None)
         .program("1.H", program);
     let mut rig = ready(build);

@@ -120,7 +120,7 @@ fn probe_not_ready() {
 /// A low battery is told by M2027 when it is probed, neither before nor where nothing probes; the probing goes on. With a
 /// new battery the next probing resets it [000:7688].
 #[test]
-fn a_low_battery_is_told_when_it_is_probed() {
+fn a_low_battery_is_reported_when_it_is_probed() {
     let mut rig = rig(PROGRAM);
     rig.event("fault probe battery");
     rig.seconds(1.0);

@@ -57,7 +57,7 @@ impl Slow {
         if self.away.is_none() {
             self.seed = self.seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             let cycles = (self.seed >> 33) % 21;
-            self.away = rig.control.lend_reading().map(|read| (read, cycles));
+            self.away = rig.control.hand_over_reading().map(|read| (read, cycles));
             self.loans += u32::from(self.away.is_some());
         }
     }
@@ -126,10 +126,10 @@ fn the_path_is_the_same() {
 
 /// Nothing is lent when the control reads itself.
 #[test]
-fn nothing_is_lent_unasked() {
+fn nothing_is_handed_over_unasked() {
     let mut rig = started(PROGRAM, false);
     rig.seconds(1.0);
-    assert!(rig.control.lend_reading().is_none());
+    assert!(rig.control.hand_over_reading().is_none());
 }
 
 /// Without a reader the path ends where what was read ends, without a mark in it: the axes brake, and go on when it is
@@ -144,9 +144,9 @@ fn a_reader_that_does_not_come_back_holds_the_path() {
     });
     slow.settle(&mut rig);
     rig.cycle();
-    let Some(mut read) = rig.control.lend_reading().or_else(|| {
+    let Some(mut read) = rig.control.hand_over_reading().or_else(|| {
         rig.seconds(1.0);
-        rig.control.lend_reading()
+        rig.control.hand_over_reading()
     }) else {
         panic!("there is more to read")
     };

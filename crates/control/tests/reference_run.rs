@@ -149,7 +149,7 @@ fn one_mark() {
 
 /// The mark lies behind: the cam closes at 180, the axis reverses and finds it at 100.
 #[test]
-fn one_mark_behind_the_start() {
+fn one_mark_after_the_start() {
     let [_, greatest, stands] = way(&mut asked(only_x(1, "mark = 100", 120.0)));
     assert!(greatest > 180.0 && greatest < 184.0, "{greatest}");
     assert!(stands < 100.0 && stands > 97.0, "{stands}");

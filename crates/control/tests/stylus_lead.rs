@@ -191,8 +191,8 @@ fn limits_and_feed_enable_count() {
 /// axes; nothing moves when they have passed.
 #[test]
 fn what_stops_axes_ends_it() {
-    type Deed = fn(&mut Rig);
-    let ways: [(&str, Deed); 5] = [
+    type Action = fn(&mut Rig);
+    let ways: [(&str, Action); 5] = [
         ("the key", |rig| rig.command("pnt off")),
         ("NC stop", |rig| rig.event("key NC_STOP tap")),
         ("mode", |rig| rig.command("mode manual")),
@@ -205,13 +205,13 @@ fn what_stops_axes_ends_it() {
             rig.command("ce");
         }),
     ];
-    for (name, deed) in ways {
+    for (name, action) in ways {
         let mut rig = rig();
         rig.command("pnt on");
         push(&mut rig, 'X', DEPTH);
         rig.seconds(0.5);
         moves_at(&rig, [FEED, 0.0, 0.0]);
-        deed(&mut rig);
+        action(&mut rig);
         rig.seconds(0.5);
         stands(&rig);
         assert!(!rig.control.first().follows_stylus(), "{name}");
@@ -224,8 +224,8 @@ fn what_stops_axes_ends_it() {
 /// Farther than MP6330 deflected, or a probe that fails: the message of the probe, and the axes stand [000:7917].
 #[test]
 fn the_probe_ends_it() {
-    type Deed = fn(&mut Rig);
-    let faults: [(&str, Deed); 2] = [
+    type Action = fn(&mut Rig);
+    let faults: [(&str, Action); 2] = [
         ("STYLUS DEFLECTION EXCEEDS MAX", |rig| push(rig, 'X', 2.5)),
         ("PROBE SYSTEM NOT READY", |rig| rig.event("fault probe not-ready")),
     ];

@@ -46,7 +46,7 @@ fn observe(rig: &Rig, signal: &str) -> f64 {
 }
 
 /// The spindle is told no more than what the thread asks for, 9 V at 1500 rpm in gear 1, and what its loop adds to hold it: 0.1 V.
-fn assert_told_the_thread(rig: &Rig) {
+fn assert_thread_is_reported(rig: &Rig) {
     let volts = observe(rig, "S.volts");
     assert!(
         volts.abs() < 9.0 * RPM / 1500.0 + 0.1,
@@ -63,7 +63,7 @@ fn retracts(rig: &Rig) -> bool {
 /// The clamp of the tool goes and comes in the thread, and with it feed and spindle enable, for so long that the spindle has run out beside its axis, too: in every cycle in which the path goes on behind
 /// that, Z goes by the pitch for each turn. What friction leaves of the lag is no way of Z: 1 µm of rounding, and no more.
 #[test]
-fn behind_a_lost_feed_enable_the_axis_follows_its_spindle() {
+fn after_a_lost_feed_enable_the_axis_follows_its_spindle() {
     let mut rig = thread();
     for milliseconds in [50, 3000, 90, 4000] {
         rig.until(20.0, "it goes on", |rig| observe(rig, "path.speed") > 5.0);
@@ -73,13 +73,13 @@ fn behind_a_lost_feed_enable_the_axis_follows_its_spindle() {
         rig.input("I19", true);
         for _ in 0..60 {
             rig.cycle();
-            assert_told_the_thread(&rig);
+            assert_thread_is_reported(&rig);
         }
     }
     let (mut z, mut angle, mut led) = (observe(&rig, "Z.nominal"), observe(&rig, "S.angle"), 0);
     while rig.bit("M2095") {
         rig.cycle();
-        assert_told_the_thread(&rig);
+        assert_thread_is_reported(&rig);
         let (z_now, angle_now) = (observe(&rig, "Z.nominal"), observe(&rig, "S.angle"));
         if observe(&rig, "path.speed") > 10.0 && observe(&rig, "path.block") == 8.0 {
             // Z takes the angle of the cycle before.
@@ -130,14 +130,14 @@ fn a_tool_that_ran_out_of_its_thread_goes_back_to_its_end() {
 /// the thread until then. By the movement monitoring that is MP1110 = 0.2 mm beside what half as fast again as the thread, for
 /// 0.1 s and on the ramp of 1667 rpm/s, would be, and what Z needs to stop.
 #[test]
-fn a_spindle_that_does_not_do_what_it_is_told_ends_the_thread() {
+fn a_spindle_that_does_not_follow_its_command_ends_the_thread() {
     for fault in ["drive S runaway", "drive S reversed", "encoder S stuck"] {
         let mut rig = thread();
         rig.until(20.0, "it is half way", |rig| observe(rig, "Z.actual") < 403.0);
         let from = observe(&rig, "Z.actual");
         rig.event(&format!("fault {fault}"));
         rig.until(2.0, "it is seen", |rig| {
-            assert_told_the_thread(rig);
+            assert_thread_is_reported(rig);
             !rig.messages().is_empty()
         });
         assert_eq!(rig.messages(), ["GROSS POSITIONING ERROR S C"], "{fault}");

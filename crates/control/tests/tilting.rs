@@ -66,7 +66,7 @@ fn a_tilted_plane_moves_all_axes() {
 
 /// What would leave the traverse range behind the plane is refused where it stands: Z+460 of the machine.
 #[test]
-fn limits_are_those_of_the_axes_behind_the_plane() {
+fn limits_are_those_of_the_axes_through_the_plane() {
     let run = |way: &str| {
         let blocks = format!("{START}L B+30 FMAX\n{TILT}L IX-{way} F5000");
         let mut rig = Build::swivelling_mill().program("LIMIT.H", &blocks).rig();

@@ -261,10 +261,10 @@ fn word(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
 }
 
 /// Whether what stands behind the first letter of an address is a value: `XP1`, `XV.G.RW`, `XSIN[30]`.
-fn is_value(rest: &str, behind: &mut Cursor) -> bool {
+fn is_value(rest: &str, after: &mut Cursor) -> bool {
     match rest {
-        "P" => behind.peek().is_some_and(|c| c.is_ascii_digit() || c == '['),
-        "V" => behind.peek() == Some('.'),
+        "P" => after.peek().is_some_and(|c| c.is_ascii_digit() || c == '['),
+        "V" => after.peek() == Some('.'),
         name => is_function(name),
     }
 }
@@ -481,9 +481,9 @@ fn call(cursor: &mut Cursor, letters: &str) -> Result<Option<WordKind>, LineFaul
     if cursor.is_done() {
         return Ok(Some(WordKind::Call { local, name }));
     }
-    let behind = cursor.mark();
+    let after = cursor.mark();
     let word = cursor.word();
-    Err(cursor.fault(behind, format!("unknown word {word} behind {letters} {name}")))
+    Err(cursor.fault(after, format!("unknown word {word} behind {letters} {name}")))
 }
 
 impl Word {

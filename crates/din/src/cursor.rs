@@ -104,8 +104,8 @@ impl<'a> Cursor<'a> {
     /// Column and length of what was read since a mark.
     pub fn span(&self, mark: usize) -> (u32, u32) {
         let column = |index: usize| self.line.get(index).map(|glyph| glyph.column);
-        let behind = self.line.last().map_or(1, |glyph| glyph.column.saturating_add(1));
-        let first = column(mark).unwrap_or(behind);
+        let after = self.line.last().map_or(1, |glyph| glyph.column.saturating_add(1));
+        let first = column(mark).unwrap_or(after);
         // Blanks behind a word are none of it.
         let read = self.line.get(mark..self.at).unwrap_or_default();
         let last = read.iter().rfind(|glyph| !glyph.character.is_whitespace());

@@ -349,8 +349,8 @@ impl Program {
         for word in block::read(&glyphs, macros)?.words {
             match word.kind {
                 WordKind::Define(name, text) => {
-                    let told = macros.define(&name, &text);
-                    told.map_err(|message| line::fault_at(word.column, word.length, message))?;
+                    let reported = macros.define(&name, &text);
+                    reported.map_err(|message| line::fault_at(word.column, word.length, message))?;
                     judged.macros.insert(name);
                 }
                 WordKind::Call { local, name } => {
@@ -402,8 +402,8 @@ impl Program {
                 let Some(mark) = mark else { break };
                 begin = begin.or(Some((number, mark)));
                 is_touched = true;
-                let behind = if open { mark } else { mark + "#COMMENT BEGIN".len() };
-                let end = find_end(&line, behind);
+                let after = if open { mark } else { mark + "#COMMENT BEGIN".len() };
+                let end = find_end(&line, after);
                 line::blank(&mut line, mark, end.unwrap_or(usize::MAX));
                 match end {
                     Some(end) => (begin, at) = (None, end),

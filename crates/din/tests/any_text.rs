@@ -102,7 +102,7 @@ fn text() -> impl Strategy<Value = String> {
 /// Everything that a text comes to.
 fn all_of(bytes: &[u8]) -> String {
     let program = Arc::new(Program::from_bytes("any.nc", bytes));
-    let mut told = format!("{:?}\n{:?}\n", program.faults(), program.landmarks());
+    let mut reported = format!("{:?}\n{:?}\n", program.faults(), program.landmarks());
     let lines = program.line_count();
     for fault in program.faults() {
         let length = program.line(fault.line).chars().count() as u32;
@@ -123,14 +123,14 @@ fn all_of(bytes: &[u8]) -> String {
                 assert!(motion.start.known() == motion.end.known(), "{motion:?}");
                 assert!(motion.rapid || motion.feed_mm_min > 0.0, "{motion:?}");
             }
-            told += &format!("{step:?}\n");
+            reported += &format!("{step:?}\n");
             if is_over {
                 assert_eq!(decoder.next(&mut bench), Step::End);
                 break;
             }
         }
     }
-    told
+    reported
 }
 
 proptest! {
@@ -170,6 +170,6 @@ proptest! {
         let text = format!("N7{blank}G01{blank}X{x}{blank}F{feed}{blank}M{m}={value}");
         let (units, fault) = support::run_with(&text, &mut Bench::default(), files([]));
         prop_assert_eq!(fault, None);
-        prop_assert_eq!(support::told(&units[0]), format!("N7 M{m}={value} to X{x} Y0 F{feed}"));
+        prop_assert_eq!(support::reported(&units[0]), format!("N7 M{m}={value} to X{x} Y0 F{feed}"));
     }
 }

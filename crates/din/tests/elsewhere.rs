@@ -3,7 +3,7 @@
 
 use bahn_din::Program;
 
-fn told(text: &str) -> Vec<String> {
+fn reported(text: &str) -> Vec<String> {
     let faults = Program::from_bytes("a.nc", text.as_bytes()).faults();
     faults
         .into_iter()
@@ -50,8 +50,8 @@ fn what_the_manual_does_not_show_has_its_name() {
         ("G1 XY", "unknown word XY"),
         ("…", "unknown word …"),
     ] {
-        let [only] = &told(text)[..] else {
-            panic!("{text}: {:?}", told(text))
+        let [only] = &reported(text)[..] else {
+            panic!("{text}: {:?}", reported(text))
         };
         let (_, message) = only.split_once(' ').unwrap_or_default();
         assert_eq!(message, name, "{text}");
@@ -71,6 +71,6 @@ fn what_the_manual_shows_is_read_in_other_clothes() {
         "G02 XP10+P20 R5",
         "G01 X1 #COMMENT BEGIN\n no word\n #COMMENT END  F100",
     ] {
-        assert_eq!(told(text), [""; 0], "{text}");
+        assert_eq!(reported(text), [""; 0], "{text}");
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use bahn_din::{Command, LandmarkKind, Program, Step};
 use bahn_path::{Axis, Curve, Plane, Position};
-use support::{Bench, Files, decoder_with, files, refused, run, run_with, told, told_all, variable};
+use support::{Bench, Files, decoder_with, files, refused, reported, reported_all, run, run_with, variable};
 
 #[test]
 fn incremental_and_absolute_coordinates() {
@@ -30,7 +30,7 @@ fn incremental_and_absolute_coordinates() {
 #[test]
 fn words_may_be_glued_and_small() {
     assert_eq!(
-        told_all(&run("n10g01x10.5y-.5f200m3s500\nM30")),
+        reported_all(&run("n10g01x10.5y-.5f200m3s500\nM30")),
         ["N10 M3 S500 to X10.5 Y-0.5 F200", "#2 M30 end"]
     );
 }
@@ -103,7 +103,11 @@ fn time_of_standing() {
     let units = run("P1=2\nG04 X0.5\nG04 3.5\nG04 P1*2\nX1");
     let times: Vec<f64> = units.iter().map(|unit| unit.dwell_s).collect();
     assert_eq!(times, [0.0, 0.5, 3.5, 4.0, 0.0, 0.0]);
-    assert_eq!(told(&units[4]), "#5 to X1 Y0 rapid", "X of G04 is no coordinate");
+    assert_eq!(
+        reported(&units[4]),
+        "#5 to X1 Y0 rapid",
+        "X of G04 is no coordinate"
+    );
 }
 
 #[test]
@@ -141,7 +145,7 @@ fn expressions() {
 #[test]
 fn numbers_of_functions_are_rounded() {
     assert_eq!(
-        told_all(&run("P10=24.6 P1=7\nMP10 H[P1*2]=P1/2 X[MP10=1]\n")),
+        reported_all(&run("P10=24.6 P1=7\nMP10 H[P1*2]=P1/2 X[MP10=1]\n")),
         ["#1", "#2 M25 H14=4 X[M25=1]", "#2 end"]
     );
     assert_eq!(
@@ -157,7 +161,7 @@ fn numbers_of_functions_are_rounded() {
 #[test]
 fn additive_values_have_32_bits() {
     assert_eq!(
-        told_all(&run("M50=2.5 M51=-99999999999 M52=3000000000")),
+        reported_all(&run("M50=2.5 M51=-99999999999 M52=3000000000")),
         ["#1 M50=3 M51=-2147483648 M52=2147483647", "#1 end"]
     );
 }
@@ -174,7 +178,7 @@ fn a_function_may_be_asked_for() {
         &mut bench,
         Files::default(),
     );
-    assert_eq!((told(&units[0]), fault), ("#1 to X6 Y0 rapid".into(), None));
+    assert_eq!((reported(&units[0]), fault), ("#1 to X6 Y0 rapid".into(), None));
 }
 
 #[test]
@@ -186,14 +190,14 @@ fn everything_is_executed_before_an_external_variable_is_read() {
         Step::Unit(unit) => *unit,
         other => panic!("{other:?}"),
     };
-    assert_eq!(told(&next(&mut bench)), "N10 to X10 Y0 rapid");
+    assert_eq!(reported(&next(&mut bench)), "N10 to X10 Y0 rapid");
     let barrier = next(&mut bench);
-    assert_eq!(told(&barrier), "N20");
+    assert_eq!(reported(&barrier), "N20");
     assert_eq!(barrier.commands, [Command::Flush { wait: true }]);
     assert_eq!(bench.log, [""; 0], "not asked before everything else is done");
     bench.values.insert(variable("V.E.STATE", None), 7.0);
     let block = next(&mut bench);
-    assert_eq!(told(&block), "N20 M5=7 to X20 Y0 rapid");
+    assert_eq!(reported(&block), "N20 M5=7 to X20 Y0 rapid");
     assert!(block.commands.is_empty());
     assert!(next(&mut bench).commands.is_empty(), "writing waits for nothing");
     assert_eq!(bench.log, ["read V.E.STATE", "write V.E.STATE 3"]);
@@ -203,7 +207,7 @@ fn everything_is_executed_before_an_external_variable_is_read() {
 fn subroutines_of_the_same_file() {
     let text = "%L FIRST\nN1 M11\nN2 LL SECOND\nN3 M29\n% L SECOND (name)\nN4 M12\n%MAIN\nN10 X1 L FIRST\nN20 LL SECOND\nN30 M30\n%OTHER\nN40 M99";
     assert_eq!(
-        told_all(&run(text)),
+        reported_all(&run(text)),
         [
             "N10 to X1 Y0 rapid",
             "N1 M11",
@@ -222,7 +226,7 @@ fn a_subroutine_may_end_the_program() {
     let shelf = files([("end.nc", "M30\n"), ("deep.nc", "L end\nM50")]);
     let (units, fault) = run_with("L deep\nM51", &mut Bench::default(), shelf);
     assert_eq!(
-        (told_all(&units), fault),
+        (reported_all(&units), fault),
         (vec!["#1".into(), "#1".into(), "#1 M30 end".into()], None)
     );
 }
@@ -252,7 +256,7 @@ fn skip_to(decoder: &mut bahn_din::Decoder, block: &str, bench: &mut Bench) -> O
         }
     }
     match decoder.next(bench) {
-        Step::Unit(unit) => Some(told(&unit)),
+        Step::Unit(unit) => Some(reported(&unit)),
         _ => None,
     }
 }
@@ -291,7 +295,7 @@ fn search_for_a_block_executes_what_stands_before_it() {
 }
 
 #[test]
-fn programs_of_a_file_are_told_apart() {
+fn programs_of_a_file_are_distinguished() {
     let program = Program::from_bytes(
         "two.nc",
         b"\n; before\nM1\n%PRG1\nN5 M2\n%L SUB\nN6 M17\n%PRG2\r\nN7 M30\r\n",
@@ -331,7 +335,7 @@ fn programs_of_a_file_are_told_apart() {
         panic!("no unit")
     };
     assert_eq!(
-        (told(&unit), decoder.position()[Axis::X]),
+        (reported(&unit), decoder.position()[Axis::X]),
         ("N7 M30 end".into(), 7.0)
     );
     assert_eq!(decoder.next(&mut Bench::default()), Step::End);
@@ -341,7 +345,7 @@ fn programs_of_a_file_are_told_apart() {
 fn comments_over_several_lines() {
     let text = "X1 #COMMENT BEGIN\nthis is no block\n  #comment end X2\n(#COMMENT BEGIN)\nX3\n#COMMENT BEGIN #COMMENT END M5";
     assert_eq!(
-        told_all(&run(text)),
+        reported_all(&run(text)),
         [
             "#1 to X1 Y0 rapid",
             "#3 to X2 Y0 rapid",
@@ -356,11 +360,11 @@ fn comments_over_several_lines() {
 }
 
 #[test]
-fn g40_to_g42_are_told_and_change_no_path() {
+fn g40_to_g42_are_reported_and_change_no_path() {
     let units = run("G41 G01 X10 F100\nG40 X20");
     assert_eq!(units[0].commands, [Command::RadiusCompensation(true)]);
     assert_eq!(units[1].commands, [Command::RadiusCompensation(false)]);
-    assert_eq!(told(&units[1]), "#2 to X20 Y0 F100");
+    assert_eq!(reported(&units[1]), "#2 to X20 Y0 F100");
 }
 
 /// Everything that is not known is named where it stands.
@@ -422,13 +426,13 @@ fn what_is_not_known_is_named() {
         (".....", 1, "unknown word ....."),
         ("EXIST[P1]", 1, "unknown word EXIST"),
     ] {
-        let (_, at, told) = refused(text);
-        assert_eq!((at, told.as_str()), (column, message), "{text}");
+        let (_, at, reported) = refused(text);
+        assert_eq!((at, reported.as_str()), (column, message), "{text}");
     }
 }
 
 #[test]
-fn what_is_wrong_is_told_where_it_stands() {
+fn what_is_wrong_is_reported_where_it_stands() {
     for (text, column, message) in [
         ("G00 G01 X1", 5, "G01 beside G00: one of them counts in a block"),
         ("G01 X10", 5, "no feed F is programmed"),
@@ -475,15 +479,15 @@ fn what_is_wrong_is_told_where_it_stands() {
             );
             continue;
         }
-        let (_, at, told) = refused(text);
-        assert_eq!((at, told.as_str()), (column, message), "{text}");
+        let (_, at, reported) = refused(text);
+        assert_eq!((at, reported.as_str()), (column, message), "{text}");
     }
 }
 
 #[test]
 fn a_fault_ends_the_program() {
     let (units, fault) = run_with("N10 X1\nN20 T1\nN30 X2", &mut Bench::default(), Files::default());
-    assert_eq!(told_all(&units), ["N10 to X1 Y0 rapid"]);
+    assert_eq!(reported_all(&units), ["N10 to X1 Y0 rapid"]);
     let fault = fault.expect("a fault");
     assert_eq!(
         (&*fault.place.block, fault.place.line, fault.length),
@@ -499,13 +503,13 @@ fn a_fault_ends_the_program() {
     assert_eq!(lines, [(1, 1, 4), (2, 1, 7), (4, 1, 2)]);
     // The text has all of them.
     let program = Program::from_bytes("t.nc", b"N10 T1\nN20 X1\nN30 D2\n%L S\n%L S\n%L\nX\"LATER\"");
-    let told: Vec<(u32, String)> = program
+    let reported: Vec<(u32, String)> = program
         .faults()
         .into_iter()
         .map(|fault| (fault.line, fault.message))
         .collect();
     assert_eq!(
-        told,
+        reported,
         [
             (1, "unknown word T1".into()),
             (3, "unknown word D2".into()),

@@ -17,7 +17,7 @@ fn listing(text: &str) -> String {
 /// Everything that a text orders, up to its first fault.
 fn ordered(text: &str) -> String {
     let program = Arc::new(Program::from_bytes("a.nc", text.as_bytes()));
-    let mut told = format!("{:?}\n", program.landmarks());
+    let mut reported = format!("{:?}\n", program.landmarks());
     for main in program.mains() {
         let shelf = Arc::new(files([("sub", "N1 G91 X1 M7\nLL A\n")]));
         let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, shelf);
@@ -30,14 +30,14 @@ fn ordered(text: &str) -> String {
                 Step::Fault(fault) => (fault.column, fault.length) = (0, 0),
                 Step::End => {}
             }
-            told += &format!("{step:?}\n");
+            reported += &format!("{step:?}\n");
             if !matches!(step, Step::Unit(_)) {
                 break;
             }
         }
-        told += &bench.log.join("\n");
+        reported += &bench.log.join("\n");
     }
-    told
+    reported
 }
 
 #[test]

@@ -4,14 +4,14 @@ mod support;
 
 use bahn_din::{Command, Independent, SpindleOrder};
 use bahn_path::Axis;
-use support::{Bench, Files, files, run, run_with, told, told_all, variable};
+use support::{Bench, Files, files, reported, reported_all, run, run_with, variable};
 
 #[test]
 fn functions_stand_in_their_block_with_its_motion() {
     // [004:60] and what its neighbours vary.
     let units = run("N20 G00 X25\nN30 X50\nN40 X75 M25\nN50 G01 X100 F2000\nN60 X125 Z100\nM30\n");
     assert_eq!(
-        told_all(&units),
+        reported_all(&units),
         [
             "N20 to X25 Y0 rapid",
             "N30 to X50 Y0 rapid",
@@ -32,7 +32,7 @@ fn edge_banding_begins_and_ends() {
         run("N05 X0 Y0\nN10 G108 (start)\nN20 G01 X90 Y90 F20\nN30 G01 X150 Y150 M33 F8\nN40 G107\nM30");
     assert_eq!(units[1].commands, [Command::EdgeBanding(true)]);
     assert_eq!(units[4].commands, [Command::EdgeBanding(false)]);
-    assert_eq!(told(&units[3]), "N30 M33 to X150 Y150 F8");
+    assert_eq!(reported(&units[3]), "N30 M33 to X150 Y150 F8");
     assert_eq!(units[0].motion, None, "the path stands there already");
 }
 
@@ -40,7 +40,7 @@ fn edge_banding_begins_and_ends() {
 fn late_functions_and_their_explicit_gate() {
     // [004:72] [004:75] [004:78]
     let units = run("N05 M26 G00 X25\nN10 M27\nN50 G01 X125 F2000\nN60 #EXPL SYN (trigger)\nN80 X0 Y0\nM30");
-    assert_eq!(told_all(&units[..2]), ["N5 M26 to X25 Y0 rapid", "N10 M27"]);
+    assert_eq!(reported_all(&units[..2]), ["N5 M26 to X25 Y0 rapid", "N10 M27"]);
     assert_eq!(units[3].commands, [Command::ExplicitSynchronisation]);
     assert_eq!(units[3].motion, None);
 }
@@ -66,7 +66,7 @@ N205 X[M61=-418 H30 H27=-903 M66=250 H21=418] H33=38 M66=41 H24=250 M71
 N1004 M30=5
 ";
     assert_eq!(
-        told_all(&run(text)),
+        reported_all(&run(text)),
         [
             "N15 M61=-418",
             "N25 M15=77",
@@ -91,7 +91,7 @@ N1004 M30=5
 fn an_axis_moves_on_its_own_with_functions() {
     // [004:108]
     let units = run("N05 X[INDP G90 G01 FEED=1500 POS=320 M66=17 H27=-18]\nN10 G91 G00 X5\nM30");
-    assert_eq!(told(&units[0]), "N5 X[M66=17] X[H27=-18]");
+    assert_eq!(reported(&units[0]), "N5 X[M66=17] X[H27=-18]");
     let order = Independent {
         axis: Axis::X,
         end: 320.0,
@@ -100,7 +100,7 @@ fn an_axis_moves_on_its_own_with_functions() {
     };
     assert_eq!(units[0].commands, [Command::Independent(order)]);
     assert_eq!(
-        told(&units[1]),
+        reported(&units[1]),
         "N10 to X325 Y0 rapid",
         "the path goes on where the axis stands"
     );
@@ -110,7 +110,7 @@ fn an_axis_moves_on_its_own_with_functions() {
 fn hexadecimal_additive_value() {
     // [004:105]: M50='16#1F' is M50=31.
     assert_eq!(
-        told_all(&run("M50='16#1F' H44 = -256 M51=2*[3+4]**2")),
+        reported_all(&run("M50='16#1F' H44 = -256 M51=2*[3+4]**2")),
         ["#1 M50=31 H44=-256 M51=98", "#1 end"]
     );
 }
@@ -121,7 +121,7 @@ fn channel_axes_and_spindle_in_one_block() {
     let units =
         run("N10 X[M7] S[M7] M7\nN20 M83 X[M83]\nN30 S2[M3 REV1000] G01 F100 X100\nN40 M3 S1000\nM30");
     assert_eq!(
-        told_all(&units[..4]),
+        reported_all(&units[..4]),
         [
             "N10 X[M7] S[M7] M7",
             "N20 M83 X[M83]",
@@ -138,7 +138,7 @@ fn a_spindle_is_placed() {
         spindle: "S2".into(),
         position_deg: Some(90.0),
     };
-    assert_eq!(told(&units[0]), "N10 S2[M19]");
+    assert_eq!(reported(&units[0]), "N10 S2[M19]");
     assert_eq!(units[0].commands, [Command::Spindle(order)]);
 }
 
@@ -169,7 +169,7 @@ M30
         ]
     );
     assert_eq!(bench.values[&variable("V.G.M_FCT[].SYNCH", Some(13))], 8.0);
-    assert_eq!(told(&units[6]), "N20 M11 H12 M13 to X200 Y0 rapid");
+    assert_eq!(reported(&units[6]), "N20 M11 H12 M13 to X200 Y0 rapid");
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn subroutines_of_other_files() {
     let (units, fault) = run_with(text, &mut Bench::default(), shelf);
     assert_eq!(fault, None);
     assert_eq!(
-        told_all(&units),
+        reported_all(&units),
         [
             "N10",
             "N15",
@@ -265,7 +265,7 @@ fn comments_of_all_kinds() {
     // [004:60] [004:123] [004:129]
     let units =
         run("; a line\n(another)\n(* M100 - off, M26 - on *)\nN1 X1 (a) M5 (* b ) *) H2 ; c (\n\nM30");
-    assert_eq!(told_all(&units), ["N1 M5 H2 to X1 Y0 rapid", "#6 M30 end"]);
+    assert_eq!(reported_all(&units), ["N1 M5 H2 to X1 Y0 rapid", "#6 M30 end"]);
 }
 
 #[test]

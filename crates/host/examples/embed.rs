@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 use bahn_control::RunState;
 use bahn_host::{
-    Attendance, Deed, FolderPrograms, Host, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source, When,
+    Action, Attendance, FolderPrograms, Host, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source,
+    When,
 };
 
 const MILL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/mill");
@@ -50,8 +51,8 @@ pub fn run(folder: &Path, program: &Path, out: &mut dyn Write) -> Result<(), Box
         }
         if host.control().run_state() == RunState::Running && !std::mem::replace(&mut started, true) {
             let now = host.control().time_us();
-            host.order(me.clone(), When::At(now + 2_000_000), Deed::tap("NC_STOP"))?;
-            host.order(me.clone(), When::At(now + 3_000_000), Deed::tap("NC_START"))?;
+            host.order(me.clone(), When::At(now + 2_000_000), Action::tap("NC_STOP"))?;
+            host.order(me.clone(), When::At(now + 3_000_000), Action::tap("NC_START"))?;
         }
     }
 }

@@ -41,7 +41,7 @@ impl Background {
         }
         self.compute(control, realtime, break_off);
         if let Some(reading) = &mut self.reading {
-            reading.lend(control);
+            reading.hand_over(control);
         }
     }
 

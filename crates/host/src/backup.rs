@@ -203,8 +203,8 @@ fn pieces(line: &[u8]) -> impl Iterator<Item = &[u8]> {
             length + 3 <= LINE
         };
         let count = rest.iter().take_while(fits).count();
-        let (piece, behind) = rest.split_at_checked(count)?;
-        rest = behind;
+        let (piece, after) = rest.split_at_checked(count)?;
+        rest = after;
         (count > 0).then_some(piece)
     })
 }

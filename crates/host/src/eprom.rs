@@ -84,7 +84,7 @@ impl LoadList {
             .split_once(char::is_whitespace)
             .unwrap_or((text.trim(), ""));
         let at = |offset: usize| u32::try_from(begin + offset + 1).unwrap_or(1);
-        let behind = at(text.trim().len() - rest.trim_start().len());
+        let after = at(text.trim().len() - rest.trim_start().len());
         let fault = |column: u32, message: &str| Err((column, message.to_owned()));
         let name: String = rest.chars().filter(|c| !c.is_whitespace()).collect();
         match word.to_ascii_uppercase().as_str() {
@@ -93,14 +93,14 @@ impl LoadList {
                 self.ident = name;
                 Ok(())
             }
-            "IDENT" => fault(behind, "the id number of an EPROM has eight digits: 123 456 99"),
+            "IDENT" => fault(after, "the id number of an EPROM has eight digits: 123 456 99"),
             _ if is_first => fault(at(0), "the first line is IDENT with the id number of the EPROM"),
             "SIZE" if name.eq_ignore_ascii_case("2MB") => {
                 self.is_large = true;
                 Ok(())
             }
-            "SIZE" => fault(behind, "the size is 2MB"),
-            "LOAD" => self.load(line, &name).map_err(|message| (behind, message)),
+            "SIZE" => fault(after, "the size is 2MB"),
+            "LOAD" => self.load(line, &name).map_err(|message| (after, message)),
             _ => fault(at(0), "a line is IDENT, SIZE or LOAD"),
         }
     }
@@ -175,9 +175,8 @@ impl LoadList {
             let listed = match line.strip_prefix("LOAD ").and_then(|rest| rest.rsplit_once(' ')) {
                 Some((name, size)) => {
                     let size = size.parse::<usize>().ok().filter(|size| *size <= rest.len());
-                    let (content, behind) =
-                        rest.split_at(size.ok_or_else(|| format!("{name} is not whole"))?);
-                    rest = behind;
+                    let (content, after) = rest.split_at(size.ok_or_else(|| format!("{name} is not whole"))?);
+                    rest = after;
                     contents.push(content.to_vec());
                     format!("LOAD {name}")
                 }

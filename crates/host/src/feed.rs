@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn readers_go_at_their_own_pace_and_are_told_what_they_missed() {
+    fn readers_go_at_their_own_pace_and_get_what_they_missed() {
         use Next::{Item, Missed};
         let feed = Feed::new(3);
         let mut early = feed.reader();

@@ -13,8 +13,8 @@ use bahn_machine::Machine;
 use bahn_path::PathElement;
 use bahn_plc::{Tracer, WindowView};
 
+use crate::action::{Action, Answer, Operable, Source};
 use crate::background::Background;
-use crate::deed::{Answer, Deed, Operable, Source};
 use crate::digitizing::{Digitizing, Written};
 use crate::error::HostError;
 use crate::feed::{Feed, Reader};
@@ -35,7 +35,7 @@ const SNAPSHOTS: usize = 256;
 /// Control and plant, driven cycle by cycle, observed, and kept over power-off.
 ///
 /// [`Host::step`] is one contour cycle: what is due is done, the operator acts, the control prepares and spends
-/// the cycle, what must survive is stored, and what has changed is told. The same machine and the same deeds at
+/// the cycle, what must survive is stored, and what has changed is told. The same machine and the same actions at
 /// the same times give the same bits, but for computations that a [`Clock::Wall`] does not wait for.
 pub struct Host<P = Machine> {
     pub(crate) control: Control,
@@ -215,16 +215,16 @@ impl<P: Operable> Host<P> {
             self.take(order);
         }
         while let Some(order) = self.waiting.due(self.control.time_us()) {
-            self.execute(order.source, order.deed)?;
+            self.execute(order.source, order.action)?;
         }
-        if let Some((channel, deed, why)) = self.operator.act(&self.control) {
-            if let (Deed::Event(bahn_machine::Event::Key(key, _), _), Why::Stop | Why::ToolChange) =
-                (&deed, why)
+        if let Some((channel, action, why)) = self.operator.act(&self.control) {
+            if let (Action::Event(bahn_machine::Event::Key(key, _), _), Why::Stop | Why::ToolChange) =
+                (&action, why)
             {
                 let key = key.clone();
                 self.tell_in(channel, Notice::Confirmed { key, why });
             }
-            self.execute(Source::Operator, deed)?;
+            self.execute(Source::Operator, action)?;
         }
         Ok(())
     }
@@ -284,18 +284,19 @@ impl<P: Operable> Host<P> {
     ///
     /// # Errors
     /// When the log cannot be written.
-    pub fn act(&mut self, source: Source, deed: Deed) -> Result<Answer, HostError> {
+    pub fn act(&mut self, source: Source, action: Action) -> Result<Answer, HostError> {
         let now = self.control.time_us();
-        self.journal.add(now, Given::AtOnce(source.clone(), deed.clone()));
-        self.execute(source, deed)
+        self.journal
+            .add(now, Given::AtOnce(source.clone(), action.clone()));
+        self.execute(source, action)
     }
 
     /// Gives an order; [`Host::desk`] takes them from any thread.
     ///
     /// # Errors
     /// [`HostError::Busy`] when too many wait.
-    pub fn order(&self, source: Source, when: When, deed: Deed) -> Result<(), HostError> {
-        self.desk.give(source, when, deed)
+    pub fn order(&self, source: Source, when: When, action: Action) -> Result<(), HostError> {
+        self.desk.give(source, when, action)
     }
 
     /// Where others give orders.
@@ -310,30 +311,30 @@ impl<P: Operable> Host<P> {
 
     /// An order that finds no place among those that wait is answered at once.
     pub(crate) fn take(&mut self, order: crate::orders::Order) {
-        let (source, deed) = (order.source.clone(), order.deed.clone());
+        let (source, action) = (order.source.clone(), order.action.clone());
         if !self.waiting.add(order, self.control.time_us()) {
             let answer = Answer::Impossible(HostError::Busy.to_string());
-            self.tell(Notice::Given(source, deed, answer));
+            self.tell(Notice::Given(source, action, answer));
         }
     }
 
-    pub(crate) fn execute(&mut self, source: Source, deed: Deed) -> Result<Answer, HostError> {
+    pub(crate) fn execute(&mut self, source: Source, action: Action) -> Result<Answer, HostError> {
         if let Some(sink) = &mut self.sink {
-            sink.note(self.control.time_us(), &source, &deed.to_string())?;
+            sink.note(self.control.time_us(), &source, &action.to_string())?;
         }
         // What comes of a program that is transferred waits in the control.
-        let waits = matches!(deed, Deed::Command(_, Command::Dnc(Dnc::Text(_))));
-        if matches!(deed, Deed::Command(..)) && !waits {
+        let waits = matches!(action, Action::Command(_, Command::Dnc(Dnc::Text(_))));
+        if matches!(action, Action::Command(..)) && !waits {
             self.background.settle(&mut self.control);
         }
-        let answer = match &deed {
-            Deed::Command(channel, command) => self.command(*channel, command),
-            Deed::Event(event, _) => match self.plant.operate(event) {
+        let answer = match &action {
+            Action::Command(channel, command) => self.command(*channel, command),
+            Action::Event(event, _) => match self.plant.operate(event) {
                 Ok(()) => Answer::Done,
                 Err(what) => Answer::Impossible(what),
             },
         };
-        self.tell(Notice::Given(source, deed, answer.clone()));
+        self.tell(Notice::Given(source, action, answer.clone()));
         Ok(answer)
     }
 
@@ -449,7 +450,7 @@ impl<P: Operable> Host<P> {
 
     pub(crate) fn tell(&self, notice: Notice) {
         let channel = match &notice {
-            Notice::Given(_, Deed::Command(channel, _), _) => *channel,
+            Notice::Given(_, Action::Command(channel, _), _) => *channel,
             _ => 0,
         };
         self.tell_in(channel, notice);
@@ -549,7 +550,7 @@ impl<P: Operable> Host<P> {
     }
 
     /// Runs by another clock from now on. By that on the wall part programs are read on a thread of their own: what a
-    /// program needs to be read holds no cycle. It is back for every deed, and for what is stored.
+    /// program needs to be read holds no cycle. It is back for every action, and for what is stored.
     pub fn set_clock(&mut self, clock: Clock) {
         self.clock = clock;
         self.pace = Pace::of(clock, self.control.time_us());
@@ -604,7 +605,7 @@ impl<P: Operable> Host<P> {
         self.sink = Some(sink);
     }
 
-    /// Notes something that is no deed.
+    /// Notes something that is no action.
     ///
     /// # Errors
     /// When the log cannot be written.

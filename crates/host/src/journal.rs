@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bahn_control::{Command, Dnc, Renewed};
 
-use crate::deed::{Deed, Source};
+use crate::action::{Action, Source};
 use crate::orders::Order;
 
 /// Entries that are known at most; the oldest are forgotten.
@@ -17,7 +17,7 @@ const TEXT_MAX: usize = 16 << 20;
 #[derive(Clone, Debug)]
 pub(crate) enum Given {
     /// By whoever drives the host, at once.
-    AtOnce(Source, Deed),
+    AtOnce(Source, Action),
     /// At the desk.
     Order(Order),
     /// What an editor has written.
@@ -26,18 +26,18 @@ pub(crate) enum Given {
 
 impl Given {
     /// What was done, and by whom.
-    pub fn deed(&self) -> Option<(&Source, &Deed)> {
+    pub fn action(&self) -> Option<(&Source, &Action)> {
         match self {
-            Given::AtOnce(source, deed) => Some((source, deed)),
-            Given::Order(order) => Some((&order.source, &order.deed)),
+            Given::AtOnce(source, action) => Some((source, action)),
+            Given::Order(order) => Some((&order.source, &order.action)),
             Given::Renewed(_) => None,
         }
     }
 
     /// Bytes of program text in it.
     fn text(&self) -> usize {
-        match self.deed() {
-            Some((_, Deed::Command(_, Command::Dnc(Dnc::Text(text))))) => text.len(),
+        match self.action() {
+            Some((_, Action::Command(_, Command::Dnc(Dnc::Text(text))))) => text.len(),
             _ => 0,
         }
     }
@@ -92,7 +92,7 @@ mod tests {
     fn what_is_forgotten_is_not_repeated() {
         let mut journal = Journal::default();
         for time in 0..GIVEN_MAX as u64 + 2 {
-            journal.add(time, Given::AtOnce(Source::Script, Deed::tap("a")));
+            journal.add(time, Given::AtOnce(Source::Script, Action::tap("a")));
         }
         assert!(journal.split_off(1).is_none());
         let since = journal.split_off(GIVEN_MAX as u64).unwrap();
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn program_text_does_not_pile_up() {
         let mut journal = Journal::default();
-        let text = || Deed::Command(0, Command::Dnc(Dnc::Text(vec![b' '; 1 << 16].into())));
+        let text = || Action::Command(0, Command::Dnc(Dnc::Text(vec![b' '; 1 << 16].into())));
         for time in 0..1000 {
             journal.add(time, Given::AtOnce(Source::Script, text()));
             assert!(journal.text <= TEXT_MAX);

@@ -25,7 +25,7 @@
 //!   ([`FileFault`]); [`FolderPrograms`] are its part programs;
 //! - [`PowerOn`] is what it begins with, [`Host`] the machine that is on: [`Host::step`] is a contour cycle, by
 //!   whichever [`Clock`];
-//! - a [`Deed`] is done at once ([`Host::act`]) or ordered for a time, from any thread ([`Desk`]), by a
+//! - a [`Action`] is done at once ([`Host::act`]) or ordered for a time, from any thread ([`Desk`]), by a
 //!   [`Source`]; a [`Sink`] logs it; an [`Operator`] stands by; a [`Script`] is [played](Play);
 //! - any number of [`Reader`]s follow [`Notice`]s and snapshots; who is slow is told how much he missed;
 //! - [`Saved`] is a moment to go back to, a [`Timeline`] many of them: [`Host::replay`] reaches any moment again, also of
@@ -45,11 +45,11 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+mod action;
 mod background;
 pub mod backup;
 mod called;
 mod columns;
-mod deed;
 mod digitizing;
 mod edges;
 pub mod eprom;
@@ -89,9 +89,9 @@ mod text;
 mod threads;
 pub mod tool_table;
 
+pub use action::{Action, ActionError, Answer, Operable, Source};
 pub use called::called_program;
 pub use columns::{Cell, TableFault, TextRow, TextTable, canonical};
-pub use deed::{Answer, Deed, DeedError, Operable, Source};
 pub use edges::Edges;
 pub use error::HostError;
 pub use executed_path::{ElementId, ExecutedPath};
@@ -138,7 +138,7 @@ pub use plc_source::PlcSource;
 pub use power_on::{ChannelPowerOn, PowerOn};
 pub use retained::Retained;
 pub use saved::{Course, Saved, Timeline};
-pub use script::{Action, Base, Line, Script, Stage};
+pub use script::{Base, Line, Script, ScriptAction, Stage};
 pub use table_edit::{LineChange, delete_line, set_line, with_column};
 pub use table_kind::{Content as CellContent, KnownColumn, PlainTable, TableForm};
 pub use text::{printable, printable_lines};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crc32fast::Hasher;
 
-use crate::deed::Source;
+use crate::action::Source;
 use crate::error::HostError;
 use crate::files::{self, NewFile};
 use crate::text::printable;

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_event_has_scans_before_and_behind_it() {
+    fn the_event_has_scans_before_and_after_it() {
         let up = Trigger::Edge(vec![("M1".parse().unwrap(), Content::Number(1))]);
         // The edge comes in scan 5; two scans before it and six from it on are kept.
         let recorder = recorded(&up, (2, 8), 100, false);

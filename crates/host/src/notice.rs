@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bahn_control::{ChannelView, Control, DataLineOrder, Message, Mode, OrderedLines, RunState, Shown};
 use bahn_path::BlockRef;
 
-use crate::deed::{Answer, Deed, Source};
+use crate::action::{Action, Answer, Source};
 
 /// Something that happened.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub enum Notice {
     /// The operating mode is another one.
     Mode(Mode),
     /// Something was done, and what came of it.
-    Given(Source, Deed, Answer),
+    Given(Source, Action, Answer),
     /// The operator pressed a key because the run waited for him.
     Confirmed {
         /// The key.

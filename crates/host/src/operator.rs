@@ -6,7 +6,7 @@ use bahn_exchange::signal;
 use bahn_machine::OperatorKeys;
 use bahn_parameters::MessageId;
 
-use crate::deed::Deed;
+use crate::action::Action;
 use crate::notice::Why;
 
 /// Between two things that he does, µs.
@@ -136,20 +136,20 @@ impl Operator {
     }
 
     /// What he does in this cycle, and for which channel.
-    pub(crate) fn act(&mut self, control: &Control) -> Option<(usize, Deed, Why)> {
+    pub(crate) fn act(&mut self, control: &Control) -> Option<(usize, Action, Why)> {
         let attendance = self.attendance;
-        let mut deed = None;
+        let mut action = None;
         for station in &mut self.stations {
             let Some(channel) = control.channel(station.channel) else {
                 continue;
             };
             station.follow(control, channel);
-            if deed.is_none() && attendance != Attendance::Absent {
+            if action.is_none() && attendance != Attendance::Absent {
                 let done = station.act(attendance, control, channel);
-                deed = done.map(|(deed, why)| (station.channel, deed, why));
+                action = done.map(|(action, why)| (station.channel, action, why));
             }
         }
-        deed
+        action
     }
 }
 
@@ -174,11 +174,11 @@ impl Station {
         attendance: Attendance,
         control: &Control,
         channel: ChannelView,
-    ) -> Option<(Deed, Why)> {
+    ) -> Option<(Action, Why)> {
         let now = control.time_us();
         let waited = now.saturating_sub(self.acted_us);
-        let start = || Some((Deed::tap(&self.keys.start), Why::Routine));
-        let deed = match self.phase {
+        let start = || Some((Action::tap(&self.keys.start), Why::Routine));
+        let action = match self.phase {
             Phase::PowerUp if waited >= PAUSE_US => self.power_up(control),
             Phase::Reference if channel.mode() != Mode::Reference => None,
             Phase::Reference if waited >= 2 * PAUSE_US && control.stands() => start(),
@@ -189,10 +189,10 @@ impl Station {
             }
             _ => None,
         };
-        if deed.is_some() {
+        if action.is_some() {
             self.acted_us = now;
         }
-        deed
+        action
     }
 
     /// The phase follows the control, whoever operates it. Programs wait until all channels know where they are.
@@ -229,7 +229,7 @@ impl Station {
         }
     }
 
-    fn power_up(&self, control: &Control) -> Option<(Deed, Why)> {
+    fn power_up(&self, control: &Control) -> Option<(Action, Why)> {
         if self.channel > 0 {
             // The first channel does it for the machine.
             return None;
@@ -239,16 +239,16 @@ impl Station {
             control.shown().iter().any(|shown| shown.message == message)
         };
         if shows(MessageId::PowerInterrupted) {
-            return Some((Deed::Command(0, Command::Ce), Why::Routine));
+            return Some((Action::Command(0, Command::Ce), Why::Routine));
         }
         let voltage = self.keys.control_voltage.clone();
         voltage
             .filter(|_| shows(MessageId::RelayExtDcVoltageMissing))
-            .map(|key| (Deed::tap(&key), Why::Routine))
+            .map(|key| (Action::tap(&key), Why::Routine))
     }
 
     /// Mode, program, start block, then NC start.
-    fn choose(&mut self) -> Option<(Deed, Why)> {
+    fn choose(&mut self) -> Option<(Action, Why)> {
         let job = self.job.as_ref()?;
         loop {
             self.chosen += 1;
@@ -262,15 +262,15 @@ impl Station {
                 },
                 _ => {
                     self.started = true;
-                    return Some((Deed::tap(&self.keys.start), Why::Routine));
+                    return Some((Action::tap(&self.keys.start), Why::Routine));
                 }
             };
-            return Some((Deed::Command(self.channel, command), Why::Routine));
+            return Some((Action::Command(self.channel, command), Why::Routine));
         }
     }
 
-    fn stand_by(&mut self, channel: ChannelView, now: u64, waited: u64) -> Option<(Deed, Why)> {
-        let start = |why| Some((Deed::tap(&self.keys.start), why));
+    fn stand_by(&mut self, channel: ChannelView, now: u64, waited: u64) -> Option<(Action, Why)> {
+        let start = |why| Some((Action::tap(&self.keys.start), why));
         let (state, since) = self.state;
         let waited = waited.min(now.saturating_sub(since));
         match state {
@@ -293,6 +293,6 @@ impl Station {
             return None;
         }
         self.change = Some((since, pressed + 1));
-        Some((Deed::tap(key), Why::ToolChange))
+        Some((Action::tap(key), Why::ToolChange))
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::deed::{Deed, Source};
+use crate::action::{Action, Source};
 use crate::error::HostError;
 
 /// Orders that wait at most.
@@ -17,7 +17,7 @@ pub struct Order {
     /// When.
     pub when: When,
     /// What.
-    pub deed: Deed,
+    pub action: Action,
 }
 
 /// When something is to be done.
@@ -38,12 +38,12 @@ impl Desk {
     ///
     /// # Errors
     /// [`HostError::Busy`] when too many wait.
-    pub fn give(&self, source: Source, when: When, deed: Deed) -> Result<(), HostError> {
+    pub fn give(&self, source: Source, when: When, action: Action) -> Result<(), HostError> {
         let mut orders = self.orders();
         if orders.len() >= ORDERS_MAX {
             return Err(HostError::Busy);
         }
-        orders.push_back(Order { source, when, deed });
+        orders.push_back(Order { source, when, action });
         Ok(())
     }
 
@@ -95,7 +95,7 @@ mod tests {
         Order {
             source: Source::Script,
             when,
-            deed: Deed::tap(key),
+            action: Action::tap(key),
         }
     }
 
@@ -112,11 +112,14 @@ mod tests {
             assert!(waiting.add(order(when, key), 100));
         }
         // What was for 50 is late: it stands behind what was given before.
-        let mut due = |now| waiting.due(now).map(|order| order.deed);
-        assert_eq!(due(100), Some(Deed::tap("a")));
-        assert_eq!(due(100), Some(Deed::tap("b")));
+        let mut due = |now| waiting.due(now).map(|order| order.action);
+        assert_eq!(due(100), Some(Action::tap("a")));
+        assert_eq!(due(100), Some(Action::tap("b")));
         assert_eq!(due(299), None);
-        assert_eq!((due(300), due(300)), (Some(Deed::tap("c")), Some(Deed::tap("d"))));
+        assert_eq!(
+            (due(300), due(300)),
+            (Some(Action::tap("c")), Some(Action::tap("d")))
+        );
         assert_eq!(due(u64::MAX), None);
     }
 
@@ -124,11 +127,11 @@ mod tests {
     fn no_queue_grows_without_bound() {
         let (desk, mut waiting) = (Desk::default(), Waiting::default());
         for _ in 0..ORDERS_MAX {
-            assert_eq!(desk.give(Source::Script, When::Now, Deed::tap("a")), Ok(()));
+            assert_eq!(desk.give(Source::Script, When::Now, Action::tap("a")), Ok(()));
             assert!(waiting.add(order(When::At(1), "a"), 0));
         }
         assert_eq!(
-            desk.give(Source::Script, When::Now, Deed::tap("a")),
+            desk.give(Source::Script, When::Now, Action::tap("a")),
             Err(HostError::Busy)
         );
         assert!(!waiting.add(order(When::Now, "a"), 0));

@@ -5,12 +5,12 @@ use std::collections::{HashMap, HashSet, VecDeque};
 use bahn_control::Command;
 use serde::Serialize;
 
-use crate::deed::{Answer, Deed, Source};
+use crate::action::{Action, Answer, Source};
 use crate::error::HostError;
 use crate::expectation::Expectation;
 use crate::fault::FileFault;
 use crate::host::Host;
-use crate::script::{Action, Base, Line, Script};
+use crate::script::{Base, Line, Script, ScriptAction};
 
 /// An expectation that did not hold.
 #[derive(Clone, Debug, Serialize)]
@@ -84,7 +84,7 @@ impl Play {
         for lines in &mut waiting {
             lines
                 .make_contiguous()
-                .sort_by_key(|line| (line.offset_us, !line.behind));
+                .sort_by_key(|line| (line.offset_us, !line.after));
         }
         let mut bases = vec![None; waiting.len()];
         if let Some(power_on) = bases.first_mut() {
@@ -135,7 +135,7 @@ impl Play {
         lanes.find_map(|(lines, base)| {
             let passed_us = now_us.saturating_sub((*base)?);
             let line = lines.front()?;
-            let looks = matches!(line.action, Action::Expect(_)) && line.condition.is_empty();
+            let looks = matches!(line.action, ScriptAction::Expect(_)) && line.condition.is_empty();
             (looks && line.offset_us <= passed_us).then(|| lines.pop_front())?
         })
     }
@@ -145,14 +145,14 @@ impl Play {
     /// # Errors
     /// When the machine has not what it names, or the log cannot be written.
     pub fn perform(&mut self, line: Line, host: &mut Host) -> Result<bool, HostError> {
-        let deeds = match line.action {
-            Action::End => return Ok(true),
-            Action::Do(deed) => vec![deed],
-            Action::Set(assignments) => {
+        let actions = match line.action {
+            ScriptAction::End => return Ok(true),
+            ScriptAction::Do(action) => vec![action],
+            ScriptAction::Set(assignments) => {
                 let commands = assignments.into_iter().map(Command::Set);
-                commands.map(|command| Deed::Command(0, command)).collect()
+                commands.map(|command| Action::Command(0, command)).collect()
             }
-            Action::Expect(expectations) => {
+            ScriptAction::Expect(expectations) => {
                 let (control, plant) = (host.control(), host.plant());
                 for expectation in &expectations {
                     match expectation.check(control, plant) {
@@ -163,9 +163,9 @@ impl Play {
                 return Ok(false);
             }
         };
-        for deed in deeds {
-            let text = deed.to_string();
-            if let Answer::Impossible(error) = host.act(Source::Script, deed)? {
+        for action in actions {
+            let text = action.to_string();
+            if let Answer::Impossible(error) = host.act(Source::Script, action)? {
                 return Err(HostError::new(format!("{text}: {error}")));
             }
         }
@@ -257,7 +257,7 @@ impl Play {
     pub fn expectations(&self) -> Vec<Case> {
         let expectations = self.script.lines.iter();
         let expectations = expectations
-            .filter(|line| !line.condition.is_empty() || matches!(line.action, Action::Expect(_)));
+            .filter(|line| !line.condition.is_empty() || matches!(line.action, ScriptAction::Expect(_)));
         let waiting = self.waiting.iter().flatten().chain(&self.watching);
         let waiting: HashSet<u32> = waiting.map(|line| line.number).collect();
         let failed: HashMap<u32, &FailedExpectation> =

@@ -9,7 +9,7 @@ use bahn_control::{Control, ReadAhead};
 pub(crate) struct Reading {
     give: SyncSender<ReadAhead>,
     take: Receiver<ReadAhead>,
-    lent: usize,
+    handed_over: usize,
 }
 
 /// Programs that wait for the thread at most: one of each channel.
@@ -30,26 +30,30 @@ impl Reading {
         };
         let thread = Builder::new().name("bahn read ahead".into());
         thread.spawn(read).ok()?;
-        Some(Reading { give, take, lent: 0 })
+        Some(Reading {
+            give,
+            take,
+            handed_over: 0,
+        })
     }
 
     /// Takes back what is read; does not wait.
     pub fn collect(&mut self, control: &mut Control) {
-        while self.lent > 0
+        while self.handed_over > 0
             && let Ok(read) = self.take.try_recv()
         {
-            self.lent -= 1;
+            self.handed_over -= 1;
             control.take_back(read);
         }
     }
 
     /// Gives out what is to be read.
-    pub fn lend(&mut self, control: &mut Control) {
-        while self.lent < CHANNELS
-            && let Some(program) = control.lend_reading()
+    pub fn hand_over(&mut self, control: &mut Control) {
+        while self.handed_over < CHANNELS
+            && let Some(program) = control.hand_over_reading()
         {
             match self.give.try_send(program) {
-                Ok(()) => self.lent += 1,
+                Ok(()) => self.handed_over += 1,
                 // The thread is gone: the control reads itself.
                 Err(error) => {
                     let (std::sync::mpsc::TrySendError::Full(program)
@@ -64,8 +68,8 @@ impl Reading {
     /// Waits until everything is back: what one program reads at once takes less than a contour cycle, unless a
     /// program that it calls is read from the medium.
     pub fn settle(&mut self, control: &mut Control) {
-        while self.lent > 0 {
-            self.lent -= 1;
+        while self.handed_over > 0 {
+            self.handed_over -= 1;
             match self.take.recv() {
                 Ok(read) => control.take_back(read),
                 Err(_) => return,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use bahn_control::Control;
 
+use crate::action::{Action, Operable, Source};
 use crate::background::Background;
-use crate::deed::{Deed, Operable, Source};
 use crate::digitizing::Digitizing;
 use crate::error::HostError;
 use crate::host::Host;
@@ -60,16 +60,16 @@ impl<P: Operable> Host<P> {
         }
     }
 
-    /// The number of deeds that were given in the course that led here.
+    /// The number of actions that were given in the course that led here.
     pub fn given_count(&self) -> u64 {
         self.journal.end()
     }
 
-    /// The deeds that were given in the course that led here, with their times, µs since power-on, and by whom, the
+    /// The actions that were given in the course that led here, with their times, µs since power-on, and by whom, the
     /// oldest first; of very many the oldest are forgotten.
-    pub fn given(&self) -> impl DoubleEndedIterator<Item = (u64, &Source, &Deed)> {
+    pub fn given(&self) -> impl DoubleEndedIterator<Item = (u64, &Source, &Action)> {
         let entries = self.journal.entries();
-        entries.filter_map(|(time, given)| given.deed().map(|(source, deed)| (*time, source, deed)))
+        entries.filter_map(|(time, given)| given.action().map(|(source, action)| (*time, source, action)))
     }
 }
 
@@ -153,7 +153,7 @@ impl<P: Operable + Clone> Host<P> {
             {
                 self.journal.add(now, entry.clone());
                 match entry {
-                    Given::AtOnce(source, deed) => drop(self.execute(source, deed)),
+                    Given::AtOnce(source, action) => drop(self.execute(source, action)),
                     Given::Order(order) => self.take(order),
                     Given::Renewed(renewed) => {
                         self.take_over(renewed);

@@ -7,7 +7,7 @@ use bahn_exchange::Assignment;
 use bahn_machine::{Event, Machine};
 use bahn_parameters::ParameterList;
 
-use crate::deed::{Deed, DeedError};
+use crate::action::{Action, ActionError};
 use crate::expectation::Expectation;
 use crate::fault::{FileFault, Marked, Severity};
 use crate::machine_folder::decode;
@@ -64,9 +64,9 @@ pub enum Base {
 
 /// What happens.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Action {
+pub enum ScriptAction {
     /// Something is done to a machine.
-    Do(Deed),
+    Do(Action),
     /// Operands of the PLC and machine parameters get these values.
     Set(Vec<Assignment>),
     /// Nothing; all of this must be so.
@@ -85,11 +85,11 @@ pub struct Line {
     /// Its time, µs.
     pub offset_us: u64,
     /// It comes before everything else of this time: it looks at the cycle that has ended then.
-    pub behind: bool,
+    pub after: bool,
     /// It waits from then on until all of this is so.
     pub condition: Vec<Expectation>,
     /// What happens.
-    pub action: Action,
+    pub action: ScriptAction,
 }
 
 /// A script: its lines in the order of the file.
@@ -249,8 +249,8 @@ impl Reader {
         };
         let action = self.action(rest).map_err(|message| wrong(rest, message))?;
         // What is done in a cycle is done before it; what is looked at is so behind it.
-        let behind = cycle.is_some() && matches!(action, Action::Expect(_) | Action::End);
-        if behind {
+        let after = cycle.is_some() && matches!(action, ScriptAction::Expect(_) | ScriptAction::End);
+        if after {
             offset_us += u64::from(self.cycle_us);
         }
         self.last = (base, offset_us);
@@ -262,7 +262,7 @@ impl Reader {
             number,
             base,
             offset_us,
-            behind,
+            after,
             condition,
             action,
         })
@@ -344,32 +344,32 @@ impl Reader {
         })
     }
 
-    fn action(&mut self, text: &str) -> Result<Action, String> {
+    fn action(&mut self, text: &str) -> Result<ScriptAction, String> {
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         match word {
             "expect" => {
-                return Expectation::parse_all(rest, self.machine.as_ref()).map(Action::Expect);
+                return Expectation::parse_all(rest, self.machine.as_ref()).map(ScriptAction::Expect);
             }
-            "end" if rest.trim().is_empty() => return Ok(Action::End),
+            "end" if rest.trim().is_empty() => return Ok(ScriptAction::End),
             _ => {}
         }
         if split_channel(text).0.is_none() && Assignment::is_meant(text) {
-            return self.assignments(text).map(Action::Set);
+            return self.assignments(text).map(ScriptAction::Set);
         }
         let Some(machine) = &mut self.machine else {
             return Err(NO_CONTROL.to_owned());
         };
-        let deed = Deed::parse(text).map_err(|error| match error {
-            DeedError::Unknown(word) => format!(
+        let action = Action::parse(text).map_err(|error| match error {
+            ActionError::Unknown(word) => format!(
                 "`{word}` is no event and no command; events are {}, expect, end; commands those of the control",
                 Event::WORDS.join(", ")
             ),
-            DeedError::Wrong(what) => what,
+            ActionError::Wrong(what) => what,
         })?;
-        if let Deed::Event(event, _) = &deed {
+        if let Action::Event(event, _) = &action {
             machine.act(event).map_err(|error| error.to_string())?;
         }
-        Ok(Action::Do(deed))
+        Ok(ScriptAction::Do(action))
     }
 
     /// `I4=1, W6=100, MP4110.2=4`.
@@ -489,7 +489,7 @@ mod tests {
         );
         assert_eq!(
             script.lines[3].action,
-            Action::Do(Deed::Command(0, Command::Key(107)))
+            ScriptAction::Do(Action::Command(0, Command::Key(107)))
         );
     }
 
@@ -539,7 +539,7 @@ mod tests {
             .lines
             .iter()
             .map(|line| match &line.action {
-                Action::Do(deed) => deed.to_string(),
+                ScriptAction::Do(action) => action.to_string(),
                 other => format!("{other:?}"),
             })
             .collect();
@@ -562,7 +562,7 @@ mod tests {
     fn cycles_are_numbered() {
         let times = |script: Script| -> Vec<_> {
             let lines = script.lines.iter();
-            lines.map(|line| (line.offset_us, line.behind)).collect()
+            lines.map(|line| (line.offset_us, line.after)).collect()
         };
         let text = "cycle 1: M5=1, W6=-3\n+2 cycles: W6=$10\ncycle 5: expect M5=1, W6>3\n0.5: M5=0\n";
         let bench = times(read_for_bench(text).unwrap());
@@ -576,7 +576,7 @@ mod tests {
             [(0, false), (6_000, false), (15_000, true), (500_000, false)]
         );
         let script = read_for_bench("when O2=1, W6=4: I4=0, S0=\"A,B\", MP4110.2=4\n").unwrap();
-        let Action::Set(all) = &script.lines[0].action else {
+        let ScriptAction::Set(all) = &script.lines[0].action else {
             panic!("{script:?}");
         };
         let texts: Vec<String> = all.iter().map(Assignment::to_string).collect();
@@ -619,9 +619,9 @@ mod tests {
         assert_eq!(
             actions,
             [
-                Action::Do(Deed::Command(0, Command::Handwheel(bahn_path::Axis::X, 3))),
-                Action::Do(Deed::Event(Event::Handwheel(0, -500), turn)),
-                Action::Do(Deed::Command(0, Command::Test("OTHER.H".into())))
+                ScriptAction::Do(Action::Command(0, Command::Handwheel(bahn_path::Axis::X, 3))),
+                ScriptAction::Do(Action::Event(Event::Handwheel(0, -500), turn)),
+                ScriptAction::Do(Action::Command(0, Command::Test("OTHER.H".into())))
             ]
         );
         let faults = read("1: handwheel X 11").unwrap_err();

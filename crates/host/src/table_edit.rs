@@ -39,11 +39,11 @@ pub fn set_line(
         let key = [(kind.key(), line)].into_iter();
         let all: Vec<(&str, &str)> = key.chain(values.iter().copied()).collect();
         let line = table.new_line(&all)? + end;
-        let behind = table.rows.last().map_or(table.header_line, |row| row.line) as usize;
-        if let Some(last) = lines.get_mut(behind - 1).filter(|last| !last.ends_with('\n')) {
+        let after = table.rows.last().map_or(table.header_line, |row| row.line) as usize;
+        if let Some(last) = lines.get_mut(after - 1).filter(|last| !last.ends_with('\n')) {
             last.push_str(end);
         }
-        lines.insert(behind, line);
+        lines.insert(after, line);
         return Ok((lines.concat(), LineChange::Added));
     };
     if let Some(line) = lines.get_mut(at) {

@@ -4,13 +4,13 @@
 mod support;
 
 use bahn_control::{Control, RunState, Signal};
-use bahn_host::{Deed, Host, PowerOn, Source};
+use bahn_host::{Action, Host, PowerOn, Source};
 use bahn_parameters::fault::FaultId;
 use bahn_path::Axis;
 use support::{host, machine, mill, old_mill, seconds};
 
 fn give(host: &mut Host, what: &str) {
-    host.act(Source::Script, Deed::parse(what).unwrap()).unwrap();
+    host.act(Source::Script, Action::parse(what).unwrap()).unwrap();
 }
 
 fn until(host: &mut Host, what: &str, holds: impl Fn(&Control) -> bool) {
@@ -45,7 +45,7 @@ fn stop_and_go_on(host: &mut Host) {
 /// The table is clamped (M10) when EMERGENCY STOP comes: its clamp holds it, so that it need not go back to the contour,
 /// and the run goes on to its end.
 #[test]
-fn a_clamped_axis_holds_no_run_up_behind_an_emergency_stop() {
+fn a_clamped_axis_holds_no_run_up_after_an_emergency_stop() {
     let mut host = mill("L C+45 F2000 M11\nL Z+100 R0 FMAX M10\nL Z+40 F300\nL Z+100 FMAX");
     until(&mut host, "the clamped table", |control| {
         let third = control.element().is_some_and(|element| element.block.block == 3);
@@ -353,7 +353,7 @@ fn no_axis_sinks_between_torque_and_brake() {
 /// The same when the voltage is off for some milliseconds only: the PLC need not see that, and takes the enable with the
 /// loops, which are opened when the shuttle, too, stands.
 #[test]
-fn no_axis_sinks_behind_a_short_emergency_stop() {
+fn no_axis_sinks_after_a_short_emergency_stop() {
     let mut host = shuttle(&[]);
     until(&mut host, "M61", |control| control.waiting().is_some());
     while place(&host) > 400.0 {
@@ -405,7 +405,7 @@ fn a_path_without_feed_enable_has_no_speed() {
 /// EMERGENCY STOP while the shuttle of the digital mill passes its marks by order of the PLC (module 9123), which ends the
 /// order: it is given anew, and M61 brings its pallet to 50 mm.
 #[test]
-fn the_shuttle_passes_its_marks_behind_an_emergency_stop() {
+fn the_shuttle_passes_its_marks_after_an_emergency_stop() {
     let mut host = shuttle(&[]);
     until(&mut host, "the loop of W", Control::loops_closed);
     while place(&host) > 779.0 {
@@ -666,7 +666,7 @@ fn pushed_away(host: &mut Host) {
 /// The table is pushed when its clamp is released and its loop is still open: in a program that runs its place is lost, which
 /// is told like any deviation of that size [000:5289-5293], before a hole is drilled beside its place.
 #[test]
-fn a_table_that_is_pushed_between_clamp_and_loop_is_told() {
+fn a_table_that_is_pushed_between_clamp_and_loop_is_reported() {
     let blocks =
         "L C+45 F2000 M11\nL Z+100 R0 FMAX M10\nL Z+60 F3000\nL Z+80 FMAX M11\nL Z+40 F300\nL IC+45 F2000";
     let mut host = mill(blocks);

@@ -5,12 +5,12 @@ mod support;
 
 use bahn_control::{AxisWatch, Control, RunState, Signal};
 use bahn_exchange::signal;
-use bahn_host::{Deed, Host, PowerOn, Source};
+use bahn_host::{Action, Host, PowerOn, Source};
 use bahn_path::Axis;
 use support::{host, machine, mill, seconds};
 
 fn give(host: &mut Host, what: &str) {
-    host.act(Source::Script, Deed::parse(what).unwrap()).unwrap();
+    host.act(Source::Script, Action::parse(what).unwrap()).unwrap();
 }
 
 fn until(host: &mut Host, what: &str, holds: impl Fn(&Control) -> bool) {
@@ -66,7 +66,7 @@ fn probes(control: &Control, letter: Axis) -> bool {
 /// left them 0.2 mm farther on. They go back there with NC start alone, and the side X = 0 is found as it is, within what
 /// the probe resolves at 250 mm/min in a servo step of 3 ms: 0.0125 mm.
 #[test]
-fn a_probing_axis_does_not_jump_behind_an_emergency_stop() {
+fn a_probing_axis_does_not_jump_after_an_emergency_stop() {
     let mut host = shipped("mill", "DATUM.H");
     until(&mut host, "the way to the side", |control| {
         probes(control, Axis::X) && axis(control, Axis::X).speed_mm_s > 4.0
@@ -82,7 +82,7 @@ fn a_probing_axis_does_not_jump_behind_an_emergency_stop() {
 
 /// As well while a tool is measured: the ways of its sequence begin where the axes are led back to.
 #[test]
-fn a_measuring_axis_does_not_jump_behind_an_emergency_stop() {
+fn a_measuring_axis_does_not_jump_after_an_emergency_stop() {
     let mut host = shipped("mill", "MEASURE.H");
     until(&mut host, "the way to the tool probe", |control| {
         probes(control, Axis::X)
@@ -141,7 +141,7 @@ const TAPPING: &str = "TOOL CALL 6 Z S320\nL Z+50 R0 FMAX M13\nCYCL DEF 17.0 RIG
 /// EMERGENCY STOP ends the orientation before a thread [000:6122]; with NC start it is asked for again, or the path would
 /// wait for it for ever.
 #[test]
-fn a_spindle_is_oriented_again_behind_an_emergency_stop() {
+fn a_spindle_is_oriented_again_after_an_emergency_stop() {
     let mut host = mill(TAPPING);
     until(&mut host, "the orientation", |control| {
         let nc = control.memory();
@@ -174,7 +174,7 @@ fn a_tool_axis_does_not_jump_after_a_spindle_that_ran_out() {
 /// The door withdraws the feed enable for 100 ms while a tool is measured in rapid traverse: what leads its axes stands, too, and no
 /// axis goes after it with more than MP1060 when the enable is back.
 #[test]
-fn a_measuring_axis_does_not_jump_behind_the_feed_enable() {
+fn a_measuring_axis_does_not_jump_after_the_feed_enable() {
     let mut host = shipped("mill", "MEASURE.H");
     until(&mut host, "the way to the tool probe", |control| {
         probes(control, Axis::X) && axis(control, Axis::X).speed_mm_s.abs() > 30.0

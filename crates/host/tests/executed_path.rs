@@ -4,7 +4,7 @@
 mod support;
 
 use bahn_control::{Command, RunState};
-use bahn_host::{Answer, Deed, ElementId, ExecutedPath, Host, Source};
+use bahn_host::{Action, Answer, ElementId, ExecutedPath, Host, Source};
 
 /// Two lines that the axes need seconds for, behind one that they do not move on.
 const LINES: &str = "1 L Z+50 R0 F MAX\n2 L X+10 Y+0 R0 F600\n3 L X+20 R0\n4 L X+60 R0";
@@ -53,9 +53,9 @@ fn what_is_broken_off_is_not_handed_out() {
     path.follow(&mut host);
     path.finish();
     assert_eq!(path.next(), None, "behind {seen:?}");
-    let stop = Deed::parse("key NC_STOP tap").unwrap();
-    for deed in [stop, Deed::Command(0, Command::InternalStop)] {
-        let answer = host.act(Source::Client("test".to_owned()), deed);
+    let stop = Action::parse("key NC_STOP tap").unwrap();
+    for action in [stop, Action::Command(0, Command::InternalStop)] {
+        let answer = host.act(Source::Client("test".to_owned()), action);
         assert!(matches!(answer, Ok(Answer::Done)));
         support::seconds(&mut host, 1.0);
     }

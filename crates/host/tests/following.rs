@@ -5,16 +5,16 @@ mod support;
 
 use bahn_control::{Mode, RunState};
 use bahn_host::{
-    Answer, Attendance, Clock, Deed, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source, When,
+    Action, Answer, Attendance, Clock, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source, When,
 };
 use support::*;
 
-fn deed(text: &str) -> Deed {
-    Deed::parse(text).unwrap()
+fn action(text: &str) -> Action {
+    Action::parse(text).unwrap()
 }
 
 /// What a reader has not read, without its times.
-fn told(reader: &mut bahn_host::Reader<bahn_host::Stamped>) -> Vec<Notice> {
+fn reported(reader: &mut bahn_host::Reader<bahn_host::Stamped>) -> Vec<Notice> {
     reader
         .filter_map(|next| match next {
             Next::Item(stamped) => Some(stamped.notice),
@@ -24,12 +24,12 @@ fn told(reader: &mut bahn_host::Reader<bahn_host::Stamped>) -> Vec<Notice> {
 }
 
 #[test]
-fn a_run_is_told_from_its_start_to_its_end() {
+fn a_run_is_reported_from_its_start_to_its_end() {
     let mut host = mill("L X+10 R0 F2000\nSTOP M0\nL X+20");
     let mut reader = host.notices();
     seconds(&mut host, 60.0);
-    let told = told(&mut reader);
-    let place = |wanted: &dyn Fn(&Notice) -> bool| told.iter().position(wanted).unwrap();
+    let reported = reported(&mut reader);
+    let place = |wanted: &dyn Fn(&Notice) -> bool| reported.iter().position(wanted).unwrap();
     let messages = |notice: &Notice| matches!(notice, Notice::Shown(_));
     let cleared = |notice: &Notice| matches!(notice, Notice::Cleared(_));
     let order = [
@@ -43,7 +43,7 @@ fn a_run_is_told_from_its_start_to_its_end() {
         place(&|notice| matches!(notice, Notice::Block(Some(block)) if block.block == 3)),
         place(&|notice| *notice == Notice::Ended),
     ];
-    assert!(order.is_sorted(), "{order:?}: {told:#?}");
+    assert!(order.is_sorted(), "{order:?}: {reported:#?}");
 }
 
 /// Orders from another thread at a time are done before the cycle that begins then.
@@ -55,11 +55,11 @@ fn orders_are_done_at_their_times() {
     let desk = host.desk();
     std::thread::spawn(move || {
         let me = || Source::Client("other".to_owned());
-        desk.give(me(), When::At(1_000_000), deed("override feed 50"))
+        desk.give(me(), When::At(1_000_000), action("override feed 50"))
             .unwrap();
-        desk.give(me(), When::At(500_000), deed("key NO_SUCH_KEY tap"))
+        desk.give(me(), When::At(500_000), action("key NO_SUCH_KEY tap"))
             .unwrap();
-        desk.give(me(), When::Now, deed("override spindle 70")).unwrap();
+        desk.give(me(), When::Now, action("override spindle 70")).unwrap();
     })
     .join()
     .unwrap();
@@ -68,8 +68,8 @@ fn orders_are_done_at_their_times() {
         .by_ref()
         .filter_map(|next| match next {
             Next::Item(stamped) => match stamped.notice {
-                Notice::Given(Source::Client(_), deed, answer) => {
-                    Some((stamped.time_us, deed.to_string(), answer))
+                Notice::Given(Source::Client(_), action, answer) => {
+                    Some((stamped.time_us, action.to_string(), answer))
                 }
                 _ => None,
             },
@@ -97,7 +97,7 @@ fn orders_are_done_at_their_times() {
 #[test]
 fn refused_commands_are_answered_so() {
     let mut host = mill("L X+10 R0 F2000");
-    let answer = host.act(Source::Script, deed("restore-position")).unwrap();
+    let answer = host.act(Source::Script, action("restore-position")).unwrap();
     assert_eq!(answer, Answer::Refused);
 }
 
@@ -147,7 +147,7 @@ fn a_host_is_sent_to_a_thread() {
     let mut reader = host.notices();
     let driven = std::thread::spawn(move || seconds(&mut host, 30.0));
     driven.join().unwrap();
-    assert!(told(&mut reader).contains(&Notice::Ended));
+    assert!(reported(&mut reader).contains(&Notice::Ended));
 }
 
 /// The interface function PRINT belongs to the interfaces, not to the machine: another machine that takes the place of this
@@ -187,7 +187,7 @@ fn another_machine_prints_what_it_digitizes() {
             host.control().snapshot()
         );
         host.step().unwrap();
-        for notice in told(&mut reader) {
+        for notice in reported(&mut reader) {
             match notice {
                 Notice::Printed(block) => printed.push(block),
                 Notice::Ended => ended = true,

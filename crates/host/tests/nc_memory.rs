@@ -11,7 +11,7 @@ mod support;
 use std::fs;
 
 use bahn_control::Command;
-use bahn_host::{Answer, Attendance, Deed, FolderPrograms, Host, LoadedMachine, Operator, PowerOn, Source};
+use bahn_host::{Action, Answer, Attendance, FolderPrograms, Host, LoadedMachine, Operator, PowerOn, Source};
 use support::*;
 
 /// Names, what stands in them, and whether that is said at power-on.
@@ -74,11 +74,11 @@ fn ready(host: &mut Host) {
 }
 
 fn command(host: &mut Host, text: &str) -> Answer {
-    let deed = match text.parse::<Command>() {
-        Ok(command) => Deed::Command(0, command),
-        Err(_) => Deed::parse(text).unwrap(),
+    let action = match text.parse::<Command>() {
+        Ok(command) => Action::Command(0, command),
+        Err(_) => Action::parse(text).unwrap(),
     };
-    host.act(Source::Script, deed).unwrap()
+    host.act(Source::Script, action).unwrap()
 }
 
 /// A program of the operator from its selection to its end, or to its message.

@@ -299,9 +299,9 @@ fn host_of_fresh(mill: &Mill) -> Host {
 /// A file that is missing, older, edited, damaged or of another form is said, with what is where and what to do.
 #[test]
 fn files_that_do_not_agree_are_said() {
-    let said = |what: &str, deed: &dyn Fn(&Mill)| {
+    let said = |what: &str, action: &dyn Fn(&Mill)| {
         let mill = with_tool_2(what);
-        deed(&mill);
+        action(&mill);
         let (host, warnings) = mill.switch_on("");
         let place = host
             .plant()

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bahn_control::{Programs, RunState};
-use bahn_host::{Answer, Attendance, Clock, Deed, Host, Job, Operator, PowerOn, Source};
+use bahn_host::{Action, Answer, Attendance, Clock, Host, Job, Operator, PowerOn, Source};
 use bahn_program::Program;
 use support::*;
 
@@ -78,7 +78,7 @@ fn a_run_is_broken_off() {
     cuts(&mut host);
     host.set_clock(Clock::Wall(50.0));
     let act = |host: &mut Host, text: &str| {
-        let answer = host.act(Source::Script, Deed::parse(text).unwrap()).unwrap();
+        let answer = host.act(Source::Script, Action::parse(text).unwrap()).unwrap();
         assert_eq!(answer, Answer::Done, "{text}");
     };
     act(&mut host, "key NC_STOP tap");

@@ -4,7 +4,7 @@
 mod support;
 
 use bahn_control::{Command, Signal};
-use bahn_host::{Answer, Deed, Host, HostError, Log, Next, Notice, PowerOn, Sink, Source, Timeline, When};
+use bahn_host::{Action, Answer, Host, HostError, Log, Next, Notice, PowerOn, Sink, Source, Timeline, When};
 use support::*;
 
 const BLOCKS: &str = "TOOL CALL 1 Z S1000\nL Z+50 R0 FMAX M3\nL X+20 Y+10 R0 FMAX\nLBL 1\nL IX+10 F3000 M8\nCC IX+0 IY+5\n\
@@ -36,8 +36,8 @@ fn random(seed: &mut u64) -> u64 {
     *seed >> 11
 }
 
-fn deed(text: &str) -> Deed {
-    Deed::parse(text).unwrap()
+fn action(text: &str) -> Action {
+    Action::parse(text).unwrap()
 }
 
 /// What is done at once at its cycle; what is ordered was ordered at the beginning.
@@ -49,7 +49,7 @@ fn act(host: &mut Host, cycle: usize) {
         (6100, "mode full"),
     ];
     for (_, text) in texts.iter().filter(|(at, _)| *at == cycle) {
-        host.act(Source::Client("test".to_owned()), deed(text)).unwrap();
+        host.act(Source::Client("test".to_owned()), action(text)).unwrap();
     }
 }
 
@@ -64,7 +64,7 @@ fn a_moment_is_reached_again_to_the_bit() {
         (4700, "key X+ tap"),
     ] {
         let when = When::At(cycle * cycle_us);
-        host.order(Source::Script, when, deed(text)).unwrap();
+        host.order(Source::Script, when, action(text)).unwrap();
     }
     let mut timeline = Timeline::new(2_000_000, 16);
     let mut trail = Vec::new();
@@ -105,25 +105,25 @@ fn a_course_that_was_left_is_reached_again() {
     let mut host = mill(BLOCKS);
     seconds(&mut host, 5.0);
     let saved = host.save();
-    let deeds = |host: &mut Host, percents: [u8; 2]| {
+    let actions = |host: &mut Host, percents: [u8; 2]| {
         for percent in percents {
             let text = format!("override feed {percent}");
-            host.act(Source::Script, deed(&text)).unwrap();
+            host.act(Source::Script, action(&text)).unwrap();
             seconds(host, 1.0);
         }
     };
-    deeds(&mut host, [30, 120]);
+    actions(&mut host, [30, 120]);
     let middle_us = host.control().time_us() - 500_000;
     // Something that is given at the very end belongs to it.
-    host.act(Source::Script, deed("override feed 77")).unwrap();
+    host.act(Source::Script, action("override feed 77")).unwrap();
     let (first, course) = (bits(&host), host.course());
     host.restore(&saved).unwrap();
-    deeds(&mut host, [60, 10]);
+    actions(&mut host, [60, 10]);
     let (second, other) = (bits(&host), host.course());
     assert_ne!(first, second);
     for _ in 0..2 {
         host.replay_course(&course, &saved, middle_us).unwrap();
-        let given: Vec<String> = host.given().map(|(_, _, deed)| deed.to_string()).collect();
+        let given: Vec<String> = host.given().map(|(_, _, action)| action.to_string()).collect();
         assert_eq!(
             given[given.len() - 2..],
             ["override feed 30", "override feed 120"]
@@ -150,7 +150,7 @@ fn a_saved_moment_is_the_beginning_of_another_run() {
     }
     let saved = host.save();
     let at = bits(&host);
-    host.act(Source::Script, deed("override feed 20")).unwrap();
+    host.act(Source::Script, action("override feed 20")).unwrap();
     seconds(&mut host, 2.0);
     let slow = bits(&host);
     host.restore(&saved).unwrap();
@@ -159,13 +159,13 @@ fn a_saved_moment_is_the_beginning_of_another_run() {
     let fast = bits(&host);
     assert_ne!(fast, slow);
     host.restore(&saved).unwrap();
-    host.act(Source::Script, deed("override feed 20")).unwrap();
+    host.act(Source::Script, action("override feed 20")).unwrap();
     seconds(&mut host, 2.0);
     assert_eq!(bits(&host), slow);
 }
 
 #[test]
-fn readers_are_told_of_the_way_back_and_not_of_what_is_repeated() {
+fn readers_get_the_way_back_and_nothing_that_is_repeated() {
     let mut host = mill(BLOCKS);
     seconds(&mut host, 5.0);
     let saved = host.save();
@@ -173,7 +173,7 @@ fn readers_are_told_of_the_way_back_and_not_of_what_is_repeated() {
     let now = host.control().time_us();
     let mut notices = host.notices();
     host.replay(&saved, now - 1_000_000).unwrap();
-    let told: Vec<_> = notices
+    let reported: Vec<_> = notices
         .by_ref()
         .map(|next| match next {
             Next::Item(stamped) => (stamped.time_us, stamped.notice),
@@ -182,9 +182,9 @@ fn readers_are_told_of_the_way_back_and_not_of_what_is_repeated() {
         .collect();
     // The cycle is 3 ms: a moment is that of the first cycle that ends behind it.
     let cycle_us = u64::from(host.control().cycle_us());
-    assert_eq!(told.len(), 1, "{told:?}");
+    assert_eq!(reported.len(), 1, "{reported:?}");
     assert_eq!(
-        told[0],
+        reported[0],
         ((now - 1_000_000).next_multiple_of(cycle_us), Notice::Restored)
     );
 }
@@ -196,14 +196,14 @@ fn what_is_kept_goes_back_too() {
     let machine = bahn_host::LoadedMachine::load(folder.path()).unwrap().unwrap();
     let mut host = host(&machine, PowerOn::kept(&machine).unwrap(), "L X+1 R0 F100");
     seconds(&mut host, 30.0);
-    host.act(Source::Operator, deed("mode manual")).unwrap();
+    host.act(Source::Operator, action("mode manual")).unwrap();
     host.step().unwrap();
     host.store().unwrap();
     let file = folder.path().join("state/control.toml");
     let before = std::fs::read_to_string(&file).unwrap();
     let saved = host.save();
     let datum = Command::Datum(bahn_path::Axis::X, 12.5);
-    let answer = host.act(Source::Operator, Deed::Command(0, datum)).unwrap();
+    let answer = host.act(Source::Operator, Action::Command(0, datum)).unwrap();
     assert_eq!(answer, Answer::Done);
     seconds(&mut host, 0.1);
     let after = std::fs::read_to_string(&file).unwrap();
@@ -212,7 +212,7 @@ fn what_is_kept_goes_back_too() {
     assert_eq!(std::fs::read_to_string(&file).unwrap(), before);
 }
 
-/// Who is told of every deed would be told of times that come twice.
+/// Who is told of every action would be told of times that come twice.
 #[test]
 fn a_run_that_is_logged_goes_forward_only() {
     struct Lines(Log<Vec<u8>>);

@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use bahn_control::RunState;
 use bahn_host::{
-    Answer, Attendance, Deed, FolderPrograms, Host, Job, LoadedMachine, Observed, Operator, PowerOn, Source,
+    Action, Answer, Attendance, FolderPrograms, Host, Job, LoadedMachine, Observed, Operator, PowerOn, Source,
 };
 use support::*;
 
 fn give(host: &mut Host, what: &str) {
-    let done = host.act(Source::Script, Deed::parse(what).unwrap());
+    let done = host.act(Source::Script, Action::parse(what).unwrap());
     assert_eq!(done.unwrap(), Answer::Done, "{what}");
 }
 

@@ -20,7 +20,7 @@ fn play(blocks: &str, script: &str) -> (Host, Vec<Notice>) {
     let mut play = Play::new(script);
     let mut host = mill(blocks);
     let mut notices = host.notices();
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     let mut started = false;
     loop {
         let ended = play.follow(&mut host).unwrap();
@@ -38,7 +38,7 @@ fn play(blocks: &str, script: &str) -> (Host, Vec<Notice>) {
             "{:?}",
             play.expectations()
         );
-        told.extend(notices.by_ref().filter_map(|next| match next {
+        reported.extend(notices.by_ref().filter_map(|next| match next {
             Next::Item(stamped) => Some(stamped.notice),
             Next::Missed(_) => None,
         }));
@@ -53,7 +53,7 @@ fn play(blocks: &str, script: &str) -> (Host, Vec<Notice>) {
         "{failed:?}\nshown: {:?}",
         host.control().shown()
     );
-    (host, told)
+    (host, reported)
 }
 
 fn value(host: &Host, signal: &str) -> f64 {
@@ -181,12 +181,12 @@ fn every_command_is_played() {
         +0.1: mode full\n+0.1: select 1.H\n+0.1: goto 1\n+0.1: key NC_START tap\n+3: key NC_STOP tap\n\
         +0.5: expect run interrupted\n+0: manual-operation\n+0.2: restore-position\n+0.2: stop\n+0.5: expect run idle\n\
         +0.1: restore-at 4\n+0.2: ce\n+0: ce\n+0.1: M900=1\n+0: MP4220.0=70\n+0.1: power off\n+0.1: power on\n+0.5: end\n";
-    let (_, told) = play(THERE, script);
+    let (_, reported) = play(THERE, script);
     let words = |command: &Command| command.to_string().split(' ').next().unwrap().to_owned();
-    let given: Vec<String> = told
+    let given: Vec<String> = reported
         .iter()
         .filter_map(|notice| match notice {
-            Notice::Given(bahn_host::Source::Script, bahn_host::Deed::Command(_, command), _) => {
+            Notice::Given(bahn_host::Source::Script, bahn_host::Action::Command(_, command), _) => {
                 Some(words(command))
             }
             _ => None,

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use bahn_control::{ChannelView, RunState, Shown};
 use bahn_host::{
-    Answer, Attendance, Deed, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Observed,
+    Action, Answer, Attendance, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Observed,
     Operator, PowerOn, Script, Sink, Source, Stage, Timeline,
 };
 use support::*;
@@ -39,8 +39,8 @@ fn letters(host: &Host, number: usize) -> String {
     channel(host, number).axis_letters().collect()
 }
 
-fn deed(host: &mut Host, text: &str) {
-    let done = host.act(Source::Script, Deed::parse(text).unwrap()).unwrap();
+fn action(host: &mut Host, text: &str) {
+    let done = host.act(Source::Script, Action::parse(text).unwrap()).unwrap();
     assert_eq!(done, Answer::Done, "{text}");
 }
 
@@ -146,15 +146,15 @@ fn stopping_one_channel_leaves_the_other_running() {
         until(&mut host, 30.0, "both cut", |host| {
             cuts(host, 0, 1500.0) && cuts(host, 1, 800.0)
         });
-        deed(&mut host, &format!("key {key} press"));
+        action(&mut host, &format!("key {key} press"));
         seconds(&mut host, 0.5);
         let states = [stopped, other].map(|number| channel(&host, number).run_state());
         assert_eq!(states, [RunState::Interrupted, RunState::Running], "{key}");
         assert_eq!(channel(&host, stopped).snapshot().feed_mm_min, 0.0);
         assert!(channel(&host, other).snapshot().feed_mm_min > 700.0);
-        deed(&mut host, &format!("key {key} release"));
+        action(&mut host, &format!("key {key} release"));
         seconds(&mut host, 0.1);
-        deed(&mut host, &format!("key {} tap", ["NC_START", "START2"][stopped]));
+        action(&mut host, &format!("key {} tap", ["NC_START", "START2"][stopped]));
         until(&mut host, 60.0, "both end", |host| {
             (0..2).all(|number| channel(host, number).has_ended())
         });
@@ -167,7 +167,7 @@ fn emergency_stop_stops_both() {
     until(&mut host, 30.0, "both cut", |host| {
         cuts(host, 0, 1500.0) && cuts(host, 1, 800.0)
     });
-    deed(&mut host, "emergency press");
+    action(&mut host, "emergency press");
     seconds(&mut host, 1.0);
     for number in [0, 1] {
         let state = channel(&host, number).snapshot();
@@ -214,8 +214,8 @@ fn messages_name_their_channel() {
         }
     }
     assert_eq!(found.unwrap().channel, Some(1));
-    deed(&mut host, "2: mode manual");
-    let no_channel = host.act(Source::Script, Deed::parse("3: ce").unwrap()).unwrap();
+    action(&mut host, "2: mode manual");
+    let no_channel = host.act(Source::Script, Action::parse("3: ce").unwrap()).unwrap();
     assert_eq!(
         no_channel,
         Answer::Impossible("the machine has no channel 3".to_owned())
@@ -248,8 +248,8 @@ fn each_channel_keeps_what_survives_power_off() {
     until(&mut host, 10.0, "the right one ends", |host| {
         channel(host, 1).has_ended()
     });
-    deed(&mut host, "2: mode manual");
-    deed(&mut host, "2: datum Y 12.5");
+    action(&mut host, "2: mode manual");
+    action(&mut host, "2: datum Y 12.5");
     let datum = see(&host, "2:Y.actual") - 12.5;
     host.store().unwrap();
     let remembered = channel(&host, 1).remember();
@@ -307,10 +307,10 @@ fn a_moment_of_two_channels_is_reached_again_to_the_bit() {
     let mut trail = Vec::new();
     let cycle_us = u64::from(host.control().cycle_us());
     let act = |host: &mut Host, cycle: usize| match cycle {
-        5000 => deed(host, "2: jog 2"),
-        6500 => deed(host, "jog 3"),
-        7000 => deed(host, "key STOP2 tap"),
-        7300 => deed(host, "key START2 tap"),
+        5000 => action(host, "2: jog 2"),
+        6500 => action(host, "jog 3"),
+        7000 => action(host, "key STOP2 tap"),
+        7300 => action(host, "key START2 tap"),
         _ => {}
     };
     let mut gone = 0;
@@ -363,7 +363,7 @@ fn a_log_repeats_both_channels() {
     let mut trail = Vec::new();
     for cycle in 0..13_500 {
         if cycle == 6000 {
-            deed(&mut host, "2: jog 2.5");
+            action(&mut host, "2: jog 2.5");
         }
         trail.push(bits(&host));
         host.step().unwrap();
@@ -389,10 +389,10 @@ fn a_log_repeats_both_channels() {
     let mut play = bahn_host::Play::new(script);
     for (cycle, expected) in trail.iter().enumerate() {
         while let Some(line) = play.due(again.control().time_us(), |_| false) {
-            let bahn_host::Action::Do(deed) = line.action else {
+            let bahn_host::ScriptAction::Do(action) = line.action else {
                 continue;
             };
-            again.act(Source::Log, deed).unwrap();
+            again.act(Source::Log, action).unwrap();
         }
         assert_eq!(bits(&again), *expected, "cycle {cycle}");
         again.step().unwrap();
@@ -467,12 +467,12 @@ fn faults_of_channels_have_their_lines() {
 /// An acknowledgement that comes too early lets the left program go past M60; it waits for the right one at the next place
 /// then, which waits at M60: nobody goes on, and the PLC says so.
 #[test]
-fn programs_that_do_not_meet_are_told() {
+fn programs_that_do_not_meet_are_reported() {
     let mut host = twin();
     until(&mut host, 60.0, "the left program waits alone", |host| {
         channel(host, 0).waiting().is_some() && see(host, "W260") == 60.0 && see(host, "M53") == 0.0
     });
-    deed(&mut host, "M2482=1");
+    action(&mut host, "M2482=1");
     until(&mut host, 60.0, "the message", |host| {
         shown(host).contains(&"PROGRAMS DO NOT MEET".to_owned())
     });

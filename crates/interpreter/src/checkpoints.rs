@@ -48,14 +48,14 @@ impl Kept {
         {
             self.states.pop_back();
         }
-        let told = std::mem::take(&mut run.told);
+        let reported = std::mem::take(&mut run.reported);
         self.states.push_back(Checkpoint {
             run: Box::new(run.clone()),
             ended: None,
             waiting: None,
             position,
         });
-        run.told = told;
+        run.reported = reported;
     }
 
     pub fn handed(&mut self, sequence: u64) {

@@ -9,8 +9,8 @@ use crate::flow;
 use crate::modal::Modal;
 use crate::numbers::Numbers;
 use crate::pen::Pen;
+use crate::reported::Reported;
 use crate::settings::Settings;
-use crate::told::Told;
 
 /// The parts of a run that a block works on. It leads nowhere by itself: where the run goes on is left to whoever
 /// executes it.
@@ -18,20 +18,20 @@ pub(crate) struct Context<'a> {
     pub modal: &'a mut Modal,
     pub numbers: &'a mut Numbers,
     pub pen: &'a mut Pen,
-    pub told: &'a mut Told,
+    pub reported: &'a mut Reported,
     pub at: &'a flow::Position,
     pub settings: &'a Settings,
 }
 
 impl Context<'_> {
-    /// See [`Told::executes`].
+    /// See [`Reported::executes`].
     pub fn executes(&mut self, feature: Feature) -> Result<bool, Fault> {
-        self.told.executes(self.pen.block, feature, self.settings)
+        self.reported.executes(self.pen.block, feature, self.settings)
     }
 
     /// Warns of the block.
     pub fn warn(&mut self, kind: WarningKind) {
-        self.told.warn(self.pen.block, kind);
+        self.reported.warn(self.pen.block, kind);
     }
 
     /// Says that what the block programs does nothing, or not all of it; with strict checking it is refused.

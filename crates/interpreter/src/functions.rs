@@ -1,6 +1,6 @@
 //! Miscellaneous functions: when they act and what they do in the control.
 
-use bahn_parameters::technology::{Deed, Output, Technology};
+use bahn_parameters::technology::{ControlAction, Output, Technology};
 use bahn_path::{Axis, ControlFunction, Function, SpindleOrder};
 use bahn_program::{Compensation, MFunctions};
 
@@ -43,24 +43,24 @@ fn take_m_function(
         return Ok(());
     };
     let rules = &c.settings.rules;
-    if technology.does(Deed::ModalCycleCall) && rules.m_functions.m89_calls_cycle {
+    if technology.does(ControlAction::ModalCycleCall) && rules.m_functions.m89_calls_cycle {
         c.modal.cycle_after_each_block = true;
         block.cycle_call = true;
         return Ok(());
     }
-    for deed in technology.deeds() {
-        if let Some(why) = idle(c, deed) {
+    for action in technology.actions() {
+        if let Some(why) = idle(c, action) {
             c.without_effect(format!("M{code} has no effect {why}"))?;
         }
-        act(c, deed, block);
-        tilting::act(c, deed)?;
-        act_on_block(c.modal, deed, block);
-        act_on_feed(c.modal, c.numbers, c.settings, deed, m)?;
-        let function = match deed {
-            Deed::Control(control) => Function::Control(control),
-            Deed::Voltage => Function::Voltage(voltage::of(code, m, c.numbers, c.settings)?),
-            Deed::Superimpose => Function::Superimpose(superimposing::ranges(m, c.numbers)?),
-            Deed::SpindleOrientation => Function::SpindleOrientation(
+        act(c, action, block);
+        tilting::act(c, action)?;
+        act_on_block(c.modal, action, block);
+        act_on_feed(c.modal, c.numbers, c.settings, action, m)?;
+        let function = match action {
+            ControlAction::Control(control) => Function::Control(control),
+            ControlAction::Voltage => Function::Voltage(voltage::of(code, m, c.numbers, c.settings)?),
+            ControlAction::Superimpose => Function::Superimpose(superimposing::ranges(m, c.numbers)?),
+            ControlAction::SpindleOrientation => Function::SpindleOrientation(
                 c.modal
                     .orientation_deg
                     .unwrap_or(c.settings.rules.spindle_orientation_deg),
@@ -78,12 +78,14 @@ fn take_m_function(
 
 /// Why a function does nothing where it stands: M97 and M98 act on the corners of compensated paths
 /// [003:3467-3512], M101 on the lives of a tool table [000:9103] [000:9175].
-fn idle(c: &Context<'_>, deed: Deed) -> Option<&'static str> {
-    match deed {
-        Deed::Intersection | Deed::OpenContour if c.modal.compensation == Compensation::Off => {
+fn idle(c: &Context<'_>, action: ControlAction) -> Option<&'static str> {
+    match action {
+        ControlAction::Intersection | ControlAction::OpenContour
+            if c.modal.compensation == Compensation::Off =>
+        {
             Some("without radius compensation")
         }
-        Deed::Control(ControlFunction::ReplaceWornTools(true)) if c.settings.tools.is_none() => {
+        ControlAction::Control(ControlFunction::ReplaceWornTools(true)) if c.settings.tools.is_none() => {
             Some("without a tool table: tool lives and replacement tools stand there")
         }
         _ => None,
@@ -91,37 +93,39 @@ fn idle(c: &Context<'_>, deed: Deed) -> Option<&'static str> {
 }
 
 /// Program, spindle and coolant.
-fn act(c: &mut Context<'_>, deed: Deed, block: &mut BlockFunctions) {
+fn act(c: &mut Context<'_>, action: ControlAction, block: &mut BlockFunctions) {
     let q = &mut c.numbers.q;
-    match deed {
-        Deed::ProgramStop => block.stop = true,
-        Deed::ToolChange => block.stop |= c.settings.rules.machine.m6_stops,
-        Deed::ProgramEnd => {
+    match action {
+        ControlAction::ProgramStop => block.stop = true,
+        ControlAction::ToolChange => block.stop |= c.settings.rules.machine.m6_stops,
+        ControlAction::ProgramEnd => {
             block.end = true;
             if c.at.in_called_program() {
                 c.warn(WarningKind::EndInCalledProgram);
             }
         }
-        Deed::Spindle(SpindleOrder::Clockwise) => c.modal.set_spindle(Spindle::Clockwise, q),
-        Deed::Spindle(SpindleOrder::CounterClockwise) => c.modal.set_spindle(Spindle::CounterClockwise, q),
-        Deed::Spindle(SpindleOrder::Stop | SpindleOrder::StopWithRun) => c.modal.stop_spindle(q),
-        Deed::Coolant(on) => q.preassign(preassigned::COOLANT, if on { 1.0 } else { 0.0 }),
+        ControlAction::Spindle(SpindleOrder::Clockwise) => c.modal.set_spindle(Spindle::Clockwise, q),
+        ControlAction::Spindle(SpindleOrder::CounterClockwise) => {
+            c.modal.set_spindle(Spindle::CounterClockwise, q)
+        }
+        ControlAction::Spindle(SpindleOrder::Stop | SpindleOrder::StopWithRun) => c.modal.stop_spindle(q),
+        ControlAction::Coolant(on) => q.preassign(preassigned::COOLANT, if on { 1.0 } else { 0.0 }),
         _ => {}
     }
 }
 
 /// What acts on the block itself.
-fn act_on_block(modal: &mut Modal, deed: Deed, block: &mut BlockFunctions) {
-    match deed {
-        Deed::ConstantSpeed => block.constant_speed = true,
-        Deed::MachineZero => block.reference = Reference::MachineZero,
-        Deed::MachineDatum => block.reference = Reference::MachineDatum,
-        Deed::ToolPosition => block.reference = Reference::Position,
-        Deed::ReduceRotaryAxes => reduce_rotary_axes(modal),
-        Deed::Intersection => block.corner = Corner::Intersection,
-        Deed::OpenContour => block.corner = Corner::Open,
-        Deed::Control(ControlFunction::TakeLargerTools(takes)) => modal.takes_larger_tools = takes,
-        Deed::CycleCall => {
+fn act_on_block(modal: &mut Modal, action: ControlAction, block: &mut BlockFunctions) {
+    match action {
+        ControlAction::ConstantSpeed => block.constant_speed = true,
+        ControlAction::MachineZero => block.reference = Reference::MachineZero,
+        ControlAction::MachineDatum => block.reference = Reference::MachineDatum,
+        ControlAction::ToolPosition => block.reference = Reference::Position,
+        ControlAction::ReduceRotaryAxes => reduce_rotary_axes(modal),
+        ControlAction::Intersection => block.corner = Corner::Intersection,
+        ControlAction::OpenContour => block.corner = Corner::Open,
+        ControlAction::Control(ControlFunction::TakeLargerTools(takes)) => modal.takes_larger_tools = takes,
+        ControlAction::CycleCall => {
             modal.cycle_after_each_block = false;
             block.cycle_call = true;
         }
@@ -134,23 +138,23 @@ fn act_on_feed(
     modal: &mut Modal,
     numbers: &Numbers,
     settings: &Settings,
-    deed: Deed,
+    action: ControlAction,
     m: &MFunctions,
 ) -> Result<(), Fault> {
-    match deed {
-        Deed::PlungingFeed => {
+    match action {
+        ControlAction::PlungingFeed => {
             let percent = m
                 .argument(103, 'F')
                 .map(|value| numbers.q.value(value))
                 .transpose()?;
             modal.plunge_factor = percent.map(|percent| percent / 100.0);
         }
-        Deed::FeedAtEdge => modal.feed_law = FeedLaw::Edge,
-        Deed::FeedAtEdgeReduced => modal.feed_law = FeedLaw::EdgeReduced,
-        Deed::FeedAtCentre => modal.feed_law = FeedLaw::Centre,
-        Deed::CornerArcs => modal.corner_arcs = Some(corner_arcs(numbers, settings, m)?),
-        Deed::SharpCorners => (modal.corner_arcs, modal.point_spacing_mm) = (None, 0.0),
-        Deed::LeaveOutPoints => {
+        ControlAction::FeedAtEdge => modal.feed_law = FeedLaw::Edge,
+        ControlAction::FeedAtEdgeReduced => modal.feed_law = FeedLaw::EdgeReduced,
+        ControlAction::FeedAtCentre => modal.feed_law = FeedLaw::Centre,
+        ControlAction::CornerArcs => modal.corner_arcs = Some(corner_arcs(numbers, settings, m)?),
+        ControlAction::SharpCorners => (modal.corner_arcs, modal.point_spacing_mm) = (None, 0.0),
+        ControlAction::LeaveOutPoints => {
             let spacing = m.argument(124, 'T').map(|value| numbers.length(value));
             modal.point_spacing_mm = spacing.transpose()?.unwrap_or(0.0);
         }

@@ -60,7 +60,7 @@ impl Interpreter {
             let detail = format!("there is no LBL {label} behind the block");
             Fault::new(MessageId::LabelNumberNotAllocated, detail)
         };
-        Some(main.label_behind(label, at.block).ok_or_else(missing))
+        Some(main.label_after(label, at.block).ok_or_else(missing))
     }
 
     /// Whether what a block needs has not come yet: the block itself and the next one, which may round its corner,
@@ -89,10 +89,10 @@ impl Interpreter {
         let calls_cycle = self.run.modal.cycle_after_each_block || calls_cycle(block);
         // Its subprograms are executed ahead, which may be anywhere.
         let contours = calls_cycle && self.run.modal.cycle.is_contour_cycle();
-        let behind = self.settings.transferred;
+        let after = self.settings.transferred;
         let known = |main: &Arc<Program>| {
-            let found = match behind {
-                true => main.label_behind(label, at.block),
+            let found = match after {
+                true => main.label_after(label, at.block),
                 false => main.label(label),
             };
             label == 0 || found.is_some()

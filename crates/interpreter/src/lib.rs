@@ -28,7 +28,7 @@
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
 //! steps.
 //! All state that changes is in `run`, in parts: `modal` data, `numbers` (Q parameters and units), the `pen` with
-//! contour stages and queue, `tools`, `flow`, what is `told`. A block gets those it may touch as a `context`; only
+//! contour stages and queue, `tools`, `flow`, what is `reported`. A block gets those it may touch as a `context`; only
 //! `execute` sees the whole.
 //! Nothing here knows of time or of the machine's axes.
 
@@ -64,13 +64,13 @@ mod q_parameters;
 mod reader;
 mod recording;
 mod rehearsal;
+mod reported;
 mod run;
 mod settings;
 mod status;
 mod superimposing;
 mod surface_feed;
 mod tilting;
-mod told;
 mod tool_measuring;
 mod tools;
 mod unrolled;
@@ -204,7 +204,7 @@ impl Interpreter {
             };
             let feed_mm_min = doubt.feed_mm_min.round() as u32;
             self.run
-                .told
+                .reported
                 .warn(block, WarningKind::InchFeed { reading, feed_mm_min });
         }
     }
@@ -249,7 +249,7 @@ impl Interpreter {
 
     /// Takes the warnings that came up since the last call.
     pub fn take_warnings(&mut self) -> Vec<Warning> {
-        self.run.told.take_warnings()
+        self.run.reported.take_warnings()
     }
 
     /// Allows an amount of work, as [`Interpreter::next`] counts it, until the next call: a control has
@@ -278,10 +278,10 @@ impl Interpreter {
 
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
-        let told = std::mem::take(&mut self.run.told);
+        let reported = std::mem::take(&mut self.run.reported);
         self.pending = Pending::None;
         self.run = (*checkpoint.run).clone();
-        self.run.told = told;
+        self.run.reported = reported;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;
@@ -593,7 +593,7 @@ impl Interpreter {
     fn end_of_run(&mut self) -> Result<(), Fault> {
         if self.run.modal.blank_min.is_some() {
             self.run
-                .told
+                .reported
                 .warn(self.run.pen.block, WarningKind::BlankIncomplete);
         }
         self.run.pen.finish_contour()?;

@@ -94,11 +94,11 @@ impl Interpreter {
     /// The first block behind a sequence that is read already and [may](Interpreter::may_replace_tool) have the tool
     /// replaced before it, by its own sequence. It is known only when [checkpoints are
     /// kept](Interpreter::keep_checkpoints).
-    pub fn next_replacement(&mut self, behind: u64, tool: u32) -> Option<u64> {
+    pub fn next_replacement(&mut self, after: u64, tool: u32) -> Option<u64> {
         let Interpreter { kept, code, .. } = self;
         let mut states = kept.iter().flat_map(Kept::states);
         let found = states.find(|state| {
-            state.sequence() > behind && state.run.is_between_contours(tool) && !keeps_tool(code, state.at())
+            state.sequence() > after && state.run.is_between_contours(tool) && !keeps_tool(code, state.at())
         });
         found.map(Checkpoint::sequence)
     }

@@ -262,7 +262,7 @@ fn leave_workpiece(
     feed: FeedRate,
     functions: BlockFunctions,
 ) -> Result<Flow, Fault> {
-    if !std::mem::replace(&mut c.told.machine_zero, true) {
+    if !std::mem::replace(&mut c.reported.machine_zero, true) {
         c.warn(WarningKind::MachineZeroUnknown);
     }
     c.pen.finish_contour()?;

@@ -14,10 +14,10 @@ use crate::modal::Modal;
 use crate::numbers::Numbers;
 use crate::pen::Pen;
 use crate::probe::{self, Probing};
+use crate::reported::Reported;
 use crate::settings::Settings;
 use crate::status::Status;
 use crate::tilting;
-use crate::told::Told;
 use crate::tools::Tools;
 
 /// Everything that changes while a program runs. A copy of it is a checkpoint.
@@ -27,7 +27,7 @@ pub(crate) struct Run {
     pub modal: Modal,
     pub numbers: Numbers,
     pub pen: Pen,
-    pub told: Told,
+    pub reported: Reported,
     pub tools: Tools,
     /// The first BLK FORM of the main program.
     pub blank: Option<Blank>,
@@ -44,7 +44,7 @@ impl Run {
             modal: Modal::new(settings.start, settings.tool_length_mm),
             numbers: Numbers::new(settings, unit),
             pen: Pen::new(settings),
-            told: Told::default(),
+            reported: Reported::default(),
             tools: Tools::default(),
             blank: None,
             probing: None,
@@ -75,7 +75,7 @@ impl Run {
             modal: &mut self.modal,
             numbers: &mut self.numbers,
             pen: &mut self.pen,
-            told: &mut self.told,
+            reported: &mut self.reported,
             at: &self.at,
             settings,
         };
@@ -138,14 +138,14 @@ impl Run {
             Unit::Inch => "inch",
         };
         let step = format!("{} {unit} and {}°", steps.length(), steps.angle());
-        let first = self.told.said.is_first_rounded(self.pen.block.program);
+        let first = self.reported.said.is_first_rounded(self.pen.block.program);
         // A rehearsal goes on after an error, and says this one once, too.
         if settings.strict && (first || !self.pen.rehearsal) {
             let detail = format!("the input step of this control is {step}");
             return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
         }
         if first {
-            self.told.warn(self.pen.block, WarningKind::Rounded { step });
+            self.reported.warn(self.pen.block, WarningKind::Rounded { step });
         }
         Ok(())
     }

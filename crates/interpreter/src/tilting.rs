@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use bahn_parameters::MessageId;
-use bahn_parameters::technology::Deed;
+use bahn_parameters::technology::ControlAction;
 use bahn_path::{Axis, AxisSet, Placement, Position, Swivels};
 use bahn_program::Coordinates;
 
@@ -164,14 +164,14 @@ fn pass_over(c: &mut Context<'_>, what: String) -> Result<(), Fault> {
 }
 
 /// What M functions do with swivel axes.
-pub(crate) fn act(c: &mut Context<'_>, deed: Deed) -> Result<(), Fault> {
-    match deed {
-        Deed::CompensateSwivels(on) => compensate(c, on)?,
-        Deed::SurfaceFeed(on) => {
+pub(crate) fn act(c: &mut Context<'_>, action: ControlAction) -> Result<(), Fault> {
+    match action {
+        ControlAction::CompensateSwivels(on) => compensate(c, on)?,
+        ControlAction::SurfaceFeed(on) => {
             c.modal.tilting.surface_feed = on && geometry(c, "M116")?.is_some();
         }
-        Deed::ShortestWay(true) => c.modal.tilting.way = Way::Shortest,
-        Deed::ShortestWay(false) if c.modal.tilting.way == Way::Shortest => {
+        ControlAction::ShortestWay(true) => c.modal.tilting.way = Way::Shortest,
+        ControlAction::ShortestWay(false) if c.modal.tilting.way == Way::Shortest => {
             c.modal.tilting.way = Way::WithinTurn;
         }
         _ => {}

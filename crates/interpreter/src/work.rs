@@ -102,9 +102,9 @@ impl Pending {
         let given_up = Arc::new(AtomicBool::new(false));
         *self = Pending::Taken(Wanted(Arc::clone(&given_up)));
         // The copy goes on from what was said; its warnings are its own.
-        let warnings = run.told.take_warnings();
+        let warnings = run.reported.take_warnings();
         let copy = Box::new(run.clone());
-        run.told.put_before(warnings);
+        run.reported.put_before(warnings);
         Some(Work {
             run: copy,
             settings: settings.clone(),
@@ -120,9 +120,9 @@ impl Pending {
             return None;
         }
         *self = Pending::None;
-        let warnings = run.told.take_warnings();
+        let warnings = run.reported.take_warnings();
         *run = *done.run;
-        run.told.put_before(warnings);
+        run.reported.put_before(warnings);
         Some(done.result)
     }
 }

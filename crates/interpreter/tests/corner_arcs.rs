@@ -72,10 +72,10 @@ fn skew_corner(
     let Some(index) = moves.iter().position(|e| matches!(e.curve, Curve::Corner(_))) else {
         return Ok(None);
     };
-    let (before, arc, behind) = (moves[index - 1], moves[index], moves[index + 1]);
+    let (before, arc, after) = (moves[index - 1], moves[index], moves[index + 1]);
     let near = |p: [f64; 3], q: [f64; 3]| length(minus(p, q)) < 1e-9;
     prop_assert!(near(xyz(&before.start), a) && near(xyz(&before.end), xyz(&arc.start)));
-    prop_assert!(near(xyz(&arc.end), xyz(&behind.start)) && near(xyz(&behind.end), c));
+    prop_assert!(near(xyz(&arc.end), xyz(&after.start)) && near(xyz(&after.end), c));
     let (u, v) = (unit(minus(b, a)), unit(minus(c, b)));
     // Of the two rays from the corner, half the angle between them.
     let half = 0.5 * (std::f64::consts::PI - dot(u, v).acos());

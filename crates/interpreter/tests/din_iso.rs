@@ -15,7 +15,7 @@ fn iso(blocks: &str) -> String {
 }
 
 /// All that moves and switches, without the blocks that it comes from, which are fewer in ISO.
-fn told(run: &Run) -> Vec<String> {
+fn reported(run: &Run) -> Vec<String> {
     let nameless = |element: &bahn_path::PathElement| {
         let mut element = element.clone();
         element.block = bahn_path::BlockRef::default();
@@ -52,7 +52,7 @@ fn same(plain: &str, blocks: &str) {
     let iso = settings(Job::iso(iso(&format!("{ISO_FRAME}{blocks}")))).run();
     plain.assert_completed();
     iso.assert_completed();
-    let (expected, found) = (told(&plain), told(&iso));
+    let (expected, found) = (reported(&plain), reported(&iso));
     assert!(expected.len() > 3);
     for (at, (expected, found)) in expected.iter().zip(&found).enumerate() {
         assert_eq!(found, expected, "element {at}");
@@ -513,7 +513,7 @@ fn programs_call_each_other_across_languages() {
         .run();
     for run in [plain_calls, as_cycle] {
         run.assert_completed();
-        assert_eq!(told(&run), told(&expected));
+        assert_eq!(reported(&run), reported(&expected));
     }
 }
 
@@ -529,7 +529,7 @@ fn a_probe_measures() {
         .run();
     expected.assert_completed();
     found.assert_completed();
-    assert_eq!(told(&found), told(&expected));
+    assert_eq!(reported(&found), reported(&expected));
     assert_eq!(found.q[10], expected.q[10]);
 }
 

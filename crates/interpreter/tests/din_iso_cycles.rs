@@ -11,7 +11,7 @@ use bahn_path::{Axis, PerAxis, Position};
 use support::*;
 
 /// What a run says, without its blocks.
-fn told(run: &Run) -> Vec<String> {
+fn reported(run: &Run) -> Vec<String> {
     let nameless = |element: &bahn_path::PathElement| {
         let mut element = element.clone();
         element.block = bahn_path::BlockRef::default();
@@ -37,10 +37,10 @@ fn same(plain: &str, blocks: &str, change: impl Fn(Job) -> Job) -> Run {
     let found = on_a_415(Job::iso(iso)).run();
     expected.assert_completed();
     found.assert_completed();
-    let expected_told = told(&expected);
+    let expected_reported = reported(&expected);
     // Behind the tool call and the way to the begin.
-    assert!(expected_told.len() > 2, "{expected_told:?}");
-    for (place, (found, expected)) in told(&found).iter().zip(&expected_told).enumerate() {
+    assert!(expected_reported.len() > 2, "{expected_reported:?}");
+    for (place, (found, expected)) in reported(&found).iter().zip(&expected_reported).enumerate() {
         assert_eq!(found, expected, "element {place}");
     }
     assert_eq!(found.elements.len(), expected.elements.len());

@@ -111,7 +111,7 @@ fn a_rounded_approach_from_nowhere() {
 /// the depth at which the first block ends, and what is cut off shortens it in the plane alone. CT takes the depth along as
 /// a helix. A block of the tool axis alone has no direction (`messages.rs`).
 #[test]
-fn corners_behind_a_block_that_moves_the_tool_axis() {
+fn corners_after_a_block_that_moves_the_tool_axis() {
     let corner = |between: &str| {
         let run = Job::new(program(&format!(
             "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+5 R0 F500\nL X+20 Z-5\n{between}\nL X+50 Y+30"

@@ -118,7 +118,7 @@ fn cycles_tools_and_poles_are_rounded() {
 
 /// Each program is told of once, however often it is called.
 #[test]
-fn called_programs_are_told_of_once() {
+fn called_programs_are_reported_once() {
     let run = Job::new(program("CALL PGM 2\nCALL PGM 2\nL X+1 R0 F100"))
         .library(
             "2",

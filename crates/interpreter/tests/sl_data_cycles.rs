@@ -198,7 +198,7 @@ fn pilot_drilling_where_the_rough_out_tool_goes_down() {
 
 /// Behind a coarse tool of R10 (Q18) the tool of R3 cuts in the corners only, and leaves what it cannot reach there.
 #[test]
-fn fine_roughing_behind_a_coarse_tool() {
+fn fine_roughing_after_a_coarse_tool() {
     let coarse =
         "TOOL CALL 3 Z S500\nCYCL DEF 22.0 ROUGH-OUT\nCYCL DEF 22.1 Q10=-10 Q11=+100 Q12=+350\nCYCL CALL";
     let fine = "TOOL CALL 2 Z S500\nCYCL DEF 22.0 ROUGH-OUT\nCYCL DEF 22.1 Q10=-10 Q11=+100 Q12=+350 Q18=+3\nCYCL CALL";

@@ -52,23 +52,23 @@ fn swivel_axes_stand_where_cycle_19_says() {
     assert_eq!(message("L B-330 R0 FMAX\nL X+1 FMAX"), None);
     // Moved while the plane is in force: with the linear axes, or before them; A is to stand at 0.
     assert_eq!(message("L X+1 B+30 R0 FMAX"), Some((PlaneWronglyDefined, 5)));
-    let behind = |blocks: &str| message(&format!("L B+30 R0 FMAX\nL X+1 FMAX\n{blocks}"));
-    assert_eq!(behind("L X+2 B+40 FMAX"), Some((PlaneWronglyDefined, 7)));
-    assert_eq!(behind("L B+40 FMAX\nL X+2 FMAX"), Some((PlaneWronglyDefined, 8)));
-    assert_eq!(behind("L A+5 FMAX\nL X+2 FMAX"), Some((PlaneWronglyDefined, 8)));
+    let after = |blocks: &str| message(&format!("L B+30 R0 FMAX\nL X+1 FMAX\n{blocks}"));
+    assert_eq!(after("L X+2 B+40 FMAX"), Some((PlaneWronglyDefined, 7)));
+    assert_eq!(after("L B+40 FMAX\nL X+2 FMAX"), Some((PlaneWronglyDefined, 8)));
+    assert_eq!(after("L A+5 FMAX\nL X+2 FMAX"), Some((PlaneWronglyDefined, 8)));
     let peck = "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG -4\n\
                 CYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n";
     assert_eq!(
-        behind(&format!("{peck}L B+40 FMAX\nCYCL CALL M3")),
+        after(&format!("{peck}L B+40 FMAX\nCYCL CALL M3")),
         Some((PlaneWronglyDefined, 14))
     );
     assert_eq!(
-        behind(&format!("{peck}L B+40 FMAX M99")),
+        after(&format!("{peck}L B+40 FMAX M99")),
         Some((PlaneWronglyDefined, 13))
     );
     let probe = "TCH PROBE 0.0 REF. PLANE Q1 X-\nTCH PROBE 0.1 X+0 Y+0 Z+0";
     assert_eq!(
-        behind(&format!("L B+40 FMAX\n{probe}")),
+        after(&format!("L B+40 FMAX\n{probe}")),
         Some((PlaneWronglyDefined, 9))
     );
     // The cycle takes positions of the machine: with the datum of B at 10, B+20 is its 30.
@@ -82,7 +82,7 @@ fn swivel_axes_stand_where_cycle_19_says() {
     assert_eq!(on_datum("+40"), Some((PlaneWronglyDefined, 6)));
     // Behind the plane they go where they are told.
     assert_eq!(
-        behind("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL X+2 B+40 FMAX"),
+        after("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL X+2 B+40 FMAX"),
         None
     );
 }
@@ -168,7 +168,7 @@ fn cycle_19_tilts_the_working_plane() {
 /// The datum shift before cycle 19 is the datum of the plane, one behind it is in the plane; and they end in the reverse
 /// order [000:4254].
 #[test]
-fn shifts_before_and_behind_cycle_19() {
+fn shifts_before_and_after_cycle_19() {
     let shift = |x: &str| format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X{x}\n");
     let tilt = |angles: &str| match angles {
         "" => "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\n".to_owned(),
@@ -301,11 +301,11 @@ fn cycle_19_is_refused() {
     let rotation = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30\n";
     let before = format!("{rotation}{}", plane("A+10"));
     assert_eq!(on(SWIVEL_HEAD, &before).message(), Some((PlaneWronglyDefined, 6)));
-    let behind = format!("{}{rotation}{}", plane("A+10"), plane(""));
-    assert_eq!(on(SWIVEL_HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
+    let after = format!("{}{rotation}{}", plane("A+10"), plane(""));
+    assert_eq!(on(SWIVEL_HEAD, &after).message(), Some((PlaneWronglyDefined, 8)));
     let shift = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+5\n";
-    let behind = format!("{}{shift}{}", plane("A+10"), plane("A+20"));
-    assert_eq!(on(SWIVEL_HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
+    let after = format!("{}{shift}{}", plane("A+10"), plane("A+20"));
+    assert_eq!(on(SWIVEL_HEAD, &after).message(), Some((PlaneWronglyDefined, 8)));
     let both = format!("{}L X+1 R0 FMAX M114", plane("A+10"));
     assert_eq!(on(SWIVEL_HEAD, &both).message(), Some((PlaneWronglyDefined, 5)));
     let both = format!("L X+1 R0 FMAX M114\n{}", plane("A+10"));
@@ -337,9 +337,9 @@ fn m114_keeps_the_tip_on_the_path() {
     assert_near(end, xyz(&plane.to_nose(&at(-5.0, 20.0, 10.0))));
     assert_near(noses(&run, 2)[0], [end[0] + 1.0, end[1], end[2]]);
     // M115: nothing moves, and from there on the coordinates count upright: Z+6 is 106 of the tool datum.
-    let [behind, before] = noses(&run, 3);
+    let [after, before] = noses(&run, 3);
     assert_near(before, noses(&run, 2)[0]);
-    assert_near(behind, [before[0], before[1], 106.0]);
+    assert_near(after, [before[0], before[1], 106.0]);
     assert!(run.moves().last().expect("a movement").placement.is_none());
     // The feed is that of the tip, M114 ends with the program, and needs the geometry.
     assert!(

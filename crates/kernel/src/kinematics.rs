@@ -144,7 +144,7 @@ impl Chain {
     }
 
     /// What is added behind a placement, which has the tool in it.
-    fn behind(&self) -> Offsets {
+    fn after(&self) -> Offsets {
         Offsets {
             tool_length: 0.0,
             ..self.offsets
@@ -168,7 +168,7 @@ impl Chain {
     pub fn without_wheels(&self, path: &Position) -> Position {
         match &self.placement {
             None => self.kinematics.to_axes(path, &self.offsets),
-            Some(placement) => self.kinematics.to_axes(&placement.to_nose(path), &self.behind()),
+            Some(placement) => self.kinematics.to_axes(&placement.to_nose(path), &self.after()),
         }
     }
 
@@ -187,7 +187,7 @@ impl Chain {
     fn placed(&self, axes: &Position, placement: Option<&Placement>) -> Position {
         match placement {
             None => self.kinematics.to_path(axes, &self.offsets),
-            Some(placement) => placement.from_nose(&self.kinematics.to_path(axes, &self.behind())),
+            Some(placement) => placement.from_nose(&self.kinematics.to_path(axes, &self.after())),
         }
     }
 
@@ -201,7 +201,7 @@ impl Chain {
             Some(placement) => {
                 let [least, greatest] = placement.bounds(curve, start, end);
                 self.kinematics
-                    .bounds(&Curve::Line, &least, &greatest, &self.behind())
+                    .bounds(&Curve::Line, &least, &greatest, &self.after())
             }
         }
     }

@@ -12,7 +12,7 @@ use std::time::Duration;
 use bahn_control::{Command, DataLineEvent, DataLineOrder, LineEvent, Programs};
 use bahn_exchange::{Bit, Number};
 use bahn_host::{
-    Attendance, Deed, Host, LoadedMachine, Next, Notice, Operator, PowerOn, Reader, Source, Stamped,
+    Action, Attendance, Host, LoadedMachine, Next, Notice, Operator, PowerOn, Reader, Source, Stamped,
 };
 use bahn_link::{PlcLine, Settings};
 use bahn_program::Program;
@@ -78,7 +78,10 @@ impl Side {
 
     fn command(&mut self, text: &str) {
         let command: Command = text.parse().unwrap();
-        let _ = self.host.act(Source::Script, Deed::Command(0, command)).unwrap();
+        let _ = self
+            .host
+            .act(Source::Script, Action::Command(0, command))
+            .unwrap();
     }
 
     fn tell(&mut self, event: LineEvent) {

@@ -2,7 +2,7 @@
 
 use bahn_din::{Command, Kind, Target, Unit};
 use bahn_parameters::MessageId;
-use bahn_parameters::technology::{Block, Deed, Output, Technology};
+use bahn_parameters::technology::{Block, ControlAction, Output, Technology};
 use bahn_path::{At, Function, Synchronisation, TechnologyFunction};
 use bahn_reader::Start;
 
@@ -103,21 +103,21 @@ fn m(code: u16, unit: &Unit, start: &Start, ordered: &mut Ordered) -> Result<(),
             start.model.name()
         )));
     };
-    for deed in technology.deeds() {
-        match deed {
-            Deed::ProgramStop => ordered.stops = Some(Some("M0")),
-            Deed::ToolChange if start.rules.m6_stops => {
+    for action in technology.actions() {
+        match action {
+            ControlAction::ProgramStop => ordered.stops = Some(Some("M0")),
+            ControlAction::ToolChange if start.rules.m6_stops => {
                 ordered.stops.get_or_insert(None);
             }
-            Deed::SpindleOrientation => {
+            ControlAction::SpindleOrientation => {
                 let function = Function::SpindleOrientation(orientation(unit));
                 ordered.functions.push(start.rules.output(function, technology));
             }
-            Deed::ToolChange
-            | Deed::ProgramEnd
-            | Deed::Spindle(_)
-            | Deed::Coolant(_)
-            | Deed::ModalCycleCall => {}
+            ControlAction::ToolChange
+            | ControlAction::ProgramEnd
+            | ControlAction::Spindle(_)
+            | ControlAction::Coolant(_)
+            | ControlAction::ModalCycleCall => {}
             _ => return Err(of_a_tnc(code)),
         }
     }

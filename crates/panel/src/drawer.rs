@@ -1,4 +1,4 @@
-//! The teacher's drawer: everything of a machine that can be broken, with the deed that breaks it and the one that
+//! The teacher's drawer: everything of a machine that can be broken, with the action that breaks it and the one that
 //! repairs it. The description of the plant says what there is.
 
 use bahn_host::LoadedMachine;
@@ -10,7 +10,7 @@ use crate::wiring;
 /// Something that can be broken.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Breakable {
-    /// Its name in deeds: `X`, `S`, `door`, `I21`.
+    /// Its name in actions: `X`, `S`, `door`, `I21`.
     pub name: String,
     /// Its group in words: axes, things, inputs.
     pub group: String,
@@ -18,15 +18,15 @@ pub struct Breakable {
     pub words: String,
     /// How it breaks.
     pub faults: Vec<Breaking>,
-    /// The deed that makes it whole.
+    /// The action that makes it whole.
     pub repair: String,
 }
 
 /// A way to break.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Breaking {
-    /// The deed.
-    pub deed: String,
+    /// The action.
+    pub action: String,
     /// What happens, in words.
     pub words: String,
 }
@@ -148,11 +148,11 @@ impl Finder<'_> {
         faults: Faults,
         repair: &str,
     ) -> Breakable {
-        let breaking = |(deed, words): &(&str, &'static str)| {
-            let deed = deed.replace("{}", name);
-            let is_there = self.machine.plant.clone().apply(&deed).is_ok();
+        let breaking = |(action, words): &(&str, &'static str)| {
+            let action = action.replace("{}", name);
+            let is_there = self.machine.plant.clone().apply(&action).is_ok();
             is_there.then(|| Breaking {
-                deed,
+                action,
                 words: texts::words(self.language, words).to_owned(),
             })
         };
@@ -173,7 +173,7 @@ impl Finder<'_> {
             group: texts::words(self.language, GROUPS[1]).to_owned(),
             words: name.to_owned(),
             faults: vec![Breaking {
-                deed: format!("switch {name} {other}"),
+                action: format!("switch {name} {other}"),
                 words: other.to_owned(),
             }],
             repair: format!("switch {name} {whole}"),

@@ -43,7 +43,7 @@ pub enum Input {
     /// The trainee says that he has done what the lesson asks.
     HandIn,
     /// What a script does: a command of the control or an event of the machine (docs/scripts.md).
-    Deed(String),
+    Action(String),
     /// What has happened at a data interface, told by whoever has its line.
     Transfer(TransferNews),
 }
@@ -112,9 +112,9 @@ pub struct InputText {
     /// The task is done; always true.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_in: Option<bool>,
-    /// A deed of a script.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub deed: Option<String>,
+    /// An action of a script; older recordings of sessions say `deed`.
+    #[serde(alias = "deed", skip_serializing_if = "Option::is_none")]
+    pub action: Option<String>,
     /// What has happened at a data interface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transfer: Option<String>,
@@ -141,7 +141,7 @@ impl TryFrom<InputText> for Input {
             text.lesson
                 .map(|name| Input::Lesson((!name.is_empty()).then_some(name))),
             text.hand_in.map(|_| Input::HandIn),
-            text.deed.map(Input::Deed),
+            text.action.map(Input::Action),
             text.transfer.map(news).transpose()?,
         ];
         let mut found = found.into_iter().flatten();
@@ -200,7 +200,7 @@ impl From<&Input> for InputText {
             }
             Input::Lesson(name) => text.lesson = Some(name.clone().unwrap_or_default()),
             Input::HandIn => text.hand_in = Some(true),
-            Input::Deed(deed) => text.deed = Some(deed.clone()),
+            Input::Action(action) => text.action = Some(action.clone()),
             Input::Transfer(news) => text.transfer = Some(news.to_string()),
         }
         text
@@ -228,7 +228,7 @@ mod tests {
             r#"{"lesson":"door"}"#,
             r#"{"lesson":""}"#,
             r#"{"hand_in":true}"#,
-            r#"{"deed":"fault drive X off"}"#,
+            r#"{"action":"fault drive X off"}"#,
             r#"{"transfer":"received 15.H"}"#,
         ] {
             let read: InputText = serde_json::from_str(text).unwrap();

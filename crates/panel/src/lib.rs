@@ -85,5 +85,5 @@ pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::{Station, load};
 pub use steps::{Stepped, StepsEnd};
 pub use texts::{Language, around, filled, language_code, language_of_code, texts_around};
-pub use transfer::{TransferDeed, TransferFiles, TransferNews, TransferOrder};
+pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};
 pub use why::{Reason, Urgency, Waits, in_words};

@@ -22,7 +22,7 @@ pub(crate) struct PlcMode {
     pub entered: bool,
     /// The help file that lies open, and whether the PLC knows its line.
     pub help: Weak<()>,
-    pub help_told: bool,
+    pub help_reported: bool,
     /// The file that was edited last.
     pub edited: Option<String>,
     /// The program that was compiled, for the next power-on.

@@ -347,7 +347,7 @@ pub struct TimeMark {
     pub t: f64,
     /// What kind of thing.
     pub kind: MarkKind,
-    /// Its words: message, program, deed.
+    /// Its words: message, program, action.
     pub text: String,
 }
 
@@ -364,7 +364,7 @@ pub enum MarkKind {
     /// A program was interrupted or stopped.
     Stop,
     /// Something was done to the machine: a fault, a repair, a door, EMERGENCY STOP, power.
-    Deed,
+    Action,
 }
 
 /// A way that was left.

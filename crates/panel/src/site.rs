@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bahn_control::{AxisState, ChannelView, Command, Control, Mode, RunState, Shown};
-use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
+use bahn_host::{Action, Answer, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 
@@ -50,12 +50,12 @@ impl Site<'_> {
 
     /// Asks the control for something; `false` when it refuses.
     pub fn command(&mut self, command: Command) -> bool {
-        self.act(Deed::Command(0, command))
+        self.act(Action::Command(0, command))
     }
 
     /// Does something; `false` when it is refused or cannot be done.
-    pub fn act(&mut self, deed: Deed) -> bool {
-        let answer = self.host.act(Source::Client("panel".to_owned()), deed);
+    pub fn act(&mut self, action: Action) -> bool {
+        let answer = self.host.act(Source::Client("panel".to_owned()), action);
         matches!(answer, Ok(Answer::Done))
     }
 

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
-use bahn_host::{Answer, Clock, Deed, Host, HostError, LoadedMachine, PowerOn, Source};
+use bahn_host::{Action, Answer, Clock, Host, HostError, LoadedMachine, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
@@ -43,7 +43,7 @@ use warm_start::WarmStart;
 /// Lines of the large window, and of one beside it.
 const LINES: usize = 16;
 /// So often the PLC is told what the screen shows, µs.
-const SCREEN_TOLD_US: u64 = 50_000;
+const SCREEN_REPORTED_US: u64 = 50_000;
 /// A minute, µs.
 const MINUTE_US: u64 = 60_000_000;
 /// Stands in the status window while a logic diagram is recorded [000:11466].
@@ -193,9 +193,9 @@ impl Station {
             }
             Input::FeedOverride(percent) => self.knob(0, *percent)?,
             Input::SpindleOverride(percent) => self.knob(1, *percent)?,
-            Input::Handwheel(steps) => self.deed(&format!("handwheel {steps}"))?,
+            Input::Handwheel(steps) => self.action(&format!("handwheel {steps}"))?,
             Input::HandwheelAxis(axis, factor) => {
-                self.deed(&format!("handwheel {axis} {factor}"))?;
+                self.action(&format!("handwheel {axis} {factor}"))?;
             }
             Input::Power(on) => self.power(*on),
             Input::Speed(factor) => self.set_speed(*factor)?,
@@ -206,7 +206,7 @@ impl Station {
             Input::GoTo(time_s, branch) => self.go_to_in(*time_s, *branch)?,
             Input::Lesson(name) => self.begin_lesson(name.as_deref())?,
             Input::HandIn => self.hand_in(),
-            Input::Deed(text) => self.deed(text)?,
+            Input::Action(text) => self.action(text)?,
             Input::Transfer(news) => {
                 let language = self.language();
                 let (console, mut site) = self.parts();
@@ -267,7 +267,7 @@ impl Station {
     /// The PLC may ask what the screen shows (module 9035): now and then, since nobody presses keys faster.
     fn tell_screen(&mut self) {
         let control = self.host.control();
-        let is_due = control.time_us() % SCREEN_TOLD_US < u64::from(control.cycle_us());
+        let is_due = control.time_us() % SCREEN_REPORTED_US < u64::from(control.cycle_us());
         if !is_due || self.past.looks_back() {
             return;
         }
@@ -610,7 +610,7 @@ impl Station {
                 KeyAction::Release => false,
                 KeyAction::Tap => !self.host.plant().emergency_stop_is_pressed(),
             };
-            return self.deed(if pressed {
+            return self.action(if pressed {
                 "emergency press"
             } else {
                 "emergency release"
@@ -622,12 +622,12 @@ impl Station {
             KeyAction::Tap => "tap",
         };
         self.waits.pressed(name, self.host.control().time_us());
-        self.deed(&format!("key {name} {verb}"))
+        self.action(&format!("key {name} {verb}"))
     }
 
     fn knob(&mut self, place: usize, percent: f64) -> Result<(), Refusal> {
         let name = ["feed", "spindle"][place.min(1)];
-        self.deed(&format!("override {name} {percent}"))
+        self.action(&format!("override {name} {percent}"))
     }
 
     fn set_speed(&mut self, factor: f64) -> Result<(), Refusal> {
@@ -648,19 +648,19 @@ impl Station {
             return;
         }
         // A control that is on stays on.
-        let _ = self.act(Deed::Command(0, Command::Power(on)));
+        let _ = self.act(Action::Command(0, Command::Power(on)));
     }
 
-    fn deed(&mut self, text: &str) -> Result<(), Refusal> {
-        self.act(Deed::parse(text).map_err(|error| Refusal(error.to_string()))?)
+    fn action(&mut self, text: &str) -> Result<(), Refusal> {
+        self.act(Action::parse(text).map_err(|error| Refusal(error.to_string()))?)
     }
 
-    fn act(&mut self, deed: Deed) -> Result<(), Refusal> {
+    fn act(&mut self, action: Action) -> Result<(), Refusal> {
         // The list is entered before anything goes on.
-        if self.commissioning.is_some() && matches!(deed, Deed::Command(_, Command::Power(_))) {
+        if self.commissioning.is_some() && matches!(action, Action::Command(_, Command::Power(_))) {
             return Ok(());
         }
-        let answer = self.host.act(Source::Client("panel".to_owned()), deed);
+        let answer = self.host.act(Source::Client("panel".to_owned()), action);
         match answer.map_err(|error| Refusal(error.to_string()))? {
             Answer::Done => Ok(()),
             Answer::Refused => Err(self.refusal()),

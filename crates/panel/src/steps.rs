@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn they_pass_one_behind_the_other_and_are_broken_off_together() {
+    fn they_pass_one_after_the_other_and_are_broken_off_together() {
         let mut steps = Steps::default();
         let (two, three) = (steps.ask(2), steps.ask(3));
         steps.pass();

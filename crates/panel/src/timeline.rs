@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 
 use bahn_control::{Command, RunState};
-use bahn_host::{Course, Deed, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline};
+use bahn_host::{Action, Course, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline};
 use bahn_machine::{Event, Machine};
 
 use crate::lesson::LessonRun;
@@ -49,7 +49,7 @@ pub(crate) struct Past {
     run: RunState,
     moments: Timeline<Machine>,
     marks: Vec<TimeMark>,
-    /// While the operator looks back: the way as far as it was gone, and how many deeds led to where he looks.
+    /// While the operator looks back: the way as far as it was gone, and how many actions led to where he looks.
     looks: Option<(Way, u64)>,
     branches: VecDeque<Branch>,
     last_number: u32,
@@ -226,8 +226,8 @@ impl Past {
                 }
             }
             // What a lesson does is for the trainee to find.
-            Notice::Given(Source::Client(_), deed, _) if is_telling(deed) => {
-                (MarkKind::Deed, deed.to_string())
+            Notice::Given(Source::Client(_), action, _) if is_telling(action) => {
+                (MarkKind::Action, action.to_string())
             }
             _ => return,
         };
@@ -243,10 +243,10 @@ impl Past {
 }
 
 /// Deeds that one looks for later: not each key.
-fn is_telling(deed: &Deed) -> bool {
-    match deed {
-        Deed::Command(_, command) => matches!(command, Command::Power(_)),
-        Deed::Event(event, _) => matches!(
+fn is_telling(action: &Action) -> bool {
+    match action {
+        Action::Command(_, command) => matches!(command, Command::Power(_)),
+        Action::Event(event, _) => matches!(
             event,
             Event::Fault(_)
                 | Event::Repair(_)

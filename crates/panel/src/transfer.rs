@@ -8,7 +8,7 @@ use std::sync::mpsc::Sender;
 use bahn_parameters::MessageId;
 
 /// Lines of what has happened that are kept at most.
-const TOLD_MAX: usize = 1000;
+const REPORTED_MAX: usize = 1000;
 
 /// What the operator wants of an interface.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub struct TransferOrder {
     /// Among which files.
     pub files: TransferFiles,
     /// What is to be done.
-    pub deed: TransferDeed,
+    pub action: TransferAction,
 }
 
 /// The files that are transferred.
@@ -66,7 +66,7 @@ impl TransferFiles {
 
 /// What is to be done at an interface.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum TransferDeed {
+pub enum TransferAction {
     /// PROGRAM DIRECTORY: the names on the medium.
     Directory,
     /// READ-IN ALL PROGRAMS.
@@ -182,7 +182,7 @@ pub(crate) struct Transfers {
     /// What waits for an answer.
     pub question: Option<TransferNews>,
     /// What has happened since the transfer began.
-    pub told: Vec<TransferNews>,
+    pub reported: Vec<TransferNews>,
 }
 
 impl Transfers {
@@ -207,7 +207,7 @@ impl Transfers {
         if self.connected.get(order.port) != Some(&true) || !self.send(&order) {
             return Err(MessageId::ExtInOutputNotReady);
         }
-        self.told.clear();
+        self.reported.clear();
         self.question = None;
         self.last = order.files;
         self.running = Some(order);
@@ -216,19 +216,19 @@ impl Transfers {
 
     /// The operator answers; `false` when nothing is asked.
     pub fn answer(&mut self, yes: bool) -> bool {
-        self.question.take().is_some() && self.goes_on(TransferDeed::Answer(yes))
+        self.question.take().is_some() && self.goes_on(TransferAction::Answer(yes))
     }
 
     /// END breaks it off; what is said of it comes as news.
     pub fn end(&mut self) -> bool {
-        self.goes_on(TransferDeed::End)
+        self.goes_on(TransferAction::End)
     }
 
-    fn goes_on(&mut self, deed: TransferDeed) -> bool {
+    fn goes_on(&mut self, action: TransferAction) -> bool {
         let Some(running) = self.running.clone() else {
             return false;
         };
-        self.send(&TransferOrder { deed, ..running })
+        self.send(&TransferOrder { action, ..running })
     }
 
     /// `false` when whoever took the orders is not there any more.
@@ -249,8 +249,8 @@ impl Transfers {
 
     /// What the order that is being carried out reads.
     pub fn reads(&self) -> Option<&str> {
-        match &self.running.as_ref()?.deed {
-            TransferDeed::Read(name) => Some(name),
+        match &self.running.as_ref()?.action {
+            TransferAction::Read(name) => Some(name),
             _ => None,
         }
     }
@@ -277,8 +277,8 @@ impl Transfers {
             }
             _ => {}
         }
-        if self.told.len() < TOLD_MAX {
-            self.told.push(news);
+        if self.reported.len() < REPORTED_MAX {
+            self.reported.push(news);
         }
     }
 }
@@ -322,7 +322,7 @@ mod tests {
             baud: 9600,
             kind: "H",
             files: TransferFiles::Programs,
-            deed: TransferDeed::ReadAll,
+            action: TransferAction::ReadAll,
         };
         assert_eq!(transfers.begin(order(0)), Err(MessageId::ExtInOutputNotReady));
         transfers.news(TransferNews::Connected(0));
@@ -337,13 +337,13 @@ mod tests {
         assert!(transfers.answer(false) && !transfers.answer(false) && transfers.end());
         transfers.news(TransferNews::Ended(false));
         assert!(!transfers.is_running());
-        let deeds: Vec<_> = orders.try_iter().map(|order| order.deed).collect();
+        let actions: Vec<_> = orders.try_iter().map(|order| order.action).collect();
         let ordered = [
-            TransferDeed::ReadAll,
-            TransferDeed::Answer(false),
-            TransferDeed::End,
+            TransferAction::ReadAll,
+            TransferAction::Answer(false),
+            TransferAction::End,
         ];
-        assert_eq!(deeds, ordered);
+        assert_eq!(actions, ordered);
         // Whoever had the lines has gone.
         drop(orders);
         assert_eq!(transfers.begin(order(0)), Err(MessageId::ExtInOutputNotReady));

@@ -13,7 +13,7 @@ use support::Trainee;
 fn probing() -> Trainee {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
-    trainee.give(r#"{"deed":"probe insert"}"#);
+    trainee.give(r#"{"action":"probe insert"}"#);
     go(&mut trainee, "L Z+220");
     go(&mut trainee, "L X+250 Y+140");
     go(&mut trainee, "L Z+190");

@@ -163,10 +163,10 @@ fn the_key_of_an_hr_410_captures() {
         programming(&mut trainee, "ENT");
         trainee.press("HANDWHEEL");
         trainee
-            .give(r#"{"deed":"handwheel key CAPTURE press"}"#)
+            .give(r#"{"action":"handwheel key CAPTURE press"}"#)
             .wait(0.5);
         trainee
-            .give(r#"{"deed":"handwheel key CAPTURE release"}"#)
+            .give(r#"{"action":"handwheel key CAPTURE release"}"#)
             .wait(0.2);
         let written = blocks(&trainee);
         assert_eq!(written.len(), expected, "one press, one block: {written:?}");

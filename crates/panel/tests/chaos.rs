@@ -56,7 +56,7 @@ const KEYS: &[&str] = &[
 ];
 
 /// An input as JSON.
-fn input(seed: &mut u64, deeds: &[String], screen: &Screen) -> String {
+fn input(seed: &mut u64, actions: &[String], screen: &Screen) -> String {
     let kind = random(seed, 20);
     let line = &screen.timeline;
     match kind {
@@ -67,8 +67,8 @@ fn input(seed: &mut u64, deeds: &[String], screen: &Screen) -> String {
         }
         11 => format!("{{\"feed_override\":{}}}", random(seed, 150)),
         12 => format!("{{\"spindle_override\":{}}}", random(seed, 150)),
-        13 | 14 => format!("{{\"deed\":\"{}\"}}", deeds[random(seed, deeds.len())]),
-        15 => r#"{"deed":"repair all"}"#.to_owned(),
+        13 | 14 => format!("{{\"action\":\"{}\"}}", actions[random(seed, actions.len())]),
+        15 => r#"{"action":"repair all"}"#.to_owned(),
         16 => format!("{{\"power\":{}}}", random(seed, 4) != 0),
         17 => r#"{"pause":false}"#.to_owned(),
         18 => {
@@ -91,11 +91,11 @@ fn session(mut seed: u64) {
     let mut trainee = Trainee::at("mill");
     let name = seed;
     let drawer = trainee.station.drawer();
-    let mut deeds: Vec<String> = drawer
+    let mut actions: Vec<String> = drawer
         .iter()
-        .flat_map(|breakable| breakable.faults.iter().map(|fault| fault.deed.clone()))
+        .flat_map(|breakable| breakable.faults.iter().map(|fault| fault.action.clone()))
         .collect();
-    deeds.extend(drawer.iter().map(|breakable| breakable.repair.clone()));
+    actions.extend(drawer.iter().map(|breakable| breakable.repair.clone()));
     trainee.station.record(&path).unwrap();
     trainee.ready();
     trainee.press("FULL PGM_NR C I R C L E ENT NC_START");
@@ -111,7 +111,7 @@ fn session(mut seed: u64) {
             "seed {name}, {number}: {line:?}"
         );
         assert_eq!(line.now_s, screen.time_s);
-        let text = input(&mut seed, &deeds, &screen);
+        let text = input(&mut seed, &actions, &screen);
         let read: InputText = serde_json::from_str(&text).unwrap();
         // What is refused is refused.
         let _ = trainee.station.input(&Input::try_from(read).unwrap());

@@ -8,7 +8,7 @@ mod support;
 use std::path::Path;
 
 use bahn_host::backup::Restore;
-use bahn_panel::{Input, TransferDeed, TransferFiles};
+use bahn_panel::{Input, TransferAction, TransferFiles};
 use support::Trainee;
 
 /// The mill with something else in its list.
@@ -114,7 +114,7 @@ fn nobody_goes_elsewhere_while_the_list_is_entered() {
 fn what_is_kept_survives_a_faulty_list() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
-    trainee.give(r#"{"deed":"datum X 12.5"}"#).wait(0.5);
+    trainee.give(r#"{"action":"datum X 12.5"}"#).wait(0.5);
     trainee.station.store().unwrap();
     let kept_datums = trainee.station.control().remember().datums;
     let list = trainee.file("parameters.mp");
@@ -292,7 +292,7 @@ fn lists_are_transferred() {
     assert_eq!(trainee.screen().dialogue.prompt, "FILE NAME =");
     trainee.typed("NEW").press("ENT");
     let order = orders.try_recv().unwrap();
-    assert_eq!(order.deed, TransferDeed::Read("NEW.MP".to_owned()));
+    assert_eq!(order.action, TransferAction::Read("NEW.MP".to_owned()));
     assert_eq!(
         (order.files, order.mode, order.kind),
         (TransferFiles::Lists, "fe1", "MP")
@@ -302,7 +302,10 @@ fn lists_are_transferred() {
     assert!(shows(&mut trainee, "PARAMETERS.MP"));
     trainee.press("ENT");
     let order = orders.try_recv().unwrap();
-    assert_eq!(order.deed, TransferDeed::Write(vec!["PARAMETERS.MP".to_owned()]));
+    assert_eq!(
+        order.action,
+        TransferAction::Write(vec!["PARAMETERS.MP".to_owned()])
+    );
     news(&mut trainee, "ended complete");
     // A list that came in the place of the one in force goes into effect when the editor is left.
     let list = trainee.file("parameters.mp");
@@ -336,7 +339,7 @@ fn a_list_comes_over_the_data_interface_while_commissioning() {
         .typed("PARAMETERS")
         .press("ENT");
     let order = orders.try_recv().unwrap();
-    assert_eq!(order.deed, TransferDeed::Read("PARAMETERS.MP".to_owned()));
+    assert_eq!(order.action, TransferAction::Read("PARAMETERS.MP".to_owned()));
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/mill/parameters.mp");
     std::fs::copy(shipped, trainee.folder().join("parameters.mp")).unwrap();
     news(&mut trainee, "received PARAMETERS.MP");
@@ -358,7 +361,7 @@ fn everything_is_backed_up_and_restored() {
     trainee.soft("BACKUP DATA");
     let order = orders.try_recv().unwrap();
     assert_eq!(order.files, TransferFiles::Backup);
-    assert_eq!(order.deed, TransferDeed::Write(vec!["$BACKUP.A".to_owned()]));
+    assert_eq!(order.action, TransferAction::Write(vec!["$BACKUP.A".to_owned()]));
     let text = trainee.file("programs/$BACKUP.A");
     news(&mut trainee, "sent $BACKUP.A");
     news(&mut trainee, "ended complete");
@@ -393,7 +396,7 @@ fn everything_is_backed_up_and_restored() {
     trainee.soft("RESTORE DATA");
     trainee.press("ENT");
     let order = orders.try_recv().unwrap();
-    assert_eq!(order.deed, TransferDeed::Read("$BACKUP.A".to_owned()));
+    assert_eq!(order.action, TransferAction::Read("$BACKUP.A".to_owned()));
     trainee.write("programs/$BACKUP.A", &text);
     news(&mut trainee, "received $BACKUP.A");
     news(&mut trainee, "ended complete");
@@ -470,10 +473,10 @@ fn no_list_goes_into_effect_while_another_channel_runs() {
     trainee.press("GOTO 1 0 2 0 POINT 1 ENT").wait(0.1);
     trainee.number("450").press("ENT");
     // Its axes pass their reference marks, too.
-    trainee.give(r#"{"deed":"key START2 tap"}"#).wait(60.0);
-    trainee.give(r#"{"deed":"2: mode full"}"#).wait(0.5);
-    trainee.give(r#"{"deed":"2: select RIGHT.H"}"#);
-    trainee.give(r#"{"deed":"key START2 tap"}"#).wait(2.0);
+    trainee.give(r#"{"action":"key START2 tap"}"#).wait(60.0);
+    trainee.give(r#"{"action":"2: mode full"}"#).wait(0.5);
+    trainee.give(r#"{"action":"2: select RIGHT.H"}"#);
+    trainee.give(r#"{"action":"key START2 tap"}"#).wait(2.0);
     let runs = |trainee: &Trainee| trainee.station.control().channel(1).unwrap().is_active();
     let right = trainee.station.control().channel(1).unwrap();
     assert!(

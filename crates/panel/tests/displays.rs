@@ -158,12 +158,12 @@ fn the_axis_of_the_handwheel_has_its_symbol() {
 fn end_held_is_the_warm_start() {
     let mut trainee = Trainee::at("mill-tnc360");
     trainee.ready();
-    trainee.give(r#"{"deed":"fault encoder X stuck"}"#);
+    trainee.give(r#"{"action":"fault encoder X stuck"}"#);
     trainee.give(r#"{"key":"X+","down":true}"#).wait(2.0);
     trainee.give(r#"{"key":"X+","down":false}"#);
     let flashes = |screen: &Screen| screen.messages.iter().any(|message| message.flashing);
     assert!(flashes(&trainee.screen()), "{:?}", trainee.messages());
-    trainee.give(r#"{"deed":"repair X"}"#).wait(0.5);
+    trainee.give(r#"{"action":"repair X"}"#).wait(0.5);
     trainee.give(r#"{"key":"END","down":true}"#).wait(1.0);
     trainee.give(r#"{"key":"END","down":false}"#).wait(3.0);
     assert!(flashes(&trainee.screen()));
@@ -206,6 +206,6 @@ fn the_plc_says_how_functions_are_shown() {
         assert_eq!(coolant(&mut trainee), shown, "{function}");
     }
     assert!(!trainee.screen().status.t_inverse);
-    trainee.give(r#"{"deed":"M2610=1"}"#).wait(0.1);
+    trainee.give(r#"{"action":"M2610=1"}"#).wait(0.1);
     assert!(trainee.screen().status.t_inverse);
 }

@@ -49,11 +49,11 @@ fn nothing_is_not_enough(name: &str) {
 }
 
 /// Something was done that must not be.
-fn wrong(name: &str, deed: &str, why: &str) {
+fn wrong(name: &str, action: &str, why: &str) {
     let mut trainee = begin(name);
     trainee
         .wait(1.0)
-        .give(&format!("{{\"deed\":\"{deed}\"}}"))
+        .give(&format!("{{\"action\":\"{action}\"}}"))
         .wait(0.2);
     let lesson = trainee.screen().lesson.unwrap();
     assert_eq!(lesson.state, LessonState::Failed, "{lesson:#?}");
@@ -126,7 +126,7 @@ fn the_door() {
         trainee.screen().why
     );
     trainee
-        .give(r#"{"deed":"switch door closed"}"#)
+        .give(r#"{"action":"switch door closed"}"#)
         .wait(2.0)
         .press("CE NC_START");
     passed(&mut trainee);
@@ -183,7 +183,7 @@ fn the_drive_that_is_not_ready() {
     trainee.wait(0.5);
     let why = trainee.screen().why.join("\n");
     assert!(why.contains("I7 is 0 (drive of Z: ready)"), "{why}");
-    trainee.give(r#"{"deed":"repair Z"}"#).wait(1.0).press("CE");
+    trainee.give(r#"{"action":"repair Z"}"#).wait(1.0).press("CE");
     let before: f64 = trainee.position('Z').parse().unwrap();
     hold(&mut trainee, "Z+", 'Z', |z| z > before + 12.0);
     passed(&mut trainee);
@@ -209,7 +209,7 @@ fn the_tool_change() {
 fn the_lubricant() {
     let mut trainee = begin("08-lubricant");
     assert_eq!(trainee.messages(), ["LUBRICANT LOW"]);
-    trainee.give(r#"{"deed":"switch lubricant full"}"#).wait(1.5);
+    trainee.give(r#"{"action":"switch lubricant full"}"#).wait(1.5);
     trainee.press("CE LUBRICATE").wait(3.0);
     passed(&mut trainee);
     nothing_is_not_enough("08-lubricant");
@@ -246,7 +246,7 @@ fn the_broken_wire() {
     let why = trainee.screen().why.join("\n");
     assert!(why.contains("I19 is 0 (tool_clamp: clamped)"), "{why}");
     trainee
-        .give(r#"{"deed":"repair I19"}"#)
+        .give(r#"{"action":"repair I19"}"#)
         .wait(1.0)
         .press("CE NC_START");
     passed(&mut trainee);
@@ -278,8 +278,8 @@ fn all_lessons_are_listed_and_complete_in_both_languages() {
         let count = |word: &str| text.lines().filter(|line| line.starts_with(word)).count();
         for word in ["title", "task", "hint"] {
             let (english, german) = (count(&format!("{word}:")), count(&format!("{word} de:")));
-            let told = english > 0 && german > 0 && (word != "hint" || english == german);
-            assert!(told, "{name}: {word}");
+            let reported = english > 0 && german > 0 && (word != "hint" || english == german);
+            assert!(reported, "{name}: {word}");
         }
         let checks = text.lines().filter(|line| line.contains("=>"));
         assert!(checks.clone().all(|line| line.contains(" | ")), "{name}");
@@ -352,7 +352,7 @@ fn the_past_of_a_lesson_comes_back() {
     trainee.wait(1.0);
     let early_s = trainee.screen().time_s;
     trainee
-        .give(r#"{"deed":"switch lubricant full"}"#)
+        .give(r#"{"action":"switch lubricant full"}"#)
         .wait(1.5)
         .press("CE")
         .wait(0.5);
@@ -388,7 +388,7 @@ fn a_lesson_is_seen_again() {
         "{marks:?}"
     );
     trainee
-        .give(r#"{"deed":"switch door closed"}"#)
+        .give(r#"{"action":"switch door closed"}"#)
         .wait(2.0)
         .press("CE NC_START");
     passed(&mut trainee);
@@ -427,12 +427,12 @@ fn every_machine_has_lessons_and_a_drawer() {
         for breakable in trainee.station.drawer() {
             for fault in &breakable.faults {
                 let mut plant = plant.clone();
-                plant.apply(&fault.deed).unwrap();
+                plant.apply(&fault.action).unwrap();
                 plant.apply(&breakable.repair).unwrap();
             }
         }
         // Whatever was broken, the next lesson begins with a machine that is whole.
-        trainee.give(r#"{"deed":"fault input I3 0"}"#).wait(1.0);
+        trainee.give(r#"{"action":"fault input I3 0"}"#).wait(1.0);
         trainee.give(r#"{"key":"EMERGENCY_STOP","down":true}"#).wait(1.0);
         assert!(!trainee.station.why().is_empty(), "{machine}");
         trainee.give(r#"{"lesson":"ready"}"#);
@@ -481,12 +481,12 @@ fn faults_of_a_lesson_have_file_and_line() {
 fn everything_in_the_drawer_can_be_broken_and_repaired() {
     let trainee = Trainee::at("mill");
     let drawer = trainee.station.drawer();
-    let deeds: usize = drawer.iter().map(|breakable| breakable.faults.len()).sum();
-    assert!(deeds > 200, "{deeds}");
+    let actions: usize = drawer.iter().map(|breakable| breakable.faults.len()).sum();
+    assert!(actions > 200, "{actions}");
     let mut plant = trainee.station.machine().plant.clone();
     for breakable in &drawer {
         for fault in &breakable.faults {
-            plant.apply(&fault.deed).unwrap();
+            plant.apply(&fault.action).unwrap();
         }
         plant.apply(&breakable.repair).unwrap();
     }
@@ -494,7 +494,7 @@ fn everything_in_the_drawer_can_be_broken_and_repaired() {
         .iter()
         .find(|breakable| breakable.repair == "switch door closed")
         .unwrap();
-    assert_eq!(door.faults[0].deed, "switch door open");
+    assert_eq!(door.faults[0].action, "switch door open");
     let wire = drawer.iter().find(|breakable| breakable.name == "I19").unwrap();
     assert_eq!(wire.words, "tool_clamp: clamped");
 }

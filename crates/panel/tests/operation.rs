@@ -44,7 +44,7 @@ fn a_baud_rate_is_entered_by_digits() {
 
 /// Behind CL PGM the digits of the next name begin anew, also when the program was not erased [003:985-990].
 #[test]
-fn behind_cl_pgm_digits_begin_anew() {
+fn after_cl_pgm_digits_begin_anew() {
     let mut trainee = Trainee::at("mill");
     trainee.write("programs/12.H", "BEGIN PGM 12 MM\nEND PGM 12 MM\n");
     trainee.write("programs/3.H", "BEGIN PGM 3 MM\nEND PGM 3 MM\n");
@@ -243,7 +243,7 @@ fn the_increment_needs_its_marker() {
             .any(|key| key == "INCREMENT")
     };
     assert!(!has(&mut trainee, "HANDWHEEL"));
-    trainee.give(r#"{"deed":"M2498=1"}"#).wait(0.2);
+    trainee.give(r#"{"action":"M2498=1"}"#).wait(0.2);
     assert!(has(&mut trainee, "HANDWHEEL"));
     assert!(!has(&mut trainee, "MANUAL"));
 }
@@ -331,7 +331,7 @@ fn pnt_lets_the_machine_follow_the_stylus() {
     let from = x(&mut trainee);
     trainee.soft("PNT ON");
     // 2 N deflect it by MP6310: MP6360, 10 mm/s.
-    trainee.give(r#"{"deed":"probe push X 2"}"#).wait(1.0);
+    trainee.give(r#"{"action":"probe push X 2"}"#).wait(1.0);
     let way = x(&mut trainee) - from;
     assert!((9.0..10.5).contains(&way), "{way}");
     trainee.soft("PNT OFF");

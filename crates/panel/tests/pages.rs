@@ -156,8 +156,8 @@ fn soft_keys_and_letters_are_pressed_by_the_plc() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     fn simulate(trainee: &mut Trainee, code: i32) -> bool {
-        trainee.give(&format!("{{\"deed\":\"W516={code}\"}}"));
-        trainee.give("{\"deed\":\"M2813=1\"}").wait(0.2);
+        trainee.give(&format!("{{\"action\":\"W516={code}\"}}"));
+        trainee.give("{\"action\":\"M2813=1\"}").wait(0.2);
         let not_executed = "M2187".parse().unwrap();
         !trainee.station.control().memory().bit(not_executed)
     }
@@ -186,7 +186,7 @@ fn soft_keys_and_letters_are_pressed_by_the_plc() {
         assert!(simulate(&mut trainee, i32::from(letter) << 8 | 0x50));
     }
     assert_eq!(trainee.screen().dialogue.entry, "CIRCLE");
-    trainee.give("{\"deed\":\"M2876=1\"}").wait(0.1);
+    trainee.give("{\"action\":\"M2876=1\"}").wait(0.1);
     simulate(&mut trainee, 0x4150);
     assert_eq!(trainee.screen().dialogue.entry, "CIRCLE");
     // No code of a key.
@@ -200,7 +200,7 @@ fn groups_of_keys_are_inhibited() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     let set = |trainee: &mut Trainee, marker: &str, to: u8| {
-        trainee.give(&format!("{{\"deed\":\"{marker}={to}\"}}")).wait(0.1);
+        trainee.give(&format!("{{\"action\":\"{marker}={to}\"}}")).wait(0.1);
     };
     trainee.press("PROGRAM PGM_NR");
     set(&mut trainee, "M2876", 1);
@@ -242,14 +242,14 @@ fn single_keys_are_inhibited() {
     trainee.ready();
     trainee.press("PROGRAM PGM_NR 9 9 ENT ENT");
     for (marker, key, code) in [("M2856", "L", 60), ("M2905", "X", 109), ("M2915", "END", 119)] {
-        trainee.give(&format!("{{\"deed\":\"{marker}=1\"}}")).wait(0.1);
+        trainee.give(&format!("{{\"action\":\"{marker}=1\"}}")).wait(0.1);
         trainee.press(key);
         assert_eq!(trainee.screen().dialogue.prompt, "", "{key}");
         let memory = trainee.station.control().memory();
         assert!(memory.bit("M2182".parse().unwrap()), "{key}");
         assert_eq!(memory.number("W274".parse().unwrap()), code);
-        trainee.give(&format!("{{\"deed\":\"{marker}=0\"}}"));
-        trainee.give("{\"deed\":\"M2182=0\"}").wait(0.1);
+        trainee.give(&format!("{{\"action\":\"{marker}=0\"}}"));
+        trainee.give("{\"action\":\"M2182=0\"}").wait(0.1);
     }
     trainee.press("L");
     assert_eq!(trainee.screen().dialogue.prompt, "COORDINATES?");

@@ -6,7 +6,7 @@ mod support;
 
 use bahn_host::eprom::LoadList;
 use bahn_host::s_records::Image;
-use bahn_panel::{TransferDeed, TransferFiles};
+use bahn_panel::{TransferAction, TransferFiles};
 use support::Trainee;
 
 /// The main menu of the PLC mode.
@@ -149,7 +149,7 @@ fn the_file_of_messages_is_selected() {
         Some("ACTIVE")
     );
     let shows = |trainee: &mut Trainee, text: &str| {
-        trainee.give(r#"{"deed":"M2935=1"}"#).wait(0.05);
+        trainee.give(r#"{"action":"M2935=1"}"#).wait(0.05);
         let shown = trainee.messages().iter().any(|own| own == text);
         trainee.press("CE");
         shown
@@ -415,7 +415,7 @@ fn files_of_the_plc_are_transferred() {
         trainee.press("EXT DOWN DOWN DOWN ENT");
         trainee.give(&format!("{{\"text\":\"{typed}\"}}")).press("ENT");
         let order = orders.try_recv().unwrap();
-        assert_eq!(order.deed, TransferDeed::Read(name.to_owned()));
+        assert_eq!(order.action, TransferAction::Read(name.to_owned()));
         assert_eq!(order.files, TransferFiles::Plc);
         trainee.give(r#"{"transfer":"ended complete"}"#).press("END END");
         assert_eq!(trainee.screen().program.title, "PLC PROGRAMMING");
@@ -433,7 +433,7 @@ fn files_of_the_plc_are_transferred() {
     );
     trainee.press("EXT DOWN DOWN DOWN DOWN DOWN ENT");
     let order = orders.try_recv().unwrap();
-    let TransferDeed::Write(names) = order.deed else {
+    let TransferAction::Write(names) = order.action else {
         panic!("{order:?}");
     };
     for name in ["ACHSE-Y.COM", "CONFIG.CMA", "MAIN.ER1", "MAIN.PLC"] {

@@ -34,7 +34,7 @@ fn until_block(trainee: &mut Trainee, block: &str) {
 /// Behind INTERNAL STOP the current block is that with which NC START goes on; GOTO 0 goes to the beginning
 /// [003:1616-1640] [003:8001-8003].
 #[test]
-fn behind_an_internal_stop_the_interrupted_block_is_the_current_one() {
+fn after_an_internal_stop_the_interrupted_block_is_the_current_one() {
     let mut trainee = Trainee::at("mill");
     program(
         &trainee,
@@ -61,7 +61,7 @@ fn behind_an_internal_stop_the_interrupted_block_is_the_current_one() {
 
 /// A block that could not be executed is the current one, too: NC START tries it again.
 #[test]
-fn behind_a_fault_its_block_is_the_current_one() {
+fn after_a_fault_its_block_is_the_current_one() {
     let mut trainee = Trainee::at("mill");
     program(&trainee, "FAULT", &["L X+0 R0 F3000", "CALL LBL 7", "L X+10"]);
     trainee.ready();

@@ -49,8 +49,8 @@ fn damaged(kept: &str) -> String {
 fn is_on_and_keeps(mut trainee: Trainee) {
     assert!(!trainee.station.control().is_off());
     trainee.wait(0.5).press("CE CE CE MANUAL");
-    trainee.give(r#"{"deed":"datum X 12.5"}"#);
-    trainee.give(r#"{"deed":"M1000=1"}"#).wait(0.5);
+    trainee.give(r#"{"action":"datum X 12.5"}"#);
+    trainee.give(r#"{"action":"M1000=1"}"#).wait(0.5);
     trainee.station.store().unwrap();
     let datums = trainee.station.control().remember().datums;
     let mut trainee = trainee.killed();

@@ -35,8 +35,8 @@ fn session(trainee: &mut Trainee) {
     trainee.give(r#"{"key":"Y+","down":false}"#).wait(0.5);
     trainee.press("FULL PGM_NR C I R C L E ENT NC_START").wait(2.0);
     trainee.give(r#"{"feed_override":42.5}"#).wait(1.0);
-    trainee.give(r#"{"deed":"switch door open"}"#).wait(2.0);
-    trainee.give(r#"{"deed":"switch door closed"}"#).wait(2.0);
+    trainee.give(r#"{"action":"switch door open"}"#).wait(2.0);
+    trainee.give(r#"{"action":"switch door closed"}"#).wait(2.0);
     trainee.press("NC_START").wait(1.0);
     let here = trainee.screen().time_s;
     trainee.give(&format!("{{\"go_to\":{}}}", here - 1.75));
@@ -131,7 +131,7 @@ fn the_screens_of_a_session_are_those_of_its_replay() {
 }
 
 #[test]
-fn damage_is_told_and_a_torn_line_is_left_out() {
+fn damage_is_reported_and_a_torn_line_is_left_out() {
     let path = file("torn");
     let mut trainee = Trainee::at("mill");
     trainee.station.record(&path).unwrap();

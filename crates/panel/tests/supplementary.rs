@@ -239,7 +239,7 @@ fn code_numbers_open_their_pages() {
         trainee.press("END END");
     }
     // M1000 ff. are erased only when it is meant.
-    trainee.give(r#"{"deed":"M1500=1"}"#).wait(0.1);
+    trainee.give(r#"{"action":"M1500=1"}"#).wait(0.1);
     let marker = |trainee: &Trainee| {
         let bit = "M1500".parse().unwrap();
         trainee.station.control().memory().bit(bit)

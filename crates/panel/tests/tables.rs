@@ -306,8 +306,8 @@ fn enter_table(trainee: &mut Trainee) {
 fn axis_errors_are_entered_assigned_and_activated() {
     let mut trainee = compensating(&[]);
     // Y to the third point of the table, -76.8928 mm from the machine datum.
-    trainee.give(r#"{"deed":"mode mdi"}"#);
-    trainee.give(r#"{"deed":"mdi L Y-76.8928 R0 F3000 M91"}"#);
+    trainee.give(r#"{"action":"mode mdi"}"#);
+    trainee.give(r#"{"action":"mdi L Y-76.8928 R0 F3000 M91"}"#);
     trainee.press("NC_START").wait(10.0);
     // How far the table of the machine stands from there, mm. The scales of the mill are right.
     let off = |trainee: &mut Trainee| {
@@ -489,8 +489,8 @@ fn an_axis_of_the_plane_is_edited_alone() {
         std::fs::write(path, with_c).unwrap();
     });
     trainee.ready();
-    trainee.give(r#"{"deed":"3d-rot run on B+10 C+20"}"#);
-    trainee.give(r#"{"deed":"3d-rot on B+30 C+40"}"#).wait(0.1);
+    trainee.give(r#"{"action":"3d-rot run on B+10 C+20"}"#);
+    trainee.give(r#"{"action":"3d-rot on B+30 C+40"}"#).wait(0.1);
     trainee.press("SK6").wait(0.1);
     let stands = |trainee: &mut Trainee| ["B", "C"].map(|name| trainee.menu_value(name));
     assert_eq!(stands(&mut trainee), ["+30.000", "+40.000"]);
@@ -524,7 +524,7 @@ fn messages_are_in_the_language_of_the_dialogue() {
 
 /// What module 9035 tells the PLC of the screen in items 2 to 5 and 17 [000:14899-14916].
 #[test]
-fn the_plc_is_told_what_the_screen_shows() {
+fn the_plc_gets_what_the_screen_shows() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     let screen = |trainee: &mut Trainee| {
@@ -577,14 +577,14 @@ fn the_plc_is_told_what_the_screen_shows() {
     trainee.write("plc/CONFIG.CMA", "0 Y=ACHSE-Y\n");
     for name in ["ACHSE-Y.COM", "CONFIG.CMA"] {
         edit(&mut trainee, name);
-        let told = screen(&mut trainee);
-        assert_eq!((told.editing, told.file), (4, 7), "{name}");
+        let reported = screen(&mut trainee);
+        assert_eq!((reported.editing, reported.file), (4, 7), "{name}");
         trainee.press("END END END END");
     }
     // A control that is switched on anew is told again.
     trainee.press("PROGRAM PGM_NR 4 7 1 1 ENT");
-    let told = screen(&mut trainee);
+    let reported = screen(&mut trainee);
     trainee.give("{\"power\":false}").wait(1.0);
     trainee.give("{\"power\":true}").wait(1.0);
-    assert_eq!(screen(&mut trainee).file, told.file);
+    assert_eq!(screen(&mut trainee).file, reported.file);
 }

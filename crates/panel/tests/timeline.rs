@@ -64,7 +64,7 @@ fn what_happened_has_its_marks() {
     trainee.press("FULL PGM_NR C I R C L E ENT NC_START").wait(2.0);
     trainee.press("NC_STOP").wait(2.0).press("NC_START");
     trainee.until(300.0, |screen| screen.status.star == Star::Off);
-    trainee.give(r#"{"deed":"switch door open"}"#).wait(2.0);
+    trainee.give(r#"{"action":"switch door open"}"#).wait(2.0);
     let line = trainee.screen().timeline;
     let marks: Vec<(MarkKind, &str)> = line
         .marks
@@ -78,7 +78,7 @@ fn what_happened_has_its_marks() {
             (MarkKind::Start, "CIRCLE"),
             (MarkKind::Stop, "CIRCLE"),
             (MarkKind::End, "CIRCLE"),
-            (MarkKind::Deed, "switch door open"),
+            (MarkKind::Action, "switch door open"),
         ]
     );
     let messages = line.marks.iter().filter(|mark| mark.kind == MarkKind::Message);

@@ -6,7 +6,7 @@ mod support;
 
 use std::sync::mpsc::Receiver;
 
-use bahn_panel::{Star, TransferDeed, TransferOrder};
+use bahn_panel::{Star, TransferAction, TransferOrder};
 use support::Trainee;
 
 /// A trainee with RS-232-C connected, at the menu of EXT.
@@ -23,8 +23,8 @@ fn news(trainee: &mut Trainee, text: &str) {
     trainee.give(&format!("{{\"transfer\":\"{text}\"}}"));
 }
 
-fn deeds(orders: &Receiver<TransferOrder>) -> Vec<TransferDeed> {
-    orders.try_iter().map(|order| order.deed).collect()
+fn actions(orders: &Receiver<TransferOrder>) -> Vec<TransferAction> {
+    orders.try_iter().map(|order| order.action).collect()
 }
 
 fn lines(trainee: &mut Trainee) -> Vec<String> {
@@ -57,27 +57,27 @@ fn the_menu_is_that_of_the_manual() {
 fn every_line_of_the_menu_orders_what_it_says() {
     let (mut trainee, orders) = connected();
     trainee.write("programs/7.I", "%7 G71 *\nN99999 %7 G71 *\n");
-    for (down, deed) in [
-        (0, TransferDeed::Directory),
-        (1, TransferDeed::ReadAll),
-        (2, TransferDeed::ReadOffered),
+    for (down, action) in [
+        (0, TransferAction::Directory),
+        (1, TransferAction::ReadAll),
+        (2, TransferAction::ReadOffered),
     ] {
         trainee.press(&"DOWN ".repeat(down)).press("ENT");
-        assert_eq!(deeds(&orders), [deed]);
+        assert_eq!(actions(&orders), [action]);
         news(&mut trainee, "ended complete");
         trainee.press("END END EXT");
     }
     trainee.press("DOWN DOWN DOWN ENT 1 5 ENT");
-    assert_eq!(deeds(&orders), [TransferDeed::Read("15.H".into())]);
+    assert_eq!(actions(&orders), [TransferAction::Read("15.H".into())]);
     news(&mut trainee, "ended complete");
     trainee.press("END DOWN ENT 7 POINT I ENT");
-    assert_eq!(deeds(&orders), [TransferDeed::Write(vec!["7.I".into()])]);
+    assert_eq!(actions(&orders), [TransferAction::Write(vec!["7.I".into()])]);
     news(&mut trainee, "sent 7.I");
     news(&mut trainee, "ended complete");
     assert_eq!(lines(&mut trainee), ["7.I  READ OUT", "COMPLETE"]);
     trainee.press("END DOWN ENT");
-    let all = deeds(&orders);
-    let TransferDeed::Write(names) = &all[0] else {
+    let all = actions(&orders);
+    let TransferAction::Write(names) = &all[0] else {
         panic!("{all:?}");
     };
     assert!(names.contains(&"7.I".to_owned()) && names.len() > 1, "{names:?}");
@@ -108,11 +108,11 @@ fn the_machine_goes_on_and_a_program_that_runs_is_not_replaced() {
     trainee.press("END FULL PGM_NR 1 5 ENT NC_START");
     trainee.until(5.0, |screen| screen.status.star == Star::Steady);
     trainee.press("PROGRAM EXT DOWN ENT");
-    assert_eq!(deeds(&orders), [TransferDeed::ReadAll]);
+    assert_eq!(actions(&orders), [TransferAction::ReadAll]);
     news(&mut trainee, "received 14.H");
     // ERASE/OVERREAD of the program that runs is refused without a question, that of another one is asked.
     news(&mut trainee, "overread 15.H");
-    assert_eq!(deeds(&orders), [TransferDeed::Answer(false)]);
+    assert_eq!(actions(&orders), [TransferAction::Answer(false)]);
     assert_eq!(trainee.messages(), ["15.H: BACKGROUND PROGRAMMING NOT POSSIBLE"]);
     trainee.press("CE");
     news(&mut trainee, "overread 16.H");
@@ -121,13 +121,13 @@ fn the_machine_goes_on_and_a_program_that_runs_is_not_replaced() {
         "ERASE/OVERREAD 16.H: YES = ENT / NO = NO ENT"
     );
     trainee.press("ENT");
-    assert_eq!(deeds(&orders), [TransferDeed::Answer(true)]);
+    assert_eq!(actions(&orders), [TransferAction::Answer(true)]);
     assert_eq!(trainee.screen().status.star, Star::Steady);
     // Another transfer has to wait, whatever page was left meanwhile.
     trainee.press("TEST EXT");
     assert_eq!(lines(&mut trainee), ["14.H  READ IN"]);
     trainee.press("END");
-    assert_eq!(deeds(&orders), [TransferDeed::End]);
+    assert_eq!(actions(&orders), [TransferAction::End]);
     news(&mut trainee, "message PROGRAM INCOMPLETE");
     news(&mut trainee, "ended incomplete");
     assert_eq!(trainee.messages(), ["PROGRAM INCOMPLETE"]);
@@ -151,9 +151,9 @@ fn a_program_of_the_directory_is_read_in() {
         (shown[0].split_whitespace().collect::<Vec<_>>(), shown[2].as_str()),
         (vec!["15.H", "2"], "FREE: 1200")
     );
-    deeds(&orders);
+    actions(&orders);
     trainee.press("ENT");
-    assert_eq!(deeds(&orders), [TransferDeed::Read("16.H".into())]);
+    assert_eq!(actions(&orders), [TransferAction::Read("16.H".into())]);
 }
 
 /// In German; a code behind a message stays.

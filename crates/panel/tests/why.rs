@@ -25,7 +25,7 @@ fn runs() -> Trainee {
 fn mdi(trainee: &mut Trainee, blocks: &str) {
     trainee.press("MDI").wait(0.2);
     trainee
-        .give(&format!("{{\"deed\":\"mdi {blocks}\"}}"))
+        .give(&format!("{{\"action\":\"mdi {blocks}\"}}"))
         .press("NC_START")
         .wait(0.5);
 }
@@ -75,8 +75,8 @@ fn a_machine_that_does_nothing_waits_for_nothing() {
     mdi(&mut trainee, "M10");
     trainee.wait(2.0);
     assert!(trainee.screen().why.is_empty(), "{:?}", trainee.screen().why);
-    let told = of(&trainee, "M2547");
-    assert_eq!(told.urgency, Urgency::Told);
+    let reported = of(&trainee, "M2547");
+    assert_eq!(reported.urgency, Urgency::Reported);
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn the_emergency_stop_chain_is_named() {
     says(&trainee, "CE closes the loops again");
     trainee.press("CE").wait(1.0);
     assert!(trainee.screen().why.is_empty());
-    trainee.give(r#"{"deed":"voltage off"}"#).wait(1.0);
+    trainee.give(r#"{"action":"voltage off"}"#).wait(1.0);
     assert_eq!(
         of(&trainee, "I3").causes,
         ["the supply of the control voltage is missing"]
@@ -122,7 +122,7 @@ fn the_emergency_stop_chain_is_named() {
 #[test]
 fn a_relay_that_does_not_pull_in_is_named() {
     let mut trainee = Trainee::at("mill");
-    trainee.give(r#"{"deed":"fault relay open"}"#);
+    trainee.give(r#"{"action":"fault relay open"}"#);
     trainee.until(5.0, |screen| !screen.messages.is_empty());
     trainee.press("CE").wait(5.0);
     assert_eq!(
@@ -134,7 +134,7 @@ fn a_relay_that_does_not_pull_in_is_named() {
 #[test]
 fn an_open_door_takes_the_feed_enable() {
     let mut trainee = runs();
-    trainee.give(r#"{"deed":"switch door open"}"#).wait(3.0);
+    trainee.give(r#"{"action":"switch door open"}"#).wait(3.0);
     let feed = of(&trainee, "M2451");
     assert_eq!(feed.urgency, Urgency::Stands);
     assert_eq!(feed.causes, ["I21 is 0 (door: closed)"]);
@@ -156,9 +156,9 @@ fn an_open_door_takes_the_feed_enable() {
 #[test]
 fn a_broken_wire_of_a_drive_is_found() {
     let mut trainee = ready();
-    trainee.give(r#"{"deed":"fault input I6 0"}"#).wait(1.0);
+    trainee.give(r#"{"action":"fault input I6 0"}"#).wait(1.0);
     assert_eq!(of(&trainee, "M2451").causes, ["I6 is 0 (drive of Y: ready)"]);
-    trainee.give(r#"{"deed":"fault input I8 0"}"#).wait(1.0);
+    trainee.give(r#"{"action":"fault input I8 0"}"#).wait(1.0);
     // Neither alone is to blame.
     assert_eq!(
         of(&trainee, "M2451").causes,
@@ -196,7 +196,7 @@ fn nc_stop_is_named_while_it_is_held() {
 #[test]
 fn coolant_that_does_not_flow_holds_the_program() {
     let mut trainee = ready();
-    trainee.give(r#"{"deed":"fault device flood no-feedback"}"#);
+    trainee.give(r#"{"action":"fault device flood no-feedback"}"#);
     mdi(&mut trainee, "M8");
     trainee.wait(3.0);
     let waits = of(&trainee, "M2482");
@@ -213,7 +213,7 @@ fn coolant_that_does_not_flow_holds_the_program() {
 #[test]
 fn a_spindle_without_power_is_not_at_speed() {
     let mut trainee = ready();
-    trainee.give(r#"{"deed":"fault input I10 0"}"#);
+    trainee.give(r#"{"action":"fault input I10 0"}"#);
     mdi(&mut trainee, "TOOL CALL 1 Z S500");
     trainee.wait(3.0);
     mdi(&mut trainee, "M3");
@@ -224,8 +224,8 @@ fn a_spindle_without_power_is_not_at_speed() {
     mdi(&mut trainee, "TOOL CALL 1 Z S500");
     trainee.wait(3.0);
     // Its wire says that it is ready all the same.
-    trainee.give(r#"{"deed":"fault input I9 1"}"#);
-    trainee.give(r#"{"deed":"fault drive S dead"}"#);
+    trainee.give(r#"{"action":"fault input I9 1"}"#);
+    trainee.give(r#"{"action":"fault drive S dead"}"#);
     mdi(&mut trainee, "M3");
     trainee.wait(3.0);
     says(
@@ -237,7 +237,7 @@ fn a_spindle_without_power_is_not_at_speed() {
 #[test]
 fn a_tool_change_by_hand_waits_for_its_keys() {
     let mut trainee = ready();
-    trainee.give(r#"{"deed":"MP4310.0=0"}"#).wait(1.0);
+    trainee.give(r#"{"action":"MP4310.0=0"}"#).wait(1.0);
     mdi(&mut trainee, "TOOL CALL 5 Z S500");
     trainee.wait(3.0);
     let change = of(&trainee, "M2483");
@@ -255,7 +255,7 @@ fn a_tool_change_by_hand_waits_for_its_keys() {
 fn a_start_in_vain_says_what_is_not_permitted() {
     let mut trainee = ready();
     trainee.press("FULL PGM_NR C I R C L E ENT");
-    trainee.give(r#"{"deed":"fault input I19 0"}"#).wait(1.0);
+    trainee.give(r#"{"action":"fault input I19 0"}"#).wait(1.0);
     trainee.press("NC_START").wait(1.0);
     let start = of(&trainee, "M2448");
     assert_eq!(start.causes, ["I19 is 0 (tool_clamp: clamped)"]);
@@ -289,7 +289,7 @@ fn a_software_limit_says_how_to_leave_it() {
 #[test]
 fn an_encoder_that_fails_switches_the_drives_off() {
     let mut trainee = ready();
-    trainee.give(r#"{"deed":"fault encoder Y amplitude"}"#).wait(1.0);
+    trainee.give(r#"{"action":"fault encoder Y amplitude"}"#).wait(1.0);
     says(&trainee, "The drives are off: MEASURING SYSTEM Y DEFECTIVE A");
 }
 

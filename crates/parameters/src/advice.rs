@@ -215,7 +215,7 @@ mod tests {
 
     /// The TNC 360 has rows of its own and those of its family; what it lacks is not named.
     #[test]
-    fn models_are_told_of_their_own_parameters() {
+    fn models_know_their_own_parameters() {
         use ControlModel::{Tnc155, Tnc360, Tnc415b, Tnc425};
         let related = |model, number| Advice::of(model, number).unwrap().related.clone();
         assert!(related(Tnc425, 210).contains(&1950) && !related(Tnc415b, 210).contains(&1950));

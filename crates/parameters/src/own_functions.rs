@@ -27,7 +27,7 @@ pub enum OwnFunction {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lead {
     /// Way along the path, mm.
-    pub way_mm: Option<f64>,
+    pub distance_mm: Option<f64>,
     /// Time, s.
     pub time_s: Option<f64>,
 }
@@ -115,7 +115,7 @@ impl OwnFunction {
         let known = OwnFunction::NAMES.iter().find(|(known, _)| *known == name);
         let kind = known.ok_or(OwnFunctionError::UnknownType)?.1;
         let out = |at, synchronisation| Ok(OwnFunction::Out { at, synchronisation });
-        match (kind, lead.way_mm, lead.time_s) {
+        match (kind, lead.distance_mm, lead.time_s) {
             (Kind::Start(kind), None, None) => out(At::Start, kind),
             (Kind::End(kind), None, None) => out(At::End, kind),
             (Kind::Way(kind), Some(way), None) => out(At::Ahead(Ahead::Distance(way)), kind),
@@ -141,7 +141,7 @@ impl OwnFunctions {
     ) -> Result<(), OwnFunctionError> {
         let technology = Technology::of_m(model, code);
         let free = |technology: &&Technology| {
-            technology.output == Output::Plc && technology.deeds().next().is_none()
+            technology.output == Output::Plc && technology.actions().next().is_none()
         };
         if technology.filter(free).is_none() {
             return Err(OwnFunctionError::NotFree(code));

@@ -33,7 +33,7 @@ pub struct Technology {
     pub waits: Wait,
     /// Where the manuals say it, as `[000:7081]`.
     pub source: &'static str,
-    does: Vec<Deed>,
+    does: Vec<ControlAction>,
     name: Name,
     models: u8,
 }
@@ -64,7 +64,7 @@ pub enum Wait {
 
 /// What the control itself does with an M function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Deed {
+pub enum ControlAction {
     /// M0: the run stops.
     ProgramStop,
     /// M2, M30: the run ends.
@@ -123,69 +123,75 @@ pub enum Deed {
     Control(ControlFunction),
 }
 
-impl Deed {
-    /// All deeds with their names in the table.
-    const NAMES: [(&'static str, Deed); 40] = [
-        ("program-stop", Deed::ProgramStop),
-        ("program-end", Deed::ProgramEnd),
-        ("tool-change", Deed::ToolChange),
-        ("spindle-clockwise", Deed::Spindle(SpindleOrder::Clockwise)),
+impl ControlAction {
+    /// All actions with their names in the table.
+    const NAMES: [(&'static str, ControlAction); 40] = [
+        ("program-stop", ControlAction::ProgramStop),
+        ("program-end", ControlAction::ProgramEnd),
+        ("tool-change", ControlAction::ToolChange),
+        (
+            "spindle-clockwise",
+            ControlAction::Spindle(SpindleOrder::Clockwise),
+        ),
         (
             "spindle-counter-clockwise",
-            Deed::Spindle(SpindleOrder::CounterClockwise),
+            ControlAction::Spindle(SpindleOrder::CounterClockwise),
         ),
-        ("spindle-stop", Deed::Spindle(SpindleOrder::Stop)),
-        ("spindle-stop-with-run", Deed::Spindle(SpindleOrder::StopWithRun)),
-        ("spindle-orientation", Deed::SpindleOrientation),
-        ("coolant-on", Deed::Coolant(true)),
-        ("coolant-off", Deed::Coolant(false)),
-        ("modal-cycle-call", Deed::ModalCycleCall),
-        ("cycle-call", Deed::CycleCall),
-        ("constant-speed", Deed::ConstantSpeed),
-        ("machine-zero", Deed::MachineZero),
-        ("machine-datum", Deed::MachineDatum),
-        ("tool-position", Deed::ToolPosition),
-        ("reduce-rotary-axes", Deed::ReduceRotaryAxes),
-        ("intersection", Deed::Intersection),
-        ("open-contour", Deed::OpenContour),
-        ("plunging-feed", Deed::PlungingFeed),
-        ("feed-at-edge", Deed::FeedAtEdge),
-        ("feed-at-edge-reduced", Deed::FeedAtEdgeReduced),
-        ("feed-at-centre", Deed::FeedAtCentre),
-        ("compensate-swivels", Deed::CompensateSwivels(true)),
-        ("leave-swivels", Deed::CompensateSwivels(false)),
-        ("surface-feed", Deed::SurfaceFeed(true)),
-        ("axis-feed", Deed::SurfaceFeed(false)),
-        ("shortest-way", Deed::ShortestWay(true)),
-        ("way-beside-0", Deed::ShortestWay(false)),
-        ("corner-arcs", Deed::CornerArcs),
-        ("sharp-corners", Deed::SharpCorners),
-        ("leave-out-points", Deed::LeaveOutPoints),
-        ("voltage", Deed::Voltage),
-        ("superimpose", Deed::Superimpose),
+        ("spindle-stop", ControlAction::Spindle(SpindleOrder::Stop)),
+        (
+            "spindle-stop-with-run",
+            ControlAction::Spindle(SpindleOrder::StopWithRun),
+        ),
+        ("spindle-orientation", ControlAction::SpindleOrientation),
+        ("coolant-on", ControlAction::Coolant(true)),
+        ("coolant-off", ControlAction::Coolant(false)),
+        ("modal-cycle-call", ControlAction::ModalCycleCall),
+        ("cycle-call", ControlAction::CycleCall),
+        ("constant-speed", ControlAction::ConstantSpeed),
+        ("machine-zero", ControlAction::MachineZero),
+        ("machine-datum", ControlAction::MachineDatum),
+        ("tool-position", ControlAction::ToolPosition),
+        ("reduce-rotary-axes", ControlAction::ReduceRotaryAxes),
+        ("intersection", ControlAction::Intersection),
+        ("open-contour", ControlAction::OpenContour),
+        ("plunging-feed", ControlAction::PlungingFeed),
+        ("feed-at-edge", ControlAction::FeedAtEdge),
+        ("feed-at-edge-reduced", ControlAction::FeedAtEdgeReduced),
+        ("feed-at-centre", ControlAction::FeedAtCentre),
+        ("compensate-swivels", ControlAction::CompensateSwivels(true)),
+        ("leave-swivels", ControlAction::CompensateSwivels(false)),
+        ("surface-feed", ControlAction::SurfaceFeed(true)),
+        ("axis-feed", ControlAction::SurfaceFeed(false)),
+        ("shortest-way", ControlAction::ShortestWay(true)),
+        ("way-beside-0", ControlAction::ShortestWay(false)),
+        ("corner-arcs", ControlAction::CornerArcs),
+        ("sharp-corners", ControlAction::SharpCorners),
+        ("leave-out-points", ControlAction::LeaveOutPoints),
+        ("voltage", ControlAction::Voltage),
+        ("superimpose", ControlAction::Superimpose),
         (
             "replace-worn-tools",
-            Deed::Control(ControlFunction::ReplaceWornTools(true)),
+            ControlAction::Control(ControlFunction::ReplaceWornTools(true)),
         ),
         (
             "keep-worn-tools",
-            Deed::Control(ControlFunction::ReplaceWornTools(false)),
+            ControlAction::Control(ControlFunction::ReplaceWornTools(false)),
         ),
         (
             "first-servo-set",
-            Deed::Control(ControlFunction::SecondServoSet(false)),
+            ControlAction::Control(ControlFunction::SecondServoSet(false)),
         ),
         (
             "second-servo-set",
-            Deed::Control(ControlFunction::SecondServoSet(true)),
+            ControlAction::Control(ControlFunction::SecondServoSet(true)),
         ),
         (
             "take-larger-tools",
-            Deed::Control(ControlFunction::TakeLargerTools(true)),
+            ControlAction::Control(ControlFunction::TakeLargerTools(true)),
         ),
         (
             "refuse-larger-tools",
-            Deed::Control(ControlFunction::TakeLargerTools(false)),
+            ControlAction::Control(ControlFunction::TakeLargerTools(false)),
         ),
     ];
 }
@@ -243,19 +249,19 @@ impl Technology {
     }
 
     /// What the control itself does, in this order.
-    pub fn deeds(&self) -> impl Iterator<Item = Deed> {
+    pub fn actions(&self) -> impl Iterator<Item = ControlAction> {
         self.does.iter().copied()
     }
 
     /// Whether the control itself does something.
-    pub fn does(&self, deed: Deed) -> bool {
-        self.does.contains(&deed)
+    pub fn does(&self, action: ControlAction) -> bool {
+        self.does.contains(&action)
     }
 
     /// What it orders the spindle to do.
     pub fn spindle(&self) -> Option<SpindleOrder> {
-        self.deeds().find_map(|deed| match deed {
-            Deed::Spindle(order) => Some(order),
+        self.actions().find_map(|action| match action {
+            ControlAction::Spindle(order) => Some(order),
             _ => None,
         })
     }
@@ -328,8 +334,8 @@ fn row(line: &'static str) -> Option<Technology> {
         },
         does: next()?
             .split(' ')
-            .filter(|deed| !deed.is_empty())
-            .map(|deed| named(&Deed::NAMES, deed))
+            .filter(|action| !action.is_empty())
+            .map(|action| named(&ControlAction::NAMES, action))
             .collect::<Option<_>>()?,
         source: next()?,
     })
@@ -368,8 +374,8 @@ mod tests {
     /// Nothing is written in the table's language that no line says, and every block has its line.
     #[test]
     fn every_name_is_used() {
-        for (name, deed) in Deed::NAMES {
-            assert!(rows().iter().any(|row| row.does(deed)), "{name}");
+        for (name, action) in ControlAction::NAMES {
+            assert!(rows().iter().any(|row| row.does(action)), "{name}");
         }
         for (name, block) in Block::NAMES {
             let of = |model: &ControlModel| Technology::of_block(*model, block).is_some();

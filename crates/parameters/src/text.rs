@@ -202,17 +202,17 @@ impl ListText {
 
     /// The comment behind a value, without its semicolon; empty where there is none [000:10017].
     pub fn comment(&self, id: ParameterId) -> String {
-        let behind = self.behind(id).map(|at| {
+        let after = self.after(id).map(|at| {
             let text = String::from_utf8_lossy(self.bytes.get(at).unwrap_or_default()).into_owned();
             text.split_once(';')
                 .map_or_else(String::new, |(_, comment)| comment.trim().to_owned())
         });
-        behind.unwrap_or_default()
+        after.unwrap_or_default()
     }
 
     /// Writes a comment behind the value of a parameter that the text defines; an empty one takes it away.
     pub fn set_comment(&mut self, id: ParameterId, comment: &str) {
-        let Some(at) = self.behind(id) else { return };
+        let Some(at) = self.after(id) else { return };
         let old = self.bytes.get(at.clone()).unwrap_or_default();
         // The column of the comment stays.
         let blanks = old.iter().take_while(|byte| **byte == b' ').count().max(1);
@@ -226,7 +226,7 @@ impl ListText {
     }
 
     /// What stands in the line of a parameter behind its value.
-    fn behind(&self, id: ParameterId) -> Option<Range<usize>> {
+    fn after(&self, id: ParameterId) -> Option<Range<usize>> {
         let entry = self.entries.iter().find(|entry| entry.id == id)?;
         let start = entry.value_at.end;
         let rest = self.bytes.get(start..)?;
@@ -376,8 +376,8 @@ pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> R
     let prefix = text
         .get(from..from + 2)
         .is_some_and(|mp| mp.eq_ignore_ascii_case("MP"));
-    let behind = if prefix { from + 2 } else { from };
-    let number_at = end - text[behind..end].trim_start().len();
+    let after = if prefix { from + 2 } else { from };
+    let number_at = end - text[after..end].trim_start().len();
     let is_number = |c: char| c.is_ascii_digit() || c == '.';
     let number_end = text[number_at..end]
         .find(|c| !is_number(c))
@@ -397,8 +397,8 @@ pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> R
     let (value, value_at) = match read_value(written) {
         Ok(value) => (value, value_at),
         Err(length) => {
-            let (first, behind) = written.split_at(length);
-            let behind_at = end - behind.trim_start().len()..end;
+            let (first, after) = written.split_at(length);
+            let after_at = end - after.trim_start().len()..end;
             return Err(if length == 0 {
                 (
                     ParameterError::NotANumber(definition.id, written.to_owned()),
@@ -407,8 +407,8 @@ pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> R
             } else {
                 debug_assert!(parse_number(first).is_some());
                 (
-                    ParameterError::NoSeparator(definition.id, behind.trim().to_owned()),
-                    behind_at,
+                    ParameterError::NoSeparator(definition.id, after.trim().to_owned()),
+                    after_at,
                 )
             });
         }

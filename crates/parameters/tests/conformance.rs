@@ -82,7 +82,7 @@ fn every_parameter_has_one_row_and_every_row_a_parameter() {
 }
 
 #[test]
-fn ranges_and_indices_are_told_apart() {
+fn ranges_and_indices_are_distinguished() {
     let effect = |name| find(ControlModel::Tnc415b, Kind::MachineParameter, name).map(|entry| entry.name);
     assert_eq!(effect("MP1060.2"), Some("MP1060"));
     assert_eq!(effect("MP1060"), Some("MP1060"));
@@ -124,9 +124,9 @@ fn has_word(text: &str, before: &str, word: &str) -> bool {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
     let wanted = format!("{before}{word}");
     text.match_indices(&wanted).any(|(at, _)| {
-        let behind = text[at + wanted.len()..].chars().next().unwrap_or(' ');
+        let after = text[at + wanted.len()..].chars().next().unwrap_or(' ');
         let ahead = text[..at].chars().next_back().unwrap_or(' ');
-        (behind == '.' || !is_word(behind)) && (!before.is_empty() || !is_word(ahead))
+        (after == '.' || !is_word(after)) && (!before.is_empty() || !is_word(ahead))
     })
 }
 

@@ -110,10 +110,10 @@ fn index_of(text: &str) -> Option<usize> {
 /// The place that a row means for a parameter: `*` is the same axis or number in title and place, `#` one less.
 fn meant(row: (&str, &str), title: &str) -> Option<String> {
     let (pattern, path) = row;
-    let Some((before, behind)) = pattern.split_once('*') else {
+    let Some((before, after)) = pattern.split_once('*') else {
         return (pattern == title).then(|| path.to_owned());
     };
-    let index = index_of(title.strip_prefix(before)?.strip_suffix(behind)?)?;
+    let index = index_of(title.strip_prefix(before)?.strip_suffix(after)?)?;
     let one_less = index.checked_sub(1).map(|index| index.to_string());
     Some(
         path.replace('*', &index.to_string())

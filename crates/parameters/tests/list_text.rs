@@ -108,8 +108,8 @@ fn a_mended_line_keeps_its_bytes() {
     let mut list = ListText::from_bytes(MODEL, b"MP7430 : \xDC\r\nMP7410 : 1\n");
     list.set(id(7430, None), 1.2).unwrap();
     let found = list.to_bytes();
-    let behind = found.strip_prefix(b"MP7430   : 1.2          ;").unwrap();
-    assert!(behind.ends_with(b"\r\nMP7410 : 1\n"), "{}", found.escape_ascii());
+    let after = found.strip_prefix(b"MP7430   : 1.2          ;").unwrap();
+    assert!(after.ends_with(b"\r\nMP7410 : 1\n"), "{}", found.escape_ascii());
     assert_eq!(list.faults(), []);
 }
 
@@ -352,7 +352,7 @@ fn a_thousand_faults_are_listed() {
 
 /// A comment stands behind a semicolon and the value [000:10017]; another one takes its place and its column.
 #[test]
-fn a_comment_is_written_behind_the_value() {
+fn a_comment_is_written_after_the_value() {
     let mut text = ListText::from_bytes(
         ControlModel::Tnc415b,
         b"MP7430 : 1.2   ;overlap\r\nMP7420 : %101\r\nMP7440 : 3",

@@ -2,7 +2,7 @@
 
 use bahn_parameters::ControlModel;
 use bahn_parameters::conformance::{self, Effect, Kind};
-use bahn_parameters::technology::{AxisHalts, Deed, Output, Technology};
+use bahn_parameters::technology::{AxisHalts, ControlAction, Output, Technology};
 use bahn_path::{At, SpindleOrder, Synchronisation};
 
 /// M0 to M99, ten in a line: S takes effect at the start, E at the end of its block, B at either. TNC 151/155
@@ -45,7 +45,7 @@ fn begin_and_end_of_block_as_in_the_lists() {
                 'S' => assert_eq!(at, At::Start, "{model}: M{code}"),
                 'E' => assert_eq!(at, At::End, "{model}: M{code}"),
                 // It is output at the start where it calls no cycle [001:702].
-                _ => assert!(m(model, code).does(Deed::ModalCycleCall) && at == At::Start),
+                _ => assert!(m(model, code).does(ControlAction::ModalCycleCall) && at == At::Start),
             }
         }
     }
@@ -73,18 +73,24 @@ fn what_goes_to_the_plc() {
 #[test]
 fn spindle_and_coolant() {
     for model in ControlModel::ALL {
-        let with = |deed| -> Vec<u16> {
+        let with = |action| -> Vec<u16> {
             (0..1000)
-                .filter(|code| Technology::of_m(model, *code).is_some_and(|row| row.does(deed)))
+                .filter(|code| Technology::of_m(model, *code).is_some_and(|row| row.does(action)))
                 .collect()
         };
-        assert_eq!(with(Deed::Spindle(SpindleOrder::Clockwise)), [3, 13]);
-        assert_eq!(with(Deed::Spindle(SpindleOrder::CounterClockwise)), [4, 14]);
-        assert_eq!(with(Deed::Spindle(SpindleOrder::Stop)), [5]);
-        assert_eq!(with(Deed::Spindle(SpindleOrder::StopWithRun)), [0, 2, 6, 30]);
-        assert_eq!(with(Deed::Coolant(true)), [8, 13, 14]);
-        assert_eq!(with(Deed::Coolant(false)), [0, 2, 9, 30]);
-        assert_eq!(with(Deed::ProgramEnd), [2, 30]);
+        assert_eq!(with(ControlAction::Spindle(SpindleOrder::Clockwise)), [3, 13]);
+        assert_eq!(
+            with(ControlAction::Spindle(SpindleOrder::CounterClockwise)),
+            [4, 14]
+        );
+        assert_eq!(with(ControlAction::Spindle(SpindleOrder::Stop)), [5]);
+        assert_eq!(
+            with(ControlAction::Spindle(SpindleOrder::StopWithRun)),
+            [0, 2, 6, 30]
+        );
+        assert_eq!(with(ControlAction::Coolant(true)), [8, 13, 14]);
+        assert_eq!(with(ControlAction::Coolant(false)), [0, 2, 9, 30]);
+        assert_eq!(with(ControlAction::ProgramEnd), [2, 30]);
     }
 }
 
@@ -127,7 +133,7 @@ fn registry_and_table_agree() {
         for code in 100..1000 {
             let entry = conformance::find(model, Kind::MFunction, &format!("M{code}"));
             let acts = entry.is_some_and(|entry| entry.effect != Effect::None);
-            let does = Technology::of_m(model, code).is_some_and(|row| row.deeds().count() > 0);
+            let does = Technology::of_m(model, code).is_some_and(|row| row.actions().count() > 0);
             assert_eq!(does, acts, "{model}: M{code}");
         }
     }

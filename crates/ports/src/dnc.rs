@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use bahn_control::{Command, Dnc, DripFeedState, Message, RunState};
-use bahn_host::{Answer, Deed, Host, HostError, Next, Notice, Reader, Source, Stamped};
+use bahn_host::{Action, Answer, Host, HostError, Next, Notice, Reader, Source, Stamped};
 use bahn_link::dnc::{BlockLine, Drip, DripState, Executing};
 
 /// One look at the line.
@@ -108,10 +108,10 @@ impl<'a> Session<'a> {
     fn follow_notices(&mut self) {
         for next in self.notices.by_ref() {
             let Next::Item(stamped) = next else { continue };
-            if let Notice::Given(Source::Operator, deed, Answer::Refused) = stamped.notice
-                && deed != Deed::Command(0, Command::Ce)
+            if let Notice::Given(Source::Operator, action, Answer::Refused) = stamped.notice
+                && action != Action::Command(0, Command::Ce)
             {
-                self.refused = Some(format!("the control refuses `{deed}`"));
+                self.refused = Some(format!("the control refuses `{action}`"));
             }
         }
     }
@@ -195,7 +195,7 @@ impl<'a> Session<'a> {
     }
 
     fn tell(&mut self, command: Command) -> Result<bool, HostError> {
-        let answer = self.host.act(Source::Operator, Deed::Command(0, command))?;
+        let answer = self.host.act(Source::Operator, Action::Command(0, command))?;
         Ok(answer == Answer::Done)
     }
 

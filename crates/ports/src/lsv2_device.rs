@@ -103,7 +103,7 @@ impl MachineDevice {
     /// Something happens at the PLC's connection to a host.
     fn happen(&self, event: HostEvent) -> Result<(), ErrorNumber> {
         let command = Command::DataLine(DataLineEvent::Host(event));
-        let given = self.link()?.input(Input::Deed(command.to_string()));
+        let given = self.link()?.input(Input::Action(command.to_string()));
         given.map_err(|_| ErrorNumber::WRONG_MODE)
     }
 
@@ -248,7 +248,7 @@ impl Device for MachineDevice {
         }
         // What is so already needs no reset.
         if is_other {
-            let given = self.link()?.input(Input::Deed(assignment));
+            let given = self.link()?.input(Input::Action(assignment));
             given.map_err(|_| ErrorNumber::WRONG_MODE)?;
         }
         Ok(())

@@ -171,5 +171,5 @@ fn list(link: &Link) -> Option<ParameterList> {
 /// The control is told what happens at a line; one that has ended needs it no more, and what it refuses it does not want.
 fn tell(link: &Link, line: usize, event: LineEvent) {
     let event = DataLineEvent::Line(line, event);
-    let _ = link.input(Input::Deed(event.to_string()));
+    let _ = link.input(Input::Action(event.to_string()));
 }

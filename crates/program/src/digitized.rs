@@ -106,7 +106,7 @@ impl DigitizedText {
     }
 
     /// A line with those coordinates that are others than before.
-    fn line(&mut self, text: &mut String, point: &ScanPoint, of: impl Fn(usize) -> bool, behind: &str) {
+    fn line(&mut self, text: &mut String, point: &ScanPoint, of: impl Fn(usize) -> bool, after: &str) {
         let unit_mm = if self.job.inch { 25.4 } else { 1.0 };
         let scale = 10f64.powi(i32::try_from(self.decimals).unwrap_or(3));
         let mut words = String::from("L");
@@ -128,7 +128,7 @@ impl DigitizedText {
             }
         }
         if words.len() > 1 {
-            words.push_str(behind);
+            words.push_str(after);
             self.block(text, &words);
         }
     }

@@ -63,15 +63,15 @@ impl Language for DinLanguage {
 
     fn words(&self, text: BlockText<'_>) -> Vec<WordSpan> {
         let end = text.bytes.len();
-        let number = number_at(text.bytes).map(|(start, digits, behind)| WordSpan {
+        let number = number_at(text.bytes).map(|(start, digits, after)| WordSpan {
             kind: WordKind::Number,
-            span: start..behind,
-            value: digits..behind,
+            span: start..after,
+            value: digits..after,
         });
-        let behind = number.as_ref().map_or(0, |number| number.span.end);
-        let rest = (behind < end).then_some(WordSpan {
+        let after = number.as_ref().map_or(0, |number| number.span.end);
+        let rest = (after < end).then_some(WordSpan {
             kind: WordKind::Text,
-            span: behind..end,
+            span: after..end,
             value: end..end,
         });
         number.into_iter().chain(rest).collect()
@@ -94,8 +94,8 @@ impl Language for DinLanguage {
     fn write_line_number(&self, _number: u32, _block: &Block, _options: FormatOptions, _text: &mut String) {}
 
     fn number(&self, text: BlockText<'_>) -> Option<u32> {
-        let (_, digits, behind) = number_at(text.bytes)?;
-        let digits = std::str::from_utf8(text.bytes.get(digits..behind)?).ok()?;
+        let (_, digits, after) = number_at(text.bytes)?;
+        let digits = std::str::from_utf8(text.bytes.get(digits..after)?).ok()?;
         digits.parse().ok()
     }
 
@@ -122,15 +122,15 @@ impl Language for DinLanguage {
 
 /// Where the number of a block stands: its `N`, its digits, and the byte behind them.
 fn number_at(text: &[u8]) -> Option<(usize, usize, usize)> {
-    let behind_blanks = |from: usize| {
+    let after_blanks = |from: usize| {
         let blanks = text.get(from..)?.iter().take_while(|byte| is_blank(**byte));
         Some(from + blanks.count())
     };
-    let start = behind_blanks(0)?;
+    let start = after_blanks(0)?;
     if !text.get(start)?.eq_ignore_ascii_case(&b'N') {
         return None;
     }
-    let digits = behind_blanks(start + 1)?;
+    let digits = after_blanks(start + 1)?;
     let count = text
         .get(digits..)?
         .iter()

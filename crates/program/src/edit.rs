@@ -147,8 +147,8 @@ impl Program {
     }
 
     /// Takes from the end of whole lines what would join the text behind them.
-    fn unjoin(&self, text: &mut Vec<u8>, behind: &[u8]) {
-        let Some(next) = lines(behind).find(|line| !trim(line).is_empty()) else {
+    fn unjoin(&self, text: &mut Vec<u8>, after: &[u8]) {
+        let Some(next) = lines(after).find(|line| !trim(line).is_empty()) else {
             return;
         };
         let length = text.len();
@@ -184,11 +184,11 @@ impl Program {
         let body = self.rope.body();
         let before = self.rope.of_block(blocks.start.saturating_sub(1));
         let first = before.unwrap_or(body.start);
-        let behind = self.rope.of_block(blocks.end).map_or(body.end, |last| last + 1);
+        let after = self.rope.of_block(blocks.end).map_or(body.end, |last| last + 1);
         if self.rope.bytes() + text.len() as u64 > Program::MAX_BYTES {
             return Err(EditError::TooLarge);
         }
-        let mut region = self.region(first..behind, &blocks, text);
+        let mut region = self.region(first..after, &blocks, text);
         if first == 0 && region.starts_with(BYTE_ORDER_MARK) {
             // At the front of a file it would be none of the text.
             region.splice(0..0, self.line_end.bytes());
@@ -206,13 +206,13 @@ impl Program {
             }
         };
         let (labels, end) = self.language.landmarks(&region, &raws);
-        let has_end = self.end().is_some() && behind == body.end;
+        let has_end = self.end().is_some() && after == body.end;
         if end.map(|at| at as usize + 1) != has_end.then_some(raws.len()) {
             return Err(EditError::Frame);
         }
         let rope = self
             .rope
-            .splice(first..behind, pieces(region, &raws, &labels, end_line));
+            .splice(first..after, pieces(region, &raws, &labels, end_line));
         let mut frame = self.frame.clone();
         if frame.begin.is_none() {
             frame.refused = self.refusal(&rope);
@@ -246,14 +246,14 @@ impl Program {
         let mut new = old.get(..front).unwrap_or_default().to_vec();
         let rest = old.get(back..).unwrap_or_default();
         let next = pieces.get(range.end).map_or(&[][..], |piece| piece.text());
-        let behind = [text.as_bytes(), rest, next]
+        let after = [text.as_bytes(), rest, next]
             .into_iter()
             .find(|text| !text.is_empty());
-        if let Some(behind) = behind.filter(|_| !new.is_empty()) {
+        if let Some(after) = after.filter(|_| !new.is_empty()) {
             if !matches!(new.last(), Some(b'\n' | b'\r' | b'\x0c')) {
                 new.extend_from_slice(self.line_end.as_bytes());
             }
-            self.unjoin(&mut new, behind);
+            self.unjoin(&mut new, after);
         }
         new.extend_from_slice(text.as_bytes());
         new.extend_from_slice(rest);

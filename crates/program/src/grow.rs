@@ -80,7 +80,7 @@ impl Program {
     }
 
     /// The first block behind a block that sets a label, as far as it has come.
-    pub fn label_behind(&self, label: u16, block: u32) -> Option<u32> {
+    pub fn label_after(&self, label: u16, block: u32) -> Option<u32> {
         let from = self.rope.of_block(block)?;
         let pieces = self.rope.pieces().iter().enumerate().skip(from);
         let set = pieces.flat_map(|(index, piece)| {
@@ -105,9 +105,9 @@ impl Program {
             };
         };
         let at = self.rope.of_block(block).unwrap_or_default();
-        let behind = self.rope.pieces().get(at + 1..).unwrap_or_default();
-        let behind: usize = behind.iter().map(|piece| piece.text().len()).sum();
-        (piece.text().len().saturating_sub(raw.start) + behind) as u64 + pending
+        let after = self.rope.pieces().get(at + 1..).unwrap_or_default();
+        let after: usize = after.iter().map(|piece| piece.text().len()).sum();
+        (piece.text().len().saturating_sub(raw.start) + after) as u64 + pending
     }
 
     fn grown(&self, bytes: &[u8], complete: bool) -> Program {
@@ -220,9 +220,9 @@ impl Program {
             None if complete => (raws.len(), true),
             None => (raws.len().saturating_sub(1), false),
         };
-        let behind = raws.get(settled);
-        let end_line = behind.map_or(u32::MAX, |raw| raw.line);
-        let seam = behind.map_or(region.len(), |raw| raw.start);
+        let after = raws.get(settled);
+        let end_line = after.map_or(u32::MAX, |raw| raw.line);
+        let seam = after.map_or(region.len(), |raw| raw.start);
         let pending = region.split_off(seam);
         let raws = raws.get(..settled).unwrap_or_default();
         let (labels, _) = self.language.landmarks(&region, raws);

@@ -132,10 +132,10 @@ pub(crate) fn line_at(text: &[u8], offset: u32) -> String {
 /// Whether a line is a comment or structuring only.
 pub(crate) fn stands_alone(line: &[u8]) -> bool {
     let mut rest = trim(line);
-    if let [b'N' | b'n', behind @ ..] = rest
-        && behind.first().is_some_and(u8::is_ascii_digit)
+    if let [b'N' | b'n', after @ ..] = rest
+        && after.first().is_some_and(u8::is_ascii_digit)
     {
-        rest = behind;
+        rest = after;
     }
     let first = rest
         .iter()

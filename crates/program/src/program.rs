@@ -359,8 +359,8 @@ impl Program {
     pub(crate) fn around(&self) -> (&[u8], &[u8]) {
         let pieces = self.rope.pieces();
         let leading = self.frame.leading.and(pieces.first());
-        let behind = pieces.get(self.rope.body().end);
-        let trailing = behind.filter(|_| self.frame.trailing);
+        let after = pieces.get(self.rope.body().end);
+        let trailing = after.filter(|_| self.frame.trailing);
         (
             leading.map_or(&[], |piece| piece.text()),
             trailing.map_or(&[], |piece| piece.text()),

@@ -70,7 +70,7 @@ pub(crate) fn pieces(
         _ => PIECE_BLOCKS as usize,
     };
     let starts = blocks.iter().step_by(size);
-    let behind = starts
+    let after = starts
         .clone()
         .skip(1)
         .map(|raw| (raw.start, raw.line))
@@ -78,7 +78,7 @@ pub(crate) fn pieces(
     let mut labels = labels.iter().peekable();
     let mut made = Vec::new();
     let mut before = (0, 1);
-    for (index, ((end, line), chunk)) in behind.zip(blocks.chunks(size)).enumerate() {
+    for (index, ((end, line), chunk)) in after.zip(blocks.chunks(size)).enumerate() {
         let first = (index * size) as u32;
         let mut own = Vec::new();
         while let Some(&(label, block)) = labels.next_if(|(_, block)| *block < first + chunk.len() as u32) {

@@ -60,13 +60,13 @@ pub(crate) fn survey<L: Language>(language: &L, file: &Arc<Vec<u8>>, start: usiz
     // Without BEGIN a BEGIN block is implied, so that the first block of the file is number 1.
     let mut number = 1_u32;
     let mut first = None;
-    let mut behind = None;
+    let mut after = None;
     let mut lines = Lines::new(text, 1);
     while let Some(raw) = language.next_block(&mut lines) {
         let place = (start + raw.start, raw.line);
         if frame.end.is_some() {
             frame.trailing = true;
-            behind = Some(place);
+            after = Some(place);
             break;
         }
         if first.is_none() {
@@ -106,7 +106,7 @@ pub(crate) fn survey<L: Language>(language: &L, file: &Arc<Vec<u8>>, start: usiz
         first = first.or(Some(raw.line));
     }
     let end = (file.len(), lines.number());
-    pieces.cut(behind.unwrap_or(end));
+    pieces.cut(after.unwrap_or(end));
     pieces.cut(end);
     let first_block = u32::from(frame.begin.is_none());
     (Rope::new(pieces.made, first_block, 1), frame)

@@ -196,7 +196,7 @@ fn who_may_only_look_sees_everything_and_does_nothing() {
     for (path, input) in [
         ("/api/key", json!({"key": "EMERGENCY_STOP"})),
         ("/api/command", json!({"pause": true})),
-        ("/api/command", json!({"deed": "fault drive X dead"})),
+        ("/api/command", json!({"action": "fault drive X dead"})),
     ] {
         let (status, said) = request("POST", path, "classroom", &input.to_string());
         assert_eq!(status, 403, "{said}");

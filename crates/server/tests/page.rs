@@ -164,7 +164,7 @@ fn the_drawer_breaks_and_repairs() {
     };
     let encoder = of("X", "axes and spindle");
     let fault = &encoder["faults"][0];
-    assert!(fault["deed"].as_str().unwrap().starts_with("fault "), "{fault}");
+    assert!(fault["action"].as_str().unwrap().starts_with("fault "), "{fault}");
     let mut page = open(&panel, &browser);
     page.click(".drawer summary").unwrap();
     until(
@@ -182,12 +182,12 @@ fn the_drawer_breaks_and_repairs() {
     page.click(".drawer .repair").unwrap();
     let marks = panel.until(|screen| {
         let marks = screen["timeline"]["marks"].as_array().unwrap();
-        marks.iter().filter(|mark| mark["kind"] == "deed").count() >= 2
+        marks.iter().filter(|mark| mark["kind"] == "action").count() >= 2
     });
     assert!(
         marks["timeline"]["marks"]
             .to_string()
-            .contains(fault["deed"].as_str().unwrap())
+            .contains(fault["action"].as_str().unwrap())
     );
     assert_eq!(page.complaints(), [] as [String; 0]);
 }

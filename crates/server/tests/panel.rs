@@ -53,7 +53,7 @@ fn what_is_wrong_is_said() {
         ("{}", 400),
         ("[]", 400),
         ("{\"speed\":1000}", 409),
-        ("{\"deed\":\"fault drive Q off\"}", 409),
+        ("{\"action\":\"fault drive Q off\"}", 409),
     ] {
         let (answered, text) = panel.request("POST", "/api/command", &[], body);
         assert_eq!(answered, status, "{body}: {text}");
@@ -79,8 +79,8 @@ fn drawer_lessons_and_picture_are_served() {
             "{thing}"
         );
         // What it offers can be done.
-        assert_eq!(panel.give(&json!({"deed": faults[0]["deed"]})), 200, "{thing}");
-        assert_eq!(panel.give(&json!({"deed": thing["repair"]})), 200, "{thing}");
+        assert_eq!(panel.give(&json!({"action": faults[0]["action"]})), 200, "{thing}");
+        assert_eq!(panel.give(&json!({"action": thing["repair"]})), 200, "{thing}");
     }
     let lessons = panel.get("/api/lessons");
     for lesson in lessons.as_array().unwrap() {

@@ -111,12 +111,12 @@ function drawer(send) {
   const ways = element("select", "ways");
   let known = [];
   const thing = () => known[Number(things.value)];
-  const choose = () => ways.replaceChildren(...(thing()?.faults ?? []).map((way) => new Option(way.words, way.deed)));
+  const choose = () => ways.replaceChildren(...(thing()?.faults ?? []).map((way) => new Option(way.words, way.action)));
   things.addEventListener("change", choose);
   const buttons = element("div", "choose");
   buttons.append(
-    button("Break", () => ways.value && send({ deed: ways.value }), "break"),
-    button("Repair", () => thing() && send({ deed: thing().repair }), "repair"),
+    button("Break", () => ways.value && send({ action: ways.value }), "break"),
+    button("Repair", () => thing() && send({ action: thing().repair }), "repair"),
   );
   const node = fold("Teacher's drawer", "drawer", async () => {
     const chosen = things.value;

@@ -273,14 +273,14 @@ impl Axis {
     /// What the last step says to the drive.
     #[inline]
     pub fn output(&self) -> AxisCommand {
-        let way_mm = self.next_mm - self.actual_mm;
+        let distance_mm = self.next_mm - self.actual_mm;
         let by_torque = self.speed_loop.as_ref().is_some_and(SpeedLoop::is_active);
         AxisCommand {
             enabled: self.drove,
             volts: self.volts,
             speed_per_min: if self.drove { self.velocity_mm_min } else { 0.0 },
             torque: by_torque.then_some(self.volts / OUTPUT_VOLTS),
-            position_steps: Some(self.measuring.steps_after(way_mm))
+            position_steps: Some(self.measuring.steps_after(distance_mm))
                 .filter(|steps| self.closed() && steps.is_finite()),
         }
     }
@@ -328,8 +328,8 @@ impl Axis {
     }
 
     /// Velocity of the nominal value for a nominal way in this step.
-    fn update_velocity(&mut self, way_mm: f64) {
-        self.profile_mm_min = way_mm / self.timing.step_min();
+    fn update_velocity(&mut self, distance_mm: f64) {
+        self.profile_mm_min = distance_mm / self.timing.step_min();
         let control = self.characteristic.velocity_mm_min(self.lag_mm());
         let velocity = match self.method {
             Method::Lag => {
@@ -358,7 +358,7 @@ impl Axis {
         self.velocity_mm_min = velocity + self.bias_mm_min;
     }
 
-    fn watch(&mut self, standing: bool, way_mm: f64, volts: f64) {
+    fn watch(&mut self, standing: bool, distance_mm: f64, volts: f64) {
         if let Some(fault) = self.offset.fault() {
             self.raise(Fault::Gross(fault));
         }
@@ -370,7 +370,7 @@ impl Axis {
         let sample = Sample {
             actual_mm: self.actual_mm,
             lag_mm: self.lag_mm(),
-            way_mm,
+            distance_mm,
             standing,
             in_position: self.in_position,
             velocity_mm_min: self.velocity_mm_min,
@@ -540,9 +540,9 @@ impl Axis {
 
     /// Counts from elsewhere: nominal and actual position shift by a way, mm, and nothing moves. A rotary
     /// axis that has turned goes on within one turn.
-    pub fn shift(&mut self, way_mm: f64) {
-        self.measuring.shift(way_mm);
-        self.shift_positions(way_mm);
+    pub fn shift(&mut self, distance_mm: f64) {
+        self.measuring.shift(distance_mm);
+        self.shift_positions(distance_mm);
     }
 
     fn shift_positions(&mut self, shift: f64) {

@@ -170,8 +170,8 @@ impl MeasuringSystem {
     }
 
     /// The count that stands for a place of the table so far from where it is, mm, in parts of a step.
-    pub(crate) fn steps_after(&self, way_mm: f64) -> f64 {
-        self.count as f64 + way_mm / (self.step_mm * self.linear_factor)
+    pub(crate) fn steps_after(&self, distance_mm: f64) -> f64 {
+        self.count as f64 + distance_mm / (self.step_mm * self.linear_factor)
     }
 
     /// A count as position of the scale, mm.
@@ -209,8 +209,8 @@ impl MeasuringSystem {
     }
 
     /// Every count is a position farther on by a way, mm.
-    pub(crate) fn shift(&mut self, way_mm: f64) {
-        self.datum_mm += way_mm / self.linear_factor;
+    pub(crate) fn shift(&mut self, distance_mm: f64) {
+        self.datum_mm += distance_mm / self.linear_factor;
     }
 
     /// A count is a position from now on.

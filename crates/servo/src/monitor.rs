@@ -18,7 +18,7 @@ pub(crate) struct Sample {
     pub actual_mm: f64,
     pub lag_mm: f64,
     /// Nominal way of the step.
-    pub way_mm: f64,
+    pub distance_mm: f64,
     /// The nominal position stands.
     pub standing: bool,
     /// The positioning window was reached.
@@ -170,7 +170,7 @@ impl Monitor {
             };
             return -side * sample.lag_mm > limit;
         }
-        let direction = if sample.way_mm < 0.0 { -1.0 } else { 1.0 };
+        let direction = if sample.distance_mm < 0.0 { -1.0 } else { 1.0 };
         match self.phase {
             Phase::Rest => {
                 self.phase = Phase::Start {

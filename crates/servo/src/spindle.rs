@@ -244,15 +244,15 @@ impl Spindle {
 
     /// Turns a spindle that stands by a way in degrees from where it is held, at MP3520.1; the reference mark need not
     /// be known. `false` for one that turns.
-    pub fn turn_by(&mut self, way_deg: f64) -> bool {
-        if self.turning() != 0.0 || !way_deg.is_finite() {
+    pub fn turn_by(&mut self, turn_deg: f64) -> bool {
+        if self.turning() != 0.0 || !turn_deg.is_finite() {
             return false;
         }
-        let target_deg = self.held_deg() + way_deg;
+        let target_deg = self.held_deg() + turn_deg;
         self.go_over(Mode::Orientation(Orientation {
             angle_deg: target_deg,
             rpm: self.settings.orientation.speed_rpm,
-            direction: way_deg.signum(),
+            direction: turn_deg.signum(),
             phase: Phase::Controlled { target_deg },
             reached: false,
             steps: 0,
@@ -392,8 +392,8 @@ impl Spindle {
             return;
         };
         let ramp = self.deceleration(self.settings.ramps.rigid_v_ms);
-        let told = self.lead.velocity_deg_min();
-        if self.movement.step(told, actual, ramp, &self.timing) > most {
+        let commanded = self.lead.velocity_deg_min();
+        if self.movement.step(commanded, actual, ramp, &self.timing) > most {
             self.fault = self.fault.or(Some(Fault::Gross(GrossFault::Movement)));
         }
     }
@@ -450,8 +450,8 @@ impl Spindle {
             return;
         };
         let dynamics = self.dynamics(orientation.rpm);
-        let mut way = dynamics.way_deg(angle, orientation.angle_deg, speed, orientation.direction);
-        let shortest = dynamics.way_deg(angle, orientation.angle_deg, 0.0, 0.0);
+        let mut way = dynamics.turn_deg(angle, orientation.angle_deg, speed, orientation.direction);
+        let shortest = dynamics.turn_deg(angle, orientation.angle_deg, 0.0, 0.0);
         if speed == 0.0 && shortest.abs() <= self.settings.orientation.window_deg {
             way = shortest;
         }

@@ -203,26 +203,29 @@ fn mp1530_damps_the_acceleration_and_not_the_braking() {
     };
     let is = |found: f64, wanted: f64| assert!((found - wanted).abs() < 0.2, "{found}, not {wanted}");
     // F3000 for a contour cycle of 3 ms.
-    let way_mm = 0.15;
+    let distance_mm = 0.15;
     let mut damped = bench("1530=0.5");
-    let found = velocities(&mut damped, way_mm);
+    let found = velocities(&mut damped, distance_mm);
     is(found[0], 1500.0);
     is(found[1], 2280.0);
     is(found[2], 2669.4);
-    is(velocities(&mut bench("1530=0.01"), way_mm)[0], 2970.0);
+    is(velocities(&mut bench("1530=0.01"), distance_mm)[0], 2970.0);
 
     // In uniform motion the lag has run down; then the nominal position stands.
     damped.run(3000.0, 0.5);
     let target = damped.axis.target_mm();
     is(velocities(&mut damped, target)[0], 0.0);
     // The other way it accelerates from standstill.
-    is(velocities(&mut damped, target - way_mm)[0], -1500.0);
+    is(velocities(&mut damped, target - distance_mm)[0], -1500.0);
     // With lag there is no pre-control.
     let mut lag = bench("1530=0.5");
     lag.axis.set_method(Method::Lag);
     let mut other = bench("1530=0.01");
     other.axis.set_method(Method::Lag);
-    assert_eq!(velocities(&mut lag, way_mm), velocities(&mut other, way_mm));
+    assert_eq!(
+        velocities(&mut lag, distance_mm),
+        velocities(&mut other, distance_mm)
+    );
 }
 
 /// On a ramp of 1 m/s² the pre-control comes 0.5/(1 - 0.5) = 1 step of 0.6 ms late: 0.6 mm/s, which a loop of kv 2,

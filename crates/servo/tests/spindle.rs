@@ -383,9 +383,9 @@ fn on_a_ramp_the_speed_is_that_of_the_last_cycle() {
         });
         // The first step that is counted may as well be one of slow turning: a cycle later it is none.
         if step % 5 == 0 && step > 5 {
-            let behind = slope * 60.0 * time - bench.spindle.actual_rpm();
+            let lag_rpm = slope * 60.0 * time - bench.spindle.actual_rpm();
             let step_rpm = 60.0 / 4096.0 / cycle_s;
-            assert!((behind - 7.5).abs() <= step_rpm, "{step}: {behind}");
+            assert!((lag_rpm - 7.5).abs() <= step_rpm, "{step}: {lag_rpm}");
         }
     }
 }

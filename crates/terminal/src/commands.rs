@@ -169,11 +169,11 @@ pub(crate) const COMMANDS: &[Command] = &[
         Takes::Nothing(|| Order::Give(Input::HandIn)),
     ),
     command(
-        "deed",
+        "action",
         "TEXT",
         "what scripts do (docs/scripts.md)",
         Takes::Text(|action| InputText {
-            deed: Some(action),
+            action: Some(action),
             ..InputText::default()
         }),
     ),
@@ -367,8 +367,8 @@ mod tests {
             ("text L X+10 R0", Input::Text("L X+10 R0".to_owned())),
             ("lesson", Input::Lesson(None)),
             (
-                "deed fault drive X off",
-                Input::Deed("fault drive X off".to_owned()),
+                "action fault drive X off",
+                Input::Action("fault drive X off".to_owned()),
             ),
         ] {
             assert_eq!(

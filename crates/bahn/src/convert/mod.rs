@@ -9,7 +9,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::time::Duration;
 
-use bahn_report::convert::{self as told, Converter, Job, Report, Reports};
+use bahn_report::convert::{self as reported, Converter, Job, Report, Reports};
 use bahn_report::text;
 
 pub(crate) use options::{ConvertOptions, EXAMPLES};
@@ -90,12 +90,15 @@ fn say(mut reports: Vec<Report>, many: bool, options: &ConvertOptions) -> Result
             None => String::new(),
         },
         (Format::Text, true) => {
-            let mut text: String = reports.iter().map(|report| told::line(report) + "\n").collect();
+            let mut text: String = reports
+                .iter()
+                .map(|report| reported::line(report) + "\n")
+                .collect();
             let good = reports.iter().filter(|report| report.ok).count();
             text += &format!("{good} of {} programs are converted and proved\n", reports.len());
             text
         }
-        (Format::Text, false) => reports.iter().map(told::text).collect(),
+        (Format::Text, false) => reports.iter().map(reported::text).collect(),
     };
     // What is converted goes to standard output itself.
     if options.output.as_deref() == Some(Path::new("-")) {

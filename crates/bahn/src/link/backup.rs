@@ -99,7 +99,7 @@ pub(super) fn backup(options: &BackupOptions) -> Result<Outcome, UsageError> {
     let port = options.port.as_deref().unwrap_or_default();
     let memory = Memory::default();
     memory.put(&name(), text);
-    let deed = transfer::Deed::Write(vec![name()]);
+    let action = transfer::Action::Write(vec![name()]);
     let plan = transfer::Plan {
         port,
         kind: text_type()?,
@@ -108,7 +108,7 @@ pub(super) fn backup(options: &BackupOptions) -> Result<Outcome, UsageError> {
         format: Format::Text,
         trace: None,
     };
-    transfer::run(&list_of(folder), memory, deed, &plan)
+    transfer::run(&list_of(folder), memory, action, &plan)
 }
 
 /// Restores a machine.
@@ -131,8 +131,8 @@ pub(super) fn restore(options: &RestoreOptions) -> Result<Outcome, UsageError> {
                 format: Format::Text,
                 trace: None,
             };
-            let deed = transfer::Deed::Read(vec![Want::Selected(name())]);
-            let outcome = transfer::run(&list_of(folder), memory.clone(), deed, &plan)?;
+            let action = transfer::Action::Read(vec![Want::Selected(name())]);
+            let outcome = transfer::run(&list_of(folder), memory.clone(), action, &plan)?;
             match memory.get(&name()).filter(|_| outcome == Outcome::Fine) {
                 Some(text) => Restore::read(folder, text.as_bytes()),
                 None => return Ok(outcome),

@@ -97,9 +97,9 @@ impl Desk {
     }
 
     /// Does something whenever a file is stored.
-    pub fn when_stored(self, deed: impl FnMut() + Send + 'static) -> Desk {
+    pub fn when_stored(self, action: impl FnMut() + Send + 'static) -> Desk {
         Desk {
-            stored: Some(Box::new(deed)),
+            stored: Some(Box::new(action)),
             ..self
         }
     }

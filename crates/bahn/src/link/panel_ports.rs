@@ -14,7 +14,7 @@ use bahn_link::{
     Attendant, Channel, Event, FileType, Files, Line, Mode, OfKinds, Protocol, Question, Resting, Settings,
     SharedPort, Spec, drive, standard,
 };
-use bahn_panel::{Input, Link, Live, Station, TransferDeed, TransferFiles, TransferNews, TransferOrder};
+use bahn_panel::{Input, Link, Live, Station, TransferAction, TransferFiles, TransferNews, TransferOrder};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 
 use bahn_ports::PlcLines;
@@ -192,9 +192,9 @@ struct Ordered {
 
 impl Desk {
     fn take(&self, order: TransferOrder) {
-        match order.deed {
-            TransferDeed::Answer(yes) => self.ordered().answer = Some(yes),
-            TransferDeed::End => self.end(),
+        match order.action {
+            TransferAction::Answer(yes) => self.ordered().answer = Some(yes),
+            TransferAction::End => self.end(),
             _ => {
                 *self.ordered() = Ordered {
                     transfer: Some(order),
@@ -303,21 +303,21 @@ impl Worker {
 
     fn protocol(&self, order: &TransferOrder, settings: Settings) -> Box<dyn Protocol> {
         let files = self.memory.files(order.files);
-        let (want, kind) = match &order.deed {
-            TransferDeed::Write(names) | TransferDeed::WriteOffered(names) => {
-                let asks = matches!(order.deed, TransferDeed::WriteOffered(_));
+        let (want, kind) = match &order.action {
+            TransferAction::Write(names) | TransferAction::WriteOffered(names) => {
+                let asks = matches!(order.action, TransferAction::WriteOffered(_));
                 let names = names.clone();
                 return match settings.blockwise {
                     true => Box::new(blockwise::Writing::new(settings, files, names, asks)),
                     false => Box::new(standard::Writing::new(settings, files, names, asks)),
                 };
             }
-            TransferDeed::Directory if settings.asks_directory => {
+            TransferAction::Directory if settings.asks_directory => {
                 return Box::new(DirectoryRequest::new(settings));
             }
-            TransferDeed::ReadAll => (Want::All, None),
-            TransferDeed::ReadOffered => (Want::Offered, None),
-            TransferDeed::Read(name) => {
+            TransferAction::ReadAll => (Want::All, None),
+            TransferAction::ReadOffered => (Want::Offered, None),
+            TransferAction::Read(name) => {
                 let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
                 (Want::Selected(name.clone()), FileType::of_extension(extension))
             }

@@ -150,11 +150,11 @@ fn transfer(options: &TransferOptions, receives: bool) -> Result<Outcome, UsageE
             let Some(machine) = port::machine(machine)? else {
                 return Ok(Outcome::ProgramError);
             };
-            let deed = match receives {
-                true => Deed::Read(wants(options)),
-                false => Deed::Write(names(&machine.store, options)?),
+            let action = match receives {
+                true => Action::Read(wants(options)),
+                false => Action::Write(names(&machine.store, options)?),
             };
-            run(&machine.list, machine.store, deed, &plan)
+            run(&machine.list, machine.store, action, &plan)
         }
         (None, Some(dir)) => {
             let store = port::disk(dir)?;
@@ -171,7 +171,7 @@ fn transfer(options: &TransferOptions, receives: bool) -> Result<Outcome, UsageE
             if !receives {
                 names(&store, options)?;
             }
-            run(&list, store, Deed::Serve(rights), &plan)
+            run(&list, store, Action::Serve(rights), &plan)
         }
         (None, None) => Err(UsageError::new("--machine DIR or --as host --dir DIR is needed")),
     }
@@ -232,7 +232,7 @@ pub(super) struct Plan<'a> {
 }
 
 /// What a command does.
-pub(super) enum Deed {
+pub(super) enum Action {
     /// The control reads in, one after the other.
     Read(Vec<Want>),
     /// The control sends.
@@ -245,19 +245,19 @@ pub(super) enum Deed {
 pub(super) fn run(
     list: &ParameterList,
     files: impl Files + Clone + 'static,
-    deed: Deed,
+    action: Action,
     plan: &Plan<'_>,
 ) -> Result<Outcome, UsageError> {
     let Ok(spec) = port::spec("--port", plan.port) else {
         return Ok(Outcome::ProgramError);
     };
     let settings = port::settings(list, &spec);
-    let (protocols, until): (Vec<Box<dyn Protocol>>, Until) = match deed {
-        Deed::Read(wants) => {
+    let (protocols, until): (Vec<Box<dyn Protocol>>, Until) = match action {
+        Action::Read(wants) => {
             let read = |want| reading(settings, Box::new(files.clone()), want, plan.kind);
             (wants.into_iter().map(read).collect(), Until::Ended)
         }
-        Deed::Write(names) => {
+        Action::Write(names) => {
             let protocol: Box<dyn Protocol> = match settings.blockwise {
                 true => Box::new(blockwise::Writing::new(
                     settings,
@@ -274,7 +274,7 @@ pub(super) fn run(
             };
             (vec![protocol], Until::Ended)
         }
-        Deed::Serve(rights) => {
+        Action::Serve(rights) => {
             let protocol = peripheral(settings, Box::new(files), rights);
             (vec![protocol], Until::Quiet(LINGER.min(settings.patience)))
         }

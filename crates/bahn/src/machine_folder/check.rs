@@ -106,7 +106,7 @@ fn check_programs(
         }
         let how = how(machine, list, format);
         for path in programs(&folder) {
-            reports.push(OfFile::told(&path, check::check(&path, &how, interrupt)));
+            reports.push(OfFile::reported(&path, check::check(&path, &how, interrupt)));
             if interrupt.is_requested() {
                 return reports;
             }

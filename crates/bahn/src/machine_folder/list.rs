@@ -139,7 +139,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
 
 #[cfg(test)]
 mod tests {
-    use bahn_host::Deed;
+    use bahn_host::Action;
 
     use super::*;
 
@@ -207,10 +207,10 @@ mod tests {
             .collect();
         assert!(commands.len() > 40, "{commands:?}");
         for command in commands {
-            match Deed::parse(command.trim()) {
-                Ok(deed @ Deed::Command(..)) => {
-                    let written = deed.to_string();
-                    assert_eq!(Deed::parse(&written), Ok(deed), "{written}");
+            match Action::parse(command.trim()) {
+                Ok(action @ Action::Command(..)) => {
+                    let written = action.to_string();
+                    assert_eq!(Action::parse(&written), Ok(action), "{written}");
                 }
                 other => unreachable!("{command}: {other:?}"),
             }

@@ -14,12 +14,12 @@ use std::sync::Arc;
 
 use bahn_control::{Checking, Control, Mode, Signal};
 use bahn_host::{
-    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Observable, Observed,
+    Action, Attendance, Clock, FolderPrograms, Host, Job, LoadedMachine, LogFile, Observable, Observed,
     Operator, Play, PowerOn, Script, Source, Stage, is_whole,
 };
 use bahn_panel::Waits;
 use bahn_report::record::ErrorReport;
-use bahn_report::run::{Ended, Executed, Patience, Recording, Session, Table, Told, usual_signals};
+use bahn_report::run::{Ended, Executed, Patience, Recording, Reported, Session, Table, usual_signals};
 use bahn_report::test_run::Outputs;
 use bahn_report::{Follower, junit, solid};
 use bahn_workpiece::{Columns, Cutting, Projection};
@@ -69,10 +69,10 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         host.set_log(Box::new(LogFile::create(path, &title)?));
     }
     if let Some(percent) = options.run.override_percent {
-        let deed = Deed::parse(&format!("override feed {percent}"));
+        let action = Action::parse(&format!("override feed {percent}"));
         host.act(
             Source::Operator,
-            deed.map_err(|error| UsageError::new(error.to_string()))?,
+            action.map_err(|error| UsageError::new(error.to_string()))?,
         )?;
     }
     let interrupt = Interrupt::on_ctrl_c();
@@ -326,15 +326,15 @@ fn finish(
     let part = session.take_part();
     let removed_mm3 = part.as_ref().map(|part| part.removed_mm3());
     let has_program = programs.main().is_some();
-    let told = Told::of(
+    let reported = Reported::of(
         &mut session,
         &ended,
         &machine.folder.name,
         has_program,
         removed_mm3,
     );
-    if let Some(error) = &told.failure {
-        say_failure(error, told.failed_in, &session, programs);
+    if let Some(error) = &reported.failure {
+        say_failure(error, reported.failed_in, &session, programs);
     }
     let outcome = match &ended {
         Ended::Completed if session.play.failed.is_empty() => Outcome::Fine,
@@ -351,7 +351,7 @@ fn finish(
     };
     if let Some(path) = &options.run.junit {
         let suite = programs.main_name().unwrap_or("no program");
-        let stopped = told.failure.as_ref().map(|error| error.message.as_str());
+        let stopped = reported.failure.as_ref().map(|error| error.message.as_str());
         let cases = junit::write(path, suite, &session.play.expectations(), stopped);
         written = written.and(cases.map_err(UsageError::from));
     }
@@ -364,7 +364,7 @@ fn finish(
     let stop = interrupt.after_run();
     let drawn = cutting::write(part.as_ref(), &options.output, &title, projection, &stop);
     let all = matches!(drawn, Ok(Written::All)) && written.is_ok();
-    print_report(&told, model, options, all)?;
+    print_report(&reported, model, options, all)?;
     written?;
     Ok(match drawn? {
         Written::All => outcome,
@@ -388,13 +388,13 @@ fn say_failure(error: &ErrorReport, channel: usize, session: &Session, programs:
 }
 
 fn print_report(
-    told: &Told,
+    reported: &Reported,
     model: bahn_parameters::ControlModel,
     options: &RunMachineOptions,
     drawn: bool,
 ) -> Result<(), UsageError> {
     if options.format == Format::Json {
-        return console::print_json(&told.report);
+        return console::print_json(&reported.report);
     }
     let mut written = options.output.names(drawn);
     let scope = &options.oscilloscope.oscilloscope;
@@ -405,5 +405,5 @@ fn print_report(
         .chain(scope)
         .chain(&options.run.log);
     written.extend(files.map(|path| path.display().to_string()));
-    console::print(&told.report.text(model, told.result(), &written))
+    console::print(&reported.report.text(model, reported.result(), &written))
 }

@@ -78,13 +78,13 @@ pub(super) fn of_texts(list: &ChannelList, path: &Path, sources: &Sources) -> Ve
 }
 
 /// The fault that ended a run, with its line; `None` where that is told already, or none is known.
-pub(super) fn of_run(error: &Fault, sources: &Sources, told: &[FileFault]) -> Option<FileFault> {
+pub(super) fn of_run(error: &Fault, sources: &Sources, reported: &[FileFault]) -> Option<FileFault> {
     if error.line == 0 {
         return None;
     }
     let (path, program) = sources.file(&error.program)?;
     let is_same = |fault: &FileFault| fault.path == path && fault.marked.line == error.line;
-    if told
+    if reported
         .iter()
         .any(|fault| fault.severity == Severity::Error && is_same(fault))
     {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bahn_control::Command;
 use bahn_exchange::{Number, Operand, Size};
 use bahn_host::{
-    Assignment, Attendance, Content, Deed, FolderPrograms, Host, Operator, Phase, PowerOn, Source,
+    Action, Assignment, Attendance, Content, FolderPrograms, Host, Operator, Phase, PowerOn, Source,
 };
 use bahn_technology::{PlcMemory, WINDOW_BYTES};
 
@@ -128,7 +128,7 @@ impl PlcMemory for MachinePlc {
             let content = Content::Number(i32::from(*byte as i8));
             let set = Command::Set(Assignment::Operand(Operand::Number(number), content));
             // Nothing is logged, so nothing can fail.
-            let _ = self.host.act(Source::Script, Deed::Command(0, set));
+            let _ = self.host.act(Source::Script, Action::Command(0, set));
         }
     }
 }

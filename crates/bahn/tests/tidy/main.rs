@@ -535,7 +535,7 @@ fn names_a_control(line: &str) -> bool {
 }
 
 #[test]
-fn names_of_controls_are_told_from_drives() {
+fn names_of_controls_are_distinguished_from_drives() {
     for name in [
         "name.starts_with(\"ITNC530\")",
         "model == \"TNC 151\"",
@@ -614,7 +614,7 @@ fn is_array_of_axes(line: &str) -> bool {
 }
 
 #[test]
-fn arrays_of_axes_are_told_from_others() {
+fn arrays_of_axes_are_distinguished_from_others() {
     for array in [
         "axes: [Option<AxisId>; 5],",
         "[TestAxis::default(); 5]",

@@ -47,7 +47,7 @@ impl Text {
         let mut uses = Vec::new();
         let mut body = String::new();
         let mut rest = text;
-        while let Some((before, behind)) = rest.split_once("use ") {
+        while let Some((before, after)) = rest.split_once("use ") {
             body.push_str(before);
             let line = before
                 .rsplit([';', '{', '}', ']', '\n'])
@@ -55,12 +55,12 @@ impl Text {
                 .unwrap_or_default()
                 .trim();
             let is_visible = line.starts_with("pub") && line.ends_with(['b', ')']);
-            rest = match behind.split_once(';') {
-                Some((used, behind)) if line.is_empty() || is_visible => {
+            rest = match after.split_once(';') {
+                Some((used, after)) if line.is_empty() || is_visible => {
                     uses.push((used.to_owned(), is_visible));
-                    behind
+                    after
                 }
-                _ => behind,
+                _ => after,
             };
         }
         body.push_str(rest);
@@ -137,9 +137,9 @@ impl<'a> Files<'a> {
     /// The file that defines what a path in a file names, and its name there; nothing, if that is a whole file or of
     /// another crate.
     pub fn named(&self, file: &'a str, path: &[&'a str]) -> Option<(&'a str, &'a str)> {
-        let (first, behind) = path.split_first()?;
+        let (first, after) = path.split_first()?;
         let path = match self.imports(file).iter().find(|import| import.name == *first) {
-            Some(import) => [&import.path, behind].concat(),
+            Some(import) => [&import.path, after].concat(),
             None => self.rooted(file, path)?,
         };
         self.defining(&path, 0)
@@ -174,10 +174,10 @@ impl<'a> Files<'a> {
             let (file, _) = self.0.get_key_value(name.as_str())?;
             Some((*file, &path[count..]))
         })?;
-        let (name, behind) = rest.split_first()?;
+        let (name, after) = rest.split_first()?;
         let ways = self.imports(file).iter().filter(|_| steps < PASSED_ON);
         if let Some(import) = ways.clone().find(|import| import.name == *name) {
-            return self.defining(&[&import.path, behind].concat(), steps + 1);
+            return self.defining(&[&import.path, after].concat(), steps + 1);
         }
         let of_all = ways.filter(|import| import.name == "*").find_map(|all| {
             let (file, name) = self.defining(&[&all.path[..], &[*name]].concat(), steps + 1)?;
@@ -207,16 +207,16 @@ fn names<'a>(text: &'a str, before: &mut Vec<&'a str>, found: &mut Vec<(Vec<&'a 
             break;
         }
         let end = rest.find(|c| !(is_of_name(c) || c == '*')).unwrap_or(rest.len());
-        let (name, behind) = rest.split_at(end);
+        let (name, after) = rest.split_at(end);
         let is_part = name != "*" && (name != "self" || before.is_empty());
         if is_part {
             before.push(name);
         }
-        if let Some(more) = behind.strip_prefix("::") {
+        if let Some(more) = after.strip_prefix("::") {
             rest = more;
             continue;
         }
-        let (renamed, behind) = behind.split_at(behind.find([',', '}']).unwrap_or(behind.len()));
+        let (renamed, after) = after.split_at(after.find([',', '}']).unwrap_or(after.len()));
         let name = renamed.trim().strip_prefix("as ").map_or(
             if name == "*" {
                 name
@@ -226,7 +226,7 @@ fn names<'a>(text: &'a str, before: &mut Vec<&'a str>, found: &mut Vec<(Vec<&'a 
             str::trim,
         );
         found.push((before.clone(), name));
-        rest = behind;
+        rest = after;
         break;
     }
     before.truncate(depth);

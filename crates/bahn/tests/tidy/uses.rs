@@ -71,19 +71,19 @@ fn paths(code: &str) -> Vec<Vec<&str>> {
     let mut found = Vec::new();
     let mut rest = code;
     while let Some(start) = rest.find(is_of_name) {
-        let is_behind_path = rest[..start].ends_with("::");
+        let is_after_path = rest[..start].ends_with("::");
         rest = &rest[start..];
         let mut path = Vec::new();
         loop {
-            let (name, behind) = rest.split_at(rest.find(|c| !is_of_name(c)).unwrap_or(rest.len()));
+            let (name, after) = rest.split_at(rest.find(|c| !is_of_name(c)).unwrap_or(rest.len()));
             path.push(name);
-            rest = behind;
-            match behind.strip_prefix("::") {
+            rest = after;
+            match after.strip_prefix("::") {
                 Some(more) if more.starts_with(is_of_name) => rest = more,
                 _ => break,
             }
         }
-        if path.len() > 1 && !is_behind_path {
+        if path.len() > 1 && !is_after_path {
             found.push(path);
         }
     }

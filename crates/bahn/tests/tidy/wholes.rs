@@ -89,7 +89,7 @@ fn types_with_methods(code: &str) -> Vec<&str> {
 }
 
 #[test]
-fn methods_are_told_from_those_of_traits() {
+fn methods_are_distinguished_from_those_of_traits() {
     assert_eq!(types_with_methods("struct Run;\nimpl Run {"), ["Run"]);
     assert_eq!(
         types_with_methods("impl<'a> crate::run::Run<'a> {"),

@@ -126,8 +126,11 @@ impl Build {
     }
 
     /// An M function is synchronised otherwise than the model does, so far ahead in mm.
-    pub fn function(mut self, code: u16, synchronisation: &str, way_mm: Option<f64>) -> Build {
-        let lead = Lead { way_mm, time_s: None };
+    pub fn function(mut self, code: u16, synchronisation: &str, distance_mm: Option<f64>) -> Build {
+        let lead = Lead {
+            distance_mm,
+            time_s: None,
+        };
         let function = OwnFunction::of(synchronisation, lead);
         let added = function.and_then(|function| self.functions.add(self.model, code, function));
         added.unwrap_or_else(|error| panic!("M{code}: {error}"));

@@ -392,7 +392,8 @@ impl Sayer {
             // The end says the same.
             2 | 30 | 1 => {}
             _ if spindle.is_some() || coolant.is_some() => {}
-            _ if Technology::of_m(self.model, code).is_some_and(|known| known.deeds().next().is_some()) => {}
+            _ if Technology::of_m(self.model, code).is_some_and(|known| known.actions().next().is_some()) => {
+            }
             _ if self.user_functions && code < 100 => self.say(block, Said::User(100 + code)),
             _ => self.refuse(
                 block,

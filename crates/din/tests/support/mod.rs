@@ -141,7 +141,7 @@ pub fn written(function: &Function) -> String {
 }
 
 /// What a unit orders: block, functions, end of its motion in X and Y, rapid or feed.
-pub fn told(unit: &Unit) -> String {
+pub fn reported(unit: &Unit) -> String {
     let mut words = vec![unit.place.block.to_string()];
     words.extend(unit.functions.iter().map(written));
     if let Some(motion) = &unit.motion {
@@ -161,6 +161,6 @@ pub fn told(unit: &Unit) -> String {
     words.join(" ")
 }
 
-pub fn told_all(units: &[Unit]) -> Vec<String> {
-    units.iter().map(told).collect()
+pub fn reported_all(units: &[Unit]) -> Vec<String> {
+    units.iter().map(reported).collect()
 }

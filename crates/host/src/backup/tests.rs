@@ -54,7 +54,7 @@ fn machine() -> Folder {
 }
 
 #[test]
-fn a_backup_reads_as_it_is_told() {
+fn a_backup_reads_as_it_is_reported() {
     let lines = machine().lines();
     let sum = crc32fast::hash(b"BEGIN PGM 15 MM\nEND PGM 15 MM\n");
     let expected = [

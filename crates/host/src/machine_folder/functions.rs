@@ -13,7 +13,7 @@ impl Loader<'_> {
         for own in &folder.functions {
             let line = |key: &str| own.lines.1.get(key).copied().unwrap_or(own.lines.0);
             let lead = Lead {
-                way_mm: own.lead_mm,
+                distance_mm: own.lead_mm,
                 time_s: own.lead_ms.map(|ms| ms / 1000.0),
             };
             let function = match OwnFunction::of(&own.synchronisation, lead) {

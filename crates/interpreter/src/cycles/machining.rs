@@ -13,8 +13,8 @@ use crate::modal::Modal;
 use crate::numbers::known;
 use crate::pen::Pen;
 use crate::q_parameters::{QTable, cos_deg, sin_deg};
+use crate::reported::Reported;
 use crate::settings::Settings;
-use crate::told::Told;
 
 /// Heights of a cycle along the tool axis, absolute workpiece coordinates, mm. The tool stands at the
 /// setup clearance when the cycle is called [003:4898-4910].
@@ -45,7 +45,7 @@ pub(super) struct Machining<'a> {
     pub pen: &'a mut Pen,
     /// Q110 follows the spindle.
     pub q: &'a mut QTable,
-    pub told: &'a mut Told,
+    pub reported: &'a mut Reported,
     pub settings: &'a Settings,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Machining<'a> {
             modal: c.modal,
             pen: c.pen,
             q: &mut c.numbers.q,
-            told: c.told,
+            reported: c.reported,
             settings: c.settings,
         }
     }
@@ -82,7 +82,8 @@ impl<'a> Machining<'a> {
             }
             if self.modal.cycle.machining.report_sign() {
                 let cycle = definition.number;
-                self.told.warn(definition.at, WarningKind::CycleSign { cycle });
+                self.reported
+                    .warn(definition.at, WarningKind::CycleSign { cycle });
             }
         }
         let scale = self.modal.frame.scale(self.modal.plane.normal);

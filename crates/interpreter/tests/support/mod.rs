@@ -99,7 +99,7 @@ impl Job {
             let end = number
                 .find(|c: char| !(c.is_ascii_digit() || matches!(c, '+' | '-' | '.')))
                 .unwrap_or(number.len());
-            let (number, behind) = number.split_at(end);
+            let (number, after) = number.split_at(end);
             exact.push_str(before);
             let decimals = number.split_once('.').map_or(0, |(_, decimals)| decimals.len());
             if decimals > 4 && !before.ends_with("SCL ") {
@@ -114,7 +114,7 @@ impl Job {
             } else {
                 exact.push_str(number);
             }
-            rest = behind;
+            rest = after;
         }
         exact.push_str(rest);
         Job { q, ..Job::new(exact) }

@@ -1,7 +1,7 @@
 //! A machine that is switched on, as the drip feed sees it.
 
 use bahn_control::{Command, Dnc, DripFeedState};
-use bahn_host::{Answer, Deed, Host, Operable, Source};
+use bahn_host::{Action, Answer, Host, Operable, Source};
 
 use super::Machine;
 
@@ -14,7 +14,7 @@ impl<P: Operable> Executing<'_, P> {
     }
 
     fn tell(&mut self, dnc: Dnc) -> bool {
-        let action = Deed::Command(0, Command::Dnc(dnc));
+        let action = Action::Command(0, Command::Dnc(dnc));
         // What is done stands in the log; one that cannot be written says so with the next cycle.
         matches!(
             self.0.act(Source::Client("DNC".to_owned()), action),

@@ -95,17 +95,17 @@ impl Trial {
     /// Without another thread the machine's own one does it.
     fn start_thread(&mut self) {
         let Some(mut run) = self.run.take() else { return };
-        let (told, stop) = (Arc::clone(&self.progress), Arc::clone(&self.stop));
+        let (reported, stop) = (Arc::clone(&self.progress), Arc::clone(&self.stop));
         std::thread::spawn(move || {
             while !run.progress.ended && !stop.load(Ordering::Relaxed) {
                 match run.waits() {
                     true => std::thread::sleep(LOOK),
                     false => run.advance(NEWS),
                 }
-                tell(&told, run.progress);
+                tell(&reported, run.progress);
             }
             run.progress.ended = true;
-            tell(&told, run.progress);
+            tell(&reported, run.progress);
         });
     }
 
@@ -189,8 +189,8 @@ impl Drop for Trial {
     }
 }
 
-fn tell(told: &Mutex<Progress>, progress: Progress) {
-    *told.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+fn tell(reported: &Mutex<Progress>, progress: Progress) {
+    *reported.lock().unwrap_or_else(PoisonError::into_inner) = progress;
 }
 
 impl Wishes {

@@ -1,7 +1,7 @@
 //! How a lesson begins: nothing is broken, and the machine is where the task begins.
 
 use bahn_control::{Command, Control, Message, Mode};
-use bahn_host::{Deed, LoadedMachine, Source};
+use bahn_host::{Action, LoadedMachine, Source};
 use bahn_machine::OperatorKeys;
 use bahn_parameters::MessageId;
 
@@ -44,17 +44,17 @@ pub(super) fn begin(station: &mut dyn Driven, lesson: &Lesson) -> Result<(), Str
 fn switch_on(station: &mut dyn Driven) -> Result<(), String> {
     act(station, "power off");
     wait(station, OFF_S)?;
-    for deed in whole(station.machine()) {
-        act(station, &deed);
+    for action in whole(station.machine()) {
+        act(station, &action);
     }
     wait(station, PAUSE_S)?;
     act(station, "power on");
     wait(station, PAUSE_S)
 }
 
-/// What puts a machine into the state of its description, as deeds.
+/// What puts a machine into the state of its description, as actions.
 fn whole(machine: &LoadedMachine) -> Vec<String> {
-    let mut deeds: Vec<String> = [
+    let mut actions: Vec<String> = [
         "repair all",
         "emergency release",
         "voltage on",
@@ -65,18 +65,18 @@ fn whole(machine: &LoadedMachine) -> Vec<String> {
     .map(str::to_owned)
     .to_vec();
     let plant = &machine.plant;
-    deeds.extend(plant.keys().map(|key| format!("key {key} release")));
+    actions.extend(plant.keys().map(|key| format!("key {key} release")));
     for axis in plant.axes() {
-        deeds.push(format!("force {} 0", axis.letter));
-        deeds.push(format!("fault offset {} 0", axis.letter));
+        actions.push(format!("force {} 0", axis.letter));
+        actions.push(format!("fault offset {} 0", axis.letter));
     }
     let devices = plant
         .devices()
         .filter_map(|device| Some((device.name, device.state?)));
-    deeds.extend(devices.map(|(name, state)| format!("switch {name} {state}")));
+    actions.extend(devices.map(|(name, state)| format!("switch {name} {state}")));
     // What the PLC moves is not moved by hand.
-    deeds.retain(|deed| plant.clone().apply(deed).is_ok());
-    deeds
+    actions.retain(|action| plant.clone().apply(action).is_ok());
+    actions
 }
 
 /// POWER INTERRUPTED, control voltage, reference marks, then MANUAL OPERATION.
@@ -88,12 +88,12 @@ fn make_ready(station: &mut dyn Driven) -> Result<(), String> {
         if control.loops_closed() && !control.first().lacks_reference() {
             act(
                 station,
-                &Deed::Command(0, Command::Mode(Mode::Manual)).to_string(),
+                &Action::Command(0, Command::Mode(Mode::Manual)).to_string(),
             );
             return wait(station, PAUSE_S);
         }
-        if let Some(deed) = next_deed(control, &keys) {
-            act(station, &deed);
+        if let Some(action) = next_action(control, &keys) {
+            act(station, &action);
         }
         wait(station, 2.0 * PAUSE_S)?;
     }
@@ -101,7 +101,7 @@ fn make_ready(station: &mut dyn Driven) -> Result<(), String> {
 }
 
 /// What the control asks for.
-fn next_deed(control: &Control, keys: &OperatorKeys) -> Option<String> {
+fn next_action(control: &Control, keys: &OperatorKeys) -> Option<String> {
     let shows = |id: MessageId| {
         let mut shown = control.shown().iter();
         shown.any(|shown| shown.message == Message::Plain(id))
@@ -123,8 +123,8 @@ fn now_us(station: &mut dyn Driven) -> u64 {
 
 fn act(station: &mut dyn Driven, text: &str) {
     // What the machine does not have needs no repair.
-    if let Ok(deed) = Deed::parse(text) {
-        let _ = station.host().act(Source::Script, deed);
+    if let Ok(action) = Action::parse(text) {
+        let _ = station.host().act(Source::Script, action);
     }
 }
 

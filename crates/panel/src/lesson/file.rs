@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bahn_exchange::parts;
 use bahn_host::{
-    Action, Deed, Expectation, FileFault, LoadedMachine, Marked, Script, Severity, Stage, decode,
+    Action, Expectation, FileFault, LoadedMachine, Marked, Script, ScriptAction, Severity, Stage, decode,
 };
 use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
@@ -75,7 +75,7 @@ pub(crate) enum Condition {
     /// This text stands on the screen, or does not.
     Screen(String, bool),
     /// The trainee has done this since the task began, or has not.
-    Did(Deed, bool),
+    Did(Action, bool),
 }
 
 /// Conditions with the words for them.
@@ -310,9 +310,9 @@ impl Reader<'_> {
             let wanted = wanted.ok_or("it is written screen \"TEXT\"")?;
             return Ok(vec![Condition::Screen(wanted.to_owned(), there)]);
         }
-        if let Some(deed) = rest.strip_prefix("did ") {
-            let deed = Deed::parse(deed).map_err(|error| error.to_string())?;
-            return Ok(vec![Condition::Did(deed, there)]);
+        if let Some(action) = rest.strip_prefix("did ") {
+            let action = Action::parse(action).map_err(|error| error.to_string())?;
+            return Ok(vec![Condition::Did(action, there)]);
         }
         let expected = Expectation::parse_all(text, Some(self.plant))?;
         Ok(expected.into_iter().map(Condition::Machine).collect())
@@ -326,9 +326,9 @@ impl Reader<'_> {
         });
         for line in &script.lines {
             let wrong = match line.action {
-                Action::Do(_) | Action::Set(_) => continue,
-                Action::Expect(_) => "what is expected stands in [checks]",
-                Action::End => "a lesson ends with its checks",
+                ScriptAction::Do(_) | ScriptAction::Set(_) => continue,
+                ScriptAction::Expect(_) => "what is expected stands in [checks]",
+                ScriptAction::End => "a lesson ends with its checks",
             };
             self.faults
                 .push(script.failure(line.number, "the lesson is wrong", wrong.to_owned()));

@@ -9,7 +9,7 @@ mod player;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use bahn_host::{Deed, Host, LoadedMachine, Source, files};
+use bahn_host::{Action, Host, LoadedMachine, Source, files};
 
 pub use file::{Lesson, check_lesson};
 
@@ -293,10 +293,10 @@ impl Look {
     }
 
     /// The trainee has done this since the task began.
-    fn did(&self, wanted: &Deed, host: &Host) -> bool {
+    fn did(&self, wanted: &Action, host: &Host) -> bool {
         let own = host.given().rev().take_while(|(time, ..)| *time >= self.begun_us);
         let mut own = own.filter(|(_, source, _)| matches!(source, Source::Client(_)));
-        own.any(|(_, _, deed)| deed == wanted)
+        own.any(|(_, _, action)| action == wanted)
     }
 }
 

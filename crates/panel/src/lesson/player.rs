@@ -1,7 +1,7 @@
 //! What happens in a lesson, and how far it has come: small, so that every state of it is kept for the time line.
 
 use bahn_control::Command;
-use bahn_host::{Action, Answer, Base, Deed, Expectation, Host, Line, Script, Source};
+use bahn_host::{Action, Answer, Base, Expectation, Host, Line, Script, ScriptAction, Source};
 
 /// How far a script has come.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,8 +55,8 @@ impl Player {
                 *base = Some(now_us);
             }
             did = true;
-            for deed in deeds(&line.action) {
-                let answer = host.act(Source::Script, deed);
+            for action in actions(&line.action) {
+                let answer = host.act(Source::Script, action);
                 if let Answer::Impossible(why) = answer.map_err(|error| error.to_string())? {
                     return Err(why);
                 }
@@ -77,13 +77,13 @@ impl Player {
 }
 
 /// What a line of a script does.
-fn deeds(action: &Action) -> Vec<Deed> {
+fn actions(action: &ScriptAction) -> Vec<Action> {
     match action {
-        Action::Do(deed) => vec![deed.clone()],
-        Action::Set(all) => {
+        ScriptAction::Do(action) => vec![action.clone()],
+        ScriptAction::Set(all) => {
             let commands = all.iter().cloned().map(Command::Set);
-            commands.map(|command| Deed::Command(0, command)).collect()
+            commands.map(|command| Action::Command(0, command)).collect()
         }
-        Action::Expect(_) | Action::End => Vec::new(),
+        ScriptAction::Expect(_) | ScriptAction::End => Vec::new(),
     }
 }

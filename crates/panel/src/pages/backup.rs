@@ -13,7 +13,7 @@ use crate::page::Turn;
 use crate::pages::ask::Choice;
 use crate::pages::transfer;
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferFiles};
+use crate::transfer::{TransferAction, TransferFiles};
 
 /// Its name in the program memory; programs of the manufacturer store it as `$BACKUP.ANC`.
 fn name() -> String {
@@ -24,7 +24,7 @@ fn name() -> String {
 pub(crate) fn save(site: &mut Site) -> Turn {
     let written = everything(site).and_then(|text| site.programs.write(&name(), text.as_bytes()));
     match written {
-        Ok(()) => begun(TransferDeed::Write(vec![name()]), site),
+        Ok(()) => begun(TransferAction::Write(vec![name()]), site),
         Err(why) => Turn::Say(why),
     }
 }
@@ -54,7 +54,7 @@ pub(crate) fn ask_to_restore(site: &Site) -> Turn {
     let prompt = format!("{erase} {BACKUP_NAME}: {}", site.words("YES = ENT / NO = NO ENT"));
     let restore = site.words("RESTORE DATA");
     Turn::Open(Choice::confirm(prompt, restore, |site| {
-        match begun(TransferDeed::Read(name()), site) {
+        match begun(TransferAction::Read(name()), site) {
             Turn::Open(page) => Turn::Replace(page),
             Turn::Say(why) => Turn::CloseSaying(why),
             turn => turn,
@@ -63,8 +63,8 @@ pub(crate) fn ask_to_restore(site: &Site) -> Turn {
 }
 
 /// A transfer that does not begin leaves nothing.
-fn begun(deed: TransferDeed, site: &mut Site) -> Turn {
-    let turn = transfer::begin_with(TransferFiles::Backup, deed, site);
+fn begun(action: TransferAction, site: &mut Site) -> Turn {
+    let turn = transfer::begin_with(TransferFiles::Backup, action, site);
     if !matches!(turn, Turn::Open(_)) {
         ended(site);
     }

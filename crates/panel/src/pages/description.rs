@@ -74,8 +74,8 @@ fn with_entry(text: &str, key: &str, value: &str) -> String {
         Some(at) => {
             if let Some(line) = lines.get_mut(at) {
                 // A # within the string begins no comment.
-                let behind = split(line).map_or(line.as_str(), |(_, behind)| behind);
-                let comment = behind.find('#').and_then(|at| behind.get(at..));
+                let after = split(line).map_or(line.as_str(), |(_, after)| after);
+                let comment = after.find('#').and_then(|at| after.get(at..));
                 *line = comment.map_or_else(|| entry.clone(), |comment| format!("{entry}  {comment}"));
             }
         }

@@ -15,7 +15,7 @@ use crate::pages::{list, transfer};
 use crate::programs::NAME_MAX;
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferFiles};
+use crate::transfer::{TransferAction, TransferFiles};
 
 /// The lines of the menu [003:6893-6910].
 const MENU: [&str; 7] = [
@@ -92,7 +92,7 @@ impl Items for Selected {
         let Some(name) = self.names.get(place) else {
             return Turn::Refused;
         };
-        match transfer::begin_with(self.files, TransferDeed::Write(vec![name.clone()]), site) {
+        match transfer::begin_with(self.files, TransferAction::Write(vec![name.clone()]), site) {
             Turn::Open(page) => Turn::Replace(page),
             other => other,
         }
@@ -102,10 +102,10 @@ impl Items for Selected {
 impl Menu {
     fn choose(&self, site: &mut Site) -> Turn {
         let Own { files, names, .. } = self.own;
-        let deed = match self.current {
-            0 => TransferDeed::Directory,
-            1 => TransferDeed::ReadAll,
-            2 => TransferDeed::ReadOffered,
+        let action = match self.current {
+            0 => TransferAction::Directory,
+            1 => TransferAction::ReadAll,
+            2 => TransferAction::ReadOffered,
             3 => return ask(self.own, site),
             4 if files == TransferFiles::Programs => {
                 return Turn::Open(Box::new(Directory::new(Purpose::ReadOut, site)));
@@ -114,10 +114,10 @@ impl Menu {
                 let names = names(site);
                 return Turn::Open(Box::new(menu::Menu::new(Selected { names, files })));
             }
-            5 => TransferDeed::Write(names(site)),
-            _ => TransferDeed::WriteOffered(names(site)),
+            5 => TransferAction::Write(names(site)),
+            _ => TransferAction::WriteOffered(names(site)),
         };
-        transfer::begin_with(files, deed, site)
+        transfer::begin_with(files, action, site)
     }
 }
 
@@ -128,8 +128,8 @@ fn ask(own: Own, site: &Site) -> Turn {
         _ => site.words("FILE NAME ="),
     };
     Turn::Open(Name::ask(prompt, NAME_MAX + 4, move |name, site| {
-        let deed = TransferDeed::Read((own.named)(&name, site));
-        match transfer::begin_with(own.files, deed, site) {
+        let action = TransferAction::Read((own.named)(&name, site));
+        match transfer::begin_with(own.files, action, site) {
             Turn::Open(page) => Turn::Replace(page),
             other => other,
         }

@@ -13,7 +13,7 @@ use crate::pages::{list, table};
 use crate::programs::{Denial, Entry, NAME_MAX, is_executed, is_program};
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
-use crate::transfer::TransferDeed;
+use crate::transfer::TransferAction;
 
 /// What a file is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl Directory {
         let chosen = match self.purpose {
             Purpose::Erase => return erase(name, site),
             Purpose::ReadOut if there => {
-                return match transfer::begin(TransferDeed::Write(vec![name]), site) {
+                return match transfer::begin(TransferAction::Write(vec![name]), site) {
                     Turn::Open(page) => Turn::Replace(page),
                     other => other,
                 };

@@ -158,14 +158,14 @@ impl HelpFile {
 
 /// A help file that is no more open, as its mode was left with it, is none for the PLC.
 pub(crate) fn follow(site: &mut Site) {
-    if site.plc.help_told && site.plc.help.upgrade().is_none() {
+    if site.plc.help_reported && site.plc.help.upgrade().is_none() {
         tell(NO_FILE, site);
     }
 }
 
 /// W270 of the PLC.
 fn tell(number: i32, site: &mut Site) {
-    site.plc.help_told = number != NO_FILE;
+    site.plc.help_reported = number != NO_FILE;
     if let Ok(command) = format!("W270={number}").parse::<Command>() {
         site.command(command);
     }

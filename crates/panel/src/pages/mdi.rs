@@ -10,7 +10,7 @@ use bahn_program::{Block, Edit, MotionKind, Operation, Program};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
-use crate::pages::row_behind::RowBehind;
+use crate::pages::row_after::RowAfter;
 use crate::screen::SoftKeys;
 use crate::site::Site;
 use crate::texts;
@@ -23,7 +23,7 @@ const EMPTY: &[u8] = b"BEGIN PGM $MDI MM\nEND PGM $MDI MM\n";
 pub(crate) struct Mdi {
     editor: Option<Editor>,
     /// The row with PNT.
-    keys: RowBehind,
+    keys: RowAfter,
     /// PNT is on; `None` where the machine has no measuring probe.
     pnt: Option<bool>,
 }
@@ -59,7 +59,7 @@ impl Mdi {
     }
 
     /// A key of the row with PNT: the axes follow the stylus of a measuring probe, or do so no more [000:7907].
-    fn key_behind(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
+    fn key_after(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
         let (editor, on) = (self.editor.as_ref()?, self.pnt?);
         match self.keys.place(key, editor) {
             Some(0) if site.command(Command::Pnt(!on)) => Some(Turn::Done),
@@ -94,7 +94,7 @@ fn is_of_one_axis(block: &Block) -> bool {
 
 impl Page for Mdi {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
-        if let Some(turn) = self.key_behind(key, site) {
+        if let Some(turn) = self.key_after(key, site) {
             return turn;
         }
         let opens = matches!(

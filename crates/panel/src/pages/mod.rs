@@ -24,7 +24,7 @@ mod plc;
 mod probe;
 mod programming;
 mod q_parameters;
-mod row_behind;
+mod row_after;
 mod run;
 mod supplementary;
 mod table;

@@ -4,7 +4,7 @@ use bahn_parameters::MessageId;
 
 use crate::settings::InterfaceMode;
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferFiles, TransferOrder};
+use crate::transfer::{TransferAction, TransferFiles, TransferOrder};
 
 /// ME 101 has this baud rate and no other [003:7048].
 const ME_BAUD: u32 = 2_400;
@@ -15,7 +15,7 @@ const ME_BAUD: u32 = 2_400;
 /// The message of the control: no device can answer there.
 pub(crate) fn order(
     files: TransferFiles,
-    deed: TransferDeed,
+    action: TransferAction,
     site: &Site,
 ) -> Result<TransferOrder, MessageId> {
     let [second, _] = site.settings.second_interface;
@@ -38,7 +38,7 @@ pub(crate) fn order(
         baud: baud(port, site),
         kind: files.usual(site.settings.iso),
         files,
-        deed,
+        action,
     })
 }
 

@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose, is_same};
-use crate::pages::row_behind::RowBehind;
+use crate::pages::row_after::RowAfter;
 use crate::pages::{editing, table};
 use crate::screen::SoftKeys;
 use crate::site::Site;
@@ -35,7 +35,7 @@ struct Drawn {
     /// The program and its last block as they were drawn; the whole program without.
     last: Option<(Arc<Program>, Option<u32>)>,
     /// The soft keys of the graphics.
-    keys: RowBehind,
+    keys: RowAfter,
     /// Cycles are drawn while their words are asked for: beside the dialogue where the screen has room. HELP switches.
     cycles: bool,
 }

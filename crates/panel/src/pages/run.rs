@@ -280,8 +280,8 @@ fn own_name(program: &Program) -> &str {
 fn counted(text: &str, left: u32) -> Option<String> {
     let (before, count) = text.split_once("REP ")?;
     let (total, rest) = count.split_once('/')?;
-    let behind = rest.trim_start_matches(|character: char| character.is_ascii_digit());
-    Some(format!("{before}REP {total}/{left}{behind}"))
+    let after = rest.trim_start_matches(|character: char| character.is_ascii_digit());
+    Some(format!("{before}REP {total}/{left}{after}"))
 }
 
 /// The block of the number that was entered: in DIN/ISO that which it is programmed with.
@@ -328,7 +328,7 @@ fn without_number(program: &Program, block: u32) -> String {
     let parts = number.and_then(|word| Some((text.get(..word.span.start)?, text.get(word.span.end..)?)));
     match parts {
         // A `/` may stand before it.
-        Some((before, behind)) => format!("{}{}", before.trim_start(), behind.trim_start()),
+        Some((before, after)) => format!("{}{}", before.trim_start(), after.trim_start()),
         None => text,
     }
 }

@@ -8,19 +8,20 @@ use crate::pages::list;
 use crate::pages::order::order;
 use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferFiles, TransferNews};
+use crate::transfer::{TransferAction, TransferFiles, TransferNews};
 
 /// Begins a transfer of programs and shows it.
-pub(crate) fn begin(deed: TransferDeed, site: &mut Site) -> Turn {
-    begin_with(TransferFiles::Programs, deed, site)
+pub(crate) fn begin(action: TransferAction, site: &mut Site) -> Turn {
+    begin_with(TransferFiles::Programs, action, site)
 }
 
 /// The same with other files.
-pub(crate) fn begin_with(files: TransferFiles, deed: TransferDeed, site: &mut Site) -> Turn {
-    if matches!(&deed, TransferDeed::Write(names) | TransferDeed::WriteOffered(names) if names.is_empty()) {
+pub(crate) fn begin_with(files: TransferFiles, action: TransferAction, site: &mut Site) -> Turn {
+    if matches!(&action, TransferAction::Write(names) | TransferAction::WriteOffered(names) if names.is_empty())
+    {
         return Turn::Say(site.message(MessageId::ProgramNotFound));
     }
-    let begun = order(files, deed, site).and_then(|order| site.transfers.begin(order));
+    let begun = order(files, action, site).and_then(|order| site.transfers.begin(order));
     match begun {
         Ok(()) => show(),
         Err(message) => Turn::Say(site.message(message)),
@@ -41,7 +42,7 @@ struct Transfer {
 impl Transfer {
     /// The name at the cursor, where it is one on the medium of the device.
     fn listed(&self, site: &Site) -> Option<String> {
-        match site.transfers.told.get(self.current) {
+        match site.transfers.reported.get(self.current) {
             Some(TransferNews::Listed(name, _)) => Some(name.clone()),
             _ => None,
         }
@@ -52,7 +53,7 @@ impl Page for Transfer {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         let done = |taken: bool| if taken { Turn::Done } else { Turn::Refused };
         if let Some(lines) = list::way_of_key(key) {
-            self.current = list::moved(self.current, lines, site.transfers.told.len());
+            self.current = list::moved(self.current, lines, site.transfers.reported.len());
             return Turn::Done;
         }
         match (key, site.transfers.is_running()) {
@@ -66,7 +67,7 @@ impl Page for Transfer {
                         TransferFiles::Programs => site.with_ending(&name),
                         _ => name,
                     };
-                    match begin_with(files, TransferDeed::Read(name), site) {
+                    match begin_with(files, TransferAction::Read(name), site) {
                         Turn::Open(page) => Turn::Replace(page),
                         other => other,
                     }
@@ -96,9 +97,9 @@ impl Page for Transfer {
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
-        let told = &site.transfers.told;
+        let reported = &site.transfers.reported;
         let line = |place: usize| Line {
-            text: told
+            text: reported
                 .get(place)
                 .map_or_else(String::new, |news| text_of(news, site)),
             current: place == self.current,
@@ -114,7 +115,7 @@ impl Page for Transfer {
             window: Some(list::window(
                 title,
                 WindowKind::List,
-                (self.current, told.len()),
+                (self.current, reported.len()),
                 lines,
                 line,
             )),
@@ -128,7 +129,7 @@ impl Page for Transfer {
 
 /// News as a line of the window, or as a question.
 fn text_of(news: &TransferNews, site: &Site) -> String {
-    let behind = |name: &String, words| format!("{name}  {}", site.words(words));
+    let after = |name: &String, words| format!("{name}  {}", site.words(words));
     let asked =
         |words, name: &String, answers| format!("{} {name}: {}", site.words(words), site.words(answers));
     match news {
@@ -136,8 +137,8 @@ fn text_of(news: &TransferNews, site: &Site) -> String {
         TransferNews::Listed(name, Some(sectors)) => format!("{name:<20}{sectors:>6}"),
         TransferNews::Listed(name, None) => name.clone(),
         TransferNews::Free(sectors) => format!("FREE: {sectors}"),
-        TransferNews::Received(name) => behind(name, "READ IN"),
-        TransferNews::Sent(name) => behind(name, "READ OUT"),
+        TransferNews::Received(name) => after(name, "READ IN"),
+        TransferNews::Sent(name) => after(name, "READ OUT"),
         TransferNews::Overread(name) => asked("ERASE/OVERREAD", name, "YES = ENT / NO = NO ENT"),
         TransferNews::Offered(name) => asked("READ-IN", name, "YES = ENT / NO = NO ENT"),
         TransferNews::Output(name) => asked("READ-OUT", name, "YES = ENT / NO = NO ENT"),

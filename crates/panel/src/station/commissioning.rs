@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use bahn_control::{Command, Programs};
 use bahn_host::backup::Restore;
-use bahn_host::{Attendance, Deed, LoadedMachine, Operator, PowerOn, Source, State};
+use bahn_host::{Action, Attendance, LoadedMachine, Operator, PowerOn, Source, State};
 
 use super::Station;
 use crate::console::Console;
@@ -43,7 +43,7 @@ impl Station {
         if self.commissioning.is_none() {
             return;
         }
-        let off = Deed::Command(0, Command::Power(false));
+        let off = Action::Command(0, Command::Power(false));
         let _ = self.host.act(Source::Client("panel".to_owned()), off);
         self.is_on = false;
         let (console, site) = self.parts();

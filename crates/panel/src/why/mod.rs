@@ -127,7 +127,9 @@ impl Waits {
 
 /// The reasons as the screen shows them, while something stands or waits.
 pub fn in_words(reasons: &[Reason]) -> Vec<String> {
-    let all = reasons.iter().filter(|reason| reason.urgency != Urgency::Told);
+    let all = reasons
+        .iter()
+        .filter(|reason| reason.urgency != Urgency::Reported);
     all.map(|reason| match reason.causes.is_empty() {
         true => reason.text.clone(),
         false => format!("{} < {}", reason.text, reason.causes.join(", ")),

@@ -11,7 +11,7 @@ pub enum Urgency {
     /// Something waits for the operator or for the PLC.
     Waits,
     /// It is so, and nothing waits for it.
-    Told,
+    Reported,
 }
 
 /// Why something is as it is.

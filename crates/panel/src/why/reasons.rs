@@ -102,11 +102,11 @@ impl Situation<'_> {
         let letter = axis.letter.to_string();
         let text = fill(&text, &[&letter, sign, &marker.to_string(), other]);
         let parameter = format!("{}.{index}", if plus { "MP910" } else { "MP920" });
-        let told = Reason {
+        let reported = Reason {
             marker: Some(marker.to_string()),
             ..reason(Urgency::Stands, text)
         };
-        Some(with_parameter(told, &parameter))
+        Some(with_parameter(reported, &parameter))
     }
 
     /// EMERGENCY STOP chain and control voltage.
@@ -224,7 +224,7 @@ impl Situation<'_> {
             return None;
         }
         let text = self.words("{1} is clamped: its loop is open, {2} is 1, {3}");
-        Some(self.of_bit(Urgency::Told, &text, &axis.letter.to_string(), marker, false))
+        Some(self.of_bit(Urgency::Reported, &text, &axis.letter.to_string(), marker, false))
     }
 
     /// What a block is called.
@@ -240,7 +240,7 @@ impl Situation<'_> {
         match snapshot.run {
             RunState::Idle if snapshot.ended => {
                 let text = self.words("The program has come to its end: NC start runs it again");
-                found.push(reason(Urgency::Told, text));
+                found.push(reason(Urgency::Reported, text));
             }
             RunState::Idle => {}
             RunState::Running => self.stop_line(found),
@@ -331,11 +331,11 @@ impl Situation<'_> {
                 parameter.clone(),
             ];
             let [letter, lag, name, window] = &values;
-            let told = Reason {
+            let reported = Reason {
                 marker: Some(name.clone()),
                 ..reason(Urgency::Stands, fill(&text, &[letter, lag, name, window]))
             };
-            found.push(with_parameter(told, &parameter));
+            found.push(with_parameter(reported, &parameter));
         }
     }
 
@@ -402,9 +402,9 @@ impl Situation<'_> {
             }
             let text = self.words("{1} is not permitted: {2} is 0, {3}");
             let name = self.words("NC start");
-            let mut told = self.of_bit(Urgency::Stands, &text, &name, signal::NC_START, true);
-            told.causes = self.causes(&causes);
-            found.push(told);
+            let mut reported = self.of_bit(Urgency::Stands, &text, &name, signal::NC_START, true);
+            reported.causes = self.causes(&causes);
+            found.push(reported);
         }
     }
 

@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn the_input_behind_two_markers_is_found() {
+    fn the_input_after_two_markers_is_found() {
         let program = program("L I1\nA I2\nO I3\n= M1\nL M1\nAN I4\n= M2451\nEM\n");
         assert_eq!(names(&program, &["I1"], "M2451", true), ["I2=0", "I3=0"]);
         assert_eq!(

@@ -85,7 +85,7 @@ impl<'p> Translator<'p> {
     /// A load with what is done with it.
     fn fused(&self, at: usize) -> Option<(FastOp, usize)> {
         let load = loaded(self.op(at)?)?;
-        let second = self.op_behind(at)?;
+        let second = self.op_after(at)?;
         if let Op::Compare { comparison, value } = second {
             let (order, operand) = (Order::from(*comparison), Source::of(value)?);
             return Some((FastOp::LoadCompare { load, order, operand }, 2));
@@ -94,7 +94,7 @@ impl<'p> Translator<'p> {
             return Some((FastOp::Move { from: load, to }, 2));
         }
         let (function, operand) = calculated(second)?;
-        if let Some(to) = self.op_behind(at + 1).and_then(assigned) {
+        if let Some(to) = self.op_after(at + 1).and_then(assigned) {
             let op = FastOp::Compute {
                 load,
                 function,
@@ -193,7 +193,7 @@ impl<'p> Translator<'p> {
     }
 
     /// The instruction behind another, when control comes from there only.
-    fn op_behind(&self, at: usize) -> Option<&'p Op> {
+    fn op_after(&self, at: usize) -> Option<&'p Op> {
         self.op(at + 1).filter(|_| !self.is_reached(at + 1))
     }
 

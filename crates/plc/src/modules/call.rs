@@ -103,13 +103,13 @@ impl Call<'_> {
     pub(super) fn resolved(&self, text: &[u8]) -> Vec<u8> {
         let mut resolved = Vec::new();
         let mut rest = text;
-        while let Some((&first, behind)) = rest.split_first() {
-            rest = behind;
-            match reference(first, behind) {
+        while let Some((&first, after)) = rest.split_first() {
+            rest = after;
+            match reference(first, after) {
                 Some((file, line, length)) => {
                     let text = self.nc.text_line(file, line);
                     resolved.extend(text.unwrap_or_else(|| b"@".to_vec()));
-                    rest = behind.get(length..).unwrap_or_default();
+                    rest = after.get(length..).unwrap_or_default();
                 }
                 None => resolved.push(first),
             }
@@ -172,9 +172,9 @@ pub(super) fn string_number(string: i32) -> Option<usize> {
 
 /// The reference that begins here: file, line, and characters behind its first one. Line numbers have
 /// three digits, from 1000 on four; so four are taken unless the first one is 0 (inferred).
-pub(super) fn reference(first: u8, behind: &[u8]) -> Option<(TextFile, u16, usize)> {
+pub(super) fn reference(first: u8, after: &[u8]) -> Option<(TextFile, u16, usize)> {
     const SUBSTITUTE: u8 = 0x1a;
-    let (SUBSTITUTE, [letter, digits @ ..]) = (first, behind) else {
+    let (SUBSTITUTE, [letter, digits @ ..]) = (first, after) else {
         return None;
     };
     let file = match letter {

@@ -57,7 +57,7 @@ pub(super) fn status(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
         [
             interface.user.is_some(),
             interface.user == Some(InterfaceUser::Plc),
-            interface.ready_as_told(),
+            interface.ready_as_reported(),
             interface.transmit.is_empty(),
             interface.transmit_error,
             // A string that is complete fills the buffer (inferred).

@@ -223,10 +223,10 @@ fn parse(text: &[u8]) -> Option<(i32, i32)> {
     let negative = text.first() == Some(&b'-');
     let mut mantissa = 0_i64;
     let mut exponent = 0;
-    let (mut behind_point, mut full) = (false, false);
+    let (mut after_point, mut full) = (false, false);
     for character in text {
         if matches!(character, b'.' | b',') {
-            behind_point = true;
+            after_point = true;
         }
         if !character.is_ascii_digit() {
             continue;
@@ -237,7 +237,7 @@ fn parse(text: &[u8]) -> Option<(i32, i32)> {
         if !full {
             mantissa = longer;
         }
-        exponent += i32::from(full) - i32::from(behind_point);
+        exponent += i32::from(full) - i32::from(after_point);
     }
     Some((i32::try_from(mantissa).ok()?, exponent))
 }

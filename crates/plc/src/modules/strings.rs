@@ -45,9 +45,9 @@ pub(super) fn number_length(text: &[u8]) -> Option<usize> {
         return None;
     }
     let point = sign + before;
-    let behind = match text.get(point) {
+    let after = match text.get(point) {
         Some(b'.' | b',') => digits(point + 1),
         _ => 0,
     };
-    Some(if behind > 0 { point + 1 + behind } else { point })
+    Some(if after > 0 { point + 1 + after } else { point })
 }

@@ -82,7 +82,7 @@ impl DataInterface {
 
     /// Whether the other side is ready, as 9102 tells it: without a user, whether it was when the last one gave the
     /// interface back [000:15665].
-    pub(crate) fn ready_as_told(&self) -> bool {
+    pub(crate) fn ready_as_reported(&self) -> bool {
         match self.user {
             Some(_) => self.ready,
             None => self.was_ready,

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_and_letters_are_told_apart() {
+    fn commands_and_letters_are_distinguished() {
         assert_eq!(read("LW M3200").mnemonic, Mnemonic::LoadWord);
         assert_eq!(read("L W8").mnemonic, Mnemonic::Load);
         assert_eq!(read("LW8").mnemonic, Mnemonic::Load);

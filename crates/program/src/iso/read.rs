@@ -445,8 +445,8 @@ pub(super) fn may_be_landmark(line: &[u8]) -> bool {
             [b'%', ..] => return frame_words(rest),
             [b'G' | b'g', b'9', b'8', ..] => return true,
             [b'G' | b'g', ..] => return false,
-            [b'N' | b'n', behind @ ..] => behind,
-            [byte, behind @ ..] if is_blank(*byte) || *byte == b'/' || byte.is_ascii_digit() => behind,
+            [b'N' | b'n', after @ ..] => after,
+            [byte, after @ ..] if is_blank(*byte) || *byte == b'/' || byte.is_ascii_digit() => after,
             _ => return false,
         };
     }

@@ -49,7 +49,7 @@ fn word(text: &[u8], front: bool) -> (WordKind, usize, usize) {
         b'D' if next.is_ascii_digit() => (WordKind::Function, 1, 1 + digits(1)),
         b'P' if next.is_ascii_digit() => {
             let address = 1 + digits(1).min(2);
-            (WordKind::Address, address, address + behind(text, address))
+            (WordKind::Address, address, address + after(text, address))
         }
         b'A'..=b'Z' => {
             let address = text.iter().take_while(|b| b.is_ascii_alphabetic()).count();
@@ -58,7 +58,7 @@ fn word(text: &[u8], front: bool) -> (WordKind, usize, usize) {
                 Some(b'Q' | b'q') if address > 1 => address - 1,
                 _ => address,
             };
-            (WordKind::Address, address, address + behind(text, address))
+            (WordKind::Address, address, address + after(text, address))
         }
         _ => {
             let length = text.iter().take_while(|b| !is_blank(**b)).count();
@@ -68,7 +68,7 @@ fn word(text: &[u8], front: bool) -> (WordKind, usize, usize) {
 }
 
 /// Length of the value behind an address, with blanks before it.
-fn behind(text: &[u8], address: usize) -> usize {
+fn after(text: &[u8], address: usize) -> usize {
     let rest = text.get(address..).unwrap_or_default();
     let blanks = rest.iter().take_while(|b| is_blank(**b)).count();
     let value = rest.get(blanks..).unwrap_or_default();

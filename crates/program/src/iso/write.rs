@@ -500,9 +500,9 @@ impl Distances {
         };
         let before = out.text.len();
         out.word(g_of(other));
-        let behind = out.text.len();
+        let after = out.text.len();
         words(out, Some(other));
-        if out.text.len() == behind {
+        if out.text.len() == after {
             out.text.truncate(before);
         }
         out.word(g_of(last));

@@ -237,13 +237,13 @@ fn address(c: &mut Cursor, scope: Scope) -> Parsed<Option<Option<CycleWord>>> {
 /// `X1.4`, the factor of an axis, and `CCX+15`, the centre of it; nothing else stands in cycle 26.
 fn scaling_word(c: &mut Cursor) -> Parsed<Option<CycleWord>> {
     let start = c.position();
-    let mut behind = c.clone();
-    let is_centre = behind.keyword("CC");
-    behind.skip_blanks();
-    let Some(axis) = Axis::from_letter(behind.peek_upper()).filter(|_| begins_value(&behind, 1)) else {
+    let mut after = c.clone();
+    let is_centre = after.keyword("CC");
+    after.skip_blanks();
+    let Some(axis) = Axis::from_letter(after.peek_upper()).filter(|_| begins_value(&after, 1)) else {
         return Ok(None);
     };
-    *c = behind;
+    *c = after;
     c.advance(1);
     let value = c.required_value(start)?;
     Ok(Some(match is_centre {
@@ -304,11 +304,11 @@ fn parameter_word(c: &mut Cursor, scope: Scope) -> Parsed<Option<CycleWord>> {
             }),
         }));
     }
-    let behind = c.clone();
+    let after = c.clone();
     let value = c.value()?;
     if value.is_some() && c.accept(b'=') {
         // `Q8 = Q9 =`: what looked like the value is the next assignment.
-        *c = behind;
+        *c = after;
         return Ok(None);
     }
     Ok(value.map(|value| CycleWord::Assignment(number, value)))

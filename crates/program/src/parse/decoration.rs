@@ -7,10 +7,10 @@ use crate::text::is_blank;
 
 /// Whether a number or Q parameter begins `offset` behind the position, blanks apart.
 pub(super) fn begins_value(c: &Cursor, offset: usize) -> bool {
-    let mut behind = c.clone();
-    behind.advance(offset);
-    behind.skip_blanks();
-    number_begins(behind.rest()) || parameter_begins(behind.rest())
+    let mut after = c.clone();
+    after.advance(offset);
+    after.skip_blanks();
+    number_begins(after.rest()) || parameter_begins(after.rest())
 }
 
 /// Whether a signed or unsigned number, or a signed Q parameter, begins here.
@@ -69,14 +69,14 @@ pub(super) fn decoration(c: &mut Cursor, text: &mut Vec<u8>) {
     let rest = c.rest();
     let length = (1..rest.len())
         .find(|&i| {
-            let behind = rest.get(i..).unwrap_or_default();
-            let touches_dot = rest.get(i) == Some(&b'.') && !behind.starts_with(b"...");
-            let byte = behind.first().copied().unwrap_or(b' ');
+            let after = rest.get(i..).unwrap_or_default();
+            let touches_dot = rest.get(i) == Some(&b'.') && !after.starts_with(b"...");
+            let byte = after.first().copied().unwrap_or(b' ');
             is_blank(byte)
                 || byte == b';'
                 || is_separator(byte)
-                || behind.starts_with(b"...")
-                || (number_begins(behind) && !touches_dot)
+                || after.starts_with(b"...")
+                || (number_begins(after) && !touches_dot)
         })
         .unwrap_or(rest.len());
     if !text.is_empty() {

@@ -56,14 +56,14 @@ pub(super) fn belongs_to(c: &Cursor) -> Option<&'static str> {
 }
 
 fn opens(c: &Cursor, row: &Foreign) -> bool {
-    let mut behind = c.clone();
-    if !behind.keyword(row.word) {
+    let mut after = c.clone();
+    if !after.keyword(row.word) {
         return false;
     }
-    let next = behind.peek();
+    let next = after.peek();
     match row.number {
         true => next.is_ascii_digit(),
-        false => row.word == "%" || !next.is_ascii_alphabetic() || is_axis_word(&behind),
+        false => row.word == "%" || !next.is_ascii_alphabetic() || is_axis_word(&after),
     }
 }
 

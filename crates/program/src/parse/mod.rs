@@ -251,10 +251,10 @@ fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
             joined_start: joined.len(),
         });
         let rest = trim_continuation(c.rest());
-        let (code, behind) = rest.split_at_checked(code_length(rest)).unwrap_or_default();
+        let (code, after) = rest.split_at_checked(code_length(rest)).unwrap_or_default();
         joined.extend_from_slice(trim_continuation(code));
-        if behind.first() == Some(&b';')
-            && let Some(comment) = comment_text(behind)
+        if after.first() == Some(&b';')
+            && let Some(comment) = comment_text(after)
         {
             if !comments.is_empty() {
                 comments.push_str(" ; ");

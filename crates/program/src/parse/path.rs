@@ -294,7 +294,7 @@ fn set_once<T>(c: &Cursor, start: usize, value: Option<T>, slot: &mut Option<T>)
 /// `FMAX`, `F value` or an empty `F`, behind the letter [003:303] [003:2142].
 #[inline]
 pub(super) fn feed_word(c: &mut Cursor) -> Parsed<Option<Feed>> {
-    let behind = c.position();
+    let after = c.position();
     if let Some(value) = c.value()? {
         return Ok(Some(Feed::Value(value)));
     }
@@ -302,7 +302,7 @@ pub(super) fn feed_word(c: &mut Cursor) -> Parsed<Option<Feed>> {
         return Ok(Some(Feed::Max));
     }
     if c.word("AUTO") {
-        let start = behind.saturating_sub(1);
+        let start = after.saturating_sub(1);
         return c.fault_from(
             start,
             BlockNotKnown,
@@ -311,7 +311,7 @@ pub(super) fn feed_word(c: &mut Cursor) -> Parsed<Option<Feed>> {
     }
     // `FM3` is an empty F before M3; `FU`, `FZ` are feeds of later controls.
     if c.peek().is_ascii_alphabetic() && c.peek_upper() != b'M' {
-        c.go_to(behind.saturating_sub(1));
+        c.go_to(after.saturating_sub(1));
         return c.not_known();
     }
     Ok(None)
@@ -325,11 +325,11 @@ fn radius_word(c: &mut Cursor, start: usize, motion: &mut Motion) -> Parsed<()> 
     let compensation = match c.peek_upper() {
         b'L' => Some(Compensation::Left),
         b'R' => Some(Compensation::Right),
-        b'0' if !matches!(c.peek_at(1), b'0'..=b'9' | b'.' | b',') || annotation_behind(c) => {
+        b'0' if !matches!(c.peek_at(1), b'0'..=b'9' | b'.' | b',') || annotation_after(c) => {
             Some(Compensation::Off)
         }
-        b'+' if !value_behind_sign(c) => Some(Compensation::Lengthen),
-        b'-' if !value_behind_sign(c) => Some(Compensation::Shorten),
+        b'+' if !value_after_sign(c) => Some(Compensation::Lengthen),
+        b'-' if !value_after_sign(c) => Some(Compensation::Shorten),
         _ => None,
     };
     if let Some(compensation) = compensation {
@@ -356,19 +356,19 @@ fn radius_word(c: &mut Cursor, start: usize, motion: &mut Motion) -> Parsed<()> 
 }
 
 /// Whether annotation follows the byte at the position.
-fn annotation_behind(c: &Cursor) -> bool {
-    let mut behind = c.clone();
-    behind.advance(1);
-    behind.at_annotation()
+fn annotation_after(c: &Cursor) -> bool {
+    let mut after = c.clone();
+    after.advance(1);
+    after.at_annotation()
 }
 
 /// Whether a number or Q parameter follows the sign at the position.
-fn value_behind_sign(c: &Cursor) -> bool {
-    let mut behind = c.clone();
-    behind.advance(1);
-    behind.skip_blanks();
-    let digit_follows = behind.peek_at(1).is_ascii_digit();
-    match behind.peek_upper() {
+fn value_after_sign(c: &Cursor) -> bool {
+    let mut after = c.clone();
+    after.advance(1);
+    after.skip_blanks();
+    let digit_follows = after.peek_at(1).is_ascii_digit();
+    match after.peek_upper() {
         b'0'..=b'9' | b'Q' => true,
         b'.' | b',' => digit_follows,
         _ => false,

@@ -6,36 +6,36 @@ use crate::lines::{BlockText, Lines};
 use crate::text::{is_blank, trim_continuation};
 
 /// How a block opens, longer forms first, and what follows.
-const FUNCTIONS: &[(&[&str], Behind)] = &[
-    (&["BEGIN", "PGM"], Behind::Name),
-    (&["BLK", "FORM"], Behind::Number),
-    (&["CALL", "LBL"], Behind::Words),
-    (&["CALL", "PGM"], Behind::Name),
-    (&["CHF"], Behind::Words),
-    (&["CYCLE", "CALL"], Behind::Words),
-    (&["CYCLE", "DEF"], Behind::Number),
-    (&["CYCL", "CALL"], Behind::Words),
-    (&["CYCL", "DEF"], Behind::Number),
-    (&["CC"], Behind::Path),
-    (&["CR"], Behind::Path),
-    (&["CTP"], Behind::Path),
-    (&["CT"], Behind::Path),
-    (&["CP"], Behind::Path),
-    (&["C"], Behind::Path),
-    (&["DLG-CALL"], Behind::Words),
-    (&["DLG-DEF"], Behind::Words),
-    (&["END", "PGM"], Behind::Name),
-    (&["ERROR"], Behind::Name),
-    (&["FN"], Behind::Number),
-    (&["LBL"], Behind::Words),
-    (&["LP"], Behind::Path),
-    (&["L"], Behind::Path),
-    (&["RND"], Behind::Path),
-    (&["STOP"], Behind::Words),
-    (&["TCH", "PROBE"], Behind::Number),
-    (&["TOOL", "CALL"], Behind::Path),
-    (&["TOOL", "DEF"], Behind::Path),
-    (&["TOUCH", "PROBE"], Behind::Number),
+const FUNCTIONS: &[(&[&str], After)] = &[
+    (&["BEGIN", "PGM"], After::Name),
+    (&["BLK", "FORM"], After::Number),
+    (&["CALL", "LBL"], After::Words),
+    (&["CALL", "PGM"], After::Name),
+    (&["CHF"], After::Words),
+    (&["CYCLE", "CALL"], After::Words),
+    (&["CYCLE", "DEF"], After::Number),
+    (&["CYCL", "CALL"], After::Words),
+    (&["CYCL", "DEF"], After::Number),
+    (&["CC"], After::Path),
+    (&["CR"], After::Path),
+    (&["CTP"], After::Path),
+    (&["CT"], After::Path),
+    (&["CP"], After::Path),
+    (&["C"], After::Path),
+    (&["DLG-CALL"], After::Words),
+    (&["DLG-DEF"], After::Words),
+    (&["END", "PGM"], After::Name),
+    (&["ERROR"], After::Name),
+    (&["FN"], After::Number),
+    (&["LBL"], After::Words),
+    (&["LP"], After::Path),
+    (&["L"], After::Path),
+    (&["RND"], After::Path),
+    (&["STOP"], After::Words),
+    (&["TCH", "PROBE"], After::Number),
+    (&["TOOL", "CALL"], After::Path),
+    (&["TOOL", "DEF"], After::Path),
+    (&["TOUCH", "PROBE"], After::Number),
 ];
 
 /// Words of positioning and tool blocks, which may touch each other: `RLFMAXM3`; longer ones first.
@@ -43,7 +43,7 @@ const TOUCHING: &[&str] = &["FMAX", "IPR", "IPA", "PR", "PA", "DL", "DR", "RL", 
 
 /// What follows the words that open a block.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Behind {
+enum After {
     /// A number `n.m` that belongs to them, then words.
     Number,
     /// A name up to the end.
@@ -59,7 +59,7 @@ pub(crate) fn block_words(text: BlockText<'_>) -> Vec<WordSpan> {
     let mut walk = Walk {
         words: Vec::new(),
         offset: 0,
-        behind: Behind::Path,
+        after: After::Path,
     };
     let mut lines = Lines::new(text.bytes, 0);
     let mut is_comment = false;
@@ -90,7 +90,7 @@ struct Walk {
     words: Vec<WordSpan>,
     /// Where the line begins in the block.
     offset: usize,
-    behind: Behind,
+    after: After,
 }
 
 impl Walk {
@@ -131,12 +131,12 @@ impl Walk {
             }
             found
         };
-        let Some((_, behind)) = FUNCTIONS.iter().find(|(words, _)| opens(c, words)) else {
+        let Some((_, after)) = FUNCTIONS.iter().find(|(words, _)| opens(c, words)) else {
             return;
         };
         let before_number = c.position();
         let mut number = before_number;
-        if *behind == Behind::Number {
+        if *after == After::Number {
             c.skip_blanks();
             number = c.position();
             while matches!(c.peek(), b'0'..=b'9' | b'.' | b',') && !c.at_annotation() {
@@ -147,14 +147,14 @@ impl Walk {
                 number = before_number;
             }
         }
-        self.behind = *behind;
+        self.after = *after;
         self.push(WordKind::Function, start, number, c.position());
     }
 
     fn line(&mut self, c: &mut Cursor) {
         while !c.at_end() {
             let start = c.position();
-            if self.behind == Behind::Name {
+            if self.after == After::Name {
                 let code = c.code();
                 let length = code
                     .iter()
@@ -182,8 +182,8 @@ impl Walk {
                 self.push(WordKind::Address, start, value_start, c.position());
             } else {
                 c.go_to(end);
-                let kind = match self.behind {
-                    Behind::Path => WordKind::Address,
+                let kind = match self.after {
+                    After::Path => WordKind::Address,
                     _ => WordKind::Text,
                 };
                 self.push(kind, start, end, end);
@@ -199,7 +199,7 @@ impl Walk {
             .iter()
             .take_while(|b| b.is_ascii_alphabetic() || **b >= 0x80)
             .count();
-        if self.behind != Behind::Path {
+        if self.after != After::Path {
             return run;
         }
         let starts = |word: &&&str| {

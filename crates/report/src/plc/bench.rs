@@ -9,7 +9,7 @@ use bahn_plc::{Machine, PlcProgram, RuntimeError, Start, TestNc, Tracer, mirror_
 
 use bahn_control::Signal;
 use bahn_host::{
-    Action, Assignment, Base, Content, Expectation, Line, Observable, Operand, Play, Relation, Script,
+    Assignment, Base, Content, Expectation, Line, Observable, Operand, Play, Relation, Script, ScriptAction,
 };
 
 /// A program with all it needs to run.
@@ -137,21 +137,21 @@ impl Bench {
 
     fn perform(&mut self, line: Line) {
         match line.action {
-            Action::Set(assignments) => {
+            ScriptAction::Set(assignments) => {
                 self.acted = true;
                 for assignment in assignments {
                     // Every one was tried before the run.
                     let _ = self.set(&assignment);
                 }
             }
-            Action::Expect(expectations) => {
+            ScriptAction::Expect(expectations) => {
                 for expectation in expectations {
                     self.look(line.number, &expectation);
                 }
             }
-            Action::End => self.ended = true,
+            ScriptAction::End => self.ended = true,
             // Without a machine no script has any.
-            Action::Do(_) => {}
+            ScriptAction::Do(_) => {}
         }
     }
 
@@ -203,7 +203,7 @@ impl Bench {
             match self.play.due(now, holds) {
                 None => break,
                 // Nothing is done for a cycle that does not come.
-                Some(line) if matches!(line.action, Action::Set(_)) => {}
+                Some(line) if matches!(line.action, ScriptAction::Set(_)) => {}
                 Some(line) => self.perform(line),
             }
         }
@@ -321,8 +321,8 @@ pub fn last_cycle(script: &Script, cycle_time: Duration) -> u64 {
     let cycle_us = u64::try_from(cycle_time.as_micros()).unwrap_or(u64::MAX).max(1);
     let cycles = script.lines.iter().filter(|line| line.base == Base::PowerOn);
     let cycles = cycles.map(|line| match line.action {
-        Action::Expect(_) | Action::End => line.offset_us.div_ceil(cycle_us),
-        Action::Set(_) | Action::Do(_) => line.offset_us / cycle_us + 1,
+        ScriptAction::Expect(_) | ScriptAction::End => line.offset_us.div_ceil(cycle_us),
+        ScriptAction::Set(_) | ScriptAction::Do(_) => line.offset_us / cycle_us + 1,
     });
     cycles.max().unwrap_or(0)
 }
@@ -338,15 +338,15 @@ pub fn operands(script: &Script) -> Vec<Operand> {
     for line in &script.lines {
         let mut expected = line.condition.iter().collect::<Vec<_>>();
         match &line.action {
-            Action::Expect(expectations) => expected.extend(expectations),
-            Action::Set(assignments) => {
+            ScriptAction::Expect(expectations) => expected.extend(expectations),
+            ScriptAction::Set(assignments) => {
                 for assignment in assignments {
                     if let Assignment::Operand(operand, _) = assignment {
                         add(*operand);
                     }
                 }
             }
-            Action::Do(_) | Action::End => {}
+            ScriptAction::Do(_) | ScriptAction::End => {}
         }
         for expectation in expected {
             match expectation {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use bahn_control::{Command, RunState};
 use bahn_host::{
-    Assignment, Attendance, Content, Deed, FileFault, FolderPrograms, Host, HostError, Job, LoadedMachine,
+    Action, Assignment, Attendance, Content, FileFault, FolderPrograms, Host, HostError, Job, LoadedMachine,
     Operand, Operator, Phase, Play, PowerOn, Script, Source, run_name,
 };
 use bahn_plc::{Machine, Tracer};
@@ -28,7 +28,7 @@ pub struct Live {
     /// The script has ended it.
     ended: bool,
     /// Failed expectations that were told.
-    told: usize,
+    reported: usize,
 }
 
 impl Live {
@@ -64,7 +64,7 @@ impl Live {
             scans: 0,
             started: false,
             ended: false,
-            told: 0,
+            reported: 0,
         };
         for assignment in set {
             live.command(&assignment.to_string())?;
@@ -117,7 +117,7 @@ impl Live {
         let command: Command = text.parse().map_err(|error| format!("{error}"))?;
         let source = Source::Client("bahn plc".to_owned());
         self.host
-            .act(source, Deed::Command(0, command))
+            .act(source, Action::Command(0, command))
             .map(drop)
             .map_err(|error| error.to_string())
     }
@@ -172,12 +172,12 @@ impl Live {
 
     /// The expectations that did not hold since the last call.
     pub fn take_failures(&mut self) -> Vec<String> {
-        let failed = self.play.failed.get(self.told..).unwrap_or_default();
+        let failed = self.play.failed.get(self.reported..).unwrap_or_default();
         let texts = failed
             .iter()
             .map(|failed| format!("{}: {}", failed.text, failed.actual));
         let texts = texts.collect();
-        self.told = self.play.failed.len();
+        self.reported = self.play.failed.len();
         texts
     }
 

@@ -268,7 +268,7 @@ mod tests {
 
     /// A corner bends at one point, an arc everywhere.
     #[test]
-    fn corners_are_told_from_arcs() {
+    fn corners_are_distinguished_from_arcs() {
         let corner = [
             [0.0; 3],
             [1.0, 0.0, 0.0],

@@ -178,14 +178,14 @@ impl Deviation {
 /// The way from the nearest point of a segment to a position.
 fn from_segment(position: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
     let way = difference(to, from);
-    let behind = difference(position, from);
+    let after = difference(position, from);
     let square = product(way, way);
     let along = if square > 0.0 {
-        (product(behind, way) / square).clamp(0.0, 1.0)
+        (product(after, way) / square).clamp(0.0, 1.0)
     } else {
         0.0
     };
-    difference(behind, way.map(|value| along * value))
+    difference(after, way.map(|value| along * value))
 }
 
 fn difference([a, b, c]: [f64; 3], [d, e, f]: [f64; 3]) -> [f64; 3] {

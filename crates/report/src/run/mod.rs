@@ -6,7 +6,7 @@
 //!   turned there; `table`: what lies on the table of the machine;
 //! - `measured`: `deviation` from the contour with its `cause`, `threads` and `times`; `listed`: messages and keys;
 //! - `recording`: signals over time; `scoped`: the control's oscilloscope;
-//! - `report` and `told`: what is said in the end.
+//! - `report` and `reported`: what is said in the end.
 
 mod beside;
 mod cause;
@@ -16,19 +16,19 @@ mod listed;
 mod measured;
 mod recording;
 mod report;
+mod reported;
 mod scoped;
 mod session;
 mod standstill;
 mod table;
 mod threads;
 mod times;
-mod told;
 mod turning;
 
 pub use executed::Executed;
 pub use recording::{Recording, usual_signals};
 pub use report::RunReport;
+pub use reported::Reported;
 pub use scoped::Scoped;
 pub use session::{Ended, Patience, Session};
 pub use table::Table;
-pub use told::Told;

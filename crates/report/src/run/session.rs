@@ -3,7 +3,7 @@
 use bahn_control::{ChannelView, Command, Message, RunState, Shown, Waiting};
 use bahn_exchange::signal::{self, SignalOperand};
 use bahn_host::{
-    Answer, Deed, Host, HostError, LoadedMachine, Next, Notice, Phase, Play, Reader, Source, Stamped,
+    Action, Answer, Host, HostError, LoadedMachine, Next, Notice, Phase, Play, Reader, Source, Stamped,
     run_name,
 };
 use bahn_machine::Event;
@@ -223,7 +223,7 @@ impl Session {
                 Notice::Digitized(name, points) => {
                     follower.say(&format!("{points} points are digitized: PGM {name}"));
                 }
-                Notice::Given(Source::Operator, deed, answer) => self.follow_operator(deed, answer)?,
+                Notice::Given(Source::Operator, action, answer) => self.follow_operator(action, answer)?,
                 _ => {}
             }
         }
@@ -231,13 +231,13 @@ impl Session {
     }
 
     /// Without what the operator wants to do the run does not go on.
-    fn follow_operator(&mut self, deed: Deed, answer: Answer) -> Result<(), ReportError> {
-        match (deed, answer) {
-            (Deed::Command(_, command), Answer::Refused) if command != Command::Ce => {
+    fn follow_operator(&mut self, action: Action, answer: Answer) -> Result<(), ReportError> {
+        match (action, answer) {
+            (Action::Command(_, command), Answer::Refused) if command != Command::Ce => {
                 let refusal = format!("the control refuses `{command}`");
                 self.ended = Some(Ended::Hangs(refusal, None));
             }
-            (Deed::Event(Event::Key(key, _), _), Answer::Impossible(error)) => {
+            (Action::Event(Event::Key(key, _), _), Answer::Impossible(error)) => {
                 return Err(ReportError::new(format!(
                     "the operator cannot press {key} ([operator] in machine.toml): {error}"
                 )));

@@ -56,14 +56,14 @@ enum News {
 
 /// Runs all programs; those that Ctrl-C kept from running are in the table, too.
 ///
-/// `is_interrupted` says whether somebody wants the work to end, `told` hears of each program that is done.
+/// `is_interrupted` says whether somebody wants the work to end, `reported` hears of each program that is done.
 ///
 /// # Errors
 /// When the system gives no thread.
 pub fn run(
     work: Work,
     is_interrupted: &dyn Fn() -> bool,
-    told: &mut dyn FnMut(),
+    reported: &mut dyn FnMut(),
 ) -> Result<Vec<Done>, ReportError> {
     let workers = thread::available_parallelism()
         .map_or(1, usize::from)
@@ -79,7 +79,7 @@ pub fn run(
     for _ in 0..workers {
         office.hire()?;
     }
-    office.lead(&news, is_interrupted, told)?;
+    office.lead(&news, is_interrupted, reported)?;
     let files = &office.work.files;
     Ok(files
         .iter()
@@ -113,7 +113,7 @@ impl Office {
         &mut self,
         news: &Receiver<News>,
         is_interrupted: &dyn Fn() -> bool,
-        told: &mut dyn FnMut(),
+        reported: &mut dyn FnMut(),
     ) -> Result<(), ReportError> {
         let mut given_up = None;
         let mut open = self.done.len();
@@ -123,7 +123,7 @@ impl Office {
                     self.running.insert(index, (Instant::now(), stop));
                 }
                 Ok(News::Done(index, done)) => {
-                    open -= self.take(index, *done, told);
+                    open -= self.take(index, *done, reported);
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 // This office holds a sender itself.
@@ -137,18 +137,18 @@ impl Office {
             if given_up.is_some_and(|since| self.running.is_empty() || since.elapsed() > GRACE) {
                 break;
             }
-            open -= self.end_late_ones(told)?;
+            open -= self.end_late_ones(reported)?;
         }
         Ok(())
     }
 
     /// Takes a result; the answer is how many programs are done by it.
-    fn take(&mut self, index: usize, done: Done, told: &mut dyn FnMut()) -> usize {
+    fn take(&mut self, index: usize, done: Done, reported: &mut dyn FnMut()) -> usize {
         self.running.remove(&index);
         match self.done.get_mut(index) {
             Some(slot @ None) => {
                 *slot = Some(done);
-                told();
+                reported();
                 1
             }
             // It came too late and stands in the table already.
@@ -157,7 +157,7 @@ impl Office {
     }
 
     /// Ends runs whose time is over, and leaves alone those that do not end.
-    fn end_late_ones(&mut self, told: &mut dyn FnMut()) -> Result<usize, ReportError> {
+    fn end_late_ones(&mut self, reported: &mut dyn FnMut()) -> Result<usize, ReportError> {
         let limit = self.work.time_limit;
         let mut lost = Vec::new();
         for (index, (since, stop)) in &self.running {
@@ -171,7 +171,7 @@ impl Office {
         let count = lost.len();
         for index in lost {
             let path = self.work.files.get(index).cloned().unwrap_or_default();
-            self.take(index, without_run(&path, Verdict::TimeLimit, None), told);
+            self.take(index, without_run(&path, Verdict::TimeLimit, None), reported);
             self.hire()?;
         }
         Ok(count)

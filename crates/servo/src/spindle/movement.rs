@@ -35,7 +35,7 @@ impl Movement {
     /// A servo step with the speed that is told and the actual one, degrees/min. How far the spindle has turned beside what
     /// it was told, degrees: a time constant of [`MOVEMENT_WINDOW_S`], the `ramp` of rigid tapping (degrees/min², 0 for none) and
     /// [`MOVEMENT_TOLERANCE`] are its own.
-    pub(super) fn step(&mut self, told: f64, actual: f64, ramp: f64, timing: &Timing) -> f64 {
+    pub(super) fn step(&mut self, commanded: f64, actual: f64, ramp: f64, timing: &Timing) -> f64 {
         let step_min = timing.step_min();
         let part = step_min * 60.0 / MOVEMENT_WINDOW_S;
         let most = if ramp > 0.0 {
@@ -43,15 +43,15 @@ impl Movement {
         } else {
             f64::INFINITY
         };
-        self.greatest = told.max(self.greatest - ((self.greatest - told) * part).min(most));
-        self.least = told.min(self.least + ((told - self.least) * part).min(most));
+        self.greatest = commanded.max(self.greatest - ((self.greatest - commanded) * part).min(most));
+        self.least = commanded.min(self.least + ((commanded - self.least) * part).min(most));
         let least = self.least - self.least.abs() * MOVEMENT_TOLERANCE;
         let greatest = self.greatest + self.greatest.abs() * MOVEMENT_TOLERANCE;
         let beside = actual - actual.clamp(least, greatest);
         let changed = (actual - self.actual) / (step_min * 60.0);
         self.acceleration += (changed - self.acceleration) * step_min * 60.0 / ACCELERATION_S;
         self.actual = actual;
-        let off = told - actual;
+        let off = commanded - actual;
         let goes_on = self.acceleration * off.signum() * REACHED_WITHIN_S >= off.abs();
         self.beside_deg = match beside == 0.0 || goes_on {
             true => 0.0,

@@ -39,10 +39,10 @@ pub(super) struct Dynamics {
 impl Dynamics {
     /// The velocity at a way from the target, degrees/min: kv, at most the speed of the orientation, and no
     /// more than the ramp can brake.
-    pub(super) fn velocity(&self, way_deg: f64) -> f64 {
-        let brakes = (2.0 * self.deceleration * way_deg.abs()).sqrt();
-        let amount = (self.slope * way_deg.abs()).min(brakes).min(self.speed);
-        amount.copysign(way_deg)
+    pub(super) fn velocity(&self, turn_deg: f64) -> f64 {
+        let brakes = (2.0 * self.deceleration * turn_deg.abs()).sqrt();
+        let amount = (self.slope * turn_deg.abs()).min(brakes).min(self.speed);
+        amount.copysign(turn_deg)
     }
 
     /// Way in which the spindle comes to its target from a speed in degrees/min: of the ramp and of kv.
@@ -52,7 +52,7 @@ impl Dynamics {
 
     /// The way to an angle, degrees, from an angle at a velocity (degrees/min, 0 at standstill) and in a
     /// direction: +1, -1, or 0 for the shorter way.
-    pub(super) fn way_deg(&self, from_deg: f64, to_deg: f64, velocity: f64, direction: f64) -> f64 {
+    pub(super) fn turn_deg(&self, from_deg: f64, to_deg: f64, velocity: f64, direction: f64) -> f64 {
         let forward = (to_deg - from_deg).rem_euclid(360.0);
         if direction == 0.0 {
             return if forward > 180.0 { forward - 360.0 } else { forward };
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn the_way_goes_in_its_direction() {
-        let standing = |from, to, direction| DYNAMICS.way_deg(from, to, 0.0, direction);
+        let standing = |from, to, direction| DYNAMICS.turn_deg(from, to, 0.0, direction);
         assert_eq!(standing(10.0, 350.0, 0.0), -20.0);
         assert_eq!(standing(350.0, 10.0, 0.0), 20.0);
         assert_eq!(standing(10.0, 350.0, 1.0), 340.0);
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn a_turning_spindle_needs_room_to_stop() {
         // 36 000 degrees/min: 36 000²/(2 · 3.6e6) = 180 degrees by the ramp, and 36 by kv.
-        let turning = |to| DYNAMICS.way_deg(0.0, to, 36_000.0, 1.0);
+        let turning = |to| DYNAMICS.turn_deg(0.0, to, 36_000.0, 1.0);
         assert_eq!(turning(217.0), 217.0);
         assert_eq!(turning(215.0), 575.0);
     }

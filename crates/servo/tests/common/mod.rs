@@ -113,24 +113,27 @@ impl Bench {
     }
 
     /// Positions over a way with a trapezoidal velocity profile, as the path planning would.
-    pub fn position(&mut self, way_mm: f64, feed_mm_min: f64, acceleration_m_s2: f64) {
+    pub fn position(&mut self, distance_mm: f64, feed_mm_min: f64, acceleration_m_s2: f64) {
         let start = self.axis.target_mm();
         let acceleration = acceleration_m_s2 * 1e3;
-        let speed = (feed_mm_min / 60.0).min((acceleration * way_mm.abs()).sqrt());
-        let (ramp_s, whole_s) = (speed / acceleration, way_mm.abs() / speed + speed / acceleration);
+        let speed = (feed_mm_min / 60.0).min((acceleration * distance_mm.abs()).sqrt());
+        let (ramp_s, whole_s) = (
+            speed / acceleration,
+            distance_mm.abs() / speed + speed / acceleration,
+        );
         for cycle in 1..=self.cycles(whole_s) + 1 {
             let time = (f64::from(cycle) * f64::from(self.timing.contour_us()) * 1e-6).min(whole_s);
             let left = whole_s - time;
             let way = if time < ramp_s {
                 acceleration * time * time / 2.0
             } else if left < ramp_s {
-                way_mm.abs() - acceleration * left * left / 2.0
+                distance_mm.abs() - acceleration * left * left / 2.0
             } else {
                 speed * (time - ramp_s / 2.0)
             };
-            self.cycle(start + way.copysign(way_mm));
+            self.cycle(start + way.copysign(distance_mm));
         }
-        self.cycle(start + way_mm);
+        self.cycle(start + distance_mm);
     }
 
     /// Stands for a time, s.

@@ -179,13 +179,13 @@ impl Braking {
     }
 
     /// The axis is within the way that is left to it.
-    pub fn check(&self, axis: &AxisState, behind: &str, moment: &Moment) -> Result<(), Violation> {
+    pub fn check(&self, axis: &AxisState, after: &str, moment: &Moment) -> Result<(), Violation> {
         let way = (axis.position - self.position).abs();
         if way <= self.bound {
             return Ok(());
         }
         let values = format!(
-            "{} travels {way:.3} behind {behind}, {:.3} are left to it",
+            "{} travels {way:.3} behind {after}, {:.3} are left to it",
             axis.letter, self.bound
         );
         Err(Violation::new(Rule::Distance, moment.time_us, values))

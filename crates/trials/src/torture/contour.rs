@@ -73,9 +73,9 @@ fn from_element(place: &Position, element: &PathElement, beyond: f64) -> f64 {
             let (mut along, mut square) = (0.0, 0.0);
             for axis in Axis::ALL {
                 let way = end[axis] - start[axis];
-                let behind = place[axis] - start[axis];
-                if way.is_finite() && behind.is_finite() {
-                    along += way * behind;
+                let after = place[axis] - start[axis];
+                if way.is_finite() && after.is_finite() {
+                    along += way * after;
                     square += way * way;
                 }
             }
@@ -100,11 +100,11 @@ fn from_element(place: &Position, element: &PathElement, beyond: f64) -> f64 {
             };
             let turned = angle(arc.plane.point(place)) - angle(arc.plane.point(start));
             let (sweep, sense) = (arc.sweep_deg.abs(), arc.sweep_deg.signum());
-            let mut behind = (turned * sense).rem_euclid(360.0);
+            let mut after = (turned * sense).rem_euclid(360.0);
             let mut nearest = apart(place, start).min(apart(place, end));
-            while behind <= sweep && sweep > 0.0 {
-                nearest = nearest.min(apart(place, &element.curve.position(start, end, behind / sweep)));
-                behind += 360.0;
+            while after <= sweep && sweep > 0.0 {
+                nearest = nearest.min(apart(place, &element.curve.position(start, end, after / sweep)));
+                after += 360.0;
             }
             nearest
         }

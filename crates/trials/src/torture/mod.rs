@@ -28,7 +28,7 @@ pub use plan::{Happening, Plan};
 pub use rule::{Rule, Violation};
 pub use trial::Trial;
 
-use bahn_host::Deed;
+use bahn_host::Action;
 use bahn_host::LoadedMachine;
 use bahn_host::{FileFault, HostError};
 use bench::Bench;
@@ -79,7 +79,7 @@ impl Campaign {
     /// When a script could not have it.
     pub fn also(&mut self, what: &str) -> Result<(), HostError> {
         for part in what.split(',') {
-            Deed::parse(part.trim()).map_err(|error| HostError::File(format!("{part}: {error}")))?;
+            Action::parse(part.trim()).map_err(|error| HostError::File(format!("{part}: {error}")))?;
         }
         self.catalogue.also(what);
         Ok(())

@@ -199,10 +199,10 @@ impl Course<'_> {
 
     /// NC start, again where it was not taken, until a path moves or the control says why it does not.
     fn start(&mut self, channels: &[usize], within_us: u64) -> Result<(), Violation> {
-        let told = self.told();
+        let reported = self.reported();
         let (mut until_us, mut due_us) = (self.now() + within_us, self.now());
         while !self.goes_on() {
-            if self.told() > told {
+            if self.reported() > reported {
                 // It is refused, and the control says so.
                 return Ok(());
             }
@@ -246,7 +246,7 @@ impl Course<'_> {
 
     /// Messages that say why a run does not go on. One that begins anew says again what it says undisturbed: that a tool is
     /// to be changed is no reason.
-    fn told(&self) -> usize {
+    fn reported(&self) -> usize {
         match self.anew {
             true => self.unusual,
             false => self.trial.messages.len(),

@@ -14,7 +14,7 @@ use super::messages::{Messages, is_fatal};
 use super::plan::{Happening, Plan};
 use super::rule::{Rule, Violation};
 use super::ways::Ways;
-use bahn_host::{Answer, Deed, Source};
+use bahn_host::{Action, Answer, Source};
 use bahn_host::{Next, Reader};
 use bahn_host::{Notice, Stamped};
 
@@ -148,17 +148,17 @@ impl Course<'_> {
         self.messages.happens(&happening, self.bench.host.control());
         self.trial.done.push(happening);
         for part in what.split(',') {
-            let deed = match Deed::parse(part.trim()) {
-                Ok(deed) => deed,
+            let action = match Action::parse(part.trim()) {
+                Ok(action) => action,
                 Err(error) => return Err(self.breaks(Rule::Alive, format!("{part}: {error}"))),
             };
-            let powers = matches!(deed, Deed::Command(_, Command::Power(_)));
+            let powers = matches!(action, Action::Command(_, Command::Power(_)));
             if powers && !self.control().is_off() {
                 self.remembered = Some(self.remember());
                 let failed = self.medium.fails(self.control(), self.now());
                 failed.map_err(|values| self.breaks(Rule::Retained, values))?;
             }
-            let answer = self.bench.host.act(Source::Script, deed);
+            let answer = self.bench.host.act(Source::Script, action);
             match answer {
                 Ok(Answer::Impossible(why)) => return Err(self.breaks(Rule::Alive, format!("{what}: {why}"))),
                 Ok(_) => {}

@@ -73,11 +73,11 @@ pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
         blocks: 0,
     };
     let interrupt = Interrupt::on_ctrl_c();
-    let mut told = Duration::ZERO;
+    let mut reported = Duration::ZERO;
     let mut before = 0;
     let mut tap = |_: bool, _: u8, now: Duration| {
-        if now.saturating_sub(told) >= PERIOD {
-            told = now;
+        if now.saturating_sub(reported) >= PERIOD {
+            reported = now;
             let blocks = teller.spooled.progress().blocks;
             if std::mem::replace(&mut before, blocks) != blocks {
                 teller.tell("progress");
@@ -118,7 +118,7 @@ struct Teller {
 
 /// A line of progress.
 #[derive(Serialize)]
-struct Told<'a> {
+struct Reported<'a> {
     event: &'a str,
     program: &'a str,
     blocks: u64,
@@ -142,7 +142,7 @@ impl Teller {
                     progress.name, progress.blocks
                 ))
             }
-            Format::Json => console::print_json_line(&Told {
+            Format::Json => console::print_json_line(&Reported {
                 event,
                 program: &progress.name,
                 blocks: progress.blocks,

@@ -129,8 +129,8 @@ impl Corrections {
         let is_head = |line: &String| line.contains(" OVER ");
         let before = self.lines.get(..=self.current).unwrap_or_default();
         let from = before.iter().rposition(is_head).unwrap_or(0);
-        let behind = self.lines.iter().skip(from + 1).position(is_head);
-        from..behind.map_or(self.lines.len(), |at| from + 1 + at)
+        let after = self.lines.iter().skip(from + 1).position(is_head);
+        from..after.map_or(self.lines.len(), |at| from + 1 + at)
     }
 
     fn head_line(&mut self) -> Turn {

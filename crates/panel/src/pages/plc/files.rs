@@ -18,7 +18,7 @@ use crate::pages::{axis_errors, external, list, transfer};
 use crate::programs::NAME_MAX;
 use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
-use crate::transfer::{TransferDeed, TransferFiles};
+use crate::transfer::{TransferAction, TransferFiles};
 
 /// Soft keys with one window, in two rows; what has no name is not there.
 const ONE: [[&str; 8]; 2] = [
@@ -339,7 +339,7 @@ impl Files {
             TNC => self.pane_mut().eprom = false,
             EPROM => self.pane_mut().eprom = true,
             // What is on the device is listed, and read in from there.
-            EXT => return transfer::begin_with(TransferFiles::Plc, TransferDeed::Directory, site),
+            EXT => return transfer::begin_with(TransferFiles::Plc, TransferAction::Directory, site),
             ending => self.pane_mut().ending = Some(ending.to_owned()),
         }
         Turn::Done

@@ -8,11 +8,11 @@ use crate::screen::SoftKeys;
 
 /// Whether the row is shown.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct RowBehind {
+pub(super) struct RowAfter {
     shown: bool,
 }
 
-impl RowBehind {
+impl RowAfter {
     /// A key that changes the row; `None` leaves it to the editor.
     pub fn turn(&mut self, key: Key, editor: &Editor) -> Option<Turn> {
         if editor.is_open() {

@@ -8,7 +8,7 @@ use crate::settings::Settings;
 
 /// Warnings since somebody took them, and what is said once.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Told {
+pub(crate) struct Reported {
     warnings: Vec<Warning>,
     /// Functions and rounded numbers.
     pub said: Said,
@@ -16,7 +16,7 @@ pub(crate) struct Told {
     pub machine_zero: bool,
 }
 
-impl Told {
+impl Reported {
     /// Notes a warning; the same one at the same block is counted, so that loops do not pile them up.
     pub fn warn(&mut self, block: BlockRef, kind: WarningKind) {
         const LOOKED_BACK: usize = 64;

@@ -9,7 +9,7 @@ use super::session::{Ended, Session};
 use crate::record::{End, ErrorReport, Place, Record};
 
 /// What is told of a run.
-pub struct Told {
+pub struct Reported {
     /// Its report.
     pub report: RunReport,
     /// What broke it off.
@@ -18,7 +18,7 @@ pub struct Told {
     pub failed_in: usize,
 }
 
-impl Told {
+impl Reported {
     /// Of a session that has `ended` on a machine of this name. `has_program` says that the first channel had one, and
     /// `removed_mm3` what was removed of its part.
     pub fn of(
@@ -27,7 +27,7 @@ impl Told {
         machine: &str,
         has_program: bool,
         removed_mm3: Option<f64>,
-    ) -> Told {
+    ) -> Reported {
         let model = session.host.control().model();
         let failed_in = failed_channel(ended);
         let (end, failure) = end_of_first(session, ended);
@@ -37,7 +37,7 @@ impl Told {
         if let Ended::Hangs(what, _) = ended {
             report.waits_for = Some(what.clone());
         }
-        Told {
+        Reported {
             report,
             failure,
             failed_in,

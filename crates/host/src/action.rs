@@ -50,7 +50,7 @@ impl Operable for Machine {
 /// # Ok::<(), bahn_host::DeedError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub enum Deed {
+pub enum Action {
     /// To a channel of the control, from 0.
     Command(usize, Command),
     /// To the machine, with its text.
@@ -59,7 +59,7 @@ pub enum Deed {
 
 /// A text is nothing that can be done.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum DeedError {
+pub enum ActionError {
     /// Its first word is no event and no command.
     #[error("`{0}` is no event and no command")]
     Unknown(String),
@@ -68,16 +68,16 @@ pub enum DeedError {
     Wrong(String),
 }
 
-impl Deed {
+impl Action {
     /// Reads a command of the control or an event of the machine; `2: mode full` goes to the second channel. `key 107` is a key of the keyboard,
     /// `key NC_START tap` one of the panel; `handwheel X 3` chooses the axis of the handwheel, `handwheel 500`
     /// turns it.
     ///
     /// # Errors
     /// When it is neither.
-    pub fn parse(text: &str) -> Result<Deed, DeedError> {
+    pub fn parse(text: &str) -> Result<Action, ActionError> {
         if let (Some(channel), command) = split_channel(text) {
-            return Deed::command_to(channel, command);
+            return Action::command_to(channel, command);
         }
         let (word, rest) = text
             .trim()
@@ -96,39 +96,39 @@ impl Deed {
             _ => false,
         };
         if Event::WORDS.contains(&word) && !is_command {
-            let event = Event::parse(text).map_err(|error| DeedError::Wrong(error.to_string()))?;
+            let event = Event::parse(text).map_err(|error| ActionError::Wrong(error.to_string()))?;
             let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-            return Ok(Deed::Event(event, text));
+            return Ok(Action::Event(event, text));
         }
         let command = text.parse().map_err(|error| match error {
-            CommandError::Unknown(word) => DeedError::Unknown(word),
-            CommandError::Wrong(what) => DeedError::Wrong(what),
+            CommandError::Unknown(word) => ActionError::Unknown(word),
+            CommandError::Wrong(what) => ActionError::Wrong(what),
         })?;
-        Ok(Deed::Command(0, command))
+        Ok(Action::Command(0, command))
     }
 
     /// Events happen to the machine as a whole: only commands go to a channel.
-    fn command_to(channel: usize, text: &str) -> Result<Deed, DeedError> {
+    fn command_to(channel: usize, text: &str) -> Result<Action, ActionError> {
         let command = text.parse().map_err(|error: CommandError| {
             let what = format!("{error}; a channel takes commands, events happen to the machine");
-            DeedError::Wrong(what)
+            ActionError::Wrong(what)
         });
-        command.map(|command| Deed::Command(channel, command))
+        command.map(|command| Action::Command(channel, command))
     }
 
     /// A key of the panel is tapped.
-    pub fn tap(key: &str) -> Deed {
+    pub fn tap(key: &str) -> Action {
         let event = Event::Key(key.to_owned(), KeyAction::Tap);
-        Deed::Event(event, format!("key {key} tap"))
+        Action::Event(event, format!("key {key} tap"))
     }
 }
 
-impl fmt::Display for Deed {
+impl fmt::Display for Action {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Deed::Command(0, command) => command.fmt(f),
-            Deed::Command(channel, command) => write!(f, "{}: {command}", channel + 1),
-            Deed::Event(_, text) => f.write_str(text),
+            Action::Command(0, command) => command.fmt(f),
+            Action::Command(channel, command) => write!(f, "{}: {command}", channel + 1),
+            Action::Event(_, text) => f.write_str(text),
         }
     }
 }
