@@ -32,7 +32,7 @@ is backlash (MP710); a straight line is the linear error (MP720); what that leav
 counting step of the encoder, is a table (.COM, named LASER-X and so on, with MP730 and the assignment .CMA).
 
 JSON: written, axes (axis, points, resolution_um, before_um, after_um: greatest error of both directions; backlash_mm,
-linear_mm_m, by_table, drift_um; errors: at_mm, up_um, down_um, and residual_up_um, residual_down_um behind it).
+linear_mm_m, by_table, drift_um; errors: at_mm, up_um, down_um, and residual_up_um, residual_down_um after it).
 Exit codes: 0 fine, 1 the machine is wrong or a run was broken off, 2 wrong use.";
 
 /// Options of `bahn compensate`.

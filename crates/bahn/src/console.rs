@@ -33,7 +33,7 @@ pub(crate) fn print_json(report: &impl serde::Serialize) -> Result<(), UsageErro
     print_bytes(bahn_report::text::json(report)?.as_bytes())
 }
 
-/// Prints a value as one line of JSON, since lines of others may stand before it and behind it.
+/// Prints a value as one line of JSON, since lines of others may stand before it and after it.
 pub(crate) fn print_json_line(value: &impl serde::Serialize) -> Result<(), UsageError> {
     let line = serde_json::to_string(value)
         .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;

@@ -13,7 +13,7 @@ pub(crate) const PRINTED_MAX: usize = 100;
 /// Characters of a line that are shown; a line of a broken file may have millions.
 const MAX_COLUMNS: usize = 200;
 
-/// Prints a fault as rustc does, with an empty line behind it.
+/// Prints a fault as rustc does, with an empty line after it.
 pub(crate) fn print_fault(fault: &FileFault) {
     if fault.severity == Severity::Error {
         refused::fault(|| reported(fault), PRINTED_MAX);

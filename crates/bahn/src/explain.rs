@@ -38,7 +38,7 @@ fn all(model: ControlModel) -> String {
     lines.collect()
 }
 
-/// A message, with axis and code where they stand behind its text.
+/// A message, with axis and code where they stand after its text.
 struct Found {
     id: MessageId,
     axis: Option<String>,
@@ -71,7 +71,7 @@ impl Found {
             .map(|(_, found)| found)
     }
 
-    /// Reads the words as this text: `#` is an axis or nothing, behind it stand axis and code.
+    /// Reads the words as this text: `#` is an axis or nothing, after it stand axis and code.
     fn after(id: MessageId, text: &str, written: &[String]) -> Option<Found> {
         let mut axis = None;
         let mut rest = written.iter().peekable();

@@ -73,7 +73,7 @@ fn regular(path: &Path) -> Option<PathBuf> {
     }
 }
 
-/// What a name ends with behind its last dot, in small letters; empty without one.
+/// What a name ends with after its last dot, in small letters; empty without one.
 pub(crate) fn extension(path: &Path) -> String {
     path.extension()
         .unwrap_or_default()

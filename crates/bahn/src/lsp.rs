@@ -20,7 +20,7 @@ Examples:
 
 An editor starts the command and speaks the Language Server Protocol with it by standard input
 and output: errors while you type, what words mean, labels and programs, values of Q parameters
-behind a run, outline, completion of cycles with their prompts, listing, other label numbers,
+after a run, outline, completion of cycles with their prompts, listing, other label numbers,
 conversion. Files .H, .I, .nc, .PLC and .MP; docs/lsp.md has the set-up for Visual Studio Code
 and Neovim.
 

@@ -86,7 +86,7 @@ fn whole_programs_are_fine_and_empty_files_are_not() {
     );
 }
 
-/// What only a block behind a fault does is said all the same.
+/// What only a block after a fault does is said all the same.
 #[test]
 fn macros_and_subroutines_that_nobody_has_are_faults_of_their_blocks() {
     let folder = Folder::new();

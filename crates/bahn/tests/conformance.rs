@@ -32,7 +32,7 @@ struct Source {
     file: String,
 }
 
-/// All tests by name, `crate::name`: functions behind `#[test]`.
+/// All tests by name, `crate::name`: functions after `#[test]`.
 fn tests() -> BTreeMap<String, Vec<Source>> {
     let mut found: BTreeMap<String, Vec<Source>> = BTreeMap::new();
     for room in fs::read_dir(root().join("crates")).unwrap() {

@@ -52,7 +52,7 @@ impl Device {
         self.0.write_all(&block).unwrap();
     }
 
-    /// A block or header with the DC1 behind it; its text.
+    /// A block or header with the DC1 after it; its text.
     fn block(&mut self, first: u8) -> String {
         let mut found = self.byte();
         while found == 0x11 {
@@ -203,7 +203,7 @@ fn a_full_memory_gives_no_acknowledgement() {
     assert_eq!(report["position"]["X"], 50.0);
 }
 
-/// START again behind a broken line: the device sends everything anew, and no block is executed twice.
+/// START again after a broken line: the device sends everything anew, and no block is executed twice.
 #[test]
 fn start_again_after_a_broken_line() {
     let folder = mill();

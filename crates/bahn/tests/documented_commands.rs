@@ -27,7 +27,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The commands in a text: lines that begin with `bahn`, without what explains them behind.
+/// The commands in a text: lines that begin with `bahn`, without what explains them after.
 fn commands(text: &str) -> Vec<String> {
     let lines = text
         .lines()

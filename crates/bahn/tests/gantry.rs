@@ -107,7 +107,7 @@ fn slave_and_plc_axis_are_no_parallel_axes() {
     }
 }
 
-/// M61 and M62 bring the pallets to the front: the block behind waits until the shuttle, an axis of the PLC, has arrived
+/// M61 and M62 bring the pallets to the front: the block after waits until the shuttle, an axis of the PLC, has arrived
 /// [000:4094-4240]. An EMERGENCY STOP on the way is no acknowledgement.
 #[test]
 fn the_shuttle_is_an_axis_of_the_plc() {

@@ -111,7 +111,7 @@ fn a_step_of_the_speed_controller() {
     assert!(speeds[trigger.unwrap() + 17] > 0.9 * 240.0);
 }
 
-/// Behind code number 688 379 START and STOP are the operator's: FREE RUN ends by hand, and a second START forgets the first
+/// After code number 688 379 START and STOP are the operator's: FREE RUN ends by hand, and a second START forgets the first
 /// recording [000:18691] [000:18776-18778].
 #[test]
 fn start_and_stop_by_hand() {
@@ -125,7 +125,7 @@ fn start_and_stop_by_hand() {
         assert_eq!(run.code(), 0, "{}", run.err());
         memory(&folder.read("o.csv"))
     };
-    // Half a second of 0.6 ms; a contour cycle may lie before and behind.
+    // Half a second of 0.6 ms; a contour cycle may lie before and after.
     let by_hand = "start+1: code 688379\n+0: oscilloscope start\n+0.5: oscilloscope stop\n";
     let (first, _, trigger) = recorded(by_hand);
     assert_eq!(trigger, None);

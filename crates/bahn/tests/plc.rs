@@ -208,7 +208,7 @@ fn scripts_set_and_expect() {
 fn scripts_have_times_and_conditions() {
     // O2 follows I4 for as long as W8 counts to 5.
     let folder = folder("L I4\n= O2\nINC W8\nL W8\n== K+5\n= O3\nEM\n");
-    // A scan of the TNC 415 lasts 20 ms [000:239]: 0.1 s is behind the fifth.
+    // A scan of the TNC 415 lasts 20 ms [000:239]: 0.1 s is after the fifth.
     folder.write(
         "s.txt",
         "0: I4=1\n+1 cycle: expect O2=1, W8=1\n0.1: expect W8=5, O3=1\nwhen O3=1: I4=0\n+1 cycle: expect O2=0\n\
@@ -216,7 +216,7 @@ fn scripts_have_times_and_conditions() {
     );
     let run = folder.bahn("plc run MAIN.PLC --script s.txt --show W8,O2 --format json");
     assert_eq!(run.code(), 0, "{}", run.err());
-    // The condition comes true behind cycle 5; 1 + 2 + 2 cycles later the script ends.
+    // The condition comes true after cycle 5; 1 + 2 + 2 cycles later the script ends.
     assert_eq!(run.json()["cycles"], 10);
     assert_eq!(run.json()["values"], json!({"W8": 10, "O2": 0}));
 
@@ -227,7 +227,7 @@ fn scripts_have_times_and_conditions() {
     let run = folder.bahn("plc run MAIN.PLC --script never.txt --format json --junit n.xml");
     assert_eq!(run.code(), 1);
     let report = run.json();
-    // A minute behind the last thing that was done.
+    // A minute after the last thing that was done.
     assert_eq!(report["cycles"], 3002);
     assert_eq!(
         report["failed_expectations"],

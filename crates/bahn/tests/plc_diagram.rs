@@ -89,7 +89,7 @@ fn drawings_are_written() {
     let run = folder.bahn("plc diagram MAIN.PLC --show O2,W8 --cycles 8 --svg out.svg");
     assert_eq!(run.code(), 0, "{}", run.err());
     let svg = folder.read("out.svg");
-    // 70 for the names, 12 for a cycle; O2 rises behind three cycles.
+    // 70 for the names, 12 for a cycle; O2 rises after three cycles.
     assert!(
         svg.contains("points=\"70,50 106,50 106,34 142,34 142,50 166,50\""),
         "{svg}"

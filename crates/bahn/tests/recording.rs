@@ -100,7 +100,7 @@ fn positions_and_distances() {
                 "row {row}"
             );
             // The encoder of 20 µm sits at the table, its step is 20 nm; marks and machine datum fit the plant.
-            // What is measured at the beginning of a servo step is recorded behind it.
+            // What is measured at the beginning of a servo step is recorded after it.
             assert!((table[row] - actual[row]).abs() < 0.002 + cycle, "row {row}");
             steady += 1;
         }
@@ -261,7 +261,7 @@ fn recording_goes_on_after_a_fault() {
         .position(|event| event.contains("MEASURING SYSTEM"))
         .unwrap();
     let times = recorded.column("time [s]".split(" [").next().unwrap());
-    // 2 s behind it there is a row for each contour cycle.
+    // 2 s after it there is a row for each contour cycle.
     assert!((times.last().unwrap() - times[fault] - 2.0).abs() < 0.01);
     assert!((times.len() - fault) as i64 - (2.0f64 / 0.003) as i64 <= 4);
     // 2000 N push against friction and brake, 1750 N: the table moves and stands again.

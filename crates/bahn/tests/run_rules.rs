@@ -26,7 +26,7 @@ fn report(folder: &Folder, arguments: &str) -> (i32, Value) {
     (run.code(), run.json())
 }
 
-/// `end` before the program is complete is an error in text and JSON, wherever it comes; behind its end it is
+/// `end` before the program is complete is an error in text and JSON, wherever it comes; after its end it is
 /// none.
 #[test]
 fn a_script_that_ends_early_fails() {

@@ -1,4 +1,4 @@
-//! Scripts: conditions, times, what goes on behind an error, and what the end makes of it all.
+//! Scripts: conditions, times, what goes on after an error, and what the end makes of it all.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod support;
@@ -47,7 +47,7 @@ fn conditions_on_signals_come_true_in_their_cycle() {
             (values.next().unwrap(), values.next().unwrap())
         })
         .collect();
-    // It was so for the first time behind the cycle that ends when the key is pressed.
+    // It was so for the first time after the cycle that ends when the key is pressed.
     let stop = time("NC_STOP");
     let first = rows.iter().find(|(_, x)| *x > 250.0).unwrap();
     assert!((first.0 - stop).abs() < 1e-9, "{first:?}, {stop}");

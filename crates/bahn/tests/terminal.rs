@@ -146,7 +146,7 @@ impl Desk {
         self.types(&[typed(Press::Machine(name))]);
     }
 
-    /// A command behind `:`.
+    /// A command after `:`.
     fn command(&self, command: &str) {
         self.types(&[":".to_owned()]);
         self.tmux(&["send-keys", "-l", command]);
@@ -275,7 +275,7 @@ fn position(screen: &str, letter: &str) -> f64 {
         .unwrap()
 }
 
-/// A program runs or is interrupted: `*` behind F and M.
+/// A program runs or is interrupted: `*` after F and M.
 fn star(screen: &str) -> bool {
     let mut cells = screen.lines().filter_map(|line| cell(line, 1));
     cells.any(|cell| cell.starts_with(" F ") && cell.contains('M') && cell.trim_end().ends_with('*'))

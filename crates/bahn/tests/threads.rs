@@ -31,7 +31,7 @@ CYCL DEF 2.4 F<feed>
 L Z+3 FMAX M99
 L Z+50 FMAX M5";
 
-/// The deepest place of the table in a block from where it is highest behind the way to the hole, and how far it leaves the pitch on
+/// The deepest place of the table in a block from where it is highest after the way to the hole, and how far it leaves the pitch on
 /// its way down.
 fn recorded(table: &str, block: u32) -> [f64; 2] {
     let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();

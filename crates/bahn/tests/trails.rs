@@ -68,7 +68,7 @@ const HAPPENINGS: &[&str] = &[
 const SIGNALS: &str = "path.speed,path.block,S.rpm,S.volts,S.angle,X.actual,X.nominal,X.lag,X.speed,X.volts,Y.actual,Y.nominal,Y.volts,\
      Z.actual,Z.nominal,Z.volts,W256,W258,W260,W262,W264,W266,D356,D596,M2009,M2040,M2045,M2046,M2047,M2048,M2095,M2150,M2190,M2482,M2483,M2485,O8,O13";
 
-/// Random things for the half minute behind the start of a program.
+/// Random things for the half minute after the start of a program.
 fn script(seed: u64) -> String {
     let mut dice = Dice::new(seed);
     let mut text = String::from("start: override feed 100\n");

@@ -198,7 +198,7 @@ fn the_scripts_hold_wherever_the_axes_stand() {
             folder.write("left.txt", format!("{left_at}: end\n"));
             assert_eq!(run("left.txt").code(), 1, "the run is left at {left_at} s");
             let done = run(script);
-            assert_eq!(done.code(), 0, "{script} behind {left_at} s: {}", done.err());
+            assert_eq!(done.code(), 0, "{script} after {left_at} s: {}", done.err());
             let again = run(script);
             assert_eq!(again.code(), 0, "{script} again: {}", again.err());
         }

@@ -56,7 +56,7 @@ impl Done {
         self.after(0, block, columns)
     }
 
-    /// The same behind the first time that another block was.
+    /// The same after the first time that another block was.
     fn after<const N: usize>(&self, before: u32, block: u32, columns: [&str; N]) -> Vec<[f64; N]> {
         let (head, rows) = (self.record.lines().next().unwrap(), rows(&self.record));
         let place = |name: &str| {

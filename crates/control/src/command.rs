@@ -127,7 +127,7 @@ pub enum Command {
     /// `output step FEED`, `output ramp`: what direction keys put out in MANUAL OPERATION on axes with digital speed
     /// controller, as OUTPUT of the oscilloscope says; the feed in mm/min [000:18737-18756].
     Output(Option<f64>),
-    /// `oscilloscope start`, `oscilloscope stop`: the soft keys START and STOP behind code number 688 379
+    /// `oscilloscope start`, `oscilloscope stop`: the soft keys START and STOP after code number 688 379
     /// [000:18776-18778].
     Oscilloscope(bool),
     /// `3d-rot on`, `3d-rot on B+30`, `3d-rot off`: by hand the axes move, are shown and get their datum in the plane of the
@@ -193,7 +193,7 @@ pub enum CommandError {
     /// There is none of this name.
     #[error("`{0}` is no command")]
     Unknown(String),
-    /// What stands behind its name is wrong.
+    /// What stands after its name is wrong.
     #[error("{0}")]
     Wrong(String),
 }
@@ -266,7 +266,7 @@ impl FromStr for Command {
             if rest.is_empty() {
                 Ok(command)
             } else {
-                Err(CommandError::Wrong(format!("`{name}` takes nothing behind it")))
+                Err(CommandError::Wrong(format!("`{name}` takes nothing after it")))
             }
         };
         match name {
@@ -329,14 +329,14 @@ impl FromStr for Command {
             "power" => switch(name, rest, "on").map(Command::Power),
             _ if DataLineEvent::WORDS.contains(&name) => data_line(name, rest),
             "select" | "test" | "mdi" => {
-                Err(CommandError::Wrong(format!("`{name}` needs something behind it")))
+                Err(CommandError::Wrong(format!("`{name}` needs something after it")))
             }
             _ => Err(CommandError::Unknown(name.to_owned())),
         }
     }
 }
 
-/// A command with what stands behind its name.
+/// A command with what stands after its name.
 fn parsed<T>(read: Result<T, String>, command: fn(T) -> Command) -> Result<Command, CommandError> {
     read.map(command).map_err(CommandError::Wrong)
 }
@@ -615,7 +615,7 @@ mod tests {
         for (text, expected) in [
             ("", "no command"),
             ("mode auto", "modes are manual"),
-            ("ce now", "nothing behind"),
+            ("ce now", "nothing after"),
             ("s -1", "from 0 to 99999.999"),
             ("s nan", "not `nan`"),
             ("datum Q 5", "an axis and a value"),

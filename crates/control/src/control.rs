@@ -566,7 +566,7 @@ impl Control {
         self.tnc.channels.first().run.track.path.element()
     }
 
-    /// Path length to the end of that element, mm; below 0 where a thread waits behind its end.
+    /// Path length to the end of that element, mm; below 0 where a thread waits after its end.
     pub fn rest_mm(&self) -> f64 {
         self.tnc.channels.first().run.track.path.rest_mm()
     }

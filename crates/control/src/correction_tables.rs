@@ -23,7 +23,7 @@ use crate::compensation_table::{CompensationError, axis_named, error, lines};
 /// // Point 1 stands at -90 + 2^16 · 0.1 µm = -83.4464 mm.
 /// assert_eq!(tables.driving(2), Some(1));
 /// assert!((tables.error_mm(2, -83.4464) - 0.01).abs() < 1e-9);
-/// // 6.5536 mm / 64 = 0.1024 mm: 0.61 behind 0.5 is too much.
+/// // 6.5536 mm / 64 = 0.1024 mm: 0.61 after 0.5 is too much.
 /// let wrong = CorrectionTables::read(&text.replace("51 0.51\n", "51 0.61\n")).unwrap_err();
 /// assert_eq!(wrong.line, 53);
 /// # Ok::<(), bahn_control::CompensationError>(())

@@ -142,7 +142,7 @@ impl DataLineEvent {
     /// Words with which the texts of such events begin.
     pub(crate) const WORDS: [&'static str; 3] = ["rs232", "rs422", "lsv2"];
 
-    /// Reads what stands behind such a word.
+    /// Reads what stands after such a word.
     pub(crate) fn parse(word: &str, rest: &str) -> Option<DataLineEvent> {
         if word == "lsv2" {
             return HostEvent::parse(rest).map(DataLineEvent::Host);

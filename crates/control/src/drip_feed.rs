@@ -25,7 +25,7 @@ const FEW_BLOCKS: u32 = 128;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dnc {
     /// `dnc begin NAME`: NC start runs the program of this name as it comes. A transfer of the program that was broken off
-    /// goes on instead, behind what has come.
+    /// goes on instead, after what has come.
     Begin(String),
     /// `dnc text L X+5\n`: text of it, with the escapes of a byte string. Refused while no more is [wanted](DripFeedState).
     Text(Arc<[u8]>),
@@ -36,7 +36,7 @@ pub enum Dnc {
 }
 
 impl Dnc {
-    /// Reads what stands behind `dnc`.
+    /// Reads what stands after `dnc`.
     pub(crate) fn parse(text: &str) -> Result<Dnc, String> {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         match word {
@@ -284,7 +284,7 @@ struct Refused;
 #[derive(Clone, Debug)]
 struct BlockNumbers {
     max: Option<u32>,
-    /// The number at the beginning of the line, as far as it has come; `None` behind it.
+    /// The number at the beginning of the line, as far as it has come; `None` after it.
     number: Option<u32>,
 }
 

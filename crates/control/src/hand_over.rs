@@ -124,7 +124,7 @@ pub(crate) fn hand_over(
     Ok(())
 }
 
-/// No program is on its way, or it stands where nothing behind it was read: at the strobe of a function, or at a
+/// No program is on its way, or it stands where nothing after it was read: at the strobe of a function, or at a
 /// programmed stop.
 fn rests(channel: &Channel) -> bool {
     let path = &channel.run.track.path;

@@ -200,7 +200,7 @@ impl Default for Handshakes {
 }
 
 impl Handshakes {
-    /// Adds a transfer behind those that wait.
+    /// Adds a transfer after those that wait.
     pub fn push(&mut self, transfer: Transfer) {
         debug_assert!(self.queue.len() < CAPACITY, "the path is held before");
         self.queue.push_back(transfer);
@@ -211,7 +211,7 @@ impl Handshakes {
         self.queue.len() >= CROWD
     }
 
-    /// M2614: behind the block whose strobe was acknowledged none is executed [000:10835].
+    /// M2614: after the block whose strobe was acknowledged none is executed [000:10835].
     pub fn inhibit_read_in(&self) -> bool {
         self.inhibits
     }

@@ -214,7 +214,7 @@ impl Leaning {
             (None, None) => (Aim::Feed(0.0), rapid),
         };
         let way = moving.way.cycle(now.time_s, aim, feed, acceleration) - at;
-        // With the cycle behind its last movement the axes stand, too.
+        // With the cycle after its last movement the axes stand, too.
         let stands = moving.way.speed_mm_s() == 0.0 && way == 0.0;
         let over =
             stands && (now.stop || wish.key.is_none() && moving.target.is_none_or(|to| moving.way.is_at(to)));

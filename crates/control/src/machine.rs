@@ -433,7 +433,7 @@ impl MachineSide {
         true
     }
 
-    /// Once in each contour cycle, behind all movements.
+    /// Once in each contour cycle, after all movements.
     pub fn look_after(&mut self, measured: &Measured) {
         self.battery
             .watch(measured.buffer_battery_low, &mut self.messages);

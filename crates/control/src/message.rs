@@ -35,7 +35,7 @@ pub enum HandOverError {
 pub enum Message {
     /// A message that needs nothing else.
     Plain(MessageId),
-    /// A message of one axis, with what stands behind it, `A` to `E` or `3F`, where it has one.
+    /// A message of one axis, with what stands after it, `A` to `E` or `3F`, where it has one.
     Axis {
         /// The message.
         id: MessageId,
@@ -120,7 +120,7 @@ impl Message {
                 MessageId::ErrorInPlcProgram.text(model),
                 String::from_utf8_lossy(code)
             ),
-            // The error list of the PLC prints the number behind it [000:11919].
+            // The error list of the PLC prints the number after it [000:11919].
             Message::PlcStopped { number, .. } => {
                 format!("{} {number}", MessageId::ErrorInPlcProgram.text(model))
             }

@@ -39,7 +39,7 @@ impl OscilloscopeKeys {
 mod tests {
     use super::*;
 
-    /// START and STOP work behind the code number only; a TNC 360 has no oscilloscope.
+    /// START and STOP work after the code number only; a TNC 360 has no oscilloscope.
     #[test]
     fn the_code_number_opens_it() {
         let mut keys = OscilloscopeKeys::default();

@@ -9,7 +9,7 @@ use crate::markers::AXES;
 use bahn_kernel::Direction;
 use bahn_parameters::PerPlcAxis;
 
-/// The letters behind `ERROR IN PLC-PROGRAM`.
+/// The letters after `ERROR IN PLC-PROGRAM`.
 pub(crate) type PlcFaultCode = [u8; 2];
 
 /// A command marker with its complement and the code of its fault.

@@ -8,7 +8,7 @@ use bahn_path::Axis;
 /// The axes that may swivel, in the order of [`PlaneCommand::angles`].
 pub(crate) const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
 
-/// `3d-rot on`, `3d-rot on B+30`, `3d-rot off`, the same for program run behind `run`.
+/// `3d-rot on`, `3d-rot on B+30`, `3d-rot off`, the same for program run after `run`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneCommand {
     /// It is for program run, not for manual operation.
@@ -19,10 +19,10 @@ pub struct PlaneCommand {
 }
 
 impl PlaneCommand {
-    /// What stands behind `3d-rot`.
+    /// What stands after `3d-rot`.
     pub(crate) fn parse(text: &str) -> Result<PlaneCommand, String> {
         let wrong = || {
-            "`3d-rot` takes `on` or `off`, behind `run` for program run; `on` takes angles: `on B+30`"
+            "`3d-rot` takes `on` or `off`, after `run` for program run; `on` takes angles: `on B+30`"
                 .to_owned()
         };
         let mut words = text.split_whitespace().peekable();

@@ -5,7 +5,7 @@ use std::fmt;
 use bahn_kernel::Direction;
 use bahn_path::Axis;
 
-/// An input of the TOUCH PROBE menu [003:1226-1405]; in commands it stands behind `probe`.
+/// An input of the TOUCH PROBE menu [003:1226-1405]; in commands it stands after `probe`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProbeCommand {
     /// A function of the menu is chosen: `length`, `radius`, `rotation`, `surface`, `corner`, `circle`.
@@ -49,7 +49,7 @@ pub enum ProbeFunction {
 const GAUGE_MAX: f64 = 99_999.0;
 
 impl ProbeCommand {
-    /// Reads what stands behind `probe`.
+    /// Reads what stands after `probe`.
     ///
     /// # Errors
     /// What is expected.
@@ -64,7 +64,7 @@ impl ProbeCommand {
         };
         let choose = |function| match rest {
             "" => Ok(ProbeCommand::Choose(function)),
-            _ => Err(format!("`probe {name}` takes nothing behind it, not `{rest}`")),
+            _ => Err(format!("`probe {name}` takes nothing after it, not `{rest}`")),
         };
         match name {
             "length" => {
@@ -179,7 +179,7 @@ mod tests {
             ("", "length, radius"),
             ("radius 0", "greater than 0"),
             ("radius", "takes a value"),
-            ("corner again", "nothing behind it"),
+            ("corner again", "nothing after it"),
             ("direction X", "X+, Y-"),
             ("datum 5", "`probe datum X 5`"),
             ("angle 400", "up to 360"),

@@ -195,7 +195,7 @@ impl Probe {
         self.enable(Some(block), ends, [feed_mm_min, 0.0], site);
     }
 
-    /// The operator probes: behind the touch the axes go back to the start in rapid traverse [003:1217-1224].
+    /// The operator probes: after the touch the axes go back to the start in rapid traverse [003:1217-1224].
     pub fn begin_by_hand(&mut self, ends: [Position; 2], settings: &ProbeSettings, site: &mut Site) {
         self.enable(None, ends, [settings.feed_mm_min, settings.rapid_mm_min], site);
     }

@@ -51,7 +51,7 @@ impl Wear {
         Wear::Expired
     }
 
-    /// Why the run cannot go on with it behind the block.
+    /// Why the run cannot go on with it after the block.
     pub fn message(self) -> Option<MessageId> {
         match self {
             Wear::None | Wear::Replace(_) => None,

@@ -141,7 +141,7 @@ impl Restoration {
             }
             match feeder.next() {
                 Step::Element(element) => {
-                    // Nobody goes back behind what the scan has passed.
+                    // Nobody goes back after what the scan has passed.
                     feeder.forget_before(element.sequence);
                     self.pass(element, block, feeder, rules, track, site);
                 }

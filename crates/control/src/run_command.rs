@@ -77,7 +77,7 @@ fn transfer(dnc: Dnc, run: &mut ProgramRun, site: &mut Site, basis: &Basis) -> b
 /// A Q parameter is changed, between runs or while one is interrupted: what was read ahead with its old value is read
 /// again, from the block that is cut on [003:4337-4344].
 fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bool {
-    // Behind a programmed stop nothing is read.
+    // After a programmed stop nothing is read.
     if run.is_active() && run.progress().state() != RunState::Stopped {
         let stands = !run.progress().is_running() && run.track.stands(&site.axes);
         let free = site.handshakes.is_idle() && run.track.has_output_all() && !run.probe.is_on();

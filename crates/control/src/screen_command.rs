@@ -23,7 +23,7 @@ pub struct ScreenCommand {
 const GREATEST: [u16; 5] = [4, 3, u16::MAX, 7, 1];
 
 impl ScreenCommand {
-    /// What stands behind `screen`.
+    /// What stands after `screen`.
     pub(crate) fn parse(text: &str) -> Result<ScreenCommand, String> {
         let wrong = || "`screen` takes five numbers: items 2, 3, 4, 5 and 17 of module 9035".to_owned();
         let mut words = text.split_whitespace();

@@ -331,7 +331,7 @@ impl Source {
         self.mdi_over
     }
 
-    /// Why nothing is probed by hand: a transformation stays in force behind the end of the program.
+    /// Why nothing is probed by hand: a transformation stays in force after the end of the program.
     pub fn bars_probing(&self) -> Option<MessageId> {
         self.status.bars_probing()
     }
@@ -361,7 +361,7 @@ impl Source {
         }
     }
 
-    /// Q parameters that are not 0, by number. Behind the end of a run they are those that its end has left.
+    /// Q parameters that are not 0, by number. After the end of a run they are those that its end has left.
     pub fn q_values(&self, ended: bool) -> Vec<(u16, f64)> {
         let over = ended && !self.q_due;
         let Some(interpreter) = self.interpreter().filter(|_| !over) else {
@@ -393,7 +393,7 @@ impl Source {
     }
 
     /// 3D ROT for program run: the next program begins in the plane of these positions of the swivel axes, or upright.
-    /// `false` while one can still go on, and where transformations are in force that begin behind the plane only.
+    /// `false` while one can still go on, and where transformations are in force that begin after the plane only.
     pub fn tilt(&mut self, angles: Option<Position>) -> bool {
         let done = self.resume_from.is_none() && !self.q_due && self.status.tilt(None);
         if done {

@@ -64,7 +64,7 @@ pub(crate) struct Pair {
     complement: Bit,
     /// The markers that choose the position.
     pub code: MarkerCode,
-    /// The letters behind `ERROR IN PLC-PROGRAM`. The manual prints none for these pairs; in its series 1A (M2448) to 1P
+    /// The letters after `ERROR IN PLC-PROGRAM`. The manual prints none for these pairs; in its series 1A (M2448) to 1P
     /// (M2463) and 2A (M2512) to 2N (M2525) they are the ones that are left out *(inferred)*.
     fault: PlcFaultCode,
 }

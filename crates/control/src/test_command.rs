@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-/// An input of TEST RUN [003:1531-1535]; in commands it stands behind `test-run`.
+/// An input of TEST RUN [003:1531-1535]; in commands it stands after `test-run`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TestCommand {
     /// `stop`: the test is interrupted where it is.
     Interrupt,
-    /// `stop N`: it is interrupted at a block of its main program, or the first one behind it that moves or stops
+    /// `stop N`: it is interrupted at a block of its main program, or the first one after it that moves or stops
     /// [003:1524].
     InterruptAt(u32),
     /// `go-on`: an interrupted test goes on [003:1535].
@@ -17,7 +17,7 @@ pub enum TestCommand {
 }
 
 impl TestCommand {
-    /// Reads what stands behind `test-run`.
+    /// Reads what stands after `test-run`.
     ///
     /// # Errors
     /// What is expected.

@@ -114,9 +114,9 @@ pub struct MovedTool {
 /// The lives of a tool in the tool table, minutes; 0 is no limit (inferred).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToolLife {
-    /// TIME1: behind it the PLC is told (M2094).
+    /// TIME1: after it the PLC is told (M2094).
     pub time1_min: f64,
-    /// TIME2: behind it TOOL CALL calls the replacement tool.
+    /// TIME2: after it TOOL CALL calls the replacement tool.
     pub time2_min: f64,
     /// CUR.TIME: how long it has worked.
     pub current_min: f64,

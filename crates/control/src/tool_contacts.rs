@@ -82,7 +82,7 @@ impl Contacts {
         self.order.teeth || self.order.part == MeasuredPart::Probe
     }
 
-    /// The touch that is next, `None` behind the last one.
+    /// The touch that is next, `None` after the last one.
     pub fn next(&self) -> Option<Contact> {
         let at = Some(self.at).filter(|at| *at < self.count())?;
         Some(match (self.order.part, at) {

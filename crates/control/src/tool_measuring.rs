@@ -348,7 +348,7 @@ impl Sequence {
         }
     }
 
-    /// Behind a touch: another one from the same place, or from another one, or none.
+    /// After a touch: another one from the same place, or from another one, or none.
     fn go_on(&mut self, site: &Site) {
         let Some(next) = self.contacts.next() else {
             return self.go_to(Phase::Leave, site);

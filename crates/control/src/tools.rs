@@ -240,7 +240,7 @@ impl Tools {
         }
     }
 
-    /// Behind a scan: what the PLC has acknowledged in it has happened, whenever the supply goes or an EMERGENCY STOP takes
+    /// After a scan: what the PLC has acknowledged in it has happened, whenever the supply goes or an EMERGENCY STOP takes
     /// the strobe away *(inferred)*. Its program may rely on that.
     pub fn take_end(&mut self, magazine: &mut Magazine, handshakes: &Handshakes, exchange: &Exchange) {
         let acknowledged = handshakes.acknowledged(exchange.nc());

@@ -117,7 +117,7 @@ impl<'a> ChannelView<'a> {
         run.source.next_start(run.selection.start_block)
     }
 
-    /// Path length to the end of that element, mm; below 0 where a thread waits behind its end.
+    /// Path length to the end of that element, mm; below 0 where a thread waits after its end.
     pub fn rest_mm(&self) -> f64 {
         self.channel.run.track.path.rest_mm()
     }
@@ -227,7 +227,7 @@ impl<'a> ChannelView<'a> {
         self.channel.chain().offsets.datum
     }
 
-    /// What was digitized last: to be looked at behind every cycle.
+    /// What was digitized last: to be looked at after every cycle.
     pub fn digitized(&self) -> DigitizedNews {
         self.channel.run.probe.digitized
     }

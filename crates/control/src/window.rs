@@ -26,7 +26,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The channel's marker stands at a marker of the PLC, and those behind it behind that.
+    /// The channel's marker stands at a marker of the PLC, and those after it after that.
     pub fn markers(mut self, own: Bit, at: Bit, count: u16) -> Window {
         self.bits.extend((0..count).filter_map(|offset| {
             let marker = |first: Bit| Bit::new(BitArea::M, first.number().checked_add(offset)?);

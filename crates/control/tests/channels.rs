@@ -343,7 +343,7 @@ fn an_axis_is_handed_over_between_programs() {
     assert!(rig.messages().is_empty());
 }
 
-/// Both programs come to M60, the second one 6 s later; there Z goes over, and the blocks behind it move what each
+/// Both programs come to M60, the second one 6 s later; there Z goes over, and the blocks after it move what each
 /// channel has then. Nobody has begun them before.
 #[test]
 fn an_axis_is_handed_over_while_programs_run() {

@@ -46,7 +46,7 @@ fn run(rig: &mut Rig) {
     rig.cycle();
 }
 
-/// The shift stays in force behind the end with an even value, and never behind the selection of a program.
+/// The shift stays in force after the end with an even value, and never after the selection of a program.
 #[test]
 fn transformations_stay_as_mp7300_says() {
     for value in 0..8u8 {
@@ -59,7 +59,7 @@ fn transformations_stay_as_mp7300_says() {
     }
 }
 
-/// GOTO behind the end of a program starts with the Q parameters that are left then: without those that MP7300
+/// GOTO after the end of a program starts with the Q parameters that are left then: without those that MP7300
 /// cancelled at the end, and with what the PLC has written since.
 #[test]
 fn goto_after_the_end_brings_nothing_back() {

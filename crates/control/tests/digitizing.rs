@@ -393,7 +393,7 @@ fn the_surface_is_not_where_it_is_to_be() {
     }
 }
 
-/// EMERGENCY STOP in the middle: the axes stand, and behind it the scan goes on without a point that is off the face.
+/// EMERGENCY STOP in the middle: the axes stand, and after it the scan goes on without a point that is off the face.
 #[test]
 fn emergency_stop_in_the_middle() {
     let mut rig = rig(FACE);

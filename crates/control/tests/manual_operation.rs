@@ -368,7 +368,7 @@ fn actual_to_nominal_transfer() {
     }
 }
 
-/// An M function of a program changes the range: blocks behind it that the range before would have refused
+/// An M function of a program changes the range: blocks after it that the range before would have refused
 /// are executed, and blocks outside the new one are refused.
 #[test]
 fn a_program_changes_the_range() {

@@ -39,7 +39,7 @@ fn without_answer(program: &str, synchronisation: &str, distance_mm: Option<f64>
     (out, stands)
 }
 
-/// M40 stands in the second block, from X60 to X70; F goes on to X90, and M41 is the explicit place behind X100. What goes
+/// M40 stands in the second block, from X60 to X70; F goes on to X90, and M41 is the explicit place after X100. What goes
 /// out on the way is seen at most a PLC scan and two contour cycles later: 30 ms are 1.5 mm.
 #[test]
 fn each_type_goes_out_and_waits_in_its_place() {

@@ -395,7 +395,7 @@ LBL INSERT
 
 /// The programmer is to end the compensation before a PLC positioning [000:4052]; where he does not, the path goes on from where
 /// the axes are, without a jump, and an axis that the next block does not name stays, as without compensation. R 3 on the left:
-/// behind X+80 the strobe stands at the inside corner, X+77 Y+63; the PLC takes X to 72, along which Y goes to 90.
+/// after X+80 the strobe stands at the inside corner, X+77 Y+63; the PLC takes X to 72, along which Y goes to 90.
 #[test]
 fn plc_positioning_in_a_compensated_block() {
     let moves_x = plc_moves_z()

@@ -420,7 +420,7 @@ LBL 50
         while last > 0.0 {
             rig.cycle();
             let step = (commanded(&rig) - before).abs();
-            assert!(step < last, "{step} behind {last}, {:?}", rig.messages());
+            assert!(step < last, "{step} after {last}, {:?}", rig.messages());
             (before, last, way, cycles) = (commanded(&rig), step, way + step, cycles + 1);
             assert!(cycles < 100);
         }
@@ -551,7 +551,7 @@ LBL 50
     assert_eq!(rig.messages(), [""; 0]);
 }
 
-/// Bit 1 of module 9122 tells of an NC axis, too, whether it has passed its reference mark: off at power-on, on behind
+/// Bit 1 of module 9122 tells of an NC axis, too, whether it has passed its reference mark: off at power-on, on after
 /// the reference run [000:15938-15963].
 #[test]
 fn module_9122_tells_the_reference_of_nc_axes() {

@@ -10,7 +10,7 @@ use bahn_control::Signal;
 use stand::*;
 use support::*;
 
-/// M2614 = I20: behind the block whose strobe is acknowledged nothing is executed until it falls, whether the
+/// M2614 = I20: after the block whose strobe is acknowledged nothing is executed until it falls, whether the
 /// function comes at the begin or at the end of its block [000:10835].
 #[test]
 fn read_in_inhibit() {
@@ -407,7 +407,7 @@ fn a_selected_list_resets_the_control() {
 }
 
 /// Module 9041 reads actual values from the datum that was set (0) and from the one that cycle 7 has shifted it to (6)
-/// [000:14998-15006]: X+50 behind a shift of 20 stands at 70.
+/// [000:14998-15006]: X+50 after a shift of 20 stands at 70.
 #[test]
 fn the_plc_reads_positions_in_the_shifted_datum() {
     let read = "

@@ -276,7 +276,7 @@ fn test_run_and_q_parameters() {
     assert!(q.contains(&(1, 5.0)), "{q:?}");
 }
 
-/// The same on the mill with a head that swivels about B; behind the end of a program what is in force stays.
+/// The same on the mill with a head that swivels about B; after the end of a program what is in force stays.
 fn swivelling() -> Rig {
     let (mut setup, machine) = Build::swivelling_mill().mp("7300=3").setup();
     setup.programs = Arc::new(Shelf);

@@ -137,7 +137,7 @@ fn the_run_waits_for_feed_enable() {
     done(&mut rig);
 }
 
-/// MP1350 = 1: the first mark outside the cam. From 50 up to the mark at 100 and a stop behind it.
+/// MP1350 = 1: the first mark outside the cam. From 50 up to the mark at 100 and a stop after it.
 #[test]
 fn one_mark() {
     let [least, greatest, stands] = way(&mut asked(only_x(1, "mark = 100", 50.0)));
@@ -184,7 +184,7 @@ fn distance_coded_marks() {
     assert!(greatest < 50.0 + 20.0 + 3.0, "{greatest}");
 }
 
-/// A scratched scale has a second mark 20 periods, 0.4 mm, behind each. Behind 50.06 the pair would stand at (960 + 1 - 1) ·
+/// A scratched scale has a second mark 20 periods, 0.4 mm, after each. After 50.06 the pair would stand at (960 + 1 - 1) ·
 /// 500 - 20 + 20 periods of 20 µm = 9600 mm, far outside of 10 to 170: with MP30 the scale is defective, without it the pair
 /// does not count, and the next sound one, 60 and 70.08, does (inferred).
 #[test]
@@ -201,7 +201,7 @@ fn doubled_marks_are_refused() {
     let mut rig = asked(build.mps("30=0"));
     rig.event("fault encoder X twice");
     rig.start();
-    rig.until(8.0, "behind the doubled mark", |rig| rig.table('X') > 55.0);
+    rig.until(8.0, "after the doubled mark", |rig| rig.table('X') > 55.0);
     assert!(!rig.axis('X').referenced);
     rig.event("repair X");
     done(&mut rig);
@@ -242,7 +242,7 @@ fn old_distance_coded_marks_from_the_cam() {
 }
 
 /// MP1350 = 2: one pulse each turn of the ballscrew, 10 mm. Onto the cam at 180 with MP1330, back from it
-/// with MP1331; the first pulse behind the cam counts: 170 [000:4622].
+/// with MP1331; the first pulse after the cam counts: 170 [000:4622].
 #[test]
 fn one_pulse_each_turn() {
     for start in [50.0, 183.0] {
@@ -319,7 +319,7 @@ fn an_axis_without_place_in_mp1340() {
 }
 
 /// Another mode is chosen before the marks are passed [000:4581]: no program starts, in full sequence, in single block or
-/// behind a block scan; what MP1340 does not name is not waited for.
+/// after a block scan; what MP1340 does not name is not waited for.
 #[test]
 fn no_program_starts_before_the_marks_are_passed() {
     let program = "L X+60 Y+60 R0 F3000\nL X+70";

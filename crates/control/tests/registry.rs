@@ -49,7 +49,7 @@ fn inputs_and_outputs_are_assigned() {
     });
 }
 
-/// M2608: the output of the spindle is 0 V while the PLC sets it, and goes up along its ramp behind it
+/// M2608: the output of the spindle is 0 V while the PLC sets it, and goes up along its ramp after it
 /// [000:5500] [000:6565-6573].
 #[test]
 fn m2608_takes_the_voltage_away() {

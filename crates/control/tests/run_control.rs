@@ -201,7 +201,7 @@ fn internal_stop_and_restart() {
     near(display(&rig, 'X'), 80.0);
 }
 
-/// After internal stop at a programmed stop the next START goes on behind it.
+/// After internal stop at a programmed stop the next START goes on after it.
 #[test]
 fn internal_stop_at_a_programmed_stop() {
     let mut rig = bench_with(ACKNOWLEDGE, "L X+55 R0 F3000\nSTOP\nL X+60");
@@ -372,7 +372,7 @@ fn emergency_stop() {
 }
 
 /// The first blocks take their time as all others, however long the control was on before [000:143]: N lines of 0.01 mm at 6000 mm/min,
-/// 0.1 ms each, with 40 ms for a block take 40 ms for each of them, also behind a pause.
+/// 0.1 ms each, with 40 ms for a block take 40 ms for each of them, also after a pause.
 #[test]
 fn block_processing_time_counts_from_the_first_block() {
     for blocks in [100_u32, 200, 300] {

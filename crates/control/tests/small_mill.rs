@@ -98,7 +98,7 @@ fn nc_stop_of_another_mode_ends_nothing() {
     assert!(turns(&rig));
 }
 
-/// MP7270 + 2: behind NC stop in manual operation S and M are no longer active [003:7307-7315]: the spindle that M3 has switched
+/// MP7270 + 2: after NC stop in manual operation S and M are no longer active [003:7307-7315]: the spindle that M3 has switched
 /// on by hand stops; without it turns on. What was entered and not yet output is forgotten, too.
 #[test]
 fn nc_stop_ends_s_and_m_by_hand() {

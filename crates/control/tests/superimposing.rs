@@ -79,7 +79,7 @@ fn the_handwheel_leads_beside_the_path() {
     rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
     close(rig.axis('X').nominal - x, 50.0, 1e-9);
     assert_eq!(rig.messages(), [""; 0]);
-    // Behind the end nothing moves; the next run begins where the axes stand.
+    // After the end nothing moves; the next run begins where the axes stand.
     close(rig.axis('Z').nominal - z, -2.0, 1e-9);
     turn(&mut rig, 1.0, 0.3);
     close(rig.axis('Z').nominal - z, -2.0, 1e-9);
@@ -371,7 +371,7 @@ fn at_a_corner_the_wheel_gives_way_to_the_path() {
 }
 
 /// POSITIONING ERROR stops the machine [000:5198]: the wheel leads no axis on. At full speed Z lags 200 mm/s / (2 m/min/mm) = 6 mm
-/// behind, where MP1710 allows 4; it stands within its braking distance of 200² / (2 · 5000) = 4 mm and three cycles, and
+/// after, where MP1710 allows 4; it stands within its braking distance of 200² / (2 · 5000) = 4 mm and three cycles, and
 /// what is turned meanwhile moves nothing later.
 #[test]
 fn a_positioning_error_stops_the_wheel() {

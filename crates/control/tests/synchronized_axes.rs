@@ -215,7 +215,7 @@ fn after_an_emergency_stop() {
 }
 
 /// MP1350 = 2 for both, with one end position switch: the master's marker leads, each takes the first pulse
-/// behind it [000:4502-4504].
+/// after it [000:4502-4504].
 #[test]
 fn one_end_position_switch() {
     let mut rig = gantry("")

@@ -206,7 +206,7 @@ impl Plant for Recorder<'_> {
 }
 
 /// In each servo step from the first on the voltage is on the ramp MP3410.3, and Z is where the turn of the spindle
-/// says: in cycle 17 and cycle 18, one after the other, and in a thread behind M03; with the drive of the mill and
+/// says: in cycle 17 and cycle 18, one after the other, and in a thread after M03; with the drive of the mill and
 /// with one that follows its voltage at once.
 ///
 /// 0.01 V/ms are 0.006 V in a step of 0.6 ms. kv 2 is 33/s: the loop adds its part of a change of the lag, which is,

@@ -60,7 +60,7 @@ fn retracts(rig: &Rig) -> bool {
     observe(rig, "S.rpm") < -0.9 * RPM
 }
 
-/// The clamp of the tool goes and comes in the thread, and with it feed and spindle enable, for so long that the spindle has run out beside its axis, too: in every cycle in which the path goes on behind
+/// The clamp of the tool goes and comes in the thread, and with it feed and spindle enable, for so long that the spindle has run out beside its axis, too: in every cycle in which the path goes on after
 /// that, Z goes by the pitch for each turn. What friction leaves of the lag is no way of Z: 1 µm of rounding, and no more.
 #[test]
 fn after_a_lost_feed_enable_the_axis_follows_its_spindle() {
@@ -97,7 +97,7 @@ fn after_a_lost_feed_enable_the_axis_follows_its_spindle() {
 }
 
 /// The drive of Z runs away on the way out of the hole, and Z comes to stand far above it: POSITIONING ERROR. MP1720, beyond which
-/// that would be gross, is wide. Behind CE the
+/// that would be gross, is wide. After CE the
 /// spindle is held where it stands, and does not turn for the way that Z has gone; NC start leads Z back to where the
 /// thread ends, and the program goes on.
 #[test]

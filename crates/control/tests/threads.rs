@@ -74,7 +74,7 @@ fn record(rig: &mut Rig, marker: &str) -> Vec<Seen> {
         if begun && !now {
             return seen;
         }
-        // Spindle and axis stand behind the marker until the spindle is oriented.
+        // Spindle and axis stand after the marker until the spindle is oriented.
         begun |= now;
         let path = rig.control.observe(&"path.speed".parse().unwrap());
         if !begun || seen.len() < 3 && path == 0.0 {

@@ -15,7 +15,7 @@ const START: &str = "L X+300 Y+200 Z+300 B+0 R0 FMAX\n";
 const TILT: &str = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+30\n";
 
 /// X of the plane is cos 30° of the machine's X and -sin 30° of its Z, Z of the plane sin 30° and cos 30°. The display shows
-/// the coordinates of the plane; by hand and behind the program nothing is tilted.
+/// the coordinates of the plane; by hand and after the program nothing is tilted.
 #[test]
 fn a_tilted_plane_moves_all_axes() {
     let blocks = format!(
@@ -606,7 +606,7 @@ fn program_run_in_the_plane_of_the_menu() {
     let tilted = [start[0] + 10.0 * cos, start[1], start[2] - 10.0 * sin];
     rig.seconds(0.2);
     assert_near(machine(&rig), tilted);
-    assert_eq!(selected(&mut rig), 0b100, "behind the program, too");
+    assert_eq!(selected(&mut rig), 0b100, "after the program, too");
     rig.command("3d-rot run off");
     assert_eq!(selected(&mut rig), 0b000);
     rig.run("1.H", 10.0);

@@ -203,7 +203,7 @@ fn an_arm_that_is_stuck() {
 }
 
 /// The supply goes in each step of the change (W112), and at any place in it. For the control the change did not happen until it
-/// has taken the acknowledgement: behind power-on shuttle and arm bring the tools back to where it has them, and then another
+/// has taken the acknowledgement: after power-on shuttle and arm bring the tools back to where it has them, and then another
 /// tool is called: it is in the spindle, and all others are where the control has them, in any pocket or fixed ones.
 #[test]
 fn a_change_that_power_off_breaks_off() {
@@ -214,7 +214,7 @@ fn a_change_that_power_off_breaks_off() {
         begun.start();
         for step in (10..=130).step_by(10) {
             begun.until(60.0, &format!("step {step}"), |rig| rig.number("W112") == step);
-            // In the cycle behind the scan that gives it the control has taken the acknowledgement.
+            // In the cycle after the scan that gives it the control has taken the acknowledgement.
             let taken = begun.control.tool();
             assert_eq!(taken == 2, step == 130, "step {step}");
             for depth_s in depths {
@@ -262,8 +262,8 @@ fn a_closed_clamp_holds_the_arm_until_it_opens() {
 }
 
 /// A change with two codes, a special tool against a normal one. For the control the old tool is in the spindle until the
-/// second code is acknowledged. The supply goes whenever step or strobe change, some time behind that, and in each cycle
-/// between the codes: behind power-on all tools are where the control has them.
+/// second code is acknowledged. The supply goes whenever step or strobe change, some time after that, and in each cycle
+/// between the codes: after power-on all tools are where the control has them.
 #[test]
 fn two_codes_that_power_off_breaks_off() {
     for kind in [MAGAZINE, OLD_FIRST] {
@@ -319,7 +319,7 @@ fn two_codes_that_a_stop_breaks_off() {
         let (mut tried, mut at_once) = (0, 0);
         while !begun.bit("M2046") || begun.bit("M2093") {
             let mut rig = begun.clone();
-            let at = format!("{kind:b}, {tried} cycles behind");
+            let at = format!("{kind:b}, {tried} cycles after");
             rig.event("key NC_STOP tap");
             rig.until(1.0, "the interruption", |rig| {
                 rig.control.run_state() == bahn_control::RunState::Interrupted

@@ -86,7 +86,7 @@ const DR: usize = 10;
 const TL: usize = 12;
 
 /// Length and radius become the data of the tool; Q115 and Q116 are the differences. The tool turns backwards at
-/// 40 / (2 π 0.01) = 636.6 rpm while it is probed, and the spindle stands and has its speed again behind.
+/// 40 / (2 π 0.01) = 636.6 rpm while it is probed, and the spindle stands and has its speed again after.
 #[test]
 fn length_and_radius_are_measured() {
     let blocks = cycle(31, "0") + "Q10 = Q115\n" + &cycle(32, "0") + "Q11 = Q116";
@@ -329,7 +329,7 @@ fn single_teeth_have_a_length_each() {
     close_to(q(&rig, 115), 94.96 - 95.0);
 }
 
-/// MP6560 = 19: M19 orients to the angle of cycle 13, which is that of the program again behind it.
+/// MP6560 = 19: M19 orients to the angle of cycle 13, which is that of the program again after it.
 #[test]
 fn the_plc_orients_for_teeth() {
     let edges = Edges {

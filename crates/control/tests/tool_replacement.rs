@@ -10,10 +10,10 @@ use support::{Build, Rig};
 const CURRENT_TIME: usize = 7;
 
 /// A milling pass to and fro, 5 s each way, under M101, with tool 2 (L 95, R 10) whose life ends within the first 6 s
-/// behind its call.
+/// after its call.
 const PASSES: &str = "L X+0 Y+0 Z+20 R0 FMAX M101\nL X+5 R0 F60\nL X+0\nL X+5\nL X+0";
 
-/// The mill; the lives TIME1 and TIME2 of tool 2 end 0.1 minutes behind its call. Tool 3 (L 85) is as large.
+/// The mill; the lives TIME1 and TIME2 of tool 2 end 0.1 minutes after its call. Tool 3 (L 85) is as large.
 fn passes(blocks: &str, time: [f64; 2], replacement: Option<u32>) -> Build {
     let [time1_min, time2_min] = time;
     let build = Build::mill().program("LIFE.H", &format!("TOOL CALL 2 Z S500\n{blocks}"));
@@ -87,7 +87,7 @@ fn tip(rig: &Rig) -> [f64; 2] {
 }
 
 /// M101: TIME1 or TIME2 of tool 2 is over while it mills to and fro. At the end of that block M2046 comes with the
-/// number of tool 3 and M2404; the axes stand. Behind the change the shorter tool comes down by 95 - 85 mm to where the
+/// number of tool 3 and M2404; the axes stand. After the change the shorter tool comes down by 95 - 85 mm to where the
 /// tip of tool 2 was, and only then the next block is milled. A programmed call resets M2404 [000:9175] [000:9297].
 #[test]
 fn m101_replaces_the_worn_tool() {
@@ -129,7 +129,7 @@ fn m101_replaces_the_worn_tool() {
         confirm(&mut rig);
         rig.until(10.0, "the run ends", |rig| rig.control.snapshot().ended);
     }
-    // Without M101, and behind M102, the worn tool works on.
+    // Without M101, and after M102, the worn tool works on.
     for blocks in [PASSES.replace(" M101", ""), PASSES.replacen("F60", "F60 M102", 1)] {
         let mut rig = started(passes(&blocks, [5.0, 0.0], Some(3)));
         to_the_end(&mut rig);
@@ -204,7 +204,7 @@ fn a_larger_replacement_tool_is_refused() {
     refused(large(&PASSES.replace("M101", "M101 M107\nL Z+30 FMAX M108")));
 }
 
-/// The life ends on a contour under RL, 24 mm at 60 mm/min: the tool is replaced behind its R0 block.
+/// The life ends on a contour under RL, 24 mm at 60 mm/min: the tool is replaced after its R0 block.
 #[test]
 fn a_contour_is_finished_with_its_tool() {
     let blocks = "L X+10 Y+0 Z+20 R0 FMAX M101\nL X+20 RL F600\nL X+26 F60\nL X+32\nL X+38\nL X+44\n\
@@ -216,13 +216,13 @@ fn a_contour_is_finished_with_its_tool() {
     assert_eq!(
         tip(&rig)[0],
         65.0,
-        "behind the block that leads away from the contour"
+        "after the block that leads away from the contour"
     );
     confirm(&mut rig);
     to_the_end(&mut rig);
 }
 
-/// Behind a datum shift each movement is held back for a rounding that may come. The tool is replaced neither before a
+/// After a datum shift each movement is held back for a rounding that may come. The tool is replaced neither before a
 /// rounding nor before a tangential arc, which go on from the movement before: X 20 lies at the datum.
 #[test]
 fn roundings_and_tangential_arcs_keep_their_beginning() {
@@ -234,7 +234,7 @@ fn roundings_and_tangential_arcs_keep_their_beginning() {
         assert_eq!(change(&mut rig), 3);
         let axes = rig.control.snapshot().axes;
         let [x, y] = [axes[0].nominal, axes[1].nominal];
-        // Behind the rounding, the arc, and the last line.
+        // After the rounding, the arc, and the last line.
         let ends = [[30.0, 2.0], [20.0, 10.0], [20.0, 0.0]];
         let near = |end: &[f64; 2]| (end[0] - x).hypot(end[1] - y) < 0.001;
         assert!(ends.iter().any(near), "F{feed}: {x} {y}");
@@ -243,7 +243,7 @@ fn roundings_and_tangential_arcs_keep_their_beginning() {
     }
 }
 
-/// Functions for which the program waits are in each block: no block behind it is known where one ends.
+/// Functions for which the program waits are in each block: no block after it is known where one ends.
 #[test]
 fn blocks_with_functions_let_the_tool_be_replaced() {
     let blocks = PASSES
@@ -258,7 +258,7 @@ fn blocks_with_functions_let_the_tool_be_replaced() {
     to_the_end(&mut rig);
 }
 
-/// The block behind the one in which the life ends calls tool 1: it is the only change, and none of M101. With a function
+/// The block after the one in which the life ends calls tool 1: it is the only change, and none of M101. With a function
 /// in the block the call is not read yet when it ends.
 #[test]
 fn a_worn_tool_is_changed_once_where_the_next_block_calls_one() {
@@ -294,7 +294,7 @@ fn replaced_in_single_block() {
 }
 
 /// A change that is broken off by INTERNAL STOP did not happen: tool 2 is in the spindle, and the next start calls tool 3
-/// again, at the latest behind the block that it begins with. NC stop and EMERGENCY STOP only hold the path.
+/// again, at the latest after the block that it begins with. NC stop and EMERGENCY STOP only hold the path.
 #[test]
 fn a_change_that_is_broken_off() {
     let blocks = format!("{PASSES}\nL X+5\nL X+0");
@@ -339,7 +339,7 @@ fn a_change_that_is_broken_off() {
     to_the_end(&mut rig);
 }
 
-/// INTERNAL STOP on the way back: the next start begins with that way, for the blocks behind it count on the depth.
+/// INTERNAL STOP on the way back: the next start begins with that way, for the blocks after it count on the depth.
 #[test]
 fn the_way_back_is_made_up_for() {
     let mut rig = started(passes(PASSES, [5.0, 0.0], Some(3)));
@@ -386,7 +386,7 @@ fn the_change_is_kept_before_the_strobe_falls() {
     assert!(!rig.bit("M2046"));
 }
 
-/// A block scan passes M101 without a change; the run behind it replaces the worn tool.
+/// A block scan passes M101 without a change; the run after it replaces the worn tool.
 #[test]
 fn a_block_scan_passes_m101() {
     let build = passes(PASSES, [5.0, 0.0], Some(3)).mp("7680=%0000110");

@@ -202,7 +202,7 @@ LBL 60
 }
 
 /// A machine parameter that the PLC may change while a program runs counts for the blocks that are not yet read: during
-/// the strobe of M70 MP7246 disables the paraxial block behind it.
+/// the strobe of M70 MP7246 disables the paraxial block after it.
 #[test]
 fn changed_parameters_reach_the_program() {
     let change = "

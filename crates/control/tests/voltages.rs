@@ -71,7 +71,7 @@ fn m200_to_m204() {
     // 3000 of 10 000 mm/min.
     until_x(&mut rig, 127.0);
     is(&rig, 2.9997, 1e-6);
-    // 0.1 s behind X130: half the way to 8 V; 5 V in 0.2 s are 0.075 V a cycle, and two of them have passed.
+    // 0.1 s after X130: half the way to 8 V; 5 V in 0.2 s are 0.075 V a cycle, and two of them have passed.
     until_x(&mut rig, 135.0);
     is(&rig, 0.5 * (2.9997 + 8.0), 0.16);
     until_x(&mut rig, 145.0);

@@ -56,7 +56,7 @@ pub(crate) enum WordKind {
     Centre(usize, Expression),
     /// R.
     Radius(Expression),
-    /// A value without address behind G04.
+    /// A value without address after G04.
     Bare(Expression),
     SetParameter(Expression, Expression),
     SetVariable(Reference, Expression),
@@ -227,7 +227,7 @@ fn group(g: u16) -> Option<u8> {
         .map(|(_, group)| *group)
 }
 
-/// One word of a block; `dwells` behind G04, which takes a value without address.
+/// One word of a block; `dwells` after G04, which takes a value without address.
 fn word(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
     let mark = cursor.mark();
     let Some(first) = cursor.peek() else {
@@ -260,7 +260,7 @@ fn word(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
     address(cursor, first)
 }
 
-/// Whether what stands behind the first letter of an address is a value: `XP1`, `XV.G.RW`, `XSIN[30]`.
+/// Whether what stands after the first letter of an address is a value: `XP1`, `XV.G.RW`, `XSIN[30]`.
 fn is_value(rest: &str, after: &mut Cursor) -> bool {
     match rest {
         "P" => after.peek().is_some_and(|c| c.is_ascii_digit() || c == '['),
@@ -289,7 +289,7 @@ fn address(cursor: &mut Cursor, letter: char) -> Result<WordKind, LineFault> {
     }
 }
 
-/// A value behind its address; `=` may stand between (inferred).
+/// A value after its address; `=` may stand between (inferred).
 fn value(cursor: &mut Cursor) -> Result<Expression, LineFault> {
     cursor.eat('=');
     expression(cursor)
@@ -304,7 +304,7 @@ fn g_function(cursor: &mut Cursor, mark: usize) -> Result<WordKind, LineFault> {
     }
 }
 
-/// M or H behind its letter, with its additive value [004:105].
+/// M or H after its letter, with its additive value [004:105].
 fn function(cursor: &mut Cursor, letter: char) -> Result<WordKind, LineFault> {
     let number = expression(cursor)?;
     let value = match cursor.eat('=') {
@@ -338,7 +338,7 @@ fn coordinate(cursor: &mut Cursor, axis: Axis, mark: usize) -> Result<WordKind, 
     Ok(WordKind::Axis(axis, value(cursor)?))
 }
 
-/// S behind its letter: a speed, or a spindle and its brackets [004:105] [004:162].
+/// S after its letter: a speed, or a spindle and its brackets [004:105] [004:162].
 fn spindle(cursor: &mut Cursor, mark: usize) -> Result<WordKind, LineFault> {
     let mut ahead = cursor.clone();
     let digits = ahead.take_while(|c| c.is_ascii_digit());
@@ -419,7 +419,7 @@ fn listed(cursor: &mut Cursor, of: &str, spindle: bool) -> Result<WordKind, Line
     }
 }
 
-/// `P1=567`, or the value of a parameter behind G04.
+/// `P1=567`, or the value of a parameter after G04.
 fn parameter(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
     let mark = cursor.mark();
     cursor.advance(1);
@@ -434,7 +434,7 @@ fn parameter(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
     Err(cursor.fault(mark, "a parameter that is given no value"))
 }
 
-/// `V.G.RW = 5`, or the value of a variable behind G04.
+/// `V.G.RW = 5`, or the value of a variable after G04.
 fn variable(cursor: &mut Cursor, dwells: bool) -> Result<WordKind, LineFault> {
     let mark = cursor.mark();
     let variable = reference(cursor)?;
@@ -483,7 +483,7 @@ fn call(cursor: &mut Cursor, letters: &str) -> Result<Option<WordKind>, LineFaul
     }
     let after = cursor.mark();
     let word = cursor.word();
-    Err(cursor.fault(after, format!("unknown word {word} behind {letters} {name}")))
+    Err(cursor.fault(after, format!("unknown word {word} after {letters} {name}")))
 }
 
 impl Word {

@@ -23,7 +23,7 @@ enum What {
     VectorLimitOff,
 }
 
-/// A command as it is written: its words, the word that its brackets begin with, and what may stand behind it, with `=`
+/// A command as it is written: its words, the word that its brackets begin with, and what may stand after it, with `=`
 /// where it takes a value.
 struct Form {
     words: &'static str,

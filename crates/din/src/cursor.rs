@@ -28,7 +28,7 @@ impl<'a> Cursor<'a> {
         self.peek_at(0)
     }
 
-    /// The one that many behind it.
+    /// The one that many after it.
     pub fn peek_at(&self, ahead: usize) -> Option<char> {
         self.line
             .get(self.at + ahead)
@@ -50,7 +50,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Takes a character if it is the next one behind blanks.
+    /// Takes a character if it is the next one after blanks.
     pub fn eat(&mut self, character: char) -> bool {
         self.skip_blanks();
         let there = self.peek() == Some(character);
@@ -60,7 +60,7 @@ impl<'a> Cursor<'a> {
         there
     }
 
-    /// Takes an operator if it is the next character behind blanks.
+    /// Takes an operator if it is the next character after blanks.
     pub fn eat_operator(&mut self, character: char) -> Result<bool, LineFault> {
         let there = self.eat(character);
         self.operators += u32::from(there);
@@ -106,7 +106,7 @@ impl<'a> Cursor<'a> {
         let column = |index: usize| self.line.get(index).map(|glyph| glyph.column);
         let after = self.line.last().map_or(1, |glyph| glyph.column.saturating_add(1));
         let first = column(mark).unwrap_or(after);
-        // Blanks behind a word are none of it.
+        // Blanks after a word are none of it.
         let read = self.line.get(mark..self.at).unwrap_or_default();
         let last = read.iter().rfind(|glyph| !glyph.character.is_whitespace());
         let length = last.map_or(1, |last| last.column.saturating_sub(first).saturating_add(1));

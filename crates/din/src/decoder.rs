@@ -84,7 +84,7 @@ impl Decoder {
         }
     }
 
-    /// Where the path stands behind the blocks that were executed.
+    /// Where the path stands after the blocks that were executed.
     pub fn position(&self) -> Position {
         self.state.position
     }
@@ -148,7 +148,7 @@ impl Decoder {
         self.stack.last().is_some_and(is_it) && (depth == 1 || !self.has(block))
     }
 
-    /// Where the block stands that is executed next; the end of the text behind the last one.
+    /// Where the block stands that is executed next; the end of the text after the last one.
     pub fn at(&self) -> Place {
         let next = self.stack.iter().rev().find_map(|frame| {
             let line = (frame.line..frame.end).find(|line| frame.program.is_block(*line))?;
@@ -248,7 +248,7 @@ impl Decoder {
         Ok(Some(unit))
     }
 
-    /// Begins a subroutine, behind what else stands in its block (inferred).
+    /// Begins a subroutine, after what else stands in its block (inferred).
     fn call(&mut self, block: &Block) -> Result<(), LineFault> {
         for word in &block.words {
             let WordKind::Call { local, name } = &word.kind else {

@@ -94,7 +94,7 @@ pub fn examine(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &Atomi
     }
 }
 
-/// Reads files and all that their calls lead to, also behind a fault; those that are found are put to the `files`.
+/// Reads files and all that their calls lead to, also after a fault; those that are found are put to the `files`.
 fn read(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf) -> Vec<FileFault> {
     let mut found = Vec::new();
     let mut macros = BTreeSet::new();

@@ -15,7 +15,7 @@ use crate::unit::{Command, Function, Independent, Kind, Motion, SpindleOrder, Ta
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub modal: Modal,
-    /// Where the axes stand behind the blocks that were executed.
+    /// Where the axes stand after the blocks that were executed.
     pub position: Position,
     /// Where the path would stand, when the axes were moved since: incremental coordinates and arcs of the next motion
     /// count from there.
@@ -91,7 +91,7 @@ struct Draft {
     done: Done,
 }
 
-/// G04: its time may stand behind X or alone (public).
+/// G04: its time may stand after X or alone (public).
 #[derive(Clone, Copy)]
 struct Dwell {
     column: u32,

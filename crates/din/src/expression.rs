@@ -115,7 +115,7 @@ pub(crate) fn expression(cursor: &mut Cursor) -> Result<Expression, LineFault> {
     sum(cursor, 0)
 }
 
-/// Reads the number of a parameter behind its letter: digits or an expression in brackets.
+/// Reads the number of a parameter after its letter: digits or an expression in brackets.
 pub(crate) fn parameter_number(cursor: &mut Cursor) -> Result<Expression, LineFault> {
     number_of_parameter(cursor, 0)
 }

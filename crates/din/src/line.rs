@@ -14,7 +14,7 @@ pub struct LineFault {
 }
 
 impl LineFault {
-    /// Whether a word is not known, whatever stands behind it.
+    /// Whether a word is not known, whatever stands after it.
     pub(crate) fn names_unknown(&self) -> bool {
         self.message.starts_with("unknown")
     }
@@ -27,7 +27,7 @@ pub(crate) struct Glyph {
     pub column: u32,
 }
 
-/// Longest line behind the replacement of macros.
+/// Longest line after the replacement of macros.
 const MAX_LENGTH: usize = 4096;
 
 /// Macros that stand for each other end here.
@@ -38,7 +38,7 @@ const MAX_NESTING: u32 = 10;
 pub(crate) struct Comment {
     /// Index of its first character.
     pub start: usize,
-    /// Index behind its last one.
+    /// Index after its last one.
     pub end: usize,
 }
 
@@ -263,7 +263,7 @@ impl Macros {
     }
 }
 
-/// The text in the quotes that open at an index, and the index behind the closing ones. `\"` is a quote within (public).
+/// The text in the quotes that open at an index, and the index after the closing ones. `\"` is a quote within (public).
 pub(crate) fn quoted(line: &[Glyph], start: usize) -> Result<(String, usize), LineFault> {
     let mut text = String::new();
     let mut at = start + 1;

@@ -92,7 +92,7 @@ impl Read {
             return None;
         }
         let mut parts: Vec<(u32, String)> = self.comments.clone();
-        // Behind a comment it is not the name of its block, and stays there.
+        // After a comment it is not the name of its block, and stays there.
         parts.extend(self.number.clone());
         for word in &self.block.words {
             let span = word.column..word.column.checked_add(word.length)?;

@@ -45,7 +45,7 @@ pub struct Section {
     pub is_subroutine: bool,
     /// Line of its head, from 1; its first line where it has none.
     pub line: u32,
-    /// Its lines behind the head, from 1, the last one not included.
+    /// Its lines after the head, from 1, the last one not included.
     pub(crate) lines: (u32, u32),
 }
 
@@ -188,7 +188,7 @@ impl Program {
             .unwrap_or_default()
     }
 
-    /// What stands behind a line before the next one: its ending.
+    /// What stands after a line before the next one: its ending.
     pub(crate) fn ending(&self, number: u32) -> &str {
         let end = (number as usize)
             .checked_sub(1)
@@ -482,7 +482,7 @@ impl Program {
     }
 }
 
-/// Where a comment of several lines ends, in characters: behind its `#COMMENT END`.
+/// Where a comment of several lines ends, in characters: after its `#COMMENT END`.
 fn find_end(line: &str, from: usize) -> Option<usize> {
     const END: &str = "#COMMENT END";
     let characters: Vec<char> = line.chars().collect();

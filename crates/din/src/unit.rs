@@ -18,9 +18,9 @@ pub struct Unit {
     pub functions: Vec<Function>,
     /// Commands of the channel in the order of the text.
     pub commands: Vec<Command>,
-    /// Time the path stands behind the motion (G04), s.
+    /// Time the path stands after the motion (G04), s.
     pub dwell_s: f64,
-    /// The main program ends behind this block (M02, M30, or the end of its text).
+    /// The main program ends after this block (M02, M30, or the end of its text).
     pub ends: bool,
 }
 

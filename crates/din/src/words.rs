@@ -64,7 +64,7 @@ pub fn words(text: &str) -> Vec<Span> {
         }
     }
     spans.sort_by_key(|span| span.column);
-    // A command goes on behind a comment; what is marked of it ends before.
+    // A command goes on after a comment; what is marked of it ends before.
     let next: Vec<u32> = spans.iter().skip(1).map(|span| span.column).collect();
     for (span, next) in spans.iter_mut().zip(next) {
         span.length = span.length.min(next.saturating_sub(span.column)).max(1);

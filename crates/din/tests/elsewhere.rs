@@ -35,7 +35,7 @@ fn what_the_manual_does_not_show_has_its_name() {
         ("N20: X100", "unknown word N20: (a label)"),
         ("[PLACE] X0", "unknown word [PLACE]"),
         ("/N30 X5", "unknown word / (a block that may be skipped)"),
-        ("L other.nc \\", "unknown word \\ behind L other.nc"),
+        ("L other.nc \\", "unknown word \\ after L other.nc"),
         ("L CYCLE [NAME=a.nc @P1=2]", "unknown word L CYCLE (a cycle)"),
         ("LL CYCLE[NAME=A]", "unknown word LL CYCLE (a cycle)"),
         ("@P51 = 3]", "unknown word @P51"),
@@ -58,7 +58,7 @@ fn what_the_manual_does_not_show_has_its_name() {
     }
 }
 
-/// Heads with blanks, comments of several lines behind a block's number, addresses with parameters as their values.
+/// Heads with blanks, comments of several lines after a block's number, addresses with parameters as their values.
 #[test]
 fn what_the_manual_shows_is_read_in_other_clothes() {
     for text in [

@@ -274,7 +274,7 @@ fn search_for_a_block_executes_what_stands_before_it() {
     );
     assert_eq!(bench.log, ["write V.G.RW 4"]);
 
-    // What the program itself does not have is looked for in the subroutines that it calls; behind their end it goes on.
+    // What the program itself does not have is looked for in the subroutines that it calls; after their end it goes on.
     let mut decoder = decoder_with(text, shelf());
     assert!(!decoder.has("N70") && decoder.has("N50") && !decoder.has("#4"));
     assert_eq!(
@@ -409,7 +409,7 @@ fn what_is_not_known_is_named() {
             "unknown word L CYCLE (a cycle)",
         ),
         ("LL CYCLE[NAME=UP1]", 1, "unknown word LL CYCLE (a cycle)"),
-        ("L sub.nc X1", 10, "unknown word X1 behind L sub.nc"),
+        ("L sub.nc X1", 10, "unknown word X1 after L sub.nc"),
         ("foofoo X1", 1, "unknown word foofoo"),
         ("AP20", 1, "P20 has no value"),
         ("@P1=1", 1, "unknown word @P1"),

@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     run(Path::new(&folder), Path::new(&program), &mut std::io::stdout())
 }
 
-/// Runs a program; NC stop two seconds behind its start, NC start a second later.
+/// Runs a program; NC stop two seconds after its start, NC start a second later.
 pub fn run(folder: &Path, program: &Path, out: &mut dyn Write) -> Result<(), Box<dyn Error>> {
     let machine = LoadedMachine::load(folder)?.map_err(|faults| format!("{} faults", faults.len()))?;
     let programs = FolderPrograms::new(&machine.root.join(&machine.folder.programs), Some(program))?;

@@ -63,7 +63,7 @@ pub enum ActionError {
     /// Its first word is no event and no command.
     #[error("`{0}` is no event and no command")]
     Unknown(String),
-    /// What behind it is wrong.
+    /// What after it is wrong.
     #[error("{0}")]
     Wrong(String),
 }

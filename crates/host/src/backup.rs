@@ -11,7 +11,7 @@
 //! END BACKUP 1
 //! ```
 //!
-//! Behind `FILE` stand bytes, check sum (CRC-32) and path. An end of line is only where `\n` says so; lines may be cut
+//! After `FILE` stand bytes, check sum (CRC-32) and path. An end of line is only where `\n` says so; lines may be cut
 //! anywhere else.
 
 use std::fs;
@@ -290,7 +290,7 @@ impl Restore {
                 self.take_whole()?;
             }
             State::End if line.trim().is_empty() => {}
-            State::End => return Err(damaged("something stands behind END BACKUP")),
+            State::End => return Err(damaged("something stands after END BACKUP")),
         }
         Ok(())
     }

@@ -46,7 +46,7 @@ impl From<String> for RowFault {
     }
 }
 
-/// Faulty lines that are named; behind them reading ends.
+/// Faulty lines that are named; after them reading ends.
 const FAULTS_MAX: usize = 100;
 
 /// What a kind of table looks like.
@@ -136,7 +136,7 @@ impl TextTable {
     /// Its lengths are in inches.
     pub fn in_inches(&self) -> bool {
         let frame = self.frame.as_deref().unwrap_or_default();
-        // Behind BEGIN and the name, which may be INCH.
+        // After BEGIN and the name, which may be INCH.
         let mut words = frame.split_whitespace().skip(2);
         words.any(|word| word.trim_matches(['[', ']']).eq_ignore_ascii_case("INCH"))
     }

@@ -139,7 +139,7 @@ mod tests {
         }
     }
 
-    /// What a scan of two points comes to, while PRINT says this before the first point and that behind it.
+    /// What a scan of two points comes to, while PRINT says this before the first point and that after it.
     fn scanned(prints: [bool; 2]) -> Vec<Written> {
         let mut digitizing = Digitizing::default();
         let said = [

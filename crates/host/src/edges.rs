@@ -1,4 +1,4 @@
-//! What happens to operands inside a scan of the PLC, where before and behind it there is nothing to be seen.
+//! What happens to operands inside a scan of the PLC, where before and after it there is nothing to be seen.
 
 use bahn_exchange::{Content, Image, Operand};
 use bahn_plc::{TraceStep, Tracer};

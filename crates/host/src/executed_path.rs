@@ -27,7 +27,7 @@ impl ElementId {
     }
 }
 
-/// The elements of a channel that were executed to their end, in their order, as an iterator: behind
+/// The elements of a channel that were executed to their end, in their order, as an iterator: after
 /// [`ExecutedPath::follow`] it has those of the cycle. The host must [keep the path](Host::keep_path).
 #[derive(Debug, Default)]
 pub struct ExecutedPath {

@@ -121,7 +121,7 @@ expect lamp NC_START=1              a lamp of the panel
 expect 2:X.actual=100               of the second channel; also 2: message, 2: mode, 2: run, 2: tool
 ";
 
-    /// Reads what stands behind `expect`: one, or several with commas between. Without a machine only operands of the
+    /// Reads what stands after `expect`: one, or several with commas between. Without a machine only operands of the
     /// PLC can be expected.
     ///
     /// # Errors

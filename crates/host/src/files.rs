@@ -512,7 +512,7 @@ pub(crate) mod tests {
         assert!(!known);
     }
 
-    /// The medium is full behind any byte: what was there stays, nothing half written is left, and the next try with
+    /// The medium is full after any byte: what was there stays, nothing half written is left, and the next try with
     /// room writes it.
     #[test]
     fn a_full_medium_leaves_what_was_there() {

@@ -589,7 +589,7 @@ impl<P: Operable> Host<P> {
         }
     }
 
-    /// What programs have read is there behind every cycle, also by the clock on the wall: their Q parameters, and
+    /// What programs have read is there after every cycle, also by the clock on the wall: their Q parameters, and
     /// [`Control::interpreter`]. A cycle then waits for what is read beside.
     pub fn watch_programs(&mut self) {
         self.watched = true;

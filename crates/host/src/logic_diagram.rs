@@ -73,7 +73,7 @@ pub struct DiagramRecorder {
     before: usize,
     total: usize,
     fills: bool,
-    /// Samples behind the trigger, that of the event with them.
+    /// Samples after the trigger, that of the event with them.
     after: usize,
     scans: u64,
 }
@@ -109,7 +109,7 @@ impl DiagramRecorder {
         }
     }
 
-    /// When the trigger comes early, more scans behind it make up for those that are not there before it.
+    /// When the trigger comes early, more scans after it make up for those that are not there before it.
     pub fn filled(mut self) -> DiagramRecorder {
         self.fills = true;
         self
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!((diagram.first, diagram.trigger), (3, Some(5)));
         assert_eq!(diagram.levels(0, 0, 100), "__\u{2580}\u{2580}\u{2580}\u{2580}__");
         assert_eq!(diagram.stretches(0).len(), 3);
-        // Only four are there before it: the other four come behind it where that is wanted.
+        // Only four are there before it: the other four come after it where that is wanted.
         assert_eq!(recorded(&up, (8, 16), 100, false).diagram().samples.len(), 12);
         assert_eq!(recorded(&up, (8, 16), 100, true).diagram().samples.len(), 16);
         let down = Trigger::Edge(vec![("M1".parse().unwrap(), Content::Number(0))]);

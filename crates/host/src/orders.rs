@@ -111,7 +111,7 @@ mod tests {
         for (when, key) in given {
             assert!(waiting.add(order(when, key), 100));
         }
-        // What was for 50 is late: it stands behind what was given before.
+        // What was for 50 is late: it stands after what was given before.
         let mut due = |now| waiting.due(now).map(|order| order.action);
         assert_eq!(due(100), Some(Action::tap("a")));
         assert_eq!(due(100), Some(Action::tap("b")));

@@ -136,7 +136,7 @@ pub struct OscilloscopeRecord {
     pub from_us: u64,
     /// The values of the channels, oldest first.
     pub samples: Vec<[f64; CHANNELS]>,
-    /// The sample of the trigger; behind the last one with a pre-trigger of 100 %.
+    /// The sample of the trigger; after the last one with a pre-trigger of 100 %.
     pub trigger: Option<usize>,
 }
 
@@ -270,7 +270,7 @@ impl ServoSampler for Oscilloscope {
             self.triggered = Some(self.taken);
         }
         if let Some(triggered) = self.triggered {
-            // So many samples follow the trigger; with 100 % none, and it stands behind the last one.
+            // So many samples follow the trigger; with 100 % none, and it stands after the last one.
             let after = SAMPLES as u64 - self.before_trigger();
             if self.taken >= triggered + after {
                 self.complete = true;

@@ -76,7 +76,7 @@ pub(crate) struct Pace {
     /// Time of the machine then, µs.
     origin_us: u64,
     factor: f64,
-    /// Time of the machine at the end of the cycle before, µs, and processor time of the thread behind it.
+    /// Time of the machine at the end of the cycle before, µs, and processor time of the thread after it.
     before: (u64, Duration),
     /// When the time of the cycle before is over, since it started.
     due: Duration,

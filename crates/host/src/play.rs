@@ -194,7 +194,7 @@ impl Play {
         &self.script
     }
 
-    /// The lines behind a condition count from now on.
+    /// The lines after a condition count from now on.
     fn came_true(&mut self, line: &Line, now_us: u64) {
         line.condition.iter().for_each(|condition| self.expect(condition));
         let conditions = self.script.lines.iter().filter(|line| !line.condition.is_empty());

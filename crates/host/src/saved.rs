@@ -25,7 +25,7 @@ pub struct Saved<P> {
     before: Before,
     restart: Option<String>,
     digitizing: Vec<Digitizing>,
-    /// The first entry of the journal behind it.
+    /// The first entry of the journal after it.
     entry: u64,
 }
 

@@ -19,7 +19,7 @@ const SECONDS_MAX: f64 = 1e6;
 /// years.
 const CYCLES_MAX: u64 = 10_000_000;
 
-/// Faulty lines that are named; behind them reading ends.
+/// Faulty lines that are named; after them reading ends.
 const FAULTS_MAX: usize = 1000;
 
 /// What a script is played on.
@@ -224,7 +224,7 @@ struct Reader {
     /// What it does to machine parameters is tried on them.
     parameters: ParameterList,
     cycle_us: u32,
-    /// From what, and how far behind it, the next line counts.
+    /// From what, and how far after it, the next line counts.
     last: (Base, u64),
     conditions: usize,
 }
@@ -248,7 +248,7 @@ impl Reader {
             (true, None) => self.time(time).map_err(|message| wrong(time, message))?,
         };
         let action = self.action(rest).map_err(|message| wrong(rest, message))?;
-        // What is done in a cycle is done before it; what is looked at is so behind it.
+        // What is done in a cycle is done before it; what is looked at is so after it.
         let after = cycle.is_some() && matches!(action, ScriptAction::Expect(_) | ScriptAction::End);
         if after {
             offset_us += u64::from(self.cycle_us);
@@ -315,7 +315,7 @@ impl Reader {
             }
             let rest = rest
                 .strip_prefix('+')
-                .ok_or("behind `start` stands + and a time")?;
+                .ok_or("after `start` stands + and a time")?;
             return Ok((Base::Start, self.duration(rest)?));
         }
         Ok((Base::PowerOn, self.duration(text)?))
@@ -397,8 +397,8 @@ impl Reader {
 const NO_CONTROL: &str = "on the bench the PLC is alone: operands and machine parameters, as I4=1 or MP4110.2=4, \
      `expect O2=1`, `end`";
 
-/// What stands before and behind the first colon outside quotes.
-/// A channel behind `when` belongs to the condition: `when 2:X.actual > 50: ce`.
+/// What stands before and after the first colon outside quotes.
+/// A channel after `when` belongs to the condition: `when 2:X.actual > 50: ce`.
 fn split_time(line: &str) -> Option<(&str, &str)> {
     let condition = line.trim_start().strip_prefix("when ").map(str::trim_start);
     let before = condition.map_or(0, |condition| match split_channel(condition) {
@@ -426,7 +426,7 @@ fn wrong(line: &str, part: &str, message: &str) -> Wrong {
     }
 }
 
-/// A line without what stands behind ; or # outside quotes and words.
+/// A line without what stands after ; or # outside quotes and words.
 fn without_comment(line: &str) -> &str {
     let (mut quoted, mut before) = (false, ' ');
     let end = line.find(|character: char| {
@@ -557,7 +557,7 @@ mod tests {
         assert_eq!(lines, [1, 2, 3, 4]);
     }
 
-    /// What is done in a cycle is done before it, what is expected is looked at behind it and before the next.
+    /// What is done in a cycle is done before it, what is expected is looked at after it and before the next.
     #[test]
     fn cycles_are_numbered() {
         let times = |script: Script| -> Vec<_> {

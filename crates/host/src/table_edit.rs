@@ -70,7 +70,7 @@ pub fn delete_line(text: &str, kind: TableForm, line: &str) -> Result<String, St
 }
 
 /// The text of a table that has a column, when it did not. Where tabs, commas or semicolons stand between columns it comes
-/// behind the others; any other table is written anew, with tabs and in millimetres.
+/// after the others; any other table is written anew, with tabs and in millimetres.
 ///
 /// # Errors
 /// When the table cannot be read.

@@ -35,7 +35,7 @@ pub fn load(path: &Path, model: ControlModel) -> Result<BTreeMap<u32, Tool>, Hos
         })
 }
 
-/// Whether no tool of a table lies behind the last one that a control can have.
+/// Whether no tool of a table lies after the last one that a control can have.
 fn ends_with(text: &str, most: u32) -> Result<(), Vec<TableFault>> {
     columns::read(text, &FORM, |row| match tool(row)? {
         (number, _) if number & NUMBER_MASK > most => Err(row.fault(

@@ -197,8 +197,8 @@ fn what_ran_on_without_feed_enable_goes_back_on_the_ramp() {
     assert_eq!(commanded(host.control(), Axis::X), 300.0);
 }
 
-/// CE while the path still comes to a standstill behind POSITIONING ERROR: X is taken over from where it is, and no
-/// nominal position jumps, 250 mm/s is the rapid traverse. Behind NC start it goes back, and the run goes on.
+/// CE while the path still comes to a standstill after POSITIONING ERROR: X is taken over from where it is, and no
+/// nominal position jumps, 250 mm/s is the rapid traverse. After NC start it goes back, and the run goes on.
 #[test]
 fn ce_on_the_ramp_makes_no_axis_jump() {
     let mut host = mill("L X-100 Y+0 Z+100 R0 FMAX\nL X+300 FMAX\nL X+310 F500");
@@ -304,7 +304,7 @@ fn a_magazine_that_is_stuck_goes_on_when_it_is_repaired() {
         give(&mut host, "ce");
         until(
             &mut host,
-            &format!("the end behind {part} {how}"),
+            &format!("the end after {part} {how}"),
             Control::has_ended,
         );
         let magazine = host.plant().magazine().unwrap();
@@ -422,7 +422,7 @@ fn the_shuttle_passes_its_marks_after_an_emergency_stop() {
 }
 
 /// The shuttle is held on its way for a moment: POSITIONING ERROR (MP1720 lies far off here) ends the order, which is no
-/// arrival. The order is given anew behind CE, and only then M61 is acknowledged.
+/// arrival. The order is given anew after CE, and only then M61 is acknowledged.
 #[test]
 fn a_pallet_that_is_held_on_its_way_has_not_arrived() {
     let mut host = shuttle(&["1720.3=30"]);
@@ -540,7 +540,7 @@ fn what_is_held_when_the_loops_close_waits_for_the_drives() {
 
 /// The control voltage goes, or the program is stopped, while a tool change by hand begins; MANUAL OPERATION, with a stop X
 /// away by hand, and RESTORE POSITION. The new tool is 5 mm shorter: Z stays where it is, at 50 + 60 of the old one, and the
-/// block behind brings it to 50 + 55.
+/// block after brings it to 50 + 55.
 #[test]
 fn the_way_back_to_a_tool_change_leaves_the_tool_axis() {
     let digital = machine("dig425");
@@ -587,7 +587,7 @@ fn the_way_back_to_a_tool_change_leaves_the_tool_axis() {
         }
         assert_eq!(commanded(host.control(), Axis::X), -25.0, "{cycles} {stop}");
         give(&mut host, "key NC_START tap");
-        until(&mut host, "the block behind", in_block(6));
+        until(&mut host, "the block after", in_block(6));
         assert_eq!(z(&host), before - 5.0, "{cycles} {stop}");
         until(&mut host, "the end", Control::has_ended);
     }
@@ -603,7 +603,7 @@ fn a_programmed_stop_goes_on_from_where_it_was() {
     });
     pushed_away(&mut host);
     give(&mut host, "key NC_START tap");
-    until(&mut host, "the block behind", |control| {
+    until(&mut host, "the block after", |control| {
         control.element().is_some_and(|element| element.block.block == 3) && !control.first().restores()
     });
     let from = commanded(host.control(), Axis::X);
@@ -612,7 +612,7 @@ fn a_programmed_stop_goes_on_from_where_it_was() {
     assert_eq!(commanded(host.control(), Axis::X), 45.0);
 }
 
-/// The control voltage goes while X is on its way back to the contour. Behind CE it stands until NC start.
+/// The control voltage goes while X is on its way back to the contour. After CE it stands until NC start.
 #[test]
 fn what_was_stopped_on_its_way_back_waits_for_nc_start() {
     for (stop, on) in [("voltage off", "voltage on"), ("key NC_STOP tap", "ce")] {

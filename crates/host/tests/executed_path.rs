@@ -6,7 +6,7 @@ mod support;
 use bahn_control::{Command, RunState};
 use bahn_host::{Action, Answer, ElementId, ExecutedPath, Host, Source};
 
-/// Two lines that the axes need seconds for, behind one that they do not move on.
+/// Two lines that the axes need seconds for, after one that they do not move on.
 const LINES: &str = "1 L Z+50 R0 F MAX\n2 L X+10 Y+0 R0 F600\n3 L X+20 R0\n4 L X+60 R0";
 
 /// The sequences that a run hands out, as long as `goes_on` says so.
@@ -52,7 +52,7 @@ fn what_is_broken_off_is_not_handed_out() {
     support::seconds(&mut host, 0.5);
     path.follow(&mut host);
     path.finish();
-    assert_eq!(path.next(), None, "behind {seen:?}");
+    assert_eq!(path.next(), None, "after {seen:?}");
     let stop = Action::parse("key NC_STOP tap").unwrap();
     for action in [stop, Action::Command(0, Command::InternalStop)] {
         let answer = host.act(Source::Client("test".to_owned()), action);

@@ -113,7 +113,7 @@ fn copy_files(from: &Path, to: &Path, names: &[&str]) {
     }
 }
 
-/// Behind power-on, reference run and what the PLC takes back: where the tools are, and that no file disagreed.
+/// After power-on, reference run and what the PLC takes back: where the tools are, and that no file disagreed.
 fn goes_on(mill: &Mill, at: &str) {
     let (mut host, warnings) = mill.switch_on("");
     assert_eq!(warnings, [""; 0], "{at}");
@@ -158,7 +158,7 @@ impl Medium {
         medium
     }
 
-    /// Behind every cycle.
+    /// After every cycle.
     fn look(&mut self) {
         let written = fs::read(self.state.join(FILES[0])).unwrap_or_default();
         if written != self.seen {
@@ -177,7 +177,7 @@ impl Medium {
 
 /// 200 kills in ten changes: of a normal tool for another one, a special one for a normal one in both orders of codes, a special one
 /// for a special one, one without pocket, out of the spindle. The process ends at a moment that the seed says, or when the control
-/// has just taken the acknowledgement; its last write was complete, or ended behind the first file, or behind two of them in
+/// has just taken the acknowledgement; its last write was complete, or ended after the first file, or after two of them in
 /// either order.
 #[test]
 fn killed_at_any_moment_of_a_change() {

@@ -180,7 +180,7 @@ fn readers_get_the_way_back_and_nothing_that_is_repeated() {
             Next::Missed(_) => unreachable!(),
         })
         .collect();
-    // The cycle is 3 ms: a moment is that of the first cycle that ends behind it.
+    // The cycle is 3 ms: a moment is that of the first cycle that ends after it.
     let cycle_us = u64::from(host.control().cycle_us());
     assert_eq!(reported.len(), 1, "{reported:?}");
     assert_eq!(

@@ -111,7 +111,7 @@ fn a_part_program_on_the_old_plc_program() {
             "M2454 Z300", // M70
             "M2453 Y200", // M71
             "M2452 X100",
-            "M2527 Y207", // M19 behind IY+Q101
+            "M2527 Y207", // M19 after IY+Q101
             "M2454 Z440", // the second tool
             "M2046 Z440",
             "M2819 Y207", // M72

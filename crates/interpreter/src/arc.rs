@@ -97,7 +97,7 @@ pub(crate) fn tangential(plane: Plane, start: Point2, tangent: Point2, end: Poin
         } else {
             Err(Fault::new(
                 MessageId::RoundingOffNotDefined,
-                "the end point lies straight behind the start",
+                "the end point lies straight after the start",
             ))
         };
     }

@@ -109,7 +109,7 @@ impl Interpreter {
         }
     }
 
-    /// A Q parameter behind the last block that was read; 0 for one that the model does not have.
+    /// A Q parameter after the last block that was read; 0 for one that the model does not have.
     pub fn q_value(&self, number: u16) -> f64 {
         self.run.numbers.q.get(number).unwrap_or(0.0)
     }
@@ -122,7 +122,7 @@ impl Interpreter {
         before.unwrap_or_else(|| self.q_value(number))
     }
 
-    /// The transformations before the block of a sequence, as far as states are kept, else behind the last block that was
+    /// The transformations before the block of a sequence, as far as states are kept, else after the last block that was
     /// read.
     pub fn frame_at(&self, sequence: Option<u64>) -> Frame {
         let before = sequence.and_then(|sequence| self.state_before(sequence));

@@ -195,7 +195,7 @@ impl Code {
             .map(|loaded| &loaded.program)
     }
 
-    /// The block at a place; `None` behind the last one.
+    /// The block at a place; `None` after the last one.
     #[inline]
     pub fn block(&mut self, program: u16, number: u32) -> Option<Fetched<'_>> {
         let loaded = self.programs.get_mut(usize::from(program))?;

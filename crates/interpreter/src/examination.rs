@@ -24,7 +24,7 @@ pub struct Examination {
     pub more: Uncounted,
     /// How far it was executed.
     pub complete: Complete,
-    /// The Q parameters behind the last block that was executed, by their number; none where only the machine knows.
+    /// The Q parameters after the last block that was executed, by their number; none where only the machine knows.
     pub q_values: Vec<Option<f64>>,
 }
 

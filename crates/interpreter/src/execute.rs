@@ -319,7 +319,7 @@ fn execute_motion(
     let stands =
         motion.coordinates.is_empty() && motion.polar_radius.is_none() && motion.polar_angle.is_none();
     if stands && motion.m.is_empty() {
-        // What only sets functions in force is no positioning block that M89 would call a cycle behind.
+        // What only sets functions in force is no positioning block that M89 would call a cycle after.
         if run.modal.in_force.function == PathFunction::Paraxial
             || matches!(
                 motion.compensation,

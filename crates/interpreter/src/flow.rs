@@ -78,7 +78,7 @@ impl Position {
         }
     }
 
-    /// The block of the main program that is executed next, or behind which the run comes back to it.
+    /// The block of the main program that is executed next, or after which the run comes back to it.
     pub fn in_main(&self) -> u32 {
         let mut frames = self.frames.iter().filter(|frame| frame.program == 0);
         match self.program {
@@ -109,7 +109,7 @@ impl Position {
         self.frames.len()
     }
 
-    /// Enters a subprogram that starts behind its LBL block [003:3633-3650].
+    /// Enters a subprogram that starts after its LBL block [003:3633-3650].
     pub fn call(&mut self, label: u16, target: u32, limits: &Limits) -> Result<(), Fault> {
         let open = || self.frames.iter().rev().take_while(|frame| frame.label.is_some());
         if open().any(|frame| frame.label == Some(label)) {
@@ -153,7 +153,7 @@ impl Position {
         Ok(())
     }
 
-    /// LBL 0: back behind the call; without a call it does nothing (inferred) [003:3644-3650].
+    /// LBL 0: back after the call; without a call it does nothing (inferred) [003:3644-3650].
     pub fn return_from_label(&mut self) {
         match self.frames.last() {
             Some(&Frame {
@@ -195,7 +195,7 @@ impl Position {
     /// its full count each time it is reached [003:3991-3997].
     pub fn repeat(&mut self, target: u32, count: u32) -> Result<(), Fault> {
         if target > self.block {
-            // A label behind the call is a subprogram, not a section [003:7930-7937].
+            // A label after the call is a subprogram, not a section [003:7930-7937].
             return Err(Fault::new(
                 MessageId::ExcessiveSubprogramming,
                 "a subprogram is called with REP",

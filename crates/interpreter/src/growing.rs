@@ -48,7 +48,7 @@ impl Interpreter {
         kept.map_or(next, |kept| kept.min(next))
     }
 
-    /// A label of a main program that is transferred; those behind the block that goes there are erased
+    /// A label of a main program that is transferred; those after the block that goes there are erased
     /// *(inferred)*, whether they are still known or not.
     pub(crate) fn label_ahead(&self, label: u16) -> Option<Result<u32, Fault>> {
         let at = self.run.at.block_ref();
@@ -57,7 +57,7 @@ impl Interpreter {
         }
         let main = self.code.program(0)?;
         let missing = || {
-            let detail = format!("there is no LBL {label} behind the block");
+            let detail = format!("there is no LBL {label} after the block");
             Fault::new(MessageId::LabelNumberNotAllocated, detail)
         };
         Some(main.label_after(label, at.block).ok_or_else(missing))

@@ -226,7 +226,7 @@ impl Interpreter {
         scan.map(|(block, job)| (*block, job))
     }
 
-    /// What is in force behind the last block that was read.
+    /// What is in force after the last block that was read.
     pub fn status(&self) -> Status {
         self.run.modal.status()
     }

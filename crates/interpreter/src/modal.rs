@@ -55,7 +55,7 @@ pub(crate) struct Modal {
     pub plunge_factor: Option<f64>,
     /// Last movement in programmed coordinates, for tangential arcs.
     pub last_move: Option<LastMove>,
-    /// The run began at a block behind the beginning of its program, and has not moved since.
+    /// The run began at a block after the beginning of its program, and has not moved since.
     pub begins_inside: bool,
     /// Cycle definition being read or ready for the call.
     pub cycle: CycleData,
@@ -122,7 +122,7 @@ pub(crate) struct LastMove {
 }
 
 impl Modal {
-    /// What stays in force behind the end.
+    /// What stays in force after the end.
     pub fn status(&self) -> Status {
         Status::left((self.frame, self.feed_mm_min), self.tilting.plane, self.tool)
     }

@@ -1,9 +1,9 @@
 //! Cycles of the machine builder: programs 99999968 to 99999999, defined and called like cycles 68 to 99
 //! [000:17691-17984].
 //!
-//! The dialogue block of the program says when it runs: behind its definition (DLG-DEF), or at the cycle call
+//! The dialogue block of the program says when it runs: after its definition (DLG-DEF), or at the cycle call
 //! (DLG-CALL). The definition assigns its parameters to Q1, Q2, ..., those of DLG-DEF cycles MP7250 higher. What the
-//! cycle makes of Q parameters below Q[100 - MP7251] is gone behind its end [000:17763-17800].
+//! cycle makes of Q parameters below Q[100 - MP7251] is gone after its end [000:17763-17800].
 
 use std::sync::PoisonError;
 
@@ -58,7 +58,7 @@ impl Cycle {
 }
 
 impl Interpreter {
-    /// Behind a block of the definition of a cycle: the last one runs a DLG-DEF cycle, and makes a DLG-CALL cycle the
+    /// After a block of the definition of a cycle: the last one runs a DLG-DEF cycle, and makes a DLG-CALL cycle the
     /// one for the cycle call.
     pub(crate) fn oem_definition(&mut self, number: u16, sub: u16) -> Result<(), Fault> {
         let cycle = self.oem_cycle(number)?;
@@ -95,7 +95,7 @@ impl Interpreter {
         }
     }
 
-    /// CYCL CALL, M99 or M89 behind the definition of a DLG-CALL cycle.
+    /// CYCL CALL, M99 or M89 after the definition of a DLG-CALL cycle.
     pub(crate) fn oem_call(&mut self, number: u16) -> Result<(), Fault> {
         match self.oem_cycle(number)? {
             Some(cycle) => self.enter_oem_cycle(cycle),
@@ -217,7 +217,7 @@ impl Interpreter {
     }
 }
 
-/// Behind the end of a program: cycles that have ended give back what was local to them.
+/// After the end of a program: cycles that have ended give back what was local to them.
 pub(crate) fn leave(run: &mut Run, settings: &Settings) {
     while run
         .oem

@@ -91,7 +91,7 @@ impl Interpreter {
             && run.pen.contour.is_empty()
     }
 
-    /// The first block behind a sequence that is read already and [may](Interpreter::may_replace_tool) have the tool
+    /// The first block after a sequence that is read already and [may](Interpreter::may_replace_tool) have the tool
     /// replaced before it, by its own sequence. It is known only when [checkpoints are
     /// kept](Interpreter::keep_checkpoints).
     pub fn next_replacement(&mut self, after: u64, tool: u32) -> Option<u64> {
@@ -116,7 +116,7 @@ impl Interpreter {
         }
     }
 
-    /// The way back behind a change of the tool.
+    /// The way back after a change of the tool.
     pub(crate) fn come_back(&mut self) {
         self.begin_unwritten_block();
         self.run.come_back();

@@ -145,7 +145,7 @@ impl Pen {
             .push(item, &mut self.out)
             .map_err(Fault::found_ahead)?;
         if waits {
-            // The run stands still here: no block behind it is read before it goes on. Inside a compensated
+            // The run stands still here: no block after it is read before it goes on. Inside a compensated
             // contour the corner needs the next element all the same.
             self.contour.flush(&mut self.out).map_err(Fault::found_ahead)?;
         }

@@ -22,7 +22,7 @@ use crate::surface_feed::surface_feed;
 use crate::tilting::{stands_as_defined, take_way};
 use crate::unrolled::unrolled;
 
-/// L, C, CR, CT, LP, CP, CTP and paraxial blocks; with it whether the block calls the cycle behind its movement.
+/// L, C, CR, CT, LP, CP, CTP and paraxial blocks; with it whether the block calls the cycle after its movement.
 #[inline]
 pub(crate) fn positioning(mut c: Context<'_>, motion: &Motion) -> Result<(Flow, bool), Fault> {
     if is_short_way(c.modal, c.pen, motion) {

@@ -182,7 +182,7 @@ impl Rehearser {
         self.run.run.pen.out = Output::default();
         let Some((operation, effect)) = operation.zip(effect) else {
             if result.is_err() {
-                // Behind the last block: an open subprogram.
+                // After the last block: an open subprogram.
                 self.fault(result, at, Doubts::NONE, false);
             }
             return;
@@ -278,7 +278,7 @@ impl Rehearser {
         });
     }
 
-    /// Goes on behind a block that failed, as if it had done what can be done of it.
+    /// Goes on after a block that failed, as if it had done what can be done of it.
     fn recover(&mut self, at: BlockRef, operation: &Operation) {
         let run = &mut self.run.run;
         run.pen.contour = Contour::default();
@@ -289,7 +289,7 @@ impl Rehearser {
         }
         let Operation::Motion(motion) = operation else {
             if sets(operation).any_of(Doubts::FEED) {
-                // Nobody knows which; with any feed the blocks behind it can be looked at.
+                // Nobody knows which; with any feed the blocks after it can be looked at.
                 run.modal.feed_mm_min.get_or_insert(ASSUMED_FEED_MM_MIN);
             }
             return;

@@ -176,7 +176,7 @@ pub type DatumTable = BTreeMap<i32, Position>;
 /// Tools by their [`tool_key`].
 pub type ToolTable = BTreeMap<u32, ToolShape>;
 
-/// Key of a tool: its number; a tool with an index, 253.1 in the tables of later controls, stands far behind.
+/// Key of a tool: its number; a tool with an index, 253.1 in the tables of later controls, stands far after.
 pub const fn tool_key(number: u32, index: u8) -> u32 {
     const INDEX_SHIFT: u32 = 16;
     number | (index as u32) << INDEX_SHIFT

@@ -1,4 +1,4 @@
-//! Tool and spindle, and what of a run stays in force behind its end.
+//! Tool and spindle, and what of a run stays in force after its end.
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Frame, Plane, Position, ToolShape};
@@ -87,7 +87,7 @@ pub(crate) enum Way {
     Programmed,
     /// M126: to the next place that has the programmed angle.
     Shortest,
-    /// M127 behind M126: to that within the turn in which the axis stands, not over 0.
+    /// M127 after M126: to that within the turn in which the axis stands, not over 0.
     WithinTurn,
 }
 
@@ -105,13 +105,13 @@ pub(crate) fn bars_probing(frame: &Frame) -> Option<MessageId> {
     }
 }
 
-/// What of a run stays in force behind its end until a machine cancels it: coordinate transformations, feed and
+/// What of a run stays in force after its end until a machine cancels it: coordinate transformations, feed and
 /// the data of the tool [003:6199-6205] [000:6589-6601].
 #[derive(Clone, Debug, Default)]
 pub struct Status {
     /// Transformations with their plane, and the feed.
     programmed: Option<(Frame, Option<f64>)>,
-    /// The working plane behind which the transformations stand.
+    /// The working plane after which the transformations stand.
     plane: Option<WorkingPlane>,
     tool: Option<Tool>,
     /// How the spindle of the machine turns, and its programmed speed, rpm.

@@ -74,7 +74,7 @@ pub(crate) fn works_as_defined(c: &Context<'_>) -> Result<(), Fault> {
     stands_as_defined(c, [&c.modal.actual; 2], moved)
 }
 
-/// Cycle 7 in the plane of cycle 19 is a shift in that plane; the one that was begun before cycle 19 ends behind it, in
+/// Cycle 7 in the plane of cycle 19 is a shift in that plane; the one that was begun before cycle 19 ends after it, in
 /// the reverse order of their beginning [000:4254].
 pub(crate) fn ends_within(modal: &Modal, shift: &Position, named: AxisSet) -> Result<(), Fault> {
     let Some(plane) = &modal.tilting.plane else {
@@ -89,7 +89,7 @@ pub(crate) fn ends_within(modal: &Modal, shift: &Position, named: AxisSet) -> Re
     let mut named = named.iter().filter(linear);
     if is_none(shift) && is_none(&modal.frame.shift) && named.any(begun_before) {
         return Err(out_of_order(
-            "the datum shift was begun before cycle 19 and ends behind the plane",
+            "the datum shift was begun before cycle 19 and ends after the plane",
         ));
     }
     Ok(())

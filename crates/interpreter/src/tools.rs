@@ -130,7 +130,7 @@ impl Tools {
     }
 
     /// The replacement tool takes the place of the one in the spindle, whose axis and oversizes count for it, too.
-    /// Behind it the path [comes back](Tools::come_back).
+    /// After it the path [comes back](Tools::come_back).
     pub fn replace(&mut self, c: &mut Context<'_>, blank: Option<&Blank>, number: u32) -> Result<(), Fault> {
         let Some(old) = c.modal.tool else {
             return Ok(());
@@ -140,7 +140,7 @@ impl Tools {
         insert_tool(c, blank, Tool::new(number, old.axis, data, old.oversize), true)
     }
 
-    /// From wherever the axes stand behind a change that no block has programmed, the path comes back to where it was,
+    /// From wherever the axes stand after a change that no block has programmed, the path comes back to where it was,
     /// the tool axis last (inferred: the blocks that follow count on it, and need not move all axes).
     pub fn come_back(&mut self, modal: &mut Modal, pen: &mut Pen) {
         let (Some((nominal, actual)), Some(tool)) = (self.comes_back.take(), modal.tool) else {

@@ -20,7 +20,7 @@ pub(crate) fn may_tilt(frame: &Frame, is_tilted: bool) -> Result<(), &'static st
     };
     let mut linear = Axis::ALL.into_iter().filter(|axis| !axis.is_rotary());
     if *frame != plain {
-        Err("rotation, mirror image and scaling begin behind cycle 19 and end before it")
+        Err("rotation, mirror image and scaling begin after cycle 19 and end before it")
     } else if is_tilted && linear.any(|axis| frame.shift[axis] != 0.0) {
         Err("a datum shift in the tilted plane is to end first")
     } else {

@@ -67,7 +67,7 @@ fn loops_without_movement_keep_no_states() {
                 "{before}LBL 1\n{body}\nFN 9: IF +0 EQU +0 GOTO LBL 1\nL X+20 R0 F100"
             ));
             let (most, end) = most_kept(&mut run);
-            // What cycle 13 tells the PLC waits behind a compensated contour, as much of it as may wait there.
+            // What cycle 13 tells the PLC waits after a compensated contour, as much of it as may wait there.
             let waiting = if body.contains("13.1") && before.contains("RL") {
                 502
             } else {

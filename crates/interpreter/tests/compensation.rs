@@ -100,7 +100,7 @@ fn paraxial_compensation() {
             "{block}"
         );
     }
-    // One that stays in force behind a block of the plane waits for the next one there.
+    // One that stays in force after a block of the plane waits for the next one there.
     run(&format!("{TOOL}\nX+40 R+ F100\nZ-5\nX+50")).assert_completed();
 }
 

@@ -386,7 +386,7 @@ fn cycle_calls() {
     assert_eq!(run.of_block(10).len(), 1);
 }
 
-/// What ends M89 is the definition of a cycle that is called [003:4877-4881]: behind one that acts at once [003:4846-4852] the
+/// What ends M89 is the definition of a cycle that is called [003:4877-4881]: after one that acts at once [003:4846-4852] the
 /// last-programmed machining cycle [000:7274] is called as before, here where the datum is then.
 #[test]
 fn cycles_that_act_at_once_leave_m89() {

@@ -169,7 +169,7 @@ fn paraxial_blocks() {
     );
 }
 
-/// F counts in the block of rapid traverse from the next one on; G90 and G91 act on the words behind them, and the last
+/// F counts in the block of rapid traverse from the next one on; G90 and G91 act on the words after them, and the last
 /// one stays.
 #[test]
 fn functions_stay_in_force() {

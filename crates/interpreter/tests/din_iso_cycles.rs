@@ -21,7 +21,7 @@ fn reported(run: &Run) -> Vec<String> {
     run.elements.iter().map(nameless).collect()
 }
 
-/// Both blocks do the same, and something, behind the same begin.
+/// Both blocks do the same, and something, after the same begin.
 #[track_caller]
 fn same(plain: &str, blocks: &str, change: impl Fn(Job) -> Job) -> Run {
     let begin = "TOOL DEF 1 L+100 R+3\nTOOL CALL 1 Z S1000\nL X-5 Y-5 Z+50 R0 FMAX M3\n";
@@ -38,7 +38,7 @@ fn same(plain: &str, blocks: &str, change: impl Fn(Job) -> Job) -> Run {
     expected.assert_completed();
     found.assert_completed();
     let expected_reported = reported(&expected);
-    // Behind the tool call and the way to the begin.
+    // After the tool call and the way to the begin.
     assert!(expected_reported.len() > 2, "{expected_reported:?}");
     for (place, (found, expected)) in reported(&found).iter().zip(&expected_reported).enumerate() {
         assert_eq!(found, expected, "element {place}");

@@ -19,7 +19,7 @@ fn places(blocks: &str, block: u32) -> Vec<(Function, At, Synchronisation)> {
         .collect()
 }
 
-/// M3, M8, M13 go out before the movement of their block, M5, M9, M30 behind it [003:7463-7487].
+/// M3, M8, M13 go out before the movement of their block, M5, M9, M30 after it [003:7463-7487].
 #[test]
 fn start_and_end_of_block() {
     for m in [3, 4, 8, 13, 14] {
@@ -61,7 +61,7 @@ fn without_waiting() {
     );
 }
 
-/// STOP, M0 and M6 wait for the operator behind their block; M6 by MP7440 bit 0 [003:2226-2236].
+/// STOP, M0 and M6 wait for the operator after their block; M6 by MP7440 bit 0 [003:2226-2236].
 #[test]
 fn stops() {
     let stops = |run: &Run| {

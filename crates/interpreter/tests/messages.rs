@@ -223,7 +223,7 @@ fn radius_compensation_undefined() {
 fn roundings() {
     check_with_tool(&[
         (
-            "RND behind nothing",
+            "RND after nothing",
             MessageId::RoundingOffNotDefined,
             2,
             "L Z+5 FMAX\nRND R5\nL X+50 F100",

@@ -107,7 +107,7 @@ fn excessive_subprogramming() {
         text
     };
     run(&nested(8));
-    // The call in level 8: behind 2 blocks and seven subprograms of 3 blocks, the second block of its own.
+    // The call in level 8: after 2 blocks and seven subprograms of 3 blocks, the second block of its own.
     check(&[
         ("nine levels", M, 2 + 7 * 3 + 2, &nested(9)),
         (

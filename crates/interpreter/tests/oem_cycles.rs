@@ -69,7 +69,7 @@ const HOLES: &str = "DLG-CALL 0/1/2/3/4/5/6/7\n; below the clearance\nFN 1: Q6 =
                      FN 12: IF +Q50 LT +Q1 GOTO LBL 1";
 
 /// Eight holes on a circle of R40 about (60,50), from Z+2 to Z-20; at the cycle call, not at the definition. Q6 is what
-/// it was behind it, so that a second call drills as deep; where it is global the second goes 2 mm deeper.
+/// it was after it, so that a second call drills as deep; where it is global the second goes 2 mm deeper.
 #[test]
 fn bolt_hole_circle() {
     let main = "TOOL CALL 1 Z S1000\nL Z+2 R0 FMAX M3\nCYCL DEF 68.0 HOLES\nCYCL DEF 68.1 Q1=+8 Q2=+40 Q3=+60\n\
@@ -101,7 +101,7 @@ fn bolt_hole_circle() {
     assert_eq!(run.q[6], -22.0);
 }
 
-/// A DLG-DEF cycle runs behind the last block of its definition, its parameters MP7250 higher; the cycle for the call
+/// A DLG-DEF cycle runs after the last block of its definition, its parameters MP7250 higher; the cycle for the call
 /// stays the one that was defined before, whatever it defines itself, and M89 waits.
 #[test]
 fn a_cycle_that_acts_at_its_definition() {
@@ -120,7 +120,7 @@ fn a_cycle_that_acts_at_its_definition() {
         &[[0.0, 0.0], [13.0, 0.0], [11.0, 21.0]],
         1e-12,
     );
-    // M89 called cycle 72 behind both blocks of the main program, not within cycle 70.
+    // M89 called cycle 72 after both blocks of the main program, not within cycle 70.
     assert_eq!(run.q[80], 2.0);
 }
 

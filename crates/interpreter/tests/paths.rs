@@ -96,7 +96,7 @@ fn p03_full_circle() {
     full_circle_outside(&run_manual("P03"));
 }
 
-/// P08: the same circle with polar coordinates, from other points before and behind [003:3210].
+/// P08: the same circle with polar coordinates, from other points before and after [003:3210].
 #[test]
 fn p08_full_circle_polar() {
     full_circle_outside(&run_manual("P08"));
@@ -120,7 +120,7 @@ fn full_circle_outside(run: &Run) {
         assert!(arc_of(arc[0]).1 > 0.0);
     }
     close_points(&ends(&run.of_block(10)), &[[50.0, -15.0]], EXACT);
-    // The lines before and behind touch the arcs tangentially.
+    // The lines before and after touch the arcs tangentially.
     let line = run.of_block(9);
     let arc = run.of_block(10);
     tangential(line[0], arc[0]);

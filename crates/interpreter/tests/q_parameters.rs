@@ -41,7 +41,7 @@ fn p18_pocket() {
     assert!(run.of_blocks(20..=31).iter().all(|e| e.end[Axis::Z] == -15.0));
 }
 
-/// P18: RND with R2.5 behind the first and the last contour point leads the tool on arcs of R2.5 to and from
+/// P18: RND with R2.5 after the first and the last contour point leads the tool on arcs of R2.5 to and from
 /// the point beside it, although the tool has R5.
 #[test]
 fn p18_smooth_approach_and_departure() {

@@ -196,7 +196,7 @@ fn pilot_drilling_where_the_rough_out_tool_goes_down() {
     close_points(&points(&run.of_block(17)), &expected, 1e-9);
 }
 
-/// Behind a coarse tool of R10 (Q18) the tool of R3 cuts in the corners only, and leaves what it cannot reach there.
+/// After a coarse tool of R10 (Q18) the tool of R3 cuts in the corners only, and leaves what it cannot reach there.
 #[test]
 fn fine_roughing_after_a_coarse_tool() {
     let coarse =
@@ -237,7 +237,7 @@ fn reciprocation_is_said() {
     assert_eq!(said("Q19=+0"), [""; 0]);
 }
 
-/// The parameters are Q parameters: what the program sets behind the definition counts at the call.
+/// The parameters are Q parameters: what the program sets after the definition counts at the call.
 #[test]
 fn parameters_are_q_parameters() {
     let run = run_of(

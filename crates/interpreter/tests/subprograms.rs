@@ -194,7 +194,7 @@ fn repeats_by_q() {
     assert_eq!(run.of_block(3).len(), 4);
 }
 
-/// P21: a jump to another program is a jump to a label with CALL PGM behind it [003:4319-4331].
+/// P21: a jump to another program is a jump to a label with CALL PGM after it [003:4319-4331].
 #[test]
 fn p21_jump_to_another_program() {
     let main = program(

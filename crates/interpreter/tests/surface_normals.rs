@@ -125,7 +125,7 @@ fn normals_follow_the_transformations() {
     );
 }
 
-/// Behind LN an axis that is not programmed stays where it is, and LN without X and Y goes on from there with them.
+/// After LN an axis that is not programmed stays where it is, and LN without X and Y goes on from there with them.
 #[test]
 fn what_follows_starts_beside_the_surface() {
     let text =

@@ -80,7 +80,7 @@ fn swivel_axes_stand_where_cycle_19_says() {
     // In a test run it may lie at the datum of the machine as well, since nobody may have said where.
     assert_eq!(on_datum("+30"), None);
     assert_eq!(on_datum("+40"), Some((PlaneWronglyDefined, 6)));
-    // Behind the plane they go where they are told.
+    // After the plane they go where they are told.
     assert_eq!(
         after("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL X+2 B+40 FMAX"),
         None
@@ -165,7 +165,7 @@ fn cycle_19_tilts_the_working_plane() {
     assert_near(start, [0.0, 0.0, 150.0]);
 }
 
-/// The datum shift before cycle 19 is the datum of the plane, one behind it is in the plane; and they end in the reverse
+/// The datum shift before cycle 19 is the datum of the plane, one after it is in the plane; and they end in the reverse
 /// order [000:4254].
 #[test]
 fn shifts_before_and_after_cycle_19() {
@@ -196,7 +196,7 @@ fn shifts_before_and_after_cycle_19() {
     );
     let run = on(SWIVEL_HEAD, &ended);
     run.assert_completed();
-    // One that was begun before the plane does not end in it, and goes on behind it.
+    // One that was begun before the plane does not end in it, and goes on after it.
     let within = |inner: &str| on(SWIVEL_HEAD, &format!("{}{}{inner}", shift("+40"), tilt("B+30")));
     assert_eq!(within(&shift("+0")).message(), Some((PlaneWronglyDefined, 9)));
     within(&shift("+5")).assert_completed();
@@ -313,7 +313,7 @@ fn cycle_19_is_refused() {
 }
 
 /// M114: while B swivels from 0 to 90 the tip stays where it is programmed, so the tool datum goes as in the tilted plane;
-/// behind M115 the coordinates are those of the tool datum again.
+/// after M115 the coordinates are those of the tool datum again.
 #[test]
 fn m114_keeps_the_tip_on_the_path() {
     let run = on(

@@ -71,7 +71,7 @@ struct Ahead {
     /// It is read beside the control alone: what is not read yet is waited for.
     on: bool,
     steps: VecDeque<Step<Box<ProgramError>>>,
-    /// Behind the last step nothing is to be read before it is answered.
+    /// After the last step nothing is to be read before it is answered.
     dammed: bool,
 }
 
@@ -248,7 +248,7 @@ impl Feeder {
         self.dropped_from.take()
     }
 
-    /// What is executed now: nobody goes back behind it.
+    /// What is executed now: nobody goes back after it.
     pub fn forget_before(&mut self, sequence: u64) {
         self.reader.forget_before(sequence);
     }
@@ -370,7 +370,7 @@ impl Feeder {
         )))
     }
 
-    /// Behind a barrier or the end the reader says the same again; what is not read yet is waited for.
+    /// After a barrier or the end the reader says the same again; what is not read yet is waited for.
     fn answer_of_dam(&mut self) -> Step<Box<ProgramError>> {
         match self.ahead.dammed {
             true => self.reader.next(),

@@ -51,7 +51,7 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     fn to_path(&self, axes: &Position, offsets: &Offsets) -> Position;
 
     /// The least and greatest axis positions on a curve from a start to an end: software limits are checked
-    /// here, behind the kinematics.
+    /// here, after the kinematics.
     fn bounds(&self, curve: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2];
 
     /// By how much each axis moves at most when a slot of the path moves by 1: a row for each axis, a column for each
@@ -143,7 +143,7 @@ impl Chain {
         }
     }
 
-    /// What is added behind a placement, which has the tool in it.
+    /// What is added after a placement, which has the tool in it.
     fn after(&self) -> Offsets {
         Offsets {
             tool_length: 0.0,

@@ -216,7 +216,7 @@ impl Track {
         }
     }
 
-    /// Where the path stands. Behind the output of a tool call that is where its element ends: the tip stands elsewhere
+    /// Where the path stands. After the output of a tool call that is where its element ends: the tip stands elsewhere
     /// without a movement.
     pub fn stands_at(&self) -> Position {
         let mut at = self.path.position();
@@ -259,7 +259,7 @@ impl Track {
     /// Outputs the functions of the path in their order, once the axes are in position.
     pub fn output(&mut self, outputs: &mut dyn Outputs, settled: bool) {
         while let Some(output) = self.path.next_output() {
-            // Behind a function that waits there is none before it is acknowledged.
+            // After a function that waits there is none before it is acknowledged.
             debug_assert!(self.waiting.len() < OUTPUTS, "the path waits at its gate");
             self.waiting.push_back(output);
             self.output_waiting(outputs, settled);

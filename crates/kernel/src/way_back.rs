@@ -8,7 +8,7 @@ use bahn_motion::{Aim, PointToPoint};
 pub struct WayBack(Option<PointToPoint>);
 
 impl WayBack {
-    /// The axis is so far beside its nominal position, mm or degrees; behind a short dip of the enable it still runs, mm/s.
+    /// The axis is so far beside its nominal position, mm or degrees; after a short dip of the enable it still runs, mm/s.
     pub fn begin(&mut self, beside: f64, speed_mm_s: f64) {
         let moves = beside != 0.0 && beside.is_finite() && speed_mm_s.is_finite();
         self.0 = moves.then(|| PointToPoint::moving(beside, speed_mm_s));

@@ -11,7 +11,7 @@ use bahn_reader::Start;
 pub(crate) struct Ordered {
     /// In the order of output.
     pub functions: Vec<TechnologyFunction>,
-    /// The run stops behind the block: by M0, or for the tool change of M6, which has no name.
+    /// The run stops after the block: by M0, or for the tool change of M6, which has no name.
     pub stops: Option<Option<&'static str>>,
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn rest(
     let from = arc.plane.point(start);
     let turn = 360.0_f64.copysign(arc.sweep_deg);
     let mut passed = sweep_deg(arc.centre, from, at, turn > 0.0);
-    // Before the start, not nearly a turn behind it.
+    // Before the start, not nearly a turn after it.
     if distance(at, from) <= ON_CIRCLE_MM && 2.0 * passed.abs() > 360.0 {
         passed -= turn;
     }
@@ -38,7 +38,7 @@ pub(crate) fn rest(
     if distance(at, arc.plane.point(end)) <= ON_CIRCLE_MM {
         return Ok(Curve::Line);
     }
-    Err("the axes stand behind the end of the arc")
+    Err("the axes stand after the end of the arc")
 }
 
 fn distance(from: Point2, to: Point2) -> f64 {

@@ -158,7 +158,7 @@ impl NcReader {
     }
 
     /// Executes the next block. One that fails leaves everything as it was before it; where no state before it is kept,
-    /// nothing goes on behind it.
+    /// nothing goes on after it.
     fn step(&mut self) {
         let at = self.at();
         let mark = Mark {

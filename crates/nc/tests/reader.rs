@@ -148,7 +148,7 @@ fn own_functions() {
     assert_eq!(path[0].functions()[0].synchronisation, Synchronisation::MvsSns);
 }
 
-/// M0 stops behind its block; `#FLUSH WAIT` waits until everything before it is executed.
+/// M0 stops after its block; `#FLUSH WAIT` waits until everything before it is executed.
 #[test]
 fn stops() {
     let mut run = reader("N10 G01 X10 F100 M0\n#FLUSH WAIT\nN20 X20\n");
@@ -165,7 +165,7 @@ fn stops() {
     assert_eq!(run.next(), Step::End);
 }
 
-/// A subroutine beside the program is a program of its own in the run; the main program goes on behind it.
+/// A subroutine beside the program is a program of its own in the run; the main program goes on after it.
 #[test]
 fn subroutines() {
     let mut run = reader("N10 G00 X10\nN20 L side\nN30 G01 X20 F100\n");
@@ -330,7 +330,7 @@ fn back_to_the_start_of_an_arc() {
     }
 }
 
-/// Where the axes stand at the end of an arc, nothing of it is left, even a rounding behind it: the next block begins.
+/// Where the axes stand at the end of an arc, nothing of it is left, even a rounding after it: the next block begins.
 #[test]
 fn back_to_the_end_of_an_arc() {
     for y in [0.0, 1e-12, 0.005] {
@@ -407,7 +407,7 @@ fn an_arc_from_an_unknown_place() {
     assert_eq!(sweep(&mut run).map(f64::round), Some(90.0));
 }
 
-/// At a stop behind the place where the axes were moved to, the PLC moves them again: the next block begins where they stand
+/// At a stop after the place where the axes were moved to, the PLC moves them again: the next block begins where they stand
 /// then.
 #[test]
 fn moved_at_a_stop() {
@@ -450,7 +450,7 @@ fn a_block_to_begin_with() {
     assert_eq!((path.len(), x(&path[0])), (1, (0.0, 40.0)));
 }
 
-/// A subroutine of the file is run by its calls alone: a run that shall begin in it, at its head or behind it, is refused,
+/// A subroutine of the file is run by its calls alone: a run that shall begin in it, at its head or after it, is refused,
 /// and stays so. Only a start elsewhere goes on.
 #[test]
 fn no_start_in_a_subroutine() {

@@ -66,7 +66,7 @@ fn frame_name(line: &[u8]) -> Option<Range<usize>> {
     name_at(line, number + before)
 }
 
-/// The same in DIN/ISO, where a program is called by its name, too: those of the frame have a unit behind it.
+/// The same in DIN/ISO, where a program is called by its name, too: those of the frame have a unit after it.
 fn iso_frame_name(line: &[u8], begun: bool) -> Option<Range<usize>> {
     let text = String::from_utf8_lossy(line);
     let read = IsoLanguage.parse_block(&text).block.operation;

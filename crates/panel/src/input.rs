@@ -49,7 +49,7 @@ pub enum Input {
 }
 
 impl Input {
-    /// It does not wait behind other inputs, nor for work that takes long.
+    /// It does not wait after other inputs, nor for work that takes long.
     pub(crate) fn is_urgent(&self) -> bool {
         matches!(self, Input::Machine(name, _) if name == EMERGENCY_STOP)
     }

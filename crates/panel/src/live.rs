@@ -75,7 +75,7 @@ impl Live {
         Live::run(station, None)
     }
 
-    /// Shows a session on a station, and lets it run on behind its end. Who watches may let time stand; pauses of the
+    /// Shows a session on a station, and lets it run on after its end. Who watches may let time stand; pauses of the
     /// session are passed over.
     pub fn replay(station: Station, replay: Replay) -> Live {
         Live::run(station, Some(replay))
@@ -132,7 +132,7 @@ impl Live {
 
 impl Link {
     /// Gives an input and waits until it was taken; contour cycles are only asked for. EMERGENCY STOP does not wait
-    /// behind anything.
+    /// after anything.
     ///
     /// # Errors
     /// Why it was refused; also when too many wait.
@@ -199,7 +199,7 @@ impl Link {
         Arc::clone(&self.shared.lock().screen)
     }
 
-    /// Waits for a screen behind this serial, at most so long.
+    /// Waits for a screen after this serial, at most so long.
     pub fn next_screen(&self, serial: u64, at_most: Duration) -> Arc<Screen> {
         let seen = self.shared.lock();
         let waited = self

@@ -68,7 +68,7 @@ impl Replay {
             }
             let wrong = |error: String| (number, error);
             if replay.ending != Ending::Cut {
-                return Err(wrong("there is something behind the end".to_owned()));
+                return Err(wrong("there is something after the end".to_owned()));
             }
             if let Ok(EndLine { t_us, end }) = serde_json::from_slice::<EndLine>(line) {
                 let as_written = end.check == format!("{:08x}", check.clone().finalize());

@@ -512,7 +512,7 @@ impl Station {
         self.host.control().first().edited_list()
     }
 
-    /// Messages of the control, and those of the panel behind them.
+    /// Messages of the control, and those of the panel after them.
     fn messages(&mut self) -> Vec<MessageLine> {
         let language = self.language();
         let control = self.host.control();

@@ -48,7 +48,7 @@ pub(crate) struct Ticket {
 }
 
 impl Steps {
-    /// So many more are to pass, behind those that are asked for already.
+    /// So many more are to pass, after those that are asked for already.
     pub fn ask(&mut self, cycles: u32) -> Ticket {
         let from = self.until;
         let wanted = from + u64::from(cycles);

@@ -47,7 +47,7 @@ pub(crate) fn translate(language: Language, english: &str) -> String {
     }
 }
 
-/// A message with the letter of an axis in place of a #, and with a code behind it.
+/// A message with the letter of an axis in place of a #, and with a code after it.
 fn of_axis(language: Language, english: &str) -> Option<String> {
     if language == Language::English {
         return None;
@@ -56,7 +56,7 @@ fn of_axis(language: Language, english: &str) -> Option<String> {
     let lettered = (0..words.len()).find_map(|place| {
         let mut around = words.clone();
         let letter = std::mem::replace(around.get_mut(place)?, "#");
-        // The sign of a direction stands behind the letter.
+        // The sign of a direction stands after the letter.
         Some(find(language, &around.join(" "))?.replace('#', letter))
     });
     lettered.or_else(|| {

@@ -48,7 +48,7 @@ fn touch(trainee: &mut Trainee, prompt: &str) {
     trainee.wait(3.0);
 }
 
-/// What a line of the window says behind its =.
+/// What a line of the window says after its =.
 fn result(trainee: &mut Trainee, name: &str) -> f64 {
     let lines = trainee.screen().program.lines;
     let line = lines
@@ -262,7 +262,7 @@ fn q_parameters_of_an_interrupted_run() {
     );
     trainee.number("-7.5").press("ENT END NC_START");
     trainee.until(60.0, |screen| screen.status.star == Star::Off);
-    // Behind the end the shift of the program is still in force: X-7.5 + 5 from the workpiece datum.
+    // After the end the shift of the program is still in force: X-7.5 + 5 from the workpiece datum.
     near(trainee.position('X').parse().unwrap(), -7.5 + 5.0);
 }
 

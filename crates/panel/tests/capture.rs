@@ -31,7 +31,7 @@ fn word(trainee: &mut Trainee, letter: char) -> String {
     }
 }
 
-/// An axis goes in a direction for a time, and stands; behind it the position has no round value.
+/// An axis goes in a direction for a time, and stands; after it the position has no round value.
 fn drive(trainee: &mut Trainee, key: &str, seconds: f64) {
     trainee
         .press("MANUAL")
@@ -112,7 +112,7 @@ fn a_coarse_display_is_captured_as_it_is() {
     assert!(trainee.position('X').ends_with(['0', '5']));
 }
 
-/// A new L block: a block is selected in PROGRAMMING AND EDITING, and in MANUAL OPERATION the key puts the L block behind
+/// A new L block: a block is selected in PROGRAMMING AND EDITING, and in MANUAL OPERATION the key puts the L block after
 /// it, with the axes of AXIS SELECTION and nothing else [003:2287-2316] [003:7111-7115].
 #[test]
 fn manual_operation_writes_a_block() {

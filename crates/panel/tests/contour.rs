@@ -80,7 +80,7 @@ fn soft_keys_draw_the_whole_program_and_block_by_block() {
     assert_ne!(pictures[5], pictures[6]);
     // The whole has no current block that stands out.
     assert_ne!(pictures[6], whole);
-    // Behind the last block there is none.
+    // After the last block there is none.
     assert!(trainee.messages().is_empty());
     for _ in 0..20 {
         trainee.press("SK3");
@@ -96,7 +96,7 @@ fn soft_keys_draw_the_whole_program_and_block_by_block() {
     assert_eq!(trainee.screen().soft_keys.keys[0], "RL");
 }
 
-/// A cycle is drawn beside its dialogue, with the word that is asked for; HELP switches that off and on. Behind the
+/// A cycle is drawn beside its dialogue, with the word that is asked for; HELP switches that off and on. After the
 /// dialogue the contour is back.
 #[test]
 fn the_cycle_is_drawn_beside_its_dialogue() {

@@ -42,7 +42,7 @@ fn a_baud_rate_is_entered_by_digits() {
     assert_eq!(trainee.menu_value("RS-232 BAUD RATE"), "2400");
 }
 
-/// Behind CL PGM the digits of the next name begin anew, also when the program was not erased [003:985-990].
+/// After CL PGM the digits of the next name begin anew, also when the program was not erased [003:985-990].
 #[test]
 fn after_cl_pgm_digits_begin_anew() {
     let mut trainee = Trainee::at("mill");
@@ -122,7 +122,7 @@ fn the_prompt_of_a_special_tool() {
     }
 }
 
-/// MOD is there beside an interrupted program, which goes on behind it [003:6980-6989].
+/// MOD is there beside an interrupted program, which goes on after it [003:6980-6989].
 #[test]
 fn mod_beside_an_interrupted_program() {
     let mut trainee = Trainee::at("mill");
@@ -248,7 +248,7 @@ fn the_increment_needs_its_marker() {
     assert!(!has(&mut trainee, "MANUAL"));
 }
 
-/// Behind switch-on the software numbers are displayed [000:327], until CE.
+/// After switch-on the software numbers are displayed [000:327], until CE.
 #[test]
 fn software_numbers_are_displayed_at_power_on() {
     let mut trainee = Trainee::at("mill");
@@ -339,7 +339,7 @@ fn pnt_lets_the_machine_follow_the_stylus() {
     let at = x(&mut trainee);
     trainee.wait(1.0);
     assert!((x(&mut trainee) - at).abs() < 0.002);
-    // The keys of the editor are there behind it.
+    // The keys of the editor are there after it.
     assert_eq!(keys(&mut trainee), ["PNT ON"]);
     trainee.soft("PNT ON");
     trainee.press("MANUAL").wait(0.5);

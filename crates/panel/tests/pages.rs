@@ -200,7 +200,9 @@ fn groups_of_keys_are_inhibited() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     let set = |trainee: &mut Trainee, marker: &str, to: u8| {
-        trainee.give(&format!("{{\"action\":\"{marker}={to}\"}}")).wait(0.1);
+        trainee
+            .give(&format!("{{\"action\":\"{marker}={to}\"}}"))
+            .wait(0.1);
     };
     trainee.press("PROGRAM PGM_NR");
     set(&mut trainee, "M2876", 1);

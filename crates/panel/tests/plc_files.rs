@@ -313,7 +313,7 @@ fn a_file_of_an_eprom_is_transferred_from_window_to_window() {
     assert_eq!(last_message(&mut trainee), "1 FILES TRANSFERRED");
     assert!(trainee.file("plc/MAIN.PLC").ends_with(";mine\n"));
     assert_eq!(trainee.file("plc/MAIN.ER1"), texts);
-    // Tagged files only: that of the EPROM behind those of the memory.
+    // Tagged files only: that of the EPROM after those of the memory.
     trainee.press("CE");
     trainee.soft("TRANSFER TAGGED");
     assert_eq!(last_message(&mut trainee), "KEY NON-FUNCTIONAL");

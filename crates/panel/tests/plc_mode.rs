@@ -198,7 +198,7 @@ fn a_faulty_line_is_found_and_mended() {
     let half = trainee.file("plc/MAIN.PLC");
     assert_eq!(half.len(), edited.len() + 2);
     assert!(half.lines().nth(begin + 2).unwrap().starts_with("EM "));
-    // The line that was left is in columns now, behind its blanks.
+    // The line that was left is in columns now, after its blanks.
     trainee.press("CE CE END");
     let (left, comment) = main.lines().nth(begin - 1).unwrap().split_once(';').unwrap();
     let (instruction, operand) = left.trim().split_once(' ').unwrap();
@@ -390,7 +390,7 @@ fn the_diagram_catches_an_edge() {
     trainee.soft("SET");
     assert!(records(&mut trainee));
     trainee.press("END").wait(11.0);
-    assert!(!records(&mut trainee), "512 scans of 20 ms are behind it");
+    assert!(!records(&mut trainee), "512 scans of 20 ms are after it");
     trainee.soft("TRACE");
     trainee.soft("LOGIC DIAGRAM");
     let expected = format!("M3100  1  {}{}", "_".repeat(32), HIGH.to_string().repeat(32));

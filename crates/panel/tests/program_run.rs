@@ -31,7 +31,7 @@ fn until_block(trainee: &mut Trainee, block: &str) {
     panic!("not in {block}: {:#?}", trainee.screen());
 }
 
-/// Behind INTERNAL STOP the current block is that with which NC START goes on; GOTO 0 goes to the beginning
+/// After INTERNAL STOP the current block is that with which NC START goes on; GOTO 0 goes to the beginning
 /// [003:1616-1640] [003:8001-8003].
 #[test]
 fn after_an_internal_stop_the_interrupted_block_is_the_current_one() {
@@ -108,7 +108,7 @@ fn the_called_program_is_shown() {
     assert_eq!(trainee.screen().program.title, "OUTER");
 }
 
-/// The number behind the slash after REP is that of the remaining repetitions [003:3762].
+/// The number after the slash after REP is that of the remaining repetitions [003:3762].
 #[test]
 fn repeats_are_counted_down() {
     let mut trainee = Trainee::at("mill");

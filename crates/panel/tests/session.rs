@@ -120,7 +120,7 @@ fn the_screens_of_a_session_are_those_of_its_replay() {
     assert_eq!(replay.ending(), Ending::Cut);
     for (time, screen) in &screens {
         while other.station.control().time_us() < *time {
-            // Behind the last input the machine goes on by itself.
+            // After the last input the machine goes on by itself.
             if !replay.cycle(&mut other.station).unwrap() {
                 other.station.cycle().unwrap();
             }
@@ -143,7 +143,7 @@ fn damage_is_reported_and_a_torn_line_is_left_out() {
     // Head, two keys, end.
     assert_eq!(lines.len(), 4);
     assert_eq!(Replay::of(&whole).unwrap().ending(), Ending::Whole);
-    // Wherever it is cut behind the head, what is whole is there.
+    // Wherever it is cut after the head, what is whole is there.
     for length in lines[0].len()..whole.len() {
         let replay = Replay::of(&whole[..length]).unwrap();
         let complete = lines[1..3].iter().scan(lines[0].len(), |sum, line| {

@@ -160,7 +160,7 @@ fn a_machine_parameter_is_changed() {
     assert!((way - 10.0).abs() < 1.0, "{way}");
 }
 
-/// A comment is added behind the value by a semicolon [000:10017]: with the value, or alone by its soft key.
+/// A comment is added after the value by a semicolon [000:10017]: with the value, or alone by its soft key.
 #[test]
 fn a_comment_is_added_to_a_machine_parameter() {
     let mut trainee = Trainee::at("mill");

@@ -46,7 +46,7 @@ fn the_datum_table_in_use_counts_at_once() {
     trainee.until(5.0, |screen| screen.status.star == Star::Steady);
     trainee.until(60.0, |screen| screen.status.star == Star::Off);
     trainee.wait(1.0);
-    // X+0 behind a shift of -12.5 mm.
+    // X+0 after a shift of -12.5 mm.
     assert_eq!(trainee.position('X'), "-12.500");
 }
 
@@ -422,7 +422,7 @@ fn a_line_of_the_assignment_comes_in_at_the_cursor() {
     );
     let lines = trainee.screen().program.lines;
     assert!(lines[0].current, "{lines:#?}");
-    // Behind the active one it is another matter.
+    // After the active one it is another matter.
     trainee.press("DOWN DOWN DOWN");
     trainee.soft("DELETE LINE");
     trainee.press("UP");
@@ -480,7 +480,7 @@ fn the_plane_of_the_swivel_axes_is_switched_by_hand() {
 /// position of the swivel axes can be edited" [000:4256]: each keeps its own positions but of the axis that is edited.
 #[test]
 fn an_axis_of_the_plane_is_edited_alone() {
-    // Behind the head B a rotation about C.
+    // After the head B a rotation about C.
     let mut trainee = Trainee::with("gantry", |folder| {
         let path = folder.join("parameters.mp");
         let list = std::fs::read_to_string(&path).unwrap();

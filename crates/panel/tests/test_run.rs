@@ -64,7 +64,7 @@ fn programmed_stops_interrupt_the_test() {
     assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
 }
 
-/// A test can be interrupted at any block [003:1524], and goes on behind it.
+/// A test can be interrupted at any block [003:1524], and goes on after it.
 #[test]
 fn a_test_is_interrupted_at_a_block() {
     let blocks = [&BLANK[..], &["L X+10", "L X+20", "L X+30", "L X+40"]].concat();

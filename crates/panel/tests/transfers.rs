@@ -156,7 +156,7 @@ fn a_program_of_the_directory_is_read_in() {
     assert_eq!(actions(&orders), [TransferAction::Read("16.H".into())]);
 }
 
-/// In German; a code behind a message stays.
+/// In German; a code after a message stays.
 #[test]
 fn messages_are_in_the_language_of_the_dialogue() {
     let (mut trainee, _orders) = connected();

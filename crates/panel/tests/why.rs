@@ -289,7 +289,9 @@ fn a_software_limit_says_how_to_leave_it() {
 #[test]
 fn an_encoder_that_fails_switches_the_drives_off() {
     let mut trainee = ready();
-    trainee.give(r#"{"action":"fault encoder Y amplitude"}"#).wait(1.0);
+    trainee
+        .give(r#"{"action":"fault encoder Y amplitude"}"#)
+        .wait(1.0);
     says(&trainee, "The drives are off: MEASURING SYSTEM Y DEFECTIVE A");
 }
 

@@ -14,7 +14,7 @@ pub enum ParameterError {
     /// The parameter has one value for each index, and none is given.
     #[error("{0} needs an index, as {0}.0")]
     IndexMissing(ParameterId),
-    /// Something stands behind the value that is not a comment.
+    /// Something stands after the value that is not a comment.
     #[error("{0}: no separator `;` found before `{1}`")]
     NoSeparator(ParameterId, String),
     /// The value is no number.

@@ -94,7 +94,7 @@ impl Clearing {
     }
 }
 
-/// How far an axis still travels behind the reaction.
+/// How far an axis still travels after the reaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Travel {
     /// Nothing moves by it.
@@ -153,7 +153,7 @@ pub struct Fault {
     pub cause: &'static str,
     /// The message; `None` where nothing is said, or where the text is not the control's.
     pub message: Option<MessageId>,
-    /// The letters behind the message.
+    /// The letters after the message.
     pub letter: &'static str,
     /// When it is seen.
     pub seen: Seen,

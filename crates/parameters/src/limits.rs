@@ -19,7 +19,7 @@ pub struct Limits {
     pub files_max: u32,
     /// Highest label number; label 0 ends subprograms [003:3623-3629]; others than TNC 360 (inferred).
     pub label_max: u32,
-    /// Highest count behind REP [003:3747-3763]; others than TNC 360 (inferred).
+    /// Highest count after REP [003:3747-3763]; others than TNC 360 (inferred).
     pub repeat_max: u32,
     /// Levels of nested subprograms [003:3915-3921]; others than TNC 360 (inferred).
     pub subprogram_nesting_max: u8,
@@ -123,7 +123,7 @@ pub struct Limits {
     /// Period of the fine interpolation between them, µs: TNC 415 B of the contour, TNC 425 of the
     /// speed loop [000:212-224].
     pub fine_cycle_us: Option<u32>,
-    /// Bits of the converter behind a nominal value output, for 10 V of either sign: 16 [000:4863], 14
+    /// Bits of the converter after a nominal value output, for 10 V of either sign: 16 [000:4863], 14
     /// [000:4863], TNC 151/155 steps of 2.44 mV [001:2573-2585]; TNC 360 as TNC 407 (inferred).
     pub output_bits: u8,
 
@@ -151,11 +151,11 @@ pub struct Limits {
     pub outputs: &'static [(u16, u16)],
 
     // What only some models have.
-    /// The PLC mode behind code number 807 667: editor, compiler, trace and tables [000:11187-11241].
+    /// The PLC mode after code number 807 667: editor, compiler, trace and tables [000:11187-11241].
     pub plc_mode: bool,
     /// A second data interface, RS-422/V.11, beside RS-232-C/V.24 [000:16712-16722].
     pub rs_422: bool,
-    /// A letter behind TRANSFERRED DATA INCORRECT; the TNC 151/155 has none, and calls what it could not send
+    /// A letter after TRANSFERRED DATA INCORRECT; the TNC 151/155 has none, and calls what it could not send
     /// PROGRAM INCOMPLETE [000:17581-17601] [001:2036-2052].
     pub transfer_codes: bool,
     /// The screen of 14 inches: windows side by side, in colours [000:6289-6306] [000:2784-2833].
@@ -169,7 +169,7 @@ pub struct Limits {
     /// By hand the feed of the axis is shown whose direction key is pressed [000:6529-6540]; a TNC 360 shows a feed with MP7270 + 1
     /// alone [003:7304-7309].
     pub shows_feed_of_keys: bool,
-    /// An oscilloscope behind code number 688 379 [000:18640].
+    /// An oscilloscope after code number 688 379 [000:18640].
     pub oscilloscope: bool,
 }
 

@@ -56,7 +56,7 @@ impl ControlModel {
         }
     }
 
-    /// Has the PLC mode behind code number 807 667: editor, compiler, trace and tables [000:11187-11241].
+    /// Has the PLC mode after code number 807 667: editor, compiler, trace and tables [000:11187-11241].
     pub const fn has_plc_mode(self) -> bool {
         self.limits().plc_mode
     }
@@ -66,7 +66,7 @@ impl ControlModel {
         self.limits().rs_422
     }
 
-    /// Shows a letter behind TRANSFERRED DATA INCORRECT; the TNC 151/155 has none, and calls what it could not send
+    /// Shows a letter after TRANSFERRED DATA INCORRECT; the TNC 151/155 has none, and calls what it could not send
     /// PROGRAM INCOMPLETE [000:17581-17601] [001:2036-2052].
     pub const fn has_transfer_codes(self) -> bool {
         self.limits().transfer_codes
@@ -98,7 +98,7 @@ impl ControlModel {
         self.limits().shows_feed_of_keys
     }
 
-    /// Has an oscilloscope behind code number 688 379 [000:18640].
+    /// Has an oscilloscope after code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
         self.limits().oscilloscope
     }

@@ -29,7 +29,7 @@ pub enum Content {
 /// assert_eq!(list.written(name)?, "%00001");
 /// assert_eq!(differences(&before, &list), [name]);
 ///
-/// // In channel 1, P7000 is the 5000th parameter behind the user block that begins at q10000.
+/// // In channel 1, P7000 is the 5000th parameter after the user block that begins at q10000.
 /// let mut q = QParameters::new(30_000).unwrap();
 /// for (name, value) in [("q102", "10000"), ("q103", "5000")] {
 ///     q.enter(q.name(name)?, value)?;

@@ -9,7 +9,7 @@ use crate::{ControlModel, Definition, ListError, ParameterError, ParameterId};
 /// The text of a list of machine parameters. Reading it never fails and keeps every byte; a value can be
 /// changed in its place, so that comments and order stay.
 ///
-/// A line holds number, separator (`:`, `=` or blanks), value and, behind a semicolon, a comment
+/// A line holds number, separator (`:`, `=` or blanks), value and, after a semicolon, a comment
 /// [000:10017]. The value is decimal, `%` binary or `$` hexadecimal [000:10019-10046]. A line that starts
 /// with `;` or `*` is a comment [001:2521-2523].
 ///
@@ -200,7 +200,7 @@ impl ListText {
         Some(start..self.lines.get(number).copied().unwrap_or(self.bytes.len()))
     }
 
-    /// The comment behind a value, without its semicolon; empty where there is none [000:10017].
+    /// The comment after a value, without its semicolon; empty where there is none [000:10017].
     pub fn comment(&self, id: ParameterId) -> String {
         let after = self.after(id).map(|at| {
             let text = String::from_utf8_lossy(self.bytes.get(at).unwrap_or_default()).into_owned();
@@ -210,7 +210,7 @@ impl ListText {
         after.unwrap_or_default()
     }
 
-    /// Writes a comment behind the value of a parameter that the text defines; an empty one takes it away.
+    /// Writes a comment after the value of a parameter that the text defines; an empty one takes it away.
     pub fn set_comment(&mut self, id: ParameterId, comment: &str) {
         let Some(at) = self.after(id) else { return };
         let old = self.bytes.get(at.clone()).unwrap_or_default();
@@ -225,7 +225,7 @@ impl ListText {
         self.read();
     }
 
-    /// What stands in the line of a parameter behind its value.
+    /// What stands in the line of a parameter after its value.
     fn after(&self, id: ParameterId) -> Option<Range<usize>> {
         let entry = self.entries.iter().find(|entry| entry.id == id)?;
         let start = entry.value_at.end;
@@ -263,7 +263,7 @@ impl ListText {
         self.bytes.extend_from_slice(end.as_bytes());
     }
 
-    /// Replaces a value; the blanks behind it give or take, so that the comment keeps its column.
+    /// Replaces a value; the blanks after it give or take, so that the comment keeps its column.
     fn replace(&mut self, at: Range<usize>, value: &str) {
         let old = at.len();
         let blanks = self.bytes[at.end..]
@@ -369,7 +369,7 @@ fn read_line(model: ControlModel, line: &str) -> Result<Option<Assignment>, Wron
     read_assignment(model, &line[..end], start).map(Some)
 }
 
-/// Reads `MP1010.0 : 10000`, `1010.0=10000` or `MP1010.0 10000` behind the first bytes of a text.
+/// Reads `MP1010.0 : 10000`, `1010.0=10000` or `MP1010.0 10000` after the first bytes of a text.
 pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> Result<Assignment, Wrong> {
     let end = text.trim_end().len();
     let from = end - text[from..end].trim_start().len();

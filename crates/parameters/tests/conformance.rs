@@ -119,7 +119,7 @@ fn sources() -> String {
     all
 }
 
-/// Whether a text has a word, with nothing of another word before or behind it.
+/// Whether a text has a word, with nothing of another word before or after it.
 fn has_word(text: &str, before: &str, word: &str) -> bool {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
     let wanted = format!("{before}{word}");

@@ -145,7 +145,7 @@ fn masters_and_slaves_go_together() {
     }
 }
 
-/// What no machine can be: axes in a circle, or behind one that does not exist (MP850) [000:4467-4486]
+/// What no machine can be: axes in a circle, or after one that does not exist (MP850) [000:4467-4486]
 /// [000:4519-4539], and two axes of one letter (MP410) [000:3350-3370].
 #[test]
 fn what_no_machine_can_be() {

@@ -350,7 +350,7 @@ fn a_thousand_faults_are_listed() {
     assert_eq!((text.faults().len(), text.not_listed()), (1, 0));
 }
 
-/// A comment stands behind a semicolon and the value [000:10017]; another one takes its place and its column.
+/// A comment stands after a semicolon and the value [000:10017]; another one takes its place and its column.
 #[test]
 fn a_comment_is_written_after_the_value() {
     let mut text = ListText::from_bytes(

@@ -14,7 +14,7 @@ fn list(assignments: &[&str]) -> ParameterList {
 
 #[test]
 fn swivel_chains_of_the_manual() {
-    // Example 1: what stands behind the end of the chain does not count.
+    // Example 1: what stands after the end of the chain does not count.
     let head = list(&[
         "7510=%000100",
         "7511=%00",

@@ -49,12 +49,12 @@ errors! {
         cure "Take an operand of a type that it works on, for example a marker for logic, a word for numbers.";
     3 OperandNotFound "E S C" "operand not found"
         cause "The type of the operand stands without its number."
-        cure "Write the number behind the type, as in M2045 or W260.";
+        cure "Write the number after the type, as in M2045 or W260.";
     4 OperandOutOfRange "E S C" "operand not in acceptable range"
         cause "The control has no operand of this number, or a word does not begin at an address that fits its width."
         cure "Look the range up with `bahn plc signals`; words have even addresses, doublewords multiples of four.";
     5 NoLimiter "E S C" "no limiter after command"
-        cause "Something stands behind the instruction that does not belong to it."
+        cause "Something stands after the instruction that does not belong to it."
         cure "Delete it, or put a semicolon before it.";
     6 NoEndOfLine "E S C" "no end of line found"
         cause "The line is longer than 128 characters."
@@ -85,7 +85,7 @@ errors! {
         cure "Put the label before the chain.";
     15 LabelInChain "S C" "label within a gating chain"
         cause "A label stands within a chain, so that the next instruction would be a gate or a load depending on the way to it."
-        cure "Assign the result before the label, and begin a new chain behind it.";
+        cure "Assign the result before the label, and begin a new chain after it.";
     16 JumpInBracket "S C" "jump within a parenthesis"
         cause "A jump or call leaves an open bracket, which would never be closed."
         cure "Close the bracket before it.";
@@ -138,7 +138,7 @@ errors! {
         cause "A new string is loaded while the result of the chain before was not used."
         cure "Store the first string, or compare it.";
     33 LinkNotAtStart "S C" "GLOBAL/EXTERN not at start of file"
-        cause "USES, GLOBAL or EXTERN stands behind other instructions."
+        cause "USES, GLOBAL or EXTERN stands after other instructions."
         cure "Move it to the top of the file.";
     34 TooManyFiles "(S) C" "too many modules"
         cause "USES links more than 64 files into one program."

@@ -53,7 +53,7 @@ pub struct Label {
 /// What a label names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelPlace {
-    /// The instruction behind an LBL, by its index.
+    /// The instruction after an LBL, by its index.
     Code(usize),
     /// A constants field, by its index.
     Field(usize),
@@ -262,7 +262,7 @@ pub enum Op {
     PullIndex,
     /// SA := text.
     LoadText { text: TextOperand },
-    /// SA := SA with text behind it.
+    /// SA := SA with text after it.
     AppendText { text: TextOperand },
     /// String memory := SA with its end character.
     AssignText { string: u8, indexed: bool },

@@ -15,7 +15,7 @@ pub enum ProgramMemory {
 /// The source files that a program may link.
 pub trait SourceFiles {
     /// The bytes of a file in the RAM; `None` when there is none of that name. Names are tried as written,
-    /// in capitals, and with `.PLC` behind them.
+    /// in capitals, and with `.PLC` after them.
     fn read(&self, name: &str) -> Option<Vec<u8>>;
 
     /// The bytes of a file in the EPROM; there is none without one.

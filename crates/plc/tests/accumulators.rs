@@ -257,7 +257,7 @@ fn a_gate_at_the_start_of_a_chain_loads() {
          = O6",
         "O1=1 O2=0 O3=1 O4=1 O5=0 O6=0",
     );
-    // As in the Hirth example: a gate behind a set command.
+    // As in the Hirth example: a gate after a set command.
     example(
         "[000:8741-8747]",
         "M2=1 M2011=1 M3023=1",

@@ -187,7 +187,7 @@ fn program(main: &[(u8, u32)], subroutines: &[(u8, u32)]) -> String {
     text
 }
 
-/// Writes one statement: complete chains, so that all may stand behind each other.
+/// Writes one statement: complete chains, so that all may stand one after the other.
 #[expect(clippy::too_many_lines, reason = "one arm for each kind of statement")]
 fn statement(text: &mut String, kind: u8, dice: &mut Dice, label: &str) {
     let lines = match kind {

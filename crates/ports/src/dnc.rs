@@ -156,7 +156,7 @@ impl<'a> Session<'a> {
         let mut taken = 0;
         while taken < BLOCKS_PER_CYCLE && *drip.state() == DripState::Running {
             let state = self.host.control().first().drip_feed();
-            // Behind the end of the run only the end of the text is awaited.
+            // After the end of the run only the end of the text is awaited.
             let hungry = state.is_none_or(|state| state.wants_more && state.bytes < ENOUGH);
             let waits = hungry && !self.wishes.realtime && waited < STILL;
             let at_most = if waits { LOOK } else { Duration::ZERO };
@@ -171,7 +171,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Behind a broken line: START again, as often as the operator wants to; else what is known is executed.
+    /// After a broken line: START again, as often as the operator wants to; else what is known is executed.
     fn go_on_broken(&mut self, message: String) -> Result<(), HostError> {
         if self.wishes.restarts > 0 {
             if !self.line.is_connected() {

@@ -353,7 +353,7 @@ fn read(image: &Image, area: Area, which: std::ops::Range<u32>) -> Vec<u8> {
     }
 }
 
-/// A string with zero bytes behind its end.
+/// A string with zero bytes after its end.
 fn string(image: &Image, number: usize) -> Vec<u8> {
     let mut text = image.text(number).to_vec();
     text.resize(image.string(number).len(), 0);

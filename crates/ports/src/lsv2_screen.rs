@@ -93,7 +93,7 @@ impl Sheet {
         }
     }
 
-    /// A stripe behind text that stands out.
+    /// A stripe after text that stands out.
     fn bar(&mut self, column: usize, line: usize, columns: usize) {
         let min = [column as f64 * CELL[0], line as f64 * CELL[1]];
         let max = [min[0] + columns as f64 * CELL[0], min[1] + CELL[1]];

@@ -13,7 +13,7 @@ pub(crate) trait Bulk: Language {
     /// The places of all blocks of a text whose first line has the given number.
     fn cut(&self, text: &[u8], line: u32) -> Vec<RawBlock>;
 
-    /// Appends `count` blocks of a text behind the first `skip`.
+    /// Appends `count` blocks of a text after the first `skip`.
     fn read_all(&self, text: &[u8], skip: usize, count: usize, may_begin: bool, blocks: &mut Vec<Block>);
 
     /// A text with other numbers before its blocks, from `first` on.

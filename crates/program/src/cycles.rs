@@ -8,7 +8,7 @@ use Sign::{NotNegative, PlusOmitted, Signed, Unsigned, Working};
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
 
-/// Whether `Qn=value` words may stand in block n.0, behind the name; the cycles that the table gives assignments have
+/// Whether `Qn=value` words may stand in block n.0, after the name; the cycles that the table gives assignments have
 /// them in as many blocks as are written.
 pub(crate) fn takes_assignments(number: u16) -> bool {
     number >= FIRST_PARAMETER_CYCLE || !assigned_parameters(number).is_empty()
@@ -32,7 +32,7 @@ pub enum Quantity {
     Coordinates,
     /// An axis with the length along it, program units.
     Side,
-    /// A datum shift: coordinates only, or the line of a datum table behind `#`.
+    /// A datum shift: coordinates only, or the line of a datum table after `#`.
     Shift,
     /// Letters of axes, which may touch each other.
     Axes,
@@ -50,7 +50,7 @@ pub enum Quantity {
     Orientation,
     /// A factor.
     Factor,
-    /// Factors of single axes, and a centre behind `CC`, program units.
+    /// Factors of single axes, and a centre after `CC`, program units.
     AxisFactors,
     /// Feed, mm/min or what F counts in inches.
     Feed,
@@ -133,7 +133,7 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// The parameters of a block n.1, n.2, ...; blocks behind the last one repeat it.
+    /// The parameters of a block n.1, n.2, ...; blocks after the last one repeat it.
     pub fn block(&self, sub: u16) -> &'static [CycleParameter] {
         let index = usize::from(sub).checked_sub(1);
         let block = index.and_then(|index| self.blocks.get(index).or(self.blocks.last()));

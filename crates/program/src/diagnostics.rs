@@ -101,7 +101,7 @@ impl Program {
         (pass.found, pass.more)
     }
 
-    /// A fault of a block that was found elsewhere, with its place: the value behind an address, or the whole
+    /// A fault of a block that was found elsewhere, with its place: the value after an address, or the whole
     /// block without one.
     pub fn diagnostic(
         &self,
@@ -174,11 +174,7 @@ impl Pass<'_> {
         }
         if let Some(line) = self.program.trailing_line() {
             let [_, end] = self.program.language().frames();
-            self.at_line(
-                last,
-                line,
-                &format!("text behind {end} is no part of the program"),
-            );
+            self.at_line(last, line, &format!("text after {end} is no part of the program"));
         }
     }
 
@@ -331,7 +327,7 @@ impl Pass<'_> {
         self.at_word(message, Severity::Error, block, address, detail);
     }
 
-    /// A diagnostic at the value behind an address in a block; without it at the whole block.
+    /// A diagnostic at the value after an address in a block; without it at the whole block.
     fn at_word(&mut self, message: MessageId, severity: Severity, block: u32, address: &str, detail: &str) {
         if !self.is_full(severity) {
             let found = self.program.diagnostic(message, severity, block, address, detail);
@@ -370,7 +366,7 @@ impl Pass<'_> {
     }
 }
 
-/// Line within the text of a block, column and length of the value behind an address, or of the address
+/// Line within the text of a block, column and length of the value after an address, or of the address
 /// itself if that ends with its number; else of the code in the first line.
 fn locate(text: &str, address: &str) -> (u32, u32, u32) {
     let lines = || lines(text.as_bytes()).map(|line| std::str::from_utf8(line).unwrap_or_default());

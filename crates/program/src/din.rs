@@ -120,7 +120,7 @@ impl Language for DinLanguage {
     }
 }
 
-/// Where the number of a block stands: its `N`, its digits, and the byte behind them.
+/// Where the number of a block stands: its `N`, its digits, and the byte after them.
 fn number_at(text: &[u8]) -> Option<(usize, usize, usize)> {
     let after_blanks = |from: usize| {
         let blanks = text.get(from..)?.iter().take_while(|byte| is_blank(**byte));

@@ -42,7 +42,7 @@ pub enum Edit<'a> {
         /// [000:6885].
         step: u32,
     },
-    /// Protects the program against erasing and editing: a `P` behind its first and its last block [003:1019].
+    /// Protects the program against erasing and editing: a `P` after its first and its last block [003:1019].
     Protect,
     /// Takes the protection away. The control asks for code number 86357 before [003:7028].
     Unprotect,
@@ -120,7 +120,7 @@ impl Program {
         self.begin().is_some_and(|header| header.protected)
     }
 
-    /// Text that is entered, with the line ends of the file; it joins nothing behind it.
+    /// Text that is entered, with the line ends of the file; it joins nothing after it.
     fn own_blocks(&self, text: &str) -> Result<String, EditError> {
         let mut own = String::with_capacity(text.len() + self.line_end.len());
         for line in lines(text.as_bytes()) {
@@ -146,7 +146,7 @@ impl Program {
         }
     }
 
-    /// Takes from the end of whole lines what would join the text behind them.
+    /// Takes from the end of whole lines what would join the text after them.
     fn unjoin(&self, text: &mut Vec<u8>, after: &[u8]) {
         let Some(next) = lines(after).find(|line| !trim(line).is_empty()) else {
             return;
@@ -303,7 +303,7 @@ impl Program {
         for header in [&mut *begin, &mut *end] {
             header.protected = protected;
             if protected {
-                // Behind a name alone the P would be part of it.
+                // After a name alone the P would be part of it.
                 header.unit = Some(header.unit.unwrap_or(unit));
             }
         }

@@ -40,7 +40,7 @@ impl Program {
         program
     }
 
-    /// Whether more of the program may come: its blocks behind the known ones are not known yet. END PGM ends it.
+    /// Whether more of the program may come: its blocks after the known ones are not known yet. END PGM ends it.
     pub fn is_growing(&self) -> bool {
         self.growth.is_some()
     }
@@ -55,7 +55,7 @@ impl Program {
         first..self.block_count()
     }
 
-    /// The program with more of its text; text behind END PGM is no part of it.
+    /// The program with more of its text; text after END PGM is no part of it.
     pub fn more(&self, bytes: &[u8]) -> Program {
         self.grown(bytes, false)
     }
@@ -79,7 +79,7 @@ impl Program {
         self.with_rope(rope, self.frame.clone(), self.growth.clone())
     }
 
-    /// The first block behind a block that sets a label, as far as it has come.
+    /// The first block after a block that sets a label, as far as it has come.
     pub fn label_after(&self, label: u16, block: u32) -> Option<u32> {
         let from = self.rope.of_block(block)?;
         let pieces = self.rope.pieces().iter().enumerate().skip(from);
@@ -196,7 +196,7 @@ impl Program {
         }
     }
 
-    /// The program with text behind its last known block.
+    /// The program with text after its last known block.
     fn appended(&self, mut text: Vec<u8>, complete: bool) -> Program {
         blank_returns(&mut text);
         let body = self.rope.body();

@@ -60,7 +60,7 @@ impl InForce {
         )
     }
 
-    /// A positioning block with all that the functions in force say; they are those behind it then.
+    /// A positioning block with all that the functions in force say; they are those after it then.
     ///
     /// # Errors
     /// What is wrong with words that the path function in force does not have.

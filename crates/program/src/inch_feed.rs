@@ -72,7 +72,7 @@ impl Program {
     }
 }
 
-/// Calls a function with each number behind an F.
+/// Calls a function with each number after an F.
 fn each_feed(operation: &Operation, found: &mut impl FnMut(f64)) {
     let mut value = |value: Value| {
         if let Value::Number(number) = value {

@@ -90,7 +90,7 @@ pub trait Language: fmt::Debug + Send + Sync {
     /// How the blocks that frame a program are called.
     fn frames(&self) -> [&'static str; 2];
 
-    /// Reads one block by itself, as an editor or a dialogue wants it. Lines behind the first block are not
+    /// Reads one block by itself, as an editor or a dialogue wants it. Lines after the first block are not
     /// looked at.
     fn parse_block(&self, text: &str) -> ParsedBlock {
         let raw = self.next_block(&mut Lines::new(text.as_bytes(), 1));
@@ -150,7 +150,7 @@ pub struct WordSpan {
     pub kind: WordKind,
     /// Bytes of the whole word.
     pub span: Range<usize>,
-    /// Bytes of the value behind the address; empty where there is none.
+    /// Bytes of the value after the address; empty where there is none.
     pub value: Range<usize>,
 }
 
@@ -169,6 +169,6 @@ pub enum WordKind {
     Value,
     /// Names and decoration.
     Text,
-    /// A comment with its `;` or `*`, or annotation behind dots.
+    /// A comment with its `;` or `*`, or annotation after dots.
     Comment,
 }

@@ -7,7 +7,7 @@ use crate::text::{is_blank, to_text, trim};
 pub struct RawBlock {
     /// First byte of its first line.
     pub start: usize,
-    /// Behind the last byte of its last line, without the line end.
+    /// After the last byte of its last line, without the line end.
     pub end: usize,
     /// Number of its first line, counted on from that of [`Lines::new`].
     pub line: u32,
@@ -85,7 +85,7 @@ impl<'a> Lines<'a> {
         self.text.get(start..end).unwrap_or_default()
     }
 
-    /// First byte of the next line and the byte behind its last, without the line end; the line is read.
+    /// First byte of the next line and the byte after its last, without the line end; the line is read.
     #[inline]
     pub fn line(&mut self) -> Option<(usize, usize)> {
         let start = self.next;
@@ -123,7 +123,7 @@ pub(crate) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     std::iter::from_fn(move || lines.line().map(|(start, end)| lines.bytes(start, end)))
 }
 
-/// The line `offset` lines behind the front of a text, without its line end.
+/// The line `offset` lines after the front of a text, without its line end.
 pub(crate) fn line_at(text: &[u8], offset: u32) -> String {
     let line = lines(text).nth(usize::try_from(offset).unwrap_or(usize::MAX));
     to_text(line.unwrap_or_default())

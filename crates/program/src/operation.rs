@@ -631,7 +631,7 @@ pub enum BinaryOperator {
 pub struct CycleBlock {
     /// Cycle number before the point.
     pub number: u16,
-    /// Sub-block number behind the point.
+    /// Sub-block number after the point.
     pub sub: u16,
     /// Words in the order written.
     pub words: Vec<CycleWord>,

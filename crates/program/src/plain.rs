@@ -126,7 +126,7 @@ fn text_line(lines: &mut Lines<'_>) -> Option<usize> {
     Some(end)
 }
 
-/// Whether a line of a block is joined with the next one: it ends with `~`. Behind a comment that may be part of the comment,
+/// Whether a line of a block is joined with the next one: it ends with `~`. After a comment that may be part of the comment,
 /// as in [`continues`]; a line with a block number is then a block of its own.
 #[inline]
 fn goes_on(line: &[u8], lines: &Lines<'_>) -> bool {

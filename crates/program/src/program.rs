@@ -19,7 +19,7 @@ use crate::{Block, Header, Operation, Unit};
 /// It holds the bytes of its file in pieces of 256 blocks, about a hundred bytes for each, which the versions
 /// that [`Program::edit`] makes share; blocks are decoded a chunk at a time. A block's number is its number in the normalised listing: `BEGIN PGM` is 0 and every
 /// line with text is one block, lines joined by `~` together. Where the file lacks `BEGIN PGM` or
-/// `END PGM`, the block is implied. Text before the first `BEGIN PGM` and behind `END PGM` is no part of
+/// `END PGM`, the block is implied. Text before the first `BEGIN PGM` and after `END PGM` is no part of
 /// the program.
 ///
 /// ```
@@ -355,7 +355,7 @@ impl Program {
         line_at(text, line.saturating_sub(self.rope.start(index).1))
     }
 
-    /// The text before BEGIN and behind END.
+    /// The text before BEGIN and after END.
     pub(crate) fn around(&self) -> (&[u8], &[u8]) {
         let pieces = self.rope.pieces();
         let leading = self.frame.leading.and(pieces.first());
@@ -367,7 +367,7 @@ impl Program {
         )
     }
 
-    /// Line of the text behind END.
+    /// Line of the text after END.
     pub(crate) fn trailing_line(&self) -> Option<u32> {
         self.frame
             .trailing

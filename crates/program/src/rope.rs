@@ -13,7 +13,7 @@ pub(crate) const PIECE_BLOCKS: u32 = 256;
 pub(crate) struct Piece {
     source: Arc<Vec<u8>>,
     range: Range<usize>,
-    /// Number of blocks; none in the text before BEGIN and behind END.
+    /// Number of blocks; none in the text before BEGIN and after END.
     pub(crate) blocks: u32,
     /// Number of line ends.
     pub(crate) lines: u32,
@@ -56,7 +56,7 @@ impl fmt::Debug for Piece {
     }
 }
 
-/// Makes pieces of a text that was cut into blocks; `end_line` is the line behind it.
+/// Makes pieces of a text that was cut into blocks; `end_line` is the line after it.
 pub(crate) fn pieces(
     text: Vec<u8>,
     blocks: &[RawBlock],
@@ -107,7 +107,7 @@ pub(crate) struct Rope {
     first: u32,
     /// Line that the first piece begins with.
     line: u32,
-    /// Number behind the last block.
+    /// Number after the last block.
     end: u32,
     bytes: u64,
 }
@@ -164,7 +164,7 @@ impl Rope {
         self.bytes
     }
 
-    /// Number behind the last block.
+    /// Number after the last block.
     pub(crate) fn end(&self) -> u32 {
         self.end
     }

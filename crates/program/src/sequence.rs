@@ -24,7 +24,7 @@ struct Open {
     number: u16,
     /// Block n.0.
     first_block: u32,
-    /// The sub-block that comes next; `None` behind a fault, so that it is reported once.
+    /// The sub-block that comes next; `None` after a fault, so that it is reported once.
     next: Option<u16>,
 }
 

@@ -16,7 +16,7 @@ pub(crate) struct Frame {
     pub(crate) end: Option<Header>,
     /// Line of the first text before BEGIN.
     pub(crate) leading: Option<u32>,
-    /// Whether there is text behind END.
+    /// Whether there is text after END.
     pub(crate) trailing: bool,
     /// Why the program is certainly none of its language.
     pub(crate) refused: Option<String>,

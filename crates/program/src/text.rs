@@ -111,7 +111,7 @@ pub(crate) fn line_end_of(text: &[u8]) -> &'static str {
     }
 }
 
-/// Where the text begins, behind a byte-order mark.
+/// Where the text begins, after a byte-order mark.
 pub(crate) fn text_start(file: &[u8]) -> usize {
     if file.starts_with(BYTE_ORDER_MARK) {
         BYTE_ORDER_MARK.len()

@@ -50,7 +50,7 @@ fn a_good_program_has_none() {
     assert_eq!(faults(text), []);
 }
 
-/// A block of a cycle that cannot be read is one fault; the blocks behind it miss nothing else.
+/// A block of a cycle that cannot be read is one fault; the blocks after it miss nothing else.
 #[test]
 fn a_block_of_a_cycle_that_cannot_be_read_has_no_echo() {
     let all = faults(

@@ -27,7 +27,7 @@ fn numbers() {
     let shown: Vec<String> = (1..=6).map(|block| program.shown_number(block)).collect();
     assert_eq!(shown, ["", "N20", "", "N30", "", "N20"]);
     assert_eq!(program.line_of(4), 5);
-    // N7 stands in the subroutine alone, whose head may have blanks and a comment; N8 in the program behind it.
+    // N7 stands in the subroutine alone, whose head may have blanks and a comment; N8 in the program after it.
     let text = "N5 X1\n  %l  SUB ;N8\nN5 X2\nN7 X3\nN8 X4\n%LINE\nN8 X5\n";
     let several = Program::from_bytes("1.nc", text.into());
     let found = [5, 7, 8].map(|number| several.block_of(number));
@@ -59,7 +59,7 @@ fn no_block_has_a_meaning_of_plain_language() {
     assert_eq!(found.len(), 1, "one line says all: {found:?}");
 }
 
-/// Shops name programs in plain language `.nc`, too: those begin with BEGIN PGM, behind comments or not.
+/// Shops name programs in plain language `.nc`, too: those begin with BEGIN PGM, after comments or not.
 #[test]
 fn plain_language_with_this_ending() {
     for text in [

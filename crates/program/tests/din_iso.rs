@@ -350,7 +350,7 @@ fn numbers_are_written_anew_by_the_step_of_mp7220() {
         numbered(0),
         "%7 G71 *\nT1 G17 S500 *\nX+5 *\n/ M3 *\nN99999 %7 G71 *\n"
     );
-    // Four blocks behind the first in steps of 30,000 reach what the last is called else.
+    // Four blocks after the first in steps of 30,000 reach what the last is called else.
     assert!(numbered(30_000).ends_with("N99999999 %7 G71 *\n"));
 }
 

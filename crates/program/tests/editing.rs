@@ -249,7 +249,7 @@ fn byte_order_marks_are_no_text() {
     is_as_read(&program.edit(&Edit::Delete { blocks: 1..2 }).unwrap());
 }
 
-/// P behind the first and the last block [003:1019]; other words of them stay.
+/// P after the first and the last block [003:1019]; other words of them stay.
 #[test]
 fn protection() {
     let open = read("0 BEGIN PGM 1 INCH ; first\r\n1 L X+1\r\n/ 2 END PGM 1 INCH\r\n");

@@ -45,7 +45,7 @@ fn block_numbers_are_those_of_the_listing() {
     assert_eq!(numbers, (0..18).collect::<Vec<_>>());
 }
 
-/// Behind block 65535 of a digitized program the numbers begin again with 0 [003:6853]: all of its blocks are read, and what
+/// After block 65535 of a digitized program the numbers begin again with 0 [003:6853]: all of its blocks are read, and what
 /// is counted goes on.
 #[test]
 fn numbers_that_begin_again() {
@@ -257,7 +257,7 @@ fn growing_programs() {
     assert_eq!((begun.known(), begun.completed().known()), (0..2, 0..4));
 }
 
-/// A long program that is forgotten behind the block being executed stays small, and its numbers and lines stay.
+/// A long program that is forgotten after the block being executed stays small, and its numbers and lines stay.
 #[test]
 fn forgotten_blocks() {
     let mut program = Program::growing("1.H").more(b"BEGIN PGM 1 MM\n");

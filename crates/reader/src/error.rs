@@ -54,7 +54,7 @@ pub enum Cause {
     NoAngle,
     /// The subprogram does not end with LBL 0.
     NoReturn,
-    /// A label behind the block is called with REP.
+    /// A label after the block is called with REP.
     RepeatsAhead,
     /// A subprogram calls itself.
     CallsItself,
@@ -78,7 +78,7 @@ impl Cause {
             Cause::NoDirection => "Add DR+ (counter-clockwise) or DR- (clockwise) to the arc.",
             Cause::NoRadius => "Add the radius R to the arc.",
             Cause::NoAngle => "Add the polar angle PA.",
-            Cause::NoReturn => "End the subprogram with LBL 0, and put it behind the block with M2 or M30.",
+            Cause::NoReturn => "End the subprogram with LBL 0, and put it after the block with M2 or M30.",
             Cause::RepeatsAhead => {
                 "Call a subprogram without REP; a section that is repeated begins before the call."
             }

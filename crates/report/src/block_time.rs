@@ -72,7 +72,7 @@ mod tests {
         );
     }
 
-    /// What is processed while a long element runs is ready behind it. The first element ends at 5.04 s, number
+    /// What is processed while a long element runs is ready after it. The first element ends at 5.04 s, number
     /// k is processed at 0.04 k and could begin at 5.04 + 0.001 (k - 2): number 130 is the first that waits,
     /// 5.2 - 5.168 s.
     #[test]

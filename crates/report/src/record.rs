@@ -215,7 +215,7 @@ impl Record {
                 feed: tidy(self.feed_mm),
                 rapid: tidy(self.rapid_mm),
             },
-            // The blocks behind a stop may have been read already.
+            // The blocks after a stop may have been read already.
             blocks_executed: if stopped {
                 self.blocks
             } else {

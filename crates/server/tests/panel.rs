@@ -79,7 +79,11 @@ fn drawer_lessons_and_picture_are_served() {
             "{thing}"
         );
         // What it offers can be done.
-        assert_eq!(panel.give(&json!({"action": faults[0]["action"]})), 200, "{thing}");
+        assert_eq!(
+            panel.give(&json!({"action": faults[0]["action"]})),
+            200,
+            "{thing}"
+        );
         assert_eq!(panel.give(&json!({"action": thing["repair"]})), 200, "{thing}");
     }
     let lessons = panel.get("/api/lessons");

@@ -3,7 +3,7 @@
 /// The error of one axis over the position of a driving axis [000:3770-3850].
 ///
 /// The points stand 2^exponent times 0.1 µm apart from the start point on. Only kinks are entered; between
-/// them the error changes evenly. Before the first and behind the last entry it stays what it is there
+/// them the error changes evenly. Before the first and after the last entry it stays what it is there
 /// (inferred). An axis' whole error is the sum over all tables that have a column for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorTable {

@@ -1,7 +1,7 @@
 //! Distance-coded reference marks: where on the scale two neighbouring marks are.
 //!
 //! Fixed marks stand in equal intervals of N grating periods. Between two of them stands a mark that moves
-//! on by one period from interval to interval: the first N/2 + 1 periods behind its fixed mark, the next
+//! on by one period from interval to interval: the first N/2 + 1 periods after its fixed mark, the next
 //! N/2 + 2 and so on. So every distance of two neighbours, taken with the direction of travel, occurs once
 //! [000:4545-4551].
 

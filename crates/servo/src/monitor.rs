@@ -9,7 +9,7 @@ use crate::timing::{OUTPUT_VOLTS, Timing};
 /// Time over which the way is compared with the calculated one, s (inferred: "several servo cycles"
 /// [000:5270]).
 pub(crate) const MOVEMENT_WINDOW_S: f64 = 0.1;
-/// Part of the calculated way by which the way may differ (inferred): a drive that accelerates behind its
+/// Part of the calculated way by which the way may differ (inferred): a drive that accelerates after its
 /// nominal value stays below it.
 pub(crate) const MOVEMENT_TOLERANCE: f64 = 0.5;
 
@@ -105,7 +105,7 @@ impl Monitor {
     ) -> Option<Fault> {
         if !sample.enabled {
             // With 0 V nothing is pre-controlled: the axis runs on by as much as its drive needs to stop, from where it was
-            // held last, also behind POSITIONING ERROR, where one transfer of the actual value follows MP1150 [000:5240-5242]
+            // held last, also after POSITIONING ERROR, where one transfer of the actual value follows MP1150 [000:5240-5242]
             // and the position monitoring goes on [000:5192-5206] (inferred).
             let left = *self.left_mm.get_or_insert(sample.actual_mm + sample.lag_mm);
             self.reset();

@@ -48,7 +48,7 @@ pub struct Commands {
     pub outputs: [bool; OUTPUTS],
     /// The output X41/34 "control is ready" [000:6151].
     pub control_ready: bool,
-    /// The PLC inputs are looked at behind this step; else a plant may leave them as they were.
+    /// The PLC inputs are looked at after this step; else a plant may leave them as they were.
     pub reads_inputs: bool,
 }
 

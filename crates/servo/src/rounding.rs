@@ -3,14 +3,14 @@
 
 /// Below this every sum with [`SHIFT`] is a whole number.
 const EXACT: f64 = 2_251_799_813_685_248.0;
-/// 1.5 · 2^52: a number of this size has no digits behind the point.
+/// 1.5 · 2^52: a number of this size has no digits after the point.
 const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 /// `x.floor() as i64`.
 #[inline]
 pub fn floor_to_i64(x: f64) -> i64 {
     let whole = x as i64;
-    // What has no digits behind the point is not greater than its whole part: nothing is subtracted at the ends.
+    // What has no digits after the point is not greater than its whole part: nothing is subtracted at the ends.
     whole.saturating_sub(i64::from(whole as f64 > x))
 }
 

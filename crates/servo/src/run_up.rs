@@ -14,7 +14,7 @@ pub(crate) struct RunUp {
 impl RunUp {
     /// One servo step: the velocity that is pre-controlled for that of the profile.
     pub(crate) fn advance(&mut self, profile_mm_min: f64, damping: f64) -> f64 {
-        // Behind a reversal the axis accelerates from standstill.
+        // After a reversal the axis accelerates from standstill.
         let from = match self.velocity_mm_min * profile_mm_min < 0.0 {
             true => 0.0,
             false => self.velocity_mm_min,

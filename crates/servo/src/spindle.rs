@@ -24,7 +24,7 @@ pub use speed_code::SpeedCode;
 
 /// Time in position before the offset is adjusted after an orientation, s [000:5716].
 const OFFSET_WAIT_S: f64 = 2.0;
-/// Interval of the adjustments behind that, s [000:719].
+/// Interval of the adjustments after that, s [000:719].
 const OFFSET_INTERVAL_S: f64 = 1.0;
 /// One adjustment, V: 0.152 mV [000:719].
 const OFFSET_STEP_VOLTS: f64 = OUTPUT_VOLTS / 65_536.0;

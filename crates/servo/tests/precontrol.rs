@@ -28,7 +28,7 @@ fn circle_deviation(model: ControlModel, radius_mm: f64, acceleration_m_s2: f64)
     let velocity_mm_s = (radius_mm * acceleration_m_s2 * 1e3).sqrt();
     let mut deviation = 0.0f64;
     let mut angle = 0.0;
-    // The angle runs up within a quarter turn; measured is the full turn behind it.
+    // The angle runs up within a quarter turn; measured is the full turn after it.
     let full = velocity_mm_s / radius_mm * cycle_s;
     let mut way = 0.0;
     let mut last = (radius_mm, 0.0);

@@ -524,7 +524,7 @@ fn after_an_orientation_the_offset_goes_by_1_mv_in_7_seconds() {
 }
 
 /// A thread takes the spindle over where it is held, whatever it did before: standing still after M05, in the
-/// loop of an orientation, behind an earlier thread, after an EMERGENCY STOP in a thread. MP3410.3 = 0.1 V/ms are
+/// loop of an orientation, after an earlier thread, after an EMERGENCY STOP in a thread. MP3410.3 = 0.1 V/ms are
 /// 0.06 V in a servo step of 0.6 ms [000:6056] [000:5790]; the loop adds kv of a lag that changes by the way of two
 /// steps at most, 16.7/s · 1.2 ms = 2 %.
 #[test]

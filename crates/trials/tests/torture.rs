@@ -112,7 +112,7 @@ fn the_mill_with_digital_drives_keeps_every_rule() {
 }
 
 /// A PLC program that hangs in a loop (M198: time out, error 53 [000:11249]) or calls itself (M199: nesting too deep, error
-/// 50): both stop PLC and machine with a flashing message. Power-off resets the markers; behind it the messages can be
+/// 50): both stop PLC and machine with a flashing message. Power-off resets the markers; after it the messages can be
 /// cleared, the reference run ends, and the program, begun anew, moves the axes.
 #[test]
 fn a_plc_program_that_fails_breaks_no_rule() {
@@ -278,9 +278,9 @@ fn what_was_led_goes_on_without_a_jump() {
     }
 }
 
-/// What a thread and a probe were led to behind faults: a drive of Z that ran away beyond the end of a thread, a feed enable that bounces, a
+/// What a thread and a probe were led to after faults: a drive of Z that ran away beyond the end of a thread, a feed enable that bounces, a
 /// spindle that runs away, turns the wrong way round, has no power for a moment, or whose encoder is stuck or loses its signal; axes that go back to a thread
-/// behind POSITIONING ERROR and EMERGENCY STOP; a stylus that says that it is deflected, and MANUAL OPERATION while it scans.
+/// after POSITIONING ERROR and EMERGENCY STOP; a stylus that says that it is deflected, and MANUAL OPERATION while it scans.
 #[test]
 fn threads_and_scans_stay_where_they_are_led() {
     let threads = [

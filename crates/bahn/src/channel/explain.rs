@@ -145,7 +145,7 @@ fn indices(row: &Definition) -> Option<String> {
     (!ranges.is_empty()).then(|| ranges.join(", "))
 }
 
-/// Manual and chapter; what is said of them behind.
+/// Manual and chapter; what is said of them after.
 fn source(source: &str) -> String {
     let (cited, remark) = match source.split_once('(') {
         Some((cited, remark)) => (cited.trim(), remark.trim_end_matches(')')),

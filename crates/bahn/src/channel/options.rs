@@ -34,11 +34,11 @@ Examples:
 
 A line of a list is a name and a value: `m_synch[25] 0x00000002 MVS_SVS`. Values are decimal, 0x
 hexadecimal, names, or constants joined by |: `PLC_INFO | MVS_SVS`. # and ; begin comments, what
-stands behind a value is a remark, lines of `:` or `...` stand for lines that are left out.
+stands after a value is a remark, lines of `:` or `...` stand for lines that are left out.
 Spellings of the manual are read alike: spindel and spindle, log_achs_nr and log_achs_no,
 main_spindle_gear_change and main_spdl_gear_change, late_sync_ready with and without
 `prog_start.`, the forms of start-up lists (`configuration.channel[0].`). Lines of the axis list
-may stand behind `spindel[i].`. Of two lines for the same parameter the later one counts.
+may stand after `spindel[i].`. Of two lines for the same parameter the later one counts.
 
 JSON of one list: {\"ok\", \"errors\": [{\"line\", \"column\", \"message\"}], \"warnings\": [...]}, lines
 and columns from 1 on; of several lists an array of these with \"file\". Exit codes: 0 no error, 1

@@ -16,7 +16,7 @@ use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 use bahn_ports::Trace;
 
-/// How long a host waits behind EOT whether something more comes *(inferred)*.
+/// How long a host waits after EOT whether something more comes *(inferred)*.
 const LINGER: Duration = Duration::from_secs(1);
 
 /// The code of the programs that are asked for when nothing is said: a header without a name asks for one type.

@@ -37,7 +37,7 @@ axis-limit AXIS RANGE off           without it
 table T LINE COLUMN VALUE           a cell of the tool table, with D a datum table, with P the pocket table: it counts at once
 jog MM                              jog increment
 output step FEED, output ramp       what direction keys put out on axes with digital speed controller
-oscilloscope start|stop             recording of --oscilloscope by hand, behind `code 688379`
+oscilloscope start|stop             recording of --oscilloscope by hand, after `code 688379`
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
 pnt on|off                          the axes follow the stylus of a measuring probe in MDI
 axis-key AXIS                       an axis key of the keyboard in the modes by hand: the axis is highlighted, M2096 ff.
@@ -51,7 +51,7 @@ key CODE                            what W516 calls: a key by its code 58 to 127
                                     PROBE, 1024 PASS OVER REFERENCE, 1280 RESTORE POSITION; a letter * 256 + 80
 test PROGRAM                        TEST RUN beside what the machine does
 test-run stop, test-run stop N      interrupts it, at once or at block N
-test-run go-on                      it goes on, as behind STOP and M0
+test-run go-on                      it goes on, as after STOP and M0
 test-run q N VALUE                  a Q parameter of an interrupted test
 end-test                            breaks it off
 offset adjust|off                   answers to code number 75368

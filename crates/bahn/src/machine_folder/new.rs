@@ -88,7 +88,7 @@ fn description(text: &str, name: &str, model: ControlModel) -> String {
 }
 
 /// What the small mill has other than the reference list of the TNC 151 and 155: no rotary table, marks
-/// every turn of the ballscrew behind a cam, its travel from there, play, spindle and headstock.
+/// every turn of the ballscrew after a cam, its travel from there, play, spindle and headstock.
 const SMALL_MILL_OLD: &[(u16, f64)] = &[
     (72, 8.0),
     (242, 0.0),

@@ -191,7 +191,7 @@ mod terminal {
     }
 }
 
-/// Lets the station run, behind a session that is to be shown.
+/// Lets the station run, after a session that is to be shown.
 fn begin(station: Station, options: &PanelOptions) -> Result<Live, UsageError> {
     let Some(path) = &options.replay else {
         return Ok(Live::start(station));

@@ -64,7 +64,7 @@ pub(crate) struct PanelOptions {
     /// Keeps every input with its time in a new file.
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
-    /// Shows a session that was recorded on such a machine; behind its end the panel goes on.
+    /// Shows a session that was recorded on such a machine; after its end the panel goes on.
     #[arg(long, value_name = "FILE", conflicts_with = "record")]
     pub replay: Option<PathBuf>,
 }

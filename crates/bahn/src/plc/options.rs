@@ -67,12 +67,12 @@ Examples:
 Script (--script): what happens at which time, and what is expected, as for `bahn run`; docs/scripts.md tells all
 of it. A cycle is a scan; the first one is 1. A blank stands before the ; or # of a comment:
   cycle 1: I4=1, W6=100          ; set before the first cycle
-  cycle 3: expect O2=1, B8=-3    ; so behind the third
-  0.5: S0=\"OIL\", MP4110.2=4     ; 0.5 s after power-on, or +0.5, +20 cycles behind the line before
+  cycle 3: expect O2=1, B8=-3    ; so after the third
+  0.5: S0=\"OIL\", MP4110.2=4     ; 0.5 s after power-on, or +0.5, +20 cycles after the line before
   when O2=1: I4=0                ; as soon as it is so
   +2 cycles: end
 Values are decimal, $2A hexadecimal or \"text\". Without --cycles the run ends with the script; a condition that has
-not come true a minute behind the last thing that was done has failed.
+not come true a minute after the last thing that was done has failed.
 
 JSON: cycles, values, processing_percent (current, maximum), error (number, file, line, or null); with
 --trace also trace (the first 100000 executed lines) and trace_left_off (how many follow), with failed

@@ -50,7 +50,7 @@ pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
             if let (Halt::Ended, None) = (&halt, &trigger) {
                 let (ended, wanted) = (subject.cycle(), options.cycle);
                 diagnostics::print_line(&format!(
-                    "the script has ended the run behind cycle {ended}, before {wanted}"
+                    "the script has ended the run after cycle {ended}, before {wanted}"
                 ));
                 return Ok(Outcome::ProgramError);
             }

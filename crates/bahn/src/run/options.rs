@@ -39,7 +39,7 @@ Without --operator it is full, with --script start, with --replay absent.
 
 Script (--script): lines `TIME: EVENT`. TIME is s since power-on (12.5), since the line before (+2) or since
 the program was started (start+3), `+20 cycles` of the control, or a condition: `when X.actual > 50`,
-`after message TEXT`; docs/scripts.md tells all of it. Text behind ; or # is a comment. Events are those of the machine
+`after message TEXT`; docs/scripts.md tells all of it. Text after ; or # is a comment. Events are those of the machine
 (machines/mill/README.md), commands of the control, operands and machine parameters, power, what is expected, and `end`:
   start+2: key NC_STOP tap
   +3: expect run interrupted
@@ -60,7 +60,7 @@ waits. Without a program, or when its run did not begin, only completed and erro
 lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm,
 contour_deviation_cause (in words), contour_deviation_block;
 threads (program, block, cycle 2, 17 or 18; depth_mm that is commanded, reached_mm by the plant; off_mm, the largest distance
-of the tool from where the spindle's angle says, in cycle 2 what the floating holder takes), threads_not_listed behind 1000;
+of the tool from where the spindle's angle says, in cycle 2 what the floating holder takes), threads_not_listed after 1000;
 plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
 channels (only where there are several, those beside the first: channel, the fields of `bahn test`, axes,

@@ -1,4 +1,4 @@
-//! What is wrong in the files of a run, each with its place: before the run the texts, behind it the block that ended it.
+//! What is wrong in the files of a run, each with its place: before the run the texts, after it the block that ended it.
 
 use std::path::Path;
 

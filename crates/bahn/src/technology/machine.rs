@@ -15,7 +15,7 @@ use bahn_technology::{PlcMemory, WINDOW_BYTES};
 
 use crate::{UsageError, diagnostics, machine_folder};
 
-/// Bytes that are free for the PLC program [000:11579-11584]: those behind them speak with the NC.
+/// Bytes that are free for the PLC program [000:11579-11584]: those after them speak with the NC.
 const FREE_BYTES: u16 = 256;
 /// Longest time from power-on until all reference marks are passed, µs.
 const POWER_UP_US: u64 = 600_000_000;

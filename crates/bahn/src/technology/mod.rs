@@ -135,7 +135,7 @@ fn list_fault(fault: &ListFault, path: &Path) -> Fault {
     }
 }
 
-/// The first error of a script, which stands behind those of all others.
+/// The first error of a script, which stands after those of all others.
 fn script_fault(faults: &[FileFault]) -> Fault {
     let last = faults.last();
     let line = last.map_or(0, |fault| fault.marked.line);

@@ -36,7 +36,7 @@ struct MachineReport {
     machine_s: f64,
     /// Messages that came up.
     messages: u64,
-    /// Runs that went on behind it.
+    /// Runs that went on after it.
     went_on: u64,
 }
 

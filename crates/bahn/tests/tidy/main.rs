@@ -16,7 +16,7 @@ use crate::source::{code_of, has_word, source_files};
 use crate::uses::Uses;
 
 /// The rooms from the ground floor up: a room may only use rooms that stand before it here and are named
-/// behind it.
+/// after it.
 const ROOMS: &[(&str, &[&str])] = &[
     ("path", &[]),
     ("picture", &[]),
@@ -247,25 +247,7 @@ const TOO_MUCH: &[(&str, &str, &str)] = &[
 
 /// Rooms whose names still have words that docs/glossary.md has replaced, and these. A room that says them otherwise
 /// leaves the list.
-const REPLACED_WORDS: &[(&str, &str)] = &[
-    ("bahn", "behind deed told"),
-    (
-        "control",
-        "behind deed deeds lend lender lent told way_deg way_mm",
-    ),
-    ("convert", "deeds"),
-    ("din", "behind told"),
-    ("host", "behind deed deeds lend lent told way_mm"),
-    ("interpreter", "behind deed deeds told"),
-    ("link", "deed"),
-    ("nc", "deed deeds"),
-    ("panel", "behind deed deeds told"),
-    ("parameters", "behind deed deeds told way_mm"),
-    ("plc", "behind told"),
-    ("program", "behind"),
-    ("servo", "told way_deg way_mm"),
-    ("terminal", "deed"),
-];
+const REPLACED_WORDS: &[(&str, &str)] = &[];
 
 /// Arrays of five or nine numbers, letters or the like that are not those of axes.
 const NOT_OF_AXES: &[(&str, &str)] = &[
@@ -355,7 +337,7 @@ fn disorder(rooms: &[(&str, &[&str])]) -> Vec<String> {
         faults.extend(above.map(|used| format!("{used} does not stand before {room}, which uses it")));
         let mut named = BTreeSet::new();
         let twice = allowed.iter().filter(|used| !named.insert(**used));
-        faults.extend(twice.map(|used| format!("{used} stands twice behind {room}")));
+        faults.extend(twice.map(|used| format!("{used} stands twice after {room}")));
         if !before.insert(room) {
             faults.push(format!("{room} stands twice"));
         }
@@ -377,7 +359,7 @@ fn disorder_is_found() {
         ),
         (
             &[("path", &[][..]), ("motion", &["path", "path"])],
-            "path stands twice behind motion",
+            "path stands twice after motion",
         ),
         (&[("path", &[][..]), ("path", &[])], "path stands twice"),
     ] {

@@ -78,7 +78,7 @@ fn types_with_methods(code: &str) -> Vec<&str> {
         (is_word && !head.contains(" for ")).then_some(head)
     });
     let types = heads.map(|head| {
-        // Behind the generic parameters of `impl<'a> Type<'a>`.
+        // After the generic parameters of `impl<'a> Type<'a>`.
         let name = match head.strip_prefix('<') {
             Some(generic) => generic.split_once("> ").map_or("", |(_, name)| name),
             None => head.trim_start(),

@@ -250,7 +250,7 @@ pub fn bench(instructions: &str) -> Build {
     }
 }
 
-/// Instructions of a test; what follows its first label stands behind the end of the main program.
+/// Instructions of a test; what follows its first label stands after the end of the main program.
 fn after_panel(instructions: &str) -> String {
     match instructions.find("LBL") {
         Some(at) => {

@@ -365,7 +365,7 @@ mod tests {
         })
     }
 
-    /// The supply goes behind any byte of the new file, before its name changes: the machine begins with what was
+    /// The supply goes after any byte of the new file, before its name changes: the machine begins with what was
     /// remembered before, and what is half written goes.
     #[test]
     fn a_power_failure_inside_a_write_keeps_what_was_remembered() {

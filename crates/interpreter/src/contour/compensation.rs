@@ -9,7 +9,7 @@ use super::{ContourMove, FeedLaw, Side, Smooth};
 use crate::error::{Cause, Fault};
 use crate::output::Output;
 
-/// Movements outside the plane that may wait behind a held element. When more come, the contour is taken
+/// Movements outside the plane that may wait after a held element. When more come, the contour is taken
 /// to end here, so that an endless loop of them stays in constant memory (inferred).
 const BETWEEN_MAX: usize = 500;
 
@@ -43,7 +43,7 @@ enum Stage {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CompensationStage {
     held: Option<Held>,
-    /// Movements without a part in the plane, waiting behind the held element.
+    /// Movements without a part in the plane, waiting after the held element.
     between: Vec<ContourMove>,
     /// Plane position of the tool centre while it differs from the programmed position.
     displaced: Option<(Plane, Point2)>,

@@ -25,7 +25,7 @@ pub(crate) struct Ending {
 pub(crate) struct Joint {
     /// End of the element before.
     pub ending: Ending,
-    /// Start of the element behind, and the path length cut off there.
+    /// Start of the element after, and the path length cut off there.
     pub start: Point2,
     pub start_cut: f64,
     /// What lies between end and start.

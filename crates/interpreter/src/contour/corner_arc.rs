@@ -13,7 +13,7 @@ pub(crate) use radius::CornerArcs;
 const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// M124: whether the point at the end of a movement is left out, unless the path goes on otherwise than in a straight
-/// line behind it.
+/// line after it.
 pub(crate) fn is_left_out(item: &ContourMove) -> bool {
     let spacing = item.corner_arcs.map_or(0.0, |arcs| arcs.spacing_mm);
     let element = &item.element;

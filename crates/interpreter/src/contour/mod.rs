@@ -67,7 +67,7 @@ impl Contour {
         self.is_idle() && !self.compensation.holds_from(0)
     }
 
-    /// Whether something of a block at or behind a sequence is held back.
+    /// Whether something of a block at or after a sequence is held back.
     pub fn holds_from(&self, sequence: u64) -> bool {
         self.rounding.holds_from(sequence) || self.compensation.holds_from(sequence)
     }

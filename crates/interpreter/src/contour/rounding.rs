@@ -28,7 +28,7 @@ pub(crate) enum JoinKind {
     Chamfer(f64),
 }
 
-/// Holds that may wait behind a rounding or chamfer for the element after it (inferred).
+/// Holds that may wait after a rounding or chamfer for the element after it (inferred).
 const AFTER_MAX: usize = 500;
 
 /// Holds the last movement until it is known whether a rounding follows.

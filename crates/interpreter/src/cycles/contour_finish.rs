@@ -162,7 +162,7 @@ fn drill(m: &mut Machining<'_>, job: &ContourJob, data: &Data, watch: &Watch<'_>
 }
 
 /// Cycle 22: channels and passes along the first axis of the plane, Q2 of the radius apart (pattern inferred: that of
-/// cycle 6). Behind a coarse tool Q18 only what that one could not reach.
+/// cycle 6). After a coarse tool Q18 only what that one could not reach.
 fn rough(m: &mut Machining<'_>, job: &ContourJob, data: &Data, watch: &Watch<'_>) -> Result<(), Halt> {
     let radius = m.modal.used_radius()?;
     let mut areas = data.areas(m, job, radius, watch)?;
@@ -174,7 +174,7 @@ fn rough(m: &mut Machining<'_>, job: &ContourJob, data: &Data, watch: &Watch<'_>
     clear_areas(m, job.plane, (&areas, &data.milling()), passes, &pecks, watch)
 }
 
-/// Where a tool must still go behind a coarser one.
+/// Where a tool must still go after a coarser one.
 fn left_by(
     areas: &[PocketArea],
     radius: f64,

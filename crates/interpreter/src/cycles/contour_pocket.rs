@@ -28,7 +28,7 @@ pub(crate) struct ContourJob {
     pub plane: Plane,
     /// What cycle 27 machines, and where its centre is along the tool axis, mm.
     pub cylinder: Option<(Cylinder, f64)>,
-    /// Radius of the tool that machines before this one, or behind it, mm.
+    /// Radius of the tool that machines before this one, or after it, mm.
     pub other_radius: Option<f64>,
 }
 

@@ -2,7 +2,7 @@
 //! machined on a cylinder about that axis [000:6759-6763]. Parameters and way of the tool are those of the user's manual of
 //! the TNC 415 and its successors (public).
 //!
-//! While the contour is recorded its words of the rotary axis become a way around the cylinder: everything behind works in
+//! While the contour is recorded its words of the rotary axis become a way around the cylinder: everything after works in
 //! the unrolled surface as in any plane, and the [placement](Placement) rolls it up again.
 
 use std::sync::Arc;

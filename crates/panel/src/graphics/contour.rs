@@ -24,7 +24,7 @@ const LINES_MAX: usize = 500_000;
 const ELEMENTS_MAX: u64 = 5_000_000;
 /// Lines of a full turn.
 const LINES_PER_TURN: f64 = 72.0;
-/// Ends the program behind the block up to which it is drawn; what stands there can still be called.
+/// Ends the program after the block up to which it is drawn; what stands there can still be called.
 const END: &str = "M30";
 
 /// What kind of line it is.
@@ -108,7 +108,7 @@ pub(super) struct Sketch {
     lines: Arc<Mutex<Lines>>,
     progress: Arc<Progress>,
     stop: Arc<AtomicBool>,
-    /// `None` while a thread has it, and behind the end.
+    /// `None` while a thread has it, and after the end.
     run: Option<Box<Run>>,
 }
 

@@ -25,7 +25,7 @@ const LOOK: Duration = Duration::from_millis(20);
 struct Wishes {
     /// He has interrupted it.
     interrupted: bool,
-    /// Stops of the program behind which he let it go on.
+    /// Stops of the program after which he let it go on.
     passed: u32,
     /// The block of the main program at which it is to be interrupted.
     interrupt_at: Option<u32>,
@@ -38,7 +38,7 @@ struct Wishes {
 pub(crate) struct Progress {
     /// Elements that were cut.
     pub elements: u64,
-    /// Part of the blocks of the main program that lie behind it, 0 to 1.
+    /// Part of the blocks of the main program that lie after it, 0 to 1.
     pub part: f64,
     pub machining_time_s: f64,
     /// Something could not be shown.

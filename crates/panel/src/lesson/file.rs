@@ -56,7 +56,7 @@ pub(crate) enum Begin {
     Here,
     /// Nothing is broken, and the control was switched on just now.
     PowerOn,
-    /// The reference run is behind it, too.
+    /// The reference run is after it, too.
     #[default]
     Ready,
 }
@@ -190,7 +190,7 @@ impl Lesson {
     }
 }
 
-/// A line of a script, in its place behind the empty ones.
+/// A line of a script, in its place after the empty ones.
 fn push_line(script: &mut String, line: &str) {
     script.pop();
     script.push_str(line);

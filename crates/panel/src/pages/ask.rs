@@ -14,7 +14,7 @@ type Answered<T> = Box<dyn FnMut(T, &mut Site) -> Turn + Send>;
 /// A question that ENT answers with yes and NO ENT with no: `MM = ENT / INCH = NO ENT`. END and DEL leave it.
 pub(crate) struct Choice {
     prompt: String,
-    /// The soft keys of yes and no; END stands behind them.
+    /// The soft keys of yes and no; END stands after them.
     names: [String; 2],
     answered: Answered<bool>,
 }

@@ -136,7 +136,7 @@ fn has_just_come_on(site: &Site) -> bool {
     shown.any(|shown| shown.message == Message::Plain(MessageId::PowerInterrupted))
 }
 
-/// Behind switch-on the numbers of the NC and PLC software are displayed [000:327].
+/// After switch-on the numbers of the NC and PLC software are displayed [000:327].
 fn software_numbers(site: &Site) -> Window {
     let numbers = [
         (site.words("NC SOFTWARE NUMBER"), supplementary::nc_number()),

@@ -52,7 +52,7 @@ fn entry_of<'t>(text: &'t str, key: &str) -> Option<&'t str> {
     split(line).map(|(value, _)| value)
 }
 
-/// The string of an entry, and what stands behind it.
+/// The string of an entry, and what stands after it.
 fn split(line: &str) -> Option<(&str, &str)> {
     let value = line.split_once('=')?.1.trim_start();
     let quote = value.chars().next().filter(|first| matches!(first, '"' | '\''))?;

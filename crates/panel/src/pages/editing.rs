@@ -67,7 +67,7 @@ fn capture(editor: &mut Editor, wanted: Wanted, site: &Site) -> Reaction {
     .unwrap_or(Reaction::Passed)
 }
 
-/// CAPTURE while another operating mode has the keys: a new block behind the one that is selected. While a block is open
+/// CAPTURE while another operating mode has the keys: a new block after the one that is selected. While a block is open
 /// none is selected *(inferred)*.
 pub(crate) fn capture_block(editor: &mut Editor, site: &mut Site) -> (Turn, bool) {
     match editor.is_open() {
@@ -119,7 +119,7 @@ pub(crate) fn view(editor: &Editor, title: &str, lines: usize) -> View {
     }
 }
 
-/// The number of a block in its column, that of DIN/ISO with its `N` and five digits; a longer one has a blank behind it.
+/// The number of a block in its column, that of DIN/ISO with its `N` and five digits; a longer one has a blank after it.
 pub(crate) fn numbered(label: &str, program: &Program) -> String {
     let width = if program.language().has_numbers() {
         ISO_NUMBER

@@ -229,7 +229,7 @@ fn excludes(site: &Site) -> bool {
     apart && site.control().model().has_rs_422()
 }
 
-/// The next one of all, or the one before; behind the last comes the first.
+/// The next one of all, or the one before; after the last comes the first.
 fn neighbour<T: Copy + PartialEq + Default>(all: &[T], own: T, on: bool) -> T {
     let at = all.iter().position(|other| *other == own).unwrap_or(0);
     let next = (at + if on { 1 } else { all.len() - 1 }) % all.len().max(1);

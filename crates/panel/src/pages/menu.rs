@@ -7,7 +7,7 @@ use crate::pages::list;
 use crate::screen::{Line, WindowKind};
 use crate::site::Site;
 
-/// Soft keys of a menu, before and behind those of its own.
+/// Soft keys of a menu, before and after those of its own.
 const SOFT_KEYS: [&str; 2] = ["SELECT", "END"];
 
 /// A line of a menu.

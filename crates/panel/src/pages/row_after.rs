@@ -1,4 +1,4 @@
-//! A row of soft keys behind those of an editor, while it has no block open (inferred).
+//! A row of soft keys after those of an editor, while it has no block open (inferred).
 
 use bahn_dialogue::{Editor, Key};
 
@@ -25,7 +25,7 @@ impl RowAfter {
             Key::SkLeft => (first, last),
             _ => return None,
         };
-        // Behind the last row comes the first one, where the editor may stand already.
+        // After the last row comes the first one, where the editor may stand already.
         if std::mem::take(&mut self.shown) {
             return arrived.then_some(Turn::Done);
         }

@@ -112,7 +112,7 @@ impl ProgramRun {
         }
     }
 
-    /// REP n/m in CALL LBL: the number behind the slash is how many repeats are left [003:3762].
+    /// REP n/m in CALL LBL: the number after the slash is how many repeats are left [003:3762].
     fn count_down(&self, window: &mut Window) {
         for (place, line) in window.lines.iter_mut().enumerate() {
             let block = BlockRef {

@@ -260,7 +260,7 @@ impl Situation<'_> {
                 found.push(started(reason(Urgency::Waits, text)));
             }
             RunState::BlockEnd => {
-                let text = at("Single block: NC start executes the block behind {1}");
+                let text = at("Single block: NC start executes the block after {1}");
                 found.push(started(reason(Urgency::Waits, text)));
             }
         }
@@ -282,8 +282,8 @@ impl Situation<'_> {
         match snapshot.waiting {
             None => {}
             Some(Waiting::Acknowledge(pair)) => {
-                let text = self
-                    .words("{1} waits since {4} s for {2}, the acknowledgement: the strobe {5} is 1, {3}");
+                let text =
+                    self.words("{1} has waited {4} s for {2}, the acknowledgement: the strobe {5} is 1, {3}");
                 let text = text
                     .replace("{4}", &seconds)
                     .replace("{5}", &self.named(pair.strobe));
@@ -292,7 +292,7 @@ impl Situation<'_> {
             }
             Some(Waiting::AcknowledgeReset(pair)) => {
                 let text =
-                    self.words("{1} waits since {4} s until {2}, the last acknowledgement, is 0 again, {3}");
+                    self.words("{1} has waited {4} s until {2}, the last acknowledgement, is 0 again, {3}");
                 let text = text.replace("{4}", &seconds);
                 let program = self.words("The program");
                 found.push(self.of_bit(Urgency::Waits, &text, &program, pair.acknowledge, false));

@@ -1,6 +1,6 @@
 //! Why a bit of the PLC is as it is: the chains that write it, followed back to inputs, timers and words.
 //!
-//! The values are those behind the last scan. A bit that one scan writes in several chains is followed through them, from
+//! The values are those after the last scan. A bit that one scan writes in several chains is followed through them, from
 //! the last to the first. What depends on jumps, brackets or an index is where the way ends.
 
 use std::collections::{HashMap, HashSet};
@@ -352,7 +352,7 @@ impl Trace<'_> {
     }
 }
 
-/// The logic accumulator behind a chain.
+/// The logic accumulator after a chain.
 fn combine(terms: &[Term], values: &[bool]) -> bool {
     let pairs = terms.iter().zip(values);
     pairs.fold(false, |logic, (term, value)| match term.gate {

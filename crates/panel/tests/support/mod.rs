@@ -183,7 +183,7 @@ impl Trainee {
         axis.map(|axis| axis.value.clone()).unwrap()
     }
 
-    /// POWER INTERRUPTED, control voltage and reference marks are behind him.
+    /// POWER INTERRUPTED, control voltage and reference marks are after him.
     pub fn ready(&mut self) -> &mut Trainee {
         self.until(5.0, |screen| !screen.messages.is_empty());
         assert_eq!(self.messages(), ["POWER INTERRUPTED"]);

@@ -9,7 +9,7 @@ use crate::ControlModel;
 pub struct ParameterId {
     /// The number.
     pub number: u16,
-    /// The index behind the point; a parameter with one value only has none.
+    /// The index after the point; a parameter with one value only has none.
     pub index: Option<u8>,
 }
 

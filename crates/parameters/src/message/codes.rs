@@ -1,8 +1,8 @@
-//! What stands behind the text of a message: the letter of a monitoring, the code of a PLC fault.
+//! What stands after the text of a message: the letter of a monitoring, the code of a PLC fault.
 
 use super::MessageId;
 
-/// A message with a certain code behind it.
+/// A message with a certain code after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MessageCode {
@@ -54,7 +54,7 @@ const fn old_strobe(name: &'static str, cause: &'static str) -> MessageCode {
 /// What every pair of command and complement needs.
 const PAIR: &str = "Check the key and its two contacts, and that the PLC program sets the marker and resets its complement together.";
 impl MessageId {
-    /// The codes that may stand behind the text, none for most messages.
+    /// The codes that may stand after the text, none for most messages.
     pub fn codes(self) -> &'static [MessageCode] {
         match self {
             MessageId::GrossPositioningError => &GROSS_POSITIONING,
@@ -149,7 +149,7 @@ const TRANSFER: [MessageCode; 9] = [
     ),
     code(
         "K",
-        "The device wanted to signal an error, but no 1 came behind ESC.",
+        "The device wanted to signal an error, but no 1 came after ESC.",
         "Check the software of the device.",
         "[000:17597]",
     ),

@@ -322,7 +322,7 @@ messages! {
         source "[000:9171]";
 
     ProtectedPgm: "PROTECTED PGM";
-        cause "The program is protected against erasing and editing: P stands behind its first and last block.";
+        cause "The program is protected against erasing and editing: P stands after its first and last block.";
         remedy "Take the protection away with code number 86357, or work on a copy.";
         source "[000:17235] [003:1015-1023] [003:7028]";
 

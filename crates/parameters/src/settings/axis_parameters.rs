@@ -12,7 +12,7 @@ use crate::{ControlModel, ParameterList};
 /// The parameters of one axis. mm stands for mm or degrees, mm/min for mm/min or degrees/min, as the
 /// letter of the axis says.
 ///
-/// Behind each MP number stands the number of the TNC 151/155 as "old". Index 0 to 4 is X, Y, Z, 4th, 5th
+/// After each MP number stands the number of the TNC 151/155 as "old". Index 0 to 4 is X, Y, Z, 4th, 5th
 /// axis [000:3232-3236]; "old MP20+" counts X, Y, Z, IV upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisParameters {

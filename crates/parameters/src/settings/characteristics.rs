@@ -36,7 +36,7 @@ impl Characteristics {
 }
 
 impl ParameterList {
-    /// MP3013 and MP3014. The first point of each has velocity 0, those of the others rise; what is behind the points
+    /// MP3013 and MP3014. The first point of each has velocity 0, those of the others rise; what is after the points
     /// that belong to a characteristic is not looked at [000:9876-9898].
     pub fn characteristics(&self) -> Characteristics {
         let mut curves = [None; CURVES];

@@ -23,7 +23,7 @@ pub struct OperationParameters {
     pub axes_wait_at_m: bool,
     /// Manual modes always show the smallest manual feed: MP7270 = 1 (old MP167) [000:6536].
     pub manual_feed_shown: bool,
-    /// S and M are no longer active behind NC stop in manual modes: MP7270 + 2 of the TNC 360 [003:7307-7315].
+    /// S and M are no longer active after NC stop in manual modes: MP7270 + 2 of the TNC 360 [003:7307-7315].
     pub stop_ends_m: bool,
     /// Overrides.
     pub overrides: OverrideParameters,

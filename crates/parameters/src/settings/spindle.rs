@@ -23,7 +23,7 @@ impl ParameterList {
     /// Highest spindle speed of all gear ranges, rpm: the highest MP3515 whose range is in use, otherwise
     /// the highest MP3510 (old MP78-85) [000:5522-5555] [001:1502-1536].
     ///
-    /// In the old list the speeds behind the last ascending one are those of a comparator, not of a gear
+    /// In the old list the speeds after the last ascending one are those of a comparator, not of a gear
     /// [001:1514-1536]; the highest value is a gear's all the same, since a comparator speed lies below
     /// its gear's. A coded speed knows no gears: S codes reach 9000 rpm [000:5722]. Without output of a
     /// speed nothing limits it.

@@ -269,7 +269,7 @@ impl QParameters {
         Ok(self.status.get(place).copied().unwrap_or_default().receivers())
     }
 
-    /// What a parameter counts as it is shown: its decimals are behind the point.
+    /// What a parameter counts as it is shown: its decimals are after the point.
     fn scale(status: QStatus) -> f64 {
         10f64.powi(status.decimals().into())
     }

@@ -225,7 +225,7 @@ impl Translator<'_> {
         }
     }
 
-    /// The code goes on behind a jump that was emitted by a structure.
+    /// The code goes on after a jump that was emitted by a structure.
     pub(super) fn goes_on(&mut self) {
         self.block.get_or_insert(self.place);
     }

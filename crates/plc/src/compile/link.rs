@@ -152,7 +152,7 @@ fn check_externs(linked: &[Linked], globals: &Globals, reports: &mut Reports) {
     }
 }
 
-/// Puts the files behind each other and replaces names by places. Without errors every name has one.
+/// Puts the files one after the other and replaces names by places. Without errors every name has one.
 fn join(linked: Vec<Linked>, globals: &Globals) -> PlcProgram {
     let (labels, index) = named(&linked);
     let mut program = PlcProgram {

@@ -25,7 +25,7 @@ pub(super) fn nominal_time(program: &PlcProgram) -> u64 {
     longest.first().copied().unwrap_or(0)
 }
 
-/// The longest way from an instruction, when the ways behind it are known.
+/// The longest way from an instruction, when the ways after it are known.
 fn way(program: &PlcProgram, instruction: &Instruction, at: usize, longest: &[u64]) -> u64 {
     let after = |at: usize| longest.get(at).copied().unwrap_or(0);
     let called = |target: &Target| match target {

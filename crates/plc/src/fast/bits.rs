@@ -74,7 +74,7 @@ pub(super) fn run(steps: &[BitStep], cells: &mut [u8; CELLS], logic: bool) -> bo
     logic != 0
 }
 
-/// The cell of the first of consecutive bits; `None` with index, or when the last is behind its area.
+/// The cell of the first of consecutive bits; `None` with index, or when the last is after its area.
 pub(super) fn consecutive(first: &BitOperand, count: u8) -> Option<u16> {
     let last = first.bit.number() + u16::from(count.checked_sub(1)?);
     let inside = !first.indexed && count <= 32 && count.is_multiple_of(8) && last <= first.bit.area().last();

@@ -256,7 +256,7 @@ impl State<'_, '_, '_, '_> {
         self.back_at(at)
     }
 
-    /// Control was transferred by an instruction and is behind it again.
+    /// Control was transferred by an instruction and is after it again.
     fn back_at(&mut self, at: u32) -> Result<(), PlcError> {
         self.last_jump = at;
         if self.shift + self.time_before(at as usize + 1) > self.budget {

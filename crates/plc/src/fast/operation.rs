@@ -12,7 +12,7 @@ pub(crate) struct FastProgram {
     pub(super) code: Vec<FastOp>,
     /// For each operation the index of its first instruction.
     pub(super) origin: Vec<u32>,
-    /// The strips of bit instructions, one behind the other.
+    /// The strips of bit instructions, one after the other.
     pub(super) steps: Vec<BitStep>,
     pub(super) leaps: Vec<Leap>,
     pub(super) cases: Vec<Vec<CaseEntry>>,
@@ -34,7 +34,7 @@ pub(crate) struct Run {
 /// One operation: one instruction or several fused.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum FastOp {
-    /// Bit instructions, one behind the other.
+    /// Bit instructions, one after the other.
     Bits { first: u32, count: u32 },
     /// WA := function of WA and operand.
     Word { function: Function, operand: Source },
@@ -132,7 +132,7 @@ pub(super) enum FastOp {
 /// A transfer of control from one instruction to another.
 ///
 /// While control does not move, the time of the run is the sum before the instruction plus a constant. A
-/// leap adds `shift` to the constant: the sum behind its start minus the sum before its target.
+/// leap adds `shift` to the constant: the sum after its start minus the sum before its target.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leap {
     /// Index of the instruction that is the target.
@@ -144,9 +144,9 @@ pub(super) struct Leap {
     pub(super) shift: i64,
     /// Time before the target.
     pub(super) before: i64,
-    /// Index of the operation behind a call.
+    /// Index of the operation after a call.
     pub(super) back: u32,
-    /// Time before the instruction behind a call.
+    /// Time before the instruction after a call.
     pub(super) before_back: i64,
 }
 

@@ -33,7 +33,7 @@ struct Translator<'p> {
 }
 
 impl<'p> Translator<'p> {
-    /// Translates the instruction of an index, perhaps with those behind it; tells how many.
+    /// Translates the instruction of an index, perhaps with those after it; tells how many.
     fn translate(&mut self, at: usize) -> usize {
         let place = self.fast.code.len();
         if let Some(entry) = self.places.get_mut(at) {
@@ -69,7 +69,7 @@ impl<'p> Translator<'p> {
         self.fast.origin.push(index(at));
     }
 
-    /// Puts a bit instruction behind those before it.
+    /// Puts a bit instruction after those before it.
     fn bit(&mut self, at: usize, step: BitStep) {
         let first = index(self.fast.steps.len());
         self.fast.steps.push(step);
@@ -192,7 +192,7 @@ impl<'p> Translator<'p> {
         self.program.code.get(at).map(|instruction| &instruction.op)
     }
 
-    /// The instruction behind another, when control comes from there only.
+    /// The instruction after another, when control comes from there only.
     fn op_after(&self, at: usize) -> Option<&'p Op> {
         self.op(at + 1).filter(|_| !self.is_reached(at + 1))
     }
@@ -370,7 +370,7 @@ fn calculated(op: &Op) -> Option<(Function, Source)> {
     }
 }
 
-/// For each instruction whether control may come there from elsewhere: targets, and places behind calls.
+/// For each instruction whether control may come there from elsewhere: targets, and places after calls.
 fn reached(program: &PlcProgram) -> Vec<bool> {
     let mut reached = vec![false; program.code.len() + 1];
     let mut mark = |at: usize| {
@@ -402,7 +402,7 @@ fn mark_target(mark: &mut impl FnMut(usize), target: Target) {
     }
 }
 
-/// The nominal time before each instruction and behind the last, when no jump is taken.
+/// The nominal time before each instruction and after the last, when no jump is taken.
 fn times(program: &PlcProgram) -> Vec<i64> {
     let mut sum = 0;
     let sums = program.code.iter().map(|instruction| {

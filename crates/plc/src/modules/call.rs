@@ -141,7 +141,7 @@ impl Call<'_> {
         true
     }
 
-    /// Writes doublewords one behind the other; false when the first address is not divisible by 4 or
+    /// Writes doublewords one after the other; false when the first address is not divisible by 4 or
     /// there is no room for all.
     pub(super) fn set_doubles(&mut self, first: i32, values: &[i32]) -> bool {
         let length = i32::try_from(4 * values.len()).unwrap_or(i32::MAX);
@@ -170,7 +170,7 @@ pub(super) fn string_number(string: i32) -> Option<usize> {
         .filter(|string| *string < bahn_exchange::STRINGS)
 }
 
-/// The reference that begins here: file, line, and characters behind its first one. Line numbers have
+/// The reference that begins here: file, line, and characters after its first one. Line numbers have
 /// three digits, from 1000 on four; so four are taken unless the first one is 0 (inferred).
 pub(super) fn reference(first: u8, after: &[u8]) -> Option<(TextFile, u16, usize)> {
     const SUBSTITUTE: u8 = 0x1a;

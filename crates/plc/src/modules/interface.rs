@@ -109,7 +109,7 @@ pub(super) fn receive_bytes(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     Ok(taken(call, interface, done))
 }
 
-/// 9107: reads one byte of the received hexadecimal text, which stays. Behind the text the value is not
+/// 9107: reads one byte of the received hexadecimal text, which stays. After the text the value is not
 /// defined in the manual; here it is 0 (inferred).
 pub(super) fn peek(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [interface, offset] = call.arguments()?;

@@ -26,7 +26,7 @@ use call::{Outcome, string_number};
 /// A module of the control.
 #[derive(Clone, Copy)]
 pub struct Module {
-    /// The number behind CM.
+    /// The number after CM.
     pub number: u16,
     /// What it does.
     pub name: &'static str,

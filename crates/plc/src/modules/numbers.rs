@@ -85,7 +85,7 @@ fn decimal_sign(call: &Call<'_>) -> u8 {
     }
 }
 
-/// Places before and behind the point that 9050 allows [000:15038-15039].
+/// Places before and after the point that 9050 allows [000:15038-15039].
 const PLACES_MAX: i64 = 10;
 
 fn decimal(mantissa: i32, exponent: i32, sign: u8) -> Option<Text> {

@@ -6,7 +6,7 @@ use super::{Call, Outcome};
 use crate::{ParameterFault, ParameterFileFault, PlcError};
 
 /// 9031: overwrites a machine parameter in the run-time memory. The page is lost; the arguments are in the
-/// order of 9032 with the value behind them (inferred).
+/// order of 9032 with the value after them (inferred).
 pub(super) fn overwrite(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [number, index, value] = call.arguments()?;
     let code = overwrite_code(call, number, index, value);

@@ -7,7 +7,7 @@ use crate::run::Text;
 /// Longest number that 9070 copies [000:15213].
 const NUMBER_MAX: usize = 79;
 
-/// 9070: copies the first number of a string; the result is the offset of the character behind it.
+/// 9070: copies the first number of a string; the result is the offset of the character after it.
 pub(super) fn copy_number(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [source, destination] = call.arguments()?;
     let found = call.text(source).and_then(|text| {

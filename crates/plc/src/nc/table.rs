@@ -18,7 +18,7 @@ pub enum TableKind {
 pub struct Column {
     /// Its name in the table.
     pub name: &'static str,
-    /// Places behind the point.
+    /// Places after the point.
     pub decimals: u8,
     /// Smallest value.
     pub min: f64,

@@ -99,7 +99,7 @@ pub(super) fn write_bits(
     Ok(())
 }
 
-/// The bit that stands some places behind an operand; commands that move several bits cross the gaps of
+/// The bit that stands some places after an operand; commands that move several bits cross the gaps of
 /// an area by number.
 fn nth(first: BitOperand, index: i32, offset: u8) -> Option<Bit> {
     let shift = if first.indexed { i32::from(index as i16) } else { 0 };

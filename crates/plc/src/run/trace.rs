@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use crate::{Compilation, Machine, MemoryFiles, Options, Start, TestNc};
 
-    /// The instruction behind a jump that is taken is passed by, until the jump is not taken.
+    /// The instruction after a jump that is taken is passed by, until the jump is not taken.
     #[test]
     fn a_scan_stands_by_its_instructions() {
         let text = "L I4\nJPT OVER\nL K+7\n= W8\nLBL OVER\nL I4\n= O2\nEM\n";

@@ -172,7 +172,7 @@ fn read_operand(
     let glued = at == end && scanner.peek().is_some_and(|c| c.is_ascii_alphanumeric());
     let letters = mnemonic.spelling().ends_with(|c: char| c.is_ascii_alphabetic());
     if glued && letters && mnemonic != Mnemonic::Constant {
-        let detail = format!("no blank behind {}", mnemonic.spelling());
+        let detail = format!("no blank after {}", mnemonic.spelling());
         notes.push(LineError::new(PlcError::NoLimiter, end, detail));
     }
     let (operand, old_letter) = if mnemonic.takes(Class::None) {
@@ -192,7 +192,7 @@ fn read_operand(
     };
     scanner.skip_blanks();
     if let Some(character) = scanner.peek() {
-        let detail = format!("`{character}` behind {}", mnemonic.spelling());
+        let detail = format!("`{character}` after {}", mnemonic.spelling());
         return Err(LineError::new(PlcError::NoLimiter, scanner.at(), detail));
     }
     if tnc355 || old_letter {

@@ -103,7 +103,7 @@ impl<'a> Scanner<'a> {
         found
     }
 
-    /// A decimal number behind blanks; `None` when it is larger than any address.
+    /// A decimal number after blanks; `None` when it is larger than any address.
     pub(super) fn digits(&mut self, expected: &str) -> Result<Option<u16>, LineError> {
         self.skip_blanks();
         let at = self.at;
@@ -114,7 +114,7 @@ impl<'a> Scanner<'a> {
         Ok(digits.parse().ok())
     }
 
-    /// The value behind `K`: `+54`, `-1`, `$FF`. All 32 bits may be given; `$` is two's complement.
+    /// The value after `K`: `+54`, `-1`, `$FF`. All 32 bits may be given; `$` is two's complement.
     pub(super) fn constant(&mut self) -> Result<i32, LineError> {
         self.skip_blanks();
         let at = self.at;

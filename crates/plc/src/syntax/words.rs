@@ -144,7 +144,7 @@ pub enum Nesting {
     Neither,
 }
 
-/// What an instruction does to the nesting of the lines behind it.
+/// What an instruction does to the nesting of the lines after it.
 pub fn nesting(instruction: &str) -> Nesting {
     const OPENING: [Mnemonic; 7] = [
         Mnemonic::IfTrue,
@@ -178,7 +178,7 @@ pub fn nesting(instruction: &str) -> Nesting {
     }
 }
 
-/// A line of the formatted listing without its comment: labels at the margin, commands behind it, deeper in structures.
+/// A line of the formatted listing without its comment: labels at the margin, commands after it, deeper in structures.
 pub fn listed_code(command: &str, operand: &str, depth: usize) -> String {
     let code = match command.eq_ignore_ascii_case(Mnemonic::Label.spelling()) {
         true => format!("{command:<5} {operand}"),

@@ -234,7 +234,7 @@ fn m9107_reads_one_byte() {
     assert_eq!(
         desk.submit(9107, &[RS422, 63], 1),
         value(0),
-        "behind the text: no error"
+        "after the text: no error"
     );
     for wrong in [[RS232, 0], [2, 0], [RS422, 64], [RS422, -1]] {
         assert_eq!(desk.submit(9107, &wrong, 1), (vec![0], true), "{wrong:?}");

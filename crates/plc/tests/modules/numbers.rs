@@ -50,7 +50,7 @@ fn m9051_writes_a_format() {
         (1000, 9, 3, 3, "+  1.000"),
         (-1000, 9, 3, 3, "-  1.000"),
         (123_456, 0, 3, 0, "456"),
-        // Without sign the absolute value; places behind the point are always written.
+        // Without sign the absolute value; places after the point are always written.
         (-7, 0, 2, 2, "0.07"),
         (5, 2, 3, 0, "  5"),
     ];
@@ -97,7 +97,7 @@ fn m9052_reads_a_decimal() {
             "{text}"
         );
     }
-    // 3.1415926535: ten digits would be 3141592653, more than 2147483647; nine remain, eight behind the point.
+    // 3.1415926535: ten digits would be 3141592653, more than 2147483647; nine remain, eight after the point.
     desk.set_text(3, b"3.1415926535");
     assert_eq!(desk.cyclic(9052, &[3], 2), (vec![314_159_265, -8], false));
     for text in ["", "ABC", "1.2.3", "12X", "-", ".5"] {

@@ -10,8 +10,8 @@ use crate::{NumberedBlock, Program};
 
 /// The normalised listing of a program, to be written anywhere that takes a [`Display`].
 ///
-/// Every block is one line behind its number; lines that `~` joined become one. Comments are kept, also the
-/// text before BEGIN PGM and behind END PGM; annotation behind dots is dropped. Blocks that cannot be read
+/// Every block is one line after its number; lines that `~` joined become one. Comments are kept, also the
+/// text before BEGIN PGM and after END PGM; annotation after dots is dropped. Blocks that cannot be read
 /// stay as they are. Reading the listing gives the same blocks again.
 ///
 /// ```

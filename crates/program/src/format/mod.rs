@@ -24,7 +24,7 @@ pub fn format_block(block: &Block, options: FormatOptions) -> String {
     text
 }
 
-/// [`format_block`] behind other text.
+/// [`format_block`] after other text.
 pub(crate) fn write_block(block: &Block, options: FormatOptions, text: &mut String) {
     let mut out = Output {
         text: std::mem::take(text),

@@ -9,7 +9,7 @@ use crate::parse::cursor::{Cursor, Parsed};
 use crate::text::{is_blank, trim_continuation};
 use crate::{Coordinates, Distance, Word};
 
-/// The code of a line without its `*`, and the comment behind it with its `;`.
+/// The code of a line without its `*`, and the comment after it with its `;`.
 #[inline]
 pub(super) fn split(line: &[u8]) -> (&[u8], &[u8]) {
     let length = memchr::memchr(b';', line).unwrap_or(line.len());
@@ -121,7 +121,7 @@ pub(super) fn once<T>(c: &mut Cursor, start: usize, slot: &mut Option<T>, value:
     Ok(())
 }
 
-/// Values behind a word must be there.
+/// Values after a word must be there.
 pub(super) fn missing<T>(c: &mut Cursor, start: usize, what: &'static str) -> Parsed<T> {
     c.fault_from(start, EntryValueIncorrect, what)
 }

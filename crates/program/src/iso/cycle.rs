@@ -10,7 +10,7 @@ use crate::{CycleBlock, CycleParameter, CycleWord, Direction, Feed, Quantity, Va
 pub(super) enum Form {
     /// `P01 -2 P02 -20 ...` in the order of the table of cycles, without the direction.
     Parameters,
-    /// One number behind a letter of its own: F of G04, H of G73.
+    /// One number after a letter of its own: F of G04, H of G73.
     Letter(u8),
     /// Letters of axes alone.
     Axes,
@@ -18,11 +18,11 @@ pub(super) enum Form {
     Shift,
     /// Coordinates in block n.1.
     Positions,
-    /// The line of a datum table behind P01.
+    /// The line of a datum table after P01.
     TableLine,
     /// P words with a label each.
     Labels,
-    /// The name of a program behind P01.
+    /// The name of a program after P01.
     Program,
     /// `Q1=+5` words.
     Assignments,
@@ -33,7 +33,7 @@ pub(super) enum Form {
 /// A G function that is a cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IsoCycle {
-    /// The number behind G.
+    /// The number after G.
     pub(super) code: u16,
     /// Its kind and number in plain language.
     pub(super) function: CycleFunction,
@@ -170,7 +170,7 @@ impl IsoCycle {
     }
 }
 
-/// What a value behind a P is in its block.
+/// What a value after a P is in its block.
 pub(super) fn word_of(quantity: Quantity, value: Value) -> CycleWord {
     match quantity {
         Quantity::Feed => CycleWord::Feed(Feed::Value(value)),

@@ -36,7 +36,7 @@ pub(super) fn frame_or_call(c: &mut Cursor, may_begin: bool) -> Parsed<Operation
     Ok(Operation::CallProgram(name))
 }
 
-/// A `%` behind other words.
+/// A `%` after other words.
 #[cold]
 pub(super) fn misplaced<T>(c: &mut Cursor) -> Parsed<T> {
     let start = c.position();
@@ -44,7 +44,7 @@ pub(super) fn misplaced<T>(c: &mut Cursor) -> Parsed<T> {
     c.fault_from(start, UnexpectedText, "a program is called in a block of its own")
 }
 
-/// Name, unit and protection behind `%`; `None` if that is the name of a program to call.
+/// Name, unit and protection after `%`; `None` if that is the name of a program to call.
 fn header(text: &[u8]) -> Option<Header> {
     let mut name = trim(without_end(text));
     let mut header = Header {

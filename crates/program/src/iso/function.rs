@@ -1,4 +1,4 @@
-//! The functions behind D: `D00` to `D15` and `D19` calculate, compare and print as FN does; the others define cycles of
+//! The functions after D: `D00` to `D15` and `D19` calculate, compare and print as FN does; the others define cycles of
 //! the machine builder [000:17966-17984].
 
 use bahn_parameters::MessageId::{BlockNotKnown, EntryValueIncorrect, UnexpectedText};

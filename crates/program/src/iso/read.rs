@@ -248,7 +248,7 @@ fn g_function(
             return c.fault_from(
                 start,
                 UnexpectedText,
-                "this G function belongs behind the program's name",
+                "this G function belongs after the program's name",
             );
         }
         _ => return c.fault_from(start, BlockNotKnown, "no control here knows this G function"),
@@ -257,7 +257,7 @@ fn g_function(
     Ok(true)
 }
 
-/// A feed behind its letter.
+/// A feed after its letter.
 fn feed(c: &mut Cursor, start: usize) -> Parsed<Feed> {
     if c.keyword("MAX") {
         return Ok(Feed::Max);
@@ -307,7 +307,7 @@ fn check(c: &mut Cursor, start: usize, motion: &Motion) -> Parsed<()> {
     Ok(())
 }
 
-/// A block that says a path function and no end point: a straight line may so come into force for the blocks behind it, as
+/// A block that says a path function and no end point: a straight line may so come into force for the blocks after it, as
 /// in `G00 G40 G90`; every other function needs its end point where it stands, as its block in plain language does.
 fn without_end_point(c: &mut Cursor, start: usize, function: PathFunction) -> Parsed<()> {
     let message = match function {

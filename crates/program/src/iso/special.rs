@@ -51,7 +51,7 @@ struct Words {
     m: MFunctions,
 }
 
-/// What stands behind a P.
+/// What stands after a P.
 #[derive(Clone, Debug, PartialEq)]
 enum P {
     Value(Value),

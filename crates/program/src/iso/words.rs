@@ -67,7 +67,7 @@ fn word(text: &[u8], front: bool) -> (WordKind, usize, usize) {
     }
 }
 
-/// Length of the value behind an address, with blanks before it.
+/// Length of the value after an address, with blanks before it.
 fn after(text: &[u8], address: usize) -> usize {
     let rest = text.get(address..).unwrap_or_default();
     let blanks = rest.iter().take_while(|b| is_blank(**b)).count();

@@ -254,7 +254,7 @@ impl Output {
         }
     }
 
-    /// G24 to G31 with what is in force behind them.
+    /// G24 to G31 with what is in force after them.
     fn special(&mut self, code: u16, block: &ModalBlock) {
         let Some(operation) = block.operations.first() else {
             return;
@@ -490,7 +490,7 @@ impl Output {
 }
 
 impl Distances {
-    /// Writes the open words, then those behind the other function, then those behind the one that stays.
+    /// Writes the open words, then those after the other function, then those after the one that stays.
     pub(super) fn write(&mut self, out: &mut Output, mut words: impl FnMut(&mut Output, Option<Distance>)) {
         words(out, None);
         let Some(last) = self.last else { return };
@@ -517,7 +517,7 @@ fn g_of(distance: Distance) -> &'static str {
     }
 }
 
-/// Which function a word stands behind; none if it is open.
+/// Which function a word stands after; none if it is open.
 fn group_of(word: Word, open: bool) -> Option<Distance> {
     match (open, word.incremental) {
         (true, _) => None,

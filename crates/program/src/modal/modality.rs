@@ -88,7 +88,7 @@ impl PathFunction {
 pub struct Modality {
     /// How the block moves; without it as the block before.
     pub function: Option<PathFunction>,
-    /// What is in force behind the block, if it says so.
+    /// What is in force after the block, if it says so.
     pub distance: Option<Distance>,
     /// The tool axis of G17 to G20, if a block without tool call says so.
     pub plane: Option<Axis>,

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::cursor::Cursor;
 
-/// Reads optional block number, perhaps behind N, and `/`, in either order, and the blanks behind; whether the block is
+/// Reads optional block number, perhaps after N, and `/`, in either order, and the blanks after; whether the block is
 /// optional.
 #[inline]
 pub(crate) fn prefix(c: &mut Cursor) -> bool {

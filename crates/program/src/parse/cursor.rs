@@ -23,7 +23,7 @@ pub(crate) const WRITE_A_NUMBER: &str = "Write a number or a Q parameter; the le
 /// What a parsing function gives. The fault is boxed to keep the good case small.
 pub(crate) type Parsed<T> = Result<T, Box<Fault>>;
 
-/// Reading position in the text of a block, which begins behind block number and `/`.
+/// Reading position in the text of a block, which begins after block number and `/`.
 #[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -55,7 +55,7 @@ impl<'a> Cursor<'a> {
         self.peek_at(0)
     }
 
-    /// The byte `offset` behind the next one; a blank at the end.
+    /// The byte `offset` after the next one; a blank at the end.
     #[inline]
     pub(crate) fn peek_at(&self, offset: usize) -> u8 {
         self.bytes.get(self.position + offset).copied().unwrap_or(b' ')
@@ -70,7 +70,7 @@ impl<'a> Cursor<'a> {
         before.is_some_and(u8::is_ascii_digit)
     }
 
-    /// Whether there is a byte `offset` behind the next one.
+    /// Whether there is a byte `offset` after the next one.
     #[inline]
     pub(crate) fn remains(&self, offset: usize) -> bool {
         self.position + offset < self.bytes.len()
@@ -98,7 +98,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips blanks; whether nothing of the code is left: the rest is empty, a comment, or annotation
-    /// printed behind three or more dots, which is never code (spec of the plain language, rule 8).
+    /// printed after three or more dots, which is never code (spec of the plain language, rule 8).
     #[inline]
     pub(crate) fn at_end(&mut self) -> bool {
         self.skip_blanks();
@@ -197,7 +197,7 @@ impl<'a> Cursor<'a> {
         }))
     }
 
-    /// A fault of the word that begins at the reading position, behind blanks.
+    /// A fault of the word that begins at the reading position, after blanks.
     #[cold]
     pub(crate) fn fault_at_word<T>(
         &mut self,

@@ -285,7 +285,7 @@ fn axis_word(c: &mut Cursor, start: usize, axis: Axis, scope: Scope) -> Parsed<O
     };
     c.advance(2);
     if scope != Scope::Probe {
-        return c.number_missing(start, "a number or Q parameter is missing behind the sign");
+        return c.number_missing(start, "a number or Q parameter is missing after the sign");
     }
     Ok(Some(Some(CycleWord::AxisDirection(axis, direction))))
 }

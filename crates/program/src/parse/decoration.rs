@@ -5,7 +5,7 @@ use bahn_path::Axis;
 use super::cursor::Cursor;
 use crate::text::is_blank;
 
-/// Whether a number or Q parameter begins `offset` behind the position, blanks apart.
+/// Whether a number or Q parameter begins `offset` after the position, blanks apart.
 pub(super) fn begins_value(c: &Cursor, offset: usize) -> bool {
     let mut after = c.clone();
     after.advance(offset);
@@ -35,7 +35,7 @@ pub(super) fn is_separator(byte: u8) -> bool {
     matches!(byte, b':' | b'=' | b'/' | b'~')
 }
 
-/// Whether the word ends `offset` behind the position.
+/// Whether the word ends `offset` after the position.
 pub(super) fn ends_word(c: &Cursor, offset: usize) -> bool {
     let rest = c.rest().get(offset..).unwrap_or_default();
     match rest.first() {

@@ -62,7 +62,7 @@ fn header(c: &mut Cursor, start: usize) -> Option<Header> {
     let unit = match last.to_ascii_uppercase().as_str() {
         "MM" => Some(Unit::Mm),
         "INCH" => Some(Unit::Inch),
-        // A name of its own it may be, a unit only behind one.
+        // A name of its own it may be, a unit only after one.
         "IN" if last.len() < name.len() => Some(Unit::Inch),
         _ => None,
     };

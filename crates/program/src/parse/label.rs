@@ -49,7 +49,7 @@ pub(super) fn program_call(c: &mut Cursor) -> Parsed<Option<Operation>> {
     Ok(None)
 }
 
-/// The number behind the slash counts the repeats that are left while the section runs [003:3782]; it does
+/// The number after the slash counts the repeats that are left while the section runs [003:3782]; it does
 /// not matter when a program is read. An empty REP is a plain call [003:4648].
 fn call_label(c: &mut Cursor) -> Parsed<Operation> {
     let label = label_number(c)?;

@@ -35,7 +35,7 @@ pub(crate) fn rest_of_word(code: u16, letter: char) -> &'static str {
     }
 }
 
-/// Address letters of the words that an M function takes, and what each is written with behind its letter.
+/// Address letters of the words that an M function takes, and what each is written with after its letter.
 ///
 /// ```
 /// use bahn_program::m_words;

@@ -58,7 +58,7 @@ impl Cursor<'_> {
         }
         if signed {
             self.go_to(first + 1);
-            return self.number_missing(first, "a number or Q parameter is missing behind the sign");
+            return self.number_missing(first, "a number or Q parameter is missing after the sign");
         }
         self.go_to(start);
         Ok(None)
@@ -87,7 +87,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Reads an unsigned whole number behind blanks, or nothing if none begins here. `start` is where the
+    /// Reads an unsigned whole number after blanks, or nothing if none begins here. `start` is where the
     /// word begins.
     pub(crate) fn integer(&mut self, start: usize) -> Parsed<Option<u32>> {
         let before = self.position();

@@ -291,7 +291,7 @@ fn set_once<T>(c: &Cursor, start: usize, value: Option<T>, slot: &mut Option<T>)
     }
 }
 
-/// `FMAX`, `F value` or an empty `F`, behind the letter [003:303] [003:2142].
+/// `FMAX`, `F value` or an empty `F`, after the letter [003:303] [003:2142].
 #[inline]
 pub(super) fn feed_word(c: &mut Cursor) -> Parsed<Option<Feed>> {
     let after = c.position();
@@ -408,7 +408,7 @@ fn direction_word(c: &mut Cursor, start: usize, motion: &mut Motion) -> Parsed<(
     set_once(c, start, Some(direction), &mut motion.direction)
 }
 
-/// The sign behind `DR`.
+/// The sign after `DR`.
 pub(super) fn direction(c: &mut Cursor, start: usize) -> Parsed<Direction> {
     if c.accept(b'+') {
         Ok(Direction::CounterClockwise)

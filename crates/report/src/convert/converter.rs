@@ -74,7 +74,7 @@ pub fn is_iso(program: &Program) -> bool {
     extension(Path::new(program.name())) == "i"
 }
 
-/// What a name ends with behind its last dot, in small letters; empty without one.
+/// What a name ends with after its last dot, in small letters; empty without one.
 fn extension(path: &Path) -> String {
     path.extension()
         .unwrap_or_default()

@@ -95,7 +95,7 @@ fn proof(row: &mut impl FnMut(&str, &str), proof: &Proof) {
     );
     match &proof.first_difference {
         Some(difference) => {
-            row("Proof", &format!("they differ behind {counted}"));
+            row("Proof", &format!("they differ after {counted}"));
             row("", &difference.what);
             for (name, at) in [("source", &difference.source), ("target", &difference.target)] {
                 row(

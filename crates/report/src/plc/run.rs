@@ -10,7 +10,7 @@ use super::trace::{Line, Trace};
 use crate::ReportError;
 use crate::count;
 
-/// So many cycles a script waits for a condition behind the last thing that it did: a minute of 20 ms.
+/// So many cycles a script waits for a condition after the last thing that it did: a minute of 20 ms.
 const CYCLES_IN_VAIN: u64 = 3000;
 
 /// The cycles of a run, and what is written meanwhile.

@@ -57,7 +57,7 @@ pub struct Trace {
     pub cycle: u64,
     /// The first [`LINES_MAX`].
     pub lines: Vec<Line>,
-    /// How many were executed behind those.
+    /// How many were executed after those.
     pub left_off: u64,
     /// Whether numbers of the table are hexadecimal [000:11422].
     pub hex: bool,

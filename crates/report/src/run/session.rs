@@ -162,7 +162,7 @@ impl Session {
         }
     }
 
-    /// Completes all files, also behind one that cannot be written.
+    /// Completes all files, also after one that cannot be written.
     ///
     /// # Errors
     /// The first of those.

@@ -23,7 +23,7 @@ pub(super) struct Standstill {
 }
 
 impl Standstill {
-    /// Looks at the machine behind a cycle; `moves` when an axis does, or a dwell runs.
+    /// Looks at the machine after a cycle; `moves` when an axis does, or a dwell runs.
     pub fn cycle(&mut self, host: &Host, moves: bool) {
         let now_us = host.control().time_us();
         if moves {

@@ -199,7 +199,7 @@ impl Table {
         (first, self.times.last().copied().unwrap_or(first))
     }
 
-    /// The sample at a time: the last one that is not behind it.
+    /// The sample at a time: the last one that is not after it.
     pub fn at(&self, time: f64) -> usize {
         self.times.partition_point(|own| *own <= time).saturating_sub(1)
     }

@@ -30,7 +30,7 @@ const COLUMNS: [&str; 22] = [
     "tools",
     "warnings",
 ];
-/// Columns behind those of the axes in use.
+/// Columns after those of the axes in use.
 const LAST_COLUMNS: [&str; 3] = ["beyond_range", "warning_texts", "changes"];
 
 /// How numbers and fields are separated.

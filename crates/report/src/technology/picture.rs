@@ -315,7 +315,7 @@ fn standing(samples: &[Sample], cycle_s: f64) -> Vec<Sample> {
     all
 }
 
-/// A number without zeros behind its point.
+/// A number without zeros after its point.
 fn number(value: f64) -> String {
     // Adding 0 makes -0 a 0.
     format!("{}", (value * 1e6).round() / 1e6 + 0.0)

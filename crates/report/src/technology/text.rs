@@ -63,7 +63,7 @@ fn event(event: &Event) -> Vec<String> {
     let function = with_value(event.function.as_deref().unwrap_or_default(), &event.value);
     let mut remarks = Vec::new();
     if let Some(offset) = event.offset_us {
-        remarks.push(format!("{offset:.0} us behind its place"));
+        remarks.push(format!("{offset:.0} us after its place"));
     }
     if let Some(to_go) = event.to_go {
         let way = to_go.path as f64 / 10_000.0;
@@ -131,7 +131,7 @@ fn position(position: &Position) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// To 1 µm, without zeros behind.
+/// To 1 µm, without zeros after.
 fn rounded(value: f64) -> f64 {
     // Adding 0 makes -0 a 0.
     (value * 1e3).round() / 1e3 + 0.0

@@ -113,7 +113,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Completes all files, also behind one that cannot be written.
+    /// Completes all files, also after one that cannot be written.
     ///
     /// # Errors
     /// The first of those.

@@ -1,4 +1,4 @@
-//! The axes after every contour cycle: travel, speed, acceleration, enable, monitoring, the way behind a reaction.
+//! The axes after every contour cycle: travel, speed, acceleration, enable, monitoring, the way after a reaction.
 
 use bahn_control::{AxisWatch, ChannelView};
 use bahn_machine::{AxisState, Machine};
@@ -11,7 +11,7 @@ const EPSILON: f64 = 1e-6;
 /// What a corner may make of the bound of the acceleration at once: four fifths of it over the window of the servo, as
 /// [`bahn_motion`](https://docs.rs/bahn-motion) passes corners, s.
 const CORNER_S: f64 = 0.8 * 0.15;
-/// The drive has no power so long behind a reaction at the latest: relay and PLC, s.
+/// The drive has no power so long after a reaction at the latest: relay and PLC, s.
 const POWER_OFF_S: f64 = 0.06;
 /// What play, windows and the rest of a lag add to a way, mm or degrees.
 const REST: f64 = 0.5;
@@ -27,7 +27,7 @@ struct Before {
     open_s: f64,
     /// Speed that the handwheel adds to its path (M118), mm/s.
     wheel_mm_s: f64,
-    /// Speed on the way back behind a feed enable, mm/s; not known in its first cycle.
+    /// Speed on the way back after a feed enable, mm/s; not known in its first cycle.
     back_mm_s: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ pub(super) struct Moment {
     pub fatal: bool,
     /// Something of the machine has failed: its axes are where they are.
     pub broken: bool,
-    /// The way behind a reaction says nothing: the relay or a brake does not do what it should.
+    /// The way after a reaction says nothing: the relay or a brake does not do what it should.
     pub unbraked: bool,
 }
 
@@ -140,7 +140,7 @@ impl Axes {
         self.braking = plant.axes().filter_map(|axis| Braking::of(&axis)).collect();
     }
 
-    /// The way behind it.
+    /// The way after it.
     pub fn distance(&self, plant: &Machine, moment: &Moment) -> Result<(), Violation> {
         if moment.unbraked || !moment.fatal {
             return Ok(());
@@ -185,7 +185,7 @@ impl Braking {
             return Ok(());
         }
         let values = format!(
-            "{} travels {way:.3} behind {after}, {:.3} are left to it",
+            "{} travels {way:.3} after {after}, {:.3} are left to it",
             axis.letter, self.bound
         );
         Err(Violation::new(Rule::Distance, moment.time_us, values))
@@ -276,7 +276,7 @@ impl Judge<'_> {
         let most = bound * if corner { cycle_s + CORNER_S } else { cycle_s };
         if step > most * (1.0 + 1e-3) + 1e-4 {
             let values = format!(
-                "{now:.4} mm/s behind {was:.4}: {:.1} mm/s², at most {:.1}",
+                "{now:.4} mm/s after {was:.4}: {:.1} mm/s², at most {:.1}",
                 step / cycle_s,
                 most / cycle_s
             );
@@ -293,7 +293,7 @@ impl Judge<'_> {
         let most = watch.acceleration_mm_s2 * cycle_s + given;
         if step > most * (1.0 + 1e-3) + 1e-4 {
             let values = format!(
-                "led by the handwheel at {:.4} mm/s behind {:.4}, at most {most:.4} more",
+                "led by the handwheel at {:.4} mm/s after {:.4}, at most {most:.4} more",
                 self.wheel_mm_s, last.wheel_mm_s
             );
             return self.breaks(Rule::Acceleration, values);
@@ -311,7 +311,7 @@ impl Judge<'_> {
         let most = before.speed_mm_s.abs() - watch.acceleration_mm_s2 * self.moment.cycle_s * (1.0 - 1e-3);
         if alone(watch) && alone(before) && watch.speed_mm_s.abs() > most.max(0.0) + 1e-4 {
             let values = format!(
-                "{:.4} mm/s behind {:.4} with a fault",
+                "{:.4} mm/s after {:.4} with a fault",
                 watch.speed_mm_s, before.speed_mm_s
             );
             return self.breaks(Rule::Reaction, values);
@@ -350,7 +350,7 @@ impl Judge<'_> {
         if (now - speed).abs() > most * (1.0 + 1e-3) + 1e-4
             || now.abs() > watch.rapid_mm_s.max(speed.abs()) + 1e-4
         {
-            let values = format!("{now:.4} mm/s behind {speed:.4} on the way back, at most {most:.4} more");
+            let values = format!("{now:.4} mm/s after {speed:.4} on the way back, at most {most:.4} more");
             return self.breaks(Rule::Acceleration, values);
         }
         Ok(())

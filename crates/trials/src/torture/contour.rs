@@ -142,7 +142,7 @@ mod tests {
         place
     }
 
-    /// Beside a line of 10 mm, behind its end; inside a half circle of radius 5.
+    /// Beside a line of 10 mm, after its end; inside a half circle of radius 5.
     #[test]
     fn the_distance_is_that_of_the_nearest_point() {
         let line = element(Curve::Line, at(0.0, 0.0), at(10.0, 0.0));

@@ -6,7 +6,7 @@
 //! P.P.INT [000:7803-7825]. Where an axis has moved that its encoder hides from the control, stuck or wrong, the stylus is not where
 //! the control takes it to be, and what it is to touch may not be there: it goes on to the end of its way, which MP6130 sets.
 //! What a probe has felt
-//! elsewhere than undisturbed moves what the program does behind it by as much: no shipped program makes more of a touch.
+//! elsewhere than undisturbed moves what the program does after it by as much: no shipped program makes more of a touch.
 
 use std::collections::HashMap;
 
@@ -27,7 +27,7 @@ const HIDDEN: f64 = 0.1;
 /// Steps of the spindle's encoder, mm of a thread.
 const ROUNDING_MM: f64 = 1e-3;
 
-/// Where a block was led undisturbed, and what the numbers of the program were behind it.
+/// Where a block was led undisturbed, and what the numbers of the program were after it.
 #[derive(Clone, Debug)]
 struct Stretch {
     least: Position,

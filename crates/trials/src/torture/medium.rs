@@ -86,9 +86,9 @@ impl Medium {
         match tried() {
             Ok(true) => Ok(()),
             Ok(false) => Err(format!(
-                "behind a failure at byte {left} the journal holds neither what was nor what is"
+                "after a failure at byte {left} the journal holds neither what was nor what is"
             )),
-            Err(error) => Err(format!("behind a failure at byte {left}: {error}")),
+            Err(error) => Err(format!("after a failure at byte {left}: {error}")),
         }
     }
 }

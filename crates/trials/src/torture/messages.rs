@@ -110,7 +110,7 @@ impl Messages {
         self.causes.contains(&Kind::Fault) || self.causes.contains(&Kind::Plc)
     }
 
-    /// The way of the axes behind a reaction is not the machine's usual one.
+    /// The way of the axes after a reaction is not the machine's usual one.
     pub fn is_unbraked(&self) -> bool {
         ["relay", "brake", "force", "drive", "offset", "input", "device"]
             .iter()
@@ -180,7 +180,7 @@ impl Messages {
             }
     }
 
-    /// What must be so behind a cycle.
+    /// What must be so after a cycle.
     pub fn cycle(&mut self, control: &Control) -> Result<(), Violation> {
         let now = control.time_us();
         if let Some(due) = self.due.iter().find(|due| due.until_us < now) {

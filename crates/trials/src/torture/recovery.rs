@@ -1,4 +1,4 @@
-//! The way back behind the window of a seed: everything is put back, messages are cleared, what flashes is switched off
+//! The way back after the window of a seed: everything is put back, messages are cleared, what flashes is switched off
 //! and on, and the run goes on, or begins anew where the supply was off.
 
 use bahn_control::{Mode, RunState, Signal};
@@ -9,7 +9,7 @@ use super::messages::is_fatal;
 use super::rule::{Rule, Violation};
 use super::trial::Course;
 
-/// Behind the repairs until messages are looked at, µs.
+/// After the repairs until messages are looked at, µs.
 const SETTLE_US: u64 = 400_000;
 /// Between two keys of the operator who puts everything back, µs.
 const KEY_US: u64 = 250_000;
@@ -181,7 +181,7 @@ impl Course<'_> {
         self.start(&channels, GO_ON_US)
     }
 
-    /// Behind power-off there is no run that could go on: the programs begin anew.
+    /// After power-off there is no run that could go on: the programs begin anew.
     fn begin_anew(&mut self) -> Result<(), Violation> {
         let programs = self.bench.programs.clone();
         let mut channels = Vec::new();
@@ -211,7 +211,7 @@ impl Course<'_> {
                 let waits = control
                     .waiting()
                     .map_or_else(String::new, |waiting| format!(", waits for {waiting}"));
-                let values = format!("{:?} behind NC start{waits}", control.run_state());
+                let values = format!("{:?} after NC start{waits}", control.run_state());
                 return Err(self.breaks(Rule::Recovery, values));
             }
             if self.now() >= due_us {

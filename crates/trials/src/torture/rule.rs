@@ -20,7 +20,7 @@ pub enum Rule {
     Monitoring,
     /// What the table of faults says is done: message, loops, outputs, PLC.
     Reaction,
-    /// Behind a reaction no axis travels farther than the table says.
+    /// After a reaction no axis travels farther than the table says.
     Distance,
     /// No message comes without a cause.
     Cause,

@@ -34,7 +34,7 @@ pub struct Trial {
     pub machine_us: u64,
     /// The texts of the messages that came up.
     pub messages: Vec<String>,
-    /// The run went on behind it.
+    /// The run went on after it.
     pub went_on: bool,
 }
 
@@ -174,9 +174,9 @@ impl Course<'_> {
                     let values = match before.0 == control {
                         true => {
                             let cell = before.1.iter().zip(&plc).position(|(before, now)| before != now);
-                            format!("retained cell {cell:?} of the PLC is another one behind the power-off")
+                            format!("retained cell {cell:?} of the PLC is another one after the power-off")
                         }
-                        false => format!("{:?} is {control:?} behind the power-off", before.0),
+                        false => format!("{:?} is {control:?} after the power-off", before.0),
                     };
                     return Err(self.breaks(Rule::Retained, values));
                 }
@@ -193,7 +193,7 @@ impl Course<'_> {
         (own.collect(), control.exchange().retained().collect())
     }
 
-    /// A contour cycle, and what must be so behind it.
+    /// A contour cycle, and what must be so after it.
     pub(super) fn cycle(&mut self) -> Result<(), Violation> {
         if let Err(error) = self.bench.host.step() {
             return Err(self.breaks(Rule::Alive, error.to_string()));

@@ -1,5 +1,5 @@
-//! The way that is left to an axis behind every reaction of the table that bounds it: ramp, 0 V, open loop. What is left
-//! behind "control is ready" off is in [`super::axes`].
+//! The way that is left to an axis after every reaction of the table that bounds it: ramp, 0 V, open loop. What is left
+//! after "control is ready" off is in [`super::axes`].
 
 use bahn_control::{AxisWatch, ChannelView, RunState, Signal};
 use bahn_machine::{AxisState, Machine};
@@ -33,7 +33,7 @@ enum Cause {
     Dead,
 }
 
-/// An axis behind a reaction.
+/// An axis after a reaction.
 #[derive(Clone, Copy, Debug)]
 struct Left {
     output: usize,
@@ -44,7 +44,7 @@ struct Left {
 /// Follows the ways of a machine.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ways {
-    /// Of each channel: its run went on, and the ramp behind that.
+    /// Of each channel: its run went on, and the ramp after that.
     ramps: Vec<(bool, Option<Ramp>)>,
     /// Channels that a message stops.
     stopped: Vec<usize>,
@@ -108,7 +108,7 @@ impl Ways {
                 ramp.way += speed * moment.cycle_s;
                 if ramp.way > ramp.bound {
                     let values = format!(
-                        "the path travels {:.4} behind the stop of channel {}, {:.4} are left to it",
+                        "the path travels {:.4} after the stop of channel {}, {:.4} are left to it",
                         ramp.way,
                         number + 1,
                         ramp.bound

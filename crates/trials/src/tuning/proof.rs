@@ -63,7 +63,7 @@ struct Blocks {
     count: u32,
     /// Where the circles are, or the way to and fro.
     path: std::ops::RangeInclusive<u32>,
-    /// Blocks with a stop behind them, and the place of the axis that stops.
+    /// Blocks with a stop after them, and the place of the axis that stops.
     stops: Vec<(u32, usize)>,
     /// In positions of the machine.
     centre: Vec<f64>,
@@ -321,7 +321,7 @@ struct Stop {
 }
 
 fn stop(samples: &[Sample], block: u32, place: usize) -> Stop {
-    // It rests in the dwell behind the block.
+    // It rests in the dwell after the block.
     let all = || {
         samples
             .iter()

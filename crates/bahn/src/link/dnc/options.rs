@@ -29,7 +29,7 @@ Examples:
   bahn link dnc run --machine machines/mill --port connect:127.0.0.1:4711 15.H
       Ask the device there for program 15 and execute it as it comes; docs/dnc.md tells what may stand in it.
       With --port serial:/dev/ttyUSB0,mode=ext1,baud=38400 the port is that of this computer, set up by MP5020.0 and
-      MP5200.0 to MP5210.0 of the machine; --restarts 3 asks again three times behind a broken line.
+      MP5200.0 to MP5210.0 of the machine; --restarts 3 asks again three times after a broken line.
 
 The operator who stands by is that of `bahn run`, but a programmed stop waits; --confirm-stops confirms it, too. While the
 memory of MP7228.1 kByte is full no block is acknowledged. The machine waits for the line without spending time of its own, but for
@@ -81,7 +81,7 @@ pub(crate) struct DncRunOptions {
     /// Single block instead of full sequence.
     #[arg(long)]
     pub single_block: bool,
-    /// NC start also behind programmed stops.
+    /// NC start also after programmed stops.
     #[arg(long)]
     pub confirm_stops: bool,
     /// Begin without what survives power-off, and keep nothing.

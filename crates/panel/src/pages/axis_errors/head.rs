@@ -15,7 +15,7 @@ pub(super) enum Field {
     Number(&'static str, usize),
     /// One of the axes, at this place.
     Axis(&'static str, usize),
-    /// Whether this axis stands behind a place: a column of the table.
+    /// Whether this axis stands after a place: a column of the table.
     Column(usize, usize),
 }
 

@@ -149,7 +149,7 @@ impl Table {
         )
     }
 
-    /// A line comes in between, or goes: those behind it move by one point.
+    /// A line comes in between, or goes: those after it move by one point.
     fn shift(&mut self, on: bool, site: &mut Site) -> Turn {
         let row = self.row;
         if on && self.points.contains_key(&(ErrorTable::POINTS_MAX - 1)) {

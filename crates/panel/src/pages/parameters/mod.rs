@@ -226,7 +226,7 @@ impl Parameters {
         let Some(id) = self.definition().map(|own| own.id) else {
             return Turn::Refused;
         };
-        // A comment may stand behind the value, or alone.
+        // A comment may stand after the value, or alone.
         let (value, comment) = match entry.split_once(';') {
             Some((value, comment)) => (value.trim(), Some(comment.trim())),
             None => (entry.as_str(), None),

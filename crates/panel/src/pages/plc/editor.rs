@@ -24,7 +24,7 @@ const SOFT_KEYS: [&str; 8] = [
     "PAGE DOWN",
     "END",
 ];
-/// Characters of a line in the window, behind its number.
+/// Characters of a line in the window, after its number.
 const WIDTH: usize = 70;
 /// Width of line numbers.
 const NUMBER: usize = 6;
@@ -189,7 +189,7 @@ impl Editor {
         true
     }
 
-    /// What stands behind the cursor becomes a line of its own.
+    /// What stands after the cursor becomes a line of its own.
     fn split(&mut self, site: &Site) -> Turn {
         if self.source.lines.len() >= LINES_MAX {
             return Turn::Refused;

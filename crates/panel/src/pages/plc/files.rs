@@ -393,7 +393,7 @@ fn new_file(site: &Site) -> Turn {
     ))
 }
 
-/// Copies files one after the other; one that is there already is asked for, with the others behind it.
+/// Copies files one after the other; one that is there already is asked for, with the others after it.
 fn copies(mut files: VecDeque<(String, Vec<u8>)>, mut copied: u32, asked: bool, site: &Site) -> Turn {
     while let Some((name, bytes)) = files.pop_front() {
         let path = source::path(&name, site);

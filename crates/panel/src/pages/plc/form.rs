@@ -1,6 +1,6 @@
 //! How a line of a PLC program is set: in columns, as its editor does it, and without.
 
-/// Columns of operand and comment behind the instruction [000:4155-4199].
+/// Columns of operand and comment after the instruction [000:4155-4199].
 const OPERAND: usize = 7;
 const COMMENT: usize = 18;
 

@@ -1,4 +1,4 @@
-//! The PLC mode behind code number 807 667: EDIT, TABLE, TRACE, COMPILE [000:11187-11480].
+//! The PLC mode after code number 807 667: EDIT, TABLE, TRACE, COMPILE [000:11187-11480].
 
 mod binary;
 mod code;

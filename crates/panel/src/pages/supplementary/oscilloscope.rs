@@ -203,7 +203,7 @@ fn threshold_unit(site: &Site) -> String {
     }
 }
 
-/// The value behind another one, or before it, round.
+/// The value after another one, or before it, round.
 fn next<T: Copy + PartialEq>(values: &[T], value: T, forward: bool) -> T {
     let at = values.iter().position(|own| *own == value);
     let count = values.len();

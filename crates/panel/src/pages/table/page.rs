@@ -186,7 +186,7 @@ impl TableEditor {
     }
 }
 
-/// Its soft keys; behind them stand the table that belongs to this one, and END.
+/// Its soft keys; after them stand the table that belongs to this one, and END.
 const SOFT_KEYS: [&str; 6] = [
     "BEGIN",
     "LAST LINE",
