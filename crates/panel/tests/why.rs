@@ -202,7 +202,7 @@ fn coolant_that_does_not_flow_holds_the_program() {
     let waits = of(&trainee, "M2482");
     assert_eq!(waits.urgency, Urgency::Waits);
     assert!(
-        waits.text.contains("since 3 s") && waits.text.contains("the strobe M2045"),
+        waits.text.contains("has waited 3 s") && waits.text.contains("the strobe M2045"),
         "{}",
         waits.text
     );
