@@ -16,7 +16,7 @@ use bahn_motion::{Lead, Master};
 use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Position, Thread};
 
 use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
+use crate::axis::Mover;
 use crate::kinematics::Chain;
 use crate::spindle::SpindleLoop;
 use crate::track::Track;
@@ -231,8 +231,8 @@ impl Tapping {
             .any(|axis| element.is_some_and(|element| element.moves_axis(axis)))
     }
 
-    /// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128]: the axis of where the
-    /// spindle is, behind which it may have stood. While the two are apart neither is held anywhere: the end of the thread is not
+    /// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128], and
+    /// the path is where the spindle is, behind which it may have stood. While the two are apart neither is held anywhere: the end of the thread is not
     /// reached.
     pub fn is_in_position(&self, track: &Track, at: &Standing) -> bool {
         let Some(thread) = track.path.element().and_then(PathElement::thread) else {
@@ -243,17 +243,13 @@ impl Tapping {
         }
         let missing = missing_mm(thread, at);
         let window = window_mm(at);
-        let element = track.path.element();
-        let nominal = nominal(track, at);
-        let follows = |unit: &AxisUnit| {
-            let moves = element.is_some_and(|element| element.moves_axis(unit.axis));
-            !moves || (nominal[unit.axis] - unit.nominal).abs() <= window
-        };
+        let axis = at.chain.offsets.tool_axis;
+        let [_, now] = at.spindle.angles_deg(0.0);
+        let missed = (track.path.position_at(now)[axis] - track.path.position()[axis]).abs();
         let mut axes = at.axes.iter().filter(|unit| unit.mover == Mover::Path);
         missing <= window
-            && axes.all(|unit| {
-                unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window && follows(unit)
-            })
+            && missed <= STANDS_MM_S * at.moment.time_s
+            && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
     }
 
     /// The axis goes where the spindle turns.
