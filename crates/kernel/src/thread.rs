@@ -197,7 +197,7 @@ impl Tapping {
     /// stands where the path has led it goes on; one that ran out without its drive has come apart from the axis
     /// (inferred): to go after it would be a jump.
     pub fn holds(&mut self, track: &mut Track, runs: bool, at: &mut Leading) -> bool {
-        if !track.is_able(&at.axes) || !self.may_follow(track, at) {
+        if !track.is_able(at.axes) || !self.may_follow(track, at) {
             self.held = track.path.is_coupled();
             return true;
         }
@@ -214,7 +214,7 @@ impl Tapping {
             return true;
         }
         self.couple(track, runs, at);
-        runs && self.apart || !track.is_able(&at.axes)
+        runs && self.apart || !track.is_able(at.axes)
     }
 
     /// The axes that follow the spindle are held in their loops: one that the PLC has clamped meanwhile would be driven out at
