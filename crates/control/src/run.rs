@@ -533,7 +533,7 @@ impl ProgramRun {
 
     fn is_in_position(&self, site: &Site) -> bool {
         if self.track.path.is_coupled() {
-            return thread::is_in_position(&self.track, &site.standing());
+            return self.tapping.is_in_position(&self.track, &site.standing());
         }
         site.axes.are_in_position()
     }

@@ -96,6 +96,113 @@ fn after_a_lost_feed_enable_the_axis_follows_its_spindle() {
     rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
 }
 
+/// The speed of Z from cycle to cycle, mm/s.
+struct Speed {
+    z: f64,
+    mm_s: f64,
+}
+
+impl Speed {
+    fn of(rig: &mut Rig) -> Speed {
+        let before = observe(rig, "Z.nominal");
+        rig.cycle();
+        let z = observe(rig, "Z.nominal");
+        Speed {
+            z,
+            mm_s: (z - before) / 0.003,
+        }
+    }
+
+    /// A cycle of 3 ms: Z gains no more than MP1060, 1.5 m/s² (4.5 mm/s), and what the grid of the encoder of the spindle makes of its
+    /// speed: a count. Standing at once is no gain [000:5352].
+    fn cycle(&mut self, rig: &mut Rig) {
+        rig.cycle();
+        let z = observe(rig, "Z.nominal");
+        let mm_s = (z - self.z) / 0.003;
+        let gain = match mm_s.signum() == self.mm_s.signum() {
+            true => mm_s.abs() - self.mm_s.abs(),
+            false => mm_s.abs(),
+        };
+        let count = PITCH / 4096.0 / 0.003;
+        assert!(
+            gain <= 1.5 * 3.0 + count,
+            "{mm_s} behind {} mm/s at {z}, {:?}",
+            self.mm_s,
+            rig.control.snapshot()
+        );
+        (self.z, self.mm_s) = (z, mm_s);
+    }
+
+    fn seconds(&mut self, seconds: f64, rig: &mut Rig) {
+        for _ in 0..(seconds / 0.003) as usize {
+            self.cycle(rig);
+        }
+    }
+}
+
+/// Without feed enable, or with a loop that the PLC opens (M2546 alone, M2830 all), Z stands at once while its spindle runs on to where
+/// it is led; all the more where the path has come to the end of the thread in nominal values. Then Z goes after it on its
+/// ramp, behind a stop goes on with NC start, and the thread ends in the window MP7150 = 0.005 mm of where it began. M2830 takes the
+/// voltage of the spindle, too: what is coupled as it stands ends at the same place.
+#[test]
+fn an_axis_that_stood_goes_after_its_spindle_on_its_ramp() {
+    type Moment = (&'static str, fn(&Rig) -> bool);
+    let moments: [Moment; 4] = [
+        ("on its way in", |rig| observe(rig, "S.rpm") > 0.9 * RPM),
+        ("at the bottom", |rig| {
+            observe(rig, "S.rpm") > 50.0 && observe(rig, "path.speed") == 0.0
+        }),
+        ("on its way out", retracts),
+        ("at the end", |rig| {
+            observe(rig, "S.rpm") < -50.0 && observe(rig, "path.speed") == 0.0
+        }),
+    ];
+    let events: [fn(&mut Rig, bool); 3] = [
+        |rig, goes| {
+            rig.event(if goes {
+                "switch door open"
+            } else {
+                "switch door closed"
+            })
+        },
+        |rig, goes| rig.command(if goes { "M2546=1" } else { "M2546=0" }),
+        |rig, goes| rig.command(if goes { "M2830=1" } else { "M2830=0" }),
+    ];
+    for ((moment, reached), (number, event)) in moments
+        .into_iter()
+        .flat_map(|moment| events.iter().enumerate().map(move |event| (moment, event)))
+    {
+        let mut rig = thread();
+        let top = observe(&rig, "Z.nominal");
+        rig.until(20.0, moment, reached);
+        let mut speed = Speed::of(&mut rig);
+        event(&mut rig, true);
+        speed.seconds(0.024, &mut rig);
+        event(&mut rig, false);
+        speed.seconds(3.0, &mut rig);
+        if rig.control.snapshot().run == RunState::Interrupted {
+            rig.start();
+        }
+        let end = rig.control.time_us() + 20_000_000;
+        let mut last = speed.z;
+        while observe(&rig, "path.block") == 8.0 {
+            last = speed.z;
+            speed.cycle(&mut rig);
+            assert!(
+                rig.control.time_us() < end,
+                "{moment}, event {number}: {:?}",
+                rig.messages()
+            );
+        }
+        assert!(
+            (last - top).abs() < 0.005 + 0.002,
+            "{moment}, event {number}: {last} of {top}"
+        );
+        rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+        assert_eq!(rig.messages(), [""; 0], "{moment}, event {number}");
+    }
+}
+
 /// The drive of Z runs away on the way out of the hole, and Z comes to stand far above it: POSITIONING ERROR. MP1720, beyond which
 /// that would be gross, is wide. After CE the
 /// spindle is held where it stands, and does not turn for the way that Z has gone; NC start leads Z back to where the

@@ -13,7 +13,7 @@
 //! and the axis key (inferred).
 
 use bahn_motion::{Lead, Master};
-use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Thread};
+use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Position, Thread};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
@@ -197,21 +197,59 @@ impl Tapping {
     /// stands where the path has led it goes on; one that ran out without its drive has come apart from the axis
     /// (inferred): to go after it would be a jump.
     pub fn holds(&mut self, track: &mut Track, runs: bool, at: &mut Leading) -> bool {
-        if !track.is_able(&at.axes) {
+        if !track.is_able(at.axes) || !self.may_follow(track, at) {
             self.held = track.path.is_coupled();
             return true;
         }
         let thread = track.path.element().and_then(PathElement::thread);
         if let Some(thread) = thread.filter(|_| self.held) {
             self.held = at.spindle.actual_rpm().abs() >= STANDS_RPM;
-            let at = at.standing();
-            self.apart |= !self.held && missing_mm(thread, &at) > window_mm(&at);
+            let standing = at.standing();
+            self.apart |= !self.held && missing_mm(thread, &standing) > window_mm(&standing);
+            if !self.held && !self.apart {
+                go_after(track, at);
+            }
         }
         if self.held {
             return true;
         }
         self.couple(track, runs, at);
-        runs && self.apart || !track.is_able(&at.axes)
+        runs && self.apart || !track.is_able(at.axes)
+    }
+
+    /// The axes that follow the spindle are held in their loops: one that the PLC has clamped meanwhile would be driven out at
+    /// once by all that the spindle has turned. It is asked for, as at the beginning of an element.
+    fn may_follow(&self, track: &Track, at: &mut Leading) -> bool {
+        if self.apart || !track.path.is_coupled() {
+            return true;
+        }
+        let clamped = at.axes.clamped();
+        track.ask_to_unclamp(clamped, at.axes);
+        let element = track.path.element();
+        !clamped
+            .iter()
+            .any(|axis| element.is_some_and(|element| element.moves_axis(axis)))
+    }
+
+    /// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128], and
+    /// the path is where the spindle is, which it may have stood off. While the two are apart neither is held anywhere: the end of the thread is not
+    /// reached.
+    pub fn is_in_position(&self, track: &Track, at: &Standing) -> bool {
+        let Some(thread) = track.path.element().and_then(PathElement::thread) else {
+            return true;
+        };
+        if self.apart {
+            return false;
+        }
+        let missing = missing_mm(thread, at);
+        let window = window_mm(at);
+        let axis = at.chain.offsets.tool_axis;
+        let [_, now] = at.spindle.angles_deg(0.0);
+        let missed = (track.path.position_at(now)[axis] - track.path.position()[axis]).abs();
+        let mut axes = at.axes.iter().filter(|unit| unit.mover == Mover::Path);
+        missing <= window
+            && missed <= STANDS_MM_S * at.moment.time_s
+            && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
     }
 
     /// The axis goes where the spindle turns.
@@ -302,6 +340,29 @@ impl Tapping {
     }
 }
 
+/// The axes stood while their spindle ran on to where it is led: they go after it on their ramps, and the path waits for them
+/// (inferred). What one reaches in a cycle is no jump.
+fn go_after(track: &Track, at: &mut Leading) {
+    let Some(element) = track.path.element() else {
+        return;
+    };
+    let nominal = nominal(track, &at.standing());
+    let cycle_s = at.moment.time_s;
+    for unit in at.axes.iter_mut().filter(|unit| element.moves_axis(unit.axis)) {
+        let reached = unit.parameters.motion.acceleration_m_s2 * 1e3 * cycle_s * cycle_s;
+        if (nominal[unit.axis] - unit.nominal).abs() > reached {
+            unit.stand(nominal[unit.axis]);
+            unit.go_back();
+        }
+    }
+}
+
+/// Where the axes of a thread belong with their spindle where it is.
+fn nominal(track: &Track, at: &Standing) -> Position {
+    let [_, now] = at.spindle.angles_deg(0.0);
+    at.chain.to_axes(&track.path.position_at(now))
+}
+
 /// The tool that follows the spindle is not yet, or no more, above the thread.
 pub fn is_in_thread(track: &Track, at: &Standing) -> bool {
     let axis = at.chain.offsets.tool_axis;
@@ -314,22 +375,6 @@ pub fn is_in_thread(track: &Track, at: &Standing) -> bool {
 /// Where the tool is out of the thread.
 fn top(element: &PathElement, tool_axis: Axis) -> f64 {
     element.start[tool_axis].max(element.end[tool_axis])
-}
-
-/// In a thread the path is in position when tool axis and spindle are within MP7150 of its place [000:6128]. While the loops are
-/// open neither is held anywhere: the end of the thread is not reached.
-pub fn is_in_position(track: &Track, at: &Standing) -> bool {
-    let Some(thread) = track.path.element().and_then(PathElement::thread) else {
-        return true;
-    };
-    if !at.moment.loops_closed {
-        return false;
-    }
-    let missing = missing_mm(thread, at);
-    let window = window_mm(at);
-    let mut axes = at.axes.iter().filter(|unit| unit.mover == Mover::Path);
-    missing <= window
-        && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
 }
 
 /// So far the spindle may turn beside what it is led, degrees, before that is a fault: as far as takes the tool axis out of its

@@ -204,6 +204,32 @@ fn a_lost_encoder_of_the_motor_is_gross_positioning_error_3f() {
     assert!(x.machine.apply("fault motor Y").is_err());
 }
 
+/// MP1980 brakes with a speed controller that is sound [000:18515-18521]: one that MP1910 has ended gives no torque any more, also
+/// where an EMERGENCY STOP is on its way, or comes then, and its encoder counts again.
+#[test]
+fn a_speed_controller_with_a_fault_does_not_brake() {
+    for before in [true, false] {
+        let mut x = Loop::plain(&["1810.0=2", "1980=0.6"]);
+        let mut target = x.travel(3000.0, 1.0);
+        if before {
+            x.axis.begin_shutdown();
+        }
+        x.machine.apply("fault motor X").unwrap();
+        while x.axis.fault().is_none() {
+            target += 0.15;
+            x.cycle(target);
+        }
+        assert_eq!(x.axis.fault(), Some(Fault::Gross(GrossFault::SpeedController)));
+        x.axis.begin_shutdown();
+        x.machine.apply("repair X").unwrap();
+        for _ in 0..100 {
+            x.cycle(target);
+            let drive = x.commands.axes[0];
+            assert_eq!((x.axis.volts(), drive.enabled), (0.0, false), "before: {before}");
+        }
+    }
+}
+
 /// With pre-control the deviation while speeding up with 2 m/s² falls by MP1945: 1 V/(m/s²) is what this drive needs.
 #[test]
 fn acceleration_is_pre_controlled() {

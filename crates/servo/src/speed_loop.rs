@@ -264,6 +264,12 @@ impl SpeedLoop {
         self.ends_in.get_or_insert(self.shutdown_steps);
     }
 
+    /// A fault of the speed loop itself: it gives no torque any more, and does not brake in an EMERGENCY STOP either, until the
+    /// control voltage is back (inferred: then the brakes of the machine have to [000:18636]).
+    pub fn end_torque(&mut self) {
+        self.ends_in = Some(0);
+    }
+
     /// A step of the shutdown; whether the torque has ended.
     pub fn shut_down(&mut self) -> bool {
         match &mut self.ends_in {

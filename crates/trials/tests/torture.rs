@@ -339,6 +339,29 @@ fn what_the_long_campaign_found_stays_mended() {
     }
 }
 
+/// An axis that stood for a moment while its spindle ran on, at the end of a thread: the thread ended before the axis, and the next
+/// block began with a jump. A speed controller with a fault that braked again in an EMERGENCY STOP.
+#[test]
+fn what_stands_off_its_spindle_goes_after_it() {
+    for (machine, program, seed, what) in [
+        ("gantry", "THREADS.H", 9_000_253, "switch door open"),
+        ("gantry", "THREADS.H", 9_001_371, "fault input I8 bouncing"),
+        ("gantry", "THREADS.H", 9_100_453, "fault input I7 bouncing"),
+        ("mill", "FLANGE.H", 9_401_131, "switch door open"),
+        ("dig425", "MODEL.H", 9_100_007, "fault motor X"),
+    ] {
+        let campaign = campaign(machine);
+        let mut worker = campaign.worker().unwrap();
+        let plan = worker.plan(seed);
+        let happens = plan.happenings.iter().any(|happening| happening.what == what);
+        assert!(
+            happens && campaign.programs()[plan.program] == program,
+            "seed {seed} is another one now: {plan:?}"
+        );
+        assert_eq!(worker.run(&plan).violation, None, "seed {seed} on {machine}");
+    }
+}
+
 /// What a seed did is a script that a run repeats: each command has a line of its own.
 #[test]
 fn a_script_has_a_line_for_each_command() {

@@ -17,6 +17,14 @@ impl<E> Interpolator<E> {
         self.position
     }
 
+    /// Where the path would be with its spindle at an angle, degrees; where it is when no spindle leads it.
+    pub fn position_at(&self, actual_deg: f64) -> Position {
+        match self.ring.current().zip(self.coupling.as_ref()) {
+            Some((item, coupling)) => coupling.position(item, actual_deg),
+            None => self.position,
+        }
+    }
+
     /// Path speed, mm/s.
     pub fn speed_mm_s(&self) -> f64 {
         self.speed

@@ -48,6 +48,7 @@ impl Axis {
         let fault = fault.or(speed_loop.check_encoders(scale_step_mm));
         self.drove = true;
         if let Some(fault) = fault {
+            speed_loop.end_torque();
             self.raise(Fault::Gross(fault));
             self.drove = false;
             return 0.0;
