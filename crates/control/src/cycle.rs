@@ -50,10 +50,8 @@ impl Family for Cycle<'_, '_> {
         machine.link.program_running = self.channels.iter().any(|channel| channel.run.is_active());
         self.channels.first().inform(machine);
         let block = self.channels.first().run.running_block();
-        let tracer = match &mut self.tracer {
-            Some(tracer) => Some(&mut **tracer as &mut dyn Tracer),
-            None => None,
-        };
+        let tracer = self.tracer.as_mut();
+        let tracer = tracer.map(|tracer| &mut **tracer as &mut dyn Tracer);
         if !machine.scan(block, tracer) {
             return;
         }
