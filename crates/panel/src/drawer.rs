@@ -2,9 +2,9 @@
 //! repairs it. The description of the plant says what there is.
 
 use bahn_host::LoadedMachine;
+use bahn_screen::texts::{self, Language};
 use serde::Serialize;
 
-use crate::texts::{self, Language};
 use crate::wiring;
 
 /// Something that can be broken.

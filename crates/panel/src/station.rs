@@ -18,6 +18,8 @@ use bahn_host::{Action, Answer, Clock, Host, HostError, LoadedMachine, PowerOn, 
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
+use bahn_screen::programs::ProgramMemory;
+use bahn_screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen, colours, texts};
 
 use crate::console::Console;
 use crate::graphics::{BeingCut, Graphics, Picture};
@@ -25,8 +27,6 @@ use crate::inhibit::{self, Simulated};
 use crate::input::{EMERGENCY_STOP, Input, Refusal};
 use crate::lesson::LessonRun;
 use crate::plc_mode::PlcMode;
-use crate::programs::ProgramMemory;
-use crate::screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen};
 use crate::session::Recorder;
 use crate::settings::Settings;
 use crate::site::Site;
@@ -34,7 +34,7 @@ use crate::steps::{Steps, StepsEnd, Ticket};
 use crate::timeline::Past;
 use crate::transfer::{TransferOrder, Transfers};
 use crate::why::Waits;
-use crate::{colours, numbers, status, texts, why};
+use crate::{numbers, status, why};
 use commissioning::{Commissioning, operator_of};
 
 pub use commissioning::load;

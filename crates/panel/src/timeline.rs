@@ -9,9 +9,9 @@ use std::collections::VecDeque;
 use bahn_control::{Command, RunState};
 use bahn_host::{Action, Course, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline};
 use bahn_machine::{Event, Machine};
+use bahn_screen::{BranchLine, MarkKind, TimeLine, TimeMark};
 
 use crate::lesson::LessonRun;
-use crate::screen::{BranchLine, MarkKind, TimeLine, TimeMark};
 
 /// Between two saved states at first, µs.
 const EVERY_US: u64 = 1_000_000;

@@ -1,8 +1,7 @@
 //! What is wired to the inputs and outputs of the PLC, in words: the description of the plant says where each stands.
 
 use bahn_host::{LoadedMachine, files};
-
-use crate::texts::{self, Language};
+use bahn_screen::texts::{self, Language};
 
 /// Something that is wired.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -101,8 +101,13 @@ const ROOMS: &[(&str, &[&str])] = &[
     ),
     ("link", &["parameters", "program", "control", "host"]),
     (
+        "screen",
+        &["parameters", "program", "dialogue", "reader", "control", "host"],
+    ),
+    (
         "panel",
         &[
+            "screen",
             "path",
             "parameters",
             "program",

@@ -28,11 +28,11 @@ use bahn_control::Control;
 use bahn_dialogue::Key;
 use bahn_host::{Host, LoadedMachine};
 use bahn_parameters::ParameterList;
+use bahn_screen::colours::colour;
+use bahn_screen::programs::ProgramMemory;
+use bahn_screen::{GraphicsLine, GraphicsView};
 use bahn_workpiece::Scheme;
 
-use crate::colours::colour;
-use crate::programs::ProgramMemory;
-use crate::screen::{GraphicsLine, GraphicsView};
 pub use being_cut::BeingCut;
 pub(crate) use contour::Wish;
 pub(crate) use picture::Sight;

@@ -5,12 +5,12 @@ use std::sync::{Arc, Mutex};
 
 use bahn_control::{Control, Programs};
 use bahn_host::LoadedMachine;
+use bahn_screen::GraphicsView;
+use bahn_screen::programs::ProgramMemory;
 
 use super::contour::{self, Lines, Sketch, Wish};
 use super::drawing::LineColours;
 use super::picture::Picture;
-use crate::programs::ProgramMemory;
-use crate::screen::GraphicsView;
 
 /// Another drawing takes the place of one that is shown when it is whole, or after this time, µs (inferred).
 const DRAWN_US: u64 = 300_000;

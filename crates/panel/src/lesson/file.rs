@@ -8,8 +8,7 @@ use bahn_host::{
 };
 use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
-
-use crate::texts::Language;
+use bahn_screen::texts::Language;
 
 /// A text in the languages of the panel; what has no German text is said in English.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -10,11 +10,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use bahn_host::{Action, Host, LoadedMachine, Source, files};
+use bahn_screen::texts::{self, Language};
+use bahn_screen::{CheckLine, LessonLine, LessonState, Screen, Window};
 
 pub use file::{Lesson, check_lesson};
 
-use crate::screen::{CheckLine, LessonLine, LessonState, Screen, Window};
-use crate::texts::{self, Language};
 use file::{Check, Condition, ENDING};
 use player::Player;
 
@@ -100,7 +100,7 @@ pub(crate) fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, 
 /// # Errors
 /// In words, each fault with its file and line, when there is none of this name or it has faults.
 pub(crate) fn load(machine: &LoadedMachine, name: &str) -> Result<Lesson, String> {
-    if !crate::programs::is_name(name) {
+    if !bahn_screen::programs::is_name(name) {
         return Err(format!("`{name}` is no name of a lesson"));
     }
     let path = machine.root.join(FOLDER).join(format!("{name}.{ENDING}"));

@@ -195,7 +195,7 @@ impl Page for TestRun {
             TestState::Failed(message) if !self.said => {
                 self.said = true;
                 let text = site.control().message_text(message);
-                Turn::Say(crate::texts::translate(site.language(), &text))
+                Turn::Say(bahn_screen::texts::translate(site.language(), &text))
             }
             TestState::Finished => {
                 self.said = true;

@@ -8,14 +8,14 @@ use std::sync::Arc;
 use bahn_control::{Command, Programs};
 use bahn_host::backup::Restore;
 use bahn_host::{Action, Attendance, LoadedMachine, Operator, PowerOn, Source, State};
+use bahn_screen::programs::ProgramMemory;
+use bahn_screen::texts;
 
 use super::Station;
 use crate::console::Console;
 use crate::input::Refusal;
 use crate::pages;
-use crate::programs::ProgramMemory;
 use crate::settings::Settings;
-use crate::texts;
 use crate::timeline::Past;
 use crate::why::Waits;
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use bahn_host::{Clock, Host, LoadedMachine};
+use bahn_screen::texts::Language;
 
 use super::Station;
 use crate::drawer::{self, Breakable};
@@ -10,7 +11,6 @@ use crate::input::{Input, Refusal};
 use crate::lesson::{self, Driven, LessonRun};
 use crate::session::{Head, Recorder};
 use crate::steps::StepsEnd;
-use crate::texts::Language;
 use crate::why::Reason;
 
 impl Driven for Station {

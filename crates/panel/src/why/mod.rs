@@ -8,8 +8,8 @@ mod trace;
 use bahn_control::{Control, RunState, Waiting};
 use bahn_host::{Host, LoadedMachine};
 use bahn_path::BlockRef;
+use bahn_screen::texts::Language;
 
-use crate::texts::Language;
 use crate::wiring::{self, Wired};
 use reasons::Situation;
 use trace::Writers;

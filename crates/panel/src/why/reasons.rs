@@ -7,11 +7,11 @@ use bahn_host::LoadedMachine;
 use bahn_machine::Machine;
 use bahn_parameters::MessageId;
 use bahn_path::BlockRef;
+use bahn_screen::texts::{self, Language, filled as fill};
 use bahn_servo::Rotation;
 
 use super::trace::{Cause, Trace, Writers};
 use super::{Reason, Urgency};
-use crate::texts::{self, Language, filled as fill};
 use crate::wiring::Wired;
 
 /// The acknowledgement of the control voltage, X42/4 [000:6149-6228].

@@ -8,8 +8,8 @@ use bahn_control::{Control, OscilloscopeKeys, ServoSampler, ServoSignal};
 use bahn_host::oscilloscope::{
     CHANNELS, Curve, Oscilloscope, OscilloscopeRecord, OscilloscopeSetup, SAMPLE_TIME_US, SAMPLES, Trigger,
 };
+use bahn_screen::{GraphicsLine, GraphicsView};
 
-use crate::screen::{GraphicsLine, GraphicsView};
 pub(crate) use curves::{Curves, Lane, ScopeColours, Sight, name as signal_name};
 
 use recorded::FEWEST;

@@ -16,11 +16,11 @@ use bahn_reader::{Reader, Start};
 use crate::frames;
 
 /// Characters of a name at most [000:6834-6905].
-pub(crate) const NAME_MAX: usize = 16;
+pub const NAME_MAX: usize = 16;
 
 /// An entry of the directory.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Entry {
+pub struct Entry {
     /// Name with its type: `BRACKET.H`.
     pub name: String,
     /// Bytes.
@@ -33,7 +33,7 @@ pub(crate) struct Entry {
 const HEAD: u64 = 1024;
 
 /// The program memory, which the control reads and the panel writes.
-pub(crate) struct ProgramMemory {
+pub struct ProgramMemory {
     folder: PathBuf,
     /// Anew whenever a file was written: it keeps what it has read.
     inner: RwLock<FolderPrograms>,
@@ -43,7 +43,7 @@ pub(crate) struct ProgramMemory {
 
 /// Why the memory does not do something.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Denial {
+pub enum Denial {
     /// A message of the control.
     Message(MessageId),
     /// In words: the medium does not do it.
@@ -222,7 +222,7 @@ impl ProgramMemory {
 }
 
 /// A part program, by its name.
-pub(crate) fn is_program(name: &str) -> bool {
+pub fn is_program(name: &str) -> bool {
     bahn_program::FILE_TYPES.iter().any(|kind| {
         name.rsplit_once('.')
             .is_some_and(|(_, ending)| ending.eq_ignore_ascii_case(kind.extension))
@@ -230,7 +230,7 @@ pub(crate) fn is_program(name: &str) -> bool {
 }
 
 /// What can be run and tested, by its name: part programs, and those of DIN 66025.
-pub(crate) fn is_executed(name: &str) -> bool {
+pub fn is_executed(name: &str) -> bool {
     let ending = name.rsplit_once('.').map(|(_, ending)| ending);
     is_program(name) || ending.is_some_and(|ending| ending.eq_ignore_ascii_case("nc"))
 }
@@ -244,7 +244,7 @@ fn is_protected(path: &Path) -> bool {
 }
 
 /// A file name of the memory: letters, digits and what serial interfaces know, one point, nothing hidden.
-pub(crate) fn is_name(name: &str) -> bool {
+pub fn is_name(name: &str) -> bool {
     let fits = |character: char| character.is_ascii_alphanumeric() || "$_#-.%+".contains(character);
     !name.is_empty() && name.len() <= 64 && !name.starts_with('.') && name.chars().all(fits)
 }

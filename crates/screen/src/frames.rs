@@ -5,7 +5,7 @@ use std::ops::Range;
 use bahn_program::{IsoLanguage, Language, Operation};
 
 /// The text of a new file: a program has its frame, a table its columns.
-pub(crate) fn new_file(name: &str, inch: bool) -> String {
+pub fn new_file(name: &str, inch: bool) -> String {
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
     let unit = if inch { "INCH" } else { "MM" };
     match ending.to_ascii_uppercase().as_str() {
@@ -23,13 +23,13 @@ pub(crate) fn new_file(name: &str, inch: bool) -> String {
 }
 
 /// The unit of a file's lengths is asked for.
-pub(crate) fn has_unit(name: &str) -> bool {
+pub fn has_unit(name: &str) -> bool {
     let name = name.to_ascii_uppercase();
     name.ends_with(".H") || name.ends_with(".I")
 }
 
 /// The text of a program under another name.
-pub(crate) fn renamed(text: &[u8], name: &str) -> Vec<u8> {
+pub fn renamed(text: &[u8], name: &str) -> Vec<u8> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let is_iso = name.to_ascii_uppercase().ends_with(".I");
     let mut new = Vec::with_capacity(text.len());

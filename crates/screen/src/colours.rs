@@ -22,7 +22,7 @@ const COLOURS: &[(u16, u8)] = &[
 ];
 
 /// A colour, red, green and blue from 0 to 255; `None` on a control without this parameter.
-pub(crate) fn colour(list: &ParameterList, number: u16, index: u8) -> Option<[u8; 3]> {
+pub fn colour(list: &ParameterList, number: u16, index: u8) -> Option<[u8; 3]> {
     let packed = list.get(number, index)? as u32;
     // 3F is full.
     let part = |shift: u32| ((packed >> shift & 0x3f) * 255 / 63) as u8;
@@ -31,7 +31,7 @@ pub(crate) fn colour(list: &ParameterList, number: u16, index: u8) -> Option<[u8
 
 /// All of them, as `7352.1` and `#d28220`; none on a control before the TNC 407, whose screen of 12 inches has no
 /// colours (inferred).
-pub(crate) fn all(list: &ParameterList) -> BTreeMap<String, String> {
+pub fn all(list: &ParameterList) -> BTreeMap<String, String> {
     if !list.model().has_windows() {
         return BTreeMap::new();
     }
