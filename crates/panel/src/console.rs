@@ -3,10 +3,10 @@
 
 use bahn_control::{Command, Mode, ScreenCommand};
 use bahn_dialogue::Key;
+use bahn_graphics::Subject;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_screen::{Heading, SoftKeys};
 
-use crate::graphics::Subject;
 use crate::page::{Page, Side, Turn, View};
 use crate::pages;
 use crate::site::Site;

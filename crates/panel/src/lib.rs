@@ -39,7 +39,6 @@
 mod console;
 mod drawer;
 mod entry;
-mod graphics;
 mod inhibit;
 mod input;
 mod lesson;
@@ -58,10 +57,9 @@ mod status;
 mod steps;
 mod timeline;
 mod transfer;
-mod why;
-mod wiring;
 
 pub use bahn_dialogue::{Key, KeyGroup};
+pub use bahn_graphics::{BeingCut, Picture, PictureError};
 pub use bahn_machine::KeyAction;
 pub use bahn_screen::texts::{Language, around, filled, language_code, language_of_code, texts_around};
 pub use bahn_screen::{
@@ -69,8 +67,8 @@ pub use bahn_screen::{
     LessonState, Line, Look, MachineState, Mark, MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star,
     Status, TimeLine, TimeMark, Window, WindowKind,
 };
+pub use bahn_why::{Reason, Urgency, Waits, in_words};
 pub use drawer::{Breakable, Breaking};
-pub use graphics::{BeingCut, Picture, PictureError};
 pub use input::{EMERGENCY_STOP, Input, InputText, Refusal};
 pub use lesson::{Lesson, LessonRun, check_lesson};
 pub use live::{Link, Live, Seen};
@@ -81,4 +79,3 @@ pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::{Station, load};
 pub use steps::{Stepped, StepsEnd};
 pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};
-pub use why::{Reason, Urgency, Waits, in_words};

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use bahn_control::{Command, TestCommand, TestState};
 use bahn_dialogue::Key;
+use bahn_graphics::Subject;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
 
-use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose, selection};
 use crate::pages::number::Number;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use bahn_host::{Clock, Host, LoadedMachine};
 use bahn_screen::texts::Language;
+use bahn_why::Reason;
 
 use super::Station;
 use crate::drawer::{self, Breakable};
@@ -11,7 +12,6 @@ use crate::input::{Input, Refusal};
 use crate::lesson::{self, Driven, LessonRun};
 use crate::session::{Head, Recorder};
 use crate::steps::StepsEnd;
-use crate::why::Reason;
 
 impl Driven for Station {
     fn machine(&self) -> &LoadedMachine {

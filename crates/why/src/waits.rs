@@ -1,20 +1,14 @@
-//! Why a machine stands: what each axis, the program and each handshake wait for, in words, with the marker that is
-//! missing, the lines of the PLC program that write it, and what there keeps it from being so.
-
-mod reason;
-mod reasons;
-mod trace;
+//! What is waited for, and since when.
 
 use bahn_control::{Control, RunState, Waiting};
 use bahn_host::{Host, LoadedMachine};
 use bahn_path::BlockRef;
 use bahn_screen::texts::Language;
 
+use crate::reason::{Reason, Urgency};
+use crate::reasons::Situation;
+use crate::trace::Writers;
 use crate::wiring::{self, Wired};
-use reasons::Situation;
-use trace::Writers;
-
-pub use reason::{Reason, Urgency};
 
 /// A key of the panel counts so long as one that was to start something, µs.
 const PRESSED_US: u64 = 20_000_000;
@@ -26,7 +20,7 @@ const STANDS_US: u64 = 1_000_000;
 /// Changes of what is waited for that are known at most.
 const WAITED: usize = 256;
 
-/// What is waited for, and since when.
+/// What a machine waits for, and since when.
 pub struct Waits {
     wired: Vec<Wired>,
     writers: Writers,

@@ -3,12 +3,12 @@
 use bahn_path::Point2;
 use bahn_picture::{Anchor, Colour, Image};
 
-use super::contour::{Kind, Lines};
+use crate::contour::{Kind, Lines};
 
 /// Colours of the interactive graphics: background, contour, subprograms [000:6361-6366].
 pub(crate) type LineColours = [Colour; 3];
 /// The standard values of MP7363.0 to .2, for a control that has none.
-pub(super) const STANDARD: LineColours = [[0, 0, 0], [255, 255, 255], [0, 255, 0]];
+pub(crate) const STANDARD: LineColours = [[0, 0, 0], [255, 255, 255], [0, 255, 0]];
 /// The block at the cursor, rapid traverse, and the blank (inferred).
 const CURRENT: Colour = [255, 200, 0];
 const RAPID: Colour = [110, 110, 130];
@@ -91,7 +91,7 @@ enum Layer {
 }
 
 /// Draws the lines; those of the current block stand out.
-pub(super) fn draw(
+pub(crate) fn draw(
     lines: &Lines,
     sheet: &Sheet,
     size: [u32; 2],
@@ -129,8 +129,8 @@ pub(super) fn draw(
 
 #[cfg(test)]
 mod tests {
-    use super::super::contour::Stroke;
     use super::*;
+    use crate::contour::Stroke;
 
     fn stroke(from: [f32; 2], to: [f32; 2], kind: Kind, block: Option<u32>) -> Stroke {
         Stroke {

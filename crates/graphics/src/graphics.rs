@@ -1,26 +1,4 @@
-//! Graphics of TEST RUN and program run [003:854-945]: a part that is cut while a program is tested, another one that is
-//! cut while it runs, and how the operator looks at them.
-//!
-//! - `stock` is the part that is being cut, which pictures are made of meanwhile;
-//! - `trial` tests a program with it, `follow` cuts what the machine has executed;
-//! - `programmed` is what is seen while programming: `contour` the program as lines, `drawing` their picture, `figure`
-//!   the cycle that is asked for;
-//! - `scope` is the oscilloscope, whose curves stand in the same window.
-//!
-//! By the clock on the wall both cut on threads of their own; by the free clock with the machine, so that the same
-//! inputs give the same screens.
-
-mod being_cut;
-mod contour;
-mod drawing;
-mod figure;
-mod follow;
-mod part_view;
-mod picture;
-mod programmed;
-mod scope;
-mod stock;
-mod trial;
+//! The graphics of a station: what is looked at, and how.
 
 use std::sync::Arc;
 
@@ -33,18 +11,15 @@ use bahn_screen::programs::ProgramMemory;
 use bahn_screen::{GraphicsLine, GraphicsView};
 use bahn_workpiece::Scheme;
 
-pub use being_cut::BeingCut;
-pub(crate) use contour::Wish;
-pub(crate) use picture::Sight;
-pub use picture::{Picture, PictureError};
-pub(crate) use programmed::Asked;
-pub(crate) use scope::{Content, Scope, TriggerOn, signal_name};
-
-use follow::Follower;
-use programmed::Programmed;
-use trial::Trial;
-
-pub(crate) use part_view::PartView;
+use crate::being_cut::BeingCut;
+use crate::contour::Wish;
+use crate::drawing;
+use crate::follow::Follower;
+use crate::part_view::PartView;
+use crate::picture::{Picture, Sight};
+use crate::programmed::{Asked, Programmed};
+use crate::scope::Scope;
+use crate::trial::Trial;
 
 /// Between two pictures of a part that is being cut, µs (inferred).
 const EVERY_US: u64 = 500_000;
@@ -55,7 +30,7 @@ const MAGNIFICATIONS: [u8; 3] = [1, 2, 4];
 
 /// What is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Subject {
+pub enum Subject {
     /// The part of TEST RUN.
     Test,
     /// The part of the program run.
@@ -77,7 +52,7 @@ impl From<PartView> for GraphicsView {
 }
 
 /// The graphics of a station.
-pub(crate) struct Graphics {
+pub struct Graphics {
     trial: Option<Trial>,
     programmed: Programmed,
     follower: Follower,

@@ -7,7 +7,9 @@ pub(super) const FEWEST: usize = 64;
 
 /// A curve that was recorded.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Recorded {
+pub struct Recorded {
+    /// What of which axis.
     pub curve: Curve,
+    /// In the unit of its signal.
     pub samples: Vec<f64>,
 }

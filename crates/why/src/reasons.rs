@@ -10,8 +10,8 @@ use bahn_path::BlockRef;
 use bahn_screen::texts::{self, Language, filled as fill};
 use bahn_servo::Rotation;
 
-use super::trace::{Cause, Trace, Writers};
-use super::{Reason, Urgency};
+use crate::reason::{Reason, Urgency};
+use crate::trace::{Cause, Trace, Writers};
 use crate::wiring::Wired;
 
 /// The acknowledgement of the control voltage, X42/4 [000:6149-6228].
@@ -24,7 +24,7 @@ const TURNS_RPM: f64 = 1.0;
 const SUFFIXES: &str = "XYZ45";
 
 /// A machine as it is now.
-pub(super) struct Situation<'a> {
+pub(crate) struct Situation<'a> {
     pub control: &'a Control,
     pub plant: &'a Machine,
     pub machine: &'a LoadedMachine,

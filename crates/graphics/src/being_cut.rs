@@ -6,7 +6,7 @@ use bahn_control::Control;
 use bahn_viewer::Trail;
 use bahn_workpiece::Part;
 
-use super::stock::Stock;
+use crate::stock::Stock;
 
 /// The part of a test or a run while it is being cut; it can be looked at from any thread.
 #[derive(Clone)]
@@ -17,7 +17,7 @@ pub struct BeingCut {
 }
 
 impl BeingCut {
-    pub(super) fn new(stock: Arc<Stock>, program: &str) -> BeingCut {
+    pub(crate) fn new(stock: Arc<Stock>, program: &str) -> BeingCut {
         BeingCut {
             stock,
             program: program.to_owned(),
@@ -26,7 +26,7 @@ impl BeingCut {
     }
 
     /// The same with the tool where it stands in the element that is executed, which is cut at its end.
-    pub(super) fn on_the_way(mut self, control: &Control) -> BeingCut {
+    pub(crate) fn on_the_way(mut self, control: &Control) -> BeingCut {
         let element = control.element().filter(|element| element.placement.is_none());
         self.tool_at = element.and_then(|element| {
             let length = element.length();

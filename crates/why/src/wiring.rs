@@ -5,7 +5,7 @@ use bahn_screen::texts::{self, Language};
 
 /// Something that is wired.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Wired {
+pub struct Wired {
     /// The input or output, as `I24`.
     pub operand: String,
     /// The section of the description, as `axis.X`.
@@ -45,7 +45,7 @@ const KEYS: [(&str, &str, &str); 24] = [
 ];
 
 /// What is wired at a machine, in the order of its description.
-pub(crate) fn of(machine: &LoadedMachine) -> Vec<Wired> {
+pub fn of(machine: &LoadedMachine) -> Vec<Wired> {
     let path = machine.root.join(&machine.folder.plant);
     // Without the text there are only numbers.
     let text = files::read_description(&path).unwrap_or_default();
@@ -116,8 +116,18 @@ impl Wired {
     }
 }
 
-/// The texts that are shown.
 #[cfg(test)]
-pub(crate) fn texts_used() -> impl Iterator<Item = &'static str> {
-    KEYS.iter().map(|(_, _, words)| *words)
+mod tests {
+    use super::*;
+
+    /// Every text has its German one; those of a table are not found by the test of the texts.
+    #[test]
+    fn every_text_is_translated() {
+        let words = KEYS.iter().map(|(_, _, words)| *words);
+        let missing: Vec<_> = words
+            .filter(|words| *words != "{}" && !words.starts_with("{0}"))
+            .filter(|words| texts::words(Language::German, words) == *words)
+            .collect();
+        assert!(missing.is_empty(), "{missing:#?}");
+    }
 }

@@ -66,15 +66,17 @@ struct Progress {
 }
 
 /// What is to be drawn.
-pub(crate) struct Wish {
+pub struct Wish {
+    /// Name of the program.
     pub name: String,
+    /// What it says, with the block that is open.
     pub program: Arc<Program>,
     /// The last block; the whole program without.
     pub upto: Option<u32>,
 }
 
 /// What a program is drawn with: rules and tools of the machine; what it does not know is passed over.
-pub(super) fn settings(control: &Control, machine: &LoadedMachine) -> Settings {
+pub(crate) fn settings(control: &Control, machine: &LoadedMachine) -> Settings {
     let shapes = |tools: &BTreeMap<u32, Tool>| {
         let shapes = tools.iter().map(|(number, tool)| (*number, tool.shape));
         shapes.collect()
@@ -102,7 +104,7 @@ impl Library for Shelf {
 }
 
 /// A drawing on its way.
-pub(super) struct Sketch {
+pub(crate) struct Sketch {
     pub name: String,
     pub upto: Option<u32>,
     lines: Arc<Mutex<Lines>>,
@@ -171,7 +173,7 @@ impl Drop for Sketch {
 }
 
 /// Nobody panics while holding it; if so, what is there can still be drawn.
-pub(super) fn lock(lines: &Mutex<Lines>) -> MutexGuard<'_, Lines> {
+pub(crate) fn lock(lines: &Mutex<Lines>) -> MutexGuard<'_, Lines> {
     lines.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

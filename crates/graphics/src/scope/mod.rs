@@ -10,17 +10,18 @@ use bahn_host::oscilloscope::{
 };
 use bahn_screen::{GraphicsLine, GraphicsView};
 
-pub(crate) use curves::{Curves, Lane, ScopeColours, Sight, name as signal_name};
+pub(crate) use curves::ScopeColours;
+pub use curves::{Curves, Lane, Sight, name as signal_name};
 
 use recorded::FEWEST;
-pub(crate) use recorded::Recorded;
+pub use recorded::Recorded;
 
 /// Between two pictures while it records, µs (inferred).
 const EVERY_US: u64 = 200_000;
 
 /// What a channel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Content {
+pub enum Content {
     /// OFF.
     #[default]
     Off,
@@ -32,8 +33,10 @@ pub(crate) enum Content {
 
 /// A channel.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Channel {
+pub struct Channel {
+    /// Letter of its axis.
     pub axis: char,
+    /// What it shows.
     pub content: Content,
     /// What was recorded of it last.
     pub curve: Option<Recorded>,
@@ -41,7 +44,7 @@ pub(crate) struct Channel {
 
 /// TRIGGER.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum TriggerOn {
+pub enum TriggerOn {
     /// FREE RUN: it records until STOP.
     #[default]
     FreeRun,
@@ -53,23 +56,30 @@ pub(crate) enum TriggerOn {
 
 /// What is to be recorded, as it stands in the main display [000:18682-18699].
 #[derive(Clone, Debug)]
-pub(crate) struct ScopeSetup {
+pub struct ScopeSetup {
     /// OUTPUT STEP, not RAMP.
     pub step: bool,
     /// NOML. FEED RATE of the step, mm/min.
     pub feed_mm_min: f64,
+    /// Time between two samples, µs.
     pub sample_us: u32,
+    /// The channels in their order.
     pub channels: [Channel; CHANNELS],
+    /// What it waits for.
     pub trigger: TriggerOn,
     /// In the unit of the channel; µm for trailing errors [000:18717-18725].
     pub threshold: f64,
+    /// The threshold is passed upwards.
     pub rising: bool,
+    /// Part of the memory before the trigger, %.
     pub pre_trigger_percent: u8,
 }
 
 /// The oscilloscope of a station; it stays as it is while other pages are shown.
-pub(crate) struct Scope {
+pub struct Scope {
+    /// What is to be recorded.
     pub setup: ScopeSetup,
+    /// How the operator looks at the curves.
     pub sight: Sight,
     recorder: Option<Oscilloscope>,
     records: bool,

@@ -8,19 +8,19 @@ use bahn_host::LoadedMachine;
 use bahn_screen::GraphicsView;
 use bahn_screen::programs::ProgramMemory;
 
-use super::contour::{self, Lines, Sketch, Wish};
-use super::drawing::LineColours;
-use super::picture::Picture;
+use crate::contour::{self, Lines, Sketch, Wish};
+use crate::drawing::LineColours;
+use crate::picture::Picture;
 
 /// Another drawing takes the place of one that is shown when it is whole, or after this time, µs (inferred).
 const DRAWN_US: u64 = 300_000;
 
 /// The drawing of a cycle: its number, and the id of the prompt that is open.
-pub(crate) type Asked = (u16, &'static str);
+pub type Asked = (u16, &'static str);
 
 /// The graphics while programming.
 #[derive(Default)]
-pub(super) struct Programmed {
+pub(crate) struct Programmed {
     /// The operator looks at the lines.
     on: bool,
     /// The cycle whose drawing is shown instead.

@@ -10,7 +10,7 @@ use bahn_motion::{AuxiliaryTimes, PlannedStep, Planner};
 use bahn_path::{Axis, Barrier, BlockRef, LiveData, PathElement};
 use bahn_reader::Reader;
 
-use super::stock::{Heard, Stock};
+use crate::stock::{Heard, Stock};
 
 /// Elements that are cut in one contour cycle by the free clock (inferred).
 const BUDGET: u32 = 500;
@@ -50,7 +50,7 @@ pub(crate) struct Progress {
 }
 
 /// A program that is tested.
-pub(crate) struct Trial {
+pub struct Trial {
     program: String,
     stock: Arc<Stock>,
     progress: Arc<Mutex<Progress>>,
@@ -163,7 +163,7 @@ impl Trial {
         }
     }
 
-    pub fn progress(&self) -> Progress {
+    pub(crate) fn progress(&self) -> Progress {
         *self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -174,11 +174,11 @@ impl Trial {
         news
     }
 
-    pub fn stock(&self) -> Arc<Stock> {
+    pub(crate) fn stock(&self) -> Arc<Stock> {
         Arc::clone(&self.stock)
     }
 
-    pub fn program(&self) -> &str {
+    pub(crate) fn program(&self) -> &str {
         &self.program
     }
 }

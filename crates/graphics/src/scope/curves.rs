@@ -19,14 +19,16 @@ const DECADES: std::ops::RangeInclusive<i32> = -6..=8;
 
 /// How the operator looks at the curves.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Sight {
+pub struct Sight {
     /// The channel that soft keys act on.
     pub selected: usize,
     /// Steps of each scale coarser than the optimal one.
     pub zoom: [i32; CHANNELS],
+    /// Channels that are shown upside down.
     pub inverted: [bool; CHANNELS],
-    /// The window of the memory.
+    /// The window of the memory: its first sample.
     pub from: usize,
+    /// How many samples it has.
     pub count: usize,
     /// The cursors, as samples; the last one that is there moves.
     pub cursors: [Option<usize>; 2],
@@ -34,20 +36,27 @@ pub(crate) struct Sight {
 
 /// A channel that is shown.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Lane {
+pub struct Lane {
     /// Its number, from 0.
     pub number: usize,
+    /// What is shown.
     pub recorded: Recorded,
+    /// Steps of its scale coarser than the optimal one.
     pub zoom: i32,
+    /// It is shown upside down.
     pub inverted: bool,
 }
 
 /// What is to be seen.
 #[derive(Clone, Debug)]
-pub(crate) struct Curves {
+pub struct Curves {
+    /// The channels that are shown.
     pub lanes: Vec<Lane>,
+    /// Time between two samples, µs.
     pub sample_us: u32,
+    /// The sample of the trigger event.
     pub trigger: Option<usize>,
+    /// How the operator looks at them.
     pub sight: Sight,
 }
 
@@ -126,7 +135,7 @@ impl Sight {
 }
 
 /// The name of a signal on the screen [000:18646-18654].
-pub(crate) fn name(signal: ServoSignal) -> &'static str {
+pub fn name(signal: ServoSignal) -> &'static str {
     match signal {
         ServoSignal::ActualFeed => "V ACTUAL",
         ServoSignal::NominalFeed => "V NOMINAL",

@@ -7,14 +7,14 @@ use bahn_control::{Mode, RunState};
 use bahn_host::{ExecutedPath, Host};
 use bahn_path::{BlockRef, PathElement};
 
-use super::stock::{Heard, Stock};
+use crate::stock::{Heard, Stock};
 
 /// Elements that wait for the thread that cuts; the machine waits for it beyond that.
 const WAITING: usize = 4096;
 
 /// Follows what is executed.
 #[derive(Default)]
-pub(super) struct Follower {
+pub(crate) struct Follower {
     /// The part of the run that was started last; `None` before the first one.
     stock: Option<Arc<Stock>>,
     path: ExecutedPath,

@@ -6,11 +6,12 @@ use bahn_dialogue::FigurePart;
 use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, Scheme, ThreePlanes, View3d};
 
-use super::contour::{Lines, lock};
-use super::drawing::{LineColours, Sheet, draw};
-use super::scope::{Curves, ScopeColours};
-use super::stock::Stock;
-use super::{PartView, figure};
+use crate::contour::{Lines, lock};
+use crate::drawing::{LineColours, Sheet, draw};
+use crate::figure;
+use crate::part_view::PartView;
+use crate::scope::{Curves, ScopeColours};
+use crate::stock::Stock;
 
 /// The eye stands so far beside the first of the four directions: two faces are to be seen (inferred) [003:909-919].
 const BESIDE_DEG: f64 = 30.0;
@@ -99,7 +100,7 @@ pub enum PictureError {
 const LEAST: (u32, u32) = (160, 120);
 
 impl Picture {
-    pub(super) fn of_part(
+    pub(crate) fn of_part(
         stock: Arc<Stock>,
         program: &str,
         time_s: Option<f64>,
@@ -122,18 +123,18 @@ impl Picture {
     }
 
     /// A part in the colours of the control, where it has some.
-    pub(super) fn in_colours(mut self, colours: Option<Scheme>) -> Picture {
+    pub(crate) fn in_colours(mut self, colours: Option<Scheme>) -> Picture {
         if let Kind::Part(picture) = &mut self.0 {
             picture.colours = colours;
         }
         self
     }
 
-    pub(super) fn of_curves(curves: Curves, colours: ScopeColours) -> Picture {
+    pub(crate) fn of_curves(curves: Curves, colours: ScopeColours) -> Picture {
         Picture(Kind::Curves(curves, colours))
     }
 
-    pub(super) fn of_lines(
+    pub(crate) fn of_lines(
         lines: Arc<Mutex<Lines>>,
         title: &str,
         current: Option<u32>,
@@ -152,7 +153,7 @@ impl Picture {
     }
 
     /// The drawing of a cycle; `None` for one that has none.
-    pub(super) fn of_cycle(cycle: u16, asked: &'static str) -> Option<Picture> {
+    pub(crate) fn of_cycle(cycle: u16, asked: &'static str) -> Option<Picture> {
         let parts = bahn_dialogue::figure(cycle)?;
         Some(Picture(Kind::Cycle(cycle, parts, asked)))
     }

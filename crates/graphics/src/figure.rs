@@ -45,7 +45,7 @@ impl Sheet {
 }
 
 /// Draws a cycle; what belongs to the prompt stands out.
-pub(super) fn draw(parts: &[&FigurePart], asked: &str, size: [u32; 2], title: &str) -> Image {
+pub(crate) fn draw(parts: &[&FigurePart], asked: &str, size: [u32; 2], title: &str) -> Image {
     let mut image = Image::new(size[0], size[1], BACKGROUND);
     let sheet = Sheet::of(size.map(f64::from));
     // What is asked for lies above the rest.
