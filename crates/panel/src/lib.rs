@@ -37,11 +37,9 @@
 )]
 
 mod console;
-mod drawer;
 mod entry;
 mod inhibit;
 mod input;
-mod lesson;
 mod live;
 mod numbers;
 mod page;
@@ -55,7 +53,6 @@ mod site;
 mod station;
 mod status;
 mod steps;
-mod timeline;
 mod transfer;
 
 pub use bahn_dialogue::{Key, KeyGroup};
@@ -67,10 +64,10 @@ pub use bahn_screen::{
     LessonState, Line, Look, MachineState, Mark, MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star,
     Status, TimeLine, TimeMark, Window, WindowKind,
 };
+pub use bahn_teaching::drawer::{Breakable, Breaking};
+pub use bahn_teaching::lesson::{Lesson, LessonRun, check_lesson};
 pub use bahn_why::{Reason, Urgency, Waits, in_words};
-pub use drawer::{Breakable, Breaking};
 pub use input::{EMERGENCY_STOP, Input, InputText, Refusal};
-pub use lesson::{Lesson, LessonRun, check_lesson};
 pub use live::{Link, Live, Seen};
 pub use replay::{Ending, Replay, check_session};
 pub use session::{Head, Recorder};

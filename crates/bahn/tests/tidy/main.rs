@@ -137,6 +137,18 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "teaching",
+        &[
+            "control",
+            "exchange",
+            "host",
+            "machine",
+            "parameters",
+            "screen",
+            "why",
+        ],
+    ),
+    (
         "panel",
         &[
             "control",
@@ -151,6 +163,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "program",
             "screen",
             "servo",
+            "teaching",
             "why",
         ],
     ),
@@ -238,7 +251,7 @@ const LINES_MAX: usize = 700;
 const ROOM_MAX: usize = 16_000;
 
 /// Rooms that are larger. None should be; one that is divided leaves the list.
-const TOO_LARGE: &[&str] = &["control", "panel"];
+const TOO_LARGE: &[&str] = &["control"];
 
 /// The rooms that speak to people by standard output and standard error, or end the process.
 const FACES: &[&str] = &["bahn", "browser", "terminal"];

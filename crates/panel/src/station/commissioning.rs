@@ -10,6 +10,7 @@ use bahn_host::backup::Restore;
 use bahn_host::{Action, Attendance, LoadedMachine, Operator, PowerOn, Source, State};
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::texts;
+use bahn_teaching::timeline::Past;
 use bahn_why::Waits;
 
 use super::Station;
@@ -17,7 +18,6 @@ use crate::console::Console;
 use crate::input::Refusal;
 use crate::pages;
 use crate::settings::Settings;
-use crate::timeline::Past;
 
 /// The list is entered: the control is off, and what it kept stays as it is.
 pub(super) struct Commissioning {

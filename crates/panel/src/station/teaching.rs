@@ -4,12 +4,12 @@ use std::path::Path;
 
 use bahn_host::{Clock, Host, LoadedMachine};
 use bahn_screen::texts::Language;
+use bahn_teaching::drawer::{self, Breakable};
+use bahn_teaching::lesson::{self, Driven, LessonRun};
 use bahn_why::Reason;
 
 use super::Station;
-use crate::drawer::{self, Breakable};
 use crate::input::{Input, Refusal};
-use crate::lesson::{self, Driven, LessonRun};
 use crate::session::{Head, Recorder};
 use crate::steps::StepsEnd;
 

@@ -18,7 +18,7 @@ const EVERY_US: u64 = 1_000_000;
 /// Saved states at most: when there are more, every other one goes.
 const MOMENTS: usize = 128;
 /// Ways that are kept beside the one that is gone.
-pub(crate) const BRANCHES: usize = 4;
+const BRANCHES: usize = 4;
 /// Marks of a way at most; the oldest go.
 const MARKS: usize = 256;
 
@@ -44,7 +44,7 @@ struct Branch {
 }
 
 /// What is kept of the time since power-on.
-pub(crate) struct Past {
+pub struct Past {
     notices: Reader<Stamped>,
     run: RunState,
     moments: Timeline<Machine>,

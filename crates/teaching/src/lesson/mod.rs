@@ -18,7 +18,7 @@ pub use file::{Lesson, check_lesson};
 use file::{Check, Condition, ENDING};
 use player::Player;
 
-pub(crate) use driven::Driven;
+pub use driven::Driven;
 
 /// Folder of the lessons in that of the machine.
 const FOLDER: &str = "lessons";
@@ -60,7 +60,7 @@ enum Ended {
 ///
 /// # Errors
 /// In words, when it cannot begin.
-pub(crate) fn begin(station: &mut dyn Driven, lesson: Lesson) -> Result<LessonRun, String> {
+pub fn begin(station: &mut dyn Driven, lesson: Lesson) -> Result<LessonRun, String> {
     begin::begin(station, &lesson)?;
     let begun_us = station.host().control().time_us();
     let now = Progress {
@@ -77,7 +77,7 @@ pub(crate) fn begin(station: &mut dyn Driven, lesson: Lesson) -> Result<LessonRu
 }
 
 /// The lessons of a machine: names and titles; one that cannot be read has its faults, with file and line, as title.
-pub(crate) fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, String)> {
+pub fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, String)> {
     let folder = machine.root.join(FOLDER);
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
@@ -99,7 +99,7 @@ pub(crate) fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, 
 ///
 /// # Errors
 /// In words, each fault with its file and line, when there is none of this name or it has faults.
-pub(crate) fn load(machine: &LoadedMachine, name: &str) -> Result<Lesson, String> {
+pub fn load(machine: &LoadedMachine, name: &str) -> Result<Lesson, String> {
     if !bahn_screen::programs::is_name(name) {
         return Err(format!("`{name}` is no name of a lesson"));
     }
@@ -124,12 +124,12 @@ impl LessonRun {
     }
 
     /// When its task began, µs since power-on.
-    pub(crate) fn begun_us(&self) -> u64 {
+    pub fn begun_us(&self) -> u64 {
         self.begun_us
     }
 
     /// The screen is to be looked at in this cycle.
-    pub(crate) fn wants_screen(&self, host: &Host) -> bool {
+    pub fn wants_screen(&self, host: &Host) -> bool {
         let now_us = host.control().time_us();
         let cycle_us = u64::from(host.control().cycle_us()).max(1);
         let mut checks = self
@@ -148,7 +148,7 @@ impl LessonRun {
     }
 
     /// To be called after every cycle, with the screen when it is wanted.
-    pub(crate) fn follow(&mut self, host: &mut Host, screen: Option<&Screen>) {
+    pub fn follow(&mut self, host: &mut Host, screen: Option<&Screen>) {
         if self.now.ended.is_some() {
             return;
         }
@@ -161,7 +161,7 @@ impl LessonRun {
     }
 
     /// The trainee is through: what is still open was not done.
-    pub(crate) fn hand_in(&mut self, host: &mut Host, screen: &Screen) {
+    pub fn hand_in(&mut self, host: &mut Host, screen: &Screen) {
         self.follow(host, Some(screen));
         if self.now.ended.is_none() {
             self.now.ended = Some(Ended::HandedIn);
@@ -199,7 +199,7 @@ impl LessonRun {
     }
 
     /// The machine is at an earlier moment, or at a later one again.
-    pub(crate) fn go_back(&mut self, now_us: u64) {
+    pub fn go_back(&mut self, now_us: u64) {
         let then = self.history.iter().rfind(|(time, _)| *time <= now_us);
         if let Some((_, then)) = then.or(self.history.first()) {
             self.now = then.clone();

@@ -3,7 +3,7 @@
 use bahn_host::{Host, LoadedMachine};
 
 /// What a lesson drives until its task begins.
-pub(crate) trait Driven {
+pub trait Driven {
     /// The machine's folder.
     fn machine(&self) -> &LoadedMachine;
 

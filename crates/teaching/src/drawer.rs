@@ -90,7 +90,7 @@ const HANDWHEEL: Faults = &[("handwheel unplug", "the handwheel is not plugged i
 const GROUPS: [&str; 4] = ["axes and spindle", "things", "inputs", "control and supply"];
 
 /// What can be broken at a machine.
-pub(crate) fn of(machine: &LoadedMachine, language: Language) -> Vec<Breakable> {
+pub fn of(machine: &LoadedMachine, language: Language) -> Vec<Breakable> {
     let finder = Finder { machine, language };
     let [axes, things, inputs, supply] = GROUPS;
     let in_words = |english| texts::words(language, english);
