@@ -11,7 +11,7 @@
 //!   exercise;
 //! - [`SHORTCUTS`] say which key of a real keyboard does what;
 //! - [`TransferOrder`]s are what the operator wants of the data interfaces, [`TransferNews`] what happens there;
-//! - texts are in English in the sources, `texts/*.tsv` have the other languages.
+//! - texts are in English in the sources; the room `screen` has the other languages.
 //!
 //! ```no_run
 //! use bahn_panel::{Input, Key, Station, load};
