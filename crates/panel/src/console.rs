@@ -3,12 +3,12 @@
 
 use bahn_control::{Command, Mode, ScreenCommand};
 use bahn_dialogue::Key;
+use bahn_graphics::Subject;
 use bahn_parameters::{ControlModel, MessageId};
+use bahn_screen::{Heading, SoftKeys};
 
-use crate::graphics::Subject;
 use crate::page::{Page, Side, Turn, View};
 use crate::pages;
-use crate::screen::{Heading, SoftKeys};
 use crate::site::Site;
 
 /// Messages of the panel itself that are kept at most.

@@ -11,7 +11,7 @@
 //!   exercise;
 //! - [`SHORTCUTS`] say which key of a real keyboard does what;
 //! - [`TransferOrder`]s are what the operator wants of the data interfaces, [`TransferNews`] what happens there;
-//! - texts are in English in the sources, `texts/*.tsv` have the other languages.
+//! - texts are in English in the sources; the room `screen` has the other languages.
 //!
 //! ```no_run
 //! use bahn_panel::{Input, Key, Station, load};
@@ -36,23 +36,16 @@
     allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")
 )]
 
-mod colours;
 mod console;
-mod drawer;
 mod entry;
-mod frames;
-mod graphics;
 mod inhibit;
 mod input;
-mod lesson;
 mod live;
 mod numbers;
 mod page;
 mod pages;
 mod plc_mode;
-mod programs;
 mod replay;
-mod screen;
 mod session;
 mod settings;
 mod shortcuts;
@@ -60,30 +53,26 @@ mod site;
 mod station;
 mod status;
 mod steps;
-mod texts;
-mod timeline;
 mod transfer;
-mod why;
-mod wiring;
 
 pub use bahn_dialogue::{Key, KeyGroup};
+pub use bahn_graphics::{BeingCut, Picture, PictureError};
 pub use bahn_machine::KeyAction;
-pub use drawer::{Breakable, Breaking};
-pub use graphics::{BeingCut, Picture, PictureError};
-pub use input::{EMERGENCY_STOP, Input, InputText, Refusal};
-pub use lesson::{Lesson, LessonRun, check_lesson};
-pub use live::{Link, Live, Seen};
-pub use replay::{Ending, Replay, check_session};
-pub use screen::{
+pub use bahn_screen::texts::{Language, around, filled, language_code, language_of_code, texts_around};
+pub use bahn_screen::{
     AxisLine, BranchLine, CheckLine, Dialogue, GraphicsLine, GraphicsView, Heading, Layout, LessonLine,
     LessonState, Line, Look, MachineState, Mark, MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star,
     Status, TimeLine, TimeMark, Window, WindowKind,
 };
+pub use bahn_teaching::drawer::{Breakable, Breaking};
+pub use bahn_teaching::lesson::{Lesson, LessonRun, check_lesson};
+pub use bahn_why::{Reason, Urgency, Waits, in_words};
+pub use input::{EMERGENCY_STOP, Input, InputText, Refusal};
+pub use live::{Link, Live, Seen};
+pub use replay::{Ending, Replay, check_session};
 pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::{Station, load};
 pub use steps::{Stepped, StepsEnd};
-pub use texts::{Language, around, filled, language_code, language_of_code, texts_around};
 pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};
-pub use why::{Reason, Urgency, Waits, in_words};

@@ -7,9 +7,10 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use bahn_screen::Screen;
+
 use crate::input::{Input, Refusal};
 use crate::replay::Replay;
-use crate::screen::Screen;
 use crate::station::Station;
 use crate::steps::{Stepped, Ticket};
 

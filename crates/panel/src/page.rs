@@ -1,9 +1,9 @@
 //! What takes the keys and shows itself: an operating mode, a menu, a table, an editor.
 
 use bahn_dialogue::Key;
+use bahn_graphics::Subject;
+use bahn_screen::{Dialogue, SoftKeys, Window};
 
-use crate::graphics::Subject;
-use crate::screen::{Dialogue, SoftKeys, Window};
 use crate::site::Site;
 
 /// The two sides of the screen.

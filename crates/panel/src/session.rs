@@ -16,11 +16,11 @@ use std::time::{Duration, Instant};
 
 use bahn_control::Control;
 use bahn_host::{LoadedMachine, files};
+use bahn_screen::Screen;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 
 use crate::input::{Input, InputText};
-use crate::screen::Screen;
 
 /// The form of the file.
 pub(crate) const FORM: u32 = 1;

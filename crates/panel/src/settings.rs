@@ -5,9 +5,8 @@ use std::io::Write;
 use std::path::Path;
 
 use bahn_host::files::{self, NewFile};
+use bahn_screen::texts::{self, Language};
 use serde::{Deserialize, Serialize};
-
-use crate::texts::{self, Language};
 
 /// What the position display shows [003:7081-7089].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use bahn_control::{AxisState, ChannelView, Command, Control, Mode, RunState, Shown};
+use bahn_graphics::Graphics;
 use bahn_host::{Action, Answer, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
+use bahn_screen::programs::ProgramMemory;
+use bahn_screen::texts::{self, Language};
 
-use crate::graphics::Graphics;
 use crate::plc_mode::PlcMode;
-use crate::programs::ProgramMemory;
 use crate::settings::Settings;
 use crate::status;
-use crate::texts::{self, Language};
 use crate::transfer::Transfers;
 
 /// The station as a page sees it: the machine that is on, its folder, the program memory and what the operator chose.

@@ -14,27 +14,27 @@ use std::time::Duration;
 
 use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
+use bahn_graphics::{BeingCut, Graphics, Picture};
 use bahn_host::{Action, Answer, Clock, Host, HostError, LoadedMachine, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
+use bahn_screen::programs::ProgramMemory;
+use bahn_screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen, colours, texts};
+use bahn_teaching::lesson::LessonRun;
+use bahn_teaching::timeline::Past;
+use bahn_why::{Waits, in_words};
 
 use crate::console::Console;
-use crate::graphics::{BeingCut, Graphics, Picture};
 use crate::inhibit::{self, Simulated};
 use crate::input::{EMERGENCY_STOP, Input, Refusal};
-use crate::lesson::LessonRun;
 use crate::plc_mode::PlcMode;
-use crate::programs::ProgramMemory;
-use crate::screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen};
 use crate::session::Recorder;
 use crate::settings::Settings;
 use crate::site::Site;
 use crate::steps::{Steps, StepsEnd, Ticket};
-use crate::timeline::Past;
 use crate::transfer::{TransferOrder, Transfers};
-use crate::why::Waits;
-use crate::{colours, numbers, status, texts, why};
+use crate::{numbers, status};
 use commissioning::{Commissioning, operator_of};
 
 pub use commissioning::load;
@@ -402,7 +402,7 @@ impl Station {
             false => Screen::default(),
         };
         screen.timeline = self.past.shown(&self.host);
-        screen.why = why::in_words(&self.why());
+        screen.why = in_words(&self.why());
         let language = self.language();
         screen.lesson = self.lesson.as_ref().map(|lesson| lesson.line(language));
         screen.machine = self.machine_state();

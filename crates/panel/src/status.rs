@@ -6,9 +6,9 @@ use bahn_parameters::ParameterList;
 use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::machining::Decimal;
 use bahn_path::Axis;
+use bahn_screen::{AxisLine, Star, Status};
 use bahn_servo::Rotation;
 
-use crate::screen::{AxisLine, Star, Status};
 use crate::settings::{PositionType, Settings};
 
 /// Millimetres of an inch.

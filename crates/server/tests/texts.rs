@@ -71,7 +71,15 @@ fn every_text_has_its_row_and_every_row_its_text() {
     let missing: Vec<_> = used.iter().filter(|text| !german.contains_key(*text)).collect();
     assert!(missing.is_empty(), "{missing:#?}");
 
-    let all = page + &sources(&["src", "../terminal/src", "../panel/src"]);
+    let all = page
+        + &sources(&[
+            "src",
+            "../terminal/src",
+            "../panel/src",
+            "../screen/src",
+            "../graphics/src",
+            "../why/src",
+        ]);
     let keys: BTreeSet<_> = Key::ALL.iter().map(|key| key.label()).collect();
     let idle: Vec<_> = german
         .keys()

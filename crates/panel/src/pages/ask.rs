@@ -3,9 +3,9 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_dialogue::Key;
+use bahn_screen::Dialogue;
 
 use crate::page::{Page, Turn, View};
-use crate::screen::Dialogue;
 use crate::site::Site;
 
 /// What comes of an answer.

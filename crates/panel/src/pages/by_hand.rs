@@ -4,12 +4,12 @@ use bahn_control::{Command, Message, Mode};
 use bahn_dialogue::Key;
 use bahn_exchange::signal;
 use bahn_parameters::MessageId;
+use bahn_screen::{Dialogue, Line, Window, WindowKind};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::handwheel::Handwheel;
 use crate::pages::number::Number;
 use crate::pages::{datum, handwheel, plane, probe, supplementary, table};
-use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
 /// Largest jog increment, mm [000:8494-8520].

@@ -3,10 +3,10 @@
 use bahn_control::Command;
 use bahn_dialogue::Key;
 use bahn_path::Axis;
+use bahn_screen::Dialogue;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::number::Number;
-use crate::screen::Dialogue;
 use crate::settings::PositionType;
 use crate::site::Site;
 use crate::status;

@@ -3,10 +3,10 @@
 use bahn_dialogue::{Editor, Key, Reaction, Row, ShownWord, Wanted};
 use bahn_path::Axis;
 use bahn_program::Program;
+use bahn_screen::{Dialogue, Line, Mark, SoftKeys, Window, WindowKind};
 
 use crate::page::{Turn, View};
 use crate::pages::list;
-use crate::screen::{Dialogue, Line, Mark, SoftKeys, Window, WindowKind};
 use crate::site::Site;
 
 /// Width of block numbers.

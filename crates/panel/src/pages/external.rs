@@ -6,14 +6,14 @@
 use bahn_control::Mode;
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_screen::programs::NAME_MAX;
+use bahn_screen::{Dialogue, Line, WindowKind};
 
 use crate::page::{Overlay, Page, Side, Turn, View};
 use crate::pages::ask::Name;
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::menu::{self, Item, Items};
 use crate::pages::{list, transfer};
-use crate::programs::NAME_MAX;
-use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 use crate::transfer::{TransferAction, TransferFiles};
 

@@ -4,14 +4,14 @@
 use bahn_control::{Command, RunState};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_screen::frames;
+use bahn_screen::programs::{Denial, Entry, NAME_MAX, is_executed, is_program};
+use bahn_screen::{Dialogue, Line, WindowKind};
 
-use crate::frames;
 use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::{Choice, Name};
 use crate::pages::transfer;
 use crate::pages::{list, table};
-use crate::programs::{Denial, Entry, NAME_MAX, is_executed, is_program};
-use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 use crate::transfer::TransferAction;
 

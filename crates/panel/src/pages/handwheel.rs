@@ -4,10 +4,10 @@ use bahn_control::Command;
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_path::Axis;
+use bahn_screen::{Dialogue, Line, Window, WindowKind};
 
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
-use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
 /// Travel of a turn with interpolation factor 0, mm; each further factor halves it [003:1051-1062].

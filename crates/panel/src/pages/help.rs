@@ -5,13 +5,13 @@ use std::sync::Arc;
 use bahn_control::{Command, Message};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_screen::texts;
+use bahn_screen::{Line, Window, WindowKind};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::{list, table};
-use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
-use crate::texts;
 
 /// Ending of help files [000:6842].
 const ENDING: &str = ".HLP";

@@ -1,9 +1,9 @@
 //! A list of lines, one of which has the cursor: what moves it, and the window around it.
 
 use bahn_dialogue::Key;
+use bahn_screen::{Line, Mark, Window, WindowKind};
 
 use crate::page::first_in_sight;
-use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
 
 /// Soft keys that move the cursor, by the names they have in every list, with the lines they go.

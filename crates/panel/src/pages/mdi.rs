@@ -7,13 +7,13 @@ use bahn_control::Command;
 use bahn_dialogue::{Editor, Key, Setting};
 use bahn_parameters::MessageId;
 use bahn_program::{Block, Edit, MotionKind, Operation, Program};
+use bahn_screen::SoftKeys;
+use bahn_screen::texts;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
 use crate::pages::row_after::RowAfter;
-use crate::screen::SoftKeys;
 use crate::site::Site;
-use crate::texts;
 
 /// The frame in which blocks are entered.
 const EMPTY: &[u8] = b"BEGIN PGM $MDI MM\nEND PGM $MDI MM\n";

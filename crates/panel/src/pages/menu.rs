@@ -1,10 +1,10 @@
 //! A menu: lines to choose from, each with what it stands at.
 
 use bahn_dialogue::Key;
+use bahn_screen::{Line, WindowKind};
 
 use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::list;
-use crate::screen::{Line, WindowKind};
 use crate::site::Site;
 
 /// Soft keys of a menu, before and after those of its own.

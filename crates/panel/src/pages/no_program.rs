@@ -1,7 +1,8 @@
 //! The picture of a page without a program.
 
+use bahn_screen::{Line, Window, WindowKind};
+
 use crate::page::View;
-use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 /// Where no program is selected: which key does.

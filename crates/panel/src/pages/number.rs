@@ -1,10 +1,10 @@
 //! A question that a number answers, and what is done with it.
 
 use bahn_dialogue::Key;
+use bahn_screen::Dialogue;
 
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
-use crate::screen::Dialogue;
 use crate::site::Site;
 
 /// The position that CAPTURE enters.

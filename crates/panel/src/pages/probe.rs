@@ -4,13 +4,13 @@ use bahn_control::{Command, ProbeCommand, ProbeFunction, Signal};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_path::Axis;
+use bahn_screen::{Dialogue, Line, Mark, Window, WindowKind};
 
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Choice;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::number::Number;
-use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
 use crate::site::Site;
 
 /// The menu of the key TOUCH PROBE.

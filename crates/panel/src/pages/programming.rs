@@ -5,19 +5,19 @@ use std::sync::Arc;
 
 use bahn_control::RunState;
 use bahn_dialogue::{BuilderCycle, Draft, Editor, Key, Setting};
+use bahn_graphics::{Asked, Subject, Wish};
 use bahn_host::oem_cycles;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
+use bahn_screen::SoftKeys;
+use bahn_screen::texts;
 use serde_json::Value;
 
-use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose, is_same};
 use crate::pages::row_after::RowAfter;
 use crate::pages::{editing, table};
-use crate::screen::SoftKeys;
 use crate::site::Site;
-use crate::texts;
 
 /// A program is edited.
 pub(crate) struct Programming {

@@ -3,12 +3,12 @@
 use bahn_control::{Command, TestCommand};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
-use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
 /// Its soft keys.

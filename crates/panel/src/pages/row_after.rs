@@ -1,10 +1,10 @@
 //! A row of soft keys after those of an editor, while it has no block open (inferred).
 
 use bahn_dialogue::{Editor, Key};
+use bahn_screen::SoftKeys;
 
 use crate::page::Turn;
 use crate::pages::editing;
-use crate::screen::SoftKeys;
 
 /// Whether the row is shown.
 #[derive(Clone, Copy, Debug, Default)]

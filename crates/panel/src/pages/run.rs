@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use bahn_control::{Command, Programs, RunState};
 use bahn_dialogue::Key;
+use bahn_graphics::Subject;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
 use bahn_program::{Program, WordKind};
+use bahn_screen::{Line, Window, WindowKind};
 
-use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::editing::numbered;
 use crate::pages::files::{Directory, Purpose, selection};
@@ -16,7 +17,6 @@ use crate::pages::list;
 use crate::pages::number::Number;
 use crate::pages::q_parameters::QParameters;
 use crate::pages::table;
-use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 /// A program is selected and runs.

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use bahn_control::{Command, TestCommand, TestState};
 use bahn_dialogue::Key;
+use bahn_graphics::Subject;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
 
-use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose, selection};
 use crate::pages::number::Number;
@@ -195,7 +195,7 @@ impl Page for TestRun {
             TestState::Failed(message) if !self.said => {
                 self.said = true;
                 let text = site.control().message_text(message);
-                Turn::Say(crate::texts::translate(site.language(), &text))
+                Turn::Say(bahn_screen::texts::translate(site.language(), &text))
             }
             TestState::Finished => {
                 self.said = true;

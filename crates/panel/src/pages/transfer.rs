@@ -2,11 +2,11 @@
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_screen::{Dialogue, Line, WindowKind};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
 use crate::pages::order::order;
-use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 use crate::transfer::{TransferAction, TransferFiles, TransferNews};
 
@@ -143,7 +143,7 @@ fn text_of(news: &TransferNews, site: &Site) -> String {
         TransferNews::Offered(name) => asked("READ-IN", name, "YES = ENT / NO = NO ENT"),
         TransferNews::Output(name) => asked("READ-OUT", name, "YES = ENT / NO = NO ENT"),
         TransferNews::Protected(name) => asked("PROTECTED PGM", name, "CONTINUE = ENT / END = NO ENT"),
-        TransferNews::Message(text) => crate::texts::translate(site.language(), text),
+        TransferNews::Message(text) => bahn_screen::texts::translate(site.language(), text),
         TransferNews::Ended(true) => site.words("COMPLETE"),
         TransferNews::Ended(false) => site.words("NOT COMPLETE"),
     }

@@ -8,16 +8,16 @@ use std::sync::Arc;
 use bahn_control::{Command, Programs};
 use bahn_host::backup::Restore;
 use bahn_host::{Action, Attendance, LoadedMachine, Operator, PowerOn, Source, State};
+use bahn_screen::programs::ProgramMemory;
+use bahn_screen::texts;
+use bahn_teaching::timeline::Past;
+use bahn_why::Waits;
 
 use super::Station;
 use crate::console::Console;
 use crate::input::Refusal;
 use crate::pages;
-use crate::programs::ProgramMemory;
 use crate::settings::Settings;
-use crate::texts;
-use crate::timeline::Past;
-use crate::why::Waits;
 
 /// The list is entered: the control is off, and what it kept stays as it is.
 pub(super) struct Commissioning {

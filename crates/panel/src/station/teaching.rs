@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use bahn_host::{Clock, Host, LoadedMachine};
+use bahn_screen::texts::Language;
+use bahn_teaching::drawer::{self, Breakable};
+use bahn_teaching::lesson::{self, Driven, LessonRun};
+use bahn_why::Reason;
 
 use super::Station;
-use crate::drawer::{self, Breakable};
 use crate::input::{Input, Refusal};
-use crate::lesson::{self, Driven, LessonRun};
 use crate::session::{Head, Recorder};
 use crate::steps::StepsEnd;
-use crate::texts::Language;
-use crate::why::Reason;
 
 impl Driven for Station {
     fn machine(&self) -> &LoadedMachine {

@@ -5,13 +5,13 @@ use std::path::Path;
 use bahn_control::CompensationAssignment;
 use bahn_dialogue::Key;
 use bahn_parameters::PLC_AXIS_NAMES as AXES;
+use bahn_screen::programs::NAME_MAX;
+use bahn_screen::{Line, WindowKind};
 
 use super::text::{ErrorFile, Kind, text_of};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Name;
 use crate::pages::{description, list};
-use crate::programs::NAME_MAX;
-use crate::screen::{Line, WindowKind};
 use crate::site::Site;
 
 /// Its soft keys [000:3862], and those that make lines.

@@ -4,6 +4,7 @@ use bahn_control::CorrectionTables;
 use bahn_dialogue::Key;
 use bahn_host::files;
 use bahn_parameters::PLC_AXIS_NAMES as AXES;
+use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 
 use super::head::{self, Field};
 use super::text::{ErrorFile, Kind, NEW_HEAD, act, text_of};
@@ -11,7 +12,6 @@ use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Choice;
 use crate::pages::{description, list};
-use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
 /// Its soft keys.

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use bahn_dialogue::Key;
 use bahn_parameters::PLC_AXIS_NAMES as AXES;
+use bahn_screen::{Dialogue, Line, WindowKind};
 use bahn_servo::ErrorTable;
 
 use super::head::{self, Field};
@@ -13,7 +14,6 @@ use super::text::{ErrorFile, Kind};
 use crate::entry::Entry;
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
-use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 
 /// Its soft keys [000:3829].

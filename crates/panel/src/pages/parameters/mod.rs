@@ -10,12 +10,12 @@ mod lists;
 use bahn_control::Command;
 use bahn_dialogue::Key;
 use bahn_parameters::{Definition, ListError, MessageId, ParameterList, Reaction};
+use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 
 use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::external::{self, Own};
 use crate::pages::{interface, list};
-use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 use crate::transfer::TransferFiles;
 use file::{Entered, ListFile, Refused};
@@ -551,7 +551,7 @@ impl Parameters {
 
 /// An entry error with its number, as the control shows it [000:10052-10062].
 fn said(error: &bahn_parameters::ParameterError, site: &Site) -> String {
-    let text = crate::texts::translate(site.language(), error.control_text());
+    let text = bahn_screen::texts::translate(site.language(), error.control_text());
     format!("{} {text}: {error}", error.number())
 }
 

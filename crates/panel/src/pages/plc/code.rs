@@ -5,12 +5,12 @@ use std::sync::Arc;
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::{CodeTrace, Executed, OperandContent, PlcProgram, code_of_line};
+use bahn_screen::{Line, WindowKind};
 
 use super::diagram::LogicDiagram;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
-use crate::screen::{Line, WindowKind};
 use crate::site::Site;
 
 /// Its soft keys; while the display stands, the fifth lets it go on.

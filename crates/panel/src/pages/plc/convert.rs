@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use bahn_plc::{Access, PlcProgram, Subject, accesses};
+use bahn_screen::programs::NAME_MAX;
 
 use super::form::unformatted;
 use super::{compile, source};
 use crate::page::Turn;
 use crate::pages::ask::Name;
-use crate::programs::NAME_MAX;
 use crate::site::Site;
 
 /// Ending of texts [000:6844].

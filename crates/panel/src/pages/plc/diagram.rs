@@ -4,11 +4,11 @@ use bahn_dialogue::Key;
 use bahn_exchange::Operand;
 use bahn_host::logic_diagram::{Diagram, OPERANDS_MAX};
 use bahn_parameters::MessageId;
+use bahn_screen::{Dialogue, Line, WindowKind};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
-use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 
 /// Scans in a line.

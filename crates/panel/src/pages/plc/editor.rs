@@ -4,13 +4,13 @@
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::check_line;
+use bahn_screen::{Line, Mark, WindowKind};
 
 use super::form;
 use super::source::{self, NotWritten, Source};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
-use crate::screen::{Line, Mark, WindowKind};
 use crate::site::Site;
 
 /// Its first row of soft keys; the others have [`CHARACTERS`].

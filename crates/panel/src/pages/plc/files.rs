@@ -7,6 +7,8 @@ use bahn_dialogue::Key;
 use bahn_host::eprom::LoadList;
 use bahn_host::s_records::Image;
 use bahn_parameters::MessageId;
+use bahn_screen::programs::NAME_MAX;
+use bahn_screen::{Line, Mark, Window, WindowKind};
 
 use super::convert;
 use super::editor::Editor;
@@ -15,8 +17,6 @@ use super::source;
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Later, Name};
 use crate::pages::{axis_errors, external, list, transfer};
-use crate::programs::NAME_MAX;
-use crate::screen::{Line, Mark, Window, WindowKind};
 use crate::site::Site;
 use crate::transfer::{TransferAction, TransferFiles};
 

@@ -15,11 +15,11 @@ mod texts;
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_screen::{Line, Window, WindowKind};
 
 use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::external;
 use crate::pages::{list, parameters};
-use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 /// The code number opens the mode until power-off; controls without it have no PLC that could be programmed.

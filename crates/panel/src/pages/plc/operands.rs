@@ -5,11 +5,11 @@ use bahn_dialogue::Key;
 use bahn_exchange::signal::{self, SignalOperand};
 use bahn_exchange::{Assignment, Bit, BitArea, Number, Operand, Size};
 use bahn_parameters::MessageId;
+use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
 use crate::pages::list;
-use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
 /// Its first row of soft keys; the second has the areas.

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use bahn_host::files;
 use bahn_parameters::MessageId;
+use bahn_screen::programs::is_name;
 
 use crate::pages::description;
 use crate::pages::external::Own;
-use crate::programs::is_name;
 use crate::site::Site;
 use crate::transfer::TransferFiles;
 

@@ -9,6 +9,7 @@ mod timers;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use bahn_dialogue::Key;
+use bahn_screen::texts::{self, Language};
 
 use crate::page::{Overlay, Page, Side, Turn};
 use crate::pages::ask::Name;
@@ -16,7 +17,6 @@ use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::{help, interface, parameters, plc};
 use crate::settings::PositionType;
 use crate::site::Site;
-use crate::texts::{self, Language};
 
 /// Axes that an L block takes over at most [003:7104-7113].
 const CAPTURED_AXES: usize = 3;

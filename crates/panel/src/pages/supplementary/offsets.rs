@@ -2,9 +2,9 @@
 
 use bahn_control::Command;
 use bahn_dialogue::Key;
+use bahn_screen::{Line, Window, WindowKind};
 
 use crate::page::{Page, Turn, View};
-use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 /// Opens the dialogue.

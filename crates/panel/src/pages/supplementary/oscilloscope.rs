@@ -3,13 +3,14 @@
 
 use bahn_control::{Command, Mode, ServoSignal};
 use bahn_dialogue::Key;
+use bahn_graphics::Subject;
+use bahn_graphics::scope::{Content, Scope, TriggerOn, signal_name};
 use bahn_host::oscilloscope::SAMPLE_TIME_US;
+use bahn_screen::{Line, Window, WindowKind};
 
-use crate::graphics::{Content, Scope, Subject, TriggerOn, signal_name};
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
 use crate::pages::number::Number;
-use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 use super::parameters;

@@ -1,9 +1,9 @@
 //! Code number 857 282: how long the control was on, a program ran and the spindle turned [003:7030].
 
 use bahn_dialogue::Key;
+use bahn_screen::{Line, Window, WindowKind};
 
 use crate::page::{Page, Turn, View};
-use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
 /// The timers.

@@ -3,6 +3,7 @@
 use bahn_dialogue::Key;
 use bahn_host::TableForm;
 use bahn_parameters::MessageId;
+use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 
 use super::cells::{is_mark, read};
 use super::editor::{CELL_MAX, RENEWED, TableEditor, WIDTH};
@@ -11,7 +12,6 @@ use crate::entry::Entry;
 use crate::page::{Overlay, Page, Turn, View};
 use crate::pages::ask::Choice;
 use crate::pages::list;
-use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
 impl TableEditor {

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use bahn_host::TableForm;
+use bahn_screen::programs::Entry;
 
 use crate::pages::description;
-use crate::programs::Entry;
 use crate::site::Site;
 
 /// Names of the tables of the machine in the directory, as a control has them [000:9002-9008].

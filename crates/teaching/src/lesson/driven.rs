@@ -1,0 +1,18 @@
+//! What a lesson needs from the station that it runs on.
+
+use bahn_host::{Host, LoadedMachine};
+
+/// What a lesson drives until its task begins.
+pub trait Driven {
+    /// The machine's folder.
+    fn machine(&self) -> &LoadedMachine;
+
+    /// The machine that is on.
+    fn host(&mut self) -> &mut Host;
+
+    /// A contour cycle of the whole station.
+    ///
+    /// # Errors
+    /// In words.
+    fn cycle(&mut self) -> Result<(), String>;
+}
