@@ -5,7 +5,7 @@ use bahn_kernel::Feeder;
 
 use crate::language::OwnLanguage;
 
-/// The program of a channel, lent by [`Control::lend_reading`](crate::Control::lend_reading) to be read ahead
+/// The program of a channel, handed over by [`Control::hand_over_reading`](crate::Control::hand_over_reading) to be read ahead
 /// elsewhere. The cycles go on meanwhile with what was read before.
 pub struct ReadAhead {
     pub(crate) channel: usize,

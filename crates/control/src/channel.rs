@@ -1,7 +1,7 @@
 //! A channel: operating mode, program run and all that belongs to it. It moves its axes and drives its spindle
 //! on the machine side, and has its own window into the memory of the PLC.
 
-mod moves;
+pub(crate) mod moves;
 
 use bahn_exchange::signal;
 use bahn_interpreter::Rules;

@@ -571,7 +571,7 @@ impl Control {
         self.tnc.channels.first().run.track.path.rest_mm()
     }
 
-    /// The program that runs, or ran last; `None` while it is [lent](Control::lend_reading).
+    /// The program that runs, or ran last; `None` while it is [handed over](Control::hand_over_reading).
     pub fn reader(&self) -> Option<&dyn Reader> {
         self.tnc.channels.first().run.source.reader()
     }

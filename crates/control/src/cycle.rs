@@ -4,7 +4,7 @@ use bahn_kernel::{CircuitOrder, Core, Family, PerChannel};
 use bahn_plc::Tracer;
 use bahn_servo::{Commands, Measured};
 
-use crate::channel::Channel;
+use crate::channel::{Channel, moves};
 use crate::compensation::Compensation;
 use crate::machine::MachineSide;
 
@@ -127,7 +127,7 @@ impl Family for Cycle<'_, '_> {
 
     fn move_axes(&mut self, measured: &Measured) {
         for channel in self.channels.iter_mut() {
-            channel.move_axes(self.machine, measured);
+            moves::move_axes(channel, self.machine, measured);
         }
     }
 

@@ -10,7 +10,7 @@ use crate::leaning::MAIN;
 use crate::setup::{AxisLimit, Remembered};
 
 /// A datum that moves less than this stays where it is, mm: rounding.
-const NO_WAY_MM: f64 = 1e-9;
+const NO_DISTANCE_MM: f64 = 1e-9;
 /// A datum that is set: a place from machine zero becomes a value, mm or degrees.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NewDatum {
@@ -163,7 +163,7 @@ impl Datums {
         let ways = || {
             MAIN.into_iter()
                 .zip(ways)
-                .filter(|(_, way)| way.abs() > NO_WAY_MM)
+                .filter(|(_, way)| way.abs() > NO_DISTANCE_MM)
         };
         let free = |axis| {
             axes.at(axis)

@@ -4,7 +4,7 @@
 //!   contour cycle on a machine ([`bahn_servo::Plant`]), [`Control::prepare`] plans ahead;
 //! - [`Command`] is what an operator asks for, [`Snapshot`] what he sees, [`Message`] what the control says;
 //! - [`Signal`] names what can be recorded.
-//! - [`Control::lend_reading`] lets part programs be read on another thread ([`ReadAhead`]), [`Control::take_work`] long
+//! - [`Control::hand_over_reading`] lets part programs be read on another thread ([`ReadAhead`]), [`Control::take_work`] long
 //!   computations be done there ([`Work`]).
 //!
 //! - [`Control::with_channels`] puts several channels on one machine, [`ChannelSetup`] each of them: with its axes

@@ -1,7 +1,7 @@
 //! What holds for all that is done in a contour cycle.
 
 use crate::command::Mode;
-use bahn_kernel::Direction;
+use bahn_kernel::{Direction, Wheels};
 use bahn_parameters::PerPlcAxis;
 
 /// What the machine side says of now.
@@ -48,4 +48,16 @@ pub(crate) struct Now {
     pub wheel_mm: PerPlcAxis<f64>,
     /// Rapid traverse as PLC and probe limit it, mm/min.
     pub rapid_limit_mm_min: f64,
+}
+
+impl Now {
+    /// What leads the axes beside the path.
+    pub fn wheels(&self) -> Wheels<'_> {
+        Wheels {
+            turned_mm: &self.wheel_mm,
+            rapid_limit_mm_min: self.rapid_limit_mm_min,
+            time_s: self.time_s,
+            fault: self.fault,
+        }
+    }
 }

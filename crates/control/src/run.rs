@@ -3,7 +3,7 @@
 use bahn_exchange::{Image, signal};
 use bahn_kernel::{
     AxisUnit, BlockTime, Chain, Feeder, Mover, Preparation, Progress, RunFault, RunState, Tapping, Track,
-    Wheels, is_floating, is_rigid, thread,
+    distance_to_go, is_floating, is_rigid, thread,
 };
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::MessageId;
@@ -473,12 +473,7 @@ impl ProgramRun {
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);
         self.tapping.lead(cycle.lead, &mut site.spindle.drive);
-        let wheels = Wheels {
-            turned_mm: &site.now.wheel_mm,
-            rapid_limit_mm_min: site.now.rapid_limit_mm_min,
-            time_s: site.now.time_s,
-            fault: site.now.fault,
-        };
+        let wheels = site.now.wheels();
         self.track
             .follow(&cycle.position, &mut site.axes, site.chain, &wheels);
         let inch = self.source.inch();
@@ -695,10 +690,7 @@ impl ProgramRun {
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.
     pub fn distance_to_go(&self, unit: &AxisUnit, chain: &Chain) -> f64 {
-        let end = self
-            .element()
-            .map(|element| chain.to_axes(&element.end)[unit.axis]);
-        end.filter(|end| end.is_finite())
-            .map_or(0.0, |end| end - unit.nominal)
+        let element = self.element();
+        element.map_or(0.0, |element| distance_to_go(element, unit, chain))
     }
 }

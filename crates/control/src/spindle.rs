@@ -495,7 +495,7 @@ impl SpindleUnit {
             closed_loop: self
                 .drive
                 .servo
-                .lag_and_way_deg()
+                .lag_and_distance_deg()
                 .map(|[lag, way]| ControlledSpindle {
                     nominal: angle + lag,
                     trailing_error: lag,

@@ -689,14 +689,7 @@ fn limits_are_checked_after_the_kinematics() {
     });
     assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
     assert!((nominal(&rig, 1, 'X') - 110.0).abs() < 1e-9 && nominal(&rig, 1, 'Y') == 110.0);
-    assert!(
-        (machine_x(&rig) - 165.0).abs() < 0.1,
-        "X is at {}",
-        machine_x(&rig)
-    );
-    assert!(
-        (rig.table('X') - 165.0).abs() < 0.1,
-        "the table is at {}",
-        rig.table('X')
-    );
+    let (x, table) = (machine_x(&rig), rig.table('X'));
+    assert!((x - 165.0).abs() < 0.1, "X is at {x}");
+    assert!((table - 165.0).abs() < 0.1, "the table is at {table}");
 }

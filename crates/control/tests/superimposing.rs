@@ -289,7 +289,11 @@ fn together(rig: &mut Rig, mm: f64, cycles: usize) -> [f64; 3] {
     rig.start();
     for cycle in 0.. {
         if cycle % cycles == 0 && cycle % 400 < 200 {
-            let way = if (cycle / cycles).is_multiple_of(2) { mm } else { -mm };
+            let way = if (cycle / cycles).is_multiple_of(2) {
+                mm
+            } else {
+                -mm
+            };
             rig.event(&format!("handwheel {}", way / 10.0 * HANDWHEEL_STEPS));
         }
         rig.cycle();

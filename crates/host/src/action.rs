@@ -41,13 +41,13 @@ impl Operable for Machine {
 /// Something that is done.
 ///
 /// ```
-/// use bahn_host::Deed;
-/// assert!(matches!(Deed::parse("mode full"), Ok(Deed::Command(0, _))));
-/// assert_eq!(Deed::parse("key NC_START tap"), Ok(Deed::tap("NC_START")));
-/// let second = Deed::parse("2: mode full")?;
-/// assert!(matches!(second, Deed::Command(1, _)));
+/// use bahn_host::Action;
+/// assert!(matches!(Action::parse("mode full"), Ok(Action::Command(0, _))));
+/// assert_eq!(Action::parse("key NC_START tap"), Ok(Action::tap("NC_START")));
+/// let second = Action::parse("2: mode full")?;
+/// assert!(matches!(second, Action::Command(1, _)));
 /// assert_eq!(second.to_string(), "2: mode full");
-/// # Ok::<(), bahn_host::DeedError>(())
+/// # Ok::<(), bahn_host::ActionError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {

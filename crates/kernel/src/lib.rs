@@ -10,6 +10,22 @@
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
 //!   [`Superimposed`] by hand.
 //! - [`Progress`] is how far a run is, [`BlockTime`] how fast blocks are read, [`VoltageOutput`] a voltage along the path.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use bahn_kernel::{Cartesian, Chain, Offsets};
+//! use bahn_path::{Axis, Position};
+//!
+//! // Datum at machine 100 in X; a tool of 80 mm in Z.
+//! let mut datum = Position::ZERO;
+//! datum[Axis::X] = 100.0;
+//! let offsets = Offsets { datum, tool_axis: Axis::Z, tool_length: 80.0 };
+//! let chain = Chain::new(Arc::new(Cartesian), offsets);
+//! let axes = chain.to_axes(&Position::ZERO);
+//! assert_eq!((axes[Axis::X], axes[Axis::Z]), (100.0, 80.0));
+//! assert_eq!(chain.to_path(&axes)[Axis::X], 0.0);
+//! ```
 
 mod axes;
 mod axis;
@@ -43,6 +59,6 @@ pub use sampling::{ServoSampler, ServoSignal, ServoView};
 pub use spindle::{SpindleLoop, SpindleWiring};
 pub use superimposing::{Superimposed, Wheels};
 pub use thread::{Leading, Moment, Preparation, Standing, Tapping, Taps, is_floating, is_rigid};
-pub use track::{LOOK_AHEAD, Outputs, Track};
+pub use track::{LOOK_AHEAD, Outputs, Track, distance_to_go};
 pub use voltage::{Along, VoltageOutput};
 pub use way_back::WayBack;

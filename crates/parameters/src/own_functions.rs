@@ -104,7 +104,7 @@ impl OwnFunction {
     /// use bahn_parameters::own_functions::{Lead, OwnFunction};
     /// use bahn_path::{Ahead, At, Synchronisation};
     ///
-    /// let lead = Lead { way_mm: Some(25.0), time_s: None };
+    /// let lead = Lead { distance_mm: Some(25.0), time_s: None };
     /// let (at, synchronisation) = (At::Ahead(Ahead::Distance(25.0)), Synchronisation::MvsSvs);
     /// assert_eq!(OwnFunction::of("MEP_SVS", lead), Ok(OwnFunction::Out { at, synchronisation }));
     /// ```

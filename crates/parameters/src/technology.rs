@@ -6,12 +6,12 @@
 //!
 //! ```
 //! use bahn_parameters::ControlModel::Tnc415b;
-//! use bahn_parameters::technology::{Deed, Output, Technology, Wait};
+//! use bahn_parameters::technology::{ControlAction, Output, Technology, Wait};
 //! use bahn_path::{At, SpindleOrder};
 //!
 //! let m5 = Technology::of_m(Tnc415b, 5).unwrap();
 //! assert_eq!((m5.at, m5.output, m5.waits), (At::End, Output::Plc, Wait::AxisHalt));
-//! assert!(m5.does(Deed::Spindle(SpindleOrder::Stop)));
+//! assert!(m5.does(ControlAction::Spindle(SpindleOrder::Stop)));
 //! ```
 
 use std::sync::LazyLock;

@@ -536,7 +536,7 @@ impl Spindle {
 
     /// Lag and distance to go of an orientation in its loop, degrees; `None` with open loop. The nominal value
     /// runs ahead by the lag that belongs to the speed.
-    pub fn lag_and_way_deg(&self) -> Option<[f64; 2]> {
+    pub fn lag_and_distance_deg(&self) -> Option<[f64; 2]> {
         match self.mode {
             Mode::Orientation(orientation) if self.is_controlled() => {
                 let Phase::Controlled { target_deg } = orientation.phase else {

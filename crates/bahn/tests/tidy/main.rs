@@ -64,7 +64,7 @@ const TOO_MUCH: &[(&str, &str, &str)] = &[
     ("panel", "TableEditor", "pages::table::editor pages::table::page"),
     ("parameters", "Definition", "definition meaning"),
     ("plc", "Translator", "compile::emit compile::file"),
-    ("servo", "Axis", "axis axis::torque"),
+    ("servo", "Axis", "axis axis::faults axis::torque"),
 ];
 
 /// Rooms whose names still have words that docs/glossary.md has replaced, and these. A room that says them otherwise

@@ -55,7 +55,7 @@ pub fn up_to_trigger(
 pub struct Trace {
     /// The cycle that is being executed.
     pub cycle: u64,
-    /// The first [`LINES_MAX`].
+    /// The first `LINES_MAX`.
     pub lines: Vec<Line>,
     /// How many were executed after those.
     pub left_off: u64,
