@@ -90,15 +90,33 @@ fn the_twin_keeps_every_rule() {
     try_seeds("twin", 0..500);
 }
 
-/// Tools come from the magazine: MP4310.0 bit 1, any pocket.
-#[test]
-fn the_mill_with_its_magazine_keeps_every_rule() {
+/// The mill whose tools come from the magazine: MP4310.0 bit 1, any pocket.
+fn magazine() -> Campaign {
     let mut machine = support::machine("mill");
     for assignment in ["7480.0=3", "4310.0=3"] {
         machine.parameters.assign(assignment).unwrap();
     }
-    let campaign = Campaign::new(machine, &["BRACKET.H".to_owned()]).unwrap();
-    try_campaign("mill with its magazine", &campaign, 0..250);
+    Campaign::new(machine, &["BRACKET.H".to_owned()]).unwrap()
+}
+
+#[test]
+fn the_mill_with_its_magazine_keeps_every_rule() {
+    try_campaign("mill with its magazine", &magazine(), 0..250);
+}
+
+/// Power-off in a tool change, and another mode before the reference run: the PLC holds START until the tool is clamped, and the
+/// operator presses it again.
+#[test]
+fn a_start_that_the_plc_holds_is_pressed_again() {
+    let campaign = magazine();
+    let mut worker = campaign.worker().unwrap();
+    let plan = worker.plan(9_650_325);
+    let happens = |what: &str| plan.happenings.iter().any(|happening| happening.what == what);
+    assert!(
+        happens("power off") && happens("mode single"),
+        "it is another one now: {plan:?}"
+    );
+    assert_eq!(worker.run(&plan).violation, None);
 }
 
 #[test]

@@ -9,6 +9,10 @@ use super::messages::is_fatal;
 use super::rule::{Rule, Violation};
 use super::trial::Course;
 
+/// An operator presses START again when so long after it nothing moves: the PLC may have held it, as the mill does until the
+/// tool is clamped, µs.
+const START_AGAIN_US: u64 = 10_000_000;
+
 /// After the repairs until messages are looked at, µs.
 const SETTLE_US: u64 = 400_000;
 /// Between two keys of the operator who puts everything back, µs.
@@ -113,6 +117,7 @@ impl Course<'_> {
             self.wait(KEY_US)?;
             self.press_start(number)?;
             let until_us = self.now() + REFERENCE_US;
+            let mut again_us = self.now() + START_AGAIN_US;
             while self
                 .channel(number)
                 .is_some_and(|channel| channel.mode() == Mode::Reference)
@@ -124,6 +129,12 @@ impl Course<'_> {
                 if self.now() > until_us {
                     return Err(self.breaks(Rule::Recovery, "the reference run does not end"));
                 }
+                if self.now() > again_us {
+                    again_us += START_AGAIN_US;
+                    if self.stands(number) {
+                        self.press_start(number)?;
+                    }
+                }
                 self.cycle()?;
             }
             if self
@@ -134,6 +145,12 @@ impl Course<'_> {
             }
         }
         Ok(true)
+    }
+
+    /// No axis of a channel moves.
+    fn stands(&self, number: usize) -> bool {
+        let channel = self.channel(number);
+        channel.is_none_or(|channel| channel.watch().all(|axis| axis.speed_mm_s == 0.0))
     }
 
     fn press_start(&mut self, number: usize) -> Result<(), Violation> {
