@@ -12,16 +12,17 @@
 //! ```no_run
 //! use bahn_graphics::{Graphics, Picture, Subject};
 //! use bahn_host::Host;
+//! use bahn_parameters::ParameterList;
 //!
-//! fn cut(host: &mut Host) -> Option<Picture> {
+//! fn cut(host: &mut Host, list: &ParameterList) -> Option<Picture> {
 //!     let mut graphics = Graphics::new(host);
 //!     graphics.cycle(host);
-//!     graphics.picture(Subject::Run, host.control().parameters())
+//!     graphics.picture(Subject::Run, list)
 //! }
 //! ```
 //!
-//! By the clock on the wall both cut on threads of their own; by the free clock with the machine, so that the same
-//! inputs give the same screens.
+//! In real time both cut on threads of their own; in simulation time with the machine, so that the same inputs give the same
+//! screens.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
