@@ -11,7 +11,7 @@ use bahn_reader::{ProgramError, Reader};
 use crate::tools::inserted_axis;
 
 /// The error of a block that would move an axis that the channel does not have, or not for programs.
-pub fn absent(
+pub(crate) fn absent(
     axis: Axis,
     unit: Option<&AxisUnit>,
     block: BlockRef,
@@ -29,7 +29,7 @@ pub fn absent(
 }
 
 /// The error of a program into which the PLC inserts a TOOL CALL and that has no tools.
-pub fn without_tools(block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
+pub(crate) fn without_tools(block: BlockRef, run: Option<&dyn Reader>) -> ProgramError {
     let why = "module 9150 inserts a TOOL CALL: a program in this language has no tools";
     program_error(MessageId::BlockNotSupported, why.to_owned(), block, run)
 }

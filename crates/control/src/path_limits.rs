@@ -6,7 +6,7 @@ use bahn_parameters::ParameterList;
 use bahn_path::PerAxis;
 
 /// The limits of a path: those of the axes, through the kinematics.
-pub fn path_limits<'a>(
+pub(crate) fn path_limits<'a>(
     parameters: &ParameterList,
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     kinematics: &dyn Kinematics,

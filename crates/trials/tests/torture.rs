@@ -46,6 +46,18 @@ fn load(folder: &Path) -> Campaign {
         .unwrap()
 }
 
+/// A seed that was red holds every rule; it is still the one of this program in which these things happen.
+fn holds(campaign: &Campaign, program: &str, seed: u64, happenings: &[&str]) {
+    let mut worker = campaign.worker().unwrap();
+    let plan = worker.plan(seed);
+    let happens = |what: &&str| plan.happenings.iter().any(|happening| happening.what == *what);
+    assert!(
+        happenings.iter().all(happens) && campaign.programs()[plan.program] == program,
+        "seed {seed} is another one now: {plan:?}"
+    );
+    assert_eq!(worker.run(&plan).violation, None, "seed {seed}");
+}
+
 /// Tries seeds of a machine: every rule holds, and every kind of thing happens in them.
 fn try_seeds(machine: &str, seeds: std::ops::Range<u64>) {
     try_campaign(machine, &campaign(machine), seeds);
@@ -108,15 +120,7 @@ fn the_mill_with_its_magazine_keeps_every_rule() {
 /// operator presses it again.
 #[test]
 fn a_start_that_the_plc_holds_is_pressed_again() {
-    let campaign = magazine();
-    let mut worker = campaign.worker().unwrap();
-    let plan = worker.plan(9_650_325);
-    let happens = |what: &str| plan.happenings.iter().any(|happening| happening.what == what);
-    assert!(
-        happens("power off") && happens("mode single"),
-        "it is another one now: {plan:?}"
-    );
-    assert_eq!(worker.run(&plan).violation, None);
+    holds(&magazine(), "BRACKET.H", 9_650_325, &["power off", "mode single"]);
 }
 
 #[test]
@@ -325,12 +329,8 @@ fn threads_and_scans_stay_where_they_are_led() {
     ];
     for (machine, program, seeds) in found {
         let campaign = of_programs(support::machine(machine), &[program]);
-        let mut worker = campaign.worker().unwrap();
         for (seed, what) in seeds {
-            let plan = worker.plan(*seed);
-            let happens = plan.happenings.iter().any(|happening| happening.what == *what);
-            assert!(happens, "seed {seed} is another one now: {plan:?}");
-            assert_eq!(worker.run(&plan).violation, None, "seed {seed} on {machine}");
+            holds(&campaign, program, *seed, &[what]);
         }
     }
 }
@@ -346,14 +346,7 @@ fn what_the_long_campaign_found_stays_mended() {
         ("mill-tnc360", "PLATE.H", 8_700_335, "force Y 4000"),
     ] {
         let campaign = campaign(machine);
-        let mut worker = campaign.worker().unwrap();
-        let plan = worker.plan(seed);
-        let happens = plan.happenings.iter().any(|happening| happening.what == what);
-        assert!(
-            happens && campaign.programs()[plan.program] == program,
-            "seed {seed} is another one now: {plan:?}"
-        );
-        assert_eq!(worker.run(&plan).violation, None, "seed {seed} on {machine}");
+        holds(&campaign, program, seed, &[what]);
     }
 }
 
@@ -369,14 +362,7 @@ fn what_stands_off_its_spindle_goes_after_it() {
         ("dig425", "MODEL.H", 9_100_007, "fault motor X"),
     ] {
         let campaign = campaign(machine);
-        let mut worker = campaign.worker().unwrap();
-        let plan = worker.plan(seed);
-        let happens = plan.happenings.iter().any(|happening| happening.what == what);
-        assert!(
-            happens && campaign.programs()[plan.program] == program,
-            "seed {seed} is another one now: {plan:?}"
-        );
-        assert_eq!(worker.run(&plan).violation, None, "seed {seed} on {machine}");
+        holds(&campaign, program, seed, &[what]);
     }
 }
 
