@@ -374,7 +374,7 @@ fn the_sender_goes_on_after_a_broken_line() {
     }
 }
 
-/// By the clock on the wall, at the speed of the network and over a line that is slower than the feed: the path waits for its
+/// In real time, at the speed of the network and over a line that is slower than the feed: the path waits for its
 /// blocks then, and is as long as the line takes.
 #[test]
 fn in_real_time() {

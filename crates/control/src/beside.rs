@@ -21,7 +21,7 @@ impl ReadAhead {
     }
 }
 
-/// A program that is lent, and what it is told when it is back.
+/// A program that is handed over, and what it gets when it is back.
 #[derive(Clone, Debug)]
 pub(crate) struct Loan {
     /// Which loan of the channel it is.

@@ -305,7 +305,7 @@ impl Control {
             })
     }
 
-    /// A program is back that was lent.
+    /// A program is back that was handed over.
     pub fn take_back(&mut self, read: ReadAhead) {
         if read.channel < self.tnc.channels.count() {
             let source = &mut self.tnc.channels.of_mut(read.channel).run.source;

@@ -632,7 +632,7 @@ impl ProgramRun {
         self.source.q_value(number, self.progress.has_ended(), executed)
     }
 
-    /// Transformations at the block that is executed, else those that are left; `None` while the program is lent.
+    /// Transformations at the block that is executed, else those that are left; `None` while the program is handed over.
     pub fn frame(&self) -> Option<Frame> {
         let executed = self.element().map(|element| element.sequence);
         self.source.frame(self.progress.has_ended(), executed)

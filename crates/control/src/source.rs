@@ -118,12 +118,12 @@ impl Source {
         }
     }
 
-    /// The program that runs, or ran last; `None` while it is lent.
+    /// The program that runs, or ran last; `None` while it is handed over.
     pub fn feeder(&self) -> Option<&Feeder> {
         self.feeder.as_ref()
     }
 
-    /// The program that runs, or ran last; `None` while it is lent.
+    /// The program that runs, or ran last; `None` while it is handed over.
     pub fn feeder_mut(&mut self) -> Option<&mut Feeder> {
         self.feeder.as_mut()
     }
@@ -249,7 +249,7 @@ impl Source {
         self.resume_from = resume;
     }
 
-    /// The block with which the next start goes on or begins; `None` while the program is lent.
+    /// The block with which the next start goes on or begins; `None` while the program is handed over.
     pub fn next_start(&self, begin: u32) -> Option<BlockRef> {
         let begin = BlockRef {
             program: 0,
@@ -403,7 +403,7 @@ impl Source {
     }
 
     /// The transformations before the block of a sequence, else where a run that was broken off goes on or the interpreter is,
-    /// else as the last run has left them; `None` while the program is lent.
+    /// else as the last run has left them; `None` while the program is handed over.
     pub fn frame(&self, ended: bool, sequence: Option<u64>) -> Option<Frame> {
         if self.is_handed_over() {
             return None;

@@ -14,7 +14,7 @@ use bahn_path::{
 };
 use bahn_program::{Edit, Program};
 
-/// Elements of one contour cycle by the free clock (inferred).
+/// Elements of one contour cycle in simulation time (inferred).
 const BUDGET: u32 = 500;
 /// Elements after which a thread shows what it has.
 const NEWS: u32 = 2000;
@@ -147,7 +147,7 @@ impl Sketch {
         sketch
     }
 
-    /// Goes on, by the free clock.
+    /// Goes on, in simulation time.
     pub fn cycle(&mut self) {
         if self.run.as_mut().is_some_and(|run| !run.advance(BUDGET)) {
             self.run = None;

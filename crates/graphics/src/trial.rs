@@ -12,7 +12,7 @@ use bahn_reader::Reader;
 
 use crate::stock::{Heard, Stock};
 
-/// Elements that are cut in one contour cycle by the free clock (inferred).
+/// Elements that are cut in one contour cycle in simulation time (inferred).
 const BUDGET: u32 = 500;
 /// Elements after which a thread says how far it has come.
 const NEWS: u32 = 200;
@@ -109,7 +109,7 @@ impl Trial {
         });
     }
 
-    /// Goes on, by the free clock.
+    /// Goes on, in simulation time.
     pub fn cycle(&mut self) {
         if let Some(run) = &mut self.run
             && !run.waits()

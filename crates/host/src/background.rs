@@ -34,7 +34,7 @@ impl Background {
         }
     }
 
-    /// Lets the control interpret and plan ahead, and lends what is to be read beside.
+    /// Lets the control interpret and plan ahead, and hands over what is to be read beside.
     pub fn prepare(&mut self, control: &mut Control, realtime: bool, break_off: &AtomicBool) {
         if let Some(reading) = &mut self.reading {
             reading.collect(control);
@@ -45,7 +45,7 @@ impl Background {
         }
     }
 
-    /// Lets the control interpret and plan ahead. With the clock on the wall the machine goes on while
+    /// Lets the control interpret and plan ahead. In real time the machine goes on while
     /// something is computed; otherwise time stands still, so that every run is the same, but for a run that is
     /// to be broken off.
     fn compute(&mut self, control: &mut Control, realtime: bool, break_off: &AtomicBool) {

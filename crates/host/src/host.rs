@@ -57,7 +57,7 @@ pub struct Host<P = Machine> {
     window: WindowView,
     /// What was is repeated: nobody is told, and nothing is stored but in the end.
     pub(crate) repeats: bool,
-    /// Also by the clock on the wall nothing is read or computed beside.
+    /// Also in real time nothing is read or computed beside.
     exact: bool,
     desk: Desk,
     state: Option<State>,
@@ -558,18 +558,18 @@ impl<P: Operable> Host<P> {
         self.background.read_beside(&mut self.control, beside);
     }
 
-    /// From now on no cycle waits for the clock on the wall: whoever lets them pass waits as long as [`Host::rest`] says,
+    /// From now on no cycle waits for real time: whoever lets them pass waits as long as [`Host::rest`] says,
     /// and can do something else meanwhile.
     pub fn pace_outside(&mut self) {
         self.paced_outside = true;
     }
 
-    /// How long it is until the time of the last cycle is over by the clock on the wall.
+    /// How long it is until the time of the last cycle is over in real time.
     pub fn rest(&self) -> Duration {
         self.pace.as_ref().map_or(Duration::ZERO, Pace::rest)
     }
 
-    /// From now on a cycle waits for what programs need to be read and computed, also by the clock on the wall: what is
+    /// From now on a cycle waits for what programs need to be read and computed, also in real time: what is
     /// given then at the same times gives the same bits again, at the price of cycles that come late.
     pub fn be_exact(&mut self) {
         self.exact = true;
@@ -589,7 +589,7 @@ impl<P: Operable> Host<P> {
         }
     }
 
-    /// What programs have read is there after every cycle, also by the clock on the wall: their Q parameters, and
+    /// What programs have read is there after every cycle, also in real time: their Q parameters, and
     /// [`Control::interpreter`]. A cycle then waits for what is read beside.
     pub fn watch_programs(&mut self) {
         self.watched = true;

@@ -1,4 +1,4 @@
-//! Keeps pace with the clock on the wall.
+//! Keeps pace with real time.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ pub enum Clock {
     /// As fast as it can: the same commands at the same times give the same bits.
     #[default]
     Free,
-    /// So many times as fast as the clock on the wall; 1 is real time.
+    /// So many times as fast as real time.
     Wall(f64),
 }
 

@@ -5,7 +5,7 @@ use std::thread::Builder;
 
 use bahn_control::{Control, ReadAhead};
 
-/// The thread, and what is there. Each channel lends one program at most.
+/// The thread, and what is there. Each channel hands over one program at most.
 pub(crate) struct Reading {
     give: SyncSender<ReadAhead>,
     take: Receiver<ReadAhead>,

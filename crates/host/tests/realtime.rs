@@ -1,4 +1,4 @@
-//! By the clock on the wall: part programs are read on a thread of their own.
+//! In real time: part programs are read on a thread of their own.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod support;

@@ -30,7 +30,7 @@ pub enum Input {
     HandwheelAxis(char, u8),
     /// The supply of the control.
     Power(bool),
-    /// So many times as fast as the clock on the wall, 0.1 to 100.
+    /// So many times as fast as real time, 0.1 to 100.
     Speed(f64),
     /// Time stands, or goes on.
     Pause(bool),

@@ -2,7 +2,7 @@
 //!
 //! - [`Station`] is a machine that is on, with its panel: an [`Input`] is what the operator does, a [`Screen`] what he
 //!   sees, [`Station::cycle`] a contour cycle of the machine;
-//! - [`Live`] is a station on a thread of its own, by the clock on the wall, which any number of viewers watch;
+//! - [`Live`] is a station on a thread of its own, in real time, which any number of viewers watch;
 //! - `console` says who has the keys, `page` what takes them and shows itself, `pages` are the operating modes, menus and
 //!   tables; each is given a `site`, what it may touch;
 //! - [`Picture`] is what the graphics show of the part that a test or a run cuts, to be drawn on any thread, [`BeingCut`] that part itself;

@@ -1,4 +1,4 @@
-//! A station on a thread of its own, by the clock on the wall.
+//! A station on a thread of its own, in real time.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -307,7 +307,7 @@ fn is_on_its_way(station: &Station, ticket: &Ticket, answer: &Answer<Stepped>) -
     })
 }
 
-/// What is given before the next cycle: until its time by the clock on the wall, or, while time stands, a moment. Without
+/// What is given before the next cycle: until its time in real time, or, while time stands, a moment. Without
 /// anybody who could give orders it ends.
 fn next(station: &Station, orders: &Receiver<Order>, shared: &Shared) -> Option<Order> {
     if let Some(urgent) = shared.next_urgent() {

@@ -137,14 +137,14 @@ impl Station {
         self.host.break_off_by(urgent);
     }
 
-    /// Runs by the clock on the wall from now on, as fast as the operator chose.
+    /// Runs in real time from now on, as fast as the operator chose.
     pub fn run_by_the_wall(&mut self) {
         self.by_the_wall = true;
         self.graphics.run_beside();
         self.host.set_clock(self.clock());
     }
 
-    /// How long it is until the next cycle by the clock on the wall.
+    /// How long it is until the next cycle in real time.
     pub(crate) fn rest(&self) -> Duration {
         self.host.rest()
     }

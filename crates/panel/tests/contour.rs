@@ -145,7 +145,7 @@ fn help_draws_the_cycle_where_there_is_one_column() {
     assert_eq!(trainee.screen().graphics.unwrap().view, GraphicsView::Figure);
 }
 
-/// A key does not wait for the drawing of a long program, and time by the wall goes on.
+/// A key does not wait for the drawing of a long program, and real time goes on.
 #[test]
 fn no_key_waits_for_a_long_program() {
     let mut trainee = Trainee::at("mill");

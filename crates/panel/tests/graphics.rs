@@ -208,7 +208,7 @@ fn removed_without_a_panel(trainee: &Trainee, name: &str) -> f64 {
     }
 }
 
-/// A bracket with six tools, cycles and tapping: by the free clock with the machine, and by the clock on the wall on a
+/// A bracket with six tools, cycles and tapping: in simulation time with the machine, and in real time on a
 /// thread of its own.
 #[test]
 fn the_part_is_that_of_the_program_however_it_is_tested() {
@@ -216,14 +216,18 @@ fn the_part_is_that_of_the_program_however_it_is_tested() {
     let expected = removed_without_a_panel(&trainee, "BRACKET.H");
     assert!(expected > 1000.0, "{expected} mm³");
     trainee.press("TEST PGM_NR B R A C K E T ENT GRAPHICS");
-    for by_the_wall in [false, true] {
-        if by_the_wall {
-            trainee.station.run_by_the_wall();
+    for in_real_time in [false, true] {
+        if in_real_time {
+            trainee.station.run_in_real_time();
         }
         trainee.press("START");
         trainee.until(60.0, |screen| !screen.graphics.as_ref().unwrap().running);
         assert_eq!(trainee.screen().graphics.unwrap().progress, 1.0);
-        assert_eq!(removed_mm3(&mut trainee), expected, "by the wall: {by_the_wall}");
+        assert_eq!(
+            removed_mm3(&mut trainee),
+            expected,
+            "in real time: {in_real_time}"
+        );
     }
 }
 

@@ -1,4 +1,4 @@
-//! A station by the clock on the wall: what is recorded there is seen again, and the past is reached while it runs.
+//! A station in real time: what is recorded there is seen again, and the past is reached while it runs.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
@@ -82,7 +82,7 @@ fn what_was_done_by_the_wall_is_seen_again() {
         serde_json::to_string(&end).unwrap()
     );
     assert_eq!(replay.came_true(&mut other.station), Some(true));
-    // And by the wall.
+    // And in real time.
     let (station, second) = Trainee::at("mill").apart();
     let live = Live::replay(station, Replay::read(&path).unwrap());
     let link = live.link();

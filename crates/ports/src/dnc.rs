@@ -35,7 +35,7 @@ pub struct Wishes {
     pub name: String,
     /// How often it is begun again when the line breaks.
     pub restarts: u32,
-    /// The machine keeps pace with the clock on the wall.
+    /// The machine keeps pace with real time.
     pub realtime: bool,
 }
 
@@ -120,7 +120,7 @@ impl<'a> Session<'a> {
     fn feed(&mut self) -> Result<(), HostError> {
         let stopped = self.host.control().run_state() == RunState::Stopped;
         if stopped && !self.wishes.realtime {
-            // Somebody else presses START, by the clock on the wall.
+            // Somebody else presses START, in real time.
             std::thread::sleep(Duration::from_micros(self.host.control().cycle_us().into()));
         }
         let Some(drip) = &self.drip else {

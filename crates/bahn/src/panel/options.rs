@@ -48,7 +48,7 @@ pub(crate) struct PanelOptions {
     #[cfg(feature = "terminal")]
     #[arg(long)]
     pub terminal: bool,
-    /// So many times as fast as the clock on the wall, 0.1 to 100.
+    /// So many times as fast as real time, 0.1 to 100.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed)]
     pub speed: f64,
     /// What is connected to RS-232-C/V.24, for the key EXT and the PLC: tcp:ADDR:PORT, connect:ADDR:PORT, pty:LINK,

@@ -181,7 +181,7 @@ pub(crate) struct RunControl {
     /// one on.
     #[arg(long)]
     pub block_time: bool,
-    /// Keep pace with the clock on the wall, and report late cycles.
+    /// Keep pace with real time, and report late cycles.
     #[arg(long)]
     pub realtime: bool,
     /// Time of the machine after which the run ends, s.

@@ -90,7 +90,7 @@ pub(crate) struct DncRunOptions {
     /// One machine parameter instead of that of the list, as 7228.1=10 (repeatable, or several with commas).
     #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
     pub mp: Vec<String>,
-    /// Keep pace with the clock on the wall.
+    /// Keep pace with real time.
     #[arg(long)]
     pub realtime: bool,
 }
