@@ -93,7 +93,7 @@ impl Live {
         let published = Arc::clone(&shared);
         let thread = std::thread::spawn(move || {
             station.wait_outside(Arc::clone(&published.alarm));
-            station.run_by_the_wall();
+            station.run_in_real_time();
             run(&mut station, &mut replay, &taken, &published);
             station
         });

@@ -62,7 +62,7 @@ pub struct Station {
     state_folder: PathBuf,
     console: Console,
     speed: f64,
-    by_the_wall: bool,
+    in_real_time: bool,
     paused: bool,
     steps: Steps,
     is_on: bool,
@@ -104,7 +104,7 @@ impl Station {
             console: Console::new(host.control().mode(), host.control().model()),
             stored: Settings::default(),
             speed: 1.0,
-            by_the_wall: false,
+            in_real_time: false,
             paused: false,
             steps: Steps::default(),
             is_on: true,
@@ -138,8 +138,8 @@ impl Station {
     }
 
     /// Runs in real time from now on, as fast as the operator chose.
-    pub fn run_by_the_wall(&mut self) {
-        self.by_the_wall = true;
+    pub fn run_in_real_time(&mut self) {
+        self.in_real_time = true;
         self.graphics.run_beside();
         self.host.set_clock(self.clock());
     }
@@ -151,7 +151,7 @@ impl Station {
 
     /// The clock by which the machine runs.
     pub(crate) fn clock(&self) -> Clock {
-        match self.by_the_wall {
+        match self.in_real_time {
             true => Clock::Wall(self.speed),
             false => Clock::Free,
         }

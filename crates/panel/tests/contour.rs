@@ -157,7 +157,7 @@ fn no_key_waits_for_a_long_program() {
         &format!("BEGIN PGM LONG MM\n{blocks}END PGM LONG MM\n"),
     );
     trainee.ready();
-    trainee.station.run_by_the_wall();
+    trainee.station.run_in_real_time();
     trainee.press("PROGRAM PGM_NR L O N G ENT GRAPHICS GOTO 1 9 9 0 0 0 ENT");
     let mut longest = 0.0_f64;
     for key in ["UP", "UP", "L", "X", "5", "END", "DOWN", "UP"] {

@@ -34,7 +34,7 @@ fn press(link: &Link, keys: &str) {
 }
 
 #[test]
-fn what_was_done_by_the_wall_is_seen_again() {
+fn what_was_done_in_real_time_is_seen_again() {
     let path = std::env::temp_dir().join(format!("bahn-live-{}", std::process::id()));
     let _ = std::fs::remove_file(&path);
     let mut trainee = Trainee::at("mill");
