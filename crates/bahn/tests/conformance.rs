@@ -1,6 +1,8 @@
 //! The registry of what each function does: complete, proven, shown by the commands.
 #![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
+#[path = "support/house.rs"]
+mod house;
 mod support;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,10 +12,6 @@ use std::path::{Path, PathBuf};
 use bahn_parameters::conformance::{Effect, Entry, Kind, all};
 use bahn_parameters::{ControlModel, Definition, MessageId};
 use support::{Folder, holds_document};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 fn source_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).into_iter().flatten() {
@@ -35,11 +33,10 @@ struct Source {
 /// All tests by name, `crate::name`: functions after `#[test]`.
 fn tests() -> BTreeMap<String, Vec<Source>> {
     let mut found: BTreeMap<String, Vec<Source>> = BTreeMap::new();
-    for room in fs::read_dir(root().join("crates")).unwrap() {
-        let room = room.unwrap();
+    for room in house::rooms() {
         let mut files = Vec::new();
-        source_files(&room.path().join("src"), &mut files);
-        source_files(&room.path().join("tests"), &mut files);
+        source_files(&room.join("src"), &mut files);
+        source_files(&room.join("tests"), &mut files);
         for file in files {
             let text = fs::read_to_string(file).unwrap();
             let parts: Vec<&str> = text.split("#[test]").collect();
@@ -58,7 +55,7 @@ fn tests() -> BTreeMap<String, Vec<Source>> {
                     .split("manual(\"")
                     .skip(1)
                     .filter_map(|rest| rest.split('"').next());
-                let programs = programs.map(|name| room.path().join(format!("tests/programs/{name}.H")));
+                let programs = programs.map(|name| room.join(format!("tests/programs/{name}.H")));
                 let programs: String = programs
                     .filter_map(|path| fs::read_to_string(path).ok())
                     .collect();
@@ -66,7 +63,7 @@ fn tests() -> BTreeMap<String, Vec<Source>> {
                     test,
                     file: format!("{text}{programs}"),
                 };
-                let name = format!("{}::{name}", room.file_name().to_string_lossy());
+                let name = format!("{}::{name}", house::name(&room));
                 found.entry(name).or_default().push(source);
             }
         }
@@ -350,7 +347,7 @@ fn the_commands_say_what_is_not_done() {
 #[test]
 fn the_machine_says_it_too() {
     let folder = Folder::with_program("L X+10 R0 FMAX\nL X+12 R0 FMAX M96\nL X+13 R0 FMAX M128");
-    let mill = root().join("machines/mill");
+    let mill = house::root().join("machines/mill");
     let run = |options: &str| {
         let mill = mill.display();
         folder.bahn(&format!(

@@ -1,12 +1,13 @@
 //! The documents lead where they say, and the index knows them all.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
+#[path = "support/house.rs"]
+mod house;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use house::root;
 
 /// The pages that people read, from the root of the project.
 fn pages() -> Vec<PathBuf> {
@@ -90,8 +91,7 @@ fn decisions_name_files_that_are_there() {
         let named: Vec<_> = places.split('`').skip(1).step_by(2).collect();
         assert!(!named.is_empty(), "no file is named: {row}");
         for file in named.iter().filter(|name| name.contains('/')) {
-            let there = root().join("crates").join(file).exists() || root().join(file).exists();
-            assert!(there, "{file} is not there: {row}");
+            assert!(house::file(file).exists(), "{file} is not there: {row}");
         }
         count += 1;
     }
@@ -117,8 +117,8 @@ fn the_map_names_the_tests_of_its_promises() {
         let (file, test) = named
             .split_once("::")
             .unwrap_or_else(|| panic!("no test is named: {row}"));
-        let source = fs::read_to_string(root().join("crates").join(file))
-            .unwrap_or_else(|_| panic!("{file} is not there: {row}"));
+        let source =
+            fs::read_to_string(house::file(file)).unwrap_or_else(|_| panic!("{file} is not there: {row}"));
         assert!(
             source.contains(&format!("fn {test}(")),
             "{file} has no test {test}: {row}"

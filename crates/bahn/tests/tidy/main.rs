@@ -1,6 +1,8 @@
 //! The order of the house: arrows between rooms, file lengths, unfinished work.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
+#[path = "../support/house.rs"]
+mod house;
 mod names;
 mod rooms;
 mod source;
@@ -12,6 +14,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::house::root;
 use crate::names::{Files, Texts};
 use crate::rooms::ROOMS;
 use crate::source::{code_of, has_word, source_files};
@@ -105,10 +108,6 @@ const NAMES_OF_CONTROLS: &[(&str, &str)] = &[
 
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
 /// Whether a file is one of those that look for marks, and has them all.
 fn is_this_check(file: &Path) -> bool {
     file.ends_with("tests/tidy/main.rs")
@@ -119,9 +118,8 @@ fn arrows_point_down() {
     let disorder = disorder(ROOMS);
     assert!(disorder.is_empty(), "{}", disorder.join("\n"));
     assert_eq!(dependencies(&root().join(DATA)), [""; 0]);
-    for entry in fs::read_dir(root().join("crates")).unwrap() {
-        let folder = entry.unwrap().path();
-        let room = folder.file_name().unwrap().to_string_lossy().into_owned();
+    for folder in house::rooms() {
+        let room = house::name(&folder);
         let (_, allowed) = ROOMS.iter().find(|(name, _)| *name == room).unwrap_or_else(|| {
             panic!("the room {room} is not in the plan of the house: add it to ROOMS and ARCHITECTURE.md")
         });
@@ -227,11 +225,9 @@ fn rooms_have_one_concern() {
         let texts = texts.iter().filter(|file| !file.ends_with("tests.rs"));
         texts.map(|file| code_of(file).lines().count()).sum()
     };
-    let sizes = fs::read_dir(root().join("crates")).unwrap().map(|entry| {
-        let folder = entry.unwrap().path();
-        let room = folder.file_name().unwrap().to_string_lossy().into_owned();
-        (room, lines(source_files(&folder.join("src"))))
-    });
+    let sizes = house::rooms()
+        .into_iter()
+        .map(|folder| (house::name(&folder), lines(source_files(&folder.join("src")))));
     let large = sizes.filter(|(_, lines)| *lines > ROOM_MAX).map(|(room, _)| room);
     assert_as_known(
         large.collect(),
@@ -245,7 +241,7 @@ fn faces_alone_print() {
     let marks = ["println!(", "print!(", "process::exit", "stdout()", "stderr()"];
     let mut faults = Vec::new();
     for (room, _) in ROOMS.iter().filter(|(room, _)| !FACES.contains(room)) {
-        for file in source_files(&root().join("crates").join(room).join("src")) {
+        for file in source_files(&house::file(room).join("src")) {
             let code = code_of(&file);
             let lines = code
                 .lines()
@@ -463,22 +459,16 @@ fn assert_as_known(found: BTreeSet<String>, known: BTreeSet<String>) {
 
 /// The rooms by their names, with the texts of their files.
 fn rooms() -> Vec<(String, Texts)> {
-    let folders = fs::read_dir(root().join("crates"))
-        .unwrap()
-        .map(|entry| entry.unwrap());
-    let room = |folder: fs::DirEntry| {
-        let name = folder.file_name().to_string_lossy().into_owned();
-        (name, Texts::below(&folder.path().join("src")))
-    };
-    folders.map(room).collect()
+    let room = |folder: PathBuf| (house::name(&folder), Texts::below(&folder.join("src")));
+    house::rooms().into_iter().map(room).collect()
 }
 
 /// Whoever opens the documentation of a room sees its use.
 #[test]
 fn front_pages_have_an_example() {
-    let crates = std::fs::read_dir(root().join("crates")).unwrap();
-    let without: Vec<PathBuf> = crates
-        .map(|room| room.unwrap().path().join("src/lib.rs"))
+    let without: Vec<PathBuf> = house::rooms()
+        .into_iter()
+        .map(|room| room.join("src/lib.rs"))
         .filter(|file| !std::fs::read_to_string(file).unwrap().contains("\n//! ```"))
         .collect();
     assert!(without.is_empty(), "{without:?}");
@@ -503,9 +493,8 @@ fn no_type_is_too_much() {
 fn names_have_the_words_of_the_glossary() {
     let mut found = BTreeSet::new();
     let mut named = Vec::new();
-    for entry in fs::read_dir(root().join("crates")).unwrap() {
-        let folder = entry.unwrap().path();
-        let room = folder.file_name().unwrap().to_string_lossy().into_owned();
+    for folder in house::rooms() {
+        let room = house::name(&folder);
         let texts: Vec<String> = source_files(&folder)
             .iter()
             .map(|file| fs::read_to_string(file).unwrap())

@@ -1,0 +1,46 @@
+//! The folders of the rooms, which stand below `crates` in any depth.
+#![allow(dead_code, reason = "each test uses a part")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The folder of the project.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .find(|folder| folder.join("Cargo.lock").exists())
+        .unwrap()
+        .to_owned()
+}
+
+/// The folder of each room, by name.
+pub fn rooms() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    manifests_below(&root().join("crates"), &mut found);
+    found.sort();
+    found
+}
+
+fn manifests_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        if path.join("Cargo.toml").exists() {
+            found.push(path);
+        } else if path.is_dir() {
+            manifests_below(&path, found);
+        }
+    }
+}
+
+/// The name of a room.
+pub fn name(room: &Path) -> String {
+    room.file_name().unwrap().to_string_lossy().into_owned()
+}
+
+/// A file that is named as the documents name it, from its room on: `path/src/frame.rs`.
+pub fn file(named: &str) -> PathBuf {
+    let (room, rest) = named.split_once('/').unwrap_or((named, ""));
+    rooms()
+        .into_iter()
+        .find(|folder| name(folder) == room)
+        .map_or_else(|| root().join(named), |folder| folder.join(rest))
+}
