@@ -56,7 +56,7 @@ const MONITOR_VOLTS: f64 = 15.0;
 const STEP_VOLTS: f64 = 9.7e-6;
 
 impl Adjustment {
-    /// All of them.
+    /// Every adjustment, in the order of the variants.
     pub const ALL: [Adjustment; 22] = [
         Adjustment::ServoLag,
         Adjustment::Transient,

@@ -5,11 +5,11 @@ use std::sync::OnceLock;
 
 use crate::{ControlModel, Definition};
 
-/// The TNC 407/415/425.
+/// What the parameters of the TNC 407/415/425 do, and what too small and too large values cause.
 const TNC_4XX: &str = include_str!("../data/meanings.tsv");
 /// The user parameters of the TNC 360; its other ones are those of the TNC 407.
 const TNC_360: &str = include_str!("../data/meanings-tnc360.tsv");
-/// The TNC 151/155.
+/// Those of the TNC 151/155, with their own numbers from 0 to 263.
 const TNC_15X: &str = include_str!("../data/meanings-tnc151-155.tsv");
 
 /// What a commissioning engineer wants to know of a number.

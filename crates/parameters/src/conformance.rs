@@ -21,11 +21,11 @@ use crate::{ControlModel, Definition};
 /// Kinds of functions, each with a table of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
-    /// `M3`.
+    /// M functions by their number: `M3`.
     MFunction,
     /// `CYCL DEF 1`, `TCH PROBE 0`.
     Cycle,
-    /// `FN14`, `FORMULA`.
+    /// Q parameter functions and formulas: `FN14`, `FORMULA`.
     Fn,
     /// Words and blocks of part programs: `RND`, `DLG-CALL`.
     Word,
@@ -109,7 +109,7 @@ impl Effect {
     /// All effects, most first.
     pub const ALL: [Effect; 3] = [Effect::Acts, Effect::Partly, Effect::None];
 
-    /// `acts`, `partly`, `none`.
+    /// The word of the table: `acts`, `partly`, `none`.
     pub const fn id(self) -> &'static str {
         match self {
             Effect::Acts => "acts",

@@ -10,7 +10,7 @@ use crate::{ControlModel, ListText, ParameterId, ParameterList};
 pub struct Inconsistency {
     /// The parameter that is wrong, or one of them.
     pub id: ParameterId,
-    /// The rule.
+    /// What the manual demands, as a sentence about the fault: "the axis cannot move ..".
     pub rule: &'static str,
     /// What it is here.
     pub detail: String,

@@ -20,7 +20,7 @@ const TNC_15X: &str = include_str!("../data/machine-parameters-tnc151-155.tsv");
 /// How a value is best written [000:10019-10046].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Decimal number.
+    /// A decimal number, with as many decimals as the row allows.
     Decimal,
     /// Binary number of so many digits, `%00110`; bit 0 is the rightmost.
     Binary(usize),
@@ -31,7 +31,7 @@ pub enum Format {
 /// When a changed value takes effect [000:10088].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reaction {
-    /// At once.
+    /// It acts at once.
     None,
     /// The control must be restarted.
     Reset,
@@ -54,9 +54,9 @@ pub enum Change {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Definition {
-    /// Number and index.
+    /// Number, and index of axis or range where there is one.
     pub id: ParameterId,
-    /// What it is.
+    /// What it sets, in English, as lists show it.
     pub name: &'static str,
     /// Least value. Minus infinity where no range is printed.
     pub min: f64,
@@ -82,7 +82,7 @@ pub struct Definition {
     pub values: &'static str,
     /// Controls and software versions that have it.
     pub versions: &'static str,
-    /// Contradictions and decisions.
+    /// Where the manuals contradict each other, and what was decided.
     pub notes: &'static str,
     /// Where the manuals print it, as `000:10095`.
     pub source: &'static str,

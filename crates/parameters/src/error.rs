@@ -23,13 +23,13 @@ pub enum ParameterError {
     /// The value is outside the parameter's range.
     #[error("{id}: {value} is not between {min} and {max}")]
     OutOfRange {
-        /// The parameter.
+        /// The parameter that the entry names.
         id: ParameterId,
-        /// The value given.
+        /// The value of the entry, in the parameter's unit.
         value: f64,
-        /// Least value.
+        /// Least value that its row allows.
         min: f64,
-        /// Greatest value.
+        /// Greatest value that its row allows.
         max: f64,
     },
     /// The value has a fraction, and the parameter takes whole numbers.
@@ -47,7 +47,7 @@ pub enum ParameterError {
     /// The list gives the parameter twice; the first value counts.
     #[error("{id} is already defined in line {first_line}")]
     DoublyDefined {
-        /// The parameter.
+        /// The parameter that has two entries.
         id: ParameterId,
         /// Line of the list, from 1, that defines it first.
         first_line: usize,

@@ -124,7 +124,7 @@ impl Travel {
 pub enum Seen {
     /// In the servo step in which it is so; its message is there with the next contour cycle.
     ServoStep,
-    /// In the contour cycle.
+    /// In the contour cycle, where nominal positions are made.
     ContourCycle,
     /// In the PLC scan.
     Scan,
@@ -147,7 +147,7 @@ impl Seen {
 /// A row of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
-    /// Which fault.
+    /// The name under which monitors report it.
     pub id: FaultId,
     /// What is so, in words.
     pub cause: &'static str,
@@ -161,7 +161,7 @@ pub struct Fault {
     pub reaction: Reaction,
     /// How far an axis still travels.
     pub travel: Travel,
-    /// What ends it.
+    /// What the operator must do to end it.
     pub clearing: Clearing,
     /// Where the manuals say it.
     pub source: &'static str,
@@ -187,7 +187,7 @@ macro_rules! faults {
             /// All rows, in the order of the table.
             pub const ALL: &[FaultId] = &[$(FaultId::$id),*];
 
-            /// Its row.
+            /// The row of the table that says message, reaction and clearing.
             pub const fn row(self) -> &'static Fault {
                 match self {
                     $(FaultId::$id => &Fault {

@@ -94,7 +94,7 @@ pub struct Limits {
     pub circle_axes_max: u8,
     /// Axes that move together on a helix [003:7761-7763] [000:141]; others than TNC 360 (inferred).
     pub helix_axes_max: u8,
-    /// Zero of M91.
+    /// From where the coordinates of a block with M91 count.
     pub machine_zero: MachineZero,
     /// Longest side of the blank, mm [003:2105]; TNC 407/415/425 [000:704-708]; TNC 151/155 (inferred).
     pub blank_side_max_mm: f64,
@@ -226,7 +226,7 @@ pub enum InchFeed {
 }
 
 impl InchFeed {
-    /// mm/min of F1.
+    /// Feed that F1 means in a program in inches, mm/min.
     pub const fn mm_min(self) -> f64 {
         match self {
             InchFeed::Whole => 25.4,
@@ -234,7 +234,7 @@ impl InchFeed {
         }
     }
 
-    /// The other reading.
+    /// The other reading, ten times this feed or a tenth of it.
     pub const fn other(self) -> InchFeed {
         match self {
             InchFeed::Whole => InchFeed::Tenths,

@@ -10,11 +10,11 @@ struct Choice<'a> {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Key {
-    /// `bit2 ..`
+    /// `bit2 ..`: number of the bit, 0 for the rightmost.
     Bit(u32),
-    /// `0=..`
+    /// `0=..`: the text stands for this value.
     Value(f64),
-    /// `+4 ..`
+    /// `+4 ..`: the text stands for all values that contain this power of 2.
     Summand(u64),
 }
 

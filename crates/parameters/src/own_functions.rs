@@ -14,7 +14,7 @@ use crate::technology::{Output, Technology};
 pub enum OwnFunction {
     /// It goes to the PLC.
     Out {
-        /// Where.
+        /// At the start or the end of its block, or ahead of its place.
         at: At,
         /// Where the path waits for its acknowledgement.
         synchronisation: Synchronisation,
@@ -28,7 +28,7 @@ pub enum OwnFunction {
 pub struct Lead {
     /// Way along the path, mm.
     pub distance_mm: Option<f64>,
-    /// Time, s.
+    /// Time before its place, s.
     pub time_s: Option<f64>,
 }
 

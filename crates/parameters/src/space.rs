@@ -11,7 +11,7 @@ pub use q::{PARAMETERS_MIN, QError, QName, QParameters, QStatus, Receivers};
 pub enum Content {
     /// Nothing, shown as `--`: no number, not 0 either. Machine parameters are never cleared.
     Cleared,
-    /// A number.
+    /// A number in the unit of what it sets.
     Number(f64),
 }
 

@@ -71,7 +71,7 @@ pub enum ControlAction {
     ProgramEnd,
     /// M6: the run stops, unless MP7440 bit 0 is set.
     ToolChange,
-    /// It orders the spindle.
+    /// It starts the spindle, stops it, or stops it as the run stops.
     Spindle(SpindleOrder),
     /// M19: the spindle is to be oriented.
     SpindleOrientation,
@@ -81,33 +81,33 @@ pub enum ControlAction {
     ModalCycleCall,
     /// M99: calls the cycle once.
     CycleCall,
-    /// M90.
+    /// M90: constant speed in corners, with servo lag only [000:5112-5114].
     ConstantSpeed,
-    /// M91.
+    /// M91: the block counts from machine zero [003:3533-3545].
     MachineZero,
-    /// M92.
+    /// M92: the block counts from the machine builder's datum [003:3547-3553].
     MachineDatum,
-    /// M93.
+    /// M93: the block counts from where the tool is [003:7481].
     ToolPosition,
-    /// M94.
+    /// M94: rotary axes are displayed below 360 degrees [003:7482].
     ReduceRotaryAxes,
-    /// M97.
+    /// M97: the path goes to the intersection, without a transition arc [003:7485].
     Intersection,
-    /// M98.
+    /// M98: an open corner is machined to the end of its element [003:7486].
     OpenContour,
-    /// M103.
+    /// M103: the feed is reduced as the tool plunges.
     PlungingFeed,
-    /// M109.
+    /// M109: on arcs, F is the feed of the cutting edge [000:5120-5126].
     FeedAtEdge,
-    /// M110.
+    /// M110: as M109, but only where this lowers the feed [000:5120-5126].
     FeedAtEdgeReduced,
-    /// M111.
+    /// M111: F is the feed of the tool's centre again [000:5120-5126].
     FeedAtCentre,
-    /// M112.
+    /// M112: rounds corners between uncompensated lines [000:5128-5158].
     CornerArcs,
-    /// M113.
+    /// M113: ends M112.
     SharpCorners,
-    /// M124.
+    /// M124: points nearer to each other than T are left out [000:5128-5158].
     LeaveOutPoints,
     /// M118: the handwheel moves axes beside the path [000:742].
     Superimpose,
@@ -207,11 +207,11 @@ pub enum Block {
     SpindleSpeed,
     /// `CYCL DEF 13`: the angle of orientation.
     OrientationAngle,
-    /// `FN15: PRINT`.
+    /// `FN15: PRINT`: a line for the data interface.
     Print,
-    /// `FN19: PLC`.
+    /// `FN19: PLC`: one or two numbers for the PLC.
     Plc,
-    /// `BLK FORM`.
+    /// `BLK FORM`: the blank of the graphics.
     Blank,
 }
 

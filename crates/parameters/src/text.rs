@@ -30,7 +30,7 @@ pub struct ListText {
     lines: Vec<usize>,
     entries: Vec<Entry>,
     faults: Vec<ListError>,
-    /// Faults beyond [`LISTED_MAX`].
+    /// How many faults were found beyond [`LISTED_MAX`].
     not_listed: usize,
 }
 
@@ -40,7 +40,7 @@ const LISTED_MAX: usize = 1000;
 /// A line of a list that holds a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// The parameter.
+    /// The parameter that the line sets.
     pub id: ParameterId,
     /// Its value, in range and rounded to what is stored.
     pub value: f64,

@@ -37,7 +37,7 @@ impl<'a> From<&'a Limits> for Reading<'a> {
 /// What a control model does not take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LimitFault {
-    /// The control's message.
+    /// What the control says to such a block.
     pub message: MessageId,
     /// Address or keyword of the word, to find it in the block.
     pub address: Box<str>,

@@ -17,9 +17,9 @@ pub(crate) fn takes_assignments(number: u16) -> bool {
 /// Which blocks a cycle is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleFunction {
-    /// `CYCL DEF`.
+    /// Cycles, in blocks `CYCL DEF n.m`.
     Definition,
-    /// `TCH PROBE`.
+    /// Probe functions, in blocks `TCH PROBE n.m`.
     Probe,
 }
 
@@ -38,29 +38,29 @@ pub enum Quantity {
     Axes,
     /// Axes with their directions.
     Directions,
-    /// Seconds.
+    /// A dwell time, s.
     Dwell,
-    /// Milliseconds.
+    /// A time, ms.
     Milliseconds,
     /// Degrees of a rotation.
     Rotation,
-    /// Degrees.
+    /// An angle, degrees.
     Angle,
     /// Degrees of the spindle.
     Orientation,
-    /// A factor.
+    /// The factor of a scaling, without unit.
     Factor,
     /// Factors of single axes, and a centre after `CC`, program units.
     AxisFactors,
     /// Feed, mm/min or what F counts in inches.
     Feed,
-    /// Sense of rotation.
+    /// Sense of rotation, `DR+` or `DR-`.
     Turn,
-    /// 0 or 1.
+    /// A choice, 0 or 1.
     Choice,
     /// The Q parameter that takes a result.
     Target,
-    /// Label numbers.
+    /// Numbers of labels, `1/2/3`.
     Labels,
     /// The name of a program.
     Program,
@@ -111,7 +111,7 @@ pub struct CycleParameter {
     pub name: &'static str,
     /// What it is given in.
     pub quantity: Quantity,
-    /// Its sign.
+    /// Which signs it may have, and whether `+` is printed.
     pub sign: Sign,
     /// Whether the block may stand without it.
     pub optional: bool,
@@ -122,7 +122,7 @@ pub struct CycleParameter {
 pub struct Cycle {
     /// What opens its blocks.
     pub function: CycleFunction,
-    /// Its number.
+    /// Its number n, which all its blocks n.m have.
     pub number: u16,
     /// Its name, as block n.0 shows it.
     pub name: &'static str,
@@ -181,10 +181,10 @@ const PECKG: CycleParameter = parameter("PECKG", Quantity::Length, Working);
 const DWELL: CycleParameter = parameter("DWELL", Quantity::Dwell, Unsigned);
 const FEED: CycleParameter = parameter("F", Quantity::Feed, Unsigned);
 const SIDE: CycleParameter = parameter("", Quantity::Side, Signed);
-/// [003:5250]
+/// Side of a pocket: two directions, no negative ones [003:5250].
 const POCKET_SIDE: CycleParameter = parameter("", Quantity::Side, NotNegative);
 const TURN: CycleParameter = optional(parameter("DR", Quantity::Turn, Signed));
-/// [003:5510]
+/// Finishing allowance, which cannot be negative [003:5510].
 const ALLOW: CycleParameter = parameter("ALLOW", Quantity::Length, NotNegative);
 const RADIUS: CycleParameter = parameter("RADIUS", Quantity::Length, Unsigned);
 const TRAVEL: CycleParameter = parameter("TRAVEL:", Quantity::Length, Unsigned);
@@ -235,12 +235,12 @@ const fn defined(number: u16, name: &'static str, blocks: &'static [&'static [Cy
     row(Definition, number, name, true, blocks)
 }
 
-/// A probe function.
+/// A row for a probe function, which no block calls.
 const fn probe(number: u16, name: &'static str, blocks: &'static [&'static [CycleParameter]]) -> Cycle {
     row(Probe, number, name, false, blocks)
 }
 
-/// The table.
+/// All cycles and probe functions, by what their blocks are made of.
 #[rustfmt::skip]
 pub const CYCLES: &[Cycle] = &[
     // [003:4929-4941] [003:4979-4983]

@@ -28,7 +28,7 @@ pub enum Severity {
 /// A fault of a program and its place in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// The control's message.
+    /// What the control says to it.
     pub message: MessageId,
     /// How bad it is.
     pub severity: Severity,
@@ -49,9 +49,9 @@ pub struct Diagnostic {
 /// Faults that were counted only, beyond [`MAX_DIAGNOSTICS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Uncounted {
-    /// Errors.
+    /// How many of them are errors.
     pub errors: usize,
-    /// Warnings.
+    /// How many of them are warnings.
     pub warnings: usize,
 }
 

@@ -26,14 +26,14 @@ pub enum Edit<'a> {
     },
     /// Puts other text in the place of a block.
     Replace {
-        /// The block.
+        /// Number of the block whose text goes.
         block: u32,
         /// Text of one block or more.
         text: &'a str,
     },
-    /// Takes blocks out.
+    /// Takes blocks out, one or more.
     Delete {
-        /// Their numbers.
+        /// Their numbers; BEGIN and END are refused.
         blocks: Range<u32>,
     },
     /// Writes the number of the normalised listing before every block.

@@ -5,7 +5,7 @@ use bahn_parameters::MessageId;
 /// A fault in the text of a block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockError {
-    /// The control's message.
+    /// What the control says to it.
     pub message: MessageId,
     /// Line within the block, 0 for its first; greater only in blocks of several lines joined by `~`.
     pub line: u32,

@@ -135,18 +135,18 @@ pub enum Landmark {
 /// One block that was read by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParsedBlock {
-    /// The block.
+    /// What it does, with its comment.
     pub block: Block,
     /// What is wrong with it; the first is that of [`Operation::Invalid`].
     pub faults: Vec<BlockError>,
-    /// Its words.
+    /// Where its words stand, in their order.
     pub words: Vec<WordSpan>,
 }
 
 /// Where a word stands in the text of its block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WordSpan {
-    /// What it is.
+    /// Address, number, name, comment or the like.
     pub kind: WordKind,
     /// Bytes of the whole word.
     pub span: Range<usize>,
@@ -154,10 +154,10 @@ pub struct WordSpan {
     pub value: Range<usize>,
 }
 
-/// What a word is.
+/// Kinds of words, which editors colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordKind {
-    /// The block's number.
+    /// The number in front of the block.
     Number,
     /// The `/` of an optional block.
     Skip,
@@ -167,7 +167,7 @@ pub enum WordKind {
     Address,
     /// A value by itself.
     Value,
-    /// Names and decoration.
+    /// A name of a program or cycle, or decoration.
     Text,
     /// A comment with its `;` or `*`, or annotation after dots.
     Comment,

@@ -16,7 +16,7 @@ pub struct RawBlock {
 }
 
 impl RawBlock {
-    /// The block's bytes.
+    /// Its bytes, out of the text that was cut.
     #[inline]
     pub fn text(self, text: &[u8]) -> BlockText<'_> {
         BlockText {

@@ -73,7 +73,7 @@ impl Operation {
         }
     }
 
-    /// Its M functions.
+    /// The M functions of the block; `None` where its kind takes none.
     pub fn m(&self) -> Option<&MFunctions> {
         self.parts().iter().find_map(|part| match part {
             Operation::Motion(Motion { m, .. })

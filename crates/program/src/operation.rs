@@ -39,7 +39,7 @@ pub enum Operation {
     BlankMax(Coordinates),
     /// `TOOL DEF n [L R]`; without data it announces the next tool [003:1875] [003:1931].
     ToolDefinition {
-        /// Tool number.
+        /// Number of the tool that is defined.
         tool: Value,
         /// Length compensation value, program units.
         length: Option<Value>,
@@ -52,7 +52,7 @@ pub enum Operation {
         tool: Option<Value>,
         /// Tool axis; absent keeps the axis.
         axis: Option<Axis>,
-        /// Spindle speed, rpm.
+        /// Spindle speed, rpm; absent keeps the speed.
         speed: Option<Value>,
         /// Oversize in length DL, program units.
         delta_length: Option<Value>,
@@ -77,7 +77,7 @@ pub enum Operation {
         /// Feed of the chamfer only (later controls).
         feed: Option<Value>,
     },
-    /// `STOP [M]` [003:2226].
+    /// `STOP [M]`: the run stops until NC START [003:2226].
     Stop(MFunctions),
     /// A block of M functions only (`M8`).
     Miscellaneous(MFunctions),
@@ -86,7 +86,7 @@ pub enum Operation {
     /// `CALL LBL n [REP r/r]`; `repeats` is `None` for a subprogram call or an empty REP
     /// [003:3678] [003:3782] [003:4648].
     CallLabel {
-        /// Label number.
+        /// Label that begins the section.
         label: u16,
         /// How often the section is repeated.
         repeats: Option<Value>,
@@ -95,22 +95,22 @@ pub enum Operation {
     CallProgram(Box<str>),
     /// FN 0-8 and 13: `target = a op b`; one-operand functions leave `b` at zero [003:4149-4276].
     Calculate {
-        /// The function.
+        /// What is calculated of the operands.
         function: Calculation,
         /// Number of the Q parameter that takes the result.
         target: u16,
-        /// First operand.
+        /// First operand, before the operator.
         a: Value,
-        /// Second operand.
+        /// Second operand, after the operator.
         b: Value,
     },
     /// FN 9-12: jump to a label if the condition holds [003:4301-4315].
     Jump {
-        /// The comparison.
+        /// What must hold between the operands.
         condition: Condition,
-        /// First operand.
+        /// First operand, after `IF`.
         a: Value,
-        /// Second operand.
+        /// Second operand, before `GOTO`.
         b: Value,
         /// Label to go to.
         label: u16,
@@ -121,21 +121,21 @@ pub enum Operation {
     Print(Box<[Value]>),
     /// FN 19: PLC = a [/ b] [003:4387-4395].
     Plc {
-        /// First value.
+        /// First value for the PLC.
         a: Value,
-        /// Second value.
+        /// Second value, after `/`.
         b: Option<Value>,
     },
     /// `Q1 = formula` (TNC 415) [000:744].
     Formula {
         /// Number of the Q parameter that takes the result.
         target: u16,
-        /// The expression.
+        /// What stands right of `=`.
         expression: Box<Expression>,
     },
     /// `CYCL DEF n.m ...`: one block of a cycle definition.
     Cycle(Box<CycleBlock>),
-    /// `CYCL CALL [M]`.
+    /// `CYCL CALL [M]`: executes the cycle that was defined last.
     CycleCall(MFunctions),
     /// `TCH PROBE n.m ...`: one block of a probe function.
     Probe(Box<CycleBlock>),
@@ -191,9 +191,9 @@ impl Header {
 /// Unit of measure of a program [003:2101].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// Millimetres.
+    /// Words are in mm.
     Mm,
-    /// Inches (25.4 mm).
+    /// Words are in inches, 25.4 mm each.
     Inch,
 }
 
@@ -228,9 +228,9 @@ pub enum Value {
     Number(f64),
     /// The value of a Q parameter, with its sign turned when `negative`.
     Q {
-        /// Parameter number.
+        /// Number of the Q parameter.
         number: u16,
-        /// Written as `-Qn`.
+        /// Written as `-Qn`: the value counts with the other sign.
         negative: bool,
     },
 }
@@ -238,7 +238,7 @@ pub enum Value {
 /// An absolute or incremental value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Word {
-    /// The value.
+    /// The number or Q parameter after the letter, program units or degrees.
     pub value: Value,
     /// Written with `I` [003:767-777].
     pub incremental: bool,
@@ -357,12 +357,12 @@ impl PartialEq for Coordinates {
     }
 }
 
-/// A positioning block.
+/// A positioning block: how the tool goes where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Which path function.
+    /// Line or arc, Cartesian or polar.
     pub kind: MotionKind,
-    /// Cartesian words.
+    /// Words of the axes, program units or degrees.
     pub coordinates: Coordinates,
     /// `PR` of the polar forms.
     pub polar_radius: Option<Word>,
@@ -370,15 +370,15 @@ pub struct Motion {
     pub polar_angle: Option<Word>,
     /// `R` of CR with its sign [003:2861-2869].
     pub radius: Option<Value>,
-    /// `DR+` / `DR-`.
+    /// `DR+` or `DR-`, where the block has an arc that says it.
     pub direction: Option<Direction>,
-    /// Radius compensation word.
+    /// `RL`, `RR`, `R0`, `R+` or `R-`; absent keeps what is in force.
     pub compensation: Option<Compensation>,
-    /// Feed word.
+    /// `F` or `FMAX`; absent keeps the feed in force.
     pub feed: Option<Feed>,
     /// `NX NY NZ` of LN: components of the normal of the surface.
     pub normal: Option<Box<[Value; 3]>>,
-    /// M functions.
+    /// Its M functions, at most [`MFunctions::MAX`].
     pub m: MFunctions,
     /// What it leaves to the G functions in force; `None` where the block says all itself.
     pub modal: Option<Modality>,
@@ -387,19 +387,19 @@ pub struct Motion {
 /// The path function of a positioning block [003:2548-2560].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionKind {
-    /// `L`.
+    /// `L`: line.
     Line,
     /// `C`: arc about CC.
     Circle,
     /// `CR`: arc with radius.
     CircleRadius,
-    /// `CT`: tangential arc.
+    /// `CT`: arc tangential to the element before it.
     CircleTangential,
-    /// `LP`.
+    /// `LP`: line to a polar position.
     LinePolar,
     /// `CP`, with a tool-axis word a helix.
     CirclePolar,
-    /// `CTP`.
+    /// `CTP`: tangential arc to a polar position.
     CircleTangentialPolar,
     /// `LN`: a line with the normal of the surface [000:175].
     LineNormal,
@@ -439,7 +439,7 @@ pub enum Direction {
     Clockwise,
 }
 
-/// Radius compensation word.
+/// What the word of the radius compensation says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compensation {
     /// `R0`: tool centre on the contour.
@@ -454,7 +454,7 @@ pub enum Compensation {
     Shorten,
 }
 
-/// Feed word.
+/// What the feed word says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feed {
     /// `FMAX`: rapid traverse in this block.
@@ -476,7 +476,7 @@ impl MFunctions {
     /// Most M functions in one block.
     pub const MAX: usize = 3;
 
-    /// The codes.
+    /// The numbers after `M`, in their order.
     #[inline]
     pub fn codes(&self) -> &[u16] {
         self.codes.get(..usize::from(self.count)).unwrap_or_default()
@@ -521,24 +521,24 @@ impl MFunctions {
 pub struct MArgument {
     /// The M function it belongs to.
     pub code: u16,
-    /// Address letter.
+    /// The letter before the value: `F` of M103, `T` and `A` of M112.
     pub letter: char,
-    /// Its value.
+    /// What stands after the letter; the M function says its unit.
     pub value: Value,
 }
 
 /// The calculations of FN 0-8 and 13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Calculation {
-    /// FN0: assign.
+    /// FN0: assignment of one operand.
     Assign,
-    /// FN1: addition.
+    /// FN1: sum of the operands.
     Add,
-    /// FN2: subtraction.
+    /// FN2: first operand less the second.
     Subtract,
-    /// FN3: multiplication.
+    /// FN3: product of the operands.
     Multiply,
-    /// FN4: division (DIV).
+    /// FN4: first operand divided by the second (DIV).
     Divide,
     /// FN5: square root (SQRT).
     SquareRoot,
@@ -555,13 +555,13 @@ pub enum Calculation {
 /// The comparisons of FN 9-12.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// FN9: EQU.
+    /// FN9, `EQU`: both are equal.
     Equal,
-    /// FN10: NE.
+    /// FN10, `NE`: they are not equal.
     NotEqual,
-    /// FN11: GT.
+    /// FN11, `GT`: the first is greater.
     Greater,
-    /// FN12: LT.
+    /// FN12, `LT`: the first is less.
     Less,
 }
 
@@ -581,29 +581,29 @@ pub enum Expression {
 pub enum UnaryFunction {
     /// `NEG`, or a sign before a bracket.
     Negate,
-    /// `SQ`.
+    /// `SQ`: x².
     Square,
-    /// `SQRT`.
+    /// `SQRT`, of a negative number an error.
     SquareRoot,
-    /// `SIN`.
+    /// `SIN` of degrees.
     Sine,
-    /// `COS`.
+    /// `COS` of degrees.
     Cosine,
-    /// `TAN`.
+    /// `TAN` of degrees.
     Tangent,
-    /// `ASIN`.
+    /// `ASIN`, in degrees.
     ArcSine,
-    /// `ACOS`.
+    /// `ACOS`, in degrees.
     ArcCosine,
-    /// `ATAN`.
+    /// `ATAN`, in degrees.
     ArcTangent,
-    /// `LN`.
+    /// `LN`, to base e.
     NaturalLogarithm,
-    /// `LOG`, base 10.
+    /// `LOG`, to base 10.
     Logarithm,
-    /// `EXP`.
+    /// `EXP`: e to this power.
     Exponential,
-    /// `ABS`.
+    /// `ABS`: without its sign.
     Absolute,
     /// `INT`: decimals cut off.
     Integer,
@@ -614,15 +614,15 @@ pub enum UnaryFunction {
 /// Operators between two operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BinaryOperator {
-    /// `+`.
+    /// `+`: sum.
     Add,
-    /// `-`.
+    /// `-`: first operand less the second.
     Subtract,
-    /// `*`.
+    /// `*`: product.
     Multiply,
-    /// `/` or `DIV`.
+    /// `/` or `DIV`: first operand divided by the second.
     Divide,
-    /// `^`.
+    /// `^`: first operand to the power of the second.
     Power,
 }
 
@@ -658,7 +658,7 @@ pub enum CycleWord {
     AxisDirection(Axis, Direction),
     /// `F value` or `FMAX`.
     Feed(Feed),
-    /// `DR+` / `DR-`.
+    /// `DR+` or `DR-`: sense of rotation.
     Direction(Direction),
     /// Label list `1/2/3` (cycle 14).
     Labels(Box<[u16]>),
@@ -666,7 +666,7 @@ pub enum CycleWord {
     Target(u16),
     /// `Qn = value` (OEM cycles).
     Assignment(u16, Value),
-    /// `M` function.
+    /// `M` function, by its number.
     M(u16),
 }
 

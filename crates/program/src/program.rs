@@ -59,7 +59,7 @@ pub struct NumberedBlock {
     pub number: u32,
     /// Line in the file, from 1.
     pub line: u32,
-    /// The block.
+    /// What it does.
     pub block: Block,
 }
 
@@ -167,7 +167,7 @@ impl Program {
         self.end().is_none() && self.growth.is_none()
     }
 
-    /// Number of chunks.
+    /// How many chunks of [`Program::CHUNK_SIZE`] its blocks fill.
     pub fn chunk_count(&self) -> u32 {
         self.block_count().div_ceil(Program::CHUNK_SIZE)
     }

@@ -22,7 +22,7 @@ pub(crate) struct Sequence {
 struct Open {
     function: CycleFunction,
     number: u16,
-    /// Block n.0.
+    /// Number of block n.0 in the program.
     first_block: u32,
     /// The sub-block that comes next; `None` after a fault, so that it is reported once.
     next: Option<u16>,

@@ -7,7 +7,7 @@ use crate::ControlModel;
 /// The name of a machine parameter: `MP1010.0`, `MP7410`, or `MP0` on a TNC 151.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ParameterId {
-    /// The number.
+    /// The number after `MP`: 10 to 7690, on a TNC 151/155 0 to 263.
     pub number: u16,
     /// The index after the point; a parameter with one value only has none.
     pub index: Option<u8>,

@@ -32,9 +32,9 @@ pub struct AxisParameters {
     pub plc_axis: bool,
     /// Where encoder and drive are connected.
     pub wiring: WiringParameters,
-    /// Measuring system.
+    /// Signal period and checks of the encoder.
     pub encoder: EncoderSettings,
-    /// Nominal value output.
+    /// Sign and scale of the voltage to the drive.
     pub output: OutputSettings,
     /// Interval of the automatic offset adjustment, s, 0 without: MP1220 (old MP252, 20 ms)
     /// [000:5022-5037] [001:2591-2606].
@@ -54,11 +54,11 @@ pub struct AxisParameters {
     pub monitoring: MonitoringSettings,
     /// Compensation of the mechanics' errors.
     pub compensation: CompensationSettings,
-    /// Reference run.
+    /// Direction, feeds and sequence of the reference run.
     pub reference: ReferenceParameters,
-    /// Limits and datums.
+    /// Software limits and datums.
     pub travel: TravelParameters,
-    /// Master and slave.
+    /// Which axis it follows, and how closely: MP850 to MP860.
     pub synchronization: Synchronization,
     /// Digital speed controller, TNC 425 with MP1900 only.
     pub digital: Option<SpeedLoopSettings>,
@@ -102,7 +102,7 @@ pub struct ReferenceParameters {
     /// Place in the automatic sequence, 0 for the first axis: MP1340; `None` for an axis that is not named
     /// (old: MP59, one of 24 sequences) [000:4649-4654] [001:1443-1478].
     pub place: Option<u8>,
-    /// Sequence.
+    /// How the axis finds its reference mark: MP1350 (old MP242+) [000:4656-4667].
     pub kind: MarkKind,
     /// Spacing of distance-coded marks, mm: old MP242+ times 20 µm [001:977-987] [001:1480]; 20 mm where the
     /// list has no such parameter (inferred: the spacing of the LS scales).

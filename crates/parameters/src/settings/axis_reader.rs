@@ -7,7 +7,7 @@ pub(super) struct AxisReader<'a> {
     list: &'a ParameterList,
     /// Index that was asked for.
     wanted: u8,
-    /// Index that answers.
+    /// Index of the axis whose values are read: the fourth's where the model has no such axis.
     index: u8,
 }
 

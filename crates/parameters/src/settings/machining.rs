@@ -32,9 +32,9 @@ pub struct MFunctions {
     pub axes_wait: bool,
     /// The axes wait when TOOL CALL gives a spindle speed only: MP3030 = 0 [000:5645-5651].
     pub axes_wait_for_speed: bool,
-    /// M105 and M106 work.
+    /// M105 and M106 change to the second and first set of kv factors and reversal peaks: bit 3.
     pub m105_works: bool,
-    /// M103 F works.
+    /// M103 F reduces the feed of plunging: bit 4.
     pub m103_works: bool,
 }
 
@@ -88,7 +88,7 @@ pub struct ProbeSettings {
 /// How the probe is turned by 180° when its centre offset is calibrated: MP6160 [000:7654] [000:10311].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProbeTurn {
-    /// Not at all.
+    /// Neither the control nor the PLC turns it.
     Off,
     /// The control orients the spindle.
     ByControl,
@@ -156,9 +156,9 @@ pub struct GraphicsSettings {
 /// The decimal sign: MP7280 (old MP92 bit 0) [003:7317-7323] [001:1923].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decimal {
-    /// `0,5`
+    /// Numbers are shown as `0,5`.
     Comma,
-    /// `0.5`
+    /// Numbers are shown as `0.5`.
     Point,
 }
 

@@ -25,7 +25,7 @@ pub struct OperationParameters {
     pub manual_feed_shown: bool,
     /// S and M are no longer active after NC stop in manual modes: MP7270 + 2 of the TNC 360 [003:7307-7315].
     pub stop_ends_m: bool,
-    /// Overrides.
+    /// Where the overrides act, and in which steps.
     pub overrides: OverrideParameters,
     /// Return to the contour and block scan.
     pub restart: RestartParameters,
@@ -33,7 +33,7 @@ pub struct OperationParameters {
     pub tools: ToolParameters,
     /// Datums and traverse ranges.
     pub datums: DatumParameters,
-    /// Handwheel.
+    /// Which handwheel there is, and how it moves the axes.
     pub handwheel: HandwheelParameters,
     /// The length of the tool counts in the display of the tool axis: MP7285 = 1; old: no
     /// [000:6428-6434].
@@ -77,9 +77,9 @@ pub enum Station {
 /// In which steps an override acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OverrideSteps {
-    /// 2 % [001:3262-3265] [003:7434-7443].
+    /// Steps of 2 % [001:3262-3265] [003:7434-7443].
     TwoPercent,
-    /// 1 % [000:5583] [003:7434-7443], called continuous on the TNC 151/155.
+    /// Steps of 1 % [000:5583] [003:7434-7443], called continuous on the TNC 151/155.
     OnePercent,
     /// 0.01 % up to 2.5 %, 0.75 % above [000:5583].
     NonLinear,
@@ -103,7 +103,7 @@ pub struct OverrideParameters {
 pub struct RestartParameters {
     /// Return to the contour works.
     pub return_to_contour: bool,
-    /// Block scan works.
+    /// The operator may begin within a program: MP7680 bit 2.
     pub block_scan: bool,
     /// The scan passes over programmed stops and M06.
     pub passes_stops: bool,
@@ -128,7 +128,7 @@ pub struct ToolOutput {
 /// What of a tool is handed to the PLC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToolOutputKind {
-    /// Nothing.
+    /// Nothing is handed over.
     None,
     /// The number of the tool.
     Tool,
@@ -138,7 +138,7 @@ pub enum ToolOutputKind {
     FixedPocket,
 }
 
-/// Tools [000:8994-9283].
+/// Tool table, magazine and tool output to the PLC [000:8994-9283].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolParameters {
     /// Lines of the tool table, 0 without one: MP7260 (old MP225) [000:9103-9111].
@@ -170,7 +170,7 @@ pub struct DatumParameters {
     pub table_from_machine: bool,
 }
 
-/// Handwheel [000:8060-8446].
+/// The handwheel and its inputs [000:8060-8446].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandwheelParameters {
     /// Which one: MP7640 (old MP171) [000:8096-8106] [001:2208-2226].
@@ -191,10 +191,10 @@ pub struct HandwheelParameters {
     pub jog_percent: [f64; 3],
 }
 
-/// Handwheels.
+/// The handwheels that can be connected, by the number of MP7640.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handwheel {
-    /// None.
+    /// MP7640 = 0: there is no handwheel.
     None,
     /// MP7640 = 1: HR 330, all keys to the NC.
     Hr330,
@@ -202,11 +202,11 @@ pub enum Handwheel {
     Hr130,
     /// 3: HR 330, direction and rapid keys to the PLC.
     Hr330Plc,
-    /// 4: HR 332.
+    /// 4: HR 332, keys to the PLC.
     Hr332,
     /// 5: up to three HR 150 with HRA 110.
     Hra110,
-    /// 6: HR 410.
+    /// MP7640 = 6: HR 410.
     Hr410,
     /// HE 310, two axes at once; TNC 151/155 only.
     He310,
@@ -216,7 +216,7 @@ pub enum Handwheel {
 /// [000:6907-6926].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UserParameter {
-    /// The parameter.
+    /// The parameter that may be changed.
     pub id: ParameterId,
     /// Line of the PLC dialogue file that names it.
     pub dialogue_line: u16,

@@ -6,15 +6,15 @@ use crate::ParameterList;
 const TIMERS: usize = 48;
 /// Counters that have a preset [000:11826-11867].
 const COUNTERS: usize = 32;
-/// Positions of MP4210.
+/// Positions of MP4210, which the PLC reads from D768 on.
 const POSITIONS: usize = 48;
 /// The first of MP4210 that the marker form takes as a datum correction [000:16182].
 const CORRECTIONS_FROM: usize = 32;
-/// Traverse ranges [000:3510-3520].
+/// Traverse ranges that the PLC may choose [000:3510-3520].
 const RANGES: usize = 3;
-/// Words of MP4310.
+/// Words of MP4310, W976 to W988 [000:11725-11740].
 const WORDS: usize = 7;
-/// Axes of MP4220.
+/// Axes that have a feed in MP4220 [000:11720-11724].
 const AXES: usize = 5;
 /// One unit of the timers of the TNC 151/155, s [001:3281-3285].
 const OLD_UNIT_S: f64 = 0.02;

@@ -46,14 +46,14 @@ pub struct SpindleParameters {
 /// How the speed of the spindle is put out [000:5444-5472].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpindleOutput {
-    /// Not at all.
+    /// No speed is put out.
     None,
     /// As S code of DIN 66025 with strobe.
     Coded {
         /// At every TOOL CALL, not only when the speed changes.
         always: bool,
     },
-    /// As voltage.
+    /// As voltage of output S.
     Analogue {
         /// When the gear range is put out.
         gear: GearSignal,
@@ -63,18 +63,18 @@ pub enum SpindleOutput {
 /// When the gear range is put out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GearSignal {
-    /// When it changes.
+    /// When the range changes: MP3010 = 3 or 6.
     OnChange,
-    /// At every TOOL CALL.
+    /// At every TOOL CALL: MP3010 = 4 or 7.
     Always,
-    /// Never.
+    /// Never: MP3010 = 5 or 8.
     Never,
 }
 
 /// What output S is for when the spindle does not use it, MP3010 less than 3 [000:9819-9860].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FreeOutput {
-    /// Nothing.
+    /// It stays at 0 V.
     None,
     /// A voltage proportional to the contour feed, 10 V at the feed of MP3012, mm/min.
     Feed {
@@ -87,7 +87,7 @@ pub enum FreeOutput {
     MFunctions,
 }
 
-/// Tapping [000:6060-6141] [001:1804-1812].
+/// How cycles 2, 17 and 18 drive the spindle [000:6060-6141] [001:1804-1812].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TappingParameters {
     /// Least and greatest feed override in cycle 2, %: MP7110.0 and .1 (old MP182, MP183).

@@ -2,7 +2,7 @@
 
 use crate::ParameterList;
 
-/// The tool probe.
+/// How the TT 110 is approached, and what it measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolProbeParameters {
     /// The cycles for measuring tools are permitted: MP6500 = 1.
@@ -33,7 +33,7 @@ pub struct ToolProbeParameters {
     pub centre_mm: [f64; 3],
 }
 
-/// MP6560 [000:7978-7982].
+/// Who orients the spindle when a standing tool is measured: MP6560 [000:7978-7982].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProbeOrientation {
     /// 0: not at all; standing tools are not measured.
@@ -44,7 +44,7 @@ pub enum ProbeOrientation {
     Plc(u8),
 }
 
-/// MP6507 [000:8007-8021].
+/// How the permissible error of MP6510 follows the radius of a turning tool: MP6507 [000:8007-8021].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToolProbeTolerance {
     /// 0: MP6510 whatever the radius.

@@ -23,7 +23,7 @@ const DECIMALS: u8 = 0b1111;
 /// The name of a parameter: `q102`, or `2:P7000` for P7000 of channel 2; `P7000` alone is of channel 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum QName {
-    /// System parameter.
+    /// System parameter: its number.
     Q(u32),
     /// Channel parameter: channel from 1 on, number.
     P(u8, u32),
@@ -138,15 +138,15 @@ impl QStatus {
 /// Who is told of a write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Receivers {
-    /// The interpolator.
+    /// The interpolator takes the new value.
     pub interpolator: bool,
-    /// The PLC.
+    /// The PLC is told.
     pub plc: bool,
-    /// The operating panel.
+    /// The operating panel shows the new value.
     pub panel: bool,
     /// A routine of the control that the write runs.
     pub procedure: bool,
-    /// The sample buffer.
+    /// The sample buffer records the write.
     pub sample: bool,
 }
 

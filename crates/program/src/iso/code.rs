@@ -62,7 +62,7 @@ pub(super) fn g_code(c: &mut Cursor) -> Parsed<u16> {
     c.required_integer(start, 999, "the number of the G function is missing")
 }
 
-/// G90 or G91.
+/// How words count after G90 or G91; every other code means G90.
 pub(super) fn distance(code: u16) -> Distance {
     match code {
         91 => Distance::Incremental,

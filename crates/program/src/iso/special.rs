@@ -288,7 +288,7 @@ impl Words {
     }
 }
 
-/// G24 to G27.
+/// G24, a chamfer, and G25 to G27, a rounding.
 fn corner(c: &mut Cursor, start: usize, code: u16, words: &Words) -> Parsed<Operation> {
     let Some(radius) = words.letter(b'R') else {
         return missing(c, start, "R is missing");

@@ -5,9 +5,9 @@ use bahn_path::{Axis, AxisSet};
 /// Whether words count from the datum or from the last position: G90 or G91.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Distance {
-    /// G90.
+    /// G90: words count from the datum.
     Absolute,
-    /// G91.
+    /// G91: words count from the last position.
     Incremental,
 }
 

@@ -82,7 +82,7 @@ impl<'a> Cursor<'a> {
         self.peek().to_ascii_uppercase()
     }
 
-    /// Passes over bytes.
+    /// Goes on by so many bytes, at most to the end.
     #[inline]
     pub(crate) fn advance(&mut self, count: usize) {
         self.position = (self.position + count).min(self.bytes.len());

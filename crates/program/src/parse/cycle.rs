@@ -120,7 +120,7 @@ fn label_list(c: &mut Cursor) -> Parsed<Vec<CycleWord>> {
 pub(super) enum Scope {
     /// CYCL DEF whose first parameter in the block is this.
     Cycle(Option<Quantity>),
-    /// TCH PROBE.
+    /// TCH PROBE, where an axis has a direction and `Qn` takes the result.
     Probe,
 }
 

@@ -30,7 +30,7 @@ pub(crate) const FUNCTIONS: &[(&str, UnaryFunction)] = &[
     ("FRAC", UnaryFunction::Fraction),
 ];
 
-/// Reads a formula.
+/// Reads what stands right of `=` in a formula.
 pub(super) fn expression(c: &mut Cursor) -> Parsed<Expression> {
     let mut nodes = 0;
     sum(c, &mut nodes)

@@ -407,7 +407,7 @@ mod test {
         m
     }
 
-    /// Coordinates from words.
+    /// The coordinates that a text of words gives.
     pub(super) fn words(text: &str) -> Coordinates {
         path::coordinates(&mut Cursor::new(text.as_bytes())).unwrap()
     }

@@ -113,7 +113,7 @@ pub(super) fn stop(c: &mut Cursor) -> Parsed<Option<Operation>> {
     Ok(Some(Operation::Stop(m_functions(c)?)))
 }
 
-/// `STOPM6`.
+/// Whether M follows without a blank: `STOPM6`.
 fn stop_touches_m(c: &mut Cursor) -> bool {
     let found = c
         .rest()

@@ -50,7 +50,7 @@ enum After {
     Name,
     /// Words that may touch each other.
     Path,
-    /// Words.
+    /// Words, each after a blank.
     Words,
 }
 
