@@ -5,7 +5,7 @@ use thiserror::Error;
 /// What can go wrong with a browser.
 #[derive(Debug, Error)]
 pub enum BrowserError {
-    /// There is no Chromium.
+    /// Neither `BAHN_CHROMIUM` nor the search path has a Chromium.
     #[error(
         "there is no Chromium: install it (`apt-get install chromium`, which `make test` does), or name it in BAHN_CHROMIUM"
     )]

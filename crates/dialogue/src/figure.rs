@@ -32,7 +32,7 @@ pub enum Shape {
 /// A part of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigurePart {
-    /// Its geometry.
+    /// Edge, path, dimension, arrow or the like, with its points.
     pub shape: Shape,
     /// The prompts at which it stands out, by their ids; none for what every cycle of the drawing has.
     pub ids: Vec<&'static str>,

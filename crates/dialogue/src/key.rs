@@ -22,7 +22,7 @@ pub enum KeyGroup {
     Cycle,
     /// Keys of the graphics.
     Graphics,
-    /// Axis keys.
+    /// Keys that name an axis.
     Axis,
     /// Digits, point and sign.
     Number,
@@ -58,10 +58,10 @@ impl KeyGroup {
 /// The language of what people read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Tongue {
-    /// Texts in English.
+    /// Screens and messages in English.
     #[default]
     English,
-    /// Texts in German.
+    /// Screens and messages in German.
     German,
 }
 

@@ -30,9 +30,9 @@ const END: &str = "M30";
 /// What kind of line it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Rapid traverse.
+    /// A line in rapid traverse.
     Rapid,
-    /// The contour.
+    /// A line of the contour, in feed.
     Feed,
     /// A subprogram, or another program.
     Called,

@@ -61,7 +61,7 @@ pub struct Graphics {
     sight: Sight,
     /// Threads cut, not the machine's own one.
     beside: bool,
-    /// The oscilloscope.
+    /// What is set and recorded of the oscilloscope.
     pub scope: Scope,
     serial: u64,
     /// What the last picture showed, and when it was made.

@@ -79,7 +79,7 @@ impl Programmed {
         self.sketch.as_ref().is_some_and(|sketch| !sketch.progress().1)
     }
 
-    /// The picture of it.
+    /// The drawing of the asked cycle, or of the programmed lines; `None` while it is off.
     pub fn picture(&self, magn: u8, turned: bool, colours: LineColours) -> Option<Picture> {
         if let Some((cycle, id)) = self.asked {
             return Picture::of_cycle(cycle, id);

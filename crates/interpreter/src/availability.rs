@@ -14,13 +14,13 @@ use crate::settings::{Rules, Settings};
 /// A function of a block that has a row of its own in the registry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Feature {
-    /// `M114`.
+    /// M function, by its number: `M114`.
     M(u16),
-    /// `CYCL DEF 19`.
+    /// Cycle, by its number: `CYCL DEF 19`.
     Cycle(u16),
-    /// `TCH PROBE 5`.
+    /// Probe function, by its number: `TCH PROBE 5`.
     Probe(u16),
-    /// `FN15`.
+    /// Q parameter function, by its number: `FN15`.
     Fn(u16),
     /// Blocks and words, by their name in the registry: [`words`].
     Word(&'static str),

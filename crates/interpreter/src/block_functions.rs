@@ -11,7 +11,7 @@ pub(crate) struct BlockFunctions {
     pub constant_speed: bool,
     /// M91, M92, M93: what the coordinates refer to [003:3533-3553].
     pub reference: Reference,
-    /// M97, M98.
+    /// M97, M98: how the radius compensation passes its corner.
     pub corner: Corner,
     /// M99, or M89 in force: call the cycle after the movement.
     pub cycle_call: bool,

@@ -15,7 +15,7 @@ use crate::settings::Settings;
 pub(crate) struct CycleData {
     pub machining: Collector,
     pub effective: Collector,
-    /// Cycle 20.
+    /// Cycle 20, as far as its blocks were read.
     pub contour_data: Collector,
     /// The last one of the machine builder.
     pub oem: Collector,
@@ -119,7 +119,7 @@ impl Collector {
 #[derive(Clone, Debug)]
 pub(crate) struct Definition {
     pub number: u16,
-    /// The block n.0.
+    /// Place of the block n.0.
     pub at: BlockRef,
     blocks: Vec<Vec<Resolved>>,
     unit_mm: f64,
@@ -136,7 +136,7 @@ pub(crate) enum Resolved {
         incremental: bool,
     },
     AxisFactor(Axis, f64),
-    /// Program units.
+    /// Centre of a scaling, program units.
     Centre(Axis, f64),
     Axis(Axis),
     AxisDirection(Axis, Direction),

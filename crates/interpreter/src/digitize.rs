@@ -13,7 +13,7 @@ use crate::error::Fault;
 use crate::modal::Modal;
 use crate::status::bars_probing;
 
-/// Cycle numbers.
+/// Number of TCH PROBE RANGE; that of MEANDER follows.
 const RANGE: u16 = 5;
 const MEANDER: u16 = 6;
 /// Greatest L.SPAC and P.P.INT, mm [003:6668].

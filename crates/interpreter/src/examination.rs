@@ -31,7 +31,7 @@ pub struct Examination {
 /// Whether a program was executed to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Complete {
-    /// It was.
+    /// It was executed to its end.
     Yes,
     /// A loop was not followed any farther.
     No,
@@ -44,13 +44,13 @@ pub enum Complete {
 pub struct Found {
     /// Number of the program; 0 is the one that was examined.
     pub program: usize,
-    /// What, and where.
+    /// The fault, with its block and line.
     pub fault: Diagnostic,
     title: Box<str>,
 }
 
 impl Found {
-    /// The headline.
+    /// Its own title, or else the message's text of the model.
     pub fn title(&self, model: ControlModel) -> &str {
         match &*self.title {
             "" => self.fault.message.text(model),

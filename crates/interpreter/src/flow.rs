@@ -11,17 +11,17 @@ pub(crate) enum Flow {
     Next,
     /// Go to a label (FN9-FN12).
     Jump(u16),
-    /// Subprogram call.
+    /// Subprogram call of a label.
     Call(u16),
     /// Section repeat: jump back this many times.
     Repeat(u16, u32),
-    /// LBL 0.
+    /// LBL 0: back to the block after the call.
     Return,
     /// CALL PGM or cycle 12.
     CallProgram(Box<str>),
-    /// END PGM reached.
+    /// END PGM: the program ends, and with the main program the run.
     EndOfProgram,
-    /// M2 or M30.
+    /// M2 or M30: the run ends in whatever program.
     EndOfRun,
     /// A block `number.sub` of the definition of a machine builder's cycle.
     OemDefinition(u16, u16),

@@ -20,7 +20,7 @@ pub(crate) struct Modal {
     /// After an interruption within a block: where the block began. Its incremental coordinates count from
     /// there, so that it ends where it was programmed to (inferred).
     pub increments_from: Option<Position>,
-    /// Coordinate transformations.
+    /// Shift, mirror image, rotation and scaling.
     pub frame: Frame,
     /// Working plane of the tool axis.
     pub plane: Plane,
@@ -29,7 +29,7 @@ pub(crate) struct Modal {
     pub contour_plane: Plane,
     /// Pole and circle centre, programmed coordinates, and the plane it was given in.
     pub pole: Option<(Plane, Point2)>,
-    /// Last PR, mm.
+    /// Polar radius that was programmed last, mm.
     pub polar_radius: Option<f64>,
     /// Last numeric feed, mm/min.
     pub feed_mm_min: Option<f64>,
@@ -41,7 +41,7 @@ pub(crate) struct Modal {
     pub tool: Option<Tool>,
     /// Length that the position in the tool axis contains, mm; `None` as long as nobody knows it.
     pub length_mm: Option<f64>,
-    /// Spindle speed, rpm.
+    /// Programmed spindle speed, rpm.
     pub speed_rpm: f64,
     pub spindle: Spindle,
     pub feed_law: FeedLaw,
@@ -84,7 +84,7 @@ pub(crate) struct Modal {
 /// The surface of cycle 27 in which a contour is recorded.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    /// Q16, mm.
+    /// Q16: radius of the cylinder, mm.
     pub radius_mm: f64,
     /// Q17: the rotary axis is programmed in program units, not in degrees.
     pub linear: bool,
@@ -220,7 +220,7 @@ impl Modal {
         q.preassign(preassigned::SPINDLE, spindle.q110());
     }
 
-    /// The spindle stops.
+    /// Sets the spindle to M5, and Q110 with it.
     pub fn stop_spindle(&mut self, q: &mut QTable) {
         self.set_spindle(self.spindle.stopped(), q);
     }

@@ -21,7 +21,7 @@ use crate::settings::Settings;
 pub(crate) struct Pen {
     /// Block being executed: the call block while a cycle runs.
     pub block: BlockRef,
-    /// Executed blocks.
+    /// How many blocks were executed so far.
     pub sequence: u64,
     /// Executed blocks since the last movement.
     pub since_motion: u64,

@@ -328,7 +328,7 @@ fn arc_to_workpiece(frame: &Frame, arc: &Arc) -> Result<Arc, Fault> {
 #[derive(Clone, Copy)]
 enum Beside {
     Nothing,
-    /// R+ and R-.
+    /// R+ and R-: the path is longer or shorter by the radius.
     Paraxial(Compensation),
     /// LN: how far the axes of the plane and the tool axis are displaced, mm.
     Surface([f64; 3]),

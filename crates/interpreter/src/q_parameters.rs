@@ -15,7 +15,7 @@ pub(crate) mod preassigned {
     pub const SPINDLE: u16 = 110;
     /// Coolant: 1 on, 0 off.
     pub const COOLANT: u16 = 111;
-    /// Overlap factor MP7430.
+    /// Overlap factor of pockets, MP7430.
     pub const OVERLAP: u16 = 112;
     /// Unit of the main program: 0 mm, 1 inch.
     pub const UNIT: u16 = 113;

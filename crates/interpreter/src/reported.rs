@@ -53,7 +53,7 @@ impl Reported {
         Ok(executes)
     }
 
-    /// Takes the warnings.
+    /// The warnings since the last time.
     pub fn take_warnings(&mut self) -> Vec<Warning> {
         std::mem::take(&mut self.warnings)
     }

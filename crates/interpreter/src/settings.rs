@@ -199,7 +199,7 @@ pub struct Rules {
     pub machine: MachineRules,
     /// MP7440: bits of the M functions [000:7298-7305].
     pub m_functions: MFunctionRules,
-    /// Tapping.
+    /// Override, dwell and spindle in cycles 2 and 17.
     pub tapping: TappingRules,
     /// Angle of M19 without cycle 13, degrees [000:5867].
     pub spindle_orientation_deg: f64,
@@ -216,7 +216,7 @@ pub struct Rules {
     pub acceleration_m_s2: PerAxis<f64>,
     /// MP1070: radial acceleration, m/s².
     pub radial_acceleration_m_s2: f64,
-    /// Touch probe.
+    /// Touch probe: feeds, distances and calibration.
     pub probe: ProbeRules,
     /// Digitizing: MP6120 to MP6270.
     pub scan: ScanRules,

@@ -69,13 +69,13 @@ impl Spindle {
 /// What is in force for swivel axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tilting {
-    /// Cycle 19.
+    /// Cycle 19: the tilted working plane, `None` without it.
     pub plane: Option<WorkingPlane>,
-    /// M114.
+    /// M114: the tip stays on the path while the head turns.
     pub compensates: bool,
-    /// M116.
+    /// M116: F of a rotary axis is mm/min at the surface.
     pub surface_feed: bool,
-    /// M126.
+    /// M126, M127: which way rotary axes take.
     pub way: Way,
 }
 
@@ -159,7 +159,7 @@ impl Status {
         self.tool = None;
     }
 
-    /// Transformations and feed.
+    /// Coordinate transformations, and the feed, mm/min; `None` once they are cancelled.
     pub(crate) fn programmed(&self) -> Option<(Frame, Option<f64>)> {
         self.programmed
     }

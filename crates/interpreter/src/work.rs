@@ -15,7 +15,7 @@ pub(crate) enum Pending {
     None,
     /// It waits for somebody to do it.
     Waiting(Box<ContourJob>),
-    /// Somebody does it.
+    /// Somebody does it, and sends what was wanted.
     Taken(Wanted),
 }
 

@@ -26,7 +26,7 @@ pub(crate) enum Piece {
     Eot,
     /// The block was right.
     Ack,
-    /// Negative acknowledgement, NAK.
+    /// The block was wrong and is sent again, NAK.
     Nak,
     /// Any other character between blocks.
     Other(u8),

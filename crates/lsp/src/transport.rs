@@ -24,7 +24,7 @@ const LINES_MAX: usize = 64;
 /// What was read from the client.
 #[derive(Debug)]
 pub enum Frame {
-    /// A whole message.
+    /// A message that could be read as a whole.
     Message(Box<Message>),
     /// No message, with the request that it was meant to be.
     Wrong(String, Option<RequestId>),

@@ -57,7 +57,7 @@ pub(crate) struct Device {
 }
 
 impl Device {
-    /// Reads `[device.NAME]`.
+    /// A device as the section `[device.NAME]` of the machine file describes it.
     pub fn read(name: String, section: Section) -> Device {
         let states = section.texts("states");
         let states = match states.as_slice() {

@@ -155,7 +155,7 @@ pub(crate) struct Probe {
 }
 
 impl Probe {
-    /// Reads `[probe]`.
+    /// The touch probe as the section `[probe]` of the machine file describes it.
     pub fn read(section: Section) -> Probe {
         let solids = section.list("solid").into_iter().map(|section| {
             let min = section.numbers::<3>("min");

@@ -71,7 +71,7 @@ pub(crate) struct Spindle {
 }
 
 impl Spindle {
-    /// Reads `[spindle]`.
+    /// The spindle as the section `[spindle]` of the machine file describes it; a servo step is `step_s`, s.
     pub fn read(section: Section, step_s: f64, seed: u64) -> Spindle {
         let turn = if section.flag("reversed").unwrap_or(false) {
             -1.0

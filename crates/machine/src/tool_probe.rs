@@ -60,7 +60,7 @@ pub(crate) struct ToolProbe {
 }
 
 impl ToolProbe {
-    /// Reads `[tool_probe]`.
+    /// The tool probe as the section `[tool_probe]` of the machine file describes it.
     pub fn read(section: Section) -> ToolProbe {
         let mut tools: Vec<TrueTool> = Vec::new();
         for own in section.list("tool") {

@@ -45,7 +45,7 @@ pub(crate) enum Passing {
     ByAngle,
     /// The path is tangential by construction, but for rounding; axes beside it keep to MP7460.
     Tangential,
-    /// Any angle: M90.
+    /// Any angle is passed at constant speed: M90.
     AnyAngle,
 }
 

@@ -185,7 +185,7 @@ pub struct Cut {
     pub covered_mm: f64,
     /// Path length that was left, mm.
     pub rest_mm: f64,
-    /// Nominal position.
+    /// Nominal position, mm or degrees.
     pub position: Position,
 }
 

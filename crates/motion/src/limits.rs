@@ -56,7 +56,7 @@ impl From<[f64; 2]> for SpindleGear {
 
 /// Least entry of MP1060 and MP1070, m/s².
 const LEAST_ACCELERATION_M_S2: f64 = 0.001;
-/// Greatest override, % [003:1135-1145].
+/// The most that an override potentiometer gives, % [003:1135-1145].
 const GREATEST_OVERRIDE_PERCENT: f64 = 150.0;
 /// Contour cycle in place of one that is not positive, s.
 const LEAST_CYCLE_S: f64 = 0.0001;
@@ -100,7 +100,7 @@ pub(crate) struct Dynamics {
     pub(crate) radial: f64,
     /// Cosine of the greatest change of direction that is passed.
     pub(crate) corner_cosine: f64,
-    /// Whether M90 acts.
+    /// Axes run with servo lag, so that M90 acts.
     pub(crate) servo_lag: bool,
     /// Contour cycle, s.
     pub(crate) cycle: f64,

@@ -5,9 +5,9 @@ use bahn_path::{Arc, Axis, CornerArc, Curve, PathElement, PerAxis, Placement, Po
 use crate::limits::{Dynamics, MAIN, Slowest};
 use crate::placed::Placed;
 
-/// The rotary axes.
+/// Axes in degrees.
 pub(crate) const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
-/// The parallel axes.
+/// Axes parallel to X, Y and Z.
 const PARALLEL: [Axis; 3] = [Axis::U, Axis::V, Axis::W];
 /// Shorter movements count as standstill, mm or degrees: a thousandth of the finest resolution of any model.
 const NO_LENGTH: f64 = 1e-7;

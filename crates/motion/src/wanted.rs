@@ -36,7 +36,7 @@ impl Wanted {
         self.stretches.push(number, wish);
     }
 
-    /// Drops all elements.
+    /// Drops all stretches, and the stop of single block.
     pub(crate) fn clear(&mut self) {
         self.stretches.clear();
         self.braking.set_stop(None);

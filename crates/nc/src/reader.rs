@@ -40,7 +40,7 @@ struct Run {
     decoder: Result<Decoder, Box<ProgramError>>,
     /// Which of the programs of the file it is.
     program: usize,
-    /// Executed blocks.
+    /// How many blocks were executed so far.
     sequence: u64,
     /// End of the last element that was handed out.
     position: Position,

@@ -45,7 +45,7 @@ impl Axis {
         Axis::W,
     ];
 
-    /// The axis letter.
+    /// The capital letter of its words in programs.
     pub const fn letter(self) -> char {
         match self {
             Axis::X => 'X',
@@ -108,7 +108,7 @@ impl fmt::Display for Axis {
 pub struct AxisSet(u16);
 
 impl AxisSet {
-    /// The empty set.
+    /// No axis at all.
     pub const EMPTY: AxisSet = AxisSet(0);
 
     /// Whether the axis is in the set.

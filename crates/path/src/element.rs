@@ -326,11 +326,11 @@ pub enum Voltage {
 pub struct ToolCall {
     /// Tool number 0..254.
     pub tool: u32,
-    /// Tool axis.
+    /// Axis along which the tool lies.
     pub axis: Axis,
-    /// Spindle speed, rpm.
+    /// Programmed spindle speed, rpm.
     pub speed_rpm: f64,
-    /// Shape of the tool.
+    /// Length, radii and point of the tool.
     pub shape: ToolShape,
     /// No block calls it: the life of the tool before is over (M101) [000:9175].
     pub at_end_of_life: bool,

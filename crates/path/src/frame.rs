@@ -23,7 +23,7 @@ use crate::{Axis, PerAxis, Plane, Position};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Plane of rotation.
+    /// Plane in which the rotation turns.
     pub plane: Plane,
     /// Datum shift of each axis, mm or degrees.
     pub shift: Position,

@@ -274,7 +274,7 @@ pub(crate) fn turn(matrix: &Matrix, vector: Vector) -> Vector {
     })
 }
 
-/// A vector turned back.
+/// Undoes the turn of a vector: of a rotation, the transposed matrix is the inverse.
 pub(crate) fn turn_back(matrix: &Matrix, vector: Vector) -> Vector {
     turn(&transposed(matrix), vector)
 }

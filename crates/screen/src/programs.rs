@@ -23,7 +23,7 @@ pub const NAME_MAX: usize = 16;
 pub struct Entry {
     /// Name with its type: `BRACKET.H`.
     pub name: String,
-    /// Bytes.
+    /// Size of the file, bytes.
     pub size: u64,
     /// `P`: a program that is protected against erasing and editing [003:1015-1023].
     pub protected: bool,
@@ -37,7 +37,7 @@ pub struct ProgramMemory {
     folder: PathBuf,
     /// Anew whenever a file was written: it keeps what it has read.
     inner: RwLock<FolderPrograms>,
-    /// Counts the changes.
+    /// Grows with each change that a list must show.
     version: AtomicU64,
 }
 

@@ -17,7 +17,7 @@ pub struct Screen {
     pub mode: String,
     /// The headings of both sides, that of the machine first [000:2784-2833].
     pub headings: Vec<Heading>,
-    /// The dialogue line.
+    /// What the control asks, and what was typed.
     pub dialogue: Dialogue,
     /// Messages, the oldest first.
     pub messages: Vec<MessageLine>,
@@ -25,9 +25,9 @@ pub struct Screen {
     pub program: Window,
     /// The window of the other side, when the screen is split.
     pub beside: Option<Window>,
-    /// The status display.
+    /// Positions, tool, spindle, feed and what is in force.
     pub status: Status,
-    /// The soft-key row.
+    /// Keys whose meaning the screen shows.
     pub soft_keys: SoftKeys,
     /// The window of the PLC program, when it has written something [000:6603-6617].
     pub plc_window: Option<Vec<PlcLine>>,
@@ -37,7 +37,7 @@ pub struct Screen {
     pub lamps: BTreeMap<String, bool>,
     /// The machine operating panel and the simulation.
     pub machine: MachineState,
-    /// The time line.
+    /// What can be gone back to, s since power-on.
     pub timeline: TimeLine,
     /// Why something stands or waits, in words; empty while everything goes on, or nothing is to be done.
     pub why: Vec<String>,
@@ -80,7 +80,7 @@ pub enum Layout {
 pub struct Heading {
     /// Its key: `MANUAL`, `HANDWHEEL`, `MDI`, `SINGLE`, `FULL`, `PROGRAM`, `TEST`.
     pub key: String,
-    /// Its words.
+    /// Its words in the language of the screen: `MANUAL OPERATION`.
     pub title: String,
     /// It has the keys of the keyboard.
     pub active: bool,
@@ -127,7 +127,7 @@ pub struct Window {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WindowKind {
-    /// Nothing.
+    /// It is not shown.
     #[default]
     Empty,
     /// Blocks of a program; the current one stands between two lines [003:574-588].
@@ -136,16 +136,16 @@ pub enum WindowKind {
     List,
     /// A table to edit.
     Table,
-    /// Large position display.
+    /// The position display in large letters.
     Positions,
-    /// Text to read.
+    /// Lines to read, such as help.
     Text,
 }
 
 /// A line of a window.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Line {
-    /// Its text.
+    /// Its text as it stands on the screen.
     pub text: String,
     /// It is the current one.
     pub current: bool,
@@ -164,9 +164,9 @@ pub enum Mark {
     Entry,
     /// Part of a marked section.
     Section,
-    /// It is wrong.
+    /// It cannot be read, or is refused.
     Fault,
-    /// Less important.
+    /// It is of less weight than the rest of the line.
     Quiet,
 }
 
@@ -193,7 +193,7 @@ pub struct Status {
     pub spindle_rpm: f64,
     /// Feed that is shown, mm/min or 0.1 inch/min as F stands on the screen.
     pub f: String,
-    /// Path speed, mm/min.
+    /// Actual speed along the path, mm/min.
     pub feed_mm_min: f64,
     /// F is highlighted: an axis has no feed enable [000:5352].
     pub f_inverse: bool,
@@ -219,19 +219,19 @@ pub struct Status {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Star {
-    /// Not there.
+    /// Nothing is on its way.
     #[default]
     Off,
     /// A program runs, or an M function or positioning is on its way.
     Steady,
-    /// It is interrupted.
+    /// What was on its way is interrupted.
     Blinking,
 }
 
 /// A line of the position display.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AxisLine {
-    /// The letter.
+    /// Letter of the axis.
     pub letter: char,
     /// The position as it stands on the screen.
     pub value: String,
@@ -281,11 +281,11 @@ pub struct GraphicsLine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GraphicsView {
-    /// Plan view.
+    /// From above; the deeper, the darker.
     Plan,
     /// Projection in three planes.
     ThreePlanes,
-    /// 3D view.
+    /// The part as a solid, turned at will.
     Solid,
     /// No part: the curves of the oscilloscope.
     Oscilloscope,
@@ -321,7 +321,7 @@ pub struct MachineState {
     pub handwheel: (char, u8),
     /// How fast time passes; 1 is real time.
     pub speed: f64,
-    /// Time stands.
+    /// Simulation time stands still.
     pub paused: bool,
 }
 
@@ -340,7 +340,7 @@ pub struct TimeLine {
     pub branches: Vec<BranchLine>,
 }
 
-/// Something that happened.
+/// Something that happened, for the time line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimeMark {
     /// When, s since power-on.
@@ -370,7 +370,7 @@ pub enum MarkKind {
 /// A way that was left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BranchLine {
-    /// Its number.
+    /// By this number it is gone back to.
     pub number: u32,
     /// Where it was left, s.
     pub from_s: f64,
@@ -381,9 +381,9 @@ pub struct BranchLine {
 /// A lesson as the screen shows it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LessonLine {
-    /// Its name.
+    /// Name of its file without type; empty without a lesson.
     pub name: String,
-    /// Its title.
+    /// Its heading in the language of the screen.
     pub title: String,
     /// What is to be done.
     pub task: String,
@@ -391,18 +391,18 @@ pub struct LessonLine {
     pub hints: Vec<String>,
     /// What is looked at, in this order.
     pub checks: Vec<CheckLine>,
-    /// Where it stands.
+    /// Whether it goes on, was passed or failed.
     pub state: LessonState,
-    /// Why it failed.
+    /// Why it failed; empty otherwise.
     pub reason: String,
 }
 
 /// What is looked at.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CheckLine {
-    /// In words.
+    /// What is to be so, in words.
     pub text: String,
-    /// It was so.
+    /// It was so at some time.
     pub done: bool,
 }
 
@@ -410,11 +410,11 @@ pub struct CheckLine {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LessonState {
-    /// It goes on.
+    /// Something is left to be done.
     #[default]
     Running,
-    /// Everything was done.
+    /// All checks were met.
     Passed,
-    /// It was not.
+    /// It cannot be passed any more; `reason` says why.
     Failed,
 }

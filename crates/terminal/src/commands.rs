@@ -26,7 +26,7 @@ enum Takes {
     Keys,
     /// A key of the machine that stays down, or comes up.
     Hold(bool),
-    /// No argument.
+    /// The command stands alone.
     Nothing(fn() -> Order),
     /// A number for a field.
     Number(fn(f64) -> InputText),

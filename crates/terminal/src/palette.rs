@@ -28,7 +28,7 @@ pub(crate) enum Role {
     Message,
     /// A message that CE does not clear.
     Flashing,
-    /// Frames and lines.
+    /// Frames of the windows, and lines between them.
     Frame,
     /// The current block or row.
     Current,

@@ -110,7 +110,7 @@ pub struct Compensated {
     pub list: ParameterList,
     /// Names and texts of the tables (.COM), and the assignment (.CMA); none when no axis needs one.
     pub tables: BTreeMap<String, String>,
-    /// See `tables`.
+    /// Name and text of the assignment (.CMA).
     pub assignment: Option<String>,
 }
 
@@ -125,7 +125,7 @@ pub struct AxisResult {
     pub backlash_mm: f64,
     /// Entry of MP720, mm/m; it acts where there is no table.
     pub linear_mm_m: f64,
-    /// A table acts.
+    /// A table acts, in place of `linear_mm_m`.
     pub by_table: bool,
     /// A counting step of the encoder, mm.
     pub resolution_mm: f64,

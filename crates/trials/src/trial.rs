@@ -19,7 +19,7 @@ const BEGIN_MAX_US: u64 = 1_200_000_000;
 /// Name of the program.
 const NAME: &str = "TRIAL.H";
 
-/// A program alone.
+/// One program in memory, which can call no other.
 struct Alone(Arc<Program>);
 
 impl Programs for Alone {

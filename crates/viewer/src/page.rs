@@ -14,7 +14,7 @@ pub struct WebFile {
     pub name: &'static str,
     /// Its type for HTTP.
     pub mime: &'static str,
-    /// What is in it.
+    /// Its content, UTF-8.
     pub text: &'static str,
 }
 

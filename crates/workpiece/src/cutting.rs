@@ -21,7 +21,7 @@ pub enum Remark {
     Tool {
         /// `None` before the first TOOL CALL.
         tool: Option<u32>,
-        /// The kind of event.
+        /// What happened as the tool moved.
         kind: EventKind,
     },
     /// The tool was below the blank, last in this block.

@@ -10,7 +10,7 @@ use bahn_path::BlockRef;
 pub struct Event {
     /// The block of the movement.
     pub block: BlockRef,
-    /// The kind of event.
+    /// What happened as the tool moved.
     pub kind: EventKind,
     /// How many path elements of the block did it.
     pub count: u64,

@@ -134,7 +134,7 @@ pub(crate) struct Track {
 /// Who cuts what is under the tool at an end of a track and nowhere lower on the track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The track itself.
+    /// The track whose end it is.
     Own,
     /// The track before or after it.
     Other,

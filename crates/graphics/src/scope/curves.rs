@@ -39,7 +39,7 @@ pub struct Sight {
 pub struct Lane {
     /// Its number, from 0.
     pub number: usize,
-    /// What is shown.
+    /// Signal and samples that it shows.
     pub recorded: Recorded,
     /// Steps of its scale coarser than the optimal one.
     pub zoom: i32,

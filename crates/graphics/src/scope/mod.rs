@@ -22,33 +22,33 @@ const EVERY_US: u64 = 200_000;
 /// What a channel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Content {
-    /// OFF.
+    /// OFF: nothing is recorded or shown.
     #[default]
     Off,
-    /// It is recorded.
+    /// This signal of the axis is recorded.
     Signal(ServoSignal),
     /// SAVED: what was recorded stays to be compared with; it is not shown while another recording is on its way.
     Saved,
 }
 
-/// A channel.
+/// One of the channels of the oscilloscope.
 #[derive(Clone, Debug, Default)]
 pub struct Channel {
     /// Letter of its axis.
     pub axis: char,
-    /// What it shows.
+    /// Signal to record, or what else it shows.
     pub content: Content,
     /// What was recorded of it last.
     pub curve: Option<Recorded>,
 }
 
-/// TRIGGER.
+/// TRIGGER: what begins the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TriggerOn {
     /// FREE RUN: it records until STOP.
     #[default]
     FreeRun,
-    /// SINGLE SHOT.
+    /// SINGLE SHOT: it records one fill of the memory.
     SingleShot,
     /// A channel passes the threshold.
     Channel(usize),
@@ -133,7 +133,7 @@ impl Scope {
         self.setup.to_record().is_some()
     }
 
-    /// It records.
+    /// START was pressed, and the recording has not ended yet.
     pub fn records(&self) -> bool {
         self.records
     }

@@ -76,7 +76,7 @@ impl Values<'_> {
         self.numbers.q.get(q)
     }
 
-    /// A length, mm.
+    /// Value of a Q parameter as a length, mm.
     pub fn length(&self, q: u16) -> Result<f64, Fault> {
         Ok(self.number(q)? * self.numbers.unit_mm)
     }
@@ -92,7 +92,7 @@ impl Values<'_> {
         }
     }
 
-    /// A feed, mm/min.
+    /// Value of a Q parameter as a feed, mm/min.
     pub fn feed(&self, q: u16) -> Result<f64, Fault> {
         let value = bahn_program::Value::Q {
             number: q,

@@ -26,7 +26,7 @@ pub(super) struct Heights {
     pub direction: f64,
     /// Surface of the workpiece.
     pub surface: f64,
-    /// Total depth, positive.
+    /// Total depth below the surface, mm, positive.
     pub depth: f64,
     /// Where cycles with a clearance height of their own go down to in rapid traverse.
     pub approach: Option<f64>,

@@ -7,7 +7,7 @@ use super::{Arrival, BlockLine, Machine};
 /// How far a transfer is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DripState {
-    /// Blocks are transferred.
+    /// Blocks go from the host to the control.
     Running,
     /// The line is broken off: START asks for the program again.
     Broken(String),

@@ -18,7 +18,7 @@ const BLOCK: usize = 256;
 /// Why the device did not do it.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
-    /// The connection failed.
+    /// The line cannot be opened, read or written.
     #[error("{0}")]
     Line(#[from] io::Error),
     /// The device says so.
@@ -126,7 +126,7 @@ pub struct RemoteEntry {
     pub size: u32,
     /// When it was written.
     pub modified: SystemTime,
-    /// It is a folder.
+    /// A folder, not a file.
     pub is_folder: bool,
     /// The file is protected against erasing and writing.
     pub protected: bool,

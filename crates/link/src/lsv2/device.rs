@@ -68,13 +68,13 @@ pub struct Run {
 /// The tool in the spindle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tool {
-    /// Tool number.
+    /// Its number in the tool table.
     pub number: u32,
     /// Its axis: 0 X, 1 Y, 2 Z.
     pub axis: u16,
-    /// Tool length, mm.
+    /// Length compensation value, mm.
     pub length: f64,
-    /// Tool radius, mm.
+    /// Radius of the tool, mm.
     pub radius: f64,
 }
 
@@ -113,7 +113,7 @@ pub enum Area {
 pub struct Event {
     /// When, in seconds since 1970.
     pub time: u32,
-    /// The kind of event.
+    /// Key or message.
     pub kind: EventKind,
     /// Name of the key, or text of the message.
     pub text: String,
@@ -217,6 +217,6 @@ pub struct Identity {
     pub nc_software: String,
     /// Version of the PLC software.
     pub plc_software: String,
-    /// Identification number.
+    /// Identification number of the control.
     pub id: String,
 }

@@ -20,7 +20,7 @@ pub struct Attributes {
     pub modified: SystemTime,
     /// It has no write permission, or its first block protects it.
     pub protected: bool,
-    /// It is a folder.
+    /// A folder, not a file.
     pub is_folder: bool,
 }
 

@@ -141,7 +141,7 @@ pub(super) struct Tree {
 
 struct Node {
     bounds: Bounds,
-    /// The items below.
+    /// Items of its children and their children.
     items: std::ops::Range<usize>,
     /// The second child; the first one is the next node. 0: a leaf.
     second: usize,

@@ -27,7 +27,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// Every kind of happening.
     pub const ALL: [Kind; 7] = [
         Kind::Use,
         Kind::AxisKey,
@@ -188,7 +188,7 @@ impl Finder<'_> {
         }
     }
 
-    /// What fails.
+    /// Faults of encoders, drives, motors and devices, each with its repair.
     fn failures(&mut self) {
         let mut axes: Vec<char> = self.plant.axes().map(|axis| axis.letter).collect();
         axes.push('S');

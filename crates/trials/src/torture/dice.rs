@@ -23,7 +23,7 @@ impl Dice {
         usize::try_from(self.bits() % bound).unwrap_or(0)
     }
 
-    /// One of several.
+    /// One of several, each as likely; `None` of none.
     pub fn pick<'a, T>(&mut self, from: &'a [T]) -> Option<&'a T> {
         from.get(self.below(from.len()))
     }

@@ -45,7 +45,7 @@ struct Stretch {
 #[derive(Clone, Debug)]
 pub(super) struct Led {
     stretches: HashMap<BlockRef, Stretch>,
-    /// What is digitized.
+    /// Digitizing jobs by their block.
     scans: HashMap<BlockRef, ScanJob>,
     /// How fast the axes of a thread are at most, mm/s.
     threads: HashMap<BlockRef, PerAxis<f64>>,

@@ -44,7 +44,7 @@ pub(super) struct Medium {
 }
 
 impl Medium {
-    /// Everything was written.
+    /// All that the control has now was written.
     pub fn of(control: &Control) -> Medium {
         Medium {
             before: control.exchange().plc().clone(),

@@ -36,7 +36,7 @@ pub(super) struct Messages {
 }
 
 impl Messages {
-    /// Something happens.
+    /// Notes a happening, and which message it must bring.
     pub fn happens(&mut self, happening: &Happening, control: &Control) {
         self.causes.insert(happening.kind);
         self.done.push(happening.what.clone());

@@ -90,7 +90,7 @@ impl Campaign {
         &self.machine.folder.name
     }
 
-    /// The programs.
+    /// File names of the programs that are tried.
     pub fn programs(&self) -> &[String] {
         &self.programs
     }
@@ -155,7 +155,7 @@ impl Worker<'_> {
         choice.plan(seed)
     }
 
-    /// Tries a plan.
+    /// Runs the plan with all its happenings.
     pub fn run(&mut self, plan: &Plan) -> Trial {
         self.part(plan, &plan.happenings)
     }

@@ -7,7 +7,7 @@ use super::dice::Dice;
 /// Something that happens at a time of the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Happening {
-    /// µs since power-on.
+    /// Simulation time, µs since power-on.
     pub time_us: u64,
     /// What kind of thing it is.
     pub kind: Kind,
@@ -18,7 +18,7 @@ pub struct Happening {
 /// The plan of a seed.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The seed.
+    /// The number from which the plan was drawn.
     pub seed: u64,
     /// The program, by its place among those of the machine.
     pub program: usize,

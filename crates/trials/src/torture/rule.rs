@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// A rule.
+/// What must hold in every run, whatever happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
@@ -79,7 +79,7 @@ impl Rule {
 /// A rule that did not hold.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Violation {
-    /// Which rule.
+    /// The rule that was broken.
     pub rule: Rule,
     /// When, s since power-on.
     pub time_s: f64,

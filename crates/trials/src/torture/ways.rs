@@ -29,7 +29,7 @@ enum Cause {
     Open,
     /// The feed enable was withdrawn, the drive has power: [`Travel::Drive`].
     Halted,
-    /// It has none.
+    /// The drive has no power.
     Dead,
 }
 
@@ -60,7 +60,7 @@ impl Ways {
         }
     }
 
-    /// Forgets what was.
+    /// Begins anew, as after power-on.
     pub fn restart(&mut self) {
         *self = Ways::default();
     }

@@ -36,7 +36,7 @@ const EMERGENCY: f64 = 1.4;
 /// What is tuned, and with what.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Task {
-    /// The axis.
+    /// Letter of the axis that is tuned.
     pub axis: char,
     /// Who describes the circle with it; `None` is its partner, where a linear axis has one: X and Y each other, Z has X.
     pub partner: Option<char>,
@@ -49,11 +49,11 @@ pub struct Task {
 /// A parameter that the assistant would change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// Which.
+    /// The machine parameter that changes.
     pub id: ParameterId,
     /// Its entry before and now.
     pub from: f64,
-    /// See `from`.
+    /// Its entry afterwards.
     pub to: f64,
 }
 

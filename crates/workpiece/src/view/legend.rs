@@ -97,7 +97,7 @@ impl DepthShade {
         }
     }
 
-    /// Colour of a height.
+    /// Colour in which this height is drawn, mm above the lower face of the blank.
     pub fn colour(&self, height: f32) -> Colour {
         let part = |k: usize, count: usize| k as f64 / count.saturating_sub(1).max(1) as f64;
         let share = match &self.scale {
@@ -200,7 +200,7 @@ pub(super) enum Swatch {
     Plain(Colour),
     /// From one colour above to another one below.
     Blend(Colour, Colour),
-    /// Nothing is left.
+    /// Hatched: the tool went through the part.
     Hatched,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Hit {
     /// Length along the ray in units of its direction.
     pub t: f64,
     pub face: Face,
-    /// Column.
+    /// Column of the height map that is hit; `j` is its row.
     pub i: usize,
     pub j: usize,
 }
