@@ -42,7 +42,7 @@ struct Cli {
     command: Command,
 }
 
-/// What to do.
+/// The commands of `bahn`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run a program without a machine: report, tool path, picture of the part.

@@ -42,10 +42,10 @@ pub(crate) struct ConformanceOptions {
 /// How the table is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TableFormat {
-    /// For people.
+    /// Lines for people.
     #[default]
     Text,
-    /// For programs.
+    /// JSON for programs.
     Json,
     /// For docs/conformance.md.
     Markdown,
@@ -64,7 +64,6 @@ fn effect_parser() -> impl clap::builder::TypedValueParser<Value = Effect> {
         .try_map(move |id| named(id).ok_or("unknown effect"))
 }
 
-/// Prints the table.
 pub(crate) fn command(options: &ConformanceOptions) -> Result<Outcome, UsageError> {
     let table = Table::new(options);
     let text = match options.format {

@@ -72,7 +72,6 @@ impl Row {
     }
 }
 
-/// Prints the table.
 pub(crate) fn command(options: &FaultsOptions) -> Result<Outcome, UsageError> {
     let rows: Vec<Row> = FaultId::ALL
         .iter()

@@ -23,7 +23,7 @@ Examples:
 /// Options of `bahn completions`.
 #[derive(Args, Debug)]
 pub(crate) struct CompletionsOptions {
-    /// The shell.
+    /// Shell that takes the completions.
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
 }
@@ -36,7 +36,7 @@ pub(crate) struct ManOptions {
     pub folder: Option<PathBuf>,
 }
 
-/// `bahn completions`.
+/// Prints the script by which a shell completes commands and options.
 pub(crate) fn completions(
     options: &CompletionsOptions,
     mut whole: clap::Command,
@@ -47,7 +47,7 @@ pub(crate) fn completions(
     Ok(Outcome::Fine)
 }
 
-/// `bahn man`.
+/// Prints the manual page, or writes those of all commands into a folder.
 pub(crate) fn man(options: &ManOptions, mut command: clap::Command) -> Result<Outcome, UsageError> {
     command.build();
     let Some(folder) = &options.folder else {

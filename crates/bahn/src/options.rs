@@ -142,7 +142,7 @@ pub(crate) struct RunOptions {
     pub max_blocks: u64,
 }
 
-/// What is written.
+/// Files that a command writes.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputOptions {

@@ -9,18 +9,18 @@ use bahn_report::ReportError;
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// No error.
+    /// Everything was done, and nothing is wrong.
     Fine,
     /// A program has an error.
     ProgramError,
     /// An option or a file is wrong.
     WrongUse,
-    /// Ctrl-C.
+    /// Ctrl-C ended it.
     Interrupted,
 }
 
 impl Outcome {
-    /// The exit code.
+    /// Exit code of the process.
     pub(super) fn code(self) -> u8 {
         match self {
             Outcome::Fine => 0,

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
 
-/// JSON is wanted.
+/// The command is to print JSON.
 static WANTED: AtomicBool = AtomicBool::new(false);
 /// It is, and nothing has been printed.
 static OPEN: AtomicBool = AtomicBool::new(false);

@@ -56,7 +56,7 @@ impl<T> OfFile<T> {
 pub(crate) struct Reports<T>(Vec<OfFile<T>>);
 
 impl<T: Serialize> Reports<T> {
-    /// None yet.
+    /// No report yet.
     pub fn new() -> Reports<T> {
         Reports(Vec::new())
     }

@@ -270,7 +270,7 @@ pub(crate) fn position(option: &str, words: &[String], model: ControlModel) -> R
     Ok(position)
 }
 
-/// Reads `Q1=5`.
+/// Values of Q parameters as options give them: `Q1=5`.
 fn q_values(assignments: &[String], model: ControlModel) -> Result<Vec<(u16, f64)>, UsageError> {
     assignments.iter().map(|text| q_value(text, model)).collect()
 }

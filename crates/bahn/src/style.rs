@@ -25,7 +25,7 @@ impl Style {
         self.wrap("2", text)
     }
 
-    /// What is gone.
+    /// Text of what an edit takes out, red.
     pub fn removed(self, text: &str) -> String {
         self.wrap("31", text)
     }

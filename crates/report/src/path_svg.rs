@@ -14,13 +14,13 @@ const MAX_ELEMENTS: usize = 2_000_000;
 /// Lines that an arc outside the plane of the drawing is made of, for a full turn.
 const LINES_PER_TURN: f64 = 72.0;
 
-/// Sheet, pixels.
+/// Width of the sheet, pixels, as all of these.
 const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 800.0;
 const TITLE_BAR: f64 = 44.0;
 const MARGIN: [f64; 2] = [70.0, 60.0];
 
-/// Collects the path.
+/// Collects the elements of the path for a drawing in plan view.
 #[derive(Default)]
 pub struct PathDrawing {
     /// Decided by the blank or the first tool.
@@ -207,7 +207,7 @@ impl PathDrawing {
         }
     }
 
-    /// Writes the drawing.
+    /// Writes what was collected as SVG under a title.
     pub fn write(mut self, title: &str, file: &mut NewFile) -> Result<(), ReportError> {
         let plane = self.plane.unwrap_or(Plane::XY);
         let blank = self.blank.map(|blank| {

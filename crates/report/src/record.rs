@@ -31,7 +31,7 @@ pub struct Record {
     tool: Option<u32>,
     tool_calls: Vec<(BlockRef, Option<u32>, f64)>,
     stops: Vec<(BlockRef, &'static str)>,
-    /// Lines of FN15.
+    /// Lines that FN15 has printed, with their blocks.
     printed: Vec<(BlockRef, String)>,
     /// Tool calls, stops and lines beyond [`MAX_LISTED`].
     not_listed: u64,
@@ -52,7 +52,7 @@ pub enum Notice {
     Tool {
         /// `None` before the first TOOL CALL.
         tool: Option<u32>,
-        /// What it did.
+        /// What happened as it moved.
         kind: EventKind,
     },
     /// The tool was below the blank, last in this block.
@@ -70,7 +70,7 @@ pub enum Notice {
     NoToolProbe,
     /// Digitized points that no folder takes.
     Digitized {
-        /// How many.
+        /// How many points were digitized.
         points: u64,
     },
     /// The drawing of the path has too many elements.
@@ -154,7 +154,7 @@ impl Record {
         }
     }
 
-    /// Counts a warning.
+    /// Notes a warning, so many times more for this block.
     pub fn warn(&mut self, block: BlockRef, notice: Notice, count: u64) {
         let key = (block, notice);
         if let Some(at) = self.warning_index.get(&key) {
@@ -169,7 +169,7 @@ impl Record {
         }
     }
 
-    /// The report.
+    /// Closes the record: what it holds as JSON and people read it.
     pub fn report(
         mut self,
         run: &dyn Reader,
@@ -346,11 +346,11 @@ pub enum End {
 pub struct Report {
     /// The program, without folders.
     pub program: String,
-    /// `mm` or `inch`.
+    /// Unit of the main program: `mm` or `inch`.
     pub unit: &'static str,
     /// It came to its end.
     pub completed: bool,
-    /// What ended it.
+    /// The error that ended it; `None` where it came to its end.
     pub error: Option<ErrorReport>,
     /// s; `None` when the feed is 0.
     pub machining_time_s: Option<f64>,
@@ -368,9 +368,9 @@ pub struct Report {
     pub removed_mm3: Option<f64>,
     /// What is not as it should be.
     pub warnings: Vec<WarningReport>,
-    /// Programmed stops.
+    /// Stops that the program asked for, in their order.
     pub stops: Vec<StopReport>,
-    /// Lines of FN15.
+    /// Lines that FN15 has printed.
     pub printed: Vec<PrintReport>,
     /// Tool calls, stops and printed lines that are not listed, there were too many.
     #[serde(skip)]
@@ -384,7 +384,7 @@ pub struct ErrorReport {
     pub message: String,
     /// The program that it stands in.
     pub program: String,
-    /// Its number there.
+    /// Number of the block in that program.
     pub block: u32,
     /// Its line there, from 1; 0 where nobody knows it.
     pub line: u32,
@@ -401,20 +401,20 @@ pub struct ErrorReport {
 /// How far the tool went, mm.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct PathReport {
-    /// In feed.
+    /// Way in feed, mm.
     pub feed: f64,
-    /// In rapid traverse.
+    /// Way in rapid traverse, mm.
     pub rapid: f64,
 }
 
 /// A tool or a spindle speed, with its block.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct ToolCallReport {
-    /// Its number there.
+    /// Number of the block in that program.
     pub block: u32,
     /// `None` before the first TOOL CALL.
     pub tool: Option<u32>,
-    /// rpm.
+    /// Programmed spindle speed, rpm.
     pub speed_rpm: f64,
     /// The program that it stands in.
     pub program: String,
@@ -437,11 +437,11 @@ impl ToolCallReport {
 /// A warning, with its block.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct WarningReport {
-    /// In words.
+    /// What is not as it should be, in words.
     pub message: String,
     /// The program that it stands in.
     pub program: String,
-    /// Its number there.
+    /// Number of the block in that program.
     pub block: u32,
     /// Its line there, from 1; 0 where nobody knows it.
     pub line: u32,
@@ -468,9 +468,9 @@ impl WarningReport {
 /// A programmed stop, with its block.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct StopReport {
-    /// Its number there.
+    /// Number of the block in that program.
     pub block: u32,
-    /// What stops.
+    /// The function that stops: `M0`, `STOP` ..
     pub function: &'static str,
     /// The program that it stands in.
     pub program: String,
@@ -492,9 +492,9 @@ impl StopReport {
 /// A line of FN15.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct PrintReport {
-    /// Its number there.
+    /// Number of the block in that program.
     pub block: u32,
-    /// What is printed.
+    /// The line as the data interface gets it.
     pub text: String,
     /// The program that it stands in.
     pub program: String,
@@ -517,7 +517,7 @@ impl PrintReport {
 pub struct Place {
     /// The program that it stands in.
     pub program: String,
-    /// Its number there.
+    /// Number of the block in that program.
     pub block: u32,
     /// Its line there, from 1; 0 where nobody knows it.
     pub line: u32,
@@ -585,7 +585,7 @@ impl fmt::Display for Axes {
     }
 }
 
-/// `mm` or `inch`.
+/// The unit as reports name it: `mm` or `inch`.
 pub fn unit_name(unit: Unit) -> &'static str {
     match unit {
         Unit::Mm => "mm",

@@ -31,7 +31,7 @@ impl Stop {
         });
     }
 
-    /// Ends the run.
+    /// Asks the run to end, as Ctrl-C does.
     pub fn end(&self) {
         self.flag.store(true, Ordering::Relaxed);
     }

@@ -117,9 +117,9 @@ pub struct Compensated {
 /// What was measured and chosen for an axis.
 #[derive(Clone, Debug)]
 pub struct AxisResult {
-    /// Without compensation.
+    /// Errors of the machine without compensation.
     pub before: AxisErrors,
-    /// With it.
+    /// Those that are left with it.
     pub after: AxisErrors,
     /// Entry of MP710, mm.
     pub backlash_mm: f64,

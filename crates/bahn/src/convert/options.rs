@@ -80,7 +80,7 @@ pub(crate) struct ConvertOptions {
     #[arg(long, value_name = "STEP")]
     pub iso_step: Option<u8>,
 
-    /// Control model.
+    /// Control model whose limits and cycles apply.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
     /// How the report is written.

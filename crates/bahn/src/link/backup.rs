@@ -54,7 +54,7 @@ pub(crate) struct RestoreOptions {
     /// Folder of the machine; it is made when it is missing.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     machine: PathBuf,
-    /// The backup.
+    /// File of the backup.
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath, required_unless_present = "port", conflicts_with = "port")]
     file: Option<PathBuf>,
     /// Read it in from a device.
@@ -111,7 +111,6 @@ pub(super) fn backup(options: &BackupOptions) -> Result<Outcome, UsageError> {
     transfer::run(&list_of(folder), memory, action, &plan)
 }
 
-/// Restores a machine.
 pub(super) fn restore(options: &RestoreOptions) -> Result<Outcome, UsageError> {
     let folder = &options.machine;
     std::fs::create_dir_all(folder).map_err(|error| files::cannot("make", folder, &error))?;

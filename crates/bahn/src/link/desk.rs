@@ -15,9 +15,9 @@ use crate::{Outcome, UsageError, console, diagnostics};
 /// How questions of the control are answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Answer {
-    /// ENT.
+    /// Every question with ENT.
     Yes,
-    /// NO ENT.
+    /// Every question with NO ENT.
     No,
     /// As a line of standard input says: y or n.
     #[default]

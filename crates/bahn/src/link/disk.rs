@@ -31,7 +31,7 @@ pub(crate) struct DiskOptions {
     /// The folder that is the disk.
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     dir: PathBuf,
-    /// The port.
+    /// Port at which the disk answers.
     #[arg(long, value_name = "SPEC")]
     port: String,
     /// Machine parameters of the control, for the modes ext1 and ext2.

@@ -39,12 +39,12 @@ pub(crate) struct Lsv2Options {
     pub format: Format,
 }
 
-/// What to ask.
+/// What the control is asked for.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Lsv2Command {
     /// List a folder.
     Ls {
-        /// The control.
+        /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
         /// The folder; TNC: by default.
@@ -52,7 +52,7 @@ pub(crate) enum Lsv2Command {
     },
     /// Fetch a file.
     Get {
-        /// The control.
+        /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
         /// The file on the control.
@@ -63,7 +63,7 @@ pub(crate) enum Lsv2Command {
     },
     /// Bring a file.
     Put {
-        /// The control.
+        /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
         /// The file here.
@@ -74,7 +74,7 @@ pub(crate) enum Lsv2Command {
     },
     /// Delete a file.
     Rm {
-        /// The control.
+        /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
         /// The file on the control.
@@ -82,13 +82,13 @@ pub(crate) enum Lsv2Command {
     },
     /// Say what the control is and what it does.
     Info {
-        /// The control.
+        /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
     },
     /// Fetch its screen as a picture.
     Screen {
-        /// The control.
+        /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
         /// The picture, BMP.
@@ -97,7 +97,6 @@ pub(crate) enum Lsv2Command {
     },
 }
 
-/// Asks.
 pub(super) fn command(options: &Lsv2Options) -> Result<Outcome, UsageError> {
     let done = match &options.command {
         Lsv2Command::Ls { address, path } => list(options, address, path.as_deref()),

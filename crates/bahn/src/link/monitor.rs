@@ -43,7 +43,6 @@ pub(crate) struct MonitorOptions {
     trace: Option<PathBuf>,
 }
 
-/// Shows what passes.
 pub(super) fn command(options: &MonitorOptions) -> Result<Outcome, UsageError> {
     if let Some(trace) = &options.trace {
         return of_trace(trace);

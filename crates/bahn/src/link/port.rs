@@ -15,7 +15,7 @@ use crate::{UsageError, diagnostics, machine_folder};
 pub(super) struct Refused;
 
 impl Refused {
-    /// Tells why.
+    /// Prints the reason, which is told with this.
     pub fn because(text: &str) -> Refused {
         diagnostics::print_line(&format!("error: {text}"));
         Refused
@@ -38,7 +38,7 @@ pub(super) fn tell() -> Tell {
     Arc::new(diagnostics::print_line)
 }
 
-/// Reads a port.
+/// The port that an option names; `option` stands in the message.
 pub(super) fn spec(option: &str, text: &str) -> Result<Spec, Refused> {
     open::spec(option, text).map_err(Refused::from)
 }

@@ -41,7 +41,6 @@ pub(crate) struct PrintOptions {
     port: Option<String>,
 }
 
-/// Prints a picture.
 pub(super) fn command(options: &PrintOptions) -> Result<Outcome, UsageError> {
     let Some(machine) = port::machine(&options.machine)? else {
         return Ok(Outcome::ProgramError);

@@ -76,7 +76,7 @@ pub(crate) struct TransferOptions {
     /// Machine parameters of the device, for the modes ext1 and ext2.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "role")]
     parameters: Option<PathBuf>,
-    /// The port.
+    /// Port of the other side.
     #[arg(long, value_name = "SPEC")]
     port: String,
     /// Files, with extension.
@@ -109,7 +109,7 @@ pub(crate) struct ListOptions {
     /// Folder of the machine whose control asks.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     machine: PathBuf,
-    /// The port.
+    /// Port of the device.
     #[arg(long, value_name = "SPEC")]
     port: String,
     /// Code letter of the type of files.
@@ -123,12 +123,10 @@ pub(crate) struct ListOptions {
     format: Format,
 }
 
-/// Receives files.
 pub(super) fn receive(options: &TransferOptions) -> Result<Outcome, UsageError> {
     transfer(options, true)
 }
 
-/// Sends files.
 pub(super) fn send(options: &TransferOptions) -> Result<Outcome, UsageError> {
     transfer(options, false)
 }
@@ -235,9 +233,9 @@ pub(super) struct Plan<'a> {
 pub(super) enum Action {
     /// The control reads in, one after the other.
     Read(Vec<Want>),
-    /// The control sends.
+    /// The control sends these files.
     Write(Vec<String>),
-    /// The device obeys.
+    /// The device answers what the control asks.
     Serve(Rights),
 }
 

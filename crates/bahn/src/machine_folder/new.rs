@@ -10,7 +10,6 @@ use super::options::NewOptions;
 use crate::files::{self, NewFile};
 use crate::{Outcome, UsageError, diagnostics};
 
-/// Writes the folder.
 pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
     let folder = &options.folder;
     if folder.exists() && !is_empty(folder) {

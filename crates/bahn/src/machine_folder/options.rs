@@ -54,7 +54,7 @@ pub(crate) struct NewOptions {
     /// The folder; it is made, and must be empty when it is there.
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
-    /// Control model.
+    /// Control model of the new machine.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
     /// A shipped machine by its name, instead of the usual one for the model: mill, mill-tnc360, dig425, twin.
@@ -68,7 +68,7 @@ pub(crate) struct NewOptions {
 /// Options of `bahn machine check`.
 #[derive(Args, Debug)]
 pub(crate) struct CheckOptions {
-    /// The folders.
+    /// Folders of machines.
     #[arg(value_name = "DIR", required = true, value_hint = ValueHint::DirPath)]
     pub folders: Vec<PathBuf>,
     /// How faults are written.
@@ -79,7 +79,7 @@ pub(crate) struct CheckOptions {
 /// Options of `bahn machine list`.
 #[derive(Args, Debug)]
 pub(crate) struct ListOptions {
-    /// The folder.
+    /// Folder of the machine.
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
 }

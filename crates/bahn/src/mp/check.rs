@@ -66,7 +66,7 @@ struct Report {
     /// Entries that act in part here.
     acting_partly: usize,
     errors: Vec<Item>,
-    /// Errors beyond those.
+    /// How many more errors there are.
     not_listed: usize,
     warnings: Vec<Item>,
 }

@@ -155,7 +155,7 @@ impl Row {
         format!("{range} {}", self.unit).trim_end().to_owned()
     }
 
-    /// `Acceleration, X axis`
+    /// Name with the axis or range of its index: `Acceleration, X axis`.
     pub fn title(&self) -> String {
         if self.index.is_empty() {
             self.name.to_owned()

@@ -29,7 +29,6 @@ struct Parameter {
     text: String,
 }
 
-/// Prints the cycles.
 pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     let Some(machine) = super::machine(&options.machine)? else {
         return Ok(Outcome::ProgramError);

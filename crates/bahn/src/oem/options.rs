@@ -68,7 +68,7 @@ pub(crate) struct ListOptions {
     /// Folder of the machine.
     #[arg(value_hint = ValueHint::DirPath)]
     pub machine: PathBuf,
-    /// Output format.
+    /// How the list is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 }

@@ -36,7 +36,7 @@ fn load(path: &Path, parameters: &ParameterList) -> Result<Script, UsageError> {
     })
 }
 
-/// The assignments of `--set`.
+/// What `--set` assigns; an error names the operand.
 pub(super) fn set_operands(options: &BenchOptions) -> Result<Vec<Assignment>, UsageError> {
     let mut all = Vec::new();
     for text in &options.set {

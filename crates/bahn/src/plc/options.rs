@@ -125,13 +125,13 @@ Examples:
   bahn plc signals strobe
   bahn plc signals M2045 --format json";
 
-/// The program.
+/// The PLC program and what it is translated for.
 #[derive(Args, Debug)]
 pub(crate) struct ProgramOptions {
     /// The main file; linked files lie beside it. trace, diagram and watch also take the folder of a machine.
     #[arg(value_name = "MAIN.PLC", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// Control model.
+    /// Control model that the program is translated for.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
     /// List of machine parameters that replaces values of the model's reference list. With MP4010 = 0 in

@@ -254,7 +254,7 @@ impl Watch {
         }
     }
 
-    /// Executes one line.
+    /// Executes the next line, on a bench only.
     fn line(&mut self) {
         if self.subject.bench().is_none() {
             ON_THE_BENCH.clone_into(&mut self.message);

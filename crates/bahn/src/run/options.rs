@@ -129,7 +129,7 @@ impl RunMachineOptions {
     }
 }
 
-/// How it runs.
+/// Script, log and operator of the run.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct RunControl {
@@ -214,7 +214,7 @@ impl From<AttendanceOption> for Attendance {
     }
 }
 
-/// What is recorded.
+/// What of the run is recorded, and how often.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Recording")]
 pub(crate) struct RecordingOptions {

@@ -86,7 +86,7 @@ pub(crate) struct ScopeOptions {
     pub format: Format,
 }
 
-/// `X,Y`, `2:X,2:Y`.
+/// The axes of a circle test, of a channel by its number: `X,Y`, `2:X,2:Y`.
 fn two_axes(text: &str) -> Result<[String; 2], String> {
     let axis = |text: &str| {
         let text = text.trim().to_ascii_uppercase();

@@ -93,10 +93,10 @@ pub(crate) enum KindOption {
 /// How a table is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ShowFormat {
-    /// In columns.
+    /// Columns for people.
     #[default]
     Text,
-    /// JSON.
+    /// JSON for programs.
     Json,
     /// Fields with commas between them.
     Csv,
@@ -107,7 +107,7 @@ pub(crate) enum ShowFormat {
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum WriteFormat {
-    /// As controls do.
+    /// As the files of controls are.
     Control,
     /// Fields with tabs between them.
     Tsv,
@@ -149,7 +149,7 @@ pub(crate) struct CheckOptions {
 /// Options of `bahn table set`.
 #[derive(Args, Debug)]
 pub(crate) struct SetOptions {
-    /// The table.
+    /// File of the table.
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub table: PathBuf,
     /// Number of the tool, pocket, datum, pallet or point.
@@ -169,7 +169,7 @@ pub(crate) struct SetOptions {
 /// Options of `bahn table convert`.
 #[derive(Args, Debug)]
 pub(crate) struct ConvertOptions {
-    /// The table.
+    /// File of the table.
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub table: PathBuf,
     /// Format; by default that of the ending of --output.

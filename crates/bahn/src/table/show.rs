@@ -8,7 +8,6 @@ use super::source::{self, Source};
 use crate::diagnostics::printable_lines;
 use crate::{Outcome, UsageError, console};
 
-/// Prints a table.
 pub(super) fn command(options: &ShowOptions) -> Result<Outcome, UsageError> {
     let machine = source::machine(&options.table)?;
     let path = match &machine {

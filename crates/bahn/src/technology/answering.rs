@@ -78,7 +78,7 @@ impl Answering {
         self.faults.sort_by_key(|fault| fault.marked.line);
     }
 
-    /// Executes a run.
+    /// Executes a run on the machine, or with the answers of the script.
     pub fn execute<'a>(&'a mut self, run: impl FnOnce(Option<&'a Script>) -> Run<'a>) -> Report {
         let run = run(self.script.as_ref());
         let Some(machine) = &mut self.machine else {

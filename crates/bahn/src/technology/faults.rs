@@ -44,7 +44,7 @@ pub(super) struct Item<'a> {
     help: &'a str,
 }
 
-/// Faults for programs.
+/// The faults as JSON has them.
 pub(super) fn items(faults: &[FileFault]) -> Vec<Item<'_>> {
     faults.iter().map(item).collect()
 }

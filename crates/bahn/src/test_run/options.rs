@@ -86,7 +86,7 @@ pub(crate) struct TestOptions {
     #[arg(value_name = "FILE|FOLDER|-", required = true, value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
 
-    /// Control model.
+    /// Control model on which the programs run.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
 

@@ -56,7 +56,7 @@ pub(crate) struct TortureOptions {
     pub format: Format,
 }
 
-/// `0..1000`.
+/// Seeds from the first up to, but not with, the last: `0..1000`.
 fn seeds(text: &str) -> Result<std::ops::Range<u64>, String> {
     let parts = text.split_once("..");
     let number = |text: &str| text.trim().parse::<u64>().ok();

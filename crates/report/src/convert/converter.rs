@@ -52,7 +52,7 @@ impl Target {
 
 /// A program and where it goes.
 pub struct Job {
-    /// The program.
+    /// The program that is to be converted.
     pub program: Arc<Program>,
     /// As people gave it.
     pub source: PathBuf,
@@ -86,9 +86,9 @@ fn extension(path: &Path) -> String {
 pub struct Converter {
     /// How programs are interpreted.
     pub settings: Settings,
-    /// The machine parameters.
+    /// The machine parameters under which source and target run.
     pub list: ParameterList,
-    /// The language.
+    /// The language that is written.
     pub to: Target,
     /// Step of the block numbers of DIN/ISO programs, 0 writes none.
     pub iso_step: u8,

@@ -18,7 +18,7 @@ pub struct Converted {
 }
 
 impl Converted {
-    /// Adds a program.
+    /// Notes what a source has become, for programs that call it.
     pub(super) fn add(&mut self, source: &Program, target: Arc<Program>) {
         self.sources
             .insert(target.name().to_owned(), source.name().to_owned());

@@ -11,7 +11,7 @@ use bahn_host::printable;
 /// Entries of a list that are shown; the JSON report has all.
 const SHOWN: usize = 20;
 
-/// One program.
+/// What is told of one converted program.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Nothing is refused, and the proof holds where it was wanted.
@@ -38,12 +38,12 @@ pub struct Report {
     pub to: &'static str,
 }
 
-/// Several programs.
+/// What is told of several converted programs.
 #[derive(Debug, Serialize)]
 pub struct Reports {
-    /// All are.
+    /// Each of them is `ok`.
     pub ok: bool,
-    /// Each of them.
+    /// The report of each, in the order of conversion.
     pub programs: Vec<Report>,
 }
 

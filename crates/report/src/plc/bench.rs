@@ -20,7 +20,7 @@ pub struct Bench {
     pub exchange: Exchange,
     /// What stands in for the control.
     pub nc: TestNc,
-    /// The script.
+    /// The script that is played on it.
     pub play: Play,
     /// Expectations that did not hold since somebody took them.
     failures: Vec<Failure>,
@@ -41,15 +41,15 @@ pub struct Bench {
 /// An expectation that does not hold.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Failure {
-    /// In which cycle.
+    /// PLC cycle in which it was looked at, counted from the start.
     pub cycle: u64,
     /// Line of the script.
     pub line: u32,
-    /// The operand.
+    /// The operand as the script names it: `M100`.
     pub operand: String,
     /// What was expected of it.
     pub expected: Content,
-    /// What it was.
+    /// Content of the operand in that cycle.
     pub found: Content,
 }
 

@@ -75,7 +75,7 @@ fn contents(diagram: &Diagram, index: usize, start: usize, end: usize) -> String
     row + &last.map_or(String::new(), |last| format!("| {extremes}last {last}"))
 }
 
-/// The drawing.
+/// The diagram as SVG.
 pub fn svg(diagram: &Diagram) -> String {
     let width = NAMES + diagram.samples.len() * CYCLE + 10;
     let height = (diagram.operands.len() + 1) * ROW + 10;

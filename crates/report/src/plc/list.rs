@@ -76,7 +76,7 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// For people.
+    /// The list as lines for people.
     pub fn text(&self) -> String {
         let lines: String = self.lines.iter().map(Line::text).collect();
         format!("{}\n{lines}", self.file)

@@ -15,7 +15,7 @@ const CYCLES_IN_VAIN: u64 = 3000;
 
 /// The cycles of a run, and what is written meanwhile.
 pub struct Scans {
-    /// The program.
+    /// The program, with what it runs on.
     pub bench: Bench,
     record: Option<Record>,
     retained: Option<Retained>,
@@ -143,7 +143,7 @@ pub struct Report {
 pub struct Stop {
     /// Number of the PLC error.
     pub number: u8,
-    /// The file.
+    /// Source file in which it stopped.
     pub file: String,
     /// Its line, from 1.
     pub line: u32,

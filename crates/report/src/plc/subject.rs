@@ -11,7 +11,7 @@ use super::live::Live;
 
 /// A PLC program that runs.
 pub enum Subject {
-    /// On the bench.
+    /// Alone, on a bench in place of the control.
     Bench(Box<Bench>),
     /// In the control of a machine.
     Machine(Box<Live>),

@@ -50,12 +50,12 @@ pub fn up_to_trigger(
     Ok(false)
 }
 
-/// The executed lines.
+/// The lines that a cycle has executed.
 #[derive(Debug, Default)]
 pub struct Trace {
     /// The cycle that is being executed.
     pub cycle: u64,
-    /// The first `LINES_MAX`.
+    /// The first of them, at most `LINES_MAX`.
     pub lines: Vec<Line>,
     /// How many were executed after those.
     pub left_off: u64,

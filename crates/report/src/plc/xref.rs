@@ -53,7 +53,7 @@ struct Place {
 type Uses = Vec<(Access, Place)>;
 
 impl Reference {
-    /// That of a program.
+    /// Where the operands and labels of a program are used.
     pub fn of(program: &PlcProgram) -> Reference {
         let mut uses: BTreeMap<Subject, Uses> = BTreeMap::new();
         for instruction in &program.code {
@@ -85,7 +85,7 @@ impl Reference {
         self.labels.clear();
     }
 
-    /// For people.
+    /// The reference as lines for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
         for operand in &self.operands {

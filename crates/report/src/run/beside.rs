@@ -10,7 +10,7 @@ use crate::ReportError;
 use crate::record::Record;
 use crate::test_run::Outputs;
 
-/// Follows a channel.
+/// Follows a channel beside the first one.
 pub(super) struct Beside {
     /// Which one, from 0.
     pub channel: usize,

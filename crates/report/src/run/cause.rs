@@ -33,7 +33,7 @@ pub(super) struct Moment<'a> {
     pub across: [f64; 3],
     /// Nominal less actual position, mm.
     pub lag: [f64; 3],
-    /// Nominal speeds, mm/min.
+    /// Nominal speeds of the axes, mm/min.
     pub speed: [f64; 3],
     /// Speed along the path at the beginning of the window and now, mm/min.
     pub path_speed: [f64; 2],

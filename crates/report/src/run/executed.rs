@@ -10,7 +10,7 @@ use crate::record::{Notice, Record};
 use crate::test_run::{Outputs, stop_function};
 use bahn_workpiece::Cutting;
 
-/// Follows the path.
+/// Follows the path that a channel executes.
 pub struct Executed {
     /// Of which channel, from 0.
     channel: usize,
@@ -93,7 +93,7 @@ impl Executed {
         Ok(())
     }
 
-    /// Lists programmed stops.
+    /// Notes a programmed stop, once when it begins.
     fn note_stop(&mut self, control: ChannelView) {
         let stopped = control.run_state() == RunState::Stopped;
         if stopped && !self.last_stop {

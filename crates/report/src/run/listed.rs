@@ -53,7 +53,7 @@ impl Confirmed {
     }
 }
 
-/// The lists.
+/// What a report lists one by one.
 #[derive(Default)]
 pub(super) struct Listed {
     pub messages: Vec<Said>,

@@ -9,7 +9,7 @@ use bahn_path::FeedRate;
 use super::deviation::Deviation;
 use super::times::Times;
 
-/// The measurements.
+/// What is measured while a program runs.
 pub(super) struct Measured {
     pub deviation: Deviation,
     pub threads: Threads,

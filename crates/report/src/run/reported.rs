@@ -10,7 +10,7 @@ use crate::record::{End, ErrorReport, Place, Record};
 
 /// What is told of a run.
 pub struct Reported {
-    /// Its report.
+    /// What is told as JSON or text.
     pub report: RunReport,
     /// What broke it off.
     pub failure: Option<Box<ErrorReport>>,

@@ -12,7 +12,7 @@ use crate::record::tidy;
 pub(super) struct Thread {
     pub program: String,
     pub block: u32,
-    /// 2, 17 or 18.
+    /// Number of the cycle: 2, 17 or 18.
     pub cycle: u8,
     /// Depth from where the tool axis begins, mm: commanded, and reached by the plant.
     pub depth_mm: f64,

@@ -29,11 +29,11 @@ pub(super) struct Share {
     pub what: String,
     /// How often it began.
     pub count: u64,
-    /// s.
+    /// Sum of the time, s.
     pub time_s: f64,
 }
 
-/// Sums up.
+/// Sums up the time of a run by what it was spent on.
 #[derive(Default)]
 pub(super) struct Times {
     sums: Vec<(Spent, u64, u64)>,

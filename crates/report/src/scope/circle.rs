@@ -21,7 +21,7 @@ pub struct Circle {
 /// What a circle test says.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CircleTest {
-    /// The two signals.
+    /// The signals of the two axes of the circle.
     pub signals: [String; 2],
     pub centre_mm: [f64; 2],
     /// Radius of the nominal path.

@@ -22,7 +22,7 @@ const BOTTOM: f64 = 52.0;
 const BLOCKS: f64 = 62.0;
 /// Height of a logic trace.
 const ROW: f64 = 24.0;
-/// Between two lanes.
+/// Between two lanes, pixels.
 const GAP: f64 = 10.0;
 
 /// Dark colours on white, told apart also by those who do not see all of them.
@@ -45,7 +45,7 @@ const ZERO: Colour = [0x5b, 0x6b, 0x7b];
 const BLOCK: Colour = [0xb7, 0xc9, 0xb7];
 const MESSAGE: Colour = [0xc0, 0x00, 0x00];
 
-/// What is drawn.
+/// A recording as it is drawn, lane below lane.
 pub struct Drawing<'a> {
     pub table: &'a Table,
     /// A recording that is compared with, at the same times.
@@ -65,7 +65,7 @@ struct Lane<'a> {
 }
 
 impl Drawing<'_> {
-    /// The picture.
+    /// Draws all lanes, logic traces, events and cursors.
     pub fn sheet(&self) -> Sheet {
         let mut sheet = Sheet::new(self.size);
         let lanes = self.lanes();

@@ -33,7 +33,7 @@ pub fn check_recording(text: &str) -> Result<(), String> {
 /// What is asked of a recording. Times are those of the machine, s.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
-    /// The recording.
+    /// Path of the recording.
     pub file: &'a Path,
     /// Another one that it is compared with, its start of the program at the same place.
     pub against: Option<&'a Path>,

@@ -56,12 +56,12 @@ impl Sheet {
         }
     }
 
-    /// Pixels.
+    /// Width in pixels.
     pub fn width(&self) -> f64 {
         f64::from(self.width)
     }
 
-    /// Pixels.
+    /// Height in pixels.
     pub fn height(&self) -> f64 {
         f64::from(self.height)
     }
@@ -82,7 +82,7 @@ impl Sheet {
         self.lines(vec![a, b], width, colour);
     }
 
-    /// The same, dashed.
+    /// The same as `line`, but dashed.
     pub fn dashed(&mut self, a: [f64; 2], b: [f64; 2], width: f64, colour: Colour) {
         self.shapes.push(Shape::Lines {
             points: vec![a, b],
@@ -115,7 +115,7 @@ impl Sheet {
         });
     }
 
-    /// As SVG.
+    /// The sheet as an SVG document.
     pub fn svg(&self) -> String {
         let (width, height) = (self.width, self.height);
         let mut svg = format!(
@@ -130,7 +130,7 @@ impl Sheet {
         svg + "</svg>\n"
     }
 
-    /// As pixels.
+    /// The sheet as pixels on white.
     pub fn image(&self) -> Image {
         let mut image = Image::new(self.width, self.height, [255; 3]);
         for shape in &self.shapes {
@@ -269,9 +269,9 @@ pub fn ticks(from: f64, to: f64, count: f64) -> Vec<f64> {
 /// A drawing by the end of its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Picture {
-    /// Lines that scale.
+    /// `.svg`: lines that scale.
     Svg(PathBuf),
-    /// Pixels.
+    /// `.png`: pixels.
     Png(PathBuf),
 }
 

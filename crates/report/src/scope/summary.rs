@@ -116,12 +116,12 @@ impl Summary {
         }
     }
 
-    /// The circle test.
+    /// What the circle test says; `None` where none was asked for.
     pub fn circle(&self) -> Option<&CircleTest> {
         self.circle.as_ref()
     }
 
-    /// For people.
+    /// The summary as lines for people.
     pub fn text(&self) -> String {
         let mut text = format!(
             "{:.3} to {:.3} s, {} samples\n\n{:<16}{:>14}{:>14}{:>14}  edges\n",

@@ -36,10 +36,10 @@ pub enum Event {
     Pulse(String),
 }
 
-/// A recording.
+/// A recording as a table: times, traces, events.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// s, ascending.
+    /// Time of each sample, s, ascending.
     pub times: Vec<f64>,
     pub traces: Vec<Trace>,
     /// What happened, with its time, s.
@@ -47,7 +47,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a recording.
+    /// Reads a recording from its file.
     pub fn load(path: &Path) -> Result<Table, ReportError> {
         let bytes = files::read_program(path)?
             .ok_or_else(|| ReportError::new(format!("{}: {}", path.display(), files::TOO_LARGE)))?;

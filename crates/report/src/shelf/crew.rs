@@ -27,7 +27,7 @@ pub type Draw = fn(&Tested, &Path) -> Option<Vec<u8>>;
 
 /// What is done with each program.
 pub struct Work {
-    /// The programs.
+    /// Paths of the programs.
     pub files: Vec<PathBuf>,
     /// What they run on.
     pub bench: Bench,

@@ -16,7 +16,7 @@ const WARNINGS: usize = 20;
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// Writes the page.
+/// Writes the table as a page that needs no other file.
 pub fn write(out: &mut impl Write, done: &[Done], totals: &Totals, about: &About) -> io::Result<()> {
     let model = about.model.to_string().to_uppercase();
     write!(
@@ -111,7 +111,7 @@ fn program(out: &mut impl Write, done: &Done) -> io::Result<()> {
     )
 }
 
-/// Error and warnings.
+/// The cell with the error and the first warnings.
 fn said(row: &Row) -> String {
     let error = row.error_text();
     let warnings = row.warnings.iter().take(WARNINGS).map(|said| {

@@ -33,11 +33,11 @@ const PICTURE: (u32, u32) = (480, 360);
 /// A file for the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportFile {
-    /// For spreadsheets.
+    /// A table for spreadsheets.
     Csv(PathBuf),
-    /// For programs.
+    /// JSON, which a later run can be compared with.
     Json(PathBuf),
-    /// For a browser.
+    /// A page for a browser.
     Html(PathBuf),
 }
 

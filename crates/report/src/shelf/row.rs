@@ -57,17 +57,17 @@ impl Verdict {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Row {
-    /// Its file.
+    /// Path of its file.
     pub path: String,
-    /// How it ended.
+    /// How its run ended.
     pub result: Verdict,
-    /// The first error.
+    /// The error that ended it, if one did.
     pub error: Option<Fault>,
-    /// `mm` or `inch`.
+    /// Unit of the program: `mm` or `inch`.
     pub unit: String,
     /// `None` when the feed is 0.
     pub machining_time_s: Option<f64>,
-    /// Way in feed.
+    /// Way in feed, mm.
     pub feed_mm: f64,
     /// Way in rapid traverse.
     pub rapid_mm: f64,
@@ -95,7 +95,7 @@ pub struct Row {
     pub changes: Vec<String>,
 }
 
-/// The first error.
+/// The error that ended a run, with its place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
     pub message: String,
@@ -128,7 +128,7 @@ pub struct Travel {
     pub fits: bool,
 }
 
-/// A warning.
+/// A warning, with its block and how often it came.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Said {
     pub message: String,

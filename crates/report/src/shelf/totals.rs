@@ -12,7 +12,7 @@ pub const COLUMNS: Columns = Columns::About(250_000.0);
 /// What a table is about.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// The control.
+    /// The control model on which the programs run.
     pub model: ControlModel,
     /// Density of the material, g/cm³, for weights.
     pub density: Option<f64>,
@@ -23,7 +23,7 @@ pub struct About {
 /// The table as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Shelf {
-    /// The control.
+    /// The control model on which the programs ran.
     pub model: String,
     /// What all come to.
     pub totals: Totals,
@@ -35,7 +35,7 @@ pub struct Shelf {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Totals {
-    /// All of them.
+    /// How many programs there are.
     pub programs: u64,
     /// Run to their end, or to the stop that was wanted.
     pub ok: u64,
@@ -47,13 +47,13 @@ pub struct Totals {
     pub not_run: u64,
     /// Of all programs that were run alone and move.
     pub machining_time_s: f64,
-    /// Way in feed.
+    /// Way in feed, mm.
     pub feed_mm: f64,
     /// Way in rapid traverse.
     pub rapid_mm: f64,
-    /// What was removed.
+    /// Volume that was removed, mm³.
     pub removed_mm3: f64,
-    /// All warnings.
+    /// How many warnings all of them have.
     pub warnings: u64,
     /// Programs that are different from the run that was compared with.
     pub changed: u64,

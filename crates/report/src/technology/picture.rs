@@ -49,7 +49,7 @@ struct Bar {
     waits: Vec<(f64, f64)>,
 }
 
-/// The picture.
+/// Speed along the path and over the time, and below them a bar for each function.
 pub fn sheet(report: &Report, title: &str) -> Sheet {
     let bars = bars(report);
     let shown = bars.len().min(ROWS_MAX);

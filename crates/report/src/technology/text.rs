@@ -8,7 +8,7 @@ use crate::count;
 /// Events that are printed; the others are counted.
 const PRINTED_MAX: usize = 400;
 
-/// The report.
+/// Events, waits and what else was noted, as lines for people.
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
     if !report.events.is_empty() {

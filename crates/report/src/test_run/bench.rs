@@ -27,7 +27,7 @@ use bahn_host::files::{self, FileLibrary, Loaded};
 
 /// What programs run on: model, machine parameters, tools.
 pub struct Bench {
-    /// The machine parameters.
+    /// The machine parameters under which programs run.
     pub list: ParameterList,
     /// How programs are interpreted.
     pub settings: Settings,
@@ -68,7 +68,7 @@ pub struct Company {
 
 /// A run that has ended.
 pub struct Tested {
-    /// How it ended.
+    /// At its end, at a stop, by Ctrl-C, a time limit or an error.
     pub end: End,
     /// What is said of it.
     pub report: Report,

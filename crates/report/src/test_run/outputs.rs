@@ -16,7 +16,7 @@ use bahn_host::printable;
 /// A file for the tool path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PathFile {
-    /// A table.
+    /// A table with a line for each element.
     Csv(PathBuf),
     /// A drawing in plan view.
     Svg(PathBuf),
@@ -61,7 +61,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// There is none.
+    /// No file is to be written.
     pub fn is_empty(&self) -> bool {
         self.tables.is_empty() && self.drawings.is_empty() && self.print.is_none()
     }

@@ -57,7 +57,7 @@ impl Scene {
 /// What the seeds of a campaign choose from.
 pub(super) struct Choice<'a> {
     pub catalogue: &'a Catalogue,
-    /// Of each program.
+    /// What an undisturbed run showed of each program.
     pub scenes: &'a [Scene],
 }
 

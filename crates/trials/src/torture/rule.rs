@@ -37,7 +37,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// All of them.
+    /// Every rule, in the order of the variants.
     pub const ALL: [Rule; 14] = [
         Rule::Numbers,
         Rule::Travel,

@@ -13,7 +13,7 @@ pub(crate) struct DncOptions {
     pub command: DncCommand,
 }
 
-/// Which side.
+/// The side of a transfer that the command is.
 #[derive(Debug, Subcommand)]
 pub(crate) enum DncCommand {
     /// Execute a program on a simulated machine while it is transferred.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-/// The report.
+/// What is told of a program that was executed from a line.
 #[derive(Debug, Serialize)]
 pub(super) struct DncReport {
     pub program: String,
@@ -20,7 +20,7 @@ pub(super) struct DncReport {
 }
 
 impl DncReport {
-    /// For people.
+    /// The report as lines for people.
     pub fn text(&self) -> String {
         let position: Vec<String> = self
             .position

@@ -15,7 +15,7 @@ use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics, machine_folder, settings};
 
-/// Runs the command.
+/// Executes a program on a machine while it comes from a line.
 pub(super) fn command(options: &DncRunOptions) -> Result<Outcome, UsageError> {
     let mut machine = match machine_folder::load(&options.machine)? {
         Ok(machine) => machine,

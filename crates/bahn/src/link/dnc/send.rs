@@ -21,7 +21,7 @@ const PERIOD: Duration = Duration::from_secs(1);
 /// How long a connection that is made again must hold to count as one.
 const HOLDS: Duration = Duration::from_secs(1);
 
-/// Runs the command.
+/// Sends programs block by block to a control that executes them.
 pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
     let store = link_port::disk(&options.dir)?;
     let mut spool = Spool::new(Box::new(store), options.resume);
@@ -168,7 +168,7 @@ impl Sender {
         !self.endless && self.missing.is_empty()
     }
 
-    /// The last line.
+    /// What is told at the end as JSON; people have seen it on the way.
     fn done(&self, format: Format) -> Result<(), UsageError> {
         match format {
             Format::Text => Ok(()),

@@ -21,7 +21,7 @@ enum Wanted {
     Line,
 }
 
-/// What was typed.
+/// What the typed text means.
 pub(super) enum Accepted {
     Value(Operand, Content),
     Operands(Vec<Operand>),

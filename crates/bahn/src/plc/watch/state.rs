@@ -8,7 +8,7 @@ use super::breakpoint::Breakpoints;
 use super::entry::Entry;
 use super::trend::Trend;
 
-/// The view.
+/// What `bahn plc watch` shows, and what was typed.
 pub(super) struct Watch {
     pub(super) subject: Subject,
     pub(super) operands: Vec<Operand>,
