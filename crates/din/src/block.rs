@@ -36,11 +36,11 @@ impl PartialEq for Word {
 pub(crate) enum WordKind {
     /// G function, one of [`G_FUNCTIONS`].
     G(u16),
-    /// Coordinate.
+    /// Coordinate of an axis.
     Axis(Axis, Expression),
-    /// `X[..]` with functions.
+    /// `X[..]` with functions of the axis.
     AxisBracket(Axis, Vec<Word>),
-    /// `S2[..]`.
+    /// `S2[..]` with functions of the spindle.
     SpindleBracket(Arc<str>, Vec<Word>),
     /// M function with its additive value; H with `false`.
     Function(bool, Expression, Option<Expression>),
@@ -50,17 +50,17 @@ pub(crate) enum WordKind {
     Place(Expression),
     /// Feed: F, in brackets `FEED`.
     Feed(Expression),
-    /// `INDP`.
+    /// `INDP`: the axis moves on its own.
     Independent,
-    /// I, J, K.
+    /// I, J, K, by 0, 1, 2: centre of a circle.
     Centre(usize, Expression),
-    /// R.
+    /// R: radius of a circle.
     Radius(Expression),
     /// A value without address after G04.
     Bare(Expression),
     SetParameter(Expression, Expression),
     SetVariable(Reference, Expression),
-    /// `"NAME" = "TEXT"`.
+    /// `"NAME" = "TEXT"`: the name stands for the text in what follows.
     Define(String, String),
     /// `L name`, in the same file only `LL name` (public).
     Call {

@@ -18,18 +18,18 @@ pub enum Step {
     Unit(Box<Unit>),
     /// A block that cannot be executed. Nothing comes behind it.
     Fault(BlockFault),
-    /// Everything is executed.
+    /// Nothing is left to execute.
     End,
 }
 
 /// Why a block cannot be executed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BlockFault {
-    /// Where it stands.
+    /// Place of the block.
     pub place: Place,
     /// Column of what is wrong, from 1.
     pub column: u32,
-    /// Number of characters.
+    /// How many characters it covers.
     pub length: u32,
     /// What is wrong, with the name of what is not known.
     pub message: String,

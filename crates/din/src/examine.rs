@@ -33,9 +33,9 @@ pub struct Examination {
 /// A fault in one of the files.
 #[derive(Clone, Debug)]
 pub struct FileFault {
-    /// The file.
+    /// The file that has it.
     pub program: Arc<Program>,
-    /// What, and where.
+    /// What is wrong, with line and column.
     pub fault: Fault,
 }
 

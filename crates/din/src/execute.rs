@@ -63,7 +63,7 @@ impl Default for Modal {
     }
 }
 
-/// G00 to G03.
+/// G00 to G03, of which one is in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Path {
     Rapid,

@@ -11,7 +11,7 @@ use crate::unit::{Variable, Variables};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Expression {
     Number(f64),
-    /// `P10`, `P[..]`.
+    /// `P10`, `P[..]`: a parameter by its number.
     Parameter(Box<Expression>),
     Variable(Reference),
     Negative(Box<Expression>),
@@ -110,7 +110,7 @@ pub(crate) fn variable_begins(cursor: &Cursor) -> bool {
     }
 }
 
-/// Reads an expression.
+/// Reads an expression as far as it goes.
 pub(crate) fn expression(cursor: &mut Cursor) -> Result<Expression, LineFault> {
     sum(cursor, 0)
 }
@@ -363,7 +363,7 @@ pub(crate) struct Values<'a> {
 }
 
 impl Expression {
-    /// Its value.
+    /// What it comes to with these values; the error names what has none.
     pub fn value(&self, values: &mut Values) -> Result<f64, String> {
         let value = match self {
             Expression::Number(number) => *number,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 pub struct LineFault {
     /// Column of its first character, from 1.
     pub column: u32,
-    /// Number of characters.
+    /// How many characters it covers.
     pub length: u32,
     /// What is wrong, with the name of what is not known.
     pub message: String,
@@ -148,7 +148,7 @@ fn append(to: &mut Vec<Glyph>, characters: &[char], range: std::ops::Range<usize
     }
 }
 
-/// Column of an index.
+/// Column from 1 of a character by its index from 0.
 fn column(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX).saturating_add(1)
 }

@@ -52,11 +52,11 @@ pub struct Section {
 /// What is wrong in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Line, from 1.
+    /// Line in the file, from 1.
     pub line: u32,
     /// Column of the first character, from 1.
     pub column: u32,
-    /// Number of characters.
+    /// How many characters it covers.
     pub length: u32,
     /// The block: its number, else its line: `N40`, `#12`.
     pub block: Arc<str>,
@@ -92,20 +92,20 @@ pub(crate) fn not_found(name: &str) -> String {
 /// Something to go to in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Landmark {
-    /// What it is.
+    /// Beginning of a program or subroutine, or number of a block.
     pub kind: LandmarkKind,
     /// Its name, `N40` of a number.
     pub name: String,
-    /// Line, from 1.
+    /// Line in the file, from 1.
     pub line: u32,
 }
 
-/// Kind of a landmark.
+/// What an editor lists and goes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LandmarkKind {
-    /// `%name`.
+    /// `%name`: beginning of the main program.
     Program,
-    /// `%L name`.
+    /// `%L name`: beginning of a subroutine.
     Subroutine,
     /// The number of a block.
     Number,
@@ -157,7 +157,7 @@ impl Program {
         program
     }
 
-    /// Its name.
+    /// Name of the file, as calls name it.
     pub fn name(&self) -> &Arc<str> {
         &self.name
     }
@@ -307,7 +307,7 @@ impl Program {
         self.judged().faults
     }
 
-    /// Reads every block.
+    /// Reads every block without executing it.
     pub(crate) fn judged(&self) -> Judged {
         let mut judged = Judged {
             faults: self.heads.clone(),

@@ -10,9 +10,9 @@ use bahn_path::{Axis, Curve, FeedRate, Position};
 /// channel, not the language.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// Where it stands.
+    /// Place of its block.
     pub place: Place,
-    /// What it moves.
+    /// What it moves; `None` of a block without coordinates.
     pub motion: Option<Motion>,
     /// M and H functions and spindle words in the order of the text.
     pub functions: Vec<Function>,
@@ -44,7 +44,7 @@ pub struct Motion {
     pub begin: Position,
     /// Start, where the axes stand, mm: `begin` unless they were [moved](crate::Decoder::relocate).
     pub start: Position,
-    /// End, mm.
+    /// Where its path ends, mm.
     pub end: Position,
     /// G00: as fast as the axes allow.
     pub rapid: bool,
@@ -65,7 +65,7 @@ impl Motion {
 /// A technology function as it is programmed [004:102-108].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Function {
-    /// Which kind.
+    /// M or H function with its number, or spindle word.
     pub kind: Kind,
     /// Its additive value (`M52=-345`).
     pub value: Option<i32>,
@@ -78,9 +78,9 @@ pub struct Function {
 /// Kind of a function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// M function.
+    /// M function by its number.
     M(u16),
-    /// H function.
+    /// H function by its number.
     H(u16),
     /// Spindle speed, rpm: `S1000`, `S2[REV1000]`.
     S(f64),
@@ -112,7 +112,7 @@ pub enum Command {
         entry_mm_min: Option<f64>,
         /// `F=`: feed within it, mm/min.
         feed_mm_min: Option<f64>,
-        /// `VECTOR_LIMIT_OFF`.
+        /// `VECTOR_LIMIT_OFF`: the limits of `#VECTOR LIMIT` do not act within it.
         vector_limit_off: bool,
     },
     /// `#VECTOR LIMIT ON [VEL= ACC= DEC=]`, `OFF` with none of them [004:144].
@@ -137,22 +137,22 @@ pub enum Command {
 /// Motion of an axis on its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Independent {
-    /// The axis.
+    /// Axis that moves on its own.
     pub axis: Axis,
-    /// Where to, mm.
+    /// Where it goes, mm.
     pub end: f64,
-    /// G00.
+    /// G00: as fast as the axis allows.
     pub rapid: bool,
-    /// Feed, mm/min.
+    /// Its own feed, mm/min.
     pub feed_mm_min: f64,
 }
 
 /// Words of a spindle bracket that order no function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpindleOrder {
-    /// Name as programmed.
+    /// Name as programmed: `S2`.
     pub spindle: Arc<str>,
-    /// `POS=`, degrees.
+    /// `POS=`: angle at which it stops, degrees.
     pub position_deg: Option<f64>,
 }
 

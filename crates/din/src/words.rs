@@ -10,9 +10,9 @@ use crate::line::{self, Glyph};
 pub struct Span {
     /// Column of its first character, from 1.
     pub column: u32,
-    /// Number of characters.
+    /// How many characters it covers.
     pub length: u32,
-    /// What it is.
+    /// Comment, number, address, value or the like.
     pub kind: SpanKind,
 }
 
@@ -31,7 +31,7 @@ pub enum SpanKind {
     Address,
     /// Number as a value.
     Value,
-    /// `V.G.RW`, `P10`.
+    /// Variable or parameter: `V.G.RW`, `P10`.
     Variable,
     /// `#FLUSH WAIT`, `$IF`.
     Command,

@@ -8,7 +8,7 @@ use crate::program::{Instruction, Op, PlcProgram};
 /// What an instruction does with an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// Looks at it.
+    /// Looks at it without changing it.
     Read,
     /// Sets it whatever the accumulator is.
     Assign,
@@ -24,18 +24,18 @@ pub enum Subject {
     Bit { bit: Bit, indexed: bool },
     /// A byte, word or doubleword.
     Number { number: Number, indexed: bool },
-    /// A string.
+    /// One of the strings S0 to S3.
     Text { string: u8, indexed: bool },
 }
 
 /// A kind of memory with addresses of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// Bits of an area.
+    /// Bits of an area: M, I, O, T or C.
     Bits(BitArea),
     /// What B, W and D share.
     Bytes,
-    /// Strings.
+    /// The strings S0 to S3.
     Texts,
 }
 
@@ -134,11 +134,11 @@ impl From<NumberOperand> for Subject {
 /// What an instruction names in its line.
 #[derive(Clone, Copy)]
 pub(crate) enum Named<'a> {
-    /// A bit.
+    /// A bit that is read, set or counted.
     Bit(BitOperand),
     /// So many bits, one after the other.
     Bits(BitOperand, u8),
-    /// A number.
+    /// A byte, word, doubleword or constant.
     Value(Value),
     /// A text that is read.
     Text(&'a TextOperand),

@@ -18,7 +18,7 @@ macro_rules! errors {
             /// All errors in the order of their numbers.
             pub const ALL: &[PlcError] = &[$(PlcError::$id),+];
 
-            /// What it says.
+            /// The text that stands beside its number.
             pub const fn text(self) -> &'static str {
                 match self { $(PlcError::$id => $text,)+ }
             }
@@ -210,7 +210,7 @@ pub enum Detection {
     MaybeSyntaxCheck,
     /// By the compiler, also at power-on.
     Compiler,
-    /// At run time.
+    /// As the program runs; the PLC stops.
     RunTime,
 }
 
@@ -243,7 +243,7 @@ impl fmt::Display for PlcError {
 /// it would be if the rule were not narrowed for the manual's own listings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Which error.
+    /// The error by its number and text.
     pub error: PlcError,
     /// The file, as the program names it.
     pub file: String,

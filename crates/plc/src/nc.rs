@@ -122,7 +122,7 @@ pub trait NcMemory {
     fn initialise_geometry(&mut self);
 }
 
-/// The data interfaces.
+/// The serial interfaces of the control, as modules reach them.
 pub trait NcInterfaces {
     /// A data interface: 0 RS-232-C/V.24, any other number RS-422/V.11 (9100 to 9107).
     fn data_interface(&mut self, number: usize) -> &mut DataInterface;

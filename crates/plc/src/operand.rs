@@ -25,9 +25,9 @@ pub struct NumberOperand {
 /// What word instructions read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Value {
-    /// A memory operand.
+    /// The content of a byte, word or doubleword.
     Number(NumberOperand),
-    /// `K+54`.
+    /// The number itself: `K+54`.
     Constant(i32),
 }
 

@@ -9,7 +9,7 @@ pub struct PlcProgram {
     pub code: Vec<Instruction>,
     /// The files, main file first.
     pub files: Vec<SourceText>,
-    /// Constants fields.
+    /// Constants fields, by the index that [`Op::LoadField`] has.
     pub fields: Vec<Field>,
     /// Jump tables of CASE.
     pub cases: Vec<Vec<Target>>,
@@ -22,18 +22,18 @@ pub struct PlcProgram {
 /// A source file as text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SourceText {
-    /// Its name.
+    /// Name of the file as the program links it.
     pub name: String,
-    /// Its lines.
+    /// Its text line by line, without line ends.
     pub lines: Vec<String>,
 }
 
 /// A constants field [000:14404-14432].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Its name.
+    /// Name after KFIELD.
     pub name: String,
-    /// Its constants.
+    /// Its constants in their order; X chooses one from 0.
     pub values: Vec<i32>,
 }
 
@@ -44,7 +44,7 @@ pub struct Label {
     pub name: String,
     /// Where it is defined.
     pub defined: SourceLine,
-    /// What it names.
+    /// Instruction or field that it stands for.
     pub place: LabelPlace,
     /// The lines that jump to it, call it, submit it or read from it.
     pub used: Vec<SourceLine>,
@@ -68,10 +68,10 @@ pub struct SourceLine {
     pub line: u32,
 }
 
-/// One command.
+/// One command of the program, with its place in the source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
-    /// What it does.
+    /// Operation with its operands.
     pub op: Op,
     /// Index of its file.
     pub file: u16,
@@ -96,7 +96,7 @@ pub enum Target {
 /// When a jump, call or return is executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Condition {
-    /// Always.
+    /// Whatever the logic accumulator is.
     Always,
     /// When the logic accumulator is 1.
     IfTrue,
@@ -107,37 +107,37 @@ pub enum Condition {
 /// How a value is changed while it is loaded or assigned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Transform {
-    /// Not at all.
+    /// It stays as it is.
     Plain,
-    /// One's complement.
+    /// `LN`, `=N`: one's complement, every bit inverted.
     Not,
-    /// Two's complement.
+    /// `L-`, `=-`: two's complement, the other sign.
     Minus,
 }
 
 /// A gate of two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Gate {
-    /// `A`.
+    /// `A`: accumulator AND operand.
     And,
     /// `AN`: accumulator AND NOT operand.
     AndNot,
-    /// `O`.
+    /// `O`: accumulator OR operand.
     Or,
-    /// `ON`.
+    /// `ON`: accumulator OR NOT operand.
     OrNot,
-    /// `XO`.
+    /// `XO`: accumulator XOR operand.
     Xor,
     /// `XON`: NOT (accumulator XOR operand).
     XorNot,
 }
 
-/// An arithmetic command.
+/// An arithmetic command; the accumulator stands left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
-    /// `+`.
+    /// `+`: sum of accumulator and operand.
     Plus,
-    /// `-`.
+    /// `-`: accumulator less operand.
     Minus,
     /// `x`; an overflow sets M3168.
     Multiply,
@@ -150,30 +150,30 @@ pub enum Arithmetic {
 /// A comparison; the accumulator stands left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Comparison {
-    /// `==`.
+    /// `==`: accumulator and operand are equal.
     Equal,
-    /// `<`.
+    /// `<`: the accumulator is less.
     Less,
-    /// `>`.
+    /// `>`: the accumulator is greater.
     Greater,
-    /// `<=`.
+    /// `<=`: the accumulator is less or equal.
     LessEqual,
-    /// `>=`.
+    /// `>=`: the accumulator is greater or equal.
     GreaterEqual,
-    /// `<>`.
+    /// `<>`: accumulator and operand differ.
     NotEqual,
 }
 
 /// Shifts and bit commands on the word accumulator; the operand is the count or the bit number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BitOperation {
-    /// `<<`.
+    /// `<<`: shift to the left by so many bits.
     ShiftLeft,
-    /// `>>`.
+    /// `>>`: shift to the right by so many bits.
     ShiftRight,
-    /// `BS`.
+    /// `BS`: the bit of this number becomes 1.
     Set,
-    /// `BC`.
+    /// `BC`: the bit of this number becomes 0.
     Clear,
 }
 
@@ -222,11 +222,11 @@ pub enum Op {
     AssignBits { first: BitOperand, count: u8 },
     /// `=X`: X := WA.
     StoreIndex,
-    /// `INC DEC`.
+    /// `INC DEC`: operand := operand + `by`.
     StepNumber { number: NumberOperand, by: i8 },
-    /// `INCW DECW`.
+    /// `INCW DECW`: WA := WA + `by`.
     StepWord { by: i8 },
-    /// `INCX DECX`.
+    /// `INCX DECX`: X := X + `by`.
     StepIndex { by: i8 },
     /// Opens a bracket on LA; `level` counts the open brackets outside.
     OpenLogic { level: u8 },
@@ -244,21 +244,21 @@ pub enum Op {
     PushBit { bit: BitOperand },
     /// `PS` of a number: 4 bytes.
     Push { value: Value },
-    /// `PSL`.
+    /// `PSL`: puts LA on the data stack.
     PushLogic,
-    /// `PSW`.
+    /// `PSW`: puts WA on the data stack.
     PushWord,
-    /// `PSX`.
+    /// `PSX`: puts X on the data stack.
     PushIndex,
     /// `PL` to a bit.
     PullBit { bit: BitOperand },
     /// `PL` to a number.
     Pull { number: NumberOperand },
-    /// `PLL`.
+    /// `PLL`: takes LA from the data stack.
     PullLogic,
-    /// `PLW`.
+    /// `PLW`: takes WA from the data stack.
     PullWord,
-    /// `PLX`.
+    /// `PLX`: takes X from the data stack.
     PullIndex,
     /// SA := text.
     LoadText { text: TextOperand },
@@ -275,9 +275,9 @@ pub enum Op {
     },
     /// `JP JPT JPF` and the jumps of structures.
     Jump { condition: Condition, target: usize },
-    /// `CM CMT CMF`.
+    /// `CM CMT CMF`: calls a module.
     Call { condition: Condition, target: Target },
-    /// `EM EMT EMF`.
+    /// `EM EMT EMF`: goes back to who called.
     Return { condition: Condition },
     /// Calls the entry of a table of [`PlcProgram::cases`].
     Case { number: NumberOperand, table: usize },
@@ -285,7 +285,7 @@ pub enum Op {
     Submit { target: Target },
     /// `RPLY`: WA := state of a job.
     Reply { number: NumberOperand },
-    /// `CAN`.
+    /// `CAN`: takes a submitted job out of the queue.
     Cancel { number: NumberOperand },
 }
 
@@ -320,7 +320,7 @@ impl Gate {
 }
 
 impl Transform {
-    /// The changed value.
+    /// The value as it is loaded or assigned.
     pub const fn apply(self, value: i32) -> i32 {
         match self {
             Transform::Plain => value,

@@ -6,11 +6,11 @@ use bahn_path::BlockRef;
 /// An error of the program, with the control's message and the block that causes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProgramError {
-    /// The message.
+    /// What the control says.
     pub message: Message,
     /// Name of the program.
     pub program: String,
-    /// The block.
+    /// The block that causes it.
     pub block: BlockRef,
     /// What exactly, in a few words; may be empty.
     pub detail: String,
@@ -112,25 +112,25 @@ impl Message {
 /// Something that does not stop the run but that the user should know.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Warning {
-    /// The block.
+    /// The block in which it came up.
     pub block: BlockRef,
-    /// What.
+    /// What the user should know.
     pub kind: WarningKind,
     /// How often it came up since it was last taken.
     pub count: u64,
 }
 
-/// Kinds of warnings.
+/// What a warning is about.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum WarningKind {
     /// A cycle whose setup clearance or pecking depth has another sign than its depth [003:4902].
     CycleSign {
-        /// Cycle number.
+        /// Number of the cycle.
         cycle: u16,
     },
     /// A tool is called that is neither defined nor in a table; length and radius 0 are taken.
     ToolNotDefined {
-        /// Tool number.
+        /// Number of the tool that is called.
         tool: u32,
     },
     /// BLK FORM 0.1 stands without 0.2: there is no blank.

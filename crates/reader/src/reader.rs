@@ -14,7 +14,7 @@ use crate::{MachineRules, ProgramError, Warning};
 pub struct Mark {
     /// Count of executed blocks up to and with that block: the sequence of its elements.
     pub sequence: u64,
-    /// The block.
+    /// The block of this count.
     pub at: BlockRef,
 }
 

@@ -63,7 +63,7 @@ pub fn synchronisation_point() -> TechnologyFunction {
 /// What a program finds on a machine when it begins, whatever language it is in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// The control.
+    /// The control model that executes it.
     pub model: ControlModel,
     /// The M functions that are synchronised otherwise than the control model does.
     pub functions: OwnFunctions,

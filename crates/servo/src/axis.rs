@@ -602,7 +602,7 @@ impl Axis {
         self.measuring.count()
     }
 
-    /// Actual position, mm.
+    /// Actual position by the encoder, mm or degrees.
     pub fn actual_mm(&self) -> f64 {
         self.actual_mm
     }
@@ -658,7 +658,7 @@ impl Axis {
         self.transient.delay_steps() * self.timing.step_min() * 60.0
     }
 
-    /// Method of positioning.
+    /// With servo lag or with feed pre-control.
     pub fn method(&self) -> Method {
         self.method
     }

@@ -105,7 +105,7 @@ impl MeasuringSystem {
         self.step_mm.abs() * self.measuring_steps as f64
     }
 
-    /// Takes a reading.
+    /// Takes what the encoder gives in this servo step; `Some` when its signals are faulty.
     pub(crate) fn read(&mut self, encoder: Encoder, settings: &AxisSettings) -> Option<EncoderFault> {
         let encoder = match settings.encoder.square_wave {
             true => encoder.fourfold(),

@@ -34,11 +34,11 @@ pub(crate) struct Sample {
 /// Where the axis is between two standstills.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// In the window.
+    /// It stands within the positioning window.
     Rest,
     /// Has begun to move from here.
     Start { origin_mm: f64, direction: f64 },
-    /// Moves.
+    /// It moves towards its nominal position.
     Travel { direction: f64 },
     /// Nominal position reached; the axis comes from the side on which its lag was.
     Arrival { side: f64 },

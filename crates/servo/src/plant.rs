@@ -104,9 +104,9 @@ pub struct Measured {
     pub inputs: [bool; INPUTS],
     /// The controls of the operating panel that the NC reads itself.
     pub operator: OperatorInputs,
-    /// The touch probe.
+    /// What the touch probe in the spindle gives.
     pub probe: Probe,
-    /// The tool probe.
+    /// What the tool probe on the table gives.
     pub tool_probe: Probe,
     /// The buffer battery of the control's memory is low [000:1385-1400].
     pub buffer_battery_low: bool,
@@ -196,7 +196,7 @@ pub struct Drive {
     pub fault: u16,
 }
 
-/// The touch probe.
+/// Signals of a touch probe or tool probe.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Probe {
     /// The stylus is deflected.
@@ -217,6 +217,6 @@ pub struct OperatorInputs {
     pub feed_override_percent: f64,
     /// Spindle-speed override potentiometer, 0 to 150 %.
     pub spindle_override_percent: f64,
-    /// The handwheel.
+    /// Counts and keys of the handwheel.
     pub handwheel: HandwheelInputs,
 }

@@ -6,11 +6,11 @@
 /// The settings of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisSettings {
-    /// Measuring system.
+    /// Signal period and checks of the encoder.
     pub encoder: EncoderSettings,
-    /// Reference marks.
+    /// Which marks the encoder has, and their spacing.
     pub marks: MarkSettings,
-    /// Nominal value output.
+    /// Sign and scale of the voltage to the drive.
     pub output: OutputSettings,
     /// Rapid traverse and acceleration.
     pub motion: MotionSettings,
@@ -206,7 +206,7 @@ pub enum MarkKind {
     OneMark,
     /// 2: rotary encoder on a ballscrew, one pulse for each turn; the cam chooses the pulse.
     RotaryEncoder,
-    /// 3: distance-coded marks.
+    /// 3: distance-coded marks, the sequence from 1/92 on.
     DistanceCoded,
 }
 

@@ -66,14 +66,14 @@ pub enum Ramp {
 pub enum Way {
     /// In the direction of M03, or of M04.
     In(Rotation),
-    /// The shorter way.
+    /// In the direction in which the angle is nearer.
     Shortest,
 }
 
 /// What the spindle does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
-    /// What was programmed.
+    /// It turns at the programmed speed, or stands after M05.
     Speed(Rotation),
     /// Voltage MP3240.2 while the gear changes.
     Jog(Rotation),

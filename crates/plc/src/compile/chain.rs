@@ -213,7 +213,7 @@ impl Chains {
         error
     }
 
-    /// `EMT EMF`.
+    /// `EMT EMF`: a condition must have been gated.
     pub(super) fn end_if(&mut self) -> Option<PlcError> {
         self.leave_brackets(PlcError::BracketOpenAtEnd)
             .or(self.condition())

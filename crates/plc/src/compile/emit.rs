@@ -138,7 +138,7 @@ impl Translator<'_> {
         self.emit(op, command);
     }
 
-    /// Commands without operand.
+    /// Translates commands that have no operand.
     fn plain(&mut self, command: &Command) {
         let (op, error) = match command.mnemonic {
             Mnemonic::IncrementWord => (Op::StepWord { by: 1 }, self.chains.gate_word()),

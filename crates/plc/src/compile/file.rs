@@ -46,7 +46,7 @@ pub(super) enum Slot {
     CaseEntry { table: usize, entry: usize },
 }
 
-/// Translates a file.
+/// Translates the lines of a file; names of other files are left to the linker.
 pub(super) fn translate(
     index: usize,
     name: &str,
@@ -523,7 +523,7 @@ impl Translator<'_> {
 }
 
 impl Translator<'_> {
-    /// `L KF name[X]`.
+    /// `L KF name[X]`: loads a constant of a field.
     pub(super) fn load_field(&mut self, name: &str, command: &Command) {
         let error = self.chains.load_word();
         self.report(error, "");

@@ -61,7 +61,7 @@ impl Labels {
         name
     }
 
-    /// Defines a name.
+    /// Defines a name, unless it is defined already.
     pub(super) fn define(&mut self, text: &str, definition: Definition, place: Place) -> Option<PlcError> {
         self.count += 1;
         if is_internal(text) {

@@ -36,7 +36,7 @@ impl Options {
         }
     }
 
-    /// Refuses loose spelling.
+    /// Refuses what only the manual's own listings spell like that.
     pub fn strict(self) -> Options {
         Options { strict: true, ..self }
     }

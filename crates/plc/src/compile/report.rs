@@ -11,7 +11,7 @@ pub(super) const LISTED_MAX: usize = 1000;
 pub(super) struct Reports {
     pub(super) errors: Vec<(usize, Diagnostic)>,
     pub(super) warnings: Vec<(usize, Diagnostic)>,
-    /// Those beyond [`LISTED_MAX`].
+    /// How many reports there are beyond [`LISTED_MAX`].
     pub(super) not_listed: usize,
     /// The error that came last is listed.
     pub(super) last_is_listed: bool,

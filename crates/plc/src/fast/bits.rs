@@ -14,7 +14,7 @@ use crate::program::Op;
 const BRACKETS_AT: usize = CELLS - BRACKETS;
 const BRACKETS: usize = 16;
 
-/// One bit instruction.
+/// One bit instruction, as what it makes of bit and LA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct BitStep {
     cell: u16,

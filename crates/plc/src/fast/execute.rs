@@ -280,7 +280,7 @@ impl State<'_, '_, '_, '_> {
         }
     }
 
-    /// Calls code.
+    /// Calls the code of a leap.
     #[inline(always)]
     fn call(&mut self, leap: u32) -> Result<(), PlcError> {
         let Some(target) = self.fast.leaps.get(leap as usize) else {

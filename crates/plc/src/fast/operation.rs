@@ -155,6 +155,6 @@ pub(super) struct Leap {
 pub(super) enum CaseEntry {
     /// Index of a leap.
     Code(u32),
-    /// An internal module.
+    /// An internal module by its number.
     Module(u16),
 }

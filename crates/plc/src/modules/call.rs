@@ -9,9 +9,9 @@ use crate::{Nc, PlcError, TextFile};
 /// How a call ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// M3171 becomes 0.
+    /// The module did its work: M3171 becomes 0.
     Done,
-    /// M3171 becomes 1.
+    /// The module refused or failed: M3171 becomes 1.
     Failed,
     /// M3171 keeps its value.
     Untouched,

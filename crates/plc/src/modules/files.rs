@@ -21,7 +21,7 @@ fn pallet(call: &mut Call<'_>, line: i32) -> Result<(), i32> {
     const NO_DATUM_TABLE: i32 = 9;
     /// W272: program run single block, program run full sequence.
     const RUN_MODES: [i32; 2] = [4, 5];
-    /// Bits of MP7224.0.
+    /// Bits of MP7224.0 that disable kinds of files.
     const DATUM_TABLES: u32 = 3;
     const PALLET_FILES: u32 = 4;
     if !call.from_submit {

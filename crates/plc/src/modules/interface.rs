@@ -37,7 +37,7 @@ pub(super) fn assign(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     Ok(Outcome::Done)
 }
 
-/// Values of MP5040.
+/// Baud rates by the values of MP5040.
 const BAUD_RATES: [u32; 10] = [110, 150, 300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400];
 /// Rates that both interfaces cannot have at once [000:15617].
 const EXCLUSIVE: [(u32, u32); 2] = [(19_200, 38_400), (38_400, 19_200)];

@@ -44,32 +44,32 @@ pub(super) fn copy_bytes(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     Ok(Outcome::Done)
 }
 
-/// 9010.
+/// Module 9010: reads the byte at an address.
 pub(super) fn read_byte(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     read(call, Size::Byte)
 }
 
-/// 9011.
+/// Module 9011: reads the word at an address.
 pub(super) fn read_word(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     read(call, Size::Word)
 }
 
-/// 9012.
+/// Module 9012: reads the doubleword at an address.
 pub(super) fn read_double(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     read(call, Size::Double)
 }
 
-/// 9020.
+/// Module 9020: writes the byte at an address.
 pub(super) fn write_byte(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     write(call, Size::Byte)
 }
 
-/// 9021.
+/// Module 9021: writes the word at an address.
 pub(super) fn write_word(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     write(call, Size::Word)
 }
 
-/// 9022.
+/// Module 9022: writes the doubleword at an address.
 pub(super) fn write_double(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     write(call, Size::Double)
 }

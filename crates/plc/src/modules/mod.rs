@@ -28,7 +28,7 @@ use call::{Outcome, string_number};
 pub struct Module {
     /// The number after CM.
     pub number: u16,
-    /// What it does.
+    /// What it does, in a few words for lists.
     pub name: &'static str,
     run: Run,
 }

@@ -31,9 +31,9 @@ pub enum ParameterFileFault {
 /// A text file of the PLC [000:14079-14084].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextFile {
-    /// PLC error messages.
+    /// PLC error messages, a line each.
     Messages,
-    /// PLC dialogues.
+    /// Dialogues of the PLC, a line each.
     Dialogues,
 }
 

@@ -7,14 +7,14 @@ use std::collections::VecDeque;
 pub enum InterfaceUser {
     /// Input and output of programs by the operator.
     Nc,
-    /// The PLC.
+    /// The PLC, which has assigned it to itself.
     Plc,
 }
 
 /// One of the two serial interfaces. The control moves characters between its buffers and the line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DataInterface {
-    /// Who has it.
+    /// Who has it; `None` while it is free.
     pub user: Option<InterfaceUser>,
     /// The other side is ready.
     pub ready: bool,
@@ -36,7 +36,7 @@ pub struct DataInterface {
     pub receive_error: bool,
     /// ETX was received: the other side does not want more.
     pub end_of_text: bool,
-    /// Characters are received.
+    /// Characters are being received.
     pub receiving: bool,
     /// Data format and protocol are those of the operating mode that the operator chose, not of MP5xxx.2.
     pub format_of_mode: bool,
@@ -128,8 +128,8 @@ impl HostLink {
 /// A message between PLC and host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HostMessage {
-    /// A doubleword.
+    /// A number of 32 bits.
     Double(i32),
-    /// A string.
+    /// A string, its bytes.
     Text(Vec<u8>),
 }

@@ -3,7 +3,7 @@
 /// A command to a PLC axis. Feed rates are in mm/min or degrees/min.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlcAxisCommand {
-    /// Positioning (9120).
+    /// Module 9120: positioning.
     Start {
         /// Target or distance in mm or degrees.
         target: f64,
@@ -12,13 +12,13 @@ pub enum PlcAxisCommand {
         /// Feed rate; it is not checked and may be negative.
         feed: f64,
     },
-    /// Stop (9121).
+    /// Module 9121: the axis stops.
     Stop,
     /// Until the reference mark is found; no limit switches, no override. Clears a positioning error (9123).
     TraverseReferenceMarks {
         /// Feed rate; it is not checked and may be negative.
         feed: f64,
-        /// In negative direction.
+        /// The marks are looked for in negative direction.
         negative: bool,
     },
 }
@@ -28,7 +28,7 @@ pub enum PlcAxisCommand {
 pub struct PlcAxisStatus {
     /// It is over its reference point; cleared at power-on.
     pub referenced: bool,
-    /// It is positioning.
+    /// A positioning of it is on its way.
     pub positioning: bool,
     /// It moves in negative direction.
     pub negative: bool,
@@ -45,16 +45,16 @@ pub struct ToolCallBlock {
     pub axis: Option<i32>,
     /// Spindle speed in rpm, not checked; `None` keeps the active one.
     pub speed: Option<f64>,
-    /// DL in mm.
+    /// Oversize in length DL, mm.
     pub length_oversize: f64,
-    /// DR in mm.
+    /// Oversize in radius DR, mm.
     pub radius_oversize: f64,
 }
 
 /// An orientation of the spindle [000:16139-16152].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleOrientation {
-    /// Angle in degrees.
+    /// Angle of the oriented stop, degrees.
     pub angle: f64,
     /// The angle is added to that of CYCL DEF 13.
     pub added_to_cycle: bool,

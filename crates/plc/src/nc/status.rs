@@ -68,15 +68,15 @@ numbered! {
 numbered! {
     /// Which coordinates 9040 and 9041 read [000:14998-15006].
     CoordinateKind {
-        /// Actual values.
+        /// Actual values, mm or degrees.
         Actual,
-        /// Nominal values.
+        /// Nominal values, mm or degrees.
         Nominal,
         /// Actual values in the reference system.
         Reference,
         /// Trailing errors (servo lag).
         TrailingError,
-        /// Distances to go.
+        /// Distances to go, mm or degrees.
         DistanceToGo,
         /// Deflections of a measuring touch probe.
         Deflection,
@@ -88,7 +88,7 @@ numbered! {
 /// What 9036 changes [000:14935-14953].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StatusChange {
-    /// Handwheel subdivision.
+    /// The subdivision of the handwheel.
     Subdivision {
         /// The axis; `None` means all.
         axis: Option<usize>,
@@ -115,7 +115,7 @@ pub enum JogLimit {
 /// Angles of the spindle in degrees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpindlePosition {
-    /// Actual angle.
+    /// Actual angle, degrees.
     pub actual: f64,
     /// Actual angle in the reference system.
     pub reference: f64,
@@ -126,10 +126,10 @@ pub struct SpindlePosition {
 /// Angles of a spindle whose position is controlled, in degrees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControlledSpindle {
-    /// Nominal angle.
+    /// Nominal angle, degrees.
     pub nominal: f64,
     /// Trailing error (servo lag).
     pub trailing_error: f64,
-    /// Distance to go.
+    /// What is left to the target.
     pub distance_to_go: f64,
 }

@@ -20,9 +20,9 @@ pub struct Column {
     pub name: &'static str,
     /// Places after the point.
     pub decimals: u8,
-    /// Smallest value.
+    /// Smallest value that it takes.
     pub min: f64,
-    /// Greatest value.
+    /// Greatest value that it takes.
     pub max: f64,
 }
 
@@ -106,7 +106,7 @@ impl MemoryTable {
         self.lines.iter().flat_map(values)
     }
 
-    /// Its kind.
+    /// Whether it holds tools, datums or pockets.
     pub fn kind(&self) -> TableKind {
         self.kind
     }
@@ -183,7 +183,7 @@ const TOOL: &[Option<Column>] = &[
     number("RBREAK", 4, 0.0, TOLERANCE_MAX),
 ];
 
-/// [000:15414-15420].
+/// Elements of a datum table by their numbers [000:15414-15420].
 const DATUM: &[Option<Column>] = &[
     length("X", COORDINATE_MAX),
     length("Y", COORDINATE_MAX),
@@ -192,7 +192,7 @@ const DATUM: &[Option<Column>] = &[
     length("5", COORDINATE_MAX),
 ];
 
-/// [000:15422-15429].
+/// Elements of a pocket table by their numbers [000:15422-15429].
 const POCKET: &[Option<Column>] = &[
     whole("T", -1.0, TOOL_MAX),
     whole("ST", 0.0, 1.0),

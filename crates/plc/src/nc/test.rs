@@ -33,9 +33,9 @@ pub struct TestNc {
     pub resets: bool,
     /// An NC program was started.
     pub program_running: bool,
-    /// PLC error messages.
+    /// Lines of the PLC error messages.
     pub messages: Vec<String>,
-    /// PLC dialogues.
+    /// Lines of the PLC dialogues.
     pub dialogues: Vec<String>,
     /// Status; 0 where nothing is set.
     pub status: BTreeMap<StatusItem, i32>,
@@ -45,7 +45,7 @@ pub struct TestNc {
     pub coordinates: BTreeMap<CoordinateKind, PerPlcAxis<f64>>,
     /// Angles of the spindle.
     pub spindle: SpindlePosition,
-    /// The PLC window.
+    /// What the PLC has written into its window.
     pub window: PlcWindow,
     /// Whether the PLC window is to be seen.
     pub window_view: WindowView,
@@ -59,7 +59,7 @@ pub struct TestNc {
     pub datum_table: Option<String>,
     /// Lines of the compensation assignment: names of tables.
     pub compensation: Option<Vec<Vec<String>>>,
-    /// The compensation tables.
+    /// Sizes of the compensation tables, by their names.
     pub compensation_tables: BTreeMap<String, CompensationSize>,
     /// The active line of the compensation assignment.
     pub compensation_line: i32,
@@ -88,9 +88,9 @@ pub struct TestNc {
 pub struct TestAxis {
     /// Where it is in mm or degrees.
     pub position: f64,
-    /// What it does.
+    /// What modules read of it.
     pub status: PlcAxisStatus,
-    /// Override in percent.
+    /// Override that acts on it, %.
     pub override_percent: f64,
     /// The command that is executed.
     pub command: Option<PlcAxisCommand>,

@@ -21,7 +21,7 @@ const FULL_LOAD: u64 = 5_000_000;
 /// Nominal time that submit jobs get in each scan, in ns: 5 % of a cycle of 20 ms (inferred) [000:14305].
 const JOBS_TIME: u64 = 1_000_000;
 
-/// RS-232-C/V.24 and RS-422/V.11.
+/// Interfaces of the control: RS-232-C/V.24 and RS-422/V.11.
 const DATA_INTERFACES: usize = 2;
 
 /// A time in percent as the PLC menu shows it.
@@ -43,9 +43,9 @@ pub enum Start {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: error {}: {}", error.number(), error.text())]
 pub struct RuntimeError {
-    /// 50 to 56.
+    /// One of the errors 50 to 56.
     pub error: PlcError,
-    /// The file.
+    /// Source file of the line that failed.
     pub file: String,
     /// The line that failed, counted from 1; for a time out the last jump that was executed.
     pub line: u32,
@@ -80,7 +80,7 @@ impl ProcessingTime {
 pub struct ScanReport {
     /// Scans since the start, this one included.
     pub scans: u64,
-    /// Processing times.
+    /// Processing times, this scan included.
     pub time: ProcessingTime,
 }
 
@@ -273,12 +273,12 @@ impl Machine {
         &self.registers
     }
 
-    /// The program.
+    /// The compiled program that runs.
     pub fn program(&self) -> &Arc<PlcProgram> {
         &self.program
     }
 
-    /// Processing times.
+    /// Processing times of the latest and of the longest scan.
     pub fn time(&self) -> ProcessingTime {
         self.time
     }

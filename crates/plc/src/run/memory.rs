@@ -44,7 +44,7 @@ pub(super) fn read(image: &Image, value: Value, index: i32) -> i32 {
     }
 }
 
-/// Writes a bit.
+/// Writes a bit; an index may lead out of its area.
 pub(super) fn write_bit(
     image: &mut Image,
     operand: BitOperand,
@@ -56,7 +56,7 @@ pub(super) fn write_bit(
     Ok(())
 }
 
-/// Writes a number.
+/// Writes a byte, word or doubleword; an index may lead out of the memory.
 pub(super) fn write_number(
     image: &mut Image,
     operand: NumberOperand,

@@ -53,7 +53,7 @@ impl<'p> Processor<'p, '_> {
         Ok((step, Some(instruction)))
     }
 
-    /// Executes one instruction.
+    /// Executes one instruction and tells where the run goes on.
     #[expect(clippy::too_many_lines, reason = "one arm for each instruction")]
     pub(crate) fn execute(&mut self, op: &Op) -> Result<Step, PlcError> {
         let index = self.registers.index;

@@ -15,11 +15,11 @@ pub(crate) const CALLS_MAX: usize = 32;
 /// Accumulators, index register, stacks and program counter of the cyclic program or of a submit job.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Registers {
-    /// Logic accumulator.
+    /// Logic accumulator LA.
     pub logic: bool,
-    /// Word accumulator.
+    /// Word accumulator WA.
     pub word: i32,
-    /// Index register.
+    /// Index register X.
     pub index: i32,
     /// Index of the next instruction.
     pub next: usize,
@@ -36,12 +36,12 @@ pub struct Registers {
 pub(crate) type Text = ArrayVec<u8, STRING_LENGTH>;
 
 impl Registers {
-    /// String accumulator.
+    /// String accumulator SA.
     pub fn text(&self) -> &[u8] {
         &self.text
     }
 
-    /// Nested calls.
+    /// How many calls are open.
     pub fn call_depth(&self) -> usize {
         self.calls.len()
     }
@@ -60,7 +60,7 @@ impl Registers {
         self.calls.clear();
     }
 
-    /// Enters a module.
+    /// Goes to an instruction and notes where to come back.
     pub(crate) fn call(&mut self, target: usize) -> Result<(), PlcError> {
         let result = self.calls.try_push(self.next);
         result.map_err(|_| PlcError::NestingTooDeep)?;
@@ -97,7 +97,7 @@ impl DataStack {
         result.map_err(|_| PlcError::StackOverflow)
     }
 
-    /// Pulls 32 bits.
+    /// Takes 32 bits from the data stack.
     #[inline]
     pub(crate) fn pull(&mut self) -> Result<i32, PlcError> {
         let (Some(high), Some(low)) = (self.words.pop(), self.words.pop()) else {
@@ -106,13 +106,13 @@ impl DataStack {
         Ok((u32::from(high) << 16 | u32::from(low)) as i32)
     }
 
-    /// Pushes one bit.
+    /// Puts one bit, a word long, on the data stack.
     pub(crate) fn push_logic(&mut self, value: bool) -> Result<(), PlcError> {
         let result = self.words.try_push(if value { LOGIC } else { 0 });
         result.map_err(|_| PlcError::StackOverflow)
     }
 
-    /// Pulls one bit.
+    /// Takes one bit, a word long, from the data stack.
     pub(crate) fn pull_logic(&mut self) -> Result<bool, PlcError> {
         let word = self.words.pop().ok_or(PlcError::StackUnderflow)?;
         Ok(word & LOGIC != 0)

@@ -107,7 +107,7 @@ pub(super) fn append(text: &mut Text, more: &[u8]) {
     text.extend(more.iter().take(room).copied());
 }
 
-/// Replaces the characters.
+/// Puts other characters in place of all; what is too long is cut off.
 pub(super) fn replace(text: &mut Text, by: &[u8]) {
     text.clear();
     text.extend(by.iter().take(STRING_LENGTH).copied());

@@ -21,11 +21,11 @@ pub trait Tracer {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct TraceStep<'a> {
-    /// The program.
+    /// The program that it belongs to.
     pub program: &'a PlcProgram,
     /// Index of the instruction.
     pub at: usize,
-    /// The instruction.
+    /// The instruction itself, with its line.
     pub instruction: &'a Instruction,
     /// Accumulators and stacks after it.
     pub registers: &'a Registers,
@@ -51,9 +51,9 @@ pub enum OperandContent {
 pub struct Executed {
     /// The content of its operand.
     pub operand: Option<OperandContent>,
-    /// The logic accumulator.
+    /// Logic accumulator after it.
     pub logic: bool,
-    /// The word accumulator.
+    /// Word accumulator after it.
     pub word: i32,
 }
 

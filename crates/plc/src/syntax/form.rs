@@ -3,7 +3,7 @@
 /// Kinds of operands that the table tells apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Class {
-    /// No operand.
+    /// The command stands alone.
     None,
     /// M, I, O, T, C; also a bracket on the logic accumulator.
     Bit,
@@ -21,13 +21,13 @@ pub(crate) enum Class {
     TextLiteral,
     /// S#E, S#D.
     TextReference,
-    /// A constants field.
+    /// The name of a constants field.
     Field,
-    /// A label.
+    /// Name or number of a label.
     Label,
-    /// An internal module.
+    /// The number of an internal module.
     Module,
-    /// A file name.
+    /// The name of a source file.
     File,
 }
 
@@ -47,7 +47,7 @@ const UNPRINTED_TIME: u32 = 500;
 /// Code length of the forms for which the manual prints none (inferred from their neighbours).
 const UNPRINTED_BYTES: u16 = 8;
 
-/// Time and length.
+/// Nominal time, ns, and length of code, bytes.
 const fn cost(time: u32, bytes: u16) -> Cost {
     Cost {
         time,
@@ -66,12 +66,12 @@ const U: Cost = cost(UNPRINTED_TIME, UNPRINTED_BYTES);
 
 macro_rules! forms {
     ($($id:ident $spelling:literal { $($class:ident: $cost:expr),+ $(,)? })+) => {
-        /// A command.
+        /// A command by its spelling.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub(crate) enum Mnemonic { $($id),+ }
 
         impl Mnemonic {
-            /// All commands.
+            /// All commands, in the order of the table.
             pub(crate) const ALL: &[Mnemonic] = &[$(Mnemonic::$id),+];
 
             /// How programs write it, in capitals.

@@ -18,7 +18,7 @@ const LINE_LENGTH_MAX: usize = 128;
 pub(crate) struct Command {
     pub mnemonic: Mnemonic,
     pub operand: Operand,
-    /// Characters from 1.
+    /// Where the command begins, in characters from 1.
     pub column: u32,
     pub operand_column: u32,
     /// How the line deviates from the editor's spelling.

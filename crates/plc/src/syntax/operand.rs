@@ -5,7 +5,7 @@ use crate::operand::{BitOperand, NumberOperand, TextOperand};
 
 /// Characters that tell labels apart [000:14004].
 const LABEL_SIGNIFICANT: usize = 16;
-/// Longest label.
+/// Characters that a label may have.
 const LABEL_LENGTH_MAX: usize = 32;
 /// Highest label number [000:14002].
 const LABEL_NUMBER_MAX: u32 = 511;

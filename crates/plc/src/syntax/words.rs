@@ -14,7 +14,7 @@ use crate::operand::{BitOperand, NumberOperand, TextOperand};
 pub struct LineWords {
     /// The instruction, as `L` or `CM`.
     pub instruction: &'static str,
-    /// Where it stands.
+    /// Bytes of the instruction in its line.
     pub instruction_at: Range<usize>,
     /// What it works on.
     pub operand: LineOperand,
@@ -25,15 +25,15 @@ pub struct LineWords {
 /// What an instruction works on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LineOperand {
-    /// The accumulators alone.
+    /// Nothing but the accumulators.
     None,
     /// A bit, as `M2045`.
     Bit(BitOperand),
     /// A number, as `W260`.
     Number(NumberOperand),
-    /// `K+54`.
+    /// A constant: `K+54`.
     Constant(i32),
-    /// A string.
+    /// A string, as `S0` or `S"text"`.
     Text(TextOperand),
     /// A field of constants.
     Field(String),
@@ -41,7 +41,7 @@ pub enum LineOperand {
     Label(String),
     /// A module of the control.
     Module(u16),
-    /// A source file.
+    /// Name of a source file, after USES and the like.
     File(String),
 }
 
@@ -134,13 +134,13 @@ pub fn instructions() -> impl Iterator<Item = InstructionForm> {
 /// Whether an instruction opens something that another one closes, or closes it: structures, tables, brackets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nesting {
-    /// It opens.
+    /// It opens what a later one closes: IFT.
     Opens,
-    /// It closes.
+    /// It closes what an earlier one has opened: ENDI.
     Closes,
     /// It closes one and opens another: ELSE.
     Both,
-    /// Neither.
+    /// It stands for itself.
     Neither,
 }
 

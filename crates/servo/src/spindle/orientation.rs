@@ -5,7 +5,7 @@
 pub(super) enum Phase {
     /// Along the ramp to the speed of the orientation, and on until the reference mark is known.
     Approach,
-    /// In the loop.
+    /// The position loop holds it at the target.
     Controlled {
         /// On the scale of [`SpindleEncoder::turned_deg`](super::encoder::SpindleEncoder::turned_deg).
         target_deg: f64,

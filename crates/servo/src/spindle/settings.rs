@@ -29,9 +29,9 @@ pub struct SpindleSettings {
     pub override_percent: [f64; 2],
     /// Ramps; a ramp of 0 V/ms is none.
     pub ramps: SpindleRamps,
-    /// Orientation.
+    /// Speeds, window and reference mark of the oriented stop.
     pub orientation: OrientationSettings,
-    /// Rigid tapping.
+    /// Rigid tapping: how the tool axis follows the angle of the spindle.
     pub lead: LeadSettings,
 }
 
@@ -51,9 +51,9 @@ pub enum SpindlePolarity {
     M3Positive,
     /// 1: M03 negative, M04 positive.
     M3Negative,
-    /// 2: both positive.
+    /// 2: M03 and M04 positive.
     BothPositive,
-    /// 3: both negative.
+    /// 3: M03 and M04 negative.
     BothNegative,
 }
 
@@ -89,7 +89,7 @@ pub struct Gear {
 pub struct SpindleRamps {
     /// M03, M04, M05: MP3410.0.
     pub normal_v_ms: f64,
-    /// Orientation: MP3410.1.
+    /// Oriented stop: MP3410.1.
     pub orientation_v_ms: f64,
     /// Tapping with a floating holder: MP3410.2.
     pub tapping_v_ms: f64,

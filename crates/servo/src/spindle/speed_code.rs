@@ -6,7 +6,7 @@ use super::settings::SpeedCodes;
 const DECADE: [u32; 20] = [
     100, 112, 125, 140, 160, 180, 200, 224, 250, 280, 315, 355, 400, 450, 500, 560, 630, 710, 800, 900,
 ];
-/// Highest code.
+/// Highest S code: two digits.
 const CODE_MAX: u8 = 99;
 
 /// An S code, 0 to 99: what the control puts out for a speed.
@@ -30,7 +30,7 @@ impl SpeedCode {
         (0..=CODE_MAX).map(SpeedCode).min_by(nearer)
     }
 
-    /// The number.
+    /// The two digits as a number, 0 to 99.
     pub fn number(self) -> u8 {
         self.0
     }
