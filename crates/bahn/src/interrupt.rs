@@ -51,7 +51,7 @@ impl Interrupt {
         interrupt
     }
 
-    /// Whether Ctrl-C came.
+    /// Whether Ctrl-C has come since the start.
     #[inline]
     pub fn is_requested(&self) -> bool {
         let requested = self.requested.load(Ordering::Relaxed);

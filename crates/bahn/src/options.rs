@@ -208,7 +208,7 @@ pub(crate) struct OutputOptions {
 /// Options of `bahn check`.
 #[derive(Args, Debug)]
 pub(crate) struct CheckOptions {
-    /// The part programs.
+    /// Part programs that are examined.
     #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
     pub files: Vec<PathBuf>,
     /// Control model whose limits apply.
@@ -231,7 +231,7 @@ pub(crate) struct CheckOptions {
 /// Options of `bahn fmt`.
 #[derive(Args, Debug)]
 pub(crate) struct FmtOptions {
-    /// The part programs.
+    /// Part programs whose listings are written.
     #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
     pub files: Vec<PathBuf>,
     /// Replace the files by their listings.
@@ -305,7 +305,7 @@ pub(crate) enum View {
     Plan,
     /// Plan view and two sections.
     ThreePlanes,
-    /// In space.
+    /// The part in space.
     #[default]
     #[value(name = "3d")]
     ThreeD,

@@ -28,7 +28,7 @@ pub(crate) struct LineRow {
     pub(crate) slots: &'static [Slot],
 }
 
-/// The row of an id.
+/// The row of this id; `None` where no block has it.
 pub(crate) fn block_row(id: &str) -> Option<&'static BlockRow> {
     BLOCKS.iter().find(|row| row.id == id)
 }

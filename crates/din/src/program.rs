@@ -117,7 +117,7 @@ pub const MAX_FAULTS: usize = 1000;
 /// Most lines of a file.
 const MAX_LINES: usize = 10_000_000;
 
-/// A line as what it is.
+/// What a line is before its words are read.
 enum Line<'a> {
     Blank,
     Head { is_subroutine: bool, name: &'a str },

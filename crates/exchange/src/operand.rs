@@ -46,7 +46,7 @@ impl fmt::Display for Operand {
 }
 
 impl Operand {
-    /// Its content in an image.
+    /// What it holds in an image; bits are 0 or 1.
     pub fn read(self, image: &Image) -> Content {
         match self {
             Operand::Bit(bit) => Content::Number(image.bit(bit).into()),

@@ -61,7 +61,7 @@ pub(crate) struct Digitizing {
     pub pattern: Collector,
     /// What the block that is executed wants to be scanned.
     pub wanted: Option<ScanJob>,
-    /// The block that scans, and what.
+    /// The block whose scan is under way, and its job.
     pub scan: Option<(BlockRef, ScanJob)>,
 }
 

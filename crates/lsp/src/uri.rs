@@ -26,7 +26,7 @@ pub(crate) fn path_of(uri: &Uri) -> PathBuf {
     }
 }
 
-/// The URI of a path.
+/// The `file:` URI of a path; `None` where it would be none.
 pub(crate) fn uri_of(path: &Path) -> Option<Uri> {
     let text = path.to_string_lossy().replace('\\', "/");
     let stroke = if text.starts_with('/') { "" } else { "/" };

@@ -238,7 +238,7 @@ const STANDING: f64 = 1e-12;
 const PLACE_WINDOW: f64 = 1e-6;
 
 impl Axis {
-    /// Reads `[axis.X]`.
+    /// An axis as the section `[axis.X]` of the machine file describes it; `None` where its name is no axis.
     pub fn read(name: &str, section: Section, step_s: f64, seed: u64) -> Option<Axis> {
         let letter = letter(name, &section)?;
         let part = u64::from(u32::from(letter));

@@ -312,7 +312,7 @@ impl Machine {
         self.mechanism.by_hand.called(tool);
     }
 
-    /// The tool in the spindle.
+    /// Number of the tool in the spindle, whether magazine or operator has put it there.
     fn tool_in_spindle(&self) -> u32 {
         match &self.mechanism.magazine {
             Some(magazine) if magazine.has_changed => magazine.tool_in_spindle(),
@@ -320,7 +320,7 @@ impl Machine {
         }
     }
 
-    /// The control voltage is on.
+    /// The relay of the EMERGENCY STOP chain has closed: the control voltage is on.
     pub fn control_voltage(&self) -> bool {
         self.chain.voltage()
     }

@@ -69,7 +69,7 @@ impl Reaction {
 /// What ends a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clearing {
-    /// The key CE.
+    /// The key CE, whatever the state of the machine.
     Ce,
     /// CE, but not before the control voltage is back.
     CeWithVoltage,

@@ -91,7 +91,8 @@ pub mod machining {
     };
 }
 
-/// Of operating: [`ParameterList::operation_parameters`](crate::ParameterList::operation_parameters).
+/// Settings of operation: what [`ParameterList::operation_parameters`](crate::ParameterList::operation_parameters)
+/// gives.
 pub mod operation {
     pub use crate::settings::{
         DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters,

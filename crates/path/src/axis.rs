@@ -126,7 +126,7 @@ impl AxisSet {
         self.0 &= !(1 << axis as u8);
     }
 
-    /// This set and the axis.
+    /// This set with one axis more.
     #[must_use]
     pub const fn with(mut self, axis: Axis) -> AxisSet {
         self.insert(axis);

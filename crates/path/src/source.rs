@@ -71,7 +71,7 @@ pub enum Barrier {
     },
 }
 
-/// How a tool is measured.
+/// What a measurement of a tool on the tool probe is to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolMeasuring {
     /// The block that measures.

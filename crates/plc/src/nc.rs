@@ -64,7 +64,7 @@ pub trait NcStatus {
     /// Whether an NC program was started.
     fn program_running(&self) -> bool;
 
-    /// An item of status (9035).
+    /// Value of an item of status (9035).
     fn status(&self, item: StatusItem) -> i32;
 
     /// Changes status (9036). A subdivision is limited silently by the rapid traverse of its axis.
@@ -83,7 +83,7 @@ pub trait NcScreen {
     /// A line of the PLC's message or dialogue file, in the selected language; `None` when it has none.
     fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>>;
 
-    /// The PLC window (9080, 9082, 9083).
+    /// The PLC window to write into (9080, 9082, 9083).
     fn window(&mut self) -> &mut PlcWindow;
 
     /// Whether the PLC window is to be seen (9081).

@@ -201,7 +201,7 @@ pub enum Op {
     LoadField { field: usize },
     /// `LB LW LD`: WA := consecutive bits, sign-filled.
     LoadBits { first: BitOperand, count: u8 },
-    /// WA := LX.
+    /// `LX`: WA := X.
     LoadIndex,
     /// WA := WA gate operand, all 32 bits.
     GateWord { gate: Gate, value: Value },
@@ -400,7 +400,7 @@ impl PlcProgram {
             .map_or("", String::as_str)
     }
 
-    /// The name of a file.
+    /// Name of the file of this index; empty where there is none.
     pub fn file_name(&self, file: u16) -> &str {
         self.files
             .get(usize::from(file))

@@ -304,7 +304,7 @@ fn fault(message: MessageId, address: &str, detail: String) -> Option<LimitFault
     })
 }
 
-/// The number of the FN function.
+/// Number after `FN`; `None` of another block.
 fn function_number(operation: &Operation) -> Option<u32> {
     Some(match operation {
         Operation::Calculate { function, .. } => match function {

@@ -39,7 +39,7 @@ impl Labels {
         }
     }
 
-    /// The block of a label.
+    /// Number of the block that sets a label first; `None` where none does.
     pub(crate) fn block(&self, label: u16) -> Option<u32> {
         self.first
             .get(usize::from(label))

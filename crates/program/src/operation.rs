@@ -294,7 +294,7 @@ impl Coordinates {
         &self.values
     }
 
-    /// The word of an axis.
+    /// What the block says of an axis; `None` where it names it not.
     #[inline]
     pub fn get(&self, axis: Axis) -> Option<Word> {
         if !self.present.contains(axis) {
@@ -315,7 +315,7 @@ impl Coordinates {
         })
     }
 
-    /// Sets the word of an axis.
+    /// Lets the block say this of an axis, in place of what it said.
     #[inline]
     pub fn set(&mut self, axis: Axis, word: Word) {
         self.present.insert(axis);
@@ -387,7 +387,7 @@ pub struct Motion {
 /// The path function of a positioning block [003:2548-2560].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionKind {
-    /// `L`: line.
+    /// `L`: line to a Cartesian position.
     Line,
     /// `C`: arc about CC.
     Circle,

@@ -59,7 +59,7 @@ pub struct NumberedBlock {
     pub number: u32,
     /// Line in the file, from 1.
     pub line: u32,
-    /// What it does.
+    /// What it does, with its comment.
     pub block: Block,
 }
 

@@ -93,7 +93,7 @@ impl Cause {
 /// What the control shows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
-    /// A message of the control.
+    /// One of the control's own messages, by its number.
     Control(MessageId),
     /// The text of an FN14 number: `ERROR 12`, `PLC ERROR 05` ... [003:4364-4367].
     Numbered(String),

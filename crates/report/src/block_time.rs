@@ -20,7 +20,7 @@ pub struct BlockTime {
 }
 
 impl BlockTime {
-    /// Of a control model [000:143] [003:7815].
+    /// With the block processing time of a control model [000:143] [003:7815].
     pub fn of(model: ControlModel) -> BlockTime {
         BlockTime {
             block_s: model.limits().block_time_ms * 1e-3,

@@ -302,7 +302,7 @@ impl Line {
 struct Sheet {
     min: Point2,
     max: Point2,
-    /// Pixels per mm.
+    /// How many pixels a mm has.
     scale: f64,
     /// Pixel of the least corner.
     origin: Point2,

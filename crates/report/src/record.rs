@@ -333,7 +333,7 @@ pub enum End {
     Completed,
     /// At a programmed stop, as wanted.
     Stopped,
-    /// By Ctrl-C.
+    /// Ctrl-C broke it off.
     Interrupted,
     /// By the time limit.
     Late,
@@ -524,7 +524,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// That of a block of a run.
+    /// Program, number and line of a block; empty and 0 where nobody knows the program.
     pub fn of(run: &dyn Reader, block: BlockRef) -> Place {
         let program = run.program(block.program);
         Place {

@@ -51,7 +51,7 @@ pub enum Denial {
 }
 
 impl ProgramMemory {
-    /// The programs of a folder.
+    /// The programs that lie in a folder now.
     pub fn new(folder: &Path) -> ProgramMemory {
         ProgramMemory {
             folder: folder.to_owned(),
@@ -201,7 +201,7 @@ impl ProgramMemory {
         path.ok_or(Denial::Message(MessageId::ProgramNotFound))
     }
 
-    /// A name that is free.
+    /// Refuses a name that a file has already, or that none can have.
     fn free(&self, name: &str) -> Result<(), Denial> {
         match self.path(name) {
             Some(path) if !path.exists() => Ok(()),

@@ -27,7 +27,7 @@ pub fn language_code(language: Language) -> &'static str {
     }
 }
 
-/// The language of a code.
+/// The language of `en` or `de`; `None` of any other code.
 pub fn language_of_code(code: &str) -> Option<Language> {
     [Language::English, Language::German]
         .into_iter()

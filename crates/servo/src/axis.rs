@@ -169,7 +169,7 @@ impl Axis {
         self.choose_characteristic();
     }
 
-    /// The settings of the axis.
+    /// What the loop works with now, as it was set last.
     pub fn settings(&self) -> &AxisSettings {
         &self.settings
     }

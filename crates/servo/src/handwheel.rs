@@ -80,7 +80,7 @@ impl HandwheelKey {
         ("5", HandwheelKey::Free5),
     ];
 
-    /// The key of a name.
+    /// The key of this name, such as those of the script; `None` where there is none.
     pub fn named(name: &str) -> Option<HandwheelKey> {
         let mut keys = HandwheelKey::NAMES.iter();
         keys.find(|(known, _)| *known == name).map(|(_, key)| *key)

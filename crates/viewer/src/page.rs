@@ -42,7 +42,7 @@ files! {
     "viewer.css" "text/css",
 }
 
-/// The body of the page.
+/// The body of a page that shows the part alone.
 const BODY: &str = include_str!("../web/page.html");
 
 /// What stands around the part: canvas, keys and readout, in a page of any other, too, at its [`STAGE_PLACE`].

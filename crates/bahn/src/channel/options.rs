@@ -63,7 +63,7 @@ All lines are commented out: the list is that of a channel without an entry.";
 /// Options of `bahn channel check`.
 #[derive(Args, Debug)]
 pub(crate) struct CheckOptions {
-    /// Lists.
+    /// Lists of channel parameters.
     #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
     pub files: Vec<PathBuf>,
     /// How faults are written.

@@ -62,7 +62,7 @@ pub(crate) struct ConvertOptions {
     /// Prove that source and target do the same: the default.
     #[arg(long, overrides_with = "no_prove")]
     pub prove: bool,
-    /// Write without proof.
+    /// Write without proving that source and target do the same.
     #[arg(long)]
     pub no_prove: bool,
     /// Keep the blocks of a program that cannot be said as a whole, with ERROR blocks.

@@ -66,7 +66,7 @@ pub(super) struct Desk {
     ended: bool,
     ended_at: Option<Duration>,
     failed: bool,
-    /// Somebody was connected.
+    /// Somebody was connected at some time.
     had_peer: bool,
     typed: Option<Receiver<String>>,
     /// What follows when a file is stored.

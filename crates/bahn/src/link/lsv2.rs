@@ -42,7 +42,7 @@ pub(crate) struct Lsv2Options {
 /// What the control is asked for.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Lsv2Command {
-    /// List a folder.
+    /// List the files of a folder.
     Ls {
         /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
@@ -50,29 +50,29 @@ pub(crate) enum Lsv2Command {
         /// The folder; TNC: by default.
         path: Option<String>,
     },
-    /// Fetch a file.
+    /// Fetch a file from the control.
     Get {
         /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
         /// The file on the control.
         remote: String,
-        /// The file here.
+        /// Where the file is written here.
         #[arg(value_hint = ValueHint::FilePath)]
         local: PathBuf,
     },
-    /// Bring a file.
+    /// Bring a file to the control.
     Put {
         /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
-        /// The file here.
+        /// The file here that is sent.
         #[arg(value_hint = ValueHint::FilePath)]
         local: PathBuf,
         /// The file on the control.
         remote: String,
     },
-    /// Delete a file.
+    /// Delete a file on the control.
     Rm {
         /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
@@ -91,7 +91,7 @@ pub(crate) enum Lsv2Command {
         /// Address and port of the control.
         #[arg(value_name = "ADDR:PORT")]
         address: String,
-        /// The picture, BMP.
+        /// Where the picture is written, BMP.
         #[arg(value_hint = ValueHint::FilePath)]
         local: PathBuf,
     },

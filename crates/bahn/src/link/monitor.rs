@@ -38,7 +38,7 @@ pub(crate) struct MonitorOptions {
         conflicts_with = "trace"
     )]
     ports: Vec<String>,
-    /// Show a trace.
+    /// Show what a trace has written down.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     trace: Option<PathBuf>,
 }

@@ -26,7 +26,7 @@ machine describes no printer or the device is not ready, 2 wrong use.";
 /// Options of `bahn link print`.
 #[derive(Args, Debug)]
 pub(crate) struct PrintOptions {
-    /// The picture (PNG).
+    /// Picture to print, PNG.
     #[arg(value_name = "PICTURE", value_hint = ValueHint::FilePath)]
     picture: PathBuf,
     /// Folder of the machine whose printer it is.

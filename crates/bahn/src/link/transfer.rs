@@ -82,7 +82,7 @@ pub(crate) struct TransferOptions {
     /// Files, with extension.
     #[arg(value_name = "NAME", conflicts_with_all = ["all", "offered"])]
     names: Vec<String>,
-    /// All files.
+    /// All files of the type.
     #[arg(long, conflicts_with = "offered")]
     all: bool,
     /// Each file after a question.

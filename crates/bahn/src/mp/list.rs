@@ -65,7 +65,7 @@ pub(super) struct Row {
     pub meaning: Vec<String>,
     /// What it does here: acts, partly, none.
     pub effect: &'static str,
-    /// What is missing of it.
+    /// What it does not do here; empty where it acts.
     pub missing: &'static str,
     pub unit: &'static str,
     pub min: Option<String>,

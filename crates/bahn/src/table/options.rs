@@ -124,7 +124,7 @@ pub(crate) struct ShowOptions {
     /// Kind of the table; of a machine the tool table by default.
     #[arg(long, value_name = "KIND", value_enum)]
     pub kind: Option<KindOption>,
-    /// Show all columns.
+    /// Show all columns, also those that the list of the machine hides.
     #[arg(long)]
     pub all: bool,
     /// How it is shown.

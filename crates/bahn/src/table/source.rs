@@ -45,7 +45,7 @@ pub(super) fn read(path: &Path, kind: Option<KindOption>) -> Result<Source, Usag
 }
 
 impl Source {
-    /// The faults of the table, printed.
+    /// Prints the faults of the table with their lines.
     pub fn print(&self, faults: &[TableFault]) {
         for fault in faults {
             diagnostics::print_fault(&self.fault(fault));

@@ -11,7 +11,7 @@ use super::programs::Sources;
 use crate::diagnostics::{self, FileFault, Marked, Severity};
 use crate::{UsageError, files};
 
-/// What `--plc` names.
+/// Script or machine that answers functions: what `--plc` names.
 pub(super) struct Answering {
     script: Option<Script>,
     /// What is wrong in the text of the script.

@@ -232,7 +232,7 @@ impl Curves {
         lines
     }
 
-    /// Time of a division, s.
+    /// How long a division of the screen is, s.
     pub fn time_of_division_s(&self) -> f64 {
         self.sight.count as f64 / ACROSS as f64 * f64::from(self.sample_us) * 1e-6
     }

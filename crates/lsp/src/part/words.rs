@@ -70,7 +70,7 @@ fn row(line: &'static str) -> Option<Word> {
     })
 }
 
-/// The words of a language.
+/// Words of DIN/ISO, or of plain language.
 pub(super) fn of_language(is_iso: bool) -> impl Iterator<Item = &'static Word> {
     words()
         .iter()

@@ -14,7 +14,7 @@ use crate::uri::uri_of;
 /// Most faults that are shown: who has more has another kind of file.
 const SHOWN_MAX: usize = 1000;
 
-/// The diagnostics of a document.
+/// What an editor shows of a document's faults, at most [`SHOWN_MAX`].
 pub(crate) fn diagnostics(document: &Document, examined: &Examined) -> PublishDiagnosticsParams {
     let version = &document.version;
     let mut shown: Vec<Diagnostic> = examined

@@ -92,7 +92,7 @@ impl PlcParameters {
 }
 
 impl ParameterList {
-    /// The parameters of the PLC.
+    /// What the list says for the PLC, in physical units.
     pub fn plc_parameters(&self) -> PlcParameters {
         let old = self.has_old_numbers();
         let strobes = || StrobeTimes {

@@ -153,7 +153,7 @@ fn lead_s(volts: f64, ramp_v_ms: f64, run_on_s: f64) -> f64 {
 }
 
 impl ParameterList {
-    /// The parameters of the spindle.
+    /// What the list says of the spindle, in physical units.
     pub fn spindle_parameters(&self) -> SpindleParameters {
         let kind = self.value((3010, 0), (62, 0)) as u8;
         let (gears, comparator_rpm) = self.gears();

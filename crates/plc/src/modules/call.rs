@@ -18,7 +18,7 @@ pub(super) enum Outcome {
 }
 
 impl Outcome {
-    /// Done or failed.
+    /// Done, or failed where it is not.
     pub(super) fn of(done: bool) -> Outcome {
         if done { Outcome::Done } else { Outcome::Failed }
     }

@@ -111,7 +111,7 @@ const fn row(number: u16, name: &'static str, run: Run) -> Module {
 }
 
 impl Module {
-    /// The module of a number.
+    /// The module that CM calls by this number; `None` where the control has none.
     pub fn find(number: u16) -> Option<&'static Module> {
         MODULES.iter().find(|module| module.number == number)
     }

@@ -67,10 +67,10 @@ pub struct SpindleOrientation {
 /// In which direction a standing spindle is oriented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OrientationDirection {
-    /// As with M04.
+    /// In the direction of M04.
     Negative,
-    /// The shortest way.
+    /// In the direction in which the angle is nearer.
     Shortest,
-    /// As with M03.
+    /// In the direction of M03.
     Positive,
 }

@@ -92,10 +92,10 @@ pub enum StatusChange {
     Subdivision {
         /// The axis; `None` means all.
         axis: Option<usize>,
-        /// 0 to 10.
+        /// Number of the subdivision, 0 to 10.
         factor: u8,
     },
-    /// The axis of the handwheel.
+    /// The handwheel moves this axis.
     HandwheelAxis(usize),
     /// The limit of the jog increment.
     JogLimit(JogLimit),

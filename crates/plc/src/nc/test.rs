@@ -67,7 +67,7 @@ pub struct TestNc {
     pub tables: BTreeMap<TableKind, MemoryTable>,
     /// How often the geometry was initialised.
     pub geometry_initialised: u32,
-    /// RS-232-C/V.24 and RS-422/V.11.
+    /// The two interfaces: RS-232-C/V.24 and RS-422/V.11.
     pub interfaces: [DataInterface; 2],
     /// The connection to a host.
     pub host: Option<HostLink>,

@@ -49,7 +49,7 @@ pub enum OperandContent {
 /// What an instruction left behind when it was executed last.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Executed {
-    /// The content of its operand.
+    /// What its operand holds; `None` without an operand.
     pub operand: Option<OperandContent>,
     /// Logic accumulator after it.
     pub logic: bool,

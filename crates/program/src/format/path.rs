@@ -47,7 +47,7 @@ impl Output {
     }
 }
 
-/// `DR+` or `DR-`.
+/// The word of a sense of rotation: `DR+` or `DR-`.
 pub(super) fn direction_text(direction: Direction) -> &'static str {
     match direction {
         Direction::CounterClockwise => "DR+",

@@ -471,7 +471,7 @@ fn probing(c: &mut Cursor, start: usize, words: &Words) -> Parsed<[Vec<CycleWord
     ])
 }
 
-/// The feed of a cycle word.
+/// Value of F, or of the number without an address, in a cycle word.
 pub(super) fn feed_value(word: &CycleWord) -> Option<Value> {
     match word {
         CycleWord::Feed(Feed::Value(value)) | CycleWord::Number(value) => Some(*value),

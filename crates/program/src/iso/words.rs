@@ -4,7 +4,7 @@ use super::code::split;
 use crate::language::{WordKind, WordSpan};
 use crate::text::is_blank;
 
-/// The words of a block.
+/// Where the words of a block stand, in their order.
 pub(super) fn block_words(line: &[u8]) -> Vec<WordSpan> {
     let (code, comment) = split(line);
     let mut words = Vec::new();

@@ -6,7 +6,7 @@ use super::cursor::{Cursor, Parsed};
 use crate::Operation;
 use crate::check::ANY_LABEL_MAX;
 
-/// `LBL n` [003:3662-3670].
+/// Reads `LBL n` [003:3662-3670].
 pub(super) fn label(c: &mut Cursor) -> Parsed<Option<Operation>> {
     if !c.keyword("LBL") {
         return Ok(None);
@@ -14,7 +14,7 @@ pub(super) fn label(c: &mut Cursor) -> Parsed<Option<Operation>> {
     Ok(Some(Operation::Label(label_number(c)?)))
 }
 
-/// The number of a label.
+/// Reads the number of a label, 0 to 65534.
 pub(super) fn label_number(c: &mut Cursor) -> Parsed<u16> {
     c.skip_blanks();
     if matches!(c.peek_upper(), b'"' | b'Q') {

@@ -12,7 +12,7 @@ pub(crate) const MAX_PRINT_ITEMS: usize = 6;
 /// Value of an operand that a function does not have.
 const NO_OPERAND: Value = Value::Number(0.0);
 
-/// `FN n: ...`.
+/// Reads `FN n: ...`, a Q parameter function.
 pub(super) fn function(c: &mut Cursor) -> Parsed<Option<Operation>> {
     let start = c.position();
     if !c.keyword("FN") {

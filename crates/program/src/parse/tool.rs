@@ -105,7 +105,7 @@ fn no_tool_name(c: &mut Cursor) -> Parsed<()> {
     Ok(())
 }
 
-/// `STOP [M]` [003:2226].
+/// Reads `STOP [M]` [003:2226].
 pub(super) fn stop(c: &mut Cursor) -> Parsed<Option<Operation>> {
     if !c.word("STOP") && !stop_touches_m(c) {
         return Ok(None);

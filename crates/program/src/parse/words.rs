@@ -54,7 +54,7 @@ enum After {
     Words,
 }
 
-/// The words of a block.
+/// Where the words of a block stand, in their order.
 pub(crate) fn block_words(text: BlockText<'_>) -> Vec<WordSpan> {
     let mut walk = Walk {
         words: Vec::new(),

@@ -310,7 +310,7 @@ impl Bench {
         std::mem::take(&mut self.failures)
     }
 
-    /// The content of an operand.
+    /// What an operand holds between two cycles.
     pub fn read(&self, operand: Operand) -> Content {
         operand.read(self.exchange.plc())
     }

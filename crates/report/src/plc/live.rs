@@ -127,7 +127,7 @@ impl Live {
         self.command(&format!("{operand}={content}"))
     }
 
-    /// The content of an operand.
+    /// What an operand holds now, in the control that is on.
     pub fn read(&self, operand: Operand) -> Content {
         operand.read(self.host.control().exchange().plc())
     }

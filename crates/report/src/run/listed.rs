@@ -105,7 +105,7 @@ impl Listed {
     }
 }
 
-/// Name of the program of a block.
+/// Name, without folders, of the program that a block stands in; empty where nobody knows it.
 pub(super) fn program_name(control: ChannelView, block: BlockRef) -> String {
     control
         .reader()

@@ -31,7 +31,7 @@ pub enum Ended {
     Stopped,
     /// The time allowed is over.
     TooLong,
-    /// By Ctrl-C.
+    /// Ctrl-C broke it off.
     Interrupted,
     /// A message broke the run off.
     Broken(Option<Box<Shown>>),

@@ -14,7 +14,7 @@ use bahn_machine::Machine;
 /// New states without a movement that count at most: a counter made of markers is no progress for ever.
 const STATES_MAX: usize = 4096;
 
-/// See the module.
+/// Tells a run that hangs from one that still comes on.
 #[derive(Debug, Default)]
 pub(super) struct Standstill {
     seen: HashSet<u64>,

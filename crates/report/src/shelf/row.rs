@@ -26,7 +26,7 @@ pub enum Verdict {
     Unreadable,
     /// It took too long.
     TimeLimit,
-    /// By Ctrl-C.
+    /// Ctrl-C broke it off.
     Interrupted,
     /// Ctrl-C came before its turn.
     NotRun,

@@ -193,7 +193,7 @@ fn text_of(text: &Option<String>) -> &str {
     text.as_deref().unwrap_or_default()
 }
 
-/// `H5=4711`.
+/// A function with its value: `H5=4711`.
 fn name_of(event: &Event, function: &str) -> String {
     match &event.value {
         Value::Integer(value) => format!("{function}={value}"),

@@ -122,7 +122,7 @@ fn wait(wait: &Wait) -> Vec<String> {
     ]
 }
 
-/// `X12.5 Y0`.
+/// The coordinates that are known: `X12.5 Y0`.
 fn position(position: &Position) -> String {
     let known = position.known();
     let words = known

@@ -3,7 +3,7 @@
 /// Gear ranges of a spindle.
 pub const GEARS: usize = 8;
 
-/// The settings of a spindle.
+/// Voltages, gears, ramps and orientation of a spindle, as machine parameters say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleSettings {
     /// Speed 0 may be programmed: MP3120 = 0 (old MP190 = 0) [000:5566] [001:1573-1575].

@@ -24,7 +24,7 @@ const EVERY_US: u64 = 250_000;
 /// A program that takes longer is tried as far as this, µs.
 const LONGEST_US: u64 = 1_800_000_000;
 
-/// See the module.
+/// A machine on which plans are tried, with moments of an undisturbed run.
 pub(super) struct Bench {
     pub host: Host,
     pub moments: Vec<Saved<Machine>>,

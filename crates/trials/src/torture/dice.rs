@@ -1,6 +1,6 @@
 //! A generator of its own, so that a seed is the same on every machine and for ever: SplitMix64.
 
-/// See the module.
+/// The generator with its state.
 #[derive(Clone, Debug)]
 pub(super) struct Dice(u64);
 

@@ -138,7 +138,7 @@ impl Campaign {
     }
 }
 
-/// See [`Campaign::worker`].
+/// Somebody who tries seeds, made by [`Campaign::worker`].
 pub struct Worker<'a> {
     campaign: &'a Campaign,
     benches: Vec<Bench>,
