@@ -181,7 +181,7 @@ const PECKG: CycleParameter = parameter("PECKG", Quantity::Length, Working);
 const DWELL: CycleParameter = parameter("DWELL", Quantity::Dwell, Unsigned);
 const FEED: CycleParameter = parameter("F", Quantity::Feed, Unsigned);
 const SIDE: CycleParameter = parameter("", Quantity::Side, Signed);
-/// Side of a pocket: two directions, no negative ones [003:5250].
+/// Side of a pocket, whose length cannot be negative [003:5250].
 const POCKET_SIDE: CycleParameter = parameter("", Quantity::Side, NotNegative);
 const TURN: CycleParameter = optional(parameter("DR", Quantity::Turn, Signed));
 /// Finishing allowance, which cannot be negative [003:5510].

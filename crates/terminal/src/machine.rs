@@ -19,7 +19,7 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    /// Name, lamps and keys of the machine that the station runs.
+    /// Name, keyboard and keys of the machine that the station runs.
     pub fn of_station(station: &mut Station) -> Machine {
         Machine {
             name: station.machine().folder.name.clone(),

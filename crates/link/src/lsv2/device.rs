@@ -72,7 +72,7 @@ pub struct Tool {
     pub number: u32,
     /// Its axis: 0 X, 1 Y, 2 Z.
     pub axis: u16,
-    /// Length compensation value, mm.
+    /// Length of the tool, mm.
     pub length: f64,
     /// Radius of the tool, mm.
     pub radius: f64,
