@@ -26,7 +26,7 @@ pub enum OwnFunction {
 /// How far ahead a function goes out, as it is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lead {
-    /// Way along the path, mm.
+    /// Distance along the path, mm.
     pub distance_mm: Option<f64>,
     /// Time before its place, s.
     pub time_s: Option<f64>,

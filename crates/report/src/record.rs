@@ -401,9 +401,9 @@ pub struct ErrorReport {
 /// How far the tool went, mm.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct PathReport {
-    /// Way in feed, mm.
+    /// Distance in feed, mm.
     pub feed: f64,
-    /// Way in rapid traverse, mm.
+    /// Distance in rapid traverse, mm.
     pub rapid: f64,
 }
 

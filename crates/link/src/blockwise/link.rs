@@ -75,7 +75,7 @@ impl Link {
         again
     }
 
-    /// Puts characters behind those that wait for the line.
+    /// Puts characters after those that wait for the line.
     pub fn send(&mut self, characters: &[u8]) {
         self.outgoing.extend(characters);
     }

@@ -67,9 +67,9 @@ pub struct Row {
     pub unit: String,
     /// `None` when the feed is 0.
     pub machining_time_s: Option<f64>,
-    /// Way in feed, mm.
+    /// Distance in feed, mm.
     pub feed_mm: f64,
-    /// Way in rapid traverse.
+    /// Distance in rapid traverse, mm.
     pub rapid_mm: f64,
     /// Blocks that were executed.
     pub blocks_executed: u64,

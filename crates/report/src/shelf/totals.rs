@@ -47,9 +47,9 @@ pub struct Totals {
     pub not_run: u64,
     /// Of all programs that were run alone and move.
     pub machining_time_s: f64,
-    /// Way in feed, mm.
+    /// Distance in feed, mm.
     pub feed_mm: f64,
-    /// Way in rapid traverse.
+    /// Distance in rapid traverse, mm.
     pub rapid_mm: f64,
     /// Volume that was removed, mm³.
     pub removed_mm3: f64,
