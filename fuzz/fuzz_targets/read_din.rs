@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use bahn_din::{Decoder, Program, Shelf, Step, Variable, Variables, words};
+use bahn_din::{Decoder, FunctionLetter, Program, Shelf, Step, Variable, Variables, words};
 use bahn_fuzz as _;
 use bahn_path::Position;
 use libfuzzer_sys::fuzz_target;
@@ -76,7 +76,7 @@ impl Variables for Numbers {
         if value < -1e6 { Err("too small".into()) } else { Ok(()) }
     }
 
-    fn exists(&self, m: bool, number: u16) -> bool {
-        m == (number % 2 == 0)
+    fn exists(&self, letter: FunctionLetter, number: u16) -> bool {
+        (letter == FunctionLetter::M) == (number % 2 == 0)
     }
 }

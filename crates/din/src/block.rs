@@ -10,6 +10,7 @@ use crate::expression::{
     Expression, Reference, expression, is_function, parameter_number, reference, variable_begins,
 };
 use crate::line::{Glyph, LineFault, Macros, fault_at, quoted};
+use crate::unit::FunctionLetter;
 
 /// What a line orders, as it is read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,8 +43,8 @@ pub(crate) enum WordKind {
     AxisBracket(Axis, Vec<Word>),
     /// `S2[..]` with functions of the spindle.
     SpindleBracket(Arc<str>, Vec<Word>),
-    /// M function with its additive value; H with `false`.
-    Function(bool, Expression, Option<Expression>),
+    /// M or H function with its additive value.
+    Function(FunctionLetter, Expression, Option<Expression>),
     /// Spindle speed: `S1000`, in brackets `REV1000`.
     Speed(Expression),
     /// `POS` of a spindle or of an axis on its own.
@@ -275,7 +276,8 @@ fn address(cursor: &mut Cursor, letter: char) -> Result<WordKind, LineFault> {
     cursor.advance(1);
     match letter {
         'G' => g_function(cursor, mark),
-        'M' | 'H' => function(cursor, letter),
+        'M' => function(cursor, FunctionLetter::M),
+        'H' => function(cursor, FunctionLetter::H),
         'S' => spindle(cursor, mark),
         'F' => Ok(WordKind::Feed(value(cursor)?)),
         'I' => Ok(WordKind::Centre(0, value(cursor)?)),
@@ -305,13 +307,13 @@ fn g_function(cursor: &mut Cursor, mark: usize) -> Result<WordKind, LineFault> {
 }
 
 /// M or H after its letter, with its additive value [004:105].
-fn function(cursor: &mut Cursor, letter: char) -> Result<WordKind, LineFault> {
+fn function(cursor: &mut Cursor, letter: FunctionLetter) -> Result<WordKind, LineFault> {
     let number = expression(cursor)?;
     let value = match cursor.eat('=') {
         true => Some(expression(cursor)?),
         false => None,
     };
-    Ok(WordKind::Function(letter == 'M', number, value))
+    Ok(WordKind::Function(letter, number, value))
 }
 
 /// A coordinate, or in brackets functions of the axis [004:102]. What is neither M, H nor INDP is an expression (public).
@@ -413,7 +415,10 @@ fn listed(cursor: &mut Cursor, of: &str, spindle: bool) -> Result<WordKind, Line
             if letters.len() == 1 || is_value(letters.get(1..).unwrap_or_default(), &mut ahead) =>
         {
             cursor.advance(1);
-            function(cursor, letter)
+            match letter {
+                'M' => function(cursor, FunctionLetter::M),
+                _ => function(cursor, FunctionLetter::H),
+            }
         }
         _ => Err(cursor.unknown(mark, &format!("word in the brackets of {of}:"))),
     }

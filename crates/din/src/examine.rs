@@ -9,7 +9,7 @@ use bahn_path::{Axis, Position};
 
 use crate::decoder::{BlockFault, Decoder, MAX_FILES, Step, called_file};
 use crate::program::{Fault, Program};
-use crate::unit::{Shelf, Variable, Variables};
+use crate::unit::{FunctionLetter, Shelf, Variable, Variables};
 
 /// Most blocks that are executed: without jumps no program is endless, but subroutines that call each other
 /// many times are long.
@@ -253,7 +253,7 @@ impl Variables for Rehearsed {
         Ok(())
     }
 
-    fn exists(&self, _m: bool, _number: u16) -> bool {
+    fn exists(&self, _letter: FunctionLetter, _number: u16) -> bool {
         self.is_unsure.set(true);
         self.guess == 0.0
     }

@@ -9,7 +9,9 @@ use crate::block::{Block, Word, WordKind};
 use crate::circle::{self, Centre};
 use crate::expression::{Expression, Values, function_number, whole};
 use crate::line::{LineFault, Macros, fault_at};
-use crate::unit::{Command, Function, Independent, Kind, Motion, SpindleOrder, Target, Unit, Variables};
+use crate::unit::{
+    Command, Function, FunctionLetter, Independent, Kind, Motion, SpindleOrder, Target, Unit, Variables,
+};
 
 /// What blocks change and find again.
 #[derive(Clone, Debug)]
@@ -284,12 +286,15 @@ fn feed(value: &Expression, values: &mut Values) -> Result<f64, String> {
 fn function(word: &Word, target: Option<&Target>, values: &mut Values) -> Result<Function, Wrong> {
     let mut additive = None;
     let kind = match &word.kind {
-        WordKind::Function(is_m, number, value) => {
+        WordKind::Function(letter, number, value) => {
             if let Some(value) = value {
                 additive = Some(additive_value(value.value(values)?));
             }
             let number = function_number(number.value(values)?)?;
-            if *is_m { Kind::M(number) } else { Kind::H(number) }
+            match letter {
+                FunctionLetter::M => Kind::M(number),
+                FunctionLetter::H => Kind::H(number),
+            }
         }
         WordKind::Speed(speed) => match speed.value(values)? {
             speed if speed >= 0.0 => Kind::S(speed),

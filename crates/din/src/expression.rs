@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::cursor::Cursor;
 use crate::line::LineFault;
-use crate::unit::{Variable, Variables};
+use crate::unit::{FunctionLetter, Variable, Variables};
 
 /// A value that is found when its block is executed.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +17,8 @@ pub(crate) enum Expression {
     Negative(Box<Expression>),
     Binary(Operator, Box<Expression>, Box<Expression>),
     Call(Function, Box<Expression>),
-    /// `EXIST[M80]` (public); H with `false`.
-    Exists(bool, Box<Expression>),
+    /// `EXIST[M80]` (public).
+    Exists(FunctionLetter, Box<Expression>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -254,10 +254,8 @@ fn existing(cursor: &mut Cursor, depth: u32) -> Result<Expression, LineFault> {
     cursor.advance(1);
     cursor.skip_blanks();
     let word = cursor.mark();
-    let is_m = match cursor.peek() {
-        Some('M') => true,
-        Some('H') => false,
-        _ => return Err(cursor.unknown(word, "operand of EXIST:")),
+    let Some(letter) = cursor.peek().and_then(FunctionLetter::of) else {
+        return Err(cursor.unknown(word, "operand of EXIST:"));
     };
     cursor.advance(1);
     if depth >= MAX_DEPTH {
@@ -265,7 +263,7 @@ fn existing(cursor: &mut Cursor, depth: u32) -> Result<Expression, LineFault> {
     }
     let number = sum(cursor, depth + 1)?;
     close(cursor, mark)?;
-    Ok(Expression::Exists(is_m, Box::new(number)))
+    Ok(Expression::Exists(letter, Box::new(number)))
 }
 
 /// A decimal number without sign.
@@ -389,9 +387,9 @@ impl Expression {
                 }
             }
             Expression::Call(function, argument) => function.value(argument.value(values)?),
-            Expression::Exists(m, number) => {
+            Expression::Exists(letter, number) => {
                 let number = function_number(number.value(values)?)?;
-                f64::from(u8::from(values.variables.exists(*m, number)))
+                f64::from(u8::from(values.variables.exists(*letter, number)))
             }
         };
         match value.is_finite() {

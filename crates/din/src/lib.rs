@@ -14,7 +14,7 @@
 //! ```
 //! use std::sync::Arc;
 //!
-//! use bahn_din::{Decoder, Kind, Program, Shelf, Step, Variable, Variables};
+//! use bahn_din::{Decoder, FunctionLetter, Kind, Program, Shelf, Step, Variable, Variables};
 //! use bahn_path::{Axis, Position};
 //!
 //! /// A channel without variables and subroutines.
@@ -27,7 +27,7 @@
 //!     fn write(&mut self, variable: &Variable, _value: f64) -> Result<(), String> {
 //!         Err(format!("{} is not known", variable.name))
 //!     }
-//!     fn exists(&self, _m: bool, _number: u16) -> bool {
+//!     fn exists(&self, _letter: FunctionLetter, _number: u16) -> bool {
 //!         false
 //!     }
 //! }
@@ -71,7 +71,7 @@ pub use examine::{Examination, FileFault, examine};
 pub use nearest::nearest;
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{
-    Command, Function, Independent, Kind, Motion, Place, Shelf, SpindleOrder, Target, Unit, Variable,
-    Variables,
+    Command, Function, FunctionLetter, Independent, Kind, Motion, Place, Shelf, SpindleOrder, Target, Unit,
+    Variable, Variables,
 };
 pub use words::{Span, SpanKind, words};

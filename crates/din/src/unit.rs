@@ -174,6 +174,26 @@ impl fmt::Display for Variable {
     }
 }
 
+/// Whose number a function has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FunctionLetter {
+    /// `M80`.
+    M,
+    /// `H5`.
+    H,
+}
+
+impl FunctionLetter {
+    /// That of a letter.
+    pub(crate) fn of(letter: char) -> Option<FunctionLetter> {
+        match letter {
+            'M' => Some(FunctionLetter::M),
+            'H' => Some(FunctionLetter::H),
+            _ => None,
+        }
+    }
+}
+
 /// Who keeps the variables of the channel. It is asked while blocks are decoded, in their order.
 pub trait Variables {
     /// Its value. An error is said of the block: why it cannot be read.
@@ -182,8 +202,8 @@ pub trait Variables {
     /// Gives it a value. An error is said of the block: why it cannot be written.
     fn write(&mut self, variable: &Variable, value: f64) -> Result<(), String>;
 
-    /// Whether a function has a synchronisation type (`EXIST[M80]`); H with `false`.
-    fn exists(&self, m: bool, number: u16) -> bool;
+    /// Whether a function has a synchronisation type (`EXIST[M80]`).
+    fn exists(&self, letter: FunctionLetter, number: u16) -> bool;
 }
 
 /// Where subroutines are found.

@@ -1,6 +1,6 @@
 //! Variables of a channel, which a contouring control does not have.
 
-use bahn_din::{Variable, Variables};
+use bahn_din::{FunctionLetter, Variable, Variables};
 use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 
@@ -34,7 +34,7 @@ impl Variables for Model {
         Err(self.refused(variable))
     }
 
-    fn exists(&self, m: bool, number: u16) -> bool {
-        m && Technology::of_m(self.model, number).is_some()
+    fn exists(&self, letter: FunctionLetter, number: u16) -> bool {
+        letter == FunctionLetter::M && Technology::of_m(self.model, number).is_some()
     }
 }

@@ -143,13 +143,14 @@ pub(crate) enum Named<'a> {
     /// A text that is read.
     Text(&'a TextOperand),
     /// A string that is written, and whether the index register is added to its number.
-    String(u8, bool),
+    String { string: u8, indexed: bool },
 }
 
 /// The operand of an instruction with what is done to it; what is counted is read before.
 pub(crate) fn operand(op: &Op) -> Option<(Named<'_>, Access)> {
     use Access::{Assign, Change, Read};
     let number = |number: &NumberOperand| Named::Value(Value::Number(*number));
+    let written = |string, indexed| Named::String { string, indexed };
     Some(match op {
         Op::LoadBit { bit, .. } | Op::GateBit { bit, .. } | Op::PushBit { bit } => (Named::Bit(*bit), Read),
         Op::AssignBit { bit, .. } => (Named::Bit(*bit), Assign),
@@ -171,8 +172,8 @@ pub(crate) fn operand(op: &Op) -> Option<(Named<'_>, Access)> {
         Op::LoadText { text } | Op::AppendText { text } | Op::CompareText { text, .. } => {
             (Named::Text(text), Read)
         }
-        Op::AssignText { string, indexed } => (Named::String(*string, *indexed), Assign),
-        Op::OverwriteText { string, indexed } => (Named::String(*string, *indexed), Change),
+        Op::AssignText { string, indexed } => (written(*string, *indexed), Assign),
+        Op::OverwriteText { string, indexed } => (written(*string, *indexed), Change),
         _ => return None,
     })
 }
@@ -189,7 +190,7 @@ pub fn accesses(op: &Op) -> Vec<(Subject, Access)> {
         Named::Value(Value::Number(number)) => vec![number.into()],
         Named::Text(TextOperand::Memory { string, indexed }) => text(*string, *indexed),
         Named::Text(TextOperand::Part { string }) => text(*string, false),
-        Named::String(string, indexed) => text(string, indexed),
+        Named::String { string, indexed } => text(string, indexed),
         Named::Value(Value::Constant(_)) | Named::Text(_) => Vec::new(),
     };
     let reads_first = matches!(op, Op::StepNumber { .. });

@@ -206,6 +206,11 @@ fn all_is_in_sight_on_windows_of_all_sizes() {
     panel.press("TEST");
     panel.choose("LINES");
     panel.until(|screen| screen["program"]["lines"].as_array().unwrap().len() == 16);
+    // The station has them before the page.
+    until(
+        &mut page,
+        "document.querySelectorAll('[data-region=program] .lines li').length === 16",
+    );
     let inside = |selector: &str, in_what: &str| {
         format!(
             "(() => {{ const a = document.querySelector('{selector}').getBoundingClientRect(), b = {in_what}; \

@@ -14,13 +14,13 @@ use support::{Panel, pictures};
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Three tools: a plate is faced, a pocket is milled along arcs, a hole goes through.
-fn program(passes: u32) -> String {
+fn program(passes: u32, rounds: u32) -> String {
     let mut text = String::from(
         "BEGIN PGM LIVE MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+80 Z+0\n\
          TOOL CALL 3 Z S2000\nL Z+50 R0 FMAX M3\nL X-20 Y+5 R0 FMAX\nL Z-1 R0 FMAX\n",
     );
-    for pass in 0..passes {
-        let y = 5.0 + 70.0 * f64::from(pass) / f64::from(passes);
+    for pass in 0..passes * rounds {
+        let y = 5.0 + 70.0 * f64::from(pass % passes) / f64::from(passes);
         let x = if pass % 2 == 0 { 120 } else { -20 };
         text += &format!("L Y+{y:.3} F500\nL X{x:+} F500\n");
     }
@@ -29,8 +29,9 @@ fn program(passes: u32) -> String {
     text
 }
 
-fn panel(passes: u32) -> Panel {
-    Panel::with(|folder| std::fs::write(folder.join("programs/LIVE.H"), program(passes)).unwrap())
+fn panel(passes: u32, rounds: u32) -> Panel {
+    let text = program(passes, rounds);
+    Panel::with(|folder| std::fs::write(folder.join("programs/LIVE.H"), text).unwrap())
 }
 
 /// The heights in the page, decoded there.
@@ -100,7 +101,7 @@ fn a_test_run_is_seen_while_it_cuts() {
     let Some(browser) = Browser::for_test().unwrap() else {
         return;
     };
-    let panel = panel(400);
+    let panel = panel(400, 1);
     panel.to_manual();
     let mut page = open(&panel, &browser);
     choose(&panel, "TEST");
@@ -143,7 +144,8 @@ fn a_program_run_is_seen_on_a_phone() {
     let Some(browser) = Browser::for_test().unwrap() else {
         return;
     };
-    let panel = panel(12);
+    // Many rounds: the run does not end before a slow browser has seen it.
+    let panel = panel(12, 40);
     panel.to_manual();
     let mut page = open(&panel, &browser);
     page.viewport(390, 800, true).unwrap();

@@ -12,7 +12,8 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use bahn_din::{
-    BlockFault, Decoder, Function, Kind, Program, Shelf, Step, Target, Unit, Variable, Variables,
+    BlockFault, Decoder, Function, FunctionLetter, Kind, Program, Shelf, Step, Target, Unit, Variable,
+    Variables,
 };
 use bahn_path::{Axis, Position};
 
@@ -57,8 +58,12 @@ impl Variables for Bench {
         Ok(())
     }
 
-    fn exists(&self, m: bool, number: u16) -> bool {
-        if m { &self.m } else { &self.h }.contains(&number)
+    fn exists(&self, letter: FunctionLetter, number: u16) -> bool {
+        let known = match letter {
+            FunctionLetter::M => &self.m,
+            FunctionLetter::H => &self.h,
+        };
+        known.contains(&number)
     }
 }
 

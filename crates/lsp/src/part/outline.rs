@@ -203,14 +203,14 @@ struct Runs {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Run {
-    Cycle(bool, u16),
+    Cycle { is_probe: bool, number: u16 },
     Comment,
 }
 
 impl Runs {
     fn take(&mut self, block: &ReadBlock<'_>, first: usize, last: usize, folds: &mut Vec<Fold>) {
         let own = match (&block.operation, cycle_number(&block.operation)) {
-            (_, Some((probe, number))) => Some(Run::Cycle(probe, number)),
+            (_, Some((is_probe, number))) => Some(Run::Cycle { is_probe, number }),
             (Operation::Comment(_), None) => Some(Run::Comment),
             _ => None,
         };

@@ -101,7 +101,7 @@ impl TraceStep<'_> {
             Named::Bits(first, count) => OperandContent::Number(read_bits(self.image, first, count, index)),
             Named::Value(value) => OperandContent::Number(read(self.image, value, index)),
             Named::Text(text) => self.text_content(text, index),
-            Named::String(string, indexed) => {
+            Named::String { string, indexed } => {
                 self.text_content(&TextOperand::Memory { string, indexed }, index)
             }
         })

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use bahn_din::{Variable, Variables};
+use bahn_din::{FunctionLetter, Variable, Variables};
 
 use super::fault::number;
 use crate::settings::{ChannelSettings, FunctionSettings, INTERNAL_M};
@@ -133,9 +133,12 @@ impl Variables for InForce {
         Ok(())
     }
 
-    fn exists(&self, m: bool, number: u16) -> bool {
-        let table = if m { &self.settings.m } else { &self.settings.h };
+    fn exists(&self, letter: FunctionLetter, number: u16) -> bool {
+        let (table, internal) = match letter {
+            FunctionLetter::M => (&self.settings.m, INTERNAL_M.contains(&u32::from(number))),
+            FunctionLetter::H => (&self.settings.h, false),
+        };
         let known = table.get(number.into());
-        known.is_some_and(|function| function.synch.is_some()) || m && INTERNAL_M.contains(&u32::from(number))
+        internal || known.is_some_and(|function| function.synch.is_some())
     }
 }
