@@ -148,7 +148,7 @@ impl ConnectedPorts {
                 }
                 std::thread::sleep(LOOK);
             }
-            desks.iter().flatten().for_each(|desk| desk.end());
+            desks.iter().flatten().for_each(|desk| desk.close());
         })?);
         Ok(RunningPorts { stop, threads })
     }
@@ -188,24 +188,43 @@ struct Desk {
 struct Ordered {
     transfer: Option<TransferOrder>,
     answer: Option<bool>,
+    /// END came before the transfer began.
+    broken_off: bool,
+    /// The machine is switched off.
+    closed: bool,
 }
 
 impl Desk {
     fn take(&self, order: TransferOrder) {
+        let mut ordered = self.ordered();
         match order.action {
-            TransferAction::Answer(yes) => self.ordered().answer = Some(yes),
-            TransferAction::End => self.end(),
+            TransferAction::Answer(yes) => {
+                ordered.answer = Some(yes);
+                return;
+            }
+            TransferAction::End => ordered.broken_off = ordered.transfer.is_some(),
             _ => {
-                *self.ordered() = Ordered {
+                *ordered = Ordered {
                     transfer: Some(order),
-                    answer: None,
+                    closed: ordered.closed,
+                    ..Ordered::default()
                 };
-                self.end();
             }
         }
+        self.wake.store(true, Ordering::Relaxed);
     }
 
-    fn end(&self) {
+    /// What the thread of the port carries out next, driven until somebody wakes it. What was broken off before it began ends
+    /// at once, and says so.
+    fn next(&self) -> Option<TransferOrder> {
+        let mut ordered = self.ordered();
+        let ends = std::mem::take(&mut ordered.broken_off) || ordered.closed;
+        self.wake.store(ends, Ordering::Relaxed);
+        ordered.transfer.take()
+    }
+
+    fn close(&self) {
+        self.ordered().closed = true;
         self.wake.store(true, Ordering::Relaxed);
     }
 
@@ -226,9 +245,7 @@ impl Worker {
     fn work(&self, mut port: Port) {
         self.tell(TransferNews::Connected(port.number));
         while !self.stop.load(Ordering::Relaxed) {
-            self.desk.wake.store(false, Ordering::Relaxed);
-            let order = self.desk.ordered().transfer.take();
-            let driven = match order {
+            let driven = match self.desk.next() {
                 Some(order) => self.transfer(&order, &mut port),
                 None => {
                     let mut protocol = SharedPort::new(port.plc.hold.clone(), Box::new(Resting));
@@ -411,6 +428,36 @@ impl Attendant for Carrier<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn order(action: TransferAction) -> TransferOrder {
+        TransferOrder {
+            port: 0,
+            mode: "fe1",
+            baud: 9600,
+            kind: "H",
+            files: TransferFiles::Programs,
+            action,
+        }
+    }
+
+    /// END and power-off are not lost, however late the thread of the port looks.
+    #[test]
+    fn what_is_broken_off_before_it_began_ends_at_once() {
+        let desk = Desk::default();
+        desk.take(order(TransferAction::ReadAll));
+        assert!(desk.next().is_some() && !desk.wake.load(Ordering::Relaxed));
+        // While it runs.
+        desk.take(order(TransferAction::End));
+        assert!(desk.wake.load(Ordering::Relaxed));
+        assert!(desk.next().is_none() && !desk.wake.load(Ordering::Relaxed));
+        // Before it began.
+        desk.take(order(TransferAction::ReadAll));
+        desk.take(order(TransferAction::End));
+        assert!(desk.next().is_some() && desk.wake.load(Ordering::Relaxed));
+        assert!(desk.next().is_none() && !desk.wake.load(Ordering::Relaxed));
+        desk.close();
+        assert!(desk.next().is_none() && desk.wake.load(Ordering::Relaxed));
+    }
 
     /// What the panel transfers are types of the interface.
     #[test]
