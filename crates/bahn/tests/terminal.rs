@@ -365,8 +365,15 @@ fn a_day_at_the_mill() {
     desk.machine_key("NC_START");
     desk.command("speed 20");
     desk.until("return", |screen| (position(screen, "Z") - stood).abs() < 0.01);
-    std::thread::sleep(Duration::from_millis(500));
-    desk.machine_key("NC_START");
+    // The last axis may be on its way yet: NC start until the program goes on.
+    let waits = |screen: &str| screen.contains("NC start goes on");
+    desk.until("back at the contour", waits);
+    let end = Instant::now() + PATIENCE;
+    while waits(&desk.screen()) {
+        assert!(Instant::now() < end, "{}", desk.screen());
+        desk.machine_key("NC_START");
+        std::thread::sleep(Duration::from_millis(500));
+    }
     desk.until("end of the pocket", |screen| {
         current(screen).contains("CYCL DEF") || !star(screen)
     });
