@@ -1,8 +1,9 @@
 //! The screen of the control as a picture of 640 x 480 pixels: 80 columns and 30 lines, as the screens of its time had
-//! (inferred), in the colours that MP7350 to MP7363 give it.
+//! (inferred), in the colours that MP7350 to MP7363 give it. It is one of the three that draw a [`Screen`], beside the terminal
+//! (room `terminal`, `draw`) and the browser (room `server`, `web/`); none of them knows more than that.
 
-use bahn_panel::{Line, Picture, Screen, Star, Window, WindowKind};
 use bahn_picture::{Anchor, Colour, Image, mix};
+use bahn_service::{Line, Picture, Screen, Star, Window, WindowKind};
 
 /// Pixels.
 const SIZE: [u32; 2] = [640, 480];
@@ -266,7 +267,7 @@ mod tests {
     #[test]
     fn a_screen_shows_its_words() {
         let screen = Screen {
-            headings: vec![bahn_panel::Heading {
+            headings: vec![bahn_service::Heading {
                 title: "MANUAL OPERATION".to_owned(),
                 ..Default::default()
             }],
