@@ -123,21 +123,36 @@ struct Desk {
 struct Ordered {
     transfer: Option<TransferOrder>,
     answer: Option<bool>,
+    /// END was pressed since the transfer was ordered.
+    ended: bool,
 }
 
 impl Desk {
     fn take(&self, order: TransferOrder) {
+        let mut ordered = self.ordered();
         match order.action {
-            TransferAction::Answer(yes) => self.ordered().answer = Some(yes),
-            TransferAction::End => self.end(),
+            TransferAction::Answer(yes) => {
+                ordered.answer = Some(yes);
+                return;
+            }
+            TransferAction::End => ordered.ended = true,
             _ => {
-                *self.ordered() = Ordered {
+                *ordered = Ordered {
                     transfer: Some(order),
-                    answer: None,
+                    ..Ordered::default()
                 };
-                self.end();
             }
         }
+        self.end();
+    }
+
+    /// The transfer that begins now; without one the line rests. END that came before it could begin breaks it off at once.
+    fn begin(&self) -> Option<TransferOrder> {
+        let mut ordered = self.ordered();
+        let transfer = ordered.transfer.take();
+        let ended = std::mem::take(&mut ordered.ended);
+        self.wake.store(ended && transfer.is_some(), Ordering::Relaxed);
+        transfer
     }
 
     fn end(&self) {
@@ -159,9 +174,12 @@ struct Worker {
 impl Worker {
     fn work(&self, mut port: Port) {
         self.tell(TransferNews::Connected(port.number));
-        while !self.stop.load(Ordering::Relaxed) {
-            self.desk.wake.store(false, Ordering::Relaxed);
-            let order = self.desk.ordered().transfer.take();
+        loop {
+            let order = self.desk.begin();
+            // Whoever stops wakes after that: it is seen here, or ends what is driven.
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
             let driven = match order {
                 Some(order) => self.transfer(&order, &mut port),
                 None => {
@@ -344,6 +362,34 @@ impl Attendant for Carrier<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn order(action: TransferAction) -> TransferOrder {
+        TransferOrder {
+            port: 0,
+            action,
+            files: TransferFiles::Programs,
+            mode: "fe1",
+            baud: 9600,
+            kind: "H",
+        }
+    }
+
+    /// On a computer that is busy END comes before the thread of the port has taken the transfer.
+    #[test]
+    fn an_end_that_comes_before_the_transfer_is_not_lost() {
+        let desk = Desk::default();
+        let is_ended = || desk.wake.load(Ordering::Relaxed);
+        desk.take(order(TransferAction::ReadAll));
+        desk.take(order(TransferAction::End));
+        assert!(desk.begin().is_some() && is_ended());
+        // It ends no other one: neither the rest that follows nor the next transfer.
+        assert!(desk.begin().is_none() && !is_ended());
+        desk.take(order(TransferAction::End));
+        desk.take(order(TransferAction::ReadAll));
+        assert!(desk.begin().is_some() && !is_ended());
+        desk.take(order(TransferAction::End));
+        assert!(is_ended());
+    }
 
     /// What the panel transfers are types of the interface.
     #[test]
