@@ -28,6 +28,8 @@
 mod commands;
 mod desk;
 mod draw;
+#[cfg(test)]
+mod drawers;
 mod graphics;
 mod hold;
 mod machine;
