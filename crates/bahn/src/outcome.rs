@@ -73,6 +73,7 @@ impl From<PortError> for UsageError {
         match error {
             PortError::Host(error) => error.into(),
             PortError::NoPrinter(name) => UsageError(format!("--print {name}: give --{name}, too")),
+            PortError::Service(error) => UsageError(error.to_string()),
             PortError::Failed(why) => UsageError(why),
         }
     }

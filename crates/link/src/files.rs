@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Cursor, Read, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::store::{Entry, Existing, Place, Store, StoreError};
+use bahn_store::{Entry, Existing, Place, Store, StoreError};
 
 /// A file in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -128,9 +128,9 @@ fn listed(entry: Entry) -> Listed {
     }
 }
 
-impl NewFile for crate::store::Writing {
+impl NewFile for bahn_store::Writing {
     fn commit(self: Box<Self>) -> Result<(), StoreError> {
-        crate::store::Writing::commit(*self)
+        bahn_store::Writing::commit(*self)
     }
 }
 

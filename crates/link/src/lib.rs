@@ -15,9 +15,7 @@
 //!   protocol and of the [`blockwise`] one with check characters, [`Passive`] what obeys; [`drive`] puts it on a channel,
 //!   [`Files`] are what it transfers;
 //! - a [`Monitor`] says in words what passes;
-//! - [`FileType`] is what the interfaces know of a file: its extension and its code letter;
 //! - [`HardCopy`] speaks to the printer of a TNC 155, [`PrintOut`] brings it what is printed;
-//! - [`store`] is the file service that all protocols share;
 //! - [`PlcLine`] is the PLC at a line, [`Resting`] a line that nobody uses;
 //! - [`lsv2`] are the telegrams of LSV/2.
 
@@ -31,7 +29,6 @@ mod channel;
 mod characters;
 pub mod dnc;
 mod drive;
-mod file_type;
 mod files;
 mod frame;
 mod hard_copy;
@@ -45,13 +42,12 @@ mod resting;
 mod settings;
 mod shared_port;
 pub mod standard;
-pub mod store;
 mod text;
 
+pub use bahn_store::FileType;
 pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
 pub use characters::{AFTER_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
-pub use file_type::FileType;
 pub use files::{Files, Listed, Memory, NewFile, OfKinds};
 pub use hard_copy::HardCopy;
 pub use monitor::Monitor;

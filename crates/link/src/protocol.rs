@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use bahn_parameters::{ControlModel, MessageId};
 
-use crate::store::StoreError;
+use bahn_store::StoreError;
 
 /// What the control shows of a transfer.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::io::{self, BufRead, BufReader, Read, Write};
 
 use crate::files::NewFile;
-use crate::store::StoreError;
 use crate::{Characters, FileType};
+use bahn_store::StoreError;
 
 /// Bytes of a line at most; a longer one goes as several. Blocks have 150 characters at most [000:615], lines of tables more.
 pub(crate) const LINE_MAX: usize = 1000;

@@ -9,7 +9,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use bahn_link::store::{Existing, Store};
+use bahn_store::{Existing, Store};
 
 const FOLDER: &str = "BAHN_LINK_KILLED_FOLDER";
 

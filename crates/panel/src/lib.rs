@@ -41,7 +41,6 @@ mod entry;
 mod inhibit;
 mod input;
 mod live;
-mod numbers;
 mod page;
 mod pages;
 mod plc_mode;

@@ -7,6 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use bahn_host::{Reader, Stamped};
 use bahn_screen::Screen;
 
 use crate::input::{Input, Refusal};
@@ -60,6 +61,7 @@ struct Shared {
 pub struct Live {
     orders: SyncSender<Order>,
     shared: Arc<Shared>,
+    notices: Reader<Stamped>,
     thread: Option<JoinHandle<Station>>,
 }
 
@@ -91,6 +93,7 @@ impl Live {
             alarm: Arc::default(),
         });
         let published = Arc::clone(&shared);
+        let notices = station.host().notices();
         let thread = std::thread::spawn(move || {
             station.wait_outside(Arc::clone(&published.alarm));
             station.run_in_real_time();
@@ -100,6 +103,7 @@ impl Live {
         Live {
             orders,
             shared,
+            notices,
             thread: Some(thread),
         }
     }
@@ -110,6 +114,11 @@ impl Live {
             orders: self.orders.clone(),
             shared: Arc::clone(&self.shared),
         }
+    }
+
+    /// What has happened at the machine since it runs here.
+    pub fn notices(&self) -> Reader<Stamped> {
+        self.notices.clone()
     }
 
     /// It goes on no more, whatever ended it.

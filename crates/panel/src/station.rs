@@ -34,7 +34,7 @@ use crate::settings::Settings;
 use crate::site::Site;
 use crate::steps::{Steps, StepsEnd, Ticket};
 use crate::transfer::{TransferOrder, Transfers};
-use crate::{numbers, status};
+use crate::{pages, status};
 use commissioning::{Commissioning, operator_of};
 
 pub use commissioning::load;
@@ -375,9 +375,14 @@ impl Station {
         self.host.plant().keys().map(str::to_owned).collect()
     }
 
-    /// The numbers behind the screen, for programs: times, positions in mm and degrees, speeds, the run, messages.
-    pub fn numbers(&self) -> serde_json::Value {
-        numbers::of(&self.host.control().snapshot(), self.host.control())
+    /// A program run, interrupted or not, has the file of this name.
+    pub fn runs(&self, name: &str) -> bool {
+        pages::runs(name, self.control())
+    }
+
+    /// So it has, or the machine is not switched on again without the file.
+    pub fn needs(&self, name: &str) -> bool {
+        pages::is_needed(name, self.control(), &self.machine.folder)
     }
 
     /// What the graphics show, to be drawn; `None` while the operator does not look at them, and without a part.

@@ -1,11 +1,12 @@
 //! A machine that is on at its data interfaces: what [`bahn_link`] carries goes to the machine, and what the machine has to
-//! say goes over the line.
+//! say goes over the line. All but the drip feed are adapters of [`bahn_service`]: they know their protocol and that.
 //!
 //! The face of this room:
 //! - [`open`]: ports as they are written, opened and set up as machine parameters say;
 //! - [`serial_ports`]: RS-232-C and RS-422 of a machine that answers; [`PlcLines`]: its PLC at them;
 //! - [`MachineDevice`]: a machine that is on as a host with LSV/2 sees it;
-//! - [`dnc`]: a machine that executes a program while it is transferred; [`Trace`]: what passes over a line.
+//! - [`screen_picture`]: its screen as pixels;
+//! - [`dnc`]: a machine that executes a program while it is transferred, cycle by cycle; [`Trace`]: what passes over a line.
 //!
 //! ```
 //! use bahn_link::Line;
@@ -20,10 +21,9 @@
 pub mod dnc;
 mod error;
 mod lsv2_device;
-mod lsv2_log;
-mod lsv2_screen;
 pub mod open;
 mod plc_lines;
+pub mod screen_picture;
 pub mod serial_ports;
 mod trace;
 

@@ -1,9 +1,7 @@
 //! Ports as they are written, opened, and set up as machine parameters say.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
 
-use bahn_host::LoadedMachine;
 use bahn_link::{Channel, Line, Settings, Spec};
 use bahn_parameters::{MessageId, ParameterList};
 
@@ -76,14 +74,5 @@ fn warn_of_others(line: &Line, place: &str, tell: &Tell) {
         tell(&format!(
             "warning: {line} can be reached by others: whoever connects reads and writes there without a password"
         ));
-    }
-}
-
-/// The folder of the PLC program; a main file beside machine.toml does not open the whole folder.
-pub fn plc_folder(machine: &LoadedMachine) -> PathBuf {
-    let main = machine.root.join(&machine.folder.plc);
-    match main.parent().filter(|folder| **folder != machine.root) {
-        Some(folder) => folder.to_owned(),
-        None => machine.root.join("plc"),
     }
 }

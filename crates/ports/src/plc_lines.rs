@@ -6,11 +6,8 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use bahn_control::{DataLineEvent, DataLineOrder, LineEvent};
-use bahn_host::{Next, Notice, Reader, Stamped};
 use bahn_link::{Mode, PlcHold, Settings};
-use bahn_panel::{Input, Link, Station};
-use bahn_parameters::ParameterList;
+use bahn_service::{DataLineOrder, LineEvent, LineFeed, LineNews, MachineService};
 
 use crate::{PortError, Tell};
 
@@ -29,7 +26,8 @@ pub struct PlcPort {
 
 /// The two interfaces, RS-232-C and RS-422; one that has no port is never ready.
 pub struct PlcLines {
-    notices: Reader<Stamped>,
+    machine: MachineService,
+    feed: LineFeed,
     ports: [Option<PlcPort>; 2],
     printer: Option<Printer>,
     tell: Tell,
@@ -63,12 +61,12 @@ impl Printer {
 }
 
 impl PlcLines {
-    /// The lines of a machine that is about to run.
+    /// The lines of a machine that runs.
     ///
     /// # Errors
-    /// When FN15 is to print at a port that is not open.
+    /// When FN15 is to print at a port that is not open, or the machine does not answer.
     pub fn new(
-        station: &mut Station,
+        machine: &MachineService,
         ports: [Option<PlcPort>; 2],
         print: Option<&str>,
         tell: Tell,
@@ -85,9 +83,10 @@ impl PlcLines {
         };
         // Into a file only FN15 prints: what is digitized stays a program of the memory.
         let at_port = matches!(printer, Some(Printer::Port(_)));
-        station.host().print_digitized(at_port);
+        machine.print_digitized(at_port)?;
         Ok(PlcLines {
-            notices: station.host().notices(),
+            machine: machine.clone(),
+            feed: machine.line_feed(),
             ports,
             printer,
             tell,
@@ -95,44 +94,41 @@ impl PlcLines {
     }
 
     /// The control learns the baud rates of the modes that are set up.
-    pub fn begin(&self, link: &Link) {
+    pub fn begin(&self) {
         for (line, port) in self.ports() {
             if let Some(baud) = port.baud {
-                tell(link, line, LineEvent::ModeBaud(baud));
+                self.tell_line(line, LineEvent::ModeBaud(baud));
             }
         }
     }
 
     /// Carries on what has happened since the last call.
-    pub fn carry(&mut self, link: &Link) {
+    pub fn carry(&mut self) {
         let mut orders = Vec::new();
-        for next in self.notices.by_ref() {
-            match next {
-                Next::Item(stamped) => match stamped.notice {
-                    Notice::Line(order) => orders.push(order),
-                    Notice::Printed(line) => {
-                        if let Some(printer) = &self.printer {
-                            printer.print(&line, &self.tell);
-                        }
+        for news in self.feed.by_ref() {
+            match news {
+                LineNews::Order(order) => orders.push(order),
+                LineNews::Printed(line) => {
+                    if let Some(printer) = &self.printer {
+                        printer.print(&line, &self.tell);
                     }
-                    _ => {}
-                },
-                Next::Missed(count) => {
+                }
+                LineNews::Missed(count) => {
                     (self.tell)(&format!("{count} notices of the machine went by unseen"));
                 }
             }
         }
         for order in orders {
-            self.obey(order, link);
+            self.obey(order);
         }
         for (line, port) in self.ports() {
             for event in port.hold.take_events() {
-                tell(link, line, event);
+                self.tell_line(line, event);
             }
         }
     }
 
-    fn obey(&self, order: DataLineOrder, link: &Link) {
+    fn obey(&self, order: DataLineOrder) {
         let (DataLineOrder::Assigned { line, .. }
         | DataLineOrder::Send { line, .. }
         | DataLineOrder::Taken { line }) = order;
@@ -141,7 +137,7 @@ impl PlcLines {
         };
         match order {
             DataLineOrder::Assigned { setup, .. } => {
-                let list = setup.and_then(|setup| Some((setup, list(link)?)));
+                let list = setup.and_then(|setup| Some((setup, self.machine.parameters().ok()?)));
                 let settings = list.map(|(setup, list)| {
                     let settings = match setup.of_mode {
                         true => Settings::of(&list, port.mode),
@@ -160,16 +156,9 @@ impl PlcLines {
         let ports = self.ports.iter().enumerate();
         ports.filter_map(|(line, port)| Some((line, port.as_ref()?)))
     }
-}
 
-/// The machine parameters as they are now.
-fn list(link: &Link) -> Option<ParameterList> {
-    link.look(|station| station.control().first().edited_list().clone())
-        .ok()
-}
-
-/// The control is told what happens at a line; one that has ended needs it no more, and what it refuses it does not want.
-fn tell(link: &Link, line: usize, event: LineEvent) {
-    let event = DataLineEvent::Line(line, event);
-    let _ = link.input(Input::Action(event.to_string()));
+    /// The control is told what happens at a line; one that has ended needs it no more, and what it refuses it does not want.
+    fn tell_line(&self, line: usize, event: LineEvent) {
+        let _ = self.machine.tell_line(line, event);
+    }
 }

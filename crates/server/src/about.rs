@@ -1,6 +1,6 @@
 //! What does not change while a station is on.
 
-use bahn_panel::{Key, Press, SHORTCUTS, Shortcut, Station};
+use bahn_service::{Key, Machine, Press, SHORTCUTS, Shortcut};
 use serde::Serialize;
 
 /// What does not change while a station is on.
@@ -65,24 +65,23 @@ impl ShortcutText {
 }
 
 impl About {
-    /// What does not change about a station.
-    pub fn of(station: &Station) -> About {
+    /// What does not change about a machine.
+    pub fn of(machine: &Machine) -> About {
         let key = |key: &Key| KeyText {
             name: key.name(),
             group: format!("{:?}", key.group()).to_lowercase(),
             label: key.label(),
         };
-        let keyboard: Vec<_> = station.keyboard().collect();
         let is_there = |shortcut: &&Shortcut| match shortcut.press {
-            Press::Key(key) => keyboard.contains(&key),
+            Press::Key(key) => machine.keyboard.contains(&key),
             _ => true,
         };
         About {
-            machine: station.machine().folder.name.clone(),
-            model: station.control().model().name().to_owned(),
-            keys: keyboard.iter().map(key).collect(),
-            machine_keys: station.machine_keys(),
-            axes: station.control().axis_letters().collect(),
+            machine: machine.name.clone(),
+            model: machine.model.name().to_owned(),
+            keys: machine.keyboard.iter().map(key).collect(),
+            machine_keys: machine.machine_keys.clone(),
+            axes: machine.axes.clone(),
             shortcuts: SHORTCUTS.iter().filter(is_there).map(ShortcutText::of).collect(),
             version: env!("CARGO_PKG_VERSION"),
         }

@@ -10,47 +10,12 @@ use std::time::{Duration, Instant};
 
 use axum::http::header::{AUTHORIZATION, COOKIE, HOST, ORIGIN};
 use axum::http::{HeaderMap, Method};
+use bahn_service::{Role, Tokens};
 
 use crate::wrong::Wrong;
 
 /// Name of the cookie that holds a token.
 pub(crate) const COOKIE_NAME: &str = "bahn-token";
-
-/// What somebody may do; the greater one may what the lesser one may.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Role {
-    /// He sees everything and does nothing.
-    Look,
-    /// May operate the machine.
-    Operate,
-}
-
-/// What others must know.
-#[derive(Clone, Debug, Default)]
-pub struct Tokens {
-    /// The token with which one may operate.
-    pub operate: Option<String>,
-    /// The token with which one may look.
-    pub look: Option<String>,
-}
-
-impl Tokens {
-    /// Whether any token is asked for.
-    pub(crate) fn any(&self) -> bool {
-        self.operate.is_some() || self.look.is_some()
-    }
-
-    /// Who has this one may do that.
-    fn role_of(&self, given: &str) -> Option<Role> {
-        // Both are compared, whichever it is.
-        let is = |token: &Option<String>| token.as_ref().is_some_and(|token| same(given, token));
-        match (is(&self.operate), is(&self.look)) {
-            (true, _) => Some(Role::Operate),
-            (_, true) => Some(Role::Look),
-            _ => None,
-        }
-    }
-}
 
 /// The rules of access to the panel.
 #[derive(Debug)]
@@ -133,15 +98,6 @@ impl Access {
             }
         }
     }
-}
-
-/// Compares in constant time.
-fn same(given: &str, token: &str) -> bool {
-    let differences = given
-        .bytes()
-        .zip(token.bytes())
-        .filter(|(one, other)| one != other);
-    given.len() == token.len() && differences.count() == 0
 }
 
 /// `localhost`, an address of loopback, each with a port or without.

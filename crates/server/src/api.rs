@@ -1,12 +1,13 @@
 //! What programs ask for: docs/panel-api.md.
 
 use axum::Json;
-use axum::extract::{Query, State};
+use axum::extract::{Extension, Query, State};
 use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
-use bahn_panel::{
-    Input, InputText, Refusal, Station, Stepped, language_code, language_of_code, texts_around,
+use bahn_service::{
+    Input, InputText, MachineService, Refusal, Role, ServiceError, Stepped, language_code, language_of_code,
+    texts_around,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -28,7 +29,7 @@ pub(crate) struct Spoken {
 /// `GET /api/texts`: what stands around the screen, in the language of the control or in another one.
 pub(crate) async fn texts(State(shared): State<Shared>, Query(spoken): Query<Spoken>) -> Response {
     let language = match &spoken.language {
-        None => Some(shared.link.screen().look.language),
+        None => Some(shared.machine.screen().look.language),
         Some(code) => language_of_code(code),
     };
     match language {
@@ -40,38 +41,38 @@ pub(crate) async fn texts(State(shared): State<Shared>, Query(spoken): Query<Spo
 
 /// `GET /api/screen`.
 pub(crate) async fn screen(State(shared): State<Shared>) -> Response {
-    Json(shared.link.screen().as_ref()).into_response()
+    Json(shared.machine.screen().as_ref()).into_response()
 }
 
 /// `GET /api/snapshot`: the numbers behind the screen.
 pub(crate) async fn snapshot(State(shared): State<Shared>) -> Response {
-    asked(shared, |station| Ok(station.numbers())).await
+    asked(shared, MachineService::state).await
 }
 
 /// `GET /api/drawer`: what can be broken.
 pub(crate) async fn drawer(State(shared): State<Shared>) -> Response {
-    asked(shared, |station| Ok(station.drawer())).await
+    asked(shared, MachineService::drawer).await
 }
 
 /// `GET /api/lessons`: the lessons of the machine.
 pub(crate) async fn lessons(State(shared): State<Shared>) -> Response {
-    asked(shared, |station| {
-        let lessons = station.lessons();
+    asked(shared, |machine| {
+        let lessons = machine.lessons()?;
         let named = |(name, title)| json!({"name": name, "title": title});
         Ok(lessons.into_iter().map(named).collect::<Vec<_>>())
     })
     .await
 }
 
-/// What the station says between two cycles.
+/// What the machine says.
 async fn asked<T: Serialize + Send + 'static>(
     shared: Shared,
-    what: impl FnOnce(&mut Station) -> Result<T, Refusal> + Send + 'static,
+    what: impl FnOnce(&MachineService) -> Result<T, ServiceError> + Send + 'static,
 ) -> Response {
-    let link = shared.link;
-    match tokio::task::spawn_blocking(move || link.with(what)).await {
-        Ok(Ok(Ok(said))) => Json(said).into_response(),
-        Ok(Ok(Err(refusal)) | Err(refusal)) => refused(&refusal),
+    let machine = shared.machine;
+    match tokio::task::spawn_blocking(move || what(&machine)).await {
+        Ok(Ok(said)) => Json(said).into_response(),
+        Ok(Err(error)) => refused(&error),
         Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
     }
 }
@@ -106,10 +107,10 @@ pub(crate) async fn graphics(State(shared): State<Shared>, Query(size): Query<Si
         let why = format!("a picture has {PIXELS} pixels at most, and {SIDE} along a side");
         return (StatusCode::BAD_REQUEST, why).into_response();
     }
-    let link = shared.link.clone();
+    let machine = shared.machine.clone();
     let drawn = shared.pictures.draw(move || {
-        let picture = link.with(Station::picture)?;
-        Ok::<_, Refusal>(picture.map(|picture| picture.png(size.width, size.height)))
+        let picture = machine.picture()?;
+        Ok::<_, ServiceError>(picture.map(|picture| picture.png(size.width, size.height)))
     });
     match drawn.await {
         Some(Ok(Some(Ok(Some(png))))) => {
@@ -118,14 +119,19 @@ pub(crate) async fn graphics(State(shared): State<Shared>, Query(size): Query<Si
         Some(Ok(Some(Err(error)))) => (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
         // There is nothing to be seen, which is no fault of who asks.
         Some(Ok(None | Some(Ok(None)))) => StatusCode::NO_CONTENT.into_response(),
-        Some(Err(refusal)) => refused(&refusal),
+        Some(Err(error)) => refused(&error),
         None => (StatusCode::TOO_MANY_REQUESTS, "too many wait for pictures").into_response(),
     }
 }
 
 /// `POST /api/key` and `POST /api/command`: an input; the answer has the screen after it, and what became of contour
 /// cycles that were asked for.
-pub(crate) async fn input(State(shared): State<Shared>, body: String) -> Response {
+pub(crate) async fn input(
+    State(shared): State<Shared>,
+    Extension(role): Extension<Role>,
+    body: String,
+) -> Response {
+    let machine = shared.machine.with_role(role);
     let input = serde_json::from_str::<InputText>(&body)
         .map_err(|error| Refusal(error.to_string()))
         .and_then(Input::try_from);
@@ -139,19 +145,18 @@ pub(crate) async fn input(State(shared): State<Shared>, body: String) -> Respons
                 .into_response();
         }
     };
-    let link = shared.link.clone();
     let done = tokio::task::spawn_blocking(move || match input {
-        Input::Cycles(cycles) => link.steps(cycles).map(Some),
-        other => link.input(other).map(|()| None),
+        Input::Cycles(cycles) => machine.steps(cycles).map(Some),
+        other => machine.input(other).map(|()| None),
     });
     match done.await {
         Ok(Ok(stepped)) => Json(Done {
             ok: true,
-            serial: shared.link.screen().serial,
+            serial: shared.machine.screen().serial,
             stepped,
         })
         .into_response(),
-        Ok(Err(refusal)) => refused(&refusal),
+        Ok(Err(error)) => refused(&error),
         Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
     }
 }
@@ -167,7 +172,11 @@ struct Done {
     stepped: Option<Stepped>,
 }
 
-fn refused(refusal: &Refusal) -> Response {
-    let body = Json(json!({"ok": false, "error": refusal.0}));
-    (StatusCode::CONFLICT, body).into_response()
+fn refused(error: &ServiceError) -> Response {
+    let status = match error {
+        ServiceError::OnlyLooks => StatusCode::FORBIDDEN,
+        _ => StatusCode::CONFLICT,
+    };
+    let body = Json(json!({"ok": false, "error": error.to_string()}));
+    (status, body).into_response()
 }

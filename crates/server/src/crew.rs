@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::access::Role;
+use bahn_service::Role;
 
 /// Who somebody is: the key that his page made and tells nobody else; a name is no proof.
 pub(crate) type Id = String;

@@ -1,4 +1,4 @@
-//! The operating panel in the browser: a station over HTTP and a web socket.
+//! The operating panel in the browser: a machine that is on over HTTP and a web socket, by its service.
 //!
 //! - [`Server`] listens, serves the page and its modules, which are embedded, and the interface of docs/panel-api.md;
 //! - `door` takes connections, each of which has one of the `places`;
@@ -11,13 +11,13 @@
 //! - `socket` is one viewer, `api` what programs ask for; both have what is `shared`.
 //!
 //! ```no_run
-//! use bahn_panel::{Live, Station, load};
 //! use bahn_server::{Server, ServerOptions, Tokens};
+//! use bahn_service::{Live, MachineService, Station, load};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let live = Live::start(Station::power_on(load("machines/mill".as_ref())?)?);
 //! let listen = "127.0.0.1:8155".parse()?;
-//! let server = Server::start(live, ServerOptions { listen, tokens: Tokens::default() })?;
+//! let server = Server::start(MachineService::of(&live)?, ServerOptions { listen, tokens: Tokens::default() })?;
 //! println!("http://{}/", server.address());
 //! # Ok(())
 //! # }
@@ -48,5 +48,5 @@ mod shared;
 mod socket;
 mod wrong;
 
-pub use access::Tokens;
+pub use bahn_service::Tokens;
 pub use server::{Server, ServerError, ServerOptions};

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use bahn_panel::{BeingCut, Link, Station};
+use bahn_service::{BeingCut, MachineService};
 use bahn_viewer::{PartStream, Sent};
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
@@ -65,7 +65,7 @@ type Region = Vec<u8>;
 
 impl PartFeed {
     /// Follows the part of a station while somebody looks, on a thread of its own.
-    pub fn start(link: Link) -> PartFeed {
+    pub fn start(machine: MachineService) -> PartFeed {
         let shared = Arc::new(Shared {
             viewers: Mutex::default(),
             wanted: Condvar::new(),
@@ -73,7 +73,7 @@ impl PartFeed {
         });
         let (sender, news) = watch::channel(0);
         let own = Arc::clone(&shared);
-        std::thread::spawn(move || own.follow(&link, &sender));
+        std::thread::spawn(move || own.follow(&machine, &sender));
         PartFeed { shared, news }
     }
 
@@ -93,7 +93,7 @@ impl PartFeed {
 }
 
 impl Shared {
-    fn follow(&self, link: &Link, sender: &watch::Sender<u64>) {
+    fn follow(&self, machine: &MachineService, sender: &watch::Sender<u64>) {
         while !sender.is_closed() {
             let viewers = lock(&self.viewers);
             let waited = self
@@ -105,7 +105,7 @@ impl Shared {
             }
             drop(viewers);
             let begun = processor_time();
-            let Ok(cut) = link.with(Station::being_cut) else {
+            let Ok(cut) = machine.being_cut() else {
                 // The station has ended, or is busy.
                 std::thread::sleep(EVERY);
                 continue;

@@ -9,9 +9,8 @@ use std::collections::HashMap;
 use std::net::{IpAddr, Ipv6Addr};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use bahn_service::Role;
 use tokio::sync::Notify;
-
-use crate::access::Role;
 
 /// Connections at most that are no web sockets.
 pub(crate) const PLACES: usize = 256;

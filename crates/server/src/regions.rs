@@ -1,6 +1,6 @@
 //! A screen in regions, each encoded once, however many look at it.
 
-use bahn_panel::Screen;
+use bahn_service::Screen;
 use serde::Serialize;
 use std::sync::Arc;
 

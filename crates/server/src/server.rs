@@ -7,13 +7,13 @@ use std::time::Duration;
 use axum::Router;
 use axum::middleware;
 use axum::routing::{any, get, post};
-use bahn_panel::{Link, Live, Refusal};
+use bahn_service::{MachineService, Tokens};
 use tokio::net::{TcpListener, TcpSocket};
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
 
 use crate::about::About;
-use crate::access::{Access, Tokens};
+use crate::access::Access;
 use crate::part::PartFeed;
 use crate::regions::Regions;
 use crate::shared::Shared;
@@ -70,24 +70,20 @@ pub enum ServerError {
     /// No thread can be started.
     #[error("cannot begin: {0}")]
     Runtime(std::io::Error),
-    /// The station does not answer.
-    #[error("cannot begin: {0}")]
-    Station(#[from] Refusal),
 }
 
-/// A station that is served.
+/// A machine that is served.
 pub struct Server {
-    live: Live,
     address: SocketAddr,
     runtime: Runtime,
 }
 
 impl Server {
-    /// Serves a station that runs.
+    /// Serves a machine that runs.
     ///
     /// # Errors
     /// [`ServerError`].
-    pub fn start(live: Live, options: ServerOptions) -> Result<Server, ServerError> {
+    pub fn start(machine: MachineService, options: ServerOptions) -> Result<Server, ServerError> {
         options.check()?;
         let listen = options.listen;
         let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -101,12 +97,11 @@ impl Server {
         let address = listener
             .local_addr()
             .map_err(|error| ServerError::Address(listen, error))?;
-        let about = Arc::new(live.link().with(|station| About::of(station))?);
         let shared = Shared {
-            regions: follow(live.link()),
-            part: PartFeed::start(live.link()),
-            link: live.link(),
-            about,
+            regions: follow(machine.clone()),
+            part: PartFeed::start(machine.clone()),
+            about: Arc::new(About::of(machine.machine())),
+            machine,
             crew: Arc::default(),
             viewers: Arc::new(Semaphore::new(VIEWERS)),
             lookers: Arc::new(Semaphore::new(LOOKERS)),
@@ -116,11 +111,7 @@ impl Server {
         let router = router(shared);
         // It ends with the runtime.
         runtime.spawn(door::serve(listener, router));
-        Ok(Server {
-            live,
-            address,
-            runtime,
-        })
+        Ok(Server { address, runtime })
     }
 
     /// The address at which it listens.
@@ -128,18 +119,9 @@ impl Server {
         self.address
     }
 
-    /// The station that is served.
-    pub fn live(&self) -> &Live {
-        &self.live
-    }
-
-    /// Ends; what must survive is on the medium.
-    ///
-    /// # Errors
-    /// In words.
-    pub fn end(self) -> Result<(), String> {
+    /// Ends; the machine goes on.
+    pub fn end(self) {
         self.runtime.shutdown_timeout(QUIET);
-        self.live.end()
     }
 }
 
@@ -177,12 +159,12 @@ fn router(shared: Shared) -> Router {
 }
 
 /// Encodes every screen once, on a thread of its own.
-fn follow(link: Link) -> watch::Receiver<Arc<Regions>> {
+fn follow(machine: MachineService) -> watch::Receiver<Arc<Regions>> {
     let (sender, receiver) = watch::channel(Arc::new(Regions::default()));
     std::thread::spawn(move || {
         let mut regions = Regions::default();
         while !sender.is_closed() {
-            let screen = link.next_screen(regions.serial(), QUIET);
+            let screen = machine.next_screen(regions.serial(), QUIET);
             if screen.serial > regions.serial() {
                 regions = regions.next(&screen);
                 sender.send_replace(Arc::new(regions.clone()));

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use bahn_panel::Link;
+use bahn_service::MachineService;
 use tokio::sync::{Semaphore, watch};
 
 use crate::about::About;
@@ -15,7 +15,8 @@ use crate::regions::Regions;
 /// What all requests share.
 #[derive(Clone)]
 pub(crate) struct Shared {
-    pub link: Link,
+    /// For who may operate; each request has the role of who asks.
+    pub machine: MachineService,
     pub about: Arc<About>,
     pub regions: watch::Receiver<Arc<Regions>>,
     pub part: PartFeed,

@@ -6,6 +6,7 @@
 //! `{"hand_over":true}`, and `{"part":true}` to look at the part that is being cut. What a viewer is too slow for is left
 //! out: he gets what is newest when he has taken what was sent before.
 
+use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -14,12 +15,10 @@ use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{Extension, Query, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
-use bahn_panel::{Input, InputText};
+use bahn_service::{Input, InputText, Refusal, Role, ServiceError};
 use serde::{Deserialize, Serialize};
 
-use crate::access::Role;
 use crate::crew::{Crew, Id, Taking};
-use crate::gate::LOOKS;
 use crate::part::Look;
 use crate::regions::{message, region};
 use crate::shared::Shared;
@@ -206,7 +205,7 @@ impl Viewer {
     /// Does what a viewer sends; the answer is the number of his last input, with what was wrong with it.
     async fn take(&mut self, text: &str) -> Message {
         let Ok(sent) = serde_json::from_str::<Sent>(text) else {
-            return refused("this is no input");
+            return refused(&"this is no input");
         };
         if let Some(looks) = sent.part {
             // Each request sends all of it anew, which is expensive: one that follows soon after another is ignored.
@@ -221,7 +220,7 @@ impl Viewer {
             return self.taken_message();
         }
         if self.role < Role::Operate && (sent.operate.is_some() || sent.hand_over.is_some()) {
-            return refused(LOOKS);
+            return refused(&ServiceError::OnlyLooks);
         }
         match (sent.operate, sent.hand_over) {
             (Some(_), _) => lock(&self.shared.crew).ask(&self.id),
@@ -238,22 +237,22 @@ impl Viewer {
         self.taken = self.taken.max(sent.n);
         match taking {
             Taking::Twice => return self.taken_message(),
-            Taking::NotOperator => return refused("somebody else operates"),
-            Taking::Looks => return refused(LOOKS),
+            Taking::NotOperator => return refused(&"somebody else operates"),
+            Taking::Looks => return refused(&ServiceError::OnlyLooks),
             Taking::New => {}
         }
         let input = serde_json::from_value::<InputText>(sent.input.into())
-            .map_err(|error| bahn_panel::Refusal(error.to_string()))
+            .map_err(|error| Refusal(error.to_string()))
             .and_then(Input::try_from);
-        let link = self.shared.link.clone();
+        let machine = self.shared.machine.with_role(self.role);
         let done = match input {
-            Ok(input) => tokio::task::spawn_blocking(move || link.input(input)).await,
-            Err(refusal) => Ok(Err(refusal)),
+            Ok(input) => tokio::task::spawn_blocking(move || machine.input(input)).await,
+            Err(refusal) => Ok(Err(refusal.into())),
         };
         match done {
             Ok(Ok(())) => self.taken_message(),
-            Ok(Err(refusal)) => refused(&refusal.0),
-            Err(_) => refused("the station has ended"),
+            Ok(Err(error)) => refused(&error),
+            Err(_) => refused(&"the station has ended"),
         }
     }
 
@@ -278,8 +277,8 @@ impl Viewer {
     }
 }
 
-fn refused(why: &str) -> Message {
-    region_message("refused", &why)
+fn refused(why: &dyn fmt::Display) -> Message {
+    region_message("refused", &why.to_string())
 }
 
 fn region_message<T: Serialize>(name: &str, value: &T) -> Message {

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use bahn_browser::{Browser, Page};
-use bahn_panel::{Key, Language, texts_around};
+use bahn_service::{Key, Language, texts_around};
 use serde_json::json;
 use support::Panel;
 
@@ -79,6 +79,7 @@ fn every_text_has_its_row_and_every_row_its_text() {
             "../screen/src",
             "../graphics/src",
             "../why/src",
+            "../service/src",
         ]);
     let keys: BTreeSet<_> = Key::ALL.iter().map(|key| key.label()).collect();
     let idle: Vec<_> = german

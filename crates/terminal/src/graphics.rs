@@ -2,7 +2,8 @@
 
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 
-use bahn_panel::{Link, Picture, Station};
+use bahn_panel::Picture;
+use bahn_service::MachineService;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
 
@@ -129,14 +130,14 @@ pub(crate) struct Painter {
 }
 
 impl Painter {
-    /// Draws the graphics of a station.
-    pub fn of(link: Link) -> Painter {
+    /// Draws the graphics of a machine.
+    pub fn of(machine: MachineService) -> Painter {
         let (orders, ordered) = sync_channel::<Wanted>(1);
         let (sender, painted) = sync_channel(1);
         // It ends with its orders.
         std::thread::spawn(move || {
             for wanted in ordered {
-                if sender.send((wanted, paint(&link, wanted))).is_err() {
+                if sender.send((wanted, paint(&machine, wanted))).is_err() {
                     return;
                 }
             }
@@ -174,8 +175,8 @@ impl Painter {
 }
 
 /// Draws what the graphics show now.
-fn paint(link: &Link, wanted: Wanted) -> Option<Mosaic> {
-    mosaic(&link.with(Station::picture).ok()??, wanted)
+fn paint(machine: &MachineService, wanted: Wanted) -> Option<Mosaic> {
+    mosaic(&machine.picture().ok()??, wanted)
 }
 
 /// A picture in so many cells.

@@ -1,6 +1,6 @@
 //! The operating panel in the terminal.
 //!
-//! - [`show`] shows the panel of a station that runs, until the operator leaves; [`check`] says before that whether
+//! - [`show`] shows the panel of a machine that runs, until the operator leaves; [`check`] says before that whether
 //!   there is a terminal;
 //! - `desk` makes inputs of keys, mouse and commands, by the table of short cuts that all front ends share; `hold` is
 //!   how a key of the machine is held where a terminal reports only that it was pressed; `commands` are those after `:`,
@@ -9,12 +9,12 @@
 //! - `window` takes the terminal over and leaves it as it was, `panel` is the loop that brings it all together.
 //!
 //! ```no_run
-//! use bahn_panel::{Live, Station, load};
+//! use bahn_service::{Live, MachineService, Station, load};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! bahn_terminal::check()?;
 //! let live = Live::start(Station::power_on(load("machines/mill".as_ref())?)?);
-//! bahn_terminal::show(&live, || false)?;
+//! bahn_terminal::show(&MachineService::of(&live)?, || live.has_ended())?;
 //! live.end()?;
 //! # Ok(())
 //! # }
@@ -28,6 +28,8 @@
 mod commands;
 mod desk;
 mod draw;
+#[cfg(test)]
+mod drawers;
 mod graphics;
 mod hold;
 mod machine;
@@ -48,7 +50,4 @@ pub enum TerminalError {
     /// The terminal does not do what it is asked.
     #[error("terminal: {0}")]
     Terminal(#[from] std::io::Error),
-    /// The station does not answer.
-    #[error("{0}")]
-    Station(#[from] bahn_panel::Refusal),
 }

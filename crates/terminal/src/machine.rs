@@ -1,6 +1,6 @@
 //! The machine operating panel: its keys, and the letters that press them.
 
-use bahn_panel::{EMERGENCY_STOP, Key, Station};
+use bahn_panel::{EMERGENCY_STOP, Key};
 
 /// Letters of the machine's keys in their order.
 const LETTERS: &str = "abcdefghijklmnopqrstuvwxyz0123456789";
@@ -19,12 +19,12 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    /// Name, keyboard and keys of the machine that the station runs.
-    pub fn of_station(station: &mut Station) -> Machine {
+    /// What is shown of a machine here.
+    pub fn of(machine: &bahn_service::Machine) -> Machine {
         Machine {
-            name: station.machine().folder.name.clone(),
-            keyboard: station.keyboard().collect(),
-            keys: station.machine_keys(),
+            name: machine.name.clone(),
+            keyboard: machine.keyboard.clone(),
+            keys: machine.machine_keys.clone(),
         }
     }
 

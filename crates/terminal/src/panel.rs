@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use bahn_panel::{Input, Link, Live, Screen};
+use bahn_panel::{Input, Screen};
+use bahn_service::MachineService;
 
 use crate::TerminalError;
 use crate::desk::{Desk, let_go};
@@ -29,18 +30,16 @@ pub fn check() -> Result<(), TerminalError> {
     }
 }
 
-/// Shows the panel of a station in the terminal until the operator leaves, `ends` says so, or the station has ended.
-/// The terminal is then as it was; the station goes on.
+/// Shows the panel of a machine in the terminal until the operator leaves, or `ends` says so. The terminal is then as it was;
+/// the machine goes on.
 ///
 /// # Errors
 /// [`TerminalError`]
-pub fn show(live: &Live, ends: impl Fn() -> bool) -> Result<(), TerminalError> {
+pub fn show(machine: &MachineService, ends: impl Fn() -> bool) -> Result<(), TerminalError> {
     check()?;
-    let link = live.link();
-    let machine = link.with(Machine::of_station)?;
     let window = FullScreen::open()?;
-    let mut panel = Panel::new(link, machine, window);
-    let shown = panel.follow(|| ends() || live.has_ended());
+    let mut panel = Panel::new(machine.clone(), window);
+    let shown = panel.follow(ends);
     // Nothing stays down on the machine.
     let released = let_go(&mut panel.desk);
     panel.give(released);
@@ -48,7 +47,7 @@ pub fn show(live: &Live, ends: impl Fn() -> bool) -> Result<(), TerminalError> {
 }
 
 struct Panel {
-    link: Link,
+    machine: MachineService,
     desk: Desk,
     painter: Painter,
     palette: Palette,
@@ -61,13 +60,13 @@ struct Panel {
 }
 
 impl Panel {
-    fn new(link: Link, machine: Machine, window: FullScreen) -> Panel {
-        let mut desk = Desk::new(machine);
+    fn new(machine: MachineService, window: FullScreen) -> Panel {
+        let mut desk = Desk::new(Machine::of(machine.machine()));
         desk.holds.reports_releases = window.reports_releases;
         Panel {
-            painter: Painter::of(link.clone()),
-            screen: link.screen(),
-            link,
+            painter: Painter::of(machine.clone()),
+            screen: machine.screen(),
+            machine,
             desk,
             palette: Palette::of_the_terminal(),
             drawn: Drawn::default(),
@@ -101,7 +100,7 @@ impl Panel {
         };
         // A keyboard that is held down does not keep the screen from being drawn.
         let end = Instant::now() + PICTURE;
-        let before = self.link.screen().serial;
+        let before = self.machine.screen().serial;
         let mut given = false;
         let mut next = Some(first);
         while let Some(event) = next {
@@ -116,22 +115,22 @@ impl Panel {
         }
         if given {
             // What came of it is what is drawn next.
-            self.link.next_screen(before, LOOK);
+            self.machine.next_screen(before, LOOK);
         }
         Ok(true)
     }
 
     fn give(&mut self, inputs: Vec<Input>) {
         for input in inputs {
-            if let Err(refusal) = self.link.input(input) {
-                self.desk.notice = refusal.to_string();
+            if let Err(error) = self.machine.input(input) {
+                self.desk.notice = error.to_string();
             }
         }
     }
 
     /// Whether there is a new screen, or a new picture of the part.
     fn look(&mut self) -> bool {
-        let screen = self.link.screen();
+        let screen = self.machine.screen();
         let is_new = screen.serial != self.screen.serial;
         self.screen = screen;
         let wanted = match (&self.screen.graphics, self.drawn.graphics) {

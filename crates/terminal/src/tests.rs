@@ -42,12 +42,7 @@ impl Hall {
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("bahn-terminal-{}-{number}", std::process::id());
         let folder = std::env::temp_dir().join(name);
-        copy(
-            &Path::new(env!("CARGO_MANIFEST_DIR"))
-                .join("../../machines")
-                .join(machine),
-            &folder,
-        );
+        copy(&machines().join(machine), &folder);
         // The day on which the PLC program was written stands on the screen at power-on: 2025-12-31.
         let plc = File::options()
             .append(true)
@@ -55,9 +50,9 @@ impl Hall {
             .unwrap();
         plc.set_modified(UNIX_EPOCH + Duration::from_secs(1_767_225_599))
             .unwrap();
-        let mut station = Station::power_on(load(&folder).unwrap()).unwrap();
+        let station = Station::power_on(load(&folder).unwrap()).unwrap();
         Hall {
-            desk: Desk::new(Machine::of_station(&mut station)),
+            desk: Desk::new(Machine::of(&bahn_service::Machine::of(&station))),
             station,
             part: None,
             palette: Palette::Plain,
@@ -148,7 +143,11 @@ impl Drop for Hall {
     }
 }
 
-fn copy(from: &Path, to: &Path) {
+pub fn machines() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines")
+}
+
+pub fn copy(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).unwrap();
     for entry in std::fs::read_dir(from).unwrap() {
         let entry = entry.unwrap();
@@ -162,7 +161,7 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// The characters of a picture, without blanks at the ends of lines.
-fn text(buffer: &Buffer) -> String {
+pub fn text(buffer: &Buffer) -> String {
     let row = |y| {
         let cells = (0..buffer.area.width).map(move |x| buffer[(x, y)].symbol());
         let line: String = cells.collect();

@@ -26,7 +26,7 @@ mod serve;
 mod transfer;
 
 pub(crate) use options::LinkOptions;
-pub(crate) use panel_ports::{ConnectedPorts, PanelPorts, RunningPorts};
+pub(crate) use panel_ports::{PanelPorts, RunningPorts};
 
 use crate::{Outcome, UsageError};
 use options::LinkCommand;

@@ -2,22 +2,18 @@
 //! it, and the PLC has the line at other times.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use bahn_host::LoadedMachine;
 use bahn_link::blockwise::{self, DirectoryRequest, Want};
-use bahn_link::store::{PLC, Store, StoreError, TNC};
 use bahn_link::{
     Attendant, Channel, Event, FileType, Files, Line, Mode, OfKinds, Protocol, Question, Resting, Settings,
     SharedPort, Spec, drive, standard,
 };
-use bahn_panel::{Input, Link, Live, Station, TransferAction, TransferFiles, TransferNews, TransferOrder};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-
 use bahn_ports::PlcLines;
+use bahn_service::{Input, MachineService, TransferAction, TransferFiles, TransferNews, TransferOrder};
 
 use super::port::{self, Refused};
 use super::serial_ports::{self, Port};
@@ -27,99 +23,39 @@ use crate::{UsageError, diagnostics};
 const LOOK: Duration = Duration::from_millis(10);
 
 /// The interfaces of a machine that is about to be switched on.
-pub(crate) struct PanelPorts {
-    ports: Vec<Port>,
-    memory: Memory,
-}
+pub(crate) struct PanelPorts(Vec<Port>);
 
-/// The files that the panel transfers: programs with tables, files of the PLC, lists of machine parameters.
-#[derive(Clone)]
-struct Memory {
-    programs: Store,
-    plc: Option<Store>,
-    lists: Option<Store>,
-}
-
-impl Memory {
-    fn of(machine: &LoadedMachine) -> Result<Memory, StoreError> {
-        let plc = port::plc_folder(machine);
-        Ok(Memory {
-            programs: Store::of_machine(&machine.programs(0), &plc)?,
-            plc: Store::of_drive(PLC, &plc).ok(),
-            lists: Store::of_drive(TNC, &machine.root).ok(),
-        })
-    }
-
-    /// Those among which an order is carried out; each knows its own types alone.
-    fn files(&self, files: TransferFiles) -> Box<dyn Files> {
-        let Some(kinds) = files.extensions() else {
-            return Box::new(self.programs.clone());
-        };
-        let store = match files {
-            TransferFiles::Lists => &self.lists,
-            _ => &self.plc,
-        };
-        match store {
-            Some(store) => Box::new(OfKinds::new(store.clone(), kinds)),
-            None => Box::new(bahn_link::Memory::default()),
-        }
+/// The files among which an order is carried out; of those of the PLC and of lists each knows its own types alone.
+fn files_of(machine: &MachineService, files: TransferFiles) -> Box<dyn Files> {
+    let store = machine.store_of(files).ok().flatten().cloned();
+    match (store, files.extensions()) {
+        (Some(store), None) => Box::new(store),
+        (Some(store), Some(kinds)) => Box::new(OfKinds::new(store, kinds)),
+        (None, _) => Box::new(bahn_link::Memory::default()),
     }
 }
 
 impl PanelPorts {
     /// Opens the ports that are named; `None` when one cannot be opened, which is told.
-    ///
-    /// # Errors
-    /// When the machine's folders of files are not there.
-    pub(crate) fn open(
-        named: [Option<&String>; 2],
-        machine: &LoadedMachine,
-    ) -> Result<Option<PanelPorts>, UsageError> {
-        let memory = Memory::of(machine).map_err(|error| UsageError::new(error.to_string()))?;
+    pub(crate) fn open(named: [Option<&String>; 2], list: &ParameterList) -> Option<PanelPorts> {
         let ports: Result<Vec<Port>, Refused> =
-            serial_ports::specs(named).and_then(|specs| serial_ports::open(&specs, &machine.parameters));
-        Ok(ports.ok().map(|ports| PanelPorts { ports, memory }))
+            serial_ports::specs(named).and_then(|specs| serial_ports::open(&specs, list));
+        ports.ok().map(PanelPorts)
     }
 
-    /// Connects the panel and the PLC of the machine.
+    /// Connects the panel and the PLC of a machine that runs, and lets the interfaces run beside it.
     ///
     /// # Errors
-    /// When FN15 is to print at a port that is not open.
-    pub(crate) fn connect(
+    /// When FN15 is to print at a port that is not open, or the system gives no thread.
+    pub(crate) fn start(
         self,
-        station: &mut Station,
+        machine: &MachineService,
         print: Option<&str>,
-    ) -> Result<ConnectedPorts, UsageError> {
-        let lines = PlcLines::new(station, serial_ports::of_plc(&self.ports), print, port::tell())?;
-        Ok(ConnectedPorts {
-            orders: station.transfer_orders(),
-            lines,
-            ports: self.ports,
-            memory: self.memory,
-        })
-    }
-}
-
-/// The same with a panel.
-pub(crate) struct ConnectedPorts {
-    orders: Receiver<TransferOrder>,
-    lines: PlcLines,
-    ports: Vec<Port>,
-    memory: Memory,
-}
-
-impl ConnectedPorts {
-    /// Lets them run beside the machine.
-    ///
-    /// # Errors
-    /// When the system gives no thread.
-    pub(crate) fn start(self, live: &Live) -> Result<RunningPorts, UsageError> {
-        let ConnectedPorts {
-            orders,
-            mut lines,
-            ports,
-            memory,
-        } = self;
+    ) -> Result<RunningPorts, UsageError> {
+        let PanelPorts(ports) = self;
+        let mut lines = PlcLines::new(machine, serial_ports::of_plc(&ports), print, port::tell())?;
+        let orders = machine.transfer_orders();
+        let orders = orders.map_err(|error| UsageError::new(error.to_string()))?;
         let stop = Arc::new(AtomicBool::new(false));
         let mut desks: [Option<Arc<Desk>>; 2] = [None, None];
         let mut threads = Vec::new();
@@ -129,18 +65,17 @@ impl ConnectedPorts {
                 *place = Some(Arc::clone(&desk));
             }
             let worker = Worker {
-                link: live.link(),
-                memory: memory.clone(),
+                machine: machine.clone(),
                 stop: Arc::clone(&stop),
                 desk,
             };
             threads.push(spawn("interface", move || worker.work(port))?);
         }
-        let (link, stopped) = (live.link(), Arc::clone(&stop));
+        let stopped = Arc::clone(&stop);
         threads.push(spawn("interfaces", move || {
-            lines.begin(&link);
+            lines.begin();
             while !stopped.load(Ordering::Relaxed) {
-                lines.carry(&link);
+                lines.carry();
                 for order in orders.try_iter() {
                     if let Some(Some(desk)) = desks.get(order.port) {
                         desk.take(order);
@@ -148,7 +83,7 @@ impl ConnectedPorts {
                 }
                 std::thread::sleep(LOOK);
             }
-            desks.iter().flatten().for_each(|desk| desk.close());
+            desks.iter().flatten().for_each(|desk| desk.end());
         })?);
         Ok(RunningPorts { stop, threads })
     }
@@ -188,10 +123,8 @@ struct Desk {
 struct Ordered {
     transfer: Option<TransferOrder>,
     answer: Option<bool>,
-    /// END came before the transfer began.
-    broken_off: bool,
-    /// The machine is switched off.
-    closed: bool,
+    /// END was pressed since the transfer was ordered.
+    ended: bool,
 }
 
 impl Desk {
@@ -202,29 +135,27 @@ impl Desk {
                 ordered.answer = Some(yes);
                 return;
             }
-            TransferAction::End => ordered.broken_off = ordered.transfer.is_some(),
+            TransferAction::End => ordered.ended = true,
             _ => {
                 *ordered = Ordered {
                     transfer: Some(order),
-                    closed: ordered.closed,
                     ..Ordered::default()
                 };
             }
         }
-        self.wake.store(true, Ordering::Relaxed);
+        self.end();
     }
 
-    /// What the thread of the port carries out next, driven until somebody wakes it. What was broken off before it began ends
-    /// at once, and says so.
-    fn next(&self) -> Option<TransferOrder> {
+    /// The transfer that begins now; without one the line rests. END that came before it could begin breaks it off at once.
+    fn begin(&self) -> Option<TransferOrder> {
         let mut ordered = self.ordered();
-        let ends = std::mem::take(&mut ordered.broken_off) || ordered.closed;
-        self.wake.store(ends, Ordering::Relaxed);
-        ordered.transfer.take()
+        let transfer = ordered.transfer.take();
+        let ended = std::mem::take(&mut ordered.ended);
+        self.wake.store(ended && transfer.is_some(), Ordering::Relaxed);
+        transfer
     }
 
-    fn close(&self) {
-        self.ordered().closed = true;
+    fn end(&self) {
         self.wake.store(true, Ordering::Relaxed);
     }
 
@@ -235,8 +166,7 @@ impl Desk {
 
 /// The thread of a port.
 struct Worker {
-    link: Link,
-    memory: Memory,
+    machine: MachineService,
     stop: Arc<AtomicBool>,
     desk: Arc<Desk>,
 }
@@ -244,8 +174,13 @@ struct Worker {
 impl Worker {
     fn work(&self, mut port: Port) {
         self.tell(TransferNews::Connected(port.number));
-        while !self.stop.load(Ordering::Relaxed) {
-            let driven = match self.desk.next() {
+        loop {
+            let order = self.desk.begin();
+            // Whoever stops wakes after that: it is seen here, or ends what is driven.
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
+            let driven = match order {
                 Some(order) => self.transfer(&order, &mut port),
                 None => {
                     let mut protocol = SharedPort::new(port.plc.hold.clone(), Box::new(Resting));
@@ -270,10 +205,9 @@ impl Worker {
 
     /// A transfer from its beginning to its end.
     fn transfer(&self, order: &TransferOrder, port: &mut Port) -> std::io::Result<()> {
-        let list = self
-            .link
-            .look(|station| station.control().first().edited_list().clone());
-        let Ok(list) = list else { return Ok(()) };
+        let Ok(list) = self.machine.parameters() else {
+            return Ok(());
+        };
         let mut carrier = Carrier {
             worker: self,
             model: list.model(),
@@ -319,7 +253,7 @@ impl Worker {
     }
 
     fn protocol(&self, order: &TransferOrder, settings: Settings) -> Box<dyn Protocol> {
-        let files = self.memory.files(order.files);
+        let files = files_of(&self.machine, order.files);
         let (want, kind) = match &order.action {
             TransferAction::Write(names) | TransferAction::WriteOffered(names) => {
                 let asks = matches!(order.action, TransferAction::WriteOffered(_));
@@ -351,7 +285,7 @@ impl Worker {
 
     /// A station that has ended needs no news.
     fn tell(&self, news: TransferNews) {
-        let _ = self.link.input(Input::Transfer(news));
+        let _ = self.machine.input(Input::Transfer(news));
     }
 }
 
@@ -432,31 +366,29 @@ mod tests {
     fn order(action: TransferAction) -> TransferOrder {
         TransferOrder {
             port: 0,
+            action,
+            files: TransferFiles::Programs,
             mode: "fe1",
             baud: 9600,
             kind: "H",
-            files: TransferFiles::Programs,
-            action,
         }
     }
 
-    /// END and power-off are not lost, however late the thread of the port looks.
+    /// On a computer that is busy END comes before the thread of the port has taken the transfer.
     #[test]
-    fn what_is_broken_off_before_it_began_ends_at_once() {
+    fn an_end_that_comes_before_the_transfer_is_not_lost() {
         let desk = Desk::default();
-        desk.take(order(TransferAction::ReadAll));
-        assert!(desk.next().is_some() && !desk.wake.load(Ordering::Relaxed));
-        // While it runs.
-        desk.take(order(TransferAction::End));
-        assert!(desk.wake.load(Ordering::Relaxed));
-        assert!(desk.next().is_none() && !desk.wake.load(Ordering::Relaxed));
-        // Before it began.
+        let is_ended = || desk.wake.load(Ordering::Relaxed);
         desk.take(order(TransferAction::ReadAll));
         desk.take(order(TransferAction::End));
-        assert!(desk.next().is_some() && desk.wake.load(Ordering::Relaxed));
-        assert!(desk.next().is_none() && !desk.wake.load(Ordering::Relaxed));
-        desk.close();
-        assert!(desk.next().is_none() && desk.wake.load(Ordering::Relaxed));
+        assert!(desk.begin().is_some() && is_ended());
+        // It ends no other one: neither the rest that follows nor the next transfer.
+        assert!(desk.begin().is_none() && !is_ended());
+        desk.take(order(TransferAction::End));
+        desk.take(order(TransferAction::ReadAll));
+        assert!(desk.begin().is_some() && !is_ended());
+        desk.take(order(TransferAction::End));
+        assert!(is_ended());
     }
 
     /// What the panel transfers are types of the interface.

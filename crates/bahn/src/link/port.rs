@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_link::store::Store;
 use bahn_link::{Channel, Settings, Spec};
 use bahn_parameters::{ControlModel, ParameterList};
-pub(super) use bahn_ports::open::{plc_folder, settings};
+pub(super) use bahn_ports::open::settings;
 use bahn_ports::{Tell, open};
+use bahn_store::Store;
 
 use crate::{UsageError, diagnostics, machine_folder};
 
@@ -77,7 +77,7 @@ pub(super) fn machine(folder: &Path) -> Result<Option<MachineFiles>, UsageError>
             return Ok(None);
         }
     };
-    let store = Store::of_machine(&machine.programs(0), &plc_folder(&machine));
+    let store = Store::of_machine(&machine.programs(0), &bahn_service::plc_folder(&machine));
     let store = store.map_err(|error| UsageError::new(error.to_string()))?;
     Ok(Some(MachineFiles {
         list: machine.parameters,

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use bahn_host::HostError;
 use bahn_link::lsv2::{OpenPort, Passwords, ServerOptions, Site};
-use bahn_panel::{Live, Station};
-use bahn_ports::serial_ports::{Attendance, Serving};
+use bahn_ports::serial_ports::{Attendance, Port, Serving};
 use bahn_ports::{MachineDevice, PlcLines};
+use bahn_service::{Live, MachineService, Station};
 
 use super::desk::{Answer, Desk, Until};
 use super::options::ServeOptions;
@@ -44,39 +44,64 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
             return Ok(Outcome::ProgramError);
         }
     };
-    let mut station = Station::power_on(machine).map_err(|error| match error {
+    let station = Station::power_on(machine).map_err(|error| match error {
         HostError::SwitchedOn(_) => UsageError::new(format!("{error}; end what runs it")),
         other => other.into(),
     })?;
     let interrupt = Interrupt::on_ctrl_c();
-    let device = Arc::new(
-        MachineDevice::new(&mut station, options.identity.as_deref())
-            .map_err(|error| UsageError::new(error.to_string()))?,
-    );
-    let mut lines = PlcLines::new(
-        &mut station,
-        serial_ports::of_plc(&ports),
-        options.print.as_deref(),
-        tell(),
-    )?;
     let live = Live::start(station);
-    device.connect(live.link());
-    let site = Arc::new(Site::new(device, passwords));
+    let opened = Opened {
+        ports,
+        lsv2,
+        passwords,
+    };
+    let answered = answer(&live, opened, options, &interrupt);
+    // Whatever became of the ports, what must survive is kept.
+    live.end().map_err(UsageError::new)?;
+    answered.map(|()| Outcome::Fine)
+}
+
+/// The ports of the machine, which are open.
+struct Opened {
+    ports: Vec<Port>,
+    lsv2: Option<OpenPort>,
+    passwords: Passwords,
+}
+
+/// Answers until Ctrl-C, or until the machine has ended.
+fn answer(
+    live: &Live,
+    opened: Opened,
+    options: &ServeOptions,
+    interrupt: &Interrupt,
+) -> Result<(), UsageError> {
+    let Opened {
+        ports,
+        lsv2,
+        passwords,
+    } = opened;
+    let machine = MachineService::of(live).map_err(in_words)?;
+    let of_plc = serial_ports::of_plc(&ports);
+    let mut lines = PlcLines::new(&machine, of_plc, options.print.as_deref(), tell())?;
+    let device = MachineDevice::new(&machine, options.identity.as_deref()).map_err(in_words)?;
+    let site = Arc::new(Site::new(Arc::new(device), passwords));
     let server = lsv2.map(|port| port.serve(Arc::clone(&site))).transpose();
-    let server = server.map_err(|error| UsageError::new(error.to_string()))?;
+    let server = server.map_err(in_words)?;
     let serving = Serving::start(ports, &site, &attendance(options.answer), options.trace.as_ref())?;
     // Whoever has closed the output knows.
     let _ = writeln!(std::io::stdout(), "ready").and_then(|()| std::io::stdout().flush());
-    let link = live.link();
-    lines.begin(&link);
+    lines.begin();
     while !interrupt.is_requested() && !live.has_ended() {
-        lines.carry(&link);
+        lines.carry();
         std::thread::sleep(LOOK);
     }
     drop(server);
     serving.end()?;
-    live.end().map_err(UsageError::new)?;
-    Ok(Outcome::Fine)
+    Ok(())
+}
+
+fn in_words(error: impl std::fmt::Display) -> UsageError {
+    UsageError::new(error.to_string())
 }
 
 /// Who attends the ports, and answers what is asked there.

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use bahn_link::blockwise::{self, DirectoryRequest, Rights, Want};
-use bahn_link::store::Store;
 use bahn_link::{FileType, Files, Protocol, Settings, Spec, drive, peripheral, standard};
 use bahn_parameters::{MessageId, ParameterList};
+use bahn_store::Store;
 use clap::{Args, ValueEnum, ValueHint};
 
 use super::desk::{Answer, Desk, Until};

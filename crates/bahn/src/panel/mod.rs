@@ -13,9 +13,10 @@ use bahn_host::files::NewFile;
 use bahn_host::{HostError, LoadedMachine};
 use bahn_panel::{Input, Live, Replay, Station};
 use bahn_server::{Server, ServerOptions, Tokens};
+use bahn_service::MachineService;
 
 use crate::interrupt::Interrupt;
-use crate::link::{ConnectedPorts, PanelPorts, RunningPorts};
+use crate::link::{PanelPorts, RunningPorts};
 use crate::{Outcome, UsageError, diagnostics, files, machine_folder};
 
 /// How often Ctrl-C is looked for.
@@ -61,7 +62,7 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     };
     let name = machine.folder.name.clone();
     let named = [options.rs232.as_ref(), options.rs422.as_ref()];
-    let Some(ports) = PanelPorts::open(named, &machine)? else {
+    let Some(ports) = PanelPorts::open(named, &machine.parameters) else {
         return Ok(Outcome::ProgramError);
     };
     let mut station = Station::power_on(machine).map_err(in_use)?;
@@ -71,9 +72,8 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     if let Some(path) = &options.record {
         station.record(path).map_err(UsageError::new)?;
     }
-    let ports = ports.connect(&mut station, options.print.as_deref())?;
     let interrupt = Interrupt::on_ctrl_c();
-    let desk = Desk::open(begin(station, options)?, served, ports)?;
+    let desk = Desk::open(begin(station, options)?, served, ports, options)?;
     if let Some(address) = desk.page(options) {
         let ends = match options.in_the_terminal() {
             true => "",
@@ -85,7 +85,9 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
         }
     }
     let shown = match options.in_the_terminal() {
-        true => terminal::show(desk.live(), &interrupt),
+        true => terminal::show(&desk.machine, || {
+            interrupt.is_requested() || desk.live.has_ended()
+        }),
         false => {
             while !interrupt.is_requested() {
                 std::thread::sleep(LOOK);
@@ -98,43 +100,52 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     shown.map(|()| Outcome::Fine)
 }
 
-/// A station that runs, with its data interfaces.
+/// A station that runs, with its data interfaces, and served or not.
 struct Desk {
-    front: Front,
+    live: Live,
+    machine: MachineService,
     ports: RunningPorts,
-}
-
-/// With a server or without.
-enum Front {
-    Served(Server),
-    Alone(Live),
+    server: Option<Server>,
 }
 
 impl Desk {
-    fn open(live: Live, served: Option<ServerOptions>, ports: ConnectedPorts) -> Result<Desk, UsageError> {
-        let ports = ports.start(&live)?;
-        let front = match served {
-            Some(served) => Server::start(live, served)
-                .map(Front::Served)
-                .map_err(|error| UsageError::new(error.to_string()))?,
-            None => Front::Alone(live),
-        };
-        Ok(Desk { front, ports })
+    /// What the station has done is kept, also when something of it cannot be opened.
+    fn open(
+        live: Live,
+        served: Option<ServerOptions>,
+        ports: PanelPorts,
+        options: &PanelOptions,
+    ) -> Result<Desk, UsageError> {
+        match Desk::serve(&live, served, ports, options) {
+            Ok((machine, ports, server)) => Ok(Desk {
+                live,
+                machine,
+                ports,
+                server,
+            }),
+            Err(error) => {
+                live.end().map_err(UsageError::new)?;
+                Err(error)
+            }
+        }
     }
 
-    fn live(&self) -> &Live {
-        match &self.front {
-            Front::Served(server) => server.live(),
-            Front::Alone(live) => live,
-        }
+    fn serve(
+        live: &Live,
+        served: Option<ServerOptions>,
+        ports: PanelPorts,
+        options: &PanelOptions,
+    ) -> Result<(MachineService, RunningPorts, Option<Server>), UsageError> {
+        let machine = MachineService::of(live).map_err(in_words)?;
+        let server = served.map(|served| Server::start(machine.clone(), served));
+        let server = server.transpose().map_err(in_words)?;
+        let ports = ports.start(&machine, options.print.as_deref())?;
+        Ok((machine, ports, server))
     }
 
     /// Where a browser finds the page, with the token.
     fn page(&self, options: &PanelOptions) -> Option<String> {
-        let Front::Served(server) = &self.front else {
-            return None;
-        };
-        let address = server.address();
+        let address = self.server.as_ref()?.address();
         Some(match &options.token {
             Some(token) => format!("http://{address}/?token={token}"),
             None => format!("http://{address}/"),
@@ -143,50 +154,50 @@ impl Desk {
 
     /// Ends; what must survive is on the medium.
     fn end(self) -> Result<(), UsageError> {
-        let recorded = self.live().link().with(Station::end_recording);
+        let recorded = self.live.link().with(Station::end_recording);
         recorded
             .map_err(|refusal| UsageError::new(refusal.to_string()))?
             .map_err(UsageError::new)?;
         self.ports.end();
-        match self.front {
-            Front::Served(server) => server.end(),
-            Front::Alone(live) => live.end(),
+        if let Some(server) = self.server {
+            server.end();
         }
-        .map_err(UsageError::new)
+        self.live.end().map_err(UsageError::new)
     }
+}
+
+fn in_words(error: impl std::fmt::Display) -> UsageError {
+    UsageError::new(error.to_string())
 }
 
 /// The panel in the terminal.
 #[cfg(feature = "terminal")]
 mod terminal {
-    use bahn_panel::Live;
+    use bahn_service::MachineService;
 
     use crate::UsageError;
-    use crate::interrupt::Interrupt;
 
     pub(super) fn check() -> Result<(), UsageError> {
         bahn_terminal::check().map_err(|error| UsageError::new(error.to_string()))
     }
 
-    pub(super) fn show(live: &Live, interrupt: &Interrupt) -> Result<(), UsageError> {
-        bahn_terminal::show(live, || interrupt.is_requested())
-            .map_err(|error| UsageError::new(error.to_string()))
+    pub(super) fn show(machine: &MachineService, ends: impl Fn() -> bool) -> Result<(), UsageError> {
+        bahn_terminal::show(machine, ends).map_err(|error| UsageError::new(error.to_string()))
     }
 }
 
 /// Nothing asks for it in a build without it.
 #[cfg(not(feature = "terminal"))]
 mod terminal {
-    use bahn_panel::Live;
+    use bahn_service::MachineService;
 
     use crate::UsageError;
-    use crate::interrupt::Interrupt;
 
     pub(super) fn check() -> Result<(), UsageError> {
         Err(UsageError::new("this build has no panel in the terminal"))
     }
 
-    pub(super) fn show(_: &Live, _: &Interrupt) -> Result<(), UsageError> {
+    pub(super) fn show(_: &MachineService, _: impl Fn() -> bool) -> Result<(), UsageError> {
         check()
     }
 }

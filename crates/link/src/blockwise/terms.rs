@@ -1,7 +1,7 @@
 //! What a device lets the other side do, and in which terms: names, types and errors.
 
 use crate::FileType;
-use crate::store::StoreError;
+use bahn_store::StoreError;
 
 /// What the other side may do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub(super) fn code(error: &StoreError) -> u16 {
         StoreError::BadName(_) | StoreError::NoFolder(_) | StoreError::NotEmpty(_) => 2,
         StoreError::NoFile(_) => 10,
         StoreError::Protected(_) | StoreError::Exists(_) => 11,
-        StoreError::Busy(_) => 12,
+        StoreError::Busy(_) | StoreError::InUse(_) => 12,
         StoreError::DirectoryFull => 13,
         StoreError::DiskFull => 14,
         StoreError::Medium(_) => 104,

@@ -11,8 +11,8 @@ use crate::files::Files;
 use crate::frame::{Kind, Piece};
 use crate::protocol::{Event, Protocol, Question, Shown};
 use crate::settings::Settings;
-use crate::store::StoreError;
 use crate::text::{Source, is_name};
+use bahn_store::StoreError;
 
 /// So many times its patience the control waits for a DC1 *(inferred)*.
 const HELD: u32 = 10;

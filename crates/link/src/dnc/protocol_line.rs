@@ -12,9 +12,9 @@ use crate::channel::{Channel, Happened};
 use crate::files::{Files, Listed, NewFile};
 use crate::protocol::{Event, Protocol, Shown};
 use crate::settings::Settings;
-use crate::store::StoreError;
 use crate::{FileType, standard};
 use bahn_parameters::MessageId;
+use bahn_store::StoreError;
 
 /// Lines of the standard protocol that wait before the device is stopped *(inferred)*.
 const LINES: usize = 32;

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::files::{Files, Listed, NewFile};
-use crate::store::StoreError;
+use bahn_store::StoreError;
 
 /// Longest line that is read at once.
 const LINE_MAX: u64 = 1 << 16;

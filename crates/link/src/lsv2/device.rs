@@ -1,6 +1,6 @@
 //! What the server asks of the machine.
 
-use crate::store::Store;
+use bahn_store::Store;
 
 use super::{ErrorNumber as Refused, Features};
 

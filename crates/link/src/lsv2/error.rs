@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Command, Telegram};
-use crate::store::StoreError;
+use bahn_store::StoreError;
 
 /// Class of the errors that a telegram may have, the first byte of `T_ER`.
 const CLASS: u8 = 1;
@@ -106,7 +106,7 @@ impl From<&StoreError> for ErrorNumber {
             StoreError::NoFolder(_) => ErrorNumber::NO_FOLDER,
             StoreError::Exists(_) => ErrorNumber::FILE_EXISTS,
             StoreError::Protected(_) => ErrorNumber::NO_WRITE,
-            StoreError::Busy(_) => ErrorNumber::FILE_ACCESS,
+            StoreError::Busy(_) | StoreError::InUse(_) => ErrorNumber::FILE_ACCESS,
             StoreError::NotEmpty(_) => ErrorNumber::FOLDER_NOT_EMPTY,
             StoreError::DirectoryFull | StoreError::DiskFull => ErrorNumber::NO_SPACE,
             StoreError::Medium(_) => ErrorNumber::CANNOT_OPEN,

@@ -6,7 +6,7 @@ use super::peer::Features;
 use super::session::{Answer, Session, Task};
 use super::transfer::{BINARY, MERGE, Receiving, Sending};
 use super::{Command, ErrorNumber, Level, Telegram};
-use crate::store::{Attributes, Existing, PLC, Place, StoreError};
+use bahn_store::{Attributes, Existing, PLC, Place, StoreError};
 
 /// Names of attributes in `R_DI`, four characters each, and their values (public).
 const ATTRIBUTE_NAMES: usize = 32 * 4;
@@ -219,7 +219,7 @@ pub(super) fn delete(session: &mut Session, telegram: &Telegram) -> Answer {
     let place = session.place_in(telegram)?;
     let deleted = session.site.device.store().delete(&place);
     deleted.map_err(|error| match error {
-        StoreError::Protected(_) | StoreError::Busy(_) => ErrorNumber::NO_DELETE,
+        StoreError::Protected(_) | StoreError::Busy(_) | StoreError::InUse(_) => ErrorNumber::NO_DELETE,
         other => ErrorNumber::from(&other),
     })?;
     done()

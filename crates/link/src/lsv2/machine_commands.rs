@@ -5,7 +5,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::session::{Answer, Session, Task};
 use super::{Command, Device, ErrorNumber, Level, PlcMessage, Run, Telegram, keys};
-use crate::store::Existing;
+use bahn_store::Existing;
 
 fn done() -> Answer {
     Ok(Telegram::new(Command::T_OK))

@@ -1,6 +1,6 @@
 //! What hosts expect of a control by what `R_VR` says that it is (public): a table, read once where a name comes in.
 
-use crate::store::Attributes;
+use bahn_store::Attributes;
 
 /// What one control does otherwise than another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::transfer::{Receiving, Sending};
 use super::{Command, Device, ErrorNumber, Level, Passwords, Telegram};
-use crate::store::Place;
+use bahn_store::Place;
 
 /// A telegram at most, before the client asks for more: length, command and data (public).
 pub(super) const BLOCK: usize = 256;

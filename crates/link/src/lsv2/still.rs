@@ -7,7 +7,7 @@ use super::{
     Area, Device, ErrorNumber, Event, EventKind, Execution, Features, Identity, Message, PlcMessage,
     ProgramState, Run, Tool,
 };
-use crate::store::{Store, StoreError};
+use bahn_store::{Store, StoreError};
 
 /// A machine that stands still. Its memory counts: byte n of the PLC is n modulo 256, each third bit is set.
 pub struct StillDevice {

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 
 use super::{Command, ErrorNumber, Telegram};
-use crate::store::{Reading, Writing};
+use bahn_store::{Reading, Writing};
 
 /// Length and command of a telegram, and two bytes that clients leave free (public).
 const HEAD: usize = 10;

@@ -1,8 +1,9 @@
 //! Program management: the directory, in which a file is chosen, made, copied, renamed, erased and protected
 //! [003:981-1023].
 
-use bahn_control::{Command, RunState};
+use bahn_control::{Command, Control, RunState};
 use bahn_dialogue::Key;
+use bahn_machine::MachineFolder;
 use bahn_parameters::MessageId;
 use bahn_screen::frames;
 use bahn_screen::programs::{Denial, Entry, NAME_MAX, is_executed, is_program};
@@ -144,7 +145,7 @@ impl Directory {
         let Some(old) = self.name(site) else {
             return Turn::Refused;
         };
-        if is_needed(&old, site) {
+        if is_needed(&old, site.control(), &site.machine.folder) {
             return in_use(site);
         }
         let prompt = format!("{} {}", site.words("NEW FILE NAME ="), ending(&old));
@@ -292,13 +293,13 @@ fn erase(name: String, site: &mut Site) -> Turn {
     if !site.programs.has(&name) {
         return Turn::Say(site.message(MessageId::ProgramNotFound));
     }
-    if is_needed(&name, site) {
+    if is_needed(&name, site.control(), &site.machine.folder) {
         return in_use(site);
     }
     let prompt = format!("{name}: {}", site.words("ERASE = ENT / END = NO ENT"));
     Turn::Open(Choice::confirm(prompt, site.words("ERASE"), move |site| {
         // It may have been started meanwhile.
-        if is_needed(&name, site) {
+        if is_needed(&name, site.control(), &site.machine.folder) {
             return in_use(site);
         }
         let erased = match table::is_protected(&name, site) {
@@ -320,15 +321,13 @@ fn unprotect(name: &str, site: &mut Site) -> Turn {
 }
 
 /// A program runs, or the machine is not switched on again without the file.
-fn is_needed(name: &str, site: &Site) -> bool {
-    let folder = &site.machine.folder;
+pub(crate) fn is_needed(name: &str, control: &Control, folder: &MachineFolder) -> bool {
     let mut named = [&folder.datum_table, &folder.pallets].into_iter().flatten();
-    runs(name, site) || named.any(|own| own.eq_ignore_ascii_case(name))
+    runs(name, control) || named.any(|own| own.eq_ignore_ascii_case(name))
 }
 
 /// A program run, interrupted or not, has the file.
-pub(crate) fn runs(name: &str, site: &Site) -> bool {
-    let control = site.control();
+pub(crate) fn runs(name: &str, control: &Control) -> bool {
     let selected = control.selected_program().is_some_and(|own| is_same(own, name));
     let called = || {
         control.reader().is_some_and(|run| {

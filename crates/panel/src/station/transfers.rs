@@ -28,7 +28,7 @@ pub(super) fn take(
             return restored?.map_err(|why| console.say(why)).ok();
         }
         // Nobody replaces a program while it runs.
-        TransferNews::Overread(name) if runs(name, site) => {
+        TransferNews::Overread(name) if runs(name, site.control()) => {
             site.transfers.answer(false);
             let words = texts::words(language, "BACKGROUND PROGRAMMING NOT POSSIBLE");
             console.say(format!("{name}: {words}"));

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-use bahn_panel::{Live, Station, load};
 use bahn_server::{Server, ServerOptions, Tokens};
+use bahn_service::{Live, MachineService, Station, load};
 use copy::copy;
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
@@ -22,6 +22,7 @@ use tungstenite::{Message, WebSocket};
 
 /// A panel of the mill.
 pub struct Panel {
+    live: Option<Live>,
     server: Option<Server>,
     folder: PathBuf,
     pub address: SocketAddr,
@@ -58,9 +59,11 @@ impl Panel {
             listen: "127.0.0.1:0".parse().unwrap(),
             tokens,
         };
-        let server = Server::start(Live::start(station), options).unwrap();
+        let live = Live::start(station);
+        let server = Server::start(MachineService::of(&live).unwrap(), options).unwrap();
         Panel {
             address: server.address(),
+            live: Some(live),
             server: Some(server),
             folder,
         }
@@ -70,7 +73,7 @@ impl Panel {
     /// 1/65535 of the thickness of the blank; of a page that has so many cells along an axis, each of them the middle
     /// one of as many columns.
     pub fn heights(&self, along: usize) -> Vec<u16> {
-        let link = self.server.as_ref().unwrap().live().link();
+        let link = self.live.as_ref().unwrap().link();
         let cut = link.with(Station::being_cut).unwrap().unwrap();
         let part = cut.part().unwrap();
         let top = part.max()[2] - part.min()[2];
@@ -222,7 +225,10 @@ impl Panel {
 impl Drop for Panel {
     fn drop(&mut self) {
         if let Some(server) = self.server.take() {
-            let _ = server.end();
+            server.end();
+        }
+        if let Some(live) = self.live.take() {
+            let _ = live.end();
         }
         let _ = std::fs::remove_dir_all(&self.folder);
     }

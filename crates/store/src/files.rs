@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use bahn_host::files::{MAX_PROGRAM_BYTES, NewFile};
 
-use super::{Existing, Place, Store, StoreError, lookup};
+use super::{Change, Existing, Place, Store, StoreError, lookup};
 
 impl Store {
     /// Opens a file to read it piece by piece. It is what it was when it was opened, also when it is replaced meanwhile.
@@ -39,11 +39,11 @@ impl Store {
     /// Begins a file, which appears under its name when it is committed. Nobody else writes it meanwhile.
     ///
     /// # Errors
-    /// When there is one that stays, is protected or being written, or there is no room.
+    /// When there is one that stays, is protected, being written or in use, or there is no room.
     pub fn create(&self, place: &Place, existing: Existing) -> Result<Writing, StoreError> {
         let found = match self.medium.find_file(place) {
             Ok(_) if existing == Existing::Keep => return Err(StoreError::Exists(place.to_string())),
-            Ok(_) => Some(self.medium.own(place)?),
+            Ok(_) => Some(self.medium.own(place, Change::Content)?),
             Err(StoreError::NoFile(name)) if self.medium.view(place).is_some() => {
                 return Err(StoreError::Protected(name));
             }
@@ -138,11 +138,16 @@ impl Writing {
     /// Puts the file under its name, in one step, when it is on the medium.
     ///
     /// # Errors
-    /// When it became protected meanwhile, or the medium does not take it: what was there stays.
+    /// When it became protected meanwhile, or came into use, or the medium does not take it: what was there stays.
     pub fn commit(mut self) -> Result<(), StoreError> {
         let protected = lookup::attributes(&self.path).is_some_and(|found| found.protected);
         if protected {
             return Err(StoreError::Protected(self.place.to_string()));
+        }
+        let medium = &self.store.medium;
+        let is_there = medium.find_file(&self.place).is_ok();
+        if is_there && (medium.in_use.0)(&self.place, Change::Content) {
+            return Err(StoreError::InUse(self.place.to_string()));
         }
         let Some(file) = self.file.take() else {
             return Ok(());

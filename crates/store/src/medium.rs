@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::Place;
 use super::views::View;
+use super::{InUse, Place};
 
 /// Folders with what is written and shown there.
 #[derive(Debug)]
@@ -17,6 +17,8 @@ pub(super) struct Medium {
     pub(super) limit: Option<usize>,
     /// What is shown beside them.
     pub(super) views: Vec<View>,
+    /// What the machine has in use.
+    pub(super) in_use: InUse,
     /// What is being written.
     pub(super) busy: Mutex<HashSet<PathBuf>>,
     pub(super) changes: AtomicU64,

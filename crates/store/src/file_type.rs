@@ -3,7 +3,7 @@
 /// A type of file: extension on the medium and code letter in the header of a transfer [000:16890-16941].
 ///
 /// ```
-/// use bahn_link::FileType;
+/// use bahn_store::FileType;
 ///
 /// let pallets = FileType::of_extension("p").ok_or("no such type")?;
 /// assert_eq!((pallets.code(), pallets.nc_extension()), ('L', "LNC".to_owned()));
@@ -88,7 +88,7 @@ impl FileType {
     }
 
     /// Whether its files carry their name in their first line, so that many can be read at once [000:16939].
-    pub(crate) fn is_named_in_first_line(self) -> bool {
+    pub fn is_named_in_first_line(self) -> bool {
         self.named_in_first_line
     }
 }

@@ -23,6 +23,9 @@ pub enum StoreError {
     /// The file is being written.
     #[error("{0} is being stored")]
     Busy(String),
+    /// The machine has the file in use.
+    #[error("{0} is in use")]
+    InUse(String),
     /// The folder is not empty.
     #[error("the folder {0} is not empty")]
     NotEmpty(String),

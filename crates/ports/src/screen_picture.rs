@@ -1,8 +1,9 @@
 //! The screen of the control as a picture of 640 x 480 pixels: 80 columns and 30 lines, as the screens of its time had
-//! (inferred), in the colours that MP7350 to MP7363 give it.
+//! (inferred), in the colours that MP7350 to MP7363 give it. It is one of the three that draw a [`Screen`], beside the terminal
+//! (room `terminal`, `draw`) and the browser (room `server`, `web/`); none of them knows more than that.
 
-use bahn_panel::{Line, Picture, Screen, Star, Window, WindowKind};
 use bahn_picture::{Anchor, Colour, Image, mix};
+use bahn_service::{Line, Picture, Screen, Star, Window, WindowKind};
 
 /// Pixels.
 const SIZE: [u32; 2] = [640, 480];
@@ -18,8 +19,9 @@ const HALF: usize = COLUMNS / 2;
 const WINDOWS: usize = 4;
 /// The first line of the status display; the windows end above it.
 const STATUS: usize = 21;
-/// The line of the soft keys.
-const SOFT_KEYS: usize = 28;
+/// The lines of the soft keys, and the columns of each.
+const SOFT_KEYS: [usize; 3] = [27, 28, 29];
+const SOFT_KEY: usize = COLUMNS / 8 - 1;
 
 /// What has which colour when the parameters give none: a screen without colours.
 const BACK: Colour = [0; 3];
@@ -52,8 +54,11 @@ pub fn draw(screen: &Screen, picture: Option<&Picture>) -> Image {
     status(&mut sheet, screen);
     for (place, text) in screen.soft_keys.keys.iter().enumerate().take(8) {
         let column = place * COLUMNS / 8;
-        sheet.bar(column, SOFT_KEYS, COLUMNS / 8 - 1);
-        sheet.text(column, SOFT_KEYS, &fitting(text, COLUMNS / 8 - 1), sheet.fore);
+        let mut parts = broken(text, SOFT_KEY).into_iter();
+        for line in SOFT_KEYS {
+            sheet.bar(column, line, SOFT_KEY);
+            sheet.text(column, line, &parts.next().unwrap_or_default(), sheet.fore);
+        }
     }
     sheet.image
 }
@@ -210,6 +215,21 @@ fn fitting(text: &str, columns: usize) -> String {
     text.chars().take(columns).collect()
 }
 
+/// A text in lines of so many columns, broken between words; a word that is longer is cut.
+fn broken(text: &str, columns: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= columns => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(fitting(word, columns)),
+        }
+    }
+    lines
+}
+
 /// A picture as a BMP file: 24 bits for a pixel, the last row first.
 pub fn bmp(image: &Image) -> Vec<u8> {
     /// Heads of file and picture.
@@ -263,10 +283,19 @@ mod tests {
         assert_eq!(of_text("#d28220"), Some([0xd2, 0x82, 0x20]));
     }
 
+    /// A soft key has 9 columns; what is longer goes on in its next line.
+    #[test]
+    fn a_soft_key_is_broken_between_words() {
+        assert_eq!(broken("TOOL TABLE", SOFT_KEY), ["TOOL", "TABLE"]);
+        assert_eq!(broken("RESTORE POS. AT N", SOFT_KEY), ["RESTORE", "POS. AT N"]);
+        assert_eq!(broken("ABCDEFGHIJK L", SOFT_KEY), ["ABCDEFGHI", "L"]);
+        assert!(broken("", SOFT_KEY).is_empty());
+    }
+
     #[test]
     fn a_screen_shows_its_words() {
         let screen = Screen {
-            headings: vec![bahn_panel::Heading {
+            headings: vec![bahn_service::Heading {
                 title: "MANUAL OPERATION".to_owned(),
                 ..Default::default()
             }],

@@ -1,12 +1,49 @@
-//! The file service that all protocols share: files of a machine, or of a folder that plays a disk.
+//! The file service that all interfaces share: files of a machine, or of a folder that plays a disk.
+//!
+//! - [`Store`] lists, reads and changes files; a [`Place`] is where one is, a [`View`] one that lies elsewhere;
+//! - what the machine has [`InUse`] is left as it is, and so is what is protected;
+//! - a [`FileType`] is what the interfaces know of a file: its extension and its code letter.
 //!
 //! Names are compared without regard to case; symbolic links, devices and names that no control knows are not there. What is
-//! being written has no name until it is committed.
+//! being written has no name until it is committed. Nothing here knows a protocol.
+//!
+//! ```
+//! use std::io::{Read, Write};
+//! use bahn_store::{Existing, Store, StoreError};
+//!
+//! # let folder = std::env::temp_dir().join(format!("bahn-store-{}", std::process::id()));
+//! # std::fs::create_dir_all(folder.join("plc"))?;
+//! # std::fs::create_dir_all(folder.join("programs"))?;
+//! let store = Store::of_machine(&folder.join("programs"), &folder.join("plc"))?;
+//! let part = store.root().join("15.H")?;
+//! let mut file = store.create(&part, Existing::Keep)?;
+//! file.write_all(b"BEGIN PGM 15 MM\nEND PGM 15 MM\n")?;
+//! assert!(store.list(&store.root())?.is_empty());
+//! file.commit()?;
+//! assert_eq!(store.list(&store.root())?[0].name, "15.H");
+//!
+//! let mut text = String::new();
+//! store.open(&store.root().join("15.h")?)?.read_to_string(&mut text)?;
+//! assert!(text.starts_with("BEGIN PGM 15"));
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "citations as [000:7188] look like links"
+)]
+#![cfg_attr(
+    test,
+    allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")
+)]
 
 mod entry;
 mod error;
 mod everywhere;
+mod file_type;
 mod files;
+mod in_use;
 mod lookup;
 mod medium;
 mod place;
@@ -20,7 +57,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 pub use error::StoreError;
+pub use file_type::FileType;
 pub use files::{Reading, Writing};
+pub use in_use::{Change, InUse};
 pub use place::{NAME_MAX, Place};
 pub use views::View;
 
@@ -36,28 +75,6 @@ pub const PLC: &str = "PLC";
 pub const DISK_FILES: usize = 256;
 
 /// The file service. Clones are the same one: what one writes the other knows of.
-///
-/// ```
-/// use std::io::{Read, Write};
-/// use bahn_link::store::{Existing, Store, StoreError};
-///
-/// # let folder = std::env::temp_dir().join(format!("bahn-store-{}", std::process::id()));
-/// # std::fs::create_dir_all(folder.join("plc"))?;
-/// # std::fs::create_dir_all(folder.join("programs"))?;
-/// let store = Store::of_machine(&folder.join("programs"), &folder.join("plc"))?;
-/// let part = store.root().join("15.H")?;
-/// let mut file = store.create(&part, Existing::Keep)?;
-/// file.write_all(b"BEGIN PGM 15 MM\nEND PGM 15 MM\n")?;
-/// assert!(store.list(&store.root())?.is_empty());
-/// file.commit()?;
-/// assert_eq!(store.list(&store.root())?[0].name, "15.H");
-///
-/// let mut text = String::new();
-/// store.open(&store.root().join("15.h")?)?.read_to_string(&mut text)?;
-/// assert!(text.starts_with("BEGIN PGM 15"));
-/// # std::fs::remove_dir_all(&folder)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Store {
     medium: Arc<Medium>,
@@ -70,15 +87,20 @@ impl Store {
     /// # Errors
     /// When a folder is not there.
     pub fn of_machine(programs: &Path, plc: &Path) -> Result<Store, StoreError> {
-        Store::of_machine_with(programs, plc, Vec::new())
+        Store::of_machine_with(programs, plc, Vec::new(), InUse::never())
     }
 
-    /// The same with files that lie elsewhere.
+    /// The same with files that lie elsewhere, and those that the machine may have in use.
     ///
     /// # Errors
     /// When a folder is not there.
-    pub fn of_machine_with(programs: &Path, plc: &Path, views: Vec<View>) -> Result<Store, StoreError> {
-        Store::over(&[(TNC, programs), (PLC, plc)], views, None)
+    pub fn of_machine_with(
+        programs: &Path,
+        plc: &Path,
+        views: Vec<View>,
+        in_use: InUse,
+    ) -> Result<Store, StoreError> {
+        Store::over(&[(TNC, programs), (PLC, plc)], views, in_use, None)
     }
 
     /// The files of one folder, as a drive of this name.
@@ -86,7 +108,7 @@ impl Store {
     /// # Errors
     /// When the folder is not there.
     pub fn of_drive(name: &'static str, folder: &Path) -> Result<Store, StoreError> {
-        Store::over(&[(name, folder)], Vec::new(), None)
+        Store::over(&[(name, folder)], Vec::new(), InUse::never(), None)
     }
 
     /// A disk: one folder without folders in it, with at most [`DISK_FILES`] files.
@@ -94,12 +116,13 @@ impl Store {
     /// # Errors
     /// When the folder is not there.
     pub fn of_disk(folder: &Path) -> Result<Store, StoreError> {
-        Store::over(&[("", folder)], Vec::new(), Some(DISK_FILES))
+        Store::over(&[("", folder)], Vec::new(), InUse::never(), Some(DISK_FILES))
     }
 
     fn over(
         folders: &[(&'static str, &Path)],
         views: Vec<View>,
+        in_use: InUse,
         limit: Option<usize>,
     ) -> Result<Store, StoreError> {
         let mut drives = Vec::new();
@@ -116,6 +139,7 @@ impl Store {
             medium: Arc::new(Medium {
                 drives,
                 views,
+                in_use,
                 limit,
                 busy: Mutex::default(),
                 changes: AtomicU64::new(0),
@@ -197,18 +221,18 @@ impl Store {
     /// Deletes a file.
     ///
     /// # Errors
-    /// When it is not there, protected or being written.
+    /// When it is not there, protected, being written or in use.
     pub fn delete(&self, place: &Place) -> Result<(), StoreError> {
-        let path = self.medium.own(place)?;
+        let path = self.medium.own(place, Change::Name)?;
         self.done(fs::remove_file(&path), &path, place)
     }
 
     /// Renames a file, or moves it to another folder, byte for byte.
     ///
     /// # Errors
-    /// When it is not there, protected or being written, or there is a file of the new name.
+    /// When it is not there, protected, being written or in use, or there is a file of the new name.
     pub fn rename(&self, from: &Place, to: &Place) -> Result<(), StoreError> {
-        let old = self.medium.own(from)?;
+        let old = self.medium.own(from, Change::Name)?;
         let new = self.medium.free(to, Some(&old))?;
         if old.parent() != new.parent() {
             self.medium.has_room(&new)?;
@@ -232,7 +256,7 @@ impl Store {
     ///
     /// # Errors
     /// When there is something of this name, or the store is a disk.
-    pub(crate) fn make_folder(&self, place: &Place) -> Result<(), StoreError> {
+    pub fn make_folder(&self, place: &Place) -> Result<(), StoreError> {
         if self.medium.limit.is_some() {
             return Err(StoreError::BadName(place.to_string()));
         }
@@ -244,7 +268,7 @@ impl Store {
     ///
     /// # Errors
     /// When it is not there, is a drive, or is not empty.
-    pub(crate) fn remove_folder(&self, place: &Place) -> Result<(), StoreError> {
+    pub fn remove_folder(&self, place: &Place) -> Result<(), StoreError> {
         if place.name().is_none() {
             return Err(StoreError::Protected(place.to_string()));
         }

@@ -4,7 +4,6 @@ use std::io::{Read, Write};
 use std::path::PathBuf;
 
 use super::*;
-use crate::Files;
 use proptest::prelude::*;
 
 /// A folder of its own for a test, gone after it.
@@ -12,7 +11,7 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("bahn-link-{name}-{}", std::process::id()));
+        let path = std::env::temp_dir().join(format!("bahn-store-{name}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&path);
         for folder in ["programs", "plc"] {
             fs::create_dir_all(path.join(folder)).unwrap();
@@ -261,50 +260,6 @@ fn the_eprom_is_no_folder_of_programs() {
     assert_eq!(store.whereabouts("99999968.H").unwrap(), at(&store, "99999968.H"));
 }
 
-#[test]
-fn a_name_alone_is_found_in_any_folder() {
-    let folder = Folder::new("everywhere");
-    let mut store = folder.store();
-    for name in ["A", "B", "A\\DEEP"] {
-        store.make_folder(&at(&store, name)).unwrap();
-    }
-    for (path, text) in [
-        ("1.H", "root"),
-        ("B\\1.H", "in b"),
-        ("B\\2.H", "in b"),
-        ("A\\DEEP\\2.H", "deep"),
-        ("A\\DEEP\\3.H", "deep"),
-    ] {
-        write(&store, path, text).unwrap();
-    }
-    let listed: Vec<String> = Files::list(&mut store)
-        .into_iter()
-        .map(|file| file.name)
-        .collect();
-    // Folder by folder, those on top first: B is before A\DEEP.
-    assert_eq!(listed, ["1.H", "2.H", "3.H"]);
-    let found = |store: &mut Store, name| {
-        let mut text = String::new();
-        Files::open(store, name)
-            .unwrap()
-            .read_to_string(&mut text)
-            .unwrap();
-        text
-    };
-    let texts = ["1.h", "2.H", "3.H"].map(|name| found(&mut store, name));
-    assert_eq!(texts, ["root", "in b", "deep"]);
-    // A file that is there is replaced where it lies; a new one lies in the folder of the drive.
-    for (name, text) in [("3.H", "new"), ("4.H", "new")] {
-        let mut file = Files::create(&mut store, name).unwrap();
-        file.write_all(text.as_bytes()).unwrap();
-        file.commit().unwrap();
-    }
-    assert_eq!(read(&store, "A\\DEEP\\3.H").unwrap(), "new");
-    assert_eq!(read(&store, "4.H").unwrap(), "new");
-    assert_eq!(names(&store, "TNC:"), ["1.H", "4.H", "A", "B"]);
-    assert_eq!(Files::find(&mut store, "5.H"), None);
-}
-
 #[cfg(unix)]
 #[test]
 fn links_lead_nowhere() {
@@ -380,8 +335,13 @@ fn what_lies_elsewhere_is_shown_and_left_alone() {
         source: folder.0.join("tools.tsv"),
         bytes: Box::new(|| Some(b"BEGIN TOOL .T MM".to_vec())),
     };
-    let store =
-        Store::of_machine_with(&folder.0.join("programs"), &folder.0.join("plc"), vec![view]).unwrap();
+    let store = Store::of_machine_with(
+        &folder.0.join("programs"),
+        &folder.0.join("plc"),
+        vec![view],
+        InUse::never(),
+    )
+    .unwrap();
     write(&store, "A.H", "").unwrap();
     write(&store, "Z.H", "").unwrap();
     assert_eq!(names(&store, "TNC:"), ["A.H", "TOOL.T", "Z.H"]);
@@ -439,4 +399,54 @@ proptest! {
         prop_assert_eq!(outside, ["1.H", "plc", "programs"]);
         prop_assert_eq!(fs::read_to_string(folder.0.join("1.H")).unwrap(), "outside");
     }
+}
+
+#[test]
+fn what_is_in_use_is_left_as_it_is() {
+    let folder = Folder::new("in-use");
+    for name in ["1.H", "DATUM.D", "2.H"] {
+        folder.put(name, "old");
+    }
+    // 1.H runs; the machine is not switched on again without DATUM.D, which may change meanwhile.
+    let in_use = InUse(Box::new(|place, change| match place.name() {
+        Some("1.H") => true,
+        Some("DATUM.D") => change == Change::Name,
+        _ => false,
+    }));
+    let [programs, plc] = ["programs", "plc"].map(|name| folder.0.join(name));
+    let store = Store::of_machine_with(&programs, &plc, Vec::new(), in_use).unwrap();
+    let refused = |name: &str| Err(StoreError::InUse(format!("TNC:\\{name}")));
+    let new = at(&store, "NEW.X");
+    for name in ["1.H", "DATUM.D"] {
+        assert_eq!(store.delete(&at(&store, name)), refused(name));
+        assert_eq!(store.rename(&at(&store, name), &new), refused(name));
+    }
+    assert_eq!(write(&store, "1.H", "new"), refused("1.H"));
+    assert_eq!(write(&store, "DATUM.D", "new"), Ok(()));
+    assert_eq!(write(&store, "2.H", "new"), Ok(()));
+    let texts = ["1.H", "DATUM.D", "2.H"].map(|name| read(&store, name).unwrap());
+    assert_eq!(texts, ["old", "new", "new"]);
+    assert_eq!(
+        folder.on_medium(),
+        ["1.H", "2.H", "DATUM.D"],
+        "nothing half written"
+    );
+}
+
+/// A program may be started while its new text comes in: what runs stays.
+#[test]
+fn what_comes_into_use_while_it_is_written_stays() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    let folder = Folder::new("comes-into-use");
+    folder.put("1.H", "old");
+    let runs = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&runs);
+    let in_use = InUse(Box::new(move |_, _| asked.load(Ordering::Relaxed)));
+    let [programs, plc] = ["programs", "plc"].map(|name| folder.0.join(name));
+    let store = Store::of_machine_with(&programs, &plc, Vec::new(), in_use).unwrap();
+    let mut file = store.create(&at(&store, "1.H"), Existing::Replace).unwrap();
+    file.write_all(b"new").unwrap();
+    runs.store(true, Ordering::Relaxed);
+    assert_eq!(file.commit(), Err(StoreError::InUse("TNC:\\1.H".to_owned())));
+    assert_eq!(read(&store, "1.H").unwrap(), "old");
 }

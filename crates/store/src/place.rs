@@ -16,14 +16,14 @@ const DEPTH_MAX: usize = 12;
 /// Where a file or folder is: a drive and names. What it was made of is checked: it leads nowhere else.
 ///
 /// ```
-/// use bahn_link::store::Place;
+/// use bahn_store::Place;
 ///
 /// let programs = Place::root("TNC");
 /// let part = programs.join(r"PARTS\15.H")?;
 /// assert_eq!(part.to_string(), r"TNC:\PARTS\15.H");
 /// assert_eq!(part.join(r"PLC:\MAIN.PLC")?.drive(), "PLC");
 /// assert!(programs.join(r"..\machine.toml").is_err());
-/// # Ok::<(), bahn_link::store::StoreError>(())
+/// # Ok::<(), bahn_store::StoreError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
@@ -83,7 +83,7 @@ impl Place {
     }
 
     /// It is this place, or a folder that leads there.
-    pub(crate) fn holds(&self, other: &Place) -> bool {
+    pub fn holds(&self, other: &Place) -> bool {
         let same = |(own, other): (&String, &String)| own.eq_ignore_ascii_case(other);
         self.drive == other.drive
             && self.names.len() <= other.names.len()

@@ -7,7 +7,7 @@ use std::time::SystemTime;
 
 use super::medium::Medium;
 use super::place::is_name;
-use super::{Attributes, Entry, Place, StoreError};
+use super::{Attributes, Change, Entry, Place, StoreError};
 use crate::FileType;
 
 /// Folders in each other that are swept.
@@ -68,8 +68,8 @@ impl Medium {
             .or_else(|error| self.find_folder(place).map_err(|_| error))
     }
 
-    /// The path of a file that may be changed.
-    pub(super) fn own(&self, place: &Place) -> Result<PathBuf, StoreError> {
+    /// The path of a file to which this may be done.
+    pub(super) fn own(&self, place: &Place, change: Change) -> Result<PathBuf, StoreError> {
         let path = match self.find_file(place) {
             Err(StoreError::NoFile(name)) if self.view(place).is_some() => {
                 return Err(StoreError::Protected(name));
@@ -81,6 +81,9 @@ impl Medium {
         }
         if self.busy().contains(&path) {
             return Err(StoreError::Busy(place.to_string()));
+        }
+        if (self.in_use.0)(place, change) {
+            return Err(StoreError::InUse(place.to_string()));
         }
         Ok(path)
     }
