@@ -5,7 +5,7 @@ pub(crate) mod moves;
 
 use bahn_exchange::signal;
 use bahn_interpreter::Rules;
-use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Track};
+use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Now, Track};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 use bahn_servo::{Measured, OperatorInputs};
@@ -19,7 +19,6 @@ use crate::loops::{self, Permission};
 use crate::machine::MachineSide;
 use crate::manual_probing::{Answer, ManualProbing, tilted};
 use crate::message::Message;
-use crate::now::Now;
 use crate::path_limits::path_limits;
 use crate::plc_link::PalletRequest;
 use crate::positioning::Positioning;
@@ -135,6 +134,7 @@ impl Channel {
     fn parts<'a>(&'a mut self, machine: &'a mut MachineSide) -> (&'a mut ProgramRun, Site<'a>, Basis<'a>) {
         let now = self.now(machine);
         let site = Site {
+            mode: self.desk.mode(),
             now,
             axes: machine.core.axes.of(self.number),
             spindle: machine.spindles.of_mut(self.number),
@@ -369,7 +369,7 @@ impl Channel {
         if let Some((number, value)) = self.strobes.q_parameter(exchange) {
             self.run.set_q(number, value);
         }
-        strobes::take_actual_values(now.mode, &mut axes, exchange.nc());
+        strobes::take_actual_values(self.desk.mode(), &mut axes, exchange.nc());
         // A key waits for the program that is read elsewhere.
         let key = strobes::key(exchange.nc()).filter(|_| !self.run.source.is_handed_over());
         if let Some(command) = key {

@@ -40,7 +40,7 @@ impl Driving<'_> {
             .tapping
             .runs_out(self.element, &site.axes, drives_stopped(site));
         let stopped = !self.progress.goes_on() && !on && !runs_out;
-        let single = now.mode == Mode::SingleBlock || on || self.worn;
+        let single = site.mode == Mode::SingleBlock || on || self.worn;
         Drive {
             feed_override_percent: now.program_percent,
             rapid_override_percent: now.program_percent,

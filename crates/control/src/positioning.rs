@@ -1,14 +1,13 @@
 //! Movements that the PLC commands: PLC positioning of NC axes, PLC axes, free rotation.
 
 use bahn_exchange::{Exchange, Image, signal};
-use bahn_kernel::{AxisUnit, Mover, OwnAxes};
+use bahn_kernel::{AxisUnit, Mover, Now, OwnAxes};
 use bahn_motion::Aim;
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::plc::PlcParameters;
 use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
 
 use crate::markers::{AXES, POSITIONING_FEED, TRANSFER};
-use crate::now::Now;
 use crate::panel::PlcFaultCode;
 use crate::plc_link::Requests;
 use crate::strobe_form::{self, Form};

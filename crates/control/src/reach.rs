@@ -5,12 +5,14 @@ use bahn_kernel::{AxisUnit, Direction, OwnAxes};
 use bahn_parameters::operation::OperationParameters;
 use bahn_path::BlockRef;
 
+use crate::command::Mode;
 use crate::message::Messages;
 use crate::panel::Panel;
 
 /// What the operator's hands reach.
 pub(crate) struct Reach<'a, 'b> {
     pub axes: &'a mut OwnAxes<'b>,
+    pub mode: Mode,
     pub panel: &'a mut Panel,
     pub rules: &'a OperationParameters,
     pub nc: &'a Image,

@@ -1,6 +1,7 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
 use bahn_exchange::{Image, signal};
+use bahn_kernel::reference::is_due;
 use bahn_kernel::{
     AxisUnit, BlockTime, Chain, Feeder, Mover, Preparation, Progress, RunFault, RunState, Tapping, Track,
     distance_to_go, is_floating, is_rigid, thread,
@@ -19,7 +20,6 @@ use crate::message::Message;
 use crate::probing::{Probe, Probed};
 use crate::programs::Selection;
 use crate::q_transfer::QTransfer;
-use crate::reference;
 use crate::replacement::{Replacement, Wear};
 use crate::restore::{Restoration, ScanEnd};
 use crate::site::{PathOutputs, Site};
@@ -128,7 +128,7 @@ impl ProgramRun {
         if self.restoration.is_on() || site.positioning.is_on() {
             return;
         }
-        if self.tapping.has_lost_spindle() || reference::bars(&self.progress, site) {
+        if self.tapping.has_lost_spindle() || self.bars(site) {
             self.show(Message::Plain(MessageId::KeyNonFunctional), site);
             return;
         }
@@ -154,6 +154,13 @@ impl ProgramRun {
                 }
             }
         }
+    }
+
+    /// No program is begun, nor goes on, before the axes that MP1340 names have passed their reference marks: until then no
+    /// software limit holds and no datum is known [000:4563-4575] [001:953]. What MDI positions may do without, but for M91 and
+    /// M92. What the control says then no manual prints (inferred).
+    fn bars(&self, site: &Site) -> bool {
+        site.mode != Mode::Mdi && !self.progress.is_running() && is_due(site.axes.iter())
     }
 
     /// NC stop, or anything that stops like it.
@@ -195,7 +202,7 @@ impl ProgramRun {
         self.track.break_off();
         self.answer = None;
         self.restoration.break_off();
-        self.source.break_off(site.now.mode == Mode::Mdi);
+        self.source.break_off(site.mode == Mode::Mdi);
         site.handshakes.abort(site.exchange);
         self.probe.end(site);
         site.tools.take_back(&mut site.chain.offsets);
@@ -211,7 +218,7 @@ impl ProgramRun {
         self.track.path.clear();
         self.source.resume_at(Some(resume));
         self.break_off(site);
-        if site.now.mode != Mode::Mdi {
+        if site.mode != Mode::Mdi {
             self.progress.fail();
         }
     }
@@ -233,7 +240,7 @@ impl ProgramRun {
         self.source.end();
         self.break_off(site);
         self.progress.end();
-        if site.now.mode != Mode::Mdi {
+        if site.mode != Mode::Mdi {
             self.source.resume_at(None);
             self.selection.start_block = 0;
             site.exchange.nc_put(signal::PROGRAM_END_EXECUTED, true);
@@ -265,7 +272,7 @@ impl ProgramRun {
     pub fn prepare(&mut self, site: &mut Site, basis: &Basis) {
         let allowed = self.block_time.allow(site.now.us, BUDGET);
         let source = &mut self.source;
-        let mdi = site.now.mode == Mode::Mdi;
+        let mdi = site.mode == Mode::Mdi;
         if self
             .progress
             .take_begin(|| site.axes.rest() && source.may_begin(mdi))
@@ -320,7 +327,7 @@ impl ProgramRun {
     }
 
     fn begin(&mut self, site: &mut Site, basis: &Basis) {
-        let mdi = site.now.mode == Mode::Mdi;
+        let mdi = site.mode == Mode::Mdi;
         site.exchange.nc_put(signal::PROGRAM_END_EXECUTED, false);
         self.progress.begin();
         self.track.forget_position();
@@ -360,10 +367,10 @@ impl ProgramRun {
         site: &mut Site,
         basis: &Basis,
     ) -> bool {
-        if self.is_active() || !rules.block_scan || reference::bars(&self.progress, site) {
+        if self.is_active() || !rules.block_scan || self.bars(site) {
             return false;
         }
-        let mdi = site.now.mode == Mode::Mdi;
+        let mdi = site.mode == Mode::Mdi;
         let ready = self.source.may_begin(mdi);
         let Some(opened) = self
             .source
@@ -509,7 +516,7 @@ impl ProgramRun {
                 }
                 if self.replacement.is_here(&self.track, site) {
                     // What follows is given by the next preparation.
-                } else if site.now.mode == Mode::SingleBlock || wear.is_some() {
+                } else if site.mode == Mode::SingleBlock || wear.is_some() {
                     self.progress.enter(RunState::BlockEnd);
                 } else if !site.handshakes.inhibit_read_in() {
                     self.track.path.go_on();

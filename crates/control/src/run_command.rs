@@ -5,7 +5,6 @@ use bahn_parameters::operation::RestartParameters;
 
 use crate::command::Command;
 use crate::drip_feed::{Dnc, DripFeed};
-use crate::leaning;
 use crate::message::Message;
 use crate::plane_command::PlaneCommand;
 use crate::run::ProgramRun;
@@ -41,7 +40,7 @@ fn tilt(plane: &PlaneCommand, run: &mut ProgramRun, site: &Site, basis: &Basis) 
     let basic = basis.touch.basic_rotation(site.chain.offsets.tool_axis).angle_deg;
     let tilting = basis.list.operation_parameters().tilting && !run.is_active();
     let swivels = basis.list.swivels().filter(|_| tilting);
-    let positions = swivels.and_then(|swivels| leaning::positions(plane, &swivels, &site.axes));
+    let positions = swivels.and_then(|swivels| plane.positions(&swivels, &site.axes));
     // A basic rotation is measured and in force with the swivel axes at 0 only [000:4269].
     positions.is_some_and(|positions| (basic == 0.0 || positions.is_none()) && run.source.tilt(positions))
 }

@@ -1,15 +1,15 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_kernel::{AxisId, Chain, Direction, Leading, Moment, Outputs, OwnAxes, Standing};
+use bahn_kernel::{AxisId, Chain, Direction, Leading, Moment, Now, Outputs, OwnAxes, Standing};
 use bahn_parameters::technology::{ControlAction, Output, Technology};
 use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall, Voltage};
 
+use crate::command::Mode;
 use crate::handshake::{Handshakes, Transfer};
 use crate::magazine::Magazine;
 use crate::markers::TOOL_AXIS;
 use crate::message::{Message, Messages};
-use crate::now::Now;
 use crate::positioning::Positioning;
 use crate::q_transfer::QTransfer;
 use crate::spindle::SpindleUnit;
@@ -18,6 +18,7 @@ use crate::tools::Tools;
 /// Where a channel acts: its axes, its spindle and tools, its part of the PLC's memory, the messages. Who
 /// executes blocks or functions is given this, and nothing else of machine and channel.
 pub(crate) struct Site<'a> {
+    pub mode: Mode,
     pub now: Now,
     pub axes: OwnAxes<'a>,
     pub spindle: &'a mut SpindleUnit,

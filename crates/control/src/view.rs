@@ -1,7 +1,7 @@
 //! A channel to be looked at.
 
 use bahn_interpreter::Interpreter;
-use bahn_kernel::{RunState, machine_position};
+use bahn_kernel::{RunState, machine_position, reference};
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Frame, PathElement, Position};
 use bahn_reader::Reader;
@@ -11,7 +11,6 @@ use crate::command::Mode;
 use crate::drip_feed::{DripFeed, DripFeedState};
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
-use crate::reference;
 use crate::scanning::DigitizedNews;
 use crate::screen_command::ScreenCommand;
 use crate::setup::{AxisLimit, Remembered};

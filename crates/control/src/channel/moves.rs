@@ -1,13 +1,12 @@
 //! What moves the axes of a channel in a contour cycle: what its operating mode says, then the PLC.
 
+use bahn_kernel::{Now, reference};
 use bahn_servo::{HandwheelInputs, Measured};
 
 use super::Channel;
 use crate::command::Mode;
 use crate::machine::MachineSide;
-use crate::now::Now;
 use crate::positioning::Moving;
-use crate::reference;
 
 /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the
 /// operating mode waits for axes to come to a standstill.
@@ -21,7 +20,7 @@ pub fn move_axes(channel: &mut Channel, machine: &mut MachineSide, measured: &Me
         .desk
         .count_handwheel(superimposes, &measured.operator.handwheel, &axes, exchange);
     channel.desk.follow_stop(&now, channel.touch.is_chosen());
-    let automatic = now.mode.is_automatic();
+    let automatic = channel.desk.mode().is_automatic();
     let rigid = channel.run.taps_rigidly();
     let ready = axes.choose_methods(automatic && !channel.desk.runs_reference(), rigid);
     // What the mode before moved comes to a standstill first.
@@ -38,7 +37,7 @@ pub fn move_axes(channel: &mut Channel, machine: &mut MachineSide, measured: &Me
 
 fn move_by_mode(channel: &mut Channel, now: &Now, machine: &mut MachineSide, measured: &Measured) {
     let handwheel = &measured.operator.handwheel;
-    match now.mode {
+    match channel.desk.mode() {
         Mode::Manual | Mode::Handwheel => {
             if channel.touch.is_chosen() {
                 if probe_by_hand(channel, machine, measured) {
