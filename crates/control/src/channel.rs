@@ -21,7 +21,7 @@ use crate::manual_probing::{Answer, ManualProbing, tilted};
 use crate::message::Message;
 use crate::path_limits::path_limits;
 use crate::plc_link::PalletRequest;
-use crate::positioning::Positioning;
+use crate::positioning::PlcPositioning;
 use crate::probe_command::ProbeCommand;
 use crate::programs::Selection;
 use crate::run::ProgramRun;
@@ -39,7 +39,7 @@ pub(crate) struct Channel {
     /// Its own list of machine parameters; `None` for that of the machine.
     own_list: Option<ParameterList>,
     pub desk: Desk,
-    positioning: Positioning,
+    positioning: PlcPositioning,
     strobes: strobes::Strobes,
     pub handshakes: Handshakes,
     pub datums: Datums,
@@ -78,7 +78,7 @@ impl Channel {
         let mut channel = Channel {
             number: parts.number,
             own_list: parts.own_list,
-            positioning: Positioning::default(),
+            positioning: PlcPositioning::default(),
             strobes: strobes::Strobes::default(),
             handshakes: Handshakes::default(),
             datums: Datums::new(

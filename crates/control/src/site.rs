@@ -10,7 +10,7 @@ use crate::handshake::{Handshakes, Transfer};
 use crate::magazine::Magazine;
 use crate::markers::TOOL_AXIS;
 use crate::message::{Message, Messages};
-use crate::positioning::Positioning;
+use crate::positioning::PlcPositioning;
 use crate::q_transfer::QTransfer;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
@@ -26,7 +26,7 @@ pub(crate) struct Site<'a> {
     pub magazine: &'a Magazine,
     pub chain: &'a mut Chain,
     pub handshakes: &'a mut Handshakes,
-    pub positioning: &'a mut Positioning,
+    pub positioning: &'a mut PlcPositioning,
     pub exchange: &'a mut Exchange,
     pub messages: &'a mut Messages,
 }

@@ -6,7 +6,6 @@ use bahn_servo::{HandwheelInputs, Measured};
 use super::Channel;
 use crate::command::Mode;
 use crate::machine::MachineSide;
-use crate::positioning::Moving;
 
 /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the
 /// operating mode waits for axes to come to a standstill.
@@ -104,14 +103,10 @@ fn move_manually(channel: &mut Channel, handwheel: &HandwheelInputs, now: &Now, 
 
 /// Moves what the PLC commands.
 fn move_for_plc(channel: &mut Channel, now: &Now, machine: &mut MachineSide) {
-    let moving = Moving {
-        now: *now,
-        active: channel.run.is_active(),
-        restores: channel.run.restores(),
-    };
+    let run = [channel.run.is_active(), channel.run.restores()];
     let exchange = machine.memory.of_mut(channel.number);
     let mut axes = machine.core.axes.of(channel.number);
-    channel.positioning.moves(&mut axes, exchange, &moving);
+    channel.positioning.moves(&mut axes, exchange, now, run);
     if channel.number == 0 {
         // Modules know the axes of the first channel.
         let statuses = &mut machine.link.plc_axes;
