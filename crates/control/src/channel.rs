@@ -173,12 +173,12 @@ impl Channel {
 
     /// The loops are opened: nothing moves on.
     pub fn loops_opened(&mut self, machine: &mut MachineSide) {
-        self.run.part_thread();
+        self.run.core.part_thread();
         let exchange = machine.memory.of_mut(self.number);
         machine.spindles.of_mut(self.number).open(exchange);
         self.desk.let_go();
         self.positioning.stop();
-        self.run.track.halt();
+        self.run.core.track.halt();
     }
 
     /// What the PLC positions ends with an EMERGENCY STOP; the strobes are reset [000:4013-4019]. Whether the axes
@@ -201,7 +201,7 @@ impl Channel {
         let nc = machine.memory.of(self.number).nc();
         loops::follow(&mut machine.core.axes.of(self.number), nc, permission);
         if nc.bit(signal::NC_STOP_AND_OPEN_LOOPS) {
-            self.run.part_thread();
+            self.run.core.part_thread();
             let exchange = machine.memory.of_mut(self.number);
             machine.spindles.of_mut(self.number).open(exchange);
             self.stop();
@@ -214,7 +214,7 @@ impl Channel {
         let axes = machine.core.axes.of(self.number);
         let spindle = machine.spindles.of(self.number);
         if loops::show_faults(&axes, spindle, machine.messages.of_channel(self.number), block) {
-            self.run.part_thread();
+            self.run.core.part_thread();
             self.stop();
             // An error with stop ends what the PLC positions [000:4013-4019].
             self.positioning.end_all(machine.memory.of_mut(self.number));
@@ -295,9 +295,9 @@ impl Channel {
     fn follow_spindle(&mut self, machine: &mut MachineSide) {
         let exchange = machine.memory.of_mut(self.number);
         let spindle = machine.spindles.of_mut(self.number);
-        spindle.follow(self.run.track.along());
+        spindle.follow(self.run.core.track.along());
         // In cycle 2 the override of the spindle is off [003:5032].
-        let percent = if self.run.taps_floating() {
+        let percent = if self.run.core.taps_floating() {
             100.0
         } else {
             self.desk.spindle_percent()
@@ -361,7 +361,7 @@ impl Channel {
         self.positioning.take_strobes(nc, numbers, free, most, &axes);
         self.positioning.take_free_rotation(exchange);
         if strobes::take_range(&mut self.datums, &mut axes, exchange) {
-            self.run.track.range_changed = self.run.is_active();
+            self.run.core.track.range_changed = self.run.is_active();
         }
         if let Some(shift) = strobes::datum_correction(may, self.datums.range(), numbers, exchange) {
             self.datums.correct(shift, &axes);
@@ -442,14 +442,14 @@ impl Channel {
         self.datums.limit(&mut axes);
         let intervals = axes.iter().map(|unit| unit.parameters.offset_interval_s);
         machine.offsets.set_interval(intervals.last().unwrap_or(0.0));
-        self.run.track.limits_changed = true;
+        self.run.core.track.limits_changed = true;
     }
 
     /// Its axes are others from now on: the path has their limits, the datum their corrections.
     pub fn take_axes(&mut self, machine: &mut MachineSide) {
         let (list, axes) = (self.list(machine), machine.core.axes.owned(self.number));
         let limits = path_limits(list, axes, self.datums.chain.kinematics());
-        self.run.track.change_limits(&limits, self.run.is_active());
+        self.run.core.track.change_limits(&limits, self.run.is_active());
         let range = self.datums.range();
         self.datums
             .select_range(range, &mut machine.core.axes.of(self.number));
@@ -458,11 +458,11 @@ impl Channel {
     /// Interprets and plans ahead; may allocate. `datums_changed`: blocks that are read from now on find other
     /// datums in the tables.
     pub fn prepare(&mut self, datums_changed: bool, machine: &mut MachineSide) {
-        if self.run.track.limits_changed && !self.run.is_active() {
+        if self.run.core.track.limits_changed && !self.run.is_active() {
             let list = self.own_list.as_ref().unwrap_or(machine.link.list());
             let axes = machine.core.axes.owned(self.number);
             let limits = path_limits(list, axes, self.datums.chain.kinematics());
-            self.run.track.take_limits(&limits);
+            self.run.core.track.take_limits(&limits);
         }
         self.datums_changed |= datums_changed;
         let by_hand = self.desk.is_by_hand() && !self.run.progress().is_on_its_way();

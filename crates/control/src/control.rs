@@ -317,7 +317,7 @@ impl Control {
     /// for, each taking so long, µs. 0 for no time.
     pub fn set_block_time(&mut self, time_us: u32) {
         for channel in self.tnc.channels.iter_mut() {
-            channel.run.block_time.set(time_us);
+            channel.run.core.block_time.set(time_us);
         }
     }
 
@@ -563,12 +563,12 @@ impl Control {
 
     /// The element of the path that is executed, or was last.
     pub fn element(&self) -> Option<&PathElement> {
-        self.tnc.channels.first().run.track.path.element()
+        self.tnc.channels.first().run.core.track.path.element()
     }
 
     /// Path length to the end of that element, mm; below 0 where a thread waits after its end.
     pub fn rest_mm(&self) -> f64 {
-        self.tnc.channels.first().run.track.path.rest_mm()
+        self.tnc.channels.first().run.core.track.path.rest_mm()
     }
 
     /// The program that runs, or ran last; `None` while it is [handed over](Control::hand_over_reading).

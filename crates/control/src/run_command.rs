@@ -78,12 +78,12 @@ fn transfer(dnc: Dnc, run: &mut ProgramRun, site: &mut Site, basis: &Basis) -> b
 fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bool {
     // After a programmed stop nothing is read.
     if run.is_active() && run.progress().state() != RunState::Stopped {
-        let stands = !run.progress().is_running() && run.track.stands(&site.axes);
-        let free = site.handshakes.is_idle() && run.track.has_output_all() && !run.probe.is_on();
-        if !stands || !free || run.restores() || run.track.path.is_coupled() {
+        let stands = !run.progress().is_running() && run.core.track.stands(&site.axes);
+        let free = site.handshakes.is_idle() && run.core.track.has_output_all() && !run.probe.is_on();
+        if !stands || !free || run.core.restores() || run.core.track.path.is_coupled() {
             return false;
         }
-        let cut = run.track.path.clear().map(|cut| cut.sequence);
+        let cut = run.core.track.path.clear().map(|cut| cut.sequence);
         let next = run.source.feeder().map(Feeder::next_sequence);
         run.source.resume_at(cut.or(next).map(Resume::Block));
         if run.source.go_on(site)
@@ -91,7 +91,7 @@ fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bo
         {
             site.chain.place(feeder.reader().placement());
         }
-        run.track.begin_at(site.here(), site.chain);
+        run.core.track.begin_at(site.here(), site.chain);
     }
     run.source.set_q(number, value);
     true

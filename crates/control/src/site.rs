@@ -1,9 +1,9 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_kernel::{AxisId, Chain, Direction, Leading, Moment, Now, Outputs, OwnAxes, Standing};
+use bahn_kernel::{Acting, AxisId, Chain, Direction, Now, Outputs, OwnAxes, RunFamily};
 use bahn_parameters::technology::{ControlAction, Output, Technology};
-use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall, Voltage};
+use bahn_path::{Axis, ControlFunction, Function, LiveData, Position, ToolCall, Voltage};
 
 use crate::command::Mode;
 use crate::handshake::{Handshakes, Transfer};
@@ -12,6 +12,7 @@ use crate::markers::TOOL_AXIS;
 use crate::message::{Message, Messages};
 use crate::positioning::PlcPositioning;
 use crate::q_transfer::QTransfer;
+use crate::source::Source;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
 
@@ -32,14 +33,13 @@ pub(crate) struct Site<'a> {
 }
 
 impl<'a> Site<'a> {
-    /// Axes and spindle, to be led along a thread.
-    pub fn leading(&mut self) -> Leading<'_, 'a> {
-        let moment = self.moment();
-        Leading {
+    /// Axes and spindle, where a run acts on them.
+    pub fn acting(&mut self) -> Acting<'_, 'a> {
+        Acting {
             axes: &mut self.axes,
             chain: self.chain,
             spindle: &mut self.spindle.drive,
-            moment,
+            now: &self.now,
         }
     }
 
@@ -165,25 +165,6 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// What holds now for a thread.
-    fn moment(&self) -> Moment {
-        Moment {
-            time_s: self.now.time_s,
-            ready: self.now.ready,
-            loops_closed: self.now.loops_closed,
-        }
-    }
-
-    /// Axes and spindle, to be looked at.
-    pub fn standing(&self) -> Standing<'_> {
-        Standing {
-            axes: &self.axes,
-            chain: self.chain,
-            spindle: &self.spindle.drive,
-            moment: self.moment(),
-        }
-    }
-
     /// The message of an axis that a block would lead beyond its limit.
     pub fn limit_message(&mut self, axis: Axis, direction: Direction) -> Message {
         let id = self.axes.iter_mut().find(|unit| unit.axis == axis).map(|unit| {
@@ -200,6 +181,32 @@ pub(crate) struct PathOutputs<'a, 'b> {
     pub q_transfer: &'a mut QTransfer,
     /// The program is in inches.
     pub inch: bool,
+}
+
+impl<'a, 'b> PathOutputs<'a, 'b> {
+    /// Those of the program that runs.
+    pub fn new(site: &'a mut Site<'b>, q_transfer: &'a mut QTransfer, source: &Source) -> Self {
+        PathOutputs {
+            site,
+            q_transfer,
+            inch: source.inch(),
+        }
+    }
+}
+
+impl<'b> RunFamily<'b> for PathOutputs<'_, 'b> {
+    fn acting(&mut self) -> Acting<'_, 'b> {
+        self.site.acting()
+    }
+
+    fn has_transferred(&self) -> bool {
+        self.site.handshakes.is_idle()
+    }
+
+    /// With the Q parameters that the PLC has written.
+    fn answer(&mut self) -> LiveData {
+        self.q_transfer.answer()
+    }
 }
 
 impl Outputs for PathOutputs<'_, '_> {

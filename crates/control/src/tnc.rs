@@ -191,7 +191,7 @@ impl Tnc {
         for (new, old) in self.channels.iter_mut().zip(before.channels.iter()) {
             new.run.source.tap = old.run.source.tap;
             new.run.source.defers = old.run.source.defers;
-            new.run.block_time.clone_from(&old.run.block_time);
+            new.run.core.block_time.clone_from(&old.run.core.block_time);
         }
     }
 

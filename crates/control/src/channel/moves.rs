@@ -20,7 +20,7 @@ pub fn move_axes(channel: &mut Channel, machine: &mut MachineSide, measured: &Me
         .count_handwheel(superimposes, &measured.operator.handwheel, &axes, exchange);
     channel.desk.follow_stop(&now, channel.touch.is_chosen());
     let automatic = channel.desk.mode().is_automatic();
-    let rigid = channel.run.taps_rigidly();
+    let rigid = channel.run.core.taps_rigidly();
     let ready = axes.choose_methods(automatic && !channel.desk.runs_reference(), rigid);
     // What the mode before moved comes to a standstill first.
     let waits = automatic && !ready && !channel.run.is_active();
@@ -55,7 +55,7 @@ fn move_by_mode(channel: &mut Channel, now: &Now, machine: &mut MachineSide, mea
         Mode::Mdi | Mode::SingleBlock | Mode::FullSequence => {
             let nc = machine.memory.of(channel.number).nc();
             let by_hand = channel.run.is_operated_manually(nc) || channel.desk.manual.is_led();
-            if by_hand && !channel.run.track.path.is_coupled() {
+            if by_hand && !channel.run.core.track.path.is_coupled() {
                 move_manually(channel, handwheel, now, machine);
             } else {
                 if now.stop {
@@ -103,7 +103,7 @@ fn move_manually(channel: &mut Channel, handwheel: &HandwheelInputs, now: &Now, 
 
 /// Moves what the PLC commands.
 fn move_for_plc(channel: &mut Channel, now: &Now, machine: &mut MachineSide) {
-    let run = [channel.run.is_active(), channel.run.restores()];
+    let run = [channel.run.is_active(), channel.run.core.restores()];
     let exchange = machine.memory.of_mut(channel.number);
     let mut axes = machine.core.axes.of(channel.number);
     channel.positioning.moves(&mut axes, exchange, now, run);
