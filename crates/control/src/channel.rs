@@ -5,7 +5,7 @@ pub(crate) mod moves;
 
 use bahn_exchange::signal;
 use bahn_interpreter::Rules;
-use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Now, Track};
+use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Now, Track, path_limits};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 use bahn_servo::{Measured, OperatorInputs};
@@ -19,7 +19,6 @@ use crate::loops::{self, Permission};
 use crate::machine::MachineSide;
 use crate::manual_probing::{Answer, ManualProbing, tilted};
 use crate::message::Message;
-use crate::path_limits::path_limits;
 use crate::plc_link::PalletRequest;
 use crate::positioning::PlcPositioning;
 use crate::probe_command::ProbeCommand;

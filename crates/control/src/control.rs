@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Work};
-use bahn_kernel::{AxisUnit, Feeder, RunState, ServoSampler, ServoView};
+use bahn_kernel::{AxisUnit, Feeder, RunState, ServoSampler, ServoView, path_limits};
 use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::PathElement;
@@ -23,7 +23,6 @@ use crate::key_code::KeyCode;
 use crate::language::OwnLanguage;
 use crate::message::{Message, Shown};
 use crate::oscilloscope::OscilloscopeKeys;
-use crate::path_limits::path_limits;
 use crate::renewal::{self, Renewed};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::signal::Signal;

@@ -1,7 +1,7 @@
 //! The electronic handwheel: which axis its wheels lead and how far, and where its keys go [000:8060-8446].
 
 use bahn_exchange::{Image, signal};
-use bahn_kernel::{Direction, OwnAxes};
+use bahn_kernel::{Direction, OwnAxes, within};
 use bahn_parameters::operation::{Handwheel as Kind, HandwheelParameters};
 use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
@@ -9,7 +9,7 @@ use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
 use crate::command::Mode;
 use crate::markers::AXES;
 use crate::message::Message;
-use crate::reach::{Reach, within};
+use crate::reach::Reach;
 
 /// Counting steps of a turn of the handwheel (inferred).
 pub const HANDWHEEL_STEPS: f64 = 1000.0;

@@ -1,8 +1,10 @@
 //! Manual operation: axis direction keys, jog increment, electronic handwheel.
 
 use bahn_exchange::signal;
-use bahn_kernel::{AtLimit, AxisUnit, Direction, Leaning, MAIN, Mover, Now, OwnAxes, Wish};
-use bahn_motion::Aim;
+use bahn_kernel::{
+    AtLimit, AxisUnit, Direction, HandMove, Leaning, MAIN, Mover, Now, OwnAxes, Wish, look_at_limit,
+    move_by_hand, within,
+};
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::HandwheelParameters;
 use bahn_parameters::technology::Technology;
@@ -15,7 +17,7 @@ use crate::command::Mode;
 use crate::handwheel::Handwheel;
 use crate::message::{Message, Messages};
 use crate::plc_link::StatusChanges;
-use crate::reach::{Reach, within};
+use crate::reach::Reach;
 use crate::site::Site;
 use crate::stylus_lead::StylusLead;
 
@@ -352,89 +354,28 @@ impl Manual {
         reach: &mut Reach,
         now: &Now,
     ) {
-        let feed_percent = now.feed_percent;
-        let jog = self.jog_target(place, index, reach);
-        let wheel = self.handwheel.target(index);
+        let wanted = HandMove {
+            key,
+            jog: self.jog_target(place, index, reach),
+            wheel: self.handwheel.target(index),
+            step_mm_min: self.step_mm_min.filter(|_| reach.mode == Mode::Manual),
+        };
         let Some(unit) = reach.axes.get_mut(place) else {
             return;
         };
-        if !matches!(unit.mover, Mover::None | Mover::Manual) || !unit.is_free() {
+        if !move_by_hand(unit, &wanted, now) {
             return;
         }
-        if !(unit.servo.closed() && unit.enabled) {
-            if !now.stop && (key.is_some() || jog.is_some() || wheel.is_some()) {
-                unit.ask_to_unclamp();
-            }
-            if unit.mover == Mover::Manual && unit.stands() {
-                unit.mover = Mover::None;
-            }
-            return;
-        }
-        let step = self
-            .step_mm_min
-            .filter(|_| reach.mode == Mode::Manual && !now.stop);
-        if let (Some(feed), Some(direction)) = (step, key.map(|(direction, _)| direction))
-            && along(unit, direction, feed) != Aim::Feed(0.0)
-            && unit.step(direction.sign() * feed)
-        {
-            unit.mover = Mover::Manual;
-            return;
-        }
-        unit.end_step();
-        let motion = unit.parameters.motion;
-        let (aim, feed) = match (key, jog.or(wheel)) {
-            _ if now.stop => (Aim::Feed(0.0), motion.rapid_mm_min),
-            (Some((direction, feed)), _) => (along(unit, direction, feed), feed),
-            (None, Some(target)) => {
-                let feed = if jog.is_some() {
-                    motion.manual_mm_min * feed_percent / 100.0
-                } else {
-                    motion.rapid_mm_min
-                };
-                (Aim::Position(target), feed)
-            }
-            (None, None) => (Aim::Feed(0.0), motion.rapid_mm_min),
-        };
-        if aim != Aim::Feed(0.0) || !unit.stands() {
-            unit.mover = Mover::Manual;
-        }
-        unit.drive(now.time_s, aim, feed.min(now.rapid_limit_mm_min));
-        if unit.stands() && unit.mover == Mover::Manual && key.is_none() {
-            unit.mover = Mover::None;
-        }
-        let pushed = self.pushed.get(index).copied().flatten();
-        self.note_limit(place, key.map(|(direction, _)| direction).or(pushed), reach);
-    }
-
-    /// Message and marker at a software limit switch; they go when the axis leaves it (inferred).
-    fn note_limit(&mut self, place: usize, wanted: Option<Direction>, reach: &mut Reach) {
-        let Some(unit) = reach.axes.get_mut(place) else {
+        let pushed = self.pushed.get_mut(index);
+        let towards = key.map(|(direction, _)| direction);
+        let towards = towards.or(pushed.as_deref().copied().flatten());
+        let Some(at) = look_at_limit(unit, towards) else {
             return;
         };
-        let reached = unit.limited().and_then(|[least, greatest]| match wanted {
-            Some(Direction::Plus) if unit.nominal >= greatest => Some(Direction::Plus),
-            Some(Direction::Minus) if unit.nominal <= least => Some(Direction::Minus),
-            _ => None,
-        });
-        let left = unit.at_limit.filter(|at| {
-            unit.limits
-                .get(usize::from(*at == Direction::Plus))
-                .is_none_or(|limit| unit.nominal != *limit)
-        });
-        let (index, id) = (unit.index, unit.id);
-        if reached.is_some() {
-            unit.at_limit = reached;
-            if let Some(pushed) = self.pushed.get_mut(index) {
-                *pushed = None;
-            }
-        } else if left.is_some() {
-            unit.at_limit = None;
+        if let (AtLimit::Reached(..), Some(pushed)) = (at, pushed) {
+            *pushed = None;
         }
-        if let Some(direction) = reached {
-            reach.messages.show(Message::limit(id, direction), reach.block);
-        } else if let Some(direction) = left {
-            reach.messages.remove(&Message::limit(id, direction));
-        }
+        tell(at, reach.messages, reach.block);
     }
 
     /// The jog increment within its limit, mm.
@@ -481,21 +422,5 @@ fn tell(at: AtLimit, messages: &mut Messages, block: Option<BlockRef>) {
     match at {
         AtLimit::Reached(id, direction) => messages.show(Message::limit(id, direction), block),
         AtLimit::Left(id, direction) => messages.remove(&Message::limit(id, direction)),
-    }
-}
-
-/// On in a direction, up to the software limit.
-fn along(unit: &AxisUnit, direction: Direction, feed: f64) -> Aim {
-    let Some([least, greatest]) = unit.limited() else {
-        return Aim::Feed(direction.sign() * feed);
-    };
-    let (limit, beyond) = match direction {
-        Direction::Plus => (greatest, unit.nominal >= greatest),
-        Direction::Minus => (least, unit.nominal <= least),
-    };
-    if beyond {
-        Aim::Feed(0.0)
-    } else {
-        Aim::Position(limit)
     }
 }

@@ -1,7 +1,7 @@
-//! What the operator's hands reach, and how far they lead an axis.
+//! What the operator's hands reach.
 
 use bahn_exchange::Image;
-use bahn_kernel::{AxisUnit, Direction, OwnAxes};
+use bahn_kernel::OwnAxes;
 use bahn_parameters::operation::OperationParameters;
 use bahn_path::BlockRef;
 
@@ -19,19 +19,4 @@ pub(crate) struct Reach<'a, 'b> {
     pub messages: &'a mut Messages,
     /// The block whose run is interrupted.
     pub block: Option<BlockRef>,
-}
-
-/// A target inside the software limits, from outside only towards them; and the limit beyond which it was.
-pub(crate) fn within(unit: &AxisUnit, target: f64) -> (f64, Option<Direction>) {
-    let Some([least, greatest]) = unit.limited() else {
-        return (target, None);
-    };
-    let (least, greatest) = (least.min(unit.nominal), greatest.max(unit.nominal));
-    if target > greatest {
-        (greatest, Some(Direction::Plus))
-    } else if target < least {
-        (least, Some(Direction::Minus))
-    } else {
-        (target, None)
-    }
 }

@@ -1,10 +1,11 @@
 //! Commands that act on the program run.
 
+use bahn_interpreter::DripFeed;
 use bahn_kernel::{Feeder, RunState};
 use bahn_parameters::operation::RestartParameters;
 
 use crate::command::Command;
-use crate::drip_feed::{Dnc, DripFeed};
+use crate::dnc::Dnc;
 use crate::message::Message;
 use crate::plane_command::PlaneCommand;
 use crate::run::ProgramRun;
@@ -50,7 +51,7 @@ fn transfer(dnc: Dnc, run: &mut ProgramRun, site: &mut Site, basis: &Basis) -> b
     let name = match dnc {
         Dnc::Begin(name) => name,
         dnc => {
-            let answer = run.source.drip_feed.as_mut().map(|feed| feed.follow(&dnc));
+            let answer = run.source.drip_feed.as_mut().map(|feed| dnc.follow(feed));
             let (done, said) = answer.unwrap_or_default();
             if let Some(message) = said {
                 site.messages.show(Message::Plain(message), run.running_block());

@@ -1,6 +1,6 @@
 //! A channel to be looked at.
 
-use bahn_interpreter::Interpreter;
+use bahn_interpreter::{DripFeed, DripFeedState, Interpreter};
 use bahn_kernel::{RunState, machine_position, reference};
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Frame, PathElement, Position};
@@ -8,7 +8,6 @@ use bahn_reader::Reader;
 
 use crate::channel::Channel;
 use crate::command::Mode;
-use crate::drip_feed::{DripFeed, DripFeedState};
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::scanning::DigitizedNews;
