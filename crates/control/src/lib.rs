@@ -67,9 +67,7 @@ mod beside;
 mod channel;
 mod command;
 mod compensation;
-mod compensation_table;
 mod control;
-mod correction_tables;
 mod cycle;
 mod data_line;
 mod datum_tables;
@@ -143,9 +141,10 @@ pub use bahn_kernel::{Cartesian, Kinematics, Offsets, Shares};
 pub use bahn_kernel::{ServoSampler, ServoSignal, ServoView};
 pub use beside::ReadAhead;
 pub use command::{Command, CommandError, Mode};
-pub use compensation_table::{CompensationAssignment, CompensationError, CompensationTable};
+pub use bahn_parameters::compensation::{
+    CompensationAssignment, CompensationError, CompensationTable, CorrectionTables,
+};
 pub use control::Control;
-pub use correction_tables::CorrectionTables;
 pub use data_line::{DataLineEvent, DataLineOrder, HostEvent, LineEvent, LineSetup, OrderedLines};
 pub use dnc::Dnc;
 pub use escapes::unescaped;

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_interpreter::{DatumTable, MachineTexts, NO_DATUM_TABLE};
+use bahn_parameters::compensation::{CompensationAssignment, CompensationTable, CorrectionTables};
 use bahn_parameters::{ParameterId, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::{
@@ -16,8 +17,6 @@ use bahn_plc::{
     StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
-use crate::compensation_table::{CompensationAssignment, CompensationTable};
-use crate::correction_tables::CorrectionTables;
 use crate::markers::AXES;
 use crate::screen_command::ScreenCommand;
 

@@ -9,8 +9,9 @@ mod table;
 mod test;
 mod window;
 
+pub use bahn_parameters::compensation::{CompensationExcess, CompensationSize};
 pub use files::{
-    CompensationExcess, CompensationSize, LineFault, NotSaved, PalletLine, ParameterFault,
+    LineFault, NotSaved, PalletLine, ParameterFault,
     ParameterFileFault, TextFile,
 };
 pub use interface::{DataInterface, HostLink, HostMessage, InterfaceUser};
