@@ -215,7 +215,7 @@ impl Control {
                 }
                 altered => altered == Altered::Done,
             },
-            (Command::DataLine(event), _) => return self.tnc.machine.link.happen(event),
+            (Command::DataLine(event), _) => return self.tnc.machine.link.lines.happen(event),
             (command, _) => self.tnc.execute(channel, command),
         };
         done || self.refuse(channel)
@@ -480,12 +480,12 @@ impl Control {
 
     /// What the PLC wants of the data interfaces since `ordered` was asked last.
     pub fn line_orders(&self, ordered: &mut OrderedLines, tell: impl FnMut(DataLineOrder)) {
-        ordered.news(&self.tnc.machine.link.interfaces, tell);
+        ordered.news(&self.tnc.machine.link.lines.interfaces, tell);
     }
 
     /// The message of the PLC to a host that waits longest [000:15835-15857].
     pub fn message_to_host(&self) -> Option<&HostMessage> {
-        self.tnc.machine.link.host.as_ref()?.outgoing.front()
+        self.tnc.machine.link.lines.host.as_ref()?.outgoing.front()
     }
 
     /// The messages that came up since the last call, in their order.

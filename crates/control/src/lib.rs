@@ -139,11 +139,11 @@ pub use bahn_kernel::RunState;
 pub use bahn_kernel::SpindleWiring;
 pub use bahn_kernel::{Cartesian, Kinematics, Offsets, Shares};
 pub use bahn_kernel::{ServoSampler, ServoSignal, ServoView};
-pub use beside::ReadAhead;
-pub use command::{Command, CommandError, Mode};
 pub use bahn_parameters::compensation::{
     CompensationAssignment, CompensationError, CompensationTable, CorrectionTables,
 };
+pub use beside::ReadAhead;
+pub use command::{Command, CommandError, Mode};
 pub use control::Control;
 pub use data_line::{DataLineEvent, DataLineOrder, HostEvent, LineEvent, LineSetup, OrderedLines};
 pub use dnc::Dnc;

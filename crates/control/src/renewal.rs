@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_parameters::compensation::{CompensationAssignment, CompensationTable, CorrectionTables};
 use bahn_parameters::ParameterList;
+use bahn_parameters::compensation::{CompensationAssignment, CompensationTable, CorrectionTables};
 use bahn_plc::PlcProgram;
 
 use crate::alteration::Altered;

@@ -10,10 +10,7 @@ mod test;
 mod window;
 
 pub use bahn_parameters::compensation::{CompensationExcess, CompensationSize};
-pub use files::{
-    LineFault, NotSaved, PalletLine, ParameterFault,
-    ParameterFileFault, TextFile,
-};
+pub use files::{LineFault, NotSaved, PalletLine, ParameterFault, ParameterFileFault, TextFile};
 pub use interface::{DataInterface, HostLink, HostMessage, InterfaceUser};
 pub use motion::{OrientationDirection, PlcAxisCommand, PlcAxisStatus, SpindleOrientation, ToolCallBlock};
 pub use status::{ControlledSpindle, CoordinateKind, JogLimit, SpindlePosition, StatusChange, StatusItem};
