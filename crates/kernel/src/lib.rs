@@ -7,6 +7,9 @@
 //!   slaves to their masters; [`EmergencyStop`] is the circuit that lets them move at all.
 //! - [`Feeder`] pulls a program from its [`Reader`](bahn_reader::Reader) and refuses what leaves the traverse range; [`Track`]
 //!   moves the axes along the path and says when a function is to be output ([`Outputs`]).
+//! - [`Run`] is the run of a program on its track: start, stop, single block, end, [return](Restoration) to the contour. A
+//!   [`RunFamily`] says where it acts and takes its functions; its [`Demands`] come as data.
+//! - [`probing`] and [`ScanMove`] lead a stylus; [`move_by_hand`], [`Leaning`], [`reference`] and [`Positioning`] single axes.
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
 //!   [`Superimposed`] by hand.
 //! - [`Progress`] is how far a run is, [`BlockTime`] how fast blocks are read, [`VoltageOutput`] a voltage along the path.
