@@ -88,7 +88,7 @@ impl ProgramRun {
             self.show(Message::Plain(MessageId::KeyNonFunctional), site);
             return;
         }
-        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, &self.source);
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, self.source.inch());
         if self.core.start(outputs) == Started::LedOut {
             site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
         }
@@ -297,11 +297,7 @@ impl ProgramRun {
         let Some(feeder) = self.source.feeder_mut().filter(|_| self.core.scans()) else {
             return;
         };
-        let outputs = &mut PathOutputs {
-            site,
-            q_transfer: &mut self.q_transfer,
-            inch,
-        };
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, inch);
         match self.core.scan_on(feeder, rules, outputs) {
             None => return,
             Some(ScanEnd::NotAddressed) => {
@@ -345,11 +341,7 @@ impl ProgramRun {
     /// Moves the axes back to the contour for a cycle, when that is what is to be done.
     pub fn move_back(&mut self, site: &mut Site) {
         let inch = self.source.inch();
-        let outputs = &mut PathOutputs {
-            site,
-            q_transfer: &mut self.q_transfer,
-            inch,
-        };
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, inch);
         if self.core.move_back(self.source.feeder_mut(), outputs) {
             site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, false);
         }
@@ -369,7 +361,7 @@ impl ProgramRun {
         let wear = Wear::of(site.tools, site.magazine).message();
         let by_hand = self.is_operated_manually(site.exchange.nc());
         let demands = demands::of(site, self.replacement.place(), wear.is_some(), by_hand);
-        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, &self.source);
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, self.source.inch());
         match self.core.moves(&demands, outputs) {
             Came::On => {}
             Came::BlockEnd => self.end_block(&demands, wear, site),

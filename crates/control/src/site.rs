@@ -12,7 +12,6 @@ use crate::markers::TOOL_AXIS;
 use crate::message::{Message, Messages};
 use crate::positioning::PlcPositioning;
 use crate::q_transfer::QTransfer;
-use crate::source::Source;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
 
@@ -184,12 +183,12 @@ pub(crate) struct PathOutputs<'a, 'b> {
 }
 
 impl<'a, 'b> PathOutputs<'a, 'b> {
-    /// Those of the program that runs.
-    pub fn new(site: &'a mut Site<'b>, q_transfer: &'a mut QTransfer, source: &Source) -> Self {
+    /// Those of a program, which may be in inches.
+    pub fn new(site: &'a mut Site<'b>, q_transfer: &'a mut QTransfer, inch: bool) -> Self {
         PathOutputs {
             site,
             q_transfer,
-            inch: source.inch(),
+            inch,
         }
     }
 }

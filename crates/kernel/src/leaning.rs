@@ -137,7 +137,7 @@ impl Leaning {
         wishes: &[Wish; 3],
         axes: &mut OwnAxes,
         now: &Now,
-        told: &mut dyn FnMut(AtLimit),
+        report: &mut dyn FnMut(AtLimit),
     ) {
         let Some(rotation) = self.plane.as_ref().and_then(|plane| plane.placement.rotation()) else {
             return;
@@ -211,10 +211,10 @@ impl Leaning {
         if let Some(direction) = wish.key.map(|(direction, _)| direction).or(moving.pushed) {
             let [(_, minus), (_, plus)] = ways;
             let limit = if direction == Direction::Plus { plus } else { minus };
-            show_limit(limit.filter(|_| stands), axes, told);
+            show_limit(limit.filter(|_| stands), axes, report);
         }
         self.moving = (!over).then_some(moving);
-        hide_limits(axes, told);
+        hide_limits(axes, report);
     }
 }
 
@@ -282,23 +282,23 @@ fn is_at_limit(unit: &AxisUnit, direction: Direction) -> bool {
     }
 }
 
-/// What is told of the limit at which an axis of the machine stands.
-fn show_limit(limit: Option<(Axis, Direction)>, axes: &mut OwnAxes, told: &mut dyn FnMut(AtLimit)) {
+/// What is reported of the limit at which an axis of the machine stands.
+fn show_limit(limit: Option<(Axis, Direction)>, axes: &mut OwnAxes, report: &mut dyn FnMut(AtLimit)) {
     let Some((axis, direction)) = limit else { return };
     for unit in axes.iter_mut().filter(|unit| unit.axis == axis) {
         if is_at_limit(unit, direction) {
             unit.at_limit = Some(direction);
-            told(AtLimit::Reached(unit.id, direction));
+            report(AtLimit::Reached(unit.id, direction));
         }
     }
 }
 
 /// They go when the axis leaves it.
-fn hide_limits(axes: &mut OwnAxes, told: &mut dyn FnMut(AtLimit)) {
+fn hide_limits(axes: &mut OwnAxes, report: &mut dyn FnMut(AtLimit)) {
     for unit in axes.iter_mut().filter(|unit| MAIN.contains(&unit.axis)) {
         if let Some(direction) = unit.at_limit.filter(|at| !is_at_limit(unit, *at)) {
             unit.at_limit = None;
-            told(AtLimit::Left(unit.id, direction));
+            report(AtLimit::Left(unit.id, direction));
         }
     }
 }
