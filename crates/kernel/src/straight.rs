@@ -78,8 +78,9 @@ impl Straight {
         self.way = PointToPoint::new(self.way.position());
     }
 
+    /// Not of an axis whose place no path knows: one of the PLC, or a slave.
     fn moves(&self, axis: Axis) -> bool {
-        self.to[axis] != self.from[axis]
+        (self.to[axis] - self.from[axis]).abs() > 0.0
     }
 
     /// The position so far along it, path coordinates.
