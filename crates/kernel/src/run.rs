@@ -54,6 +54,10 @@ pub enum BrokenOff {
 }
 
 /// What a run comes to in a cycle.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one at a time, and no cycle allocates: a scan goes with its barrier"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Came {
     /// It goes on, or waits.

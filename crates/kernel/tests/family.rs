@@ -266,7 +266,7 @@ impl Bench {
         match run.moves(&demands, &mut site) {
             Came::On => {}
             Came::BlockEnd => run.end_block(demands.single_block, false),
-            Came::NoThread => panic!("no program has one"),
+            Came::NoThread => unreachable!("no program has a thread"),
             Came::Stop(stop) => self.take(stop),
         }
     }
