@@ -5,7 +5,7 @@ pub(crate) mod moves;
 
 use bahn_exchange::signal;
 use bahn_interpreter::Rules;
-use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Track};
+use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Now, Track, path_limits};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 use bahn_servo::{Measured, OperatorInputs};
@@ -19,10 +19,8 @@ use crate::loops::{self, Permission};
 use crate::machine::MachineSide;
 use crate::manual_probing::{Answer, ManualProbing, tilted};
 use crate::message::Message;
-use crate::now::Now;
-use crate::path_limits::path_limits;
 use crate::plc_link::PalletRequest;
-use crate::positioning::Positioning;
+use crate::positioning::PlcPositioning;
 use crate::probe_command::ProbeCommand;
 use crate::programs::Selection;
 use crate::run::ProgramRun;
@@ -40,7 +38,7 @@ pub(crate) struct Channel {
     /// Its own list of machine parameters; `None` for that of the machine.
     own_list: Option<ParameterList>,
     pub desk: Desk,
-    positioning: Positioning,
+    positioning: PlcPositioning,
     strobes: strobes::Strobes,
     pub handshakes: Handshakes,
     pub datums: Datums,
@@ -79,7 +77,7 @@ impl Channel {
         let mut channel = Channel {
             number: parts.number,
             own_list: parts.own_list,
-            positioning: Positioning::default(),
+            positioning: PlcPositioning::default(),
             strobes: strobes::Strobes::default(),
             handshakes: Handshakes::default(),
             datums: Datums::new(
@@ -135,6 +133,7 @@ impl Channel {
     fn parts<'a>(&'a mut self, machine: &'a mut MachineSide) -> (&'a mut ProgramRun, Site<'a>, Basis<'a>) {
         let now = self.now(machine);
         let site = Site {
+            mode: self.desk.mode(),
             now,
             axes: machine.core.axes.of(self.number),
             spindle: machine.spindles.of_mut(self.number),
@@ -173,12 +172,12 @@ impl Channel {
 
     /// The loops are opened: nothing moves on.
     pub fn loops_opened(&mut self, machine: &mut MachineSide) {
-        self.run.part_thread();
+        self.run.core.part_thread();
         let exchange = machine.memory.of_mut(self.number);
         machine.spindles.of_mut(self.number).open(exchange);
         self.desk.let_go();
         self.positioning.stop();
-        self.run.track.halt();
+        self.run.core.track.halt();
     }
 
     /// What the PLC positions ends with an EMERGENCY STOP; the strobes are reset [000:4013-4019]. Whether the axes
@@ -201,7 +200,7 @@ impl Channel {
         let nc = machine.memory.of(self.number).nc();
         loops::follow(&mut machine.core.axes.of(self.number), nc, permission);
         if nc.bit(signal::NC_STOP_AND_OPEN_LOOPS) {
-            self.run.part_thread();
+            self.run.core.part_thread();
             let exchange = machine.memory.of_mut(self.number);
             machine.spindles.of_mut(self.number).open(exchange);
             self.stop();
@@ -214,7 +213,7 @@ impl Channel {
         let axes = machine.core.axes.of(self.number);
         let spindle = machine.spindles.of(self.number);
         if loops::show_faults(&axes, spindle, machine.messages.of_channel(self.number), block) {
-            self.run.part_thread();
+            self.run.core.part_thread();
             self.stop();
             // An error with stop ends what the PLC positions [000:4013-4019].
             self.positioning.end_all(machine.memory.of_mut(self.number));
@@ -295,9 +294,9 @@ impl Channel {
     fn follow_spindle(&mut self, machine: &mut MachineSide) {
         let exchange = machine.memory.of_mut(self.number);
         let spindle = machine.spindles.of_mut(self.number);
-        spindle.follow(self.run.track.along());
+        spindle.follow(self.run.core.track.along());
         // In cycle 2 the override of the spindle is off [003:5032].
-        let percent = if self.run.taps_floating() {
+        let percent = if self.run.core.taps_floating() {
             100.0
         } else {
             self.desk.spindle_percent()
@@ -361,7 +360,7 @@ impl Channel {
         self.positioning.take_strobes(nc, numbers, free, most, &axes);
         self.positioning.take_free_rotation(exchange);
         if strobes::take_range(&mut self.datums, &mut axes, exchange) {
-            self.run.track.range_changed = self.run.is_active();
+            self.run.core.track.range_changed = self.run.is_active();
         }
         if let Some(shift) = strobes::datum_correction(may, self.datums.range(), numbers, exchange) {
             self.datums.correct(shift, &axes);
@@ -369,7 +368,7 @@ impl Channel {
         if let Some((number, value)) = self.strobes.q_parameter(exchange) {
             self.run.set_q(number, value);
         }
-        strobes::take_actual_values(now.mode, &mut axes, exchange.nc());
+        strobes::take_actual_values(self.desk.mode(), &mut axes, exchange.nc());
         // A key waits for the program that is read elsewhere.
         let key = strobes::key(exchange.nc()).filter(|_| !self.run.source.is_handed_over());
         if let Some(command) = key {
@@ -442,14 +441,14 @@ impl Channel {
         self.datums.limit(&mut axes);
         let intervals = axes.iter().map(|unit| unit.parameters.offset_interval_s);
         machine.offsets.set_interval(intervals.last().unwrap_or(0.0));
-        self.run.track.limits_changed = true;
+        self.run.core.track.limits_changed = true;
     }
 
     /// Its axes are others from now on: the path has their limits, the datum their corrections.
     pub fn take_axes(&mut self, machine: &mut MachineSide) {
         let (list, axes) = (self.list(machine), machine.core.axes.owned(self.number));
         let limits = path_limits(list, axes, self.datums.chain.kinematics());
-        self.run.track.change_limits(&limits, self.run.is_active());
+        self.run.core.track.change_limits(&limits, self.run.is_active());
         let range = self.datums.range();
         self.datums
             .select_range(range, &mut machine.core.axes.of(self.number));
@@ -458,11 +457,11 @@ impl Channel {
     /// Interprets and plans ahead; may allocate. `datums_changed`: blocks that are read from now on find other
     /// datums in the tables.
     pub fn prepare(&mut self, datums_changed: bool, machine: &mut MachineSide) {
-        if self.run.track.limits_changed && !self.run.is_active() {
+        if self.run.core.track.limits_changed && !self.run.is_active() {
             let list = self.own_list.as_ref().unwrap_or(machine.link.list());
             let axes = machine.core.axes.owned(self.number);
             let limits = path_limits(list, axes, self.datums.chain.kinematics());
-            self.run.track.take_limits(&limits);
+            self.run.core.track.take_limits(&limits);
         }
         self.datums_changed |= datums_changed;
         let by_hand = self.desk.is_by_hand() && !self.run.progress().is_on_its_way();

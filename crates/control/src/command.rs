@@ -10,7 +10,7 @@ use bahn_path::Axis;
 use bahn_plc::TableKind;
 
 use crate::data_line::DataLineEvent;
-use crate::drip_feed::Dnc;
+use crate::dnc::Dnc;
 use crate::plane_command::PlaneCommand;
 use crate::probe_command::ProbeCommand;
 use crate::screen_command::ScreenCommand;

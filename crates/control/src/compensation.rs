@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use bahn_kernel::Axes;
 use bahn_servo::ErrorTable;
 
-use crate::compensation_table::{CompensationAssignment, CompensationTable};
-use crate::correction_tables::CorrectionTables;
+use bahn_parameters::compensation::{CompensationAssignment, CompensationTable, CorrectionTables};
+
 use crate::plc_link::NcFiles;
 use crate::setup::SelectedLine;
 

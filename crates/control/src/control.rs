@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Work};
-use bahn_kernel::{AxisUnit, Feeder, RunState, ServoSampler, ServoView};
+use bahn_kernel::{AxisUnit, Feeder, RunState, ServoSampler, ServoView, path_limits};
 use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::PathElement;
@@ -23,7 +23,6 @@ use crate::key_code::KeyCode;
 use crate::language::OwnLanguage;
 use crate::message::{Message, Shown};
 use crate::oscilloscope::OscilloscopeKeys;
-use crate::path_limits::path_limits;
 use crate::renewal::{self, Renewed};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::signal::Signal;
@@ -216,7 +215,7 @@ impl Control {
                 }
                 altered => altered == Altered::Done,
             },
-            (Command::DataLine(event), _) => return self.tnc.machine.link.happen(event),
+            (Command::DataLine(event), _) => return self.tnc.machine.link.lines.happen(event),
             (command, _) => self.tnc.execute(channel, command),
         };
         done || self.refuse(channel)
@@ -317,7 +316,7 @@ impl Control {
     /// for, each taking so long, µs. 0 for no time.
     pub fn set_block_time(&mut self, time_us: u32) {
         for channel in self.tnc.channels.iter_mut() {
-            channel.run.block_time.set(time_us);
+            channel.run.core.block_time.set(time_us);
         }
     }
 
@@ -481,12 +480,12 @@ impl Control {
 
     /// What the PLC wants of the data interfaces since `ordered` was asked last.
     pub fn line_orders(&self, ordered: &mut OrderedLines, tell: impl FnMut(DataLineOrder)) {
-        ordered.news(&self.tnc.machine.link.interfaces, tell);
+        ordered.news(&self.tnc.machine.link.lines.interfaces, tell);
     }
 
     /// The message of the PLC to a host that waits longest [000:15835-15857].
     pub fn message_to_host(&self) -> Option<&HostMessage> {
-        self.tnc.machine.link.host.as_ref()?.outgoing.front()
+        self.tnc.machine.link.lines.host.as_ref()?.outgoing.front()
     }
 
     /// The messages that came up since the last call, in their order.
@@ -563,12 +562,12 @@ impl Control {
 
     /// The element of the path that is executed, or was last.
     pub fn element(&self) -> Option<&PathElement> {
-        self.tnc.channels.first().run.track.path.element()
+        self.tnc.channels.first().run.core.track.path.element()
     }
 
     /// Path length to the end of that element, mm; below 0 where a thread waits after its end.
     pub fn rest_mm(&self) -> f64 {
-        self.tnc.channels.first().run.track.path.rest_mm()
+        self.tnc.channels.first().run.core.track.path.rest_mm()
     }
 
     /// The program that runs, or ran last; `None` while it is [handed over](Control::hand_over_reading).

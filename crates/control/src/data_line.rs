@@ -7,7 +7,6 @@ use std::fmt;
 use bahn_plc::{DataInterface, HostLink, HostMessage, InterfaceUser};
 
 use crate::escapes;
-use crate::plc_link::PlcLink;
 
 /// The two interfaces by their number for the modules of the PLC: RS-232-C/V.24 is 0, RS-422/V.11 is 1 [000:15629].
 const NAMES: [&str; 2] = ["rs232", "rs422"];
@@ -233,9 +232,16 @@ impl fmt::Display for DataLineEvent {
     }
 }
 
-impl PlcLink {
+/// The lines to the PLC and the host that is connected.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DataLines {
+    pub interfaces: [DataInterface; 2],
+    pub host: Option<HostLink>,
+}
+
+impl DataLines {
     /// Lets it happen; whether it is possible.
-    pub(crate) fn happen(&mut self, event: DataLineEvent) -> bool {
+    pub fn happen(&mut self, event: DataLineEvent) -> bool {
         match event {
             DataLineEvent::Line(line, event) => self
                 .interfaces
@@ -265,7 +271,7 @@ impl PlcLink {
     }
 
     /// The lines and the host are those of the control that was on before; what waited is gone.
-    pub(crate) fn keep_lines(&mut self, before: &PlcLink) {
+    pub fn follow_on(&mut self, before: &DataLines) {
         for (interface, before) in self.interfaces.iter_mut().zip(&before.interfaces) {
             (interface.ready, interface.was_ready) = (before.ready, before.was_ready);
             interface.mode_baud = before.mode_baud;

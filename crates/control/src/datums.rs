@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use bahn_kernel::{Chain, Kinematics, Offsets, OwnAxes};
+use bahn_kernel::{Chain, Kinematics, MAIN, Offsets, OwnAxes};
 use bahn_parameters::PerPlcAxis;
 use bahn_path::{Axis, Position};
 
-use crate::leaning::MAIN;
 use crate::setup::{AxisLimit, Remembered};
 
 /// A datum that moves less than this stays where it is, mm: rounding.

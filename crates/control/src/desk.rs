@@ -1,27 +1,27 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
 use bahn_exchange::{Exchange, Image, signal};
-use bahn_kernel::{Chain, Mover, OwnAxes, Progress, RunState};
+use bahn_kernel::reference::ReferenceRun;
+use bahn_kernel::{Chain, Leaning, Mover, Now, OwnAxes, Progress, RunState};
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::{ControlModel, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Position};
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
 use crate::key_code::KeyCode;
-use crate::leaning::{self, Leaning};
+use crate::machine::Facts;
 use crate::manual::Manual;
 use crate::marker_codes;
+use crate::markers::REFERENCE_CAM;
 use crate::message::Messages;
-use crate::now::{Facts, Now};
 use crate::overrides::Override;
 use crate::panel::{Panel, PlcFaultCode};
 use crate::plane_command::PlaneCommand;
 use crate::probing::{Guarded, Probe, Stylus};
 use crate::reach::Reach;
-use crate::reference::ReferenceRun;
 use crate::status::{self, ByHand};
 
 /// Code numbers [000:6928-6947].
@@ -143,7 +143,6 @@ impl Desk {
         Now {
             time_s: facts.time_s,
             us: facts.us,
-            mode: self.mode,
             start: self.start_pressed,
             stop,
             fault: facts.fault,
@@ -320,7 +319,7 @@ impl Desk {
         let Some(swivels) = swivels.filter(|_| axes.stand()) else {
             return false;
         };
-        let Some(angles) = leaning::positions(command, &swivels, axes) else {
+        let Some(angles) = command.positions(&swivels, axes) else {
             return false;
         };
         let was = self.leaning.is_on();
@@ -414,6 +413,7 @@ impl Desk {
     ) {
         let mut reach = Reach {
             axes,
+            mode: self.mode,
             panel: &mut self.panel,
             rules: &self.rules,
             nc,
@@ -428,10 +428,19 @@ impl Desk {
 
     /// Moves the axes over their reference marks for a cycle; at the end the mode is Manual.
     pub fn move_reference(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) {
-        if self.reference.moves(axes, nc, now) {
+        if self.reference.moves(axes, &reference_cams(nc), now) {
             self.set_mode(Mode::Manual, axes);
         }
     }
+}
+
+/// The cams of the axes that are closed: the PLC copies them from its inputs.
+fn reference_cams(nc: &Image) -> PerPlcAxis<bool> {
+    let mut cams = PerPlcAxis::splat(false);
+    for (cam, marker) in cams.iter_mut().zip(REFERENCE_CAM) {
+        *cam = nc.bit(marker);
+    }
+    cams
 }
 
 /// A code number; the last one stands in D276 for the PLC [000:6928-6947]. Whether it shows the offsets of the

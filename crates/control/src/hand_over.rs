@@ -127,7 +127,7 @@ pub(crate) fn hand_over(
 /// No program is on its way, or it stands where nothing after it was read: at the strobe of a function, or at a
 /// programmed stop.
 fn rests(channel: &Channel) -> bool {
-    let path = &channel.run.track.path;
+    let path = &channel.run.core.track.path;
     let closed = matches!(
         path.stop(),
         Some(Stop::Barrier(Barrier::Acknowledge { .. } | Barrier::Stop { .. }) | Stop::End)
@@ -139,14 +139,14 @@ fn rests(channel: &Channel) -> bool {
 
 /// The path has nothing more to move before what is not read yet.
 fn stands_at_last(channel: &Channel) -> bool {
-    let path = &channel.run.track.path;
+    let path = &channel.run.core.track.path;
     path.next_element().is_none() && path.speed_mm_s() == 0.0 && path.rest_mm() == 0.0
 }
 
 /// What follows is still being read, at the strobe of a function or beside the control.
 fn reads(channels: &PerChannel<Channel>, number: usize) -> bool {
     let channel = channels.of(number);
-    let open = channel.run.track.path.stop().is_none();
+    let open = channel.run.core.track.path.stop().is_none();
     channel.run.source.is_handed_over()
         || channel.handshakes.strobe_is_set() && open && stands_at_last(channel)
 }

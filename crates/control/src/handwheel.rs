@@ -1,7 +1,7 @@
 //! The electronic handwheel: which axis its wheels lead and how far, and where its keys go [000:8060-8446].
 
 use bahn_exchange::{Image, signal};
-use bahn_kernel::{Direction, OwnAxes};
+use bahn_kernel::{Direction, OwnAxes, within};
 use bahn_parameters::operation::{Handwheel as Kind, HandwheelParameters};
 use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
@@ -9,8 +9,7 @@ use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
 use crate::command::Mode;
 use crate::markers::AXES;
 use crate::message::Message;
-use crate::now::Now;
-use crate::reach::{Reach, within};
+use crate::reach::Reach;
 
 /// Counting steps of a turn of the handwheel (inferred).
 pub const HANDWHEEL_STEPS: f64 = 1000.0;
@@ -251,7 +250,6 @@ impl Handwheel {
         &mut self,
         inputs: &HandwheelInputs,
         reach: &Reach,
-        now: &Now,
         pushed: &mut PerPlcAxis<Option<Direction>>,
     ) {
         let rules = &reach.rules.handwheel;
@@ -261,14 +259,7 @@ impl Handwheel {
             let Some(wheel) = self.wheels.get_mut(number) else {
                 continue;
             };
-            wheel.turn(
-                count,
-                axis.filter(|_| inputs.connected),
-                factor,
-                reach,
-                now,
-                pushed,
-            );
+            wheel.turn(count, axis.filter(|_| inputs.connected), factor, reach, pushed);
         }
     }
 
@@ -293,7 +284,6 @@ impl Wheel {
         axis: Option<usize>,
         factor: u8,
         reach: &Reach,
-        now: &Now,
         pushed: &mut PerPlcAxis<Option<Direction>>,
     ) {
         let before = self.count.replace(count).unwrap_or(count);
@@ -301,7 +291,7 @@ impl Wheel {
             self.lead = None;
         }
         let rules = &reach.rules.handwheel;
-        let there = now.mode == Mode::Handwheel && rules.kind != Kind::None;
+        let there = reach.mode == Mode::Handwheel && rules.kind != Kind::None;
         let unit = axis.and_then(|index| reach.axes.with_index(index));
         // What is turned while the feed is not enabled moves nothing later.
         let Some((index, unit)) = axis.zip(unit.filter(|unit| there && unit.enabled)) else {

@@ -18,7 +18,6 @@ use crate::handwheel;
 use crate::life;
 use crate::magazine::Magazine;
 use crate::message::{Message, Messages};
-use crate::now::Facts;
 use crate::oscilloscope::OscilloscopeKeys;
 use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
@@ -29,6 +28,21 @@ use crate::window::Window;
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
 const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
+
+/// What the machine side says of now.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facts {
+    /// The contour cycle, s.
+    pub time_s: f64,
+    /// Time since power-on, µs.
+    pub us: u64,
+    /// The control voltage is on.
+    pub ready: bool,
+    /// The loops were closed since it came on.
+    pub loops_closed: bool,
+    /// A flashing message is shown, or a loop of the channel has a fault.
+    pub fault: bool,
+}
 
 /// What all channels share.
 #[derive(Clone)]

@@ -1,22 +1,23 @@
 //! Manual operation: axis direction keys, jog increment, electronic handwheel.
 
 use bahn_exchange::signal;
-use bahn_kernel::{AxisUnit, Direction, Mover, OwnAxes};
-use bahn_motion::Aim;
+use bahn_kernel::{
+    AtLimit, AxisUnit, Direction, HandMove, Leaning, MAIN, Mover, Now, OwnAxes, Wish, look_at_limit,
+    move_by_hand, within,
+};
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::HandwheelParameters;
 use bahn_parameters::technology::Technology;
 use bahn_parameters::{ControlModel, PerPlcAxis};
+use bahn_path::BlockRef;
 use bahn_plc::JogLimit;
 use bahn_servo::{HandwheelInputs, Probe as Touch};
 
 use crate::command::Mode;
 use crate::handwheel::Handwheel;
-use crate::leaning::{Leaning, MAIN, Wish};
-use crate::message::Message;
-use crate::now::Now;
+use crate::message::{Message, Messages};
 use crate::plc_link::StatusChanges;
-use crate::reach::{Reach, within};
+use crate::reach::Reach;
 use crate::site::Site;
 use crate::stylus_lead::StylusLead;
 
@@ -203,11 +204,11 @@ impl Manual {
         self.handwheel.look(handwheel, reach);
         self.last_key = self.handwheel.take_highlight().unwrap_or(self.last_key);
         let keys = self.keys(reach, now);
-        let leans = leaning.is_on() && !now.mode.is_automatic();
+        let leans = leaning.is_on() && !reach.mode.is_automatic();
         if leans {
             self.lean(&keys, handwheel, reach, now, leaning);
         } else {
-            self.handwheel.turn(handwheel, reach, now, &mut self.pushed);
+            self.handwheel.turn(handwheel, reach, &mut self.pushed);
         }
         for place in reach.axes.places() {
             let unit = reach.axes.get(place);
@@ -263,12 +264,12 @@ impl Manual {
             let unit = reach.axes.with_index(index);
             unit.is_some_and(|unit| MAIN.contains(&unit.axis))
         };
-        let leads = now.mode == Mode::Handwheel && of_plane(self.handwheel.axis());
+        let leads = reach.mode == Mode::Handwheel && of_plane(self.handwheel.axis());
         if leads {
             let rules = &reach.rules.handwheel;
             self.handwheel.superimpose(handwheel, rules, reach.axes, reach.nc);
         } else {
-            self.handwheel.turn(handwheel, reach, now, &mut self.pushed);
+            self.handwheel.turn(handwheel, reach, &mut self.pushed);
         }
         let travels = self.handwheel.travels();
         let increment = self.increment();
@@ -279,7 +280,7 @@ impl Manual {
             let key = keys.get(unit.index).copied().flatten();
             let wheel_mm = travels.get(unit.index).filter(|_| leads).copied();
             let jog = reach.panel.jog_started.get_mut(unit.index).and_then(Option::take);
-            let jog = jog.filter(|_| now.mode == Mode::Handwheel);
+            let jog = jog.filter(|_| reach.mode == Mode::Handwheel);
             Wish {
                 key: key.map(|direction| (direction, self.key_feed(unit, reach, now))),
                 wheel_mm: wheel_mm.unwrap_or(0.0),
@@ -287,13 +288,15 @@ impl Manual {
                 jog_mm_min: unit.parameters.motion.manual_mm_min * now.feed_percent / 100.0,
             }
         });
-        leaning.moves(&wishes, reach, now);
+        let (axes, block) = (&mut *reach.axes, reach.block);
+        let messages = &mut *reach.messages;
+        leaning.moves(&wishes, axes, now, &mut |at| tell(at, messages, block));
     }
 
     /// The feed of a direction key, mm/min.
     fn key_feed(&self, unit: &AxisUnit, reach: &Reach, now: &Now) -> f64 {
         let (motion, rules) = (&unit.parameters.motion, &reach.rules.handwheel);
-        let in_wheel_mode = now.mode == Mode::Handwheel;
+        let in_wheel_mode = reach.mode == Mode::Handwheel;
         if reach.panel.rapid || in_wheel_mode && self.handwheel.rapid(rules) {
             let percent = if reach.rules.overrides.on_manual_rapid {
                 now.feed_percent.min(100.0)
@@ -312,7 +315,7 @@ impl Manual {
 
     /// The direction keys that count, latched ones included.
     fn keys(&mut self, reach: &Reach, now: &Now) -> PerPlcAxis<Option<Direction>> {
-        if now.mode == Mode::Handwheel {
+        if reach.mode == Mode::Handwheel {
             // The direction keys work in Handwheel, too, unless jogging is on.
             if reach.nc.bit(signal::ENABLE_JOG_INCREMENT) {
                 return PerPlcAxis::splat(None);
@@ -324,7 +327,7 @@ impl Manual {
             reach.panel.axis_keys
         };
         let by_wheel = self.handwheel.direction(&reach.rules.handwheel);
-        let by_wheel = by_wheel.filter(|_| now.mode == Mode::Handwheel && !now.stop);
+        let by_wheel = by_wheel.filter(|_| reach.mode == Mode::Handwheel && !now.stop);
         if let Some((index, direction)) = by_wheel
             && let Some(key) = keys.get_mut(index)
         {
@@ -351,87 +354,28 @@ impl Manual {
         reach: &mut Reach,
         now: &Now,
     ) {
-        let feed_percent = now.feed_percent;
-        let jog = self.jog_target(place, index, reach, now);
-        let wheel = self.handwheel.target(index);
+        let wanted = HandMove {
+            key,
+            jog: self.jog_target(place, index, reach),
+            wheel: self.handwheel.target(index),
+            step_mm_min: self.step_mm_min.filter(|_| reach.mode == Mode::Manual),
+        };
         let Some(unit) = reach.axes.get_mut(place) else {
             return;
         };
-        if !matches!(unit.mover, Mover::None | Mover::Manual) || !unit.is_free() {
+        if !move_by_hand(unit, &wanted, now) {
             return;
         }
-        if !(unit.servo.closed() && unit.enabled) {
-            if !now.stop && (key.is_some() || jog.is_some() || wheel.is_some()) {
-                unit.ask_to_unclamp();
-            }
-            if unit.mover == Mover::Manual && unit.stands() {
-                unit.mover = Mover::None;
-            }
-            return;
-        }
-        let step = self.step_mm_min.filter(|_| now.mode == Mode::Manual && !now.stop);
-        if let (Some(feed), Some(direction)) = (step, key.map(|(direction, _)| direction))
-            && along(unit, direction, feed) != Aim::Feed(0.0)
-            && unit.step(direction.sign() * feed)
-        {
-            unit.mover = Mover::Manual;
-            return;
-        }
-        unit.end_step();
-        let motion = unit.parameters.motion;
-        let (aim, feed) = match (key, jog.or(wheel)) {
-            _ if now.stop => (Aim::Feed(0.0), motion.rapid_mm_min),
-            (Some((direction, feed)), _) => (along(unit, direction, feed), feed),
-            (None, Some(target)) => {
-                let feed = if jog.is_some() {
-                    motion.manual_mm_min * feed_percent / 100.0
-                } else {
-                    motion.rapid_mm_min
-                };
-                (Aim::Position(target), feed)
-            }
-            (None, None) => (Aim::Feed(0.0), motion.rapid_mm_min),
-        };
-        if aim != Aim::Feed(0.0) || !unit.stands() {
-            unit.mover = Mover::Manual;
-        }
-        unit.drive(now.time_s, aim, feed.min(now.rapid_limit_mm_min));
-        if unit.stands() && unit.mover == Mover::Manual && key.is_none() {
-            unit.mover = Mover::None;
-        }
-        let pushed = self.pushed.get(index).copied().flatten();
-        self.note_limit(place, key.map(|(direction, _)| direction).or(pushed), reach);
-    }
-
-    /// Message and marker at a software limit switch; they go when the axis leaves it (inferred).
-    fn note_limit(&mut self, place: usize, wanted: Option<Direction>, reach: &mut Reach) {
-        let Some(unit) = reach.axes.get_mut(place) else {
+        let pushed = self.pushed.get_mut(index);
+        let towards = key.map(|(direction, _)| direction);
+        let towards = towards.or(pushed.as_deref().copied().flatten());
+        let Some(at) = look_at_limit(unit, towards) else {
             return;
         };
-        let reached = unit.limited().and_then(|[least, greatest]| match wanted {
-            Some(Direction::Plus) if unit.nominal >= greatest => Some(Direction::Plus),
-            Some(Direction::Minus) if unit.nominal <= least => Some(Direction::Minus),
-            _ => None,
-        });
-        let left = unit.at_limit.filter(|at| {
-            unit.limits
-                .get(usize::from(*at == Direction::Plus))
-                .is_none_or(|limit| unit.nominal != *limit)
-        });
-        let (index, id) = (unit.index, unit.id);
-        if reached.is_some() {
-            unit.at_limit = reached;
-            if let Some(pushed) = self.pushed.get_mut(index) {
-                *pushed = None;
-            }
-        } else if left.is_some() {
-            unit.at_limit = None;
+        if let (AtLimit::Reached(..), Some(pushed)) = (at, pushed) {
+            *pushed = None;
         }
-        if let Some(direction) = reached {
-            reach.messages.show(Message::limit(id, direction), reach.block);
-        } else if let Some(direction) = left {
-            reach.messages.remove(&Message::limit(id, direction));
-        }
+        tell(at, reach.messages, reach.block);
     }
 
     /// The jog increment within its limit, mm.
@@ -443,14 +387,14 @@ impl Manual {
     }
 
     /// Where the jog increment leads the axis to.
-    fn jog_target(&mut self, place: usize, index: usize, reach: &mut Reach, now: &Now) -> Option<f64> {
+    fn jog_target(&mut self, place: usize, index: usize, reach: &mut Reach) -> Option<f64> {
         let started = reach
             .panel
             .jog_started
             .get(index)
             .copied()
             .flatten()
-            .filter(|_| now.mode == Mode::Handwheel);
+            .filter(|_| reach.mode == Mode::Handwheel);
         let increment = self.increment();
         let unit = reach.axes.get(place)?;
         let (nominal, stands) = (unit.nominal, unit.stands());
@@ -473,18 +417,10 @@ impl Manual {
     }
 }
 
-/// On in a direction, up to the software limit.
-fn along(unit: &AxisUnit, direction: Direction, feed: f64) -> Aim {
-    let Some([least, greatest]) = unit.limited() else {
-        return Aim::Feed(direction.sign() * feed);
-    };
-    let (limit, beyond) = match direction {
-        Direction::Plus => (greatest, unit.nominal >= greatest),
-        Direction::Minus => (least, unit.nominal <= least),
-    };
-    if beyond {
-        Aim::Feed(0.0)
-    } else {
-        Aim::Position(limit)
+/// The message of a software limit comes and goes.
+fn tell(at: AtLimit, messages: &mut Messages, block: Option<BlockRef>) {
+    match at {
+        AtLimit::Reached(id, direction) => messages.show(Message::limit(id, direction), block),
+        AtLimit::Left(id, direction) => messages.remove(&Message::limit(id, direction)),
     }
 }

@@ -2,6 +2,7 @@
 //! datums. NC start probes in the chosen direction and goes back in rapid traverse to where it started.
 
 use bahn_interpreter::{BasicRotation, Rules};
+use bahn_kernel::touched::{self, Contact};
 use bahn_kernel::{Offsets, OwnAxes};
 use bahn_parameters::machining::{ProbeSettings, ProbeTurn};
 use bahn_parameters::{MessageId, ParameterList};
@@ -15,7 +16,6 @@ use crate::probe_command::{ProbeCommand, ProbeFunction, sign};
 use crate::probing::{Probe, Probed};
 use crate::setup::{Calibration, ProbeMemory};
 use crate::site::Site;
-use crate::touched::{self, Contact};
 
 /// Touches that a function takes at most; more take the place of the last one.
 const CONTACTS_MAX: usize = 8;

@@ -3,7 +3,8 @@
 
 use std::fmt;
 
-use bahn_path::Axis;
+use bahn_kernel::OwnAxes;
+use bahn_path::{Axis, Position, Swivels};
 
 /// The axes that may swivel, in the order of [`PlaneCommand::angles`].
 pub(crate) const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
@@ -19,6 +20,26 @@ pub struct PlaneCommand {
 }
 
 impl PlaneCommand {
+    /// The positions of the swivel axes in the plane, `Some(None)` when it is off; `None` where an angle is said of an axis
+    /// that does not swivel.
+    pub(crate) fn positions(&self, swivels: &Swivels, axes: &OwnAxes) -> Option<Option<Position>> {
+        let Some(angles) = self.angles else {
+            return Some(None);
+        };
+        let mut positions = Position::ZERO;
+        for axis in swivels.free_axes() {
+            positions[axis] = axes.at(axis).map_or(0.0, |unit| unit.nominal);
+        }
+        for (axis, angle) in ROTARY.into_iter().zip(angles) {
+            let Some(angle) = angle else { continue };
+            if !swivels.free_axes().any(|free| free == axis) {
+                return None;
+            }
+            positions[axis] = angle;
+        }
+        Some(Some(positions))
+    }
+
     /// What stands after `3d-rot`.
     pub(crate) fn parse(text: &str) -> Result<PlaneCommand, String> {
         let wrong = || {

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_interpreter::{DatumTable, MachineTexts, NO_DATUM_TABLE};
+use bahn_parameters::compensation::{CompensationAssignment, CompensationTable, CorrectionTables};
 use bahn_parameters::{ParameterId, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::{
@@ -16,8 +17,7 @@ use bahn_plc::{
     StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
-use crate::compensation_table::{CompensationAssignment, CompensationTable};
-use crate::correction_tables::CorrectionTables;
+use crate::data_line::DataLines;
 use crate::markers::AXES;
 use crate::screen_command::ScreenCommand;
 
@@ -154,8 +154,7 @@ pub(crate) struct PlcLink {
     pub files: NcFiles,
     pub window: PlcWindow,
     pub window_view: WindowView,
-    pub interfaces: [DataInterface; 2],
-    pub host: Option<HostLink>,
+    pub lines: DataLines,
     pub program_running: bool,
     pub coordinates: [PerPlcAxis<f64>; KINDS],
     pub spindle: SpindlePosition,
@@ -193,8 +192,7 @@ impl PlcLink {
             files,
             window: PlcWindow::default(),
             window_view: WindowView::default(),
-            interfaces: Default::default(),
-            host: None,
+            lines: DataLines::default(),
             program_running: false,
             coordinates: [PerPlcAxis::splat(0.0); KINDS],
             spindle: SpindlePosition::default(),
@@ -489,12 +487,12 @@ impl NcMemory for PlcLink {
 
 impl NcInterfaces for PlcLink {
     fn data_interface(&mut self, number: usize) -> &mut DataInterface {
-        let [rs232, rs422] = &mut self.interfaces;
+        let [rs232, rs422] = &mut self.lines.interfaces;
         if number == 0 { rs232 } else { rs422 }
     }
 
     fn host(&mut self) -> Option<&mut HostLink> {
-        self.host.as_mut()
+        self.lines.host.as_mut()
     }
 }
 

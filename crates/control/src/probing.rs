@@ -1,13 +1,11 @@
 //! Probing in the program: the axes move until the stylus is deflected [000:7613-7718].
 
 use bahn_exchange::signal;
-use bahn_kernel::{AxisUnit, Chain, Direction, Mover, OwnAxes};
-use bahn_motion::{Aim, PointToPoint};
+use bahn_kernel::probing::{self, Probing};
+use bahn_kernel::{AxisUnit, Chain, OwnAxes, ScanMove};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::ProbeSettings;
-use bahn_path::{
-    Axis, Barrier, BlockRef, LiveData, PerAxis, Position, ScanFault, ScanJob, Scanned, ToolMeasuring, Touch,
-};
+use bahn_path::{Barrier, BlockRef, LiveData, Position, ScanFault, ScanJob, Scanned, ToolMeasuring, Touch};
 use bahn_servo::{Measured, Probe as ProbeState};
 
 use crate::message::Message;
@@ -27,40 +25,12 @@ pub(crate) struct Stylus {
     pub touch: ProbeState,
 }
 
-/// A probing movement on a straight line.
+/// A probing movement, and who wants it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Probing {
-    phase: Phase,
+struct Wanted {
     /// The block that probes; `None` for the operator, who finds the axes where he started.
     block: Option<BlockRef>,
-    /// Feed back to the start, mm/min.
-    home_mm_min: Option<f64>,
-    /// The software limit that lies within the way: it ends there [000:3522].
-    limit: Option<(Axis, Direction)>,
-    /// Start of the way and its farthest end, path coordinates.
-    from: Position,
-    to: Position,
-    feed_mm_min: f64,
-    /// Path acceleration, m/s².
-    acceleration_m_s2: f64,
-    /// Way along the line, mm.
-    way: PointToPoint,
-    length: f64,
-    /// Where along the line the stylus was deflected, mm.
-    touch: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
-    /// M2503 is set; the PLC resets it when probing may begin.
-    Enable,
-    Search,
-    /// Touched: down to a standstill.
-    Brake,
-    /// Back to where the stylus was deflected.
-    Return,
-    /// Back to the start.
-    Home,
+    moves: Probing,
 }
 
 /// What a probing comes to in a cycle.
@@ -126,7 +96,7 @@ impl Stylus {
 /// The probing movement that is on its way, if one is.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Probe {
-    probing: Option<Probing>,
+    probing: Option<Wanted>,
     /// The block that measures a tool.
     block: Option<BlockRef>,
     tool: ToolMeasurement,
@@ -145,16 +115,13 @@ impl Probe {
     /// are then.
     pub fn is_held(&mut self, axes: &OwnAxes) -> bool {
         let scans = self.scanning.as_ref().is_some_and(Scanning::touches);
-        let led = |axis: Axis| Scanning::leads(axis) && scans;
-        let moves = |probing: &Probing, axis: Axis| probing.to[axis] != probing.from[axis];
-        let probing = self.probing.as_ref().filter(|_| !scans);
-        let held = axes.iter().any(|unit| {
-            let own = led(unit.axis) || probing.is_some_and(|probing| moves(probing, unit.axis));
-            own && !unit.may_be_led()
-        });
-        if let Some(probing) = self.probing.as_mut().filter(|_| held) {
-            probing.way = PointToPoint::new(probing.way.position());
-        }
+        let held = match &mut self.probing {
+            _ if scans => axes
+                .iter()
+                .any(|unit| ScanMove::leads(unit.axis) && !unit.may_be_led()),
+            Some(probing) => probing.moves.line().is_held(axes),
+            None => false,
+        };
         self.tool.is_held(axes) || held
     }
 
@@ -165,7 +132,7 @@ impl Probe {
 
     /// The straight way that is on its way: its start and its farthest end, path coordinates.
     pub fn way(&self) -> Option<[Position; 2]> {
-        let probing = self.probing.map(|probing| [probing.from, probing.to]);
+        let probing = self.probing.map(|probing| probing.moves.ends());
         probing.or_else(|| self.tool.way())
     }
 
@@ -186,49 +153,36 @@ impl Probe {
 
     /// The stylus may touch the workpiece.
     pub fn touches(&self) -> bool {
-        self.probing.is_some_and(|probing| probing.phase != Phase::Enable)
+        self.probing.is_some_and(|probing| probing.moves.has_begun())
             || self.scanning.as_ref().is_some_and(Scanning::touches)
     }
 
     /// The path came to a probe block: asks the PLC to enable it [000:7682-7690].
     pub fn begin(&mut self, block: BlockRef, ends: [Position; 2], feed_mm_min: f64, site: &mut Site) {
-        self.enable(Some(block), ends, [feed_mm_min, 0.0], site);
+        self.enable(Some(block), ends, (feed_mm_min, None), site);
     }
 
     /// The operator probes: after the touch the axes go back to the start in rapid traverse [003:1217-1224].
     pub fn begin_by_hand(&mut self, ends: [Position; 2], settings: &ProbeSettings, site: &mut Site) {
-        self.enable(None, ends, [settings.feed_mm_min, settings.rapid_mm_min], site);
+        let feeds = (settings.feed_mm_min, Some(settings.rapid_mm_min));
+        self.enable(None, ends, feeds, site);
     }
 
     /// It moves no axis now.
     pub fn stands(&self) -> bool {
-        self.probing.is_none_or(|probing| probing.way.speed_mm_s() == 0.0)
+        self.probing.is_none_or(|probing| probing.moves.stands())
     }
 
-    fn enable(&mut self, block: Option<BlockRef>, ends: [Position; 2], feeds: [f64; 2], site: &mut Site) {
-        let ([from, to], [feed_mm_min, home_mm_min]) = (ends, feeds);
-        let (to, limit) = within_range(&from, to, &site.axes, site.chain);
-        let way = |axis: Axis| to[axis] - from[axis];
-        let moving = |axis: &Axis| way(*axis).abs() > 0.0;
-        let length = Axis::ALL.into_iter().filter(moving).map(|axis| way(axis).powi(2));
-        let acceleration = site
-            .axes
-            .iter()
-            .filter(|unit| moving(&unit.axis))
-            .map(|unit| unit.parameters.motion.acceleration_m_s2)
-            .fold(f64::INFINITY, f64::min);
-        self.probing = Some(Probing {
-            phase: Phase::Enable,
+    fn enable(
+        &mut self,
+        block: Option<BlockRef>,
+        ends: [Position; 2],
+        (feed_mm_min, home_mm_min): (f64, Option<f64>),
+        site: &mut Site,
+    ) {
+        self.probing = Some(Wanted {
             block,
-            home_mm_min: block.is_none().then_some(home_mm_min),
-            limit,
-            from,
-            to,
-            feed_mm_min,
-            acceleration_m_s2: acceleration,
-            way: PointToPoint::new(0.0),
-            length: length.sum::<f64>().sqrt(),
-            touch: None,
+            moves: Probing::new(ends, feed_mm_min, home_mm_min, &site.axes, site.chain),
         });
         site.exchange.nc_put(signal::PROBING_ENDED, false);
         site.exchange.nc_set(signal::PROBING_ENABLE, true);
@@ -243,28 +197,11 @@ impl Probe {
     ) {
         self.tool.watch(measured, axes.clone(), chain);
         if let Some(scanning) = &mut self.scanning {
-            scanning.watch(measured, axes.clone(), chain);
+            scanning.watch(measured.probe.deflected, axes.clone(), chain);
         }
-        let Some(probing) = &mut self.probing else { return };
-        if probing.phase != Phase::Search || probing.touch.is_some() || !measured.probe.deflected {
-            return;
+        if let Some(probing) = &mut self.probing {
+            probing.moves.watch(measured.probe.deflected, axes, chain);
         }
-        let mut actual = Position::UNKNOWN;
-        for unit in axes.clone() {
-            actual[unit.axis] = unit.servo.actual_mm();
-        }
-        let actual = chain.to_path(&actual);
-        let along = axes.map(|unit| {
-            let axis = unit.axis;
-            let way = probing.to[axis] - probing.from[axis];
-            let at = actual[axis] - probing.from[axis];
-            if way == 0.0 || way.is_nan() {
-                0.0
-            } else {
-                at * way / probing.length
-            }
-        });
-        probing.touch = Some(along.sum());
     }
 
     /// Moves the axes of a probing for a cycle.
@@ -275,74 +212,27 @@ impl Probe {
         if self.scanning.is_some() {
             return self.scans(running, site, measured);
         }
-        let percent = site.now.feed_percent.min(100.0);
         let Some(probing) = &mut self.probing else {
             return Probed::Moves;
         };
-        let feed = (probing.feed_mm_min * percent / 100.0).min(site.now.rapid_limit_mm_min);
-        let aim = match probing.phase {
-            Phase::Enable => {
-                if running && !site.exchange.nc().bit(signal::PROBING_ENABLE) {
-                    return self.enter(site, measured);
-                }
-                return Probed::Moves;
-            }
-            _ if !running => Aim::Feed(0.0),
-            Phase::Search => match probing.touch {
-                Some(_) => {
-                    probing.phase = Phase::Brake;
-                    site.exchange.nc_set(signal::STYLUS_DEFLECTED, true);
-                    Aim::Feed(0.0)
-                }
-                None => Aim::Position(probing.length),
-            },
-            Phase::Brake => Aim::Feed(0.0),
-            Phase::Return => Aim::Position(probing.touch.unwrap_or(0.0)),
-            Phase::Home => Aim::Position(0.0),
-        };
-        let feed = match probing.home_mm_min.filter(|_| probing.phase == Phase::Home) {
-            Some(rapid) => (rapid * percent / 100.0).min(site.now.rapid_limit_mm_min),
-            None => feed,
-        };
-        let feed = if aim == Aim::Feed(0.0) {
-            probing.feed_mm_min
-        } else {
-            feed
-        };
-        let time = site.now.time_s;
-        let at = probing.way.cycle(time, aim, feed, probing.acceleration_m_s2);
-        let stands = probing.way.speed_mm_s() == 0.0;
-        let position = along(probing, at);
-        let answer = match (probing.phase, probing.touch) {
-            (Phase::Brake, _) if stands => {
-                probing.phase = Phase::Return;
-                None
-            }
-            (Phase::Return, Some(touch)) if probing.way.is_at(touch) && probing.home_mm_min.is_some() => {
-                probing.phase = Phase::Home;
-                None
-            }
-            (Phase::Return, Some(touch)) if probing.way.is_at(touch) => Some(Some(position)),
-            (Phase::Home, Some(touch)) if probing.way.is_at(0.0) => Some(Some(along(probing, touch))),
-            (Phase::Search, None) if probing.way.is_at(probing.length) => Some(None),
-            _ => None,
-        };
-        let nominal = site.chain.to_axes(&position);
-        for unit in site.axes.iter_mut() {
-            let value = nominal[unit.axis];
-            if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && unit.is_free() {
-                unit.follow_probe(value, time);
-            }
+        // M2503 is set; the PLC resets it when probing may begin.
+        if !probing.moves.has_begun() && running && !site.exchange.nc().bit(signal::PROBING_ENABLE) {
+            return self.enter(site, measured);
         }
-        match (answer, probing.limit) {
-            (Some(touched), limit) if stands && site.axes.have_arrived() => match (touched, limit) {
-                (None, Some((axis, direction))) => {
-                    let message = site.limit_message(axis, direction);
-                    Probed::Refused(message, probing.block)
-                }
-                _ => self.finish(touched, site),
-            },
-            _ => Probed::Moves,
+        let block = probing.block;
+        match probing
+            .moves
+            .moves(running, &mut site.axes, site.chain, &site.now)
+        {
+            probing::Probed::Moves => Probed::Moves,
+            probing::Probed::Touches => {
+                site.exchange.nc_set(signal::STYLUS_DEFLECTED, true);
+                Probed::Moves
+            }
+            probing::Probed::AtLimit(axis, direction) => {
+                Probed::Refused(site.limit_message(axis, direction), block)
+            }
+            probing::Probed::Over(touched) => self.finish(touched, site),
         }
     }
 
@@ -403,10 +293,10 @@ impl Probe {
             return Probed::Refused(message, None);
         }
         if deflected {
-            let from = probing.from;
+            let [from, _] = probing.moves.ends();
             return self.finish(Some(from), site);
         }
-        probing.phase = Phase::Search;
+        probing.moves.begin();
         Probed::Moves
     }
 
@@ -432,59 +322,4 @@ impl Probe {
             site.exchange.nc_put(signal::PROBING_ENDED, true);
         }
     }
-}
-
-/// The way of a probing as far as the traverse range reaches, and the limit that ends it. On kinematics that are
-/// not Cartesian the way is that of the axes (inferred); in a tilted plane they move in straight lines, too.
-fn within_range(
-    from: &Position,
-    to: Position,
-    axes: &OwnAxes,
-    chain: &Chain,
-) -> (Position, Option<(Axis, Direction)>) {
-    let [least, greatest] = axes.traverse_box();
-    let placed = chain
-        .placement()
-        .map(|_| [from, &to].map(|position| chain.to_axes(position)));
-    let mut part = 1.0;
-    let mut limit = None;
-    for unit in axes.iter() {
-        let axis = unit.axis;
-        let (offset, way) = (chain.offsets.of(axis), to[axis] - from[axis]);
-        let (offset, from, way) = match &placed {
-            Some([from, to]) => (0.0, from[axis], to[axis] - from[axis]),
-            None => (offset, from[axis], way),
-        };
-        let (end, direction) = if way > 0.0 {
-            (greatest[axis], Direction::Plus)
-        } else {
-            (least[axis], Direction::Minus)
-        };
-        let reach = (end - offset - from) / way;
-        if way != 0.0 && reach < part {
-            (part, limit) = (reach.max(0.0), Some((axis, direction)));
-        }
-    }
-    if limit.is_none() {
-        return (to, None);
-    }
-    let end = PerAxis::from_fn(|axis| {
-        let way = to[axis] - from[axis];
-        if way == 0.0 {
-            to[axis]
-        } else {
-            from[axis] + part * way
-        }
-    });
-    (end.into(), limit)
-}
-
-/// The position so far along the line, path coordinates.
-fn along(probing: &Probing, way: f64) -> Position {
-    let part = if probing.length > 0.0 {
-        way / probing.length
-    } else {
-        0.0
-    };
-    PerAxis::from_fn(|axis| probing.from[axis] + part * (probing.to[axis] - probing.from[axis])).into()
 }

@@ -5,12 +5,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_parameters::ParameterList;
+use bahn_parameters::compensation::{CompensationAssignment, CompensationTable, CorrectionTables};
 use bahn_plc::PlcProgram;
 
 use crate::alteration::Altered;
 use crate::compensation::Compensation;
-use crate::compensation_table::{CompensationAssignment, CompensationTable};
-use crate::correction_tables::CorrectionTables;
 use crate::setup::Setup;
 use crate::tnc::Tnc;
 

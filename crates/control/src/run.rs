@@ -1,53 +1,41 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
 use bahn_exchange::{Image, signal};
+use bahn_kernel::reference::is_due;
 use bahn_kernel::{
-    AxisUnit, BlockTime, Chain, Feeder, Mover, Preparation, Progress, RunFault, RunState, Tapping, Track,
-    distance_to_go, is_floating, is_rigid, thread,
+    AxisUnit, BrokenOff, Came, Chain, Demands, Feeder, Progress, Run, RunFault, RunState, ScanEnd, Started,
+    Track, distance_to_go,
 };
-use bahn_motion::{Drive, State, Stop};
+use bahn_motion::Stop;
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
-use bahn_path::{Barrier, BlockRef, Frame, LiveData, PathElement};
+use bahn_path::{Barrier, BlockRef, Frame, LiveData};
 use bahn_reader::Reader;
 use bahn_servo::Measured;
 
 use crate::command::Mode;
-use crate::driving::Driving;
+use crate::demands;
 use crate::language::{self, OwnLanguage};
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
 use crate::programs::Selection;
 use crate::q_transfer::QTransfer;
-use crate::reference;
 use crate::replacement::{Replacement, Wear};
-use crate::restore::{Restoration, ScanEnd};
 use crate::site::{PathOutputs, Site};
 use crate::source::{Basis, Resume, Source, machine_zero};
-
-/// Elements that one call of prepare reads at most.
-const BUDGET: usize = 256;
 
 /// The program run of a channel.
 #[derive(Clone)]
 pub(crate) struct ProgramRun {
     pub selection: Selection,
     pub source: Source,
-    pub track: Track,
-    progress: Progress,
+    pub core: Run,
     /// A probing movement.
     pub probe: Probe,
-    /// Block scan and return to the contour.
-    restoration: Restoration,
-    pub tapping: Tapping,
     /// Q100 to Q107 as the PLC wrote them.
     q_transfer: QTransfer,
-    /// The source goes on with this at the next preparation.
-    answer: Option<LiveData>,
     /// Of a tool that is worn, under M101.
     replacement: Replacement,
-    /// Block processing time that is simulated.
-    pub block_time: BlockTime,
 }
 
 impl ProgramRun {
@@ -55,61 +43,29 @@ impl ProgramRun {
         ProgramRun {
             selection,
             source,
-            track,
-            progress: Progress::default(),
+            core: Run::new(track),
             probe: Probe::default(),
-            restoration: Restoration::default(),
-            tapping: Tapping::default(),
             q_transfer: QTransfer::default(),
-            answer: None,
             replacement: Replacement::default(),
-            block_time: BlockTime::default(),
         }
     }
 
     pub fn progress(&self) -> &Progress {
-        &self.progress
+        self.core.progress()
     }
 
     pub fn is_active(&self) -> bool {
-        self.progress.is_active()
-    }
-
-    /// Axes are being brought back to the contour, or are to be.
-    pub fn restores(&self) -> bool {
-        self.restoration.is_on()
+        self.progress().is_active()
     }
 
     /// The block that is executed, while a run is on.
     pub fn running_block(&self) -> Option<BlockRef> {
-        self.element().map(|element| element.block)
-    }
-
-    /// The element that is executed, while a run is.
-    fn element(&self) -> Option<&PathElement> {
-        self.track.path.element().filter(|_| self.is_active())
-    }
-
-    /// A path that follows the spindle is executed, or begins.
-    pub fn taps_rigidly(&self) -> bool {
-        is_rigid(self.element())
-    }
-
-    /// Cycle 2 taps.
-    pub fn taps_floating(&self) -> bool {
-        is_floating(self.element())
-    }
-
-    /// Spindle and axis have come apart.
-    pub fn part_thread(&mut self) {
-        let element = self.track.path.element().filter(|_| self.progress.is_active());
-        self.tapping.part(&self.track, element);
+        self.core.element().map(|element| element.block)
     }
 
     /// Once in each contour cycle: what tapping tells the PLC, the axes and the spindle.
     pub fn follow_tapping(&mut self, site: &mut Site) {
-        let active = self.progress.is_active();
-        let taps = self.tapping.follow(&self.track, active, &mut site.leading());
+        let taps = self.core.follow_tapping(&mut site.acting());
         site.exchange.nc_put(signal::TAPPING_CALLED, taps.called);
         site.exchange.nc_put(signal::RIGID_TAPPING_ACTIVE, taps.rigid);
     }
@@ -125,64 +81,38 @@ impl ProgramRun {
 
     /// NC start in an automatic mode.
     pub fn start(&mut self, site: &mut Site) {
-        if self.restoration.is_on() || site.positioning.is_on() {
+        if self.core.restores() || site.positioning.is_on() {
             return;
         }
-        if self.tapping.has_lost_spindle() || reference::bars(&self.progress, site) {
+        if self.core.tapping.has_lost_spindle() || self.bars(site) {
             self.show(Message::Plain(MessageId::KeyNonFunctional), site);
             return;
         }
-        match self.progress.state() {
-            RunState::Idle => self.progress.want_begin(),
-            _ if self.progress.is_broken() => self.progress.want_begin(),
-            RunState::Running => {}
-            state => {
-                match state {
-                    RunState::BlockEnd => self.track.path.go_on(),
-                    RunState::Stopped => self.answer = Some(self.q_transfer.answer()),
-                    _ if self.track.path.is_coupled() => {
-                        // Led out of a thread by hand.
-                        self.track.path.go_on();
-                        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
-                    }
-                    _ => {}
-                }
-                self.progress.enter(RunState::Running);
-                self.restoration.return_to_path(&mut site.axes);
-                if !self.restoration.is_on() {
-                    self.track.regain(&site.axes, site.chain);
-                }
-            }
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, self.source.inch());
+        if self.core.start(outputs) == Started::LedOut {
+            site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
         }
+    }
+
+    /// No program is begun, nor goes on, before the axes that MP1340 names have passed their reference marks: until then no
+    /// software limit holds and no datum is known [000:4563-4575] [001:953]. What MDI positions may do without, but for M91 and
+    /// M92. What the control says then no manual prints (inferred).
+    fn bars(&self, site: &Site) -> bool {
+        site.mode != Mode::Mdi && !self.progress().is_running() && is_due(site.axes.iter())
     }
 
     /// NC stop, or anything that stops like it.
     pub fn stop(&mut self) {
-        self.progress.stop();
+        self.core.stop();
     }
 
     /// INTERNAL STOP: the interrupted run is broken off; the next start begins with its block.
     pub fn internal_stop(&mut self, site: &mut Site) -> bool {
-        if self.progress.is_running()
-            || !self.track.stands(&site.axes)
-            || thread::is_in_thread(&self.track, &site.standing())
-        {
-            return false;
-        }
-        if self.progress.is_broken() {
-            self.progress.leave_fault();
-            return true;
-        }
-        if self.progress.state() == RunState::Idle && !self.restoration.is_on() {
-            return false;
-        }
-        let cut = self.track.path.clear().map(|cut| cut.sequence);
         let next = self.source.feeder().map(Feeder::next_sequence);
-        // The block that probes is executed as far as its path goes.
-        let resume = if self.probe.is_on() {
-            next.map(|next| next - 1)
-        } else {
-            cut.or(next)
+        let resume = match self.core.give_up(next, self.probe.is_on(), &site.acting()) {
+            BrokenOff::Refused => return false,
+            BrokenOff::Before => return true,
+            BrokenOff::At(resume) => resume,
         };
         self.source.resume_at(resume.map(Resume::Block));
         self.break_off(site);
@@ -191,49 +121,42 @@ impl ProgramRun {
 
     /// Ends what is on its way for the run.
     fn break_off(&mut self, site: &mut Site) {
-        self.progress.break_off();
-        self.track.break_off();
-        self.answer = None;
-        self.restoration.break_off();
-        self.source.break_off(site.now.mode == Mode::Mdi);
+        self.core.break_off(&mut site.acting());
+        self.source.break_off(site.mode == Mode::Mdi);
         site.handshakes.abort(site.exchange);
         self.probe.end(site);
         site.tools.take_back(&mut site.chain.offsets);
-        site.chain.superimposed.forget();
         site.positioning.end_all(site.exchange);
-        site.axes.release(|mover| mover == Mover::Path);
         site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
         site.exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, false);
     }
 
     /// A fault interrupts the run [003:1578]; the next start begins with the block that was not executed.
     fn abort(&mut self, resume: Resume, site: &mut Site) {
-        self.track.path.clear();
+        self.core.track.path.clear();
         self.source.resume_at(Some(resume));
         self.break_off(site);
-        if site.now.mode != Mode::Mdi {
-            self.progress.fail();
+        if site.mode != Mode::Mdi {
+            self.core.fail();
         }
     }
 
     /// What the block at the gate of the path asks for is refused: the run ends before it. `false` when it is
     /// only to be stopped.
     pub fn refuse_block(&mut self, site: &mut Site) -> bool {
-        match self.track.path.element().map(|element| element.sequence) {
-            Some(sequence) if self.track.stands(&site.axes) && self.is_active() => {
-                self.abort(Resume::Block(sequence), site);
-                true
-            }
-            _ => false,
-        }
+        let Some(sequence) = self.core.refusable(&site.axes) else {
+            return false;
+        };
+        self.abort(Resume::Block(sequence), site);
+        true
     }
 
     /// END PGM, M2 or M30.
     fn end(&mut self, site: &mut Site) {
         self.source.end();
         self.break_off(site);
-        self.progress.end();
-        if site.now.mode != Mode::Mdi {
+        self.core.end();
+        if site.mode != Mode::Mdi {
             self.source.resume_at(None);
             self.selection.start_block = 0;
             site.exchange.nc_put(signal::PROGRAM_END_EXECUTED, true);
@@ -242,7 +165,7 @@ impl ProgramRun {
 
     /// What is to be done once a run is over, outside the cycle.
     pub fn close(&mut self, site: &mut Site, basis: &Basis) {
-        let (track, q_transfer) = (&mut self.track, &mut self.q_transfer);
+        let (track, q_transfer) = (&mut self.core.track, &mut self.q_transfer);
         let closed = self.source.close(|| {
             track.path.clear();
             q_transfer.take_all()
@@ -250,7 +173,7 @@ impl ProgramRun {
         if closed && site.chain.placement().is_some() {
             // By hand 3D ROT alone tilts.
             site.chain.place(None);
-            self.track.begin_at(site.here(), site.chain);
+            self.core.track.begin_at(site.here(), site.chain);
         }
         if closed && basis.list.program_end_clearing().at_program_end && !self.source.was_mdi() {
             self.source.cancel_status(basis.list, site);
@@ -263,68 +186,45 @@ impl ProgramRun {
 
     /// Interprets ahead; begins a run.
     pub fn prepare(&mut self, site: &mut Site, basis: &Basis) {
-        let allowed = self.block_time.allow(site.now.us, BUDGET);
+        let allowed = self.core.allowed(site.now.us);
         let source = &mut self.source;
-        let mdi = site.now.mode == Mode::Mdi;
+        let mdi = site.mode == Mode::Mdi;
         if self
-            .progress
-            .take_begin(|| site.axes.rest() && source.may_begin(mdi))
+            .core
+            .takes_begin(|| site.axes.rest() && source.may_begin(mdi))
         {
             self.begin(site, basis);
         }
-        self.track.reserve();
+        self.core.track.reserve();
         if !self.is_active() && site.handshakes.is_idle() {
             site.call_inserted_tool();
         }
         self.replacement
-            .prepare(self.source.feeder_mut(), &mut self.track, site);
-        let wear = Wear::of(site.tools, site.magazine);
-        let scans = self.restoration.scans();
-        let Some(feeder) = self
-            .source
-            .feeder_mut()
-            .filter(|_| self.progress.is_on_its_way() && !scans)
-        else {
+            .prepare(self.source.feeder_mut(), &mut self.core.track, site);
+        let reads = self.progress().is_on_its_way() && !self.core.scans();
+        let Some(feeder) = self.source.feeder_mut().filter(|_| reads) else {
             return;
         };
-        let path = &mut self.track.path;
-        if let Some(recalled) = path.take_recalled() {
-            feeder.put_back(recalled.into_iter());
-        }
         let zero = machine_zero(&site.axes, site.chain);
-        let limits = (site.axes.traverse_box(), site.axes.programmable());
-        feeder.set_datum(site.chain.offsets.datum, zero, limits);
-        let is_back = self.restoration.is_over(&site.axes);
-        if let Some(answer) = self.answer.take_if(|_| is_back) {
-            let probed = answer.touch.is_some();
-            if !probed {
-                // The PLC may have moved the axes, or corrected the datum [000:8914].
-                feeder.reader_mut().stand_at(&site.here());
-            }
-            path.resume(feeder, answer);
-            if let Some(call) = site.tools.inserted_call.take() {
-                feeder.insert(&call);
-            } else if let Wear::Replace(tool) = wear
-                && !probed
-            {
-                feeder.replace_tool(site.tools.number, tool);
-            }
-        }
-        if let Some(element) = path.element() {
-            feeder.forget_before(element.sequence);
-        }
-        feeder.allow_work();
-        let before = feeder.elements_read();
-        path.prepare(feeder, allowed);
-        self.block_time.spend(feeder.elements_read() - before);
+        let wear = Wear::of(site.tools, site.magazine);
+        let (worn, mut inserted) = (site.tools.number, site.tools.inserted_call.take());
+        self.core
+            .prepare(feeder, allowed, zero, &site.acting(), |feeder, probed| {
+                if let Some(call) = inserted.take() {
+                    feeder.insert(&call);
+                } else if let Wear::Replace(tool) = wear
+                    && !probed
+                {
+                    feeder.replace_tool(worn, tool);
+                }
+            });
+        site.tools.inserted_call = inserted;
     }
 
     fn begin(&mut self, site: &mut Site, basis: &Basis) {
-        let mdi = site.now.mode == Mode::Mdi;
+        let mdi = site.mode == Mode::Mdi;
         site.exchange.nc_put(signal::PROGRAM_END_EXECUTED, false);
-        self.progress.begin();
-        self.track.forget_position();
-        self.answer = None;
+        self.core.begin();
         if mdi {
             self.source.set_aside();
         }
@@ -348,8 +248,7 @@ impl ProgramRun {
         } else if let Some(feeder) = self.source.feeder() {
             site.chain.place(feeder.reader().placement());
         }
-        self.track.begin_at(site.here(), site.chain);
-        self.progress.enter(RunState::Running);
+        self.core.set_off(&site.acting());
     }
 
     /// RESTORE AT N: scans to a block.
@@ -360,10 +259,10 @@ impl ProgramRun {
         site: &mut Site,
         basis: &Basis,
     ) -> bool {
-        if self.is_active() || !rules.block_scan || reference::bars(&self.progress, site) {
+        if self.is_active() || !rules.block_scan || self.bars(site) {
             return false;
         }
-        let mdi = site.now.mode == Mode::Mdi;
+        let mdi = site.mode == Mode::Mdi;
         let ready = self.source.may_begin(mdi);
         let Some(opened) = self
             .source
@@ -381,26 +280,29 @@ impl ProgramRun {
         site.chain.place(None);
         let feeder = self.source.feeder_for_run(opened, start, site, basis);
         self.source.put(feeder);
-        self.progress.scan();
-        self.restoration.scan(block, site.exchange);
+        self.core.scan(block);
+        site.exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, true);
         true
     }
 
     /// Takes what has come of the program, and goes on with a scan; may allocate.
     pub fn read_on(&mut self, rules: &RestartParameters, site: &mut Site) {
         self.source.grow();
-        if self.source.is_stuck() && self.progress.is_on_its_way() && self.track.path.element().is_none() {
+        let waits = self.progress().is_on_its_way() && self.core.track.path.element().is_none();
+        if waits && self.source.is_stuck() {
             self.show(Message::Plain(MessageId::ProgramMemoryOverflow), site);
             self.abort(Resume::Fault, site);
         }
-        let Some(feeder) = self.source.feeder_mut().filter(|_| self.restoration.scans()) else {
+        let inch = self.source.inch();
+        let Some(feeder) = self.source.feeder_mut().filter(|_| self.core.scans()) else {
             return;
         };
-        feeder.allow_work();
-        let (q, track) = (&mut self.q_transfer, &mut self.track);
-        match self.restoration.prepare(feeder, q, rules, track, site) {
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, inch);
+        match self.core.scan_on(feeder, rules, outputs) {
             None => return,
-            Some(ScanEnd::NotAddressed) => self.show(ScanEnd::NOT_ADDRESSED, site),
+            Some(ScanEnd::NotAddressed) => {
+                self.show(Message::Plain(MessageId::SelectedBlockNotAddressed), site);
+            }
             Some(ScanEnd::Fault(fault)) => self.show_fault(fault, site),
         }
         self.internal_stop(site);
@@ -408,166 +310,111 @@ impl ProgramRun {
 
     /// MANUAL OPERATION while a run is interrupted.
     pub fn manual_operation(&mut self, rules: &RestartParameters, site: &mut Site) -> bool {
-        let coupled = self.track.path.is_coupled();
-        let possible = self.progress.state() == RunState::Interrupted
-            && !self.restoration.is_on()
-            && (rules.return_to_contour && self.track.stands(&site.axes) || coupled);
+        let probed = self.probe.is_on();
+        let possible = self
+            .core
+            .leave_path(rules.return_to_contour, probed, &mut site.axes);
         if possible {
             site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, true);
-            if !coupled {
-                site.axes.leave_path(self.probe.is_on());
-            }
         }
         possible
     }
 
     /// Whether the operator may move axes while a run is interrupted.
     pub fn is_operated_manually(&self, nc: &Image) -> bool {
-        self.progress.state() == RunState::Interrupted && nc.bit(signal::MANUAL_OPERATION_PRESSED)
+        self.progress().state() == RunState::Interrupted && nc.bit(signal::MANUAL_OPERATION_PRESSED)
     }
 
     /// RESTORE POSITION.
     pub fn restore_position(&mut self, site: &mut Site) -> bool {
         let may = self.is_operated_manually(site.exchange.nc());
-        self.restoration.arm(may, &self.track, site)
+        let armed = self.core.restore(may, &mut site.acting());
+        if armed {
+            let exchange = &mut *site.exchange;
+            exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
+            exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, false);
+            exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, true);
+        }
+        armed
     }
 
     /// Moves the axes back to the contour for a cycle, when that is what is to be done.
     pub fn move_back(&mut self, site: &mut Site) {
-        let (q, track) = (&mut self.q_transfer, &mut self.track);
-        self.restoration.moves(self.source.feeder_mut(), q, track, site);
+        let inch = self.source.inch();
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, inch);
+        if self.core.move_back(self.source.feeder_mut(), outputs) {
+            site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, false);
+        }
     }
 
     /// Moves the axes along the path for a cycle.
     pub fn moves(&mut self, site: &mut Site, measured: &Measured) {
-        if !self.progress.is_on_its_way() || self.restoration.is_on() {
-            site.chain.superimposed.stand();
-            return;
-        }
-        let runs = self.progress.goes_on();
-        if self.probe.is_held(&site.axes) || self.tapping.holds(&mut self.track, runs, &mut site.leading()) {
-            // Without feed enable the axes stand at once [000:5352].
-            site.chain.superimposed.stand();
-            self.track.halt();
-            self.track.hold(&mut site.axes, site.now.time_s);
+        let probe = &mut self.probe;
+        if !self.core.may_move(|axes| probe.is_held(axes), &mut site.acting()) {
             return;
         }
         if self.probe.is_on() {
-            let probed = self.probe.moves(runs, site, measured);
+            let probed = self.probe.moves(self.core.progress().goes_on(), site, measured);
             self.take_probed(probed, site);
             return;
         }
-        let settled = self.is_in_position(site);
         let wear = Wear::of(site.tools, site.magazine).message();
-        let drive = Driving {
-            track: &self.track,
-            progress: &self.progress,
-            tapping: &self.tapping,
-            element: self.element(),
-            by_hand: self.is_operated_manually(site.exchange.nc()),
-            stop_before: self.replacement.place(),
-            settled,
-            worn: wear.is_some(),
-        }
-        .drive(site);
-        let cycle = self.track.path.cycle(&drive);
-        self.track.set_speed(cycle.speed_mm_s);
-        self.tapping.lead(cycle.lead, &mut site.spindle.drive);
-        let wheels = site.now.wheels();
-        self.track
-            .follow(&cycle.position, &mut site.axes, site.chain, &wheels);
-        let inch = self.source.inch();
-        let q_transfer = &mut self.q_transfer;
-        let outputs = &mut PathOutputs {
-            site,
-            q_transfer,
-            inch,
-        };
-        self.track.output(outputs, settled);
-        self.take_state(cycle.state, &drive, wear, site);
-    }
-
-    /// What the path came to in this cycle.
-    fn take_state(&mut self, state: State, drive: &Drive, wear: Option<MessageId>, site: &mut Site) {
-        let all_output = self.track.has_output_all() && site.handshakes.is_idle();
-        let done = drive.in_position && all_output && self.restoration.is_over(&site.axes);
-        match state {
-            State::Gate(_) if all_output && !site.positioning.is_on() => {
-                self.track.path.release();
-                self.track.regain(&site.axes, site.chain);
-            }
-            State::Master if self.prepare_thread(site) == Preparation::Refused => {
+        let by_hand = self.is_operated_manually(site.exchange.nc());
+        let demands = demands::of(site, self.replacement.place(), wear.is_some(), by_hand);
+        let outputs = &mut PathOutputs::new(site, &mut self.q_transfer, self.source.inch());
+        match self.core.moves(&demands, outputs) {
+            Came::On => {}
+            Came::BlockEnd => self.end_block(&demands, wear, site),
+            Came::NoThread => {
                 // No manual names the message of a spindle without analogue output or encoder (inferred).
                 self.show(Message::Plain(MessageId::WrongRpm), site);
-                let block = self.track.path.element().map_or(0, |element| element.sequence);
-                self.abort(Resume::Block(block), site);
+                let block = self.core.track.path.element();
+                self.abort(Resume::Block(block.map_or(0, |element| element.sequence)), site);
             }
-            State::Clamped => self.track.ask_to_unclamp(drive.clamped, &mut site.axes),
-            State::BlockEnd if drive.in_position && self.progress.goes_on() => {
-                if let Some(message) = wear {
-                    self.show(Message::Plain(message), site);
-                }
-                if self.replacement.is_here(&self.track, site) {
-                    // What follows is given by the next preparation.
-                } else if site.now.mode == Mode::SingleBlock || wear.is_some() {
-                    self.progress.enter(RunState::BlockEnd);
-                } else if !site.handshakes.inhibit_read_in() {
-                    self.track.path.go_on();
-                }
-            }
-            State::Stopped if done && !site.handshakes.inhibit_read_in() => self.take_stop(site),
-            _ => {}
+            Came::Stop(stop) => self.take_stop(stop, site),
         }
     }
 
-    /// The path waits for its spindle, whose loop the PLC may keep open (M2499).
-    fn prepare_thread(&mut self, site: &mut Site) -> Preparation {
-        let open = site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP);
-        self.tapping.prepare(&self.track, open, &mut site.leading())
-    }
-
-    fn is_in_position(&self, site: &Site) -> bool {
-        if self.track.path.is_coupled() {
-            return self.tapping.is_in_position(&self.track, &site.standing());
+    /// A block is over: a worn tool is said or replaced, in SINGLE BLOCK the run waits for NC start.
+    fn end_block(&mut self, demands: &Demands, wear: Option<MessageId>, site: &mut Site) {
+        if let Some(message) = wear {
+            self.show(Message::Plain(message), site);
         }
-        site.axes.are_in_position()
+        // What follows a replacement is given by the next preparation.
+        if !self.replacement.is_here(&self.core.track, site) {
+            self.core
+                .end_block(demands.single_block, demands.read_in_inhibited);
+        }
     }
 
     /// The axes stand as far as the loops may be opened: those of a thread as far as they can.
     pub fn axes_stand(&self, site: &Site) -> bool {
-        if self.track.path.is_coupled() {
-            thread::stands(&self.track, &site.axes)
-        } else {
-            site.axes.stand()
-        }
+        self.core.axes_stand(&site.axes)
     }
 
     /// The path came to what the source said after it.
-    fn take_stop(&mut self, site: &mut Site) {
-        match self.track.path.take_stop() {
-            None => {}
-            Some(Stop::Barrier(Barrier::Stop { .. })) => self.progress.enter(RunState::Stopped),
-            Some(Stop::Barrier(Barrier::Acknowledge { .. })) => {
-                self.answer = Some(self.q_transfer.answer());
-            }
-            Some(Stop::Barrier(barrier)) if site.chain.superimposed.is_on() => {
+    fn take_stop(&mut self, stop: Stop<RunFault>, site: &mut Site) {
+        match stop {
+            Stop::Barrier(barrier) if site.chain.superimposed.is_on() => {
                 self.take_probed(Probed::beside_the_path(&barrier), site);
             }
-            Some(Stop::Barrier(Barrier::Probe {
+            Stop::Barrier(Barrier::Probe {
                 block,
                 from,
                 to,
                 feed_mm_min,
                 ..
-            })) => self.probe.begin(block, [from, to], feed_mm_min, site),
-            Some(Stop::Barrier(Barrier::MeasureTool(order))) => {
+            }) => self.probe.begin(block, [from, to], feed_mm_min, site),
+            Stop::Barrier(Barrier::MeasureTool(order)) => {
                 let probed = self.probe.measure(order, site);
                 self.take_probed(probed, site);
             }
-            Some(Stop::Barrier(Barrier::Scan { block, job })) => self.probe.scan(block, job, site),
-            Some(Stop::End) if self.source.is_incomplete() => self.abort(Resume::Fault, site),
-            Some(Stop::End) => self.end(site),
-            Some(Stop::Error(fault)) => {
+            Stop::Barrier(Barrier::Scan { block, job }) => self.probe.scan(block, job, site),
+            // The run has answered these itself.
+            Stop::Barrier(Barrier::Stop { .. } | Barrier::Acknowledge { .. }) => {}
+            Stop::End if self.source.is_incomplete() => self.abort(Resume::Fault, site),
+            Stop::End => self.end(site),
+            Stop::Error(fault) => {
                 self.show_fault(fault, site);
                 self.abort(Resume::Fault, site);
             }
@@ -581,18 +428,13 @@ impl ProgramRun {
             Probed::Moves => {}
             Probed::Over(touch) => {
                 let at = touch.map_or_else(|| site.here(), |touch| touch.position);
-                self.track.path.set_position(at);
-                self.track.forget_position();
-                self.answer = Some(LiveData {
+                let answer = LiveData {
                     touch,
                     ..LiveData::default()
-                });
+                };
+                self.core.go_on_with(answer, at);
             }
-            Probed::Found(live) => {
-                self.track.path.set_position(site.here());
-                self.track.forget_position();
-                self.answer = Some(live);
-            }
+            Probed::Found(live) => self.core.go_on_with(live, site.here()),
             Probed::Refused(message, block) => {
                 let sequence = self.source.reader().map_or(0, Reader::blocks_executed);
                 site.messages.show(message, block);
@@ -623,19 +465,19 @@ impl ProgramRun {
 
     /// Q parameters that are not 0, by number.
     pub fn q_values(&self) -> Vec<(u16, f64)> {
-        self.source.q_values(self.progress.has_ended())
+        self.source.q_values(self.progress().has_ended())
     }
 
     /// A Q parameter at the block that is executed; without a run as the last one has left it.
     pub fn q_value(&self, number: u16) -> f64 {
-        let executed = self.element().map(|element| element.sequence);
-        self.source.q_value(number, self.progress.has_ended(), executed)
+        let executed = self.core.element().map(|element| element.sequence);
+        self.source.q_value(number, self.progress().has_ended(), executed)
     }
 
     /// Transformations at the block that is executed, else those that are left; `None` while the program is handed over.
     pub fn frame(&self) -> Option<Frame> {
-        let executed = self.element().map(|element| element.sequence);
-        self.source.frame(self.progress.has_ended(), executed)
+        let executed = self.core.element().map(|element| element.sequence);
+        self.source.frame(self.progress().has_ended(), executed)
     }
 
     /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
@@ -652,7 +494,7 @@ impl ProgramRun {
     pub fn select(&mut self, name: String, site: &mut Site, basis: &Basis) -> bool {
         let possible = !self.is_active();
         if possible {
-            self.source.keep_q_values(self.progress.has_ended());
+            self.source.keep_q_values(self.progress().has_ended());
             self.source.cancel_status(basis.list, site);
             self.source.drip_feed = None;
             self.selection.program = Some(name);
@@ -665,7 +507,7 @@ impl ProgramRun {
     pub fn goto(&mut self, block: u32) -> bool {
         let possible = !self.is_active();
         if possible {
-            self.source.keep_q_values(self.progress.has_ended());
+            self.source.keep_q_values(self.progress().has_ended());
             self.begin_at(block);
         }
         possible
@@ -674,9 +516,8 @@ impl ProgramRun {
     /// The next start begins anew, not with the block of an interruption.
     fn begin_at(&mut self, block: u32) {
         self.selection.start_block = block;
-        self.track.forget_feed();
+        self.core.forget();
         self.source.forget();
-        self.progress.leave_fault();
     }
 
     /// The blocks of MDI.
@@ -690,7 +531,7 @@ impl ProgramRun {
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.
     pub fn distance_to_go(&self, unit: &AxisUnit, chain: &Chain) -> f64 {
-        let element = self.element();
+        let element = self.core.element();
         element.map_or(0.0, |element| distance_to_go(element, unit, chain))
     }
 }

@@ -1,11 +1,11 @@
 //! Commands that act on the program run.
 
+use bahn_interpreter::DripFeed;
 use bahn_kernel::{Feeder, RunState};
 use bahn_parameters::operation::RestartParameters;
 
 use crate::command::Command;
-use crate::drip_feed::{Dnc, DripFeed};
-use crate::leaning;
+use crate::dnc::Dnc;
 use crate::message::Message;
 use crate::plane_command::PlaneCommand;
 use crate::run::ProgramRun;
@@ -41,7 +41,7 @@ fn tilt(plane: &PlaneCommand, run: &mut ProgramRun, site: &Site, basis: &Basis) 
     let basic = basis.touch.basic_rotation(site.chain.offsets.tool_axis).angle_deg;
     let tilting = basis.list.operation_parameters().tilting && !run.is_active();
     let swivels = basis.list.swivels().filter(|_| tilting);
-    let positions = swivels.and_then(|swivels| leaning::positions(plane, &swivels, &site.axes));
+    let positions = swivels.and_then(|swivels| plane.positions(&swivels, &site.axes));
     // A basic rotation is measured and in force with the swivel axes at 0 only [000:4269].
     positions.is_some_and(|positions| (basic == 0.0 || positions.is_none()) && run.source.tilt(positions))
 }
@@ -51,7 +51,7 @@ fn transfer(dnc: Dnc, run: &mut ProgramRun, site: &mut Site, basis: &Basis) -> b
     let name = match dnc {
         Dnc::Begin(name) => name,
         dnc => {
-            let answer = run.source.drip_feed.as_mut().map(|feed| feed.follow(&dnc));
+            let answer = run.source.drip_feed.as_mut().map(|feed| dnc.follow(feed));
             let (done, said) = answer.unwrap_or_default();
             if let Some(message) = said {
                 site.messages.show(Message::Plain(message), run.running_block());
@@ -79,12 +79,12 @@ fn transfer(dnc: Dnc, run: &mut ProgramRun, site: &mut Site, basis: &Basis) -> b
 fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bool {
     // After a programmed stop nothing is read.
     if run.is_active() && run.progress().state() != RunState::Stopped {
-        let stands = !run.progress().is_running() && run.track.stands(&site.axes);
-        let free = site.handshakes.is_idle() && run.track.has_output_all() && !run.probe.is_on();
-        if !stands || !free || run.restores() || run.track.path.is_coupled() {
+        let stands = !run.progress().is_running() && run.core.track.stands(&site.axes);
+        let free = site.handshakes.is_idle() && run.core.track.has_output_all() && !run.probe.is_on();
+        if !stands || !free || run.core.restores() || run.core.track.path.is_coupled() {
             return false;
         }
-        let cut = run.track.path.clear().map(|cut| cut.sequence);
+        let cut = run.core.track.path.clear().map(|cut| cut.sequence);
         let next = run.source.feeder().map(Feeder::next_sequence);
         run.source.resume_at(cut.or(next).map(Resume::Block));
         if run.source.go_on(site)
@@ -92,7 +92,7 @@ fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bo
         {
             site.chain.place(feeder.reader().placement());
         }
-        run.track.begin_at(site.here(), site.chain);
+        run.core.track.begin_at(site.here(), site.chain);
     }
     run.source.set_q(number, value);
     true

@@ -267,7 +267,7 @@ impl Signal {
 impl Signal {
     /// Its value now; an axis that the channel does not have reads 0.
     pub(crate) fn value(&self, channel: &Channel, machine: &MachineSide, seam: &Clock) -> f64 {
-        let (run, track) = (&channel.run, &channel.run.track);
+        let (run, track) = (&channel.run, &channel.run.core.track);
         let plc = machine.memory.of(channel.number()).plc();
         let spindle = machine.spindles.of(channel.number());
         let bit = |bit: bool| f64::from(u8::from(bit));

@@ -1,16 +1,16 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_kernel::{AxisId, Chain, Direction, Leading, Moment, Outputs, OwnAxes, Standing};
+use bahn_kernel::{Acting, AxisId, Chain, Direction, Now, Outputs, OwnAxes, RunFamily};
 use bahn_parameters::technology::{ControlAction, Output, Technology};
-use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall, Voltage};
+use bahn_path::{Axis, ControlFunction, Function, LiveData, Position, ToolCall, Voltage};
 
+use crate::command::Mode;
 use crate::handshake::{Handshakes, Transfer};
 use crate::magazine::Magazine;
 use crate::markers::TOOL_AXIS;
 use crate::message::{Message, Messages};
-use crate::now::Now;
-use crate::positioning::Positioning;
+use crate::positioning::PlcPositioning;
 use crate::q_transfer::QTransfer;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
@@ -18,6 +18,7 @@ use crate::tools::Tools;
 /// Where a channel acts: its axes, its spindle and tools, its part of the PLC's memory, the messages. Who
 /// executes blocks or functions is given this, and nothing else of machine and channel.
 pub(crate) struct Site<'a> {
+    pub mode: Mode,
     pub now: Now,
     pub axes: OwnAxes<'a>,
     pub spindle: &'a mut SpindleUnit,
@@ -25,20 +26,19 @@ pub(crate) struct Site<'a> {
     pub magazine: &'a Magazine,
     pub chain: &'a mut Chain,
     pub handshakes: &'a mut Handshakes,
-    pub positioning: &'a mut Positioning,
+    pub positioning: &'a mut PlcPositioning,
     pub exchange: &'a mut Exchange,
     pub messages: &'a mut Messages,
 }
 
 impl<'a> Site<'a> {
-    /// Axes and spindle, to be led along a thread.
-    pub fn leading(&mut self) -> Leading<'_, 'a> {
-        let moment = self.moment();
-        Leading {
+    /// Axes and spindle, where a run acts on them.
+    pub fn acting(&mut self) -> Acting<'_, 'a> {
+        Acting {
             axes: &mut self.axes,
             chain: self.chain,
             spindle: &mut self.spindle.drive,
-            moment,
+            now: &self.now,
         }
     }
 
@@ -164,25 +164,6 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// What holds now for a thread.
-    fn moment(&self) -> Moment {
-        Moment {
-            time_s: self.now.time_s,
-            ready: self.now.ready,
-            loops_closed: self.now.loops_closed,
-        }
-    }
-
-    /// Axes and spindle, to be looked at.
-    pub fn standing(&self) -> Standing<'_> {
-        Standing {
-            axes: &self.axes,
-            chain: self.chain,
-            spindle: &self.spindle.drive,
-            moment: self.moment(),
-        }
-    }
-
     /// The message of an axis that a block would lead beyond its limit.
     pub fn limit_message(&mut self, axis: Axis, direction: Direction) -> Message {
         let id = self.axes.iter_mut().find(|unit| unit.axis == axis).map(|unit| {
@@ -199,6 +180,32 @@ pub(crate) struct PathOutputs<'a, 'b> {
     pub q_transfer: &'a mut QTransfer,
     /// The program is in inches.
     pub inch: bool,
+}
+
+impl<'a, 'b> PathOutputs<'a, 'b> {
+    /// Those of a program, which may be in inches.
+    pub fn new(site: &'a mut Site<'b>, q_transfer: &'a mut QTransfer, inch: bool) -> Self {
+        PathOutputs {
+            site,
+            q_transfer,
+            inch,
+        }
+    }
+}
+
+impl<'b> RunFamily<'b> for PathOutputs<'_, 'b> {
+    fn acting(&mut self) -> Acting<'_, 'b> {
+        self.site.acting()
+    }
+
+    fn has_transferred(&self) -> bool {
+        self.site.handshakes.is_idle()
+    }
+
+    /// With the Q parameters that the PLC has written.
+    fn answer(&mut self) -> LiveData {
+        self.q_transfer.answer()
+    }
 }
 
 impl Outputs for PathOutputs<'_, '_> {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use bahn_exchange::{Bit, signal};
-use bahn_interpreter::{Interpreter, Rules, Settings, Status};
+use bahn_interpreter::{DripFeed, Interpreter, Rules, Settings, Status};
 use bahn_kernel::{Chain, Feeder, OwnAxes};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
@@ -14,7 +14,6 @@ use bahn_reader::{Reader, Start};
 use bahn_servo::Rotation;
 
 use crate::beside::Loan;
-use crate::drip_feed::DripFeed;
 use crate::language::{self, OwnLanguage};
 use crate::manual_probing::ManualProbing;
 use crate::message::Message;

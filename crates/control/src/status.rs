@@ -152,13 +152,13 @@ pub(crate) fn run(run: &ProgramRun, waits: bool, exchange: &mut Exchange) {
         matches!(state, RunState::Running | RunState::Interrupted) || waits,
     );
     exchange.nc_put(signal::PROGRAM_INTERRUPTED, state == RunState::Interrupted);
-    let programmed = run.track.programmed_feed();
+    let programmed = run.core.track.programmed_feed();
     exchange.nc_put(
         signal::RAPID_TRAVERSE_PROGRAMMED,
         programmed.is_none() && run.is_active(),
     );
     exchange.nc_put_number(signal::PROGRAMMED_FEED, programmed.unwrap_or(0.0).round() as i32);
-    let feed = (run.track.speed_mm_s() * 60.0).round();
+    let feed = (run.core.track.speed_mm_s() * 60.0).round();
     exchange.nc_put_number(signal::CURRENT_FEED, feed as i32);
 }
 

@@ -185,13 +185,13 @@ impl Tnc {
     pub fn follow_on(&mut self, before: &Tnc) {
         self.clock.follow_on(&before.clock);
         self.machine.messages.restart(before.machine.messages.time_us());
-        self.machine.link.keep_lines(&before.machine.link);
+        self.machine.link.lines.follow_on(&before.machine.link.lines);
         self.keeps = before.keeps;
         self.ordered.clone_from(&before.ordered);
         for (new, old) in self.channels.iter_mut().zip(before.channels.iter()) {
             new.run.source.tap = old.run.source.tap;
             new.run.source.defers = old.run.source.defers;
-            new.run.block_time.clone_from(&old.run.block_time);
+            new.run.core.block_time.clone_from(&old.run.core.block_time);
         }
     }
 

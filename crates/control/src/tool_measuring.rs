@@ -2,11 +2,11 @@
 //! backwards or is oriented, and probes it, once or at each of its places [000:7960-8058].
 
 use bahn_exchange::{Exchange, signal};
-use bahn_kernel::{AxisUnit, Chain, Mover, OwnAxes};
-use bahn_motion::{Aim, PointToPoint};
+use bahn_kernel::{AxisUnit, Chain, OwnAxes, Straight};
+use bahn_motion::Aim;
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
-use bahn_path::{Axis, LiveData, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
+use bahn_path::{Axis, LiveData, MeasuredPart, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
 use crate::handshake::Transfer;
@@ -67,10 +67,7 @@ struct Sequence {
     /// The touch that is under way.
     contact: Contact,
     /// The movement on its way.
-    from: Position,
-    to: Position,
-    length: f64,
-    way: PointToPoint,
+    line: Straight,
     touch: Option<f64>,
     speed_before: f64,
     /// The angle of cycle 13, which the PLC is told of each tooth.
@@ -87,18 +84,12 @@ impl ToolMeasurement {
 
     /// The movement on its way: its start and its farthest end, path coordinates.
     pub fn way(&self) -> Option<[Position; 2]> {
-        self.0.as_ref().map(|run| [run.from, run.to])
+        self.0.as_ref().map(|run| run.line.ends())
     }
 
     /// An axis of its way cannot move: the way stands at once.
     pub fn is_held(&mut self, axes: &OwnAxes) -> bool {
-        let Some(run) = &mut self.0 else { return false };
-        let moves = |axis: Axis| run.to[axis] != run.from[axis];
-        let held = axes.iter().any(|unit| moves(unit.axis) && !unit.may_be_led());
-        if held {
-            run.way = PointToPoint::new(run.way.position());
-        }
-        held
+        self.0.as_mut().is_some_and(|run| run.line.is_held(axes))
     }
 
     /// The path came to a cycle that measures.
@@ -134,10 +125,7 @@ impl ToolMeasurement {
             axis,
             contacts,
             contact,
-            from: here,
-            to: here,
-            length: 0.0,
-            way: PointToPoint::new(0.0),
+            line: Straight::new([here; 2], &site.axes),
             touch: None,
             speed_before: site.spindle.state().programmed_rpm,
             angle_before: site.spindle.cycle_angle_deg(),
@@ -261,24 +249,20 @@ impl Sequence {
     /// Where a phase leads to, from where the axes stand.
     fn go_to(&mut self, phase: Phase, site: &Site) {
         self.phase = phase;
-        self.from = site.here();
-        self.to = self.from;
+        let from = site.here();
+        let mut to = from;
         self.asked = false;
         match phase {
-            Phase::Up | Phase::Leave => self.to[self.axis] = self.order.height,
+            Phase::Up | Phase::Leave => to[self.axis] = self.order.height,
             Phase::Over => {
-                let height = self.from[self.axis];
-                self.to = self.contact.before;
-                self.to[self.axis] = height;
+                to = self.contact.before;
+                to[self.axis] = from[self.axis];
             }
-            Phase::Down | Phase::Back => self.to = self.contact.before,
-            Phase::Search => self.to = self.contact.farthest,
+            Phase::Down | Phase::Back => to = self.contact.before,
+            Phase::Search => to = self.contact.farthest,
             _ => {}
         }
-        let way = |axis: Axis| self.to[axis] - self.from[axis];
-        let squares = Axis::ALL.into_iter().map(|axis| way(axis).powi(2));
-        self.length = squares.filter(|square| square.is_finite()).sum::<f64>().sqrt();
-        self.way = PointToPoint::new(0.0);
+        self.line = Straight::new([from, to], &site.axes);
     }
 
     /// The spindle turns backwards at the speed for its radius, or stops and has the speed that was programmed.
@@ -389,27 +373,12 @@ impl Sequence {
         let aim = match self.phase {
             _ if !running => Aim::Feed(0.0),
             Phase::Brake => Aim::Feed(0.0),
-            _ => Aim::Position(self.length),
+            _ => Aim::Position(self.line.length()),
         };
-        let units = site.axes.iter();
-        let moving = units.filter(|unit| self.to[unit.axis] != self.from[unit.axis]);
-        let acceleration = moving
-            .map(|unit| unit.parameters.motion.acceleration_m_s2)
-            .fold(f64::INFINITY, f64::min);
-        let time = site.now.time_s;
-        let at = self.way.cycle(time, aim, feed, acceleration);
-        let part = if self.length > 0.0 { at / self.length } else { 1.0 };
-        let place = |axis: Axis| self.from[axis] + part * (self.to[axis] - self.from[axis]);
-        let nominal = site.chain.to_axes(&PerAxis::from_fn(place).into());
-        for unit in site.axes.iter_mut() {
-            let value = nominal[unit.axis];
-            if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && unit.is_free() {
-                unit.follow_probe(value, time);
-            }
-        }
+        self.line.lead(aim, feed, &mut site.axes, site.chain, &site.now);
         let arrived = match self.phase {
-            Phase::Brake => self.way.speed_mm_s() == 0.0,
-            _ => self.length == 0.0 || self.way.is_at(self.length),
+            Phase::Brake => self.line.stands(),
+            _ => self.line.is_over(),
         };
         if !arrived || !site.axes.have_arrived() {
             return Measuring::Moves;

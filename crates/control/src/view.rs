@@ -1,17 +1,15 @@
 //! A channel to be looked at.
 
-use bahn_interpreter::Interpreter;
-use bahn_kernel::{RunState, machine_position};
+use bahn_interpreter::{DripFeed, DripFeedState, Interpreter};
+use bahn_kernel::{RunState, machine_position, reference};
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Frame, PathElement, Position};
 use bahn_reader::Reader;
 
 use crate::channel::Channel;
 use crate::command::Mode;
-use crate::drip_feed::{DripFeed, DripFeedState};
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
-use crate::reference;
 use crate::scanning::DigitizedNews;
 use crate::screen_command::ScreenCommand;
 use crate::setup::{AxisLimit, Remembered};
@@ -107,7 +105,7 @@ impl<'a> ChannelView<'a> {
 
     /// The element of the path that is executed, or was last.
     pub fn element(&self) -> Option<&'a PathElement> {
-        self.channel.run.track.path.element()
+        self.channel.run.core.track.path.element()
     }
 
     /// The block with which NC start begins, or goes on where a run was broken off [003:1630-1640]; `None` while the program
@@ -119,7 +117,7 @@ impl<'a> ChannelView<'a> {
 
     /// Path length to the end of that element, mm; below 0 where a thread waits after its end.
     pub fn rest_mm(&self) -> f64 {
-        self.channel.run.track.path.rest_mm()
+        self.channel.run.core.track.path.rest_mm()
     }
 
     /// The program that runs, or ran last.
@@ -293,17 +291,21 @@ impl<'a> ChannelView<'a> {
 
     /// The spindle leads the path: a thread is being cut.
     pub fn is_in_thread(&self) -> bool {
-        self.channel.run.track.path.is_coupled()
+        self.channel.run.core.track.path.is_coupled()
     }
 
     /// The axis of a thread goes where its spindle turns: neither is it held, nor have they come apart.
     pub fn follows_spindle(&self) -> bool {
-        self.channel.run.tapping.follows_spindle(&self.channel.run.track)
+        self.channel
+            .run
+            .core
+            .tapping
+            .follows_spindle(&self.channel.run.core.track)
     }
 
     /// Axes are being brought back to the contour, or are to be.
     pub fn restores(&self) -> bool {
-        self.channel.run.restores()
+        self.channel.run.core.restores()
     }
 
     /// The value of a signal; an axis that the channel does not have reads 0.

@@ -216,6 +216,14 @@ impl AxisUnit {
         self.speed = self.ptp.speed_mm_s();
     }
 
+    /// What moved it does so no more: it comes down on its ramp, and belongs to nobody when it stands.
+    pub fn come_to_rest(&mut self, time_s: f64) {
+        self.drive(time_s, Aim::Feed(0.0), self.parameters.motion.rapid_mm_min);
+        if self.stands() {
+            self.mover = Mover::None;
+        }
+    }
+
     /// Takes the nominal position of the path.
     pub fn follow(&mut self, position: f64, time_s: f64) {
         self.speed = (position - self.nominal) / time_s;

@@ -7,6 +7,9 @@
 //!   slaves to their masters; [`EmergencyStop`] is the circuit that lets them move at all.
 //! - [`Feeder`] pulls a program from its [`Reader`](bahn_reader::Reader) and refuses what leaves the traverse range; [`Track`]
 //!   moves the axes along the path and says when a function is to be output ([`Outputs`]).
+//! - [`Run`] is the run of a program on its track: start, stop, single block, end, [return](Restoration) to the contour. A
+//!   [`RunFamily`] says where it acts and takes its functions; its [`Demands`] come as data.
+//! - [`probing`] and [`ScanMove`] lead a stylus; [`move_by_hand`], [`Leaning`], [`reference`] and [`Positioning`] single axes.
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
 //!   [`Superimposed`] by hand.
 //! - [`Progress`] is how far a run is, [`BlockTime`] how fast blocks are read, [`VoltageOutput`] a voltage along the path.
@@ -30,18 +33,32 @@
 mod axes;
 mod axis;
 mod block_time;
+mod by_hand;
 mod clock;
 mod emergency;
 mod feeder;
 pub mod gantry;
 mod kinematics;
+mod leaning;
 pub mod loops;
+mod now;
+mod ordered_axis;
+mod path_limits;
 mod per_channel;
+mod positioning;
+pub mod probing;
 mod progress;
+pub mod reference;
+mod restore;
+mod run;
+mod run_family;
 mod sampling;
+mod scanning;
 mod spindle;
+mod straight;
 mod superimposing;
 pub mod thread;
+pub mod touched;
 mod track;
 mod voltage;
 mod way_back;
@@ -49,16 +66,27 @@ mod way_back;
 pub use axes::{Axes, OwnAxes, first_ids, machine_position, path_positions, units};
 pub use axis::{AxisId, AxisUnit, Coupling, Direction, Mover};
 pub use block_time::BlockTime;
+pub use by_hand::{AtLimit, HandMove, look_at_limit, move_by_hand, within};
 pub use clock::{CircuitOrder, Clock, Core, Family};
 pub use emergency::{Circuit, EmergencyStop};
 pub use feeder::{Feeder, RunFault, program_error};
 pub use kinematics::{Box2, Cartesian, Chain, Kinematics, Offsets, Shares, along_path};
+pub use leaning::{Leaning, MAIN, Wish};
+pub use now::Now;
+pub use ordered_axis::AxisOrder;
+pub use path_limits::path_limits;
 pub use per_channel::PerChannel;
+pub use positioning::{Goal, Positioning};
 pub use progress::{Progress, RunState};
+pub use restore::{Restoration, ScanEnd};
+pub use run::{BrokenOff, Came, Run, Started};
+pub use run_family::{Acting, Demands, RunFamily};
 pub use sampling::{ServoSampler, ServoSignal, ServoView};
+pub use scanning::{Felt, ScanMove};
 pub use spindle::{SpindleLoop, SpindleWiring};
+pub use straight::Straight;
 pub use superimposing::{Superimposed, Wheels};
-pub use thread::{Leading, Moment, Preparation, Standing, Tapping, Taps, is_floating, is_rigid};
+pub use thread::{Leading, Preparation, Standing, Tapping, Taps, is_floating, is_rigid};
 pub use track::{LOOK_AHEAD, Outputs, Track, distance_to_go};
 pub use voltage::{Along, VoltageOutput};
 pub use way_back::WayBack;

@@ -18,6 +18,7 @@ use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Position, Thread};
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
 use crate::kinematics::Chain;
+use crate::now::Now;
 use crate::spindle::SpindleLoop;
 use crate::track::Track;
 
@@ -30,17 +31,6 @@ const STANDS_RPM: f64 = 2.0;
 /// An axis no farther off is where the thread is, mm: what rounding leaves.
 const BESIDE_MM: f64 = 1e-6;
 
-/// What holds in a contour cycle for a thread.
-#[derive(Clone, Copy, Debug)]
-pub struct Moment {
-    /// The contour cycle, s.
-    pub time_s: f64,
-    /// The control voltage is on.
-    pub ready: bool,
-    /// The loops were closed since it came on.
-    pub loops_closed: bool,
-}
-
 /// Axes and spindle of a channel, to be looked at.
 #[derive(Clone, Copy)]
 pub struct Standing<'a> {
@@ -51,7 +41,7 @@ pub struct Standing<'a> {
     /// The spindle.
     pub spindle: &'a SpindleLoop,
     /// What holds now.
-    pub moment: Moment,
+    pub now: &'a Now,
 }
 
 /// Axes and spindle of a channel, to be led.
@@ -63,7 +53,7 @@ pub struct Leading<'a, 'b> {
     /// The spindle.
     pub spindle: &'a mut SpindleLoop,
     /// What holds now.
-    pub moment: Moment,
+    pub now: &'a Now,
 }
 
 impl Leading<'_, '_> {
@@ -73,7 +63,7 @@ impl Leading<'_, '_> {
             axes: self.axes,
             chain: self.chain,
             spindle: self.spindle,
-            moment: self.moment,
+            now: self.now,
         }
     }
 }
@@ -140,7 +130,7 @@ impl Tapping {
             .iter()
             .find(|unit| element.is_some_and(|element| element.moves_axis(unit.axis)));
         let delay = moved.map_or(0.0, |unit| unit.servo.delay_s());
-        let [nominal_deg, actual_deg] = at.spindle.angles_deg(at.moment.time_s + delay);
+        let [nominal_deg, actual_deg] = at.spindle.angles_deg(at.now.time_s + delay);
         Master {
             nominal_deg,
             actual_deg,
@@ -248,7 +238,7 @@ impl Tapping {
         let missed = (track.path.position_at(now)[axis] - track.path.position()[axis]).abs();
         let mut axes = at.axes.iter().filter(|unit| unit.mover == Mover::Path);
         missing <= window
-            && missed <= STANDS_MM_S * at.moment.time_s
+            && missed <= STANDS_MM_S * at.now.time_s
             && axes.all(|unit| unit.speed.abs() <= STANDS_MM_S && unit.servo.lag_mm().abs() <= window)
     }
 
@@ -265,7 +255,7 @@ impl Tapping {
             .iter()
             .all(|unit| unit.servo.fault().is_none() && unit.servo.closed());
         let stands = at.spindle.actual_rpm().abs() < STANDS_RPM;
-        if !self.apart || !at.moment.loops_closed || !sound || !stands {
+        if !self.apart || !at.now.loops_closed || !sound || !stands {
             return;
         }
         self.apart = false;
@@ -347,7 +337,7 @@ fn go_after(track: &Track, at: &mut Leading) {
         return;
     };
     let nominal = nominal(track, &at.standing());
-    let cycle_s = at.moment.time_s;
+    let cycle_s = at.now.time_s;
     for unit in at.axes.iter_mut().filter(|unit| element.moves_axis(unit.axis)) {
         let reached = unit.parameters.motion.acceleration_m_s2 * 1e3 * cycle_s * cycle_s;
         if (nominal[unit.axis] - unit.nominal).abs() > reached {
@@ -383,7 +373,7 @@ fn top(element: &PathElement, tool_axis: Axis) -> f64 {
 fn beside_max_deg(track: &Track, at: &Standing) -> Option<f64> {
     let element = track.path.element().filter(|_| track.path.is_coupled())?;
     let unit = at.axes.at(at.chain.offsets.tool_axis)?;
-    let monitored = at.moment.ready && at.moment.loops_closed && unit.servo.is_monitored();
+    let monitored = at.now.ready && at.now.loops_closed && unit.servo.is_monitored();
     let pitch = element.thread().filter(|_| monitored)?.pitch_mm;
     Some(unit.parameters.monitoring.standstill_mm / pitch * 360.0)
 }

@@ -5,6 +5,7 @@ mod master;
 mod outputs;
 mod phase;
 mod recall;
+mod standing;
 mod stops;
 mod view;
 
@@ -12,9 +13,9 @@ use std::sync::Arc;
 
 use bahn_path::{ElementSource, LiveData, PathElement, Placement, Position, Step, TechnologyFunction};
 
-use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Place, Prepared, State, Stop};
+use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
 use crate::gate::Gate;
-use crate::item::{Item, Output};
+use crate::item::Output;
 use crate::limits::{Dynamics, Limits};
 use crate::ramp::{Driven, Ramp};
 use crate::ring::Ring;
@@ -23,6 +24,7 @@ use master::Coupling;
 use outputs::Outputs;
 use phase::Phase;
 use recall::Executed;
+use standing::{Led, Standing};
 use stops::{Acknowledged, Stops};
 
 /// Drives along the path of an [`ElementSource`], contour cycle by contour cycle.
@@ -37,30 +39,33 @@ pub struct Interpolator<E> {
     cycle_s: f64,
     /// What the source said last, when that was no element.
     after: After<E>,
-    /// Overrides of feed, rapid traverse and spindle, %.
-    overrides: [f64; 3],
-    rapid_limit_mm_min: f64,
+    overrides: Overrides,
     phase: Phase,
-    /// Path speed, mm/s.
-    speed: f64,
-    /// Distance to the end of the current element, mm; negative where a path that follows the spindle stands beyond it.
-    rest: f64,
-    position: Position,
-    /// The placement in which that is: that of the element that was begun last.
-    placement: Option<Arc<Placement>>,
+    at: Standing,
     stops: Stops,
-    /// The gate ahead is passed without waiting.
-    released: bool,
+    gates: Gates,
     outputs: Outputs,
     ahead: Ahead,
-    /// The current element follows the spindle.
-    coupling: Option<Coupling>,
-    /// It is run back.
-    backward: bool,
-    /// The functions at its end are output; what is left of it is a distance alone.
-    end_is_output: bool,
+    led: Led,
     /// How far the first element was executed that is taken back and still to be given again.
     recalled: Option<Executed>,
+}
+
+/// How fast the path may be, as it was said last.
+#[derive(Clone, Copy, Debug)]
+struct Overrides {
+    /// Of feed, rapid traverse and spindle, %.
+    percent: [f64; 3],
+    rapid_limit_mm_min: f64,
+}
+
+/// What is so of the places where functions are output.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gates {
+    /// The one ahead is passed without waiting.
+    released: bool,
+    /// The functions at the end of the current element are output; what is left of it is a distance alone.
+    end_is_output: bool,
 }
 
 #[allow(
@@ -85,33 +90,30 @@ impl<E> Interpolator<E> {
             cycle_s: dynamics.cycle,
             ring: Ring::new(dynamics, capacity),
             after: After::Open,
-            overrides: [100.0; 3],
-            rapid_limit_mm_min: f64::INFINITY,
+            overrides: Overrides {
+                percent: [100.0; 3],
+                rapid_limit_mm_min: f64::INFINITY,
+            },
             phase: Phase::Done,
-            speed: 0.0,
-            rest: 0.0,
-            position: Position::UNKNOWN,
-            placement: None,
+            at: Standing::default(),
             stops: Stops::default(),
-            released: false,
+            gates: Gates::default(),
             outputs: Outputs::default(),
             ahead: Ahead::default(),
-            coupling: None,
-            backward: false,
-            end_is_output: false,
+            led: Led::default(),
             recalled: None,
         }
     }
 
     /// Where the path starts; drops what was prepared.
     pub fn set_position(&mut self, position: Position) {
-        self.position = position;
+        self.at.position = position;
         self.clear();
     }
 
     /// The path so far, and with it the [position](Interpolator::set_position), stands in this placement.
     pub fn set_placement(&mut self, placement: Option<Arc<Placement>>) {
-        self.placement = placement;
+        self.at.placement = placement;
         self.clear();
     }
 
@@ -172,7 +174,7 @@ impl<E> Interpolator<E> {
 
     /// Stops at once, without a ramp: the feed enable was withdrawn.
     pub fn halt(&mut self) {
-        self.speed = 0.0;
+        self.at.speed = 0.0;
     }
 
     /// Spends one contour cycle.
@@ -181,17 +183,17 @@ impl<E> Interpolator<E> {
         self.outputs.begin_cycle();
         let state = self.spend(drive);
         if let Some(item) = self.ring.current() {
-            if let Some(coupling) = &self.coupling {
-                self.position = coupling.position(item, drive.master.actual_deg);
+            if let Some(coupling) = &self.led.coupling {
+                self.at.position = coupling.position(item, drive.master.actual_deg);
             } else if matches!(self.phase, Phase::Move) {
-                self.position = position(item, self.rest);
+                self.at.go_along(item);
             }
         }
         self.put_ahead();
         Cycle {
-            position: self.position,
-            speed_mm_s: self.speed,
-            lead: self.lead(),
+            position: self.at.position,
+            speed_mm_s: self.at.speed,
+            lead: self.led.lead(self.ring.current(), &self.at),
             state,
         }
     }
@@ -206,12 +208,12 @@ impl<E> Interpolator<E> {
             drive.spindle_override_percent,
         ]
         .map(percent);
-        if overrides != self.overrides {
-            self.overrides = overrides;
+        if overrides != self.overrides.percent {
+            self.overrides.percent = overrides;
             self.ring.set_overrides(overrides);
         }
-        if drive.rapid_limit_mm_min != self.rapid_limit_mm_min {
-            self.rapid_limit_mm_min = drive.rapid_limit_mm_min;
+        if drive.rapid_limit_mm_min != self.overrides.rapid_limit_mm_min {
+            self.overrides.rapid_limit_mm_min = drive.rapid_limit_mm_min;
             self.ring.set_rapid_limit(drive.rapid_limit_mm_min);
         }
         if drive.acknowledged && self.ring.awaits() {
@@ -232,7 +234,7 @@ impl<E> Interpolator<E> {
 
     /// Looks for the next place where single block or axes that are clamped stop the path.
     fn seek_stop(&mut self) {
-        let stop = self.stops.next(&self.ring, self.speed, self.rest);
+        let stop = self.stops.next(&self.ring, self.at.speed, self.at.rest);
         self.ring.set_stop(stop);
     }
 
@@ -240,7 +242,7 @@ impl<E> Interpolator<E> {
     fn put_ahead(&mut self) {
         if !self.ahead.is_empty() {
             self.ahead
-                .put(&self.ring, self.speed, self.rest, &mut self.outputs);
+                .put(&self.ring, self.at.speed, self.at.rest, &mut self.outputs);
         }
     }
 
@@ -267,7 +269,7 @@ impl<E> Interpolator<E> {
                     None
                 }
                 Phase::Finish => {
-                    self.end_is_output = true;
+                    self.gates.end_is_output = true;
                     self.phase = self.output(Gate::End, Phase::Done);
                     None
                 }
@@ -284,7 +286,7 @@ impl<E> Interpolator<E> {
     /// Outputs the functions before the current element, once it may begin. What it waits for.
     fn begin(&mut self, drive: &Drive) -> Option<State> {
         self.put_ahead();
-        if self.speed <= 0.0 {
+        if self.at.speed <= 0.0 {
             // Nothing new begins while the path is held.
             if drive.hold {
                 return Some(State::Held);
@@ -323,15 +325,15 @@ impl<E> Interpolator<E> {
         let (along, dwell, end) = (item.along, item.element.dwell_s, item.element.end);
         let sequence = item.element.sequence;
         let ramp = Ramp {
-            speed: self.speed,
-            rest: self.rest,
+            speed: self.at.speed,
+            rest: self.at.rest,
             acceleration: item.acceleration,
             limit,
             exit_squared,
         };
         let state = match ramp.drive(*time) {
             Driven::OnTheWay { speed, rest } => {
-                (self.speed, self.rest) = (speed, rest);
+                (self.at.speed, self.at.rest) = (speed, rest);
                 let stands = speed <= 0.0 && rest == ramp.rest;
                 Some(if stands && hold {
                     State::Held
@@ -342,23 +344,23 @@ impl<E> Interpolator<E> {
             Driven::Arrived { speed, left } => {
                 // Rounding must not carry the path over what was found to be possible.
                 let cap = self.ring.cap();
-                self.speed = if speed * speed > cap { cap.sqrt() } else { speed };
-                (self.position, self.rest, *time) = (end, 0.0, left);
-                self.phase = match self.end_is_output {
+                self.at.speed = if speed * speed > cap { cap.sqrt() } else { speed };
+                (self.at.position, self.at.rest, *time) = (end, 0.0, left);
+                self.phase = match self.gates.end_is_output {
                     true => Phase::Done,
                     false if dwell > 0.0 => Phase::Dwell(dwell),
                     false => Phase::Finish,
                 };
-                if !self.end_is_output {
-                    self.outputs.pass(sequence, left, self.speed);
+                if !self.gates.end_is_output {
+                    self.outputs.pass(sequence, left, self.at.speed);
                 }
                 // The spindle gets the end before the path goes on.
-                self.coupling.map(|_| State::Moving)
+                self.led.coupling.map(|_| State::Moving)
             }
         };
         if along && let Some(item) = self.ring.current() {
             let feed = self.ring.feed();
-            self.outputs.along(item, self.ring.number(), self.rest, feed);
+            self.outputs.along(item, self.ring.number(), self.at.rest, feed);
         }
         state
     }
@@ -366,35 +368,28 @@ impl<E> Interpolator<E> {
     /// Couples the current element to the spindle as it stands. `false` when the spindle is not ready.
     fn couple(&mut self, drive: &Drive) -> bool {
         let thread = self.ring.current().and_then(|item| item.element.thread());
-        if let (Some(thread), None) = (thread, self.coupling) {
+        if let (Some(thread), None) = (thread, self.led.coupling) {
             if !drive.master.ready {
                 return false;
             }
-            self.coupling = Some(Coupling::new(thread, drive.master.nominal_deg));
+            self.led.coupling = Some(Coupling::new(thread, drive.master.nominal_deg));
         }
         true
-    }
-
-    /// The command to the spindle.
-    fn lead(&self) -> Option<Lead> {
-        let (item, coupling) = self.ring.current().zip(self.coupling)?;
-        let speed = if self.backward { -self.speed } else { self.speed };
-        Some(coupling.lead(item.length - self.rest, speed))
     }
 
     /// Goes back along the current element for a time; `None` when it goes forward.
     fn drive_back(&mut self, drive: &Drive, time: f64) -> Option<State> {
         let item = self.ring.current()?;
-        let wanted = drive.back && self.coupling.is_some();
-        if self.speed <= 0.0 {
-            self.backward = wanted;
+        let wanted = drive.back && self.led.coupling.is_some();
+        if self.at.speed <= 0.0 {
+            self.led.backward = wanted;
         }
-        if !self.backward {
+        if !self.led.backward {
             return None;
         }
         let limit = if wanted { self.ring.feed() } else { 0.0 };
-        let (speed, covered) = master::go_back(item, self.speed, item.length - self.rest, limit, time);
-        (self.speed, self.rest) = (speed, item.length - covered);
+        let (speed, covered) = master::go_back(item, self.at.speed, item.length - self.at.rest, limit, time);
+        (self.at.speed, self.at.rest) = (speed, item.length - covered);
         Some(if speed > 0.0 { State::Moving } else { State::Held })
     }
 
@@ -402,14 +397,14 @@ impl<E> Interpolator<E> {
     /// it is not beyond.
     fn drive_in(&mut self, drive: &Drive, time: f64) -> Option<State> {
         let item = self.ring.current()?;
-        if self.rest >= 0.0 {
+        if self.at.rest >= 0.0 {
             return None;
         }
-        self.backward = true;
+        self.led.backward = true;
         let held = drive.hold && !drive.back;
         let limit = if held { 0.0 } else { self.ring.feed() };
-        let (speed, beyond) = master::go_back(item, self.speed, -self.rest, limit, time);
-        (self.speed, self.rest) = (speed, 0.0 - beyond);
+        let (speed, beyond) = master::go_back(item, self.at.speed, -self.at.rest, limit, time);
+        (self.at.speed, self.at.rest) = (speed, 0.0 - beyond);
         Some(if speed > 0.0 || !held {
             State::Moving
         } else {
@@ -420,7 +415,7 @@ impl<E> Interpolator<E> {
     /// Goes on after the current element, unless the path has to wait there. What it waits for.
     fn finish(&mut self, drive: &Drive) -> Option<State> {
         let item = self.ring.current()?;
-        if self.speed <= 0.0 {
+        if self.at.speed <= 0.0 {
             if item.length > 0.0 && !drive.in_position {
                 return Some(State::Settling);
             }
@@ -452,8 +447,7 @@ impl<E> Interpolator<E> {
         self.ring.advance();
         self.enter();
         let thread = self.ring.current().and_then(|item| item.element.thread());
-        self.coupling = self.coupling.and_then(|coupling| coupling.go_on(length, thread));
-        self.backward = false;
+        self.led.go_on(length, thread);
         if self.ring.stop_is_passed() {
             self.seek_stop();
         }
@@ -463,17 +457,8 @@ impl<E> Interpolator<E> {
     /// Begins the current element.
     fn enter(&mut self) {
         self.phase = Phase::Begin;
-        self.end_is_output = false;
-        self.rest = self.ring.current().map_or(0.0, |item| item.length);
-        if let Some(item) = self.ring.current()
-            && !Placement::is_same(self.placement.as_ref(), item.element.placement.as_ref())
-        {
-            // Nothing moves: the same place has another name.
-            self.placement.clone_from(&item.element.placement);
-            for axis in item.element.start.known().iter() {
-                self.position[axis] = item.element.start[axis];
-            }
-        }
+        self.gates.end_is_output = false;
+        self.at.enter(self.ring.current());
         self.outputs.begin();
     }
 
@@ -489,7 +474,7 @@ impl<E> Interpolator<E> {
         if output == Output::Nothing {
             return then;
         }
-        let waits = output == Output::Waiting && !std::mem::take(&mut self.released);
+        let waits = output == Output::Waiting && !std::mem::take(&mut self.gates.released);
         self.outputs.put(item, self.ring.number(), place, waits);
         if waits { Phase::Gate(gate) } else { then }
     }
@@ -521,9 +506,9 @@ impl<E> Interpolator<E> {
     pub fn release(&mut self) {
         match self.phase {
             Phase::Gate(Gate::Start) => self.phase = Phase::Move,
-            Phase::Gate(Gate::End) if self.rest != 0.0 => self.phase = Phase::Move,
+            Phase::Gate(Gate::End) if self.at.rest != 0.0 => self.phase = Phase::Move,
             Phase::Gate(Gate::End) => self.phase = Phase::Done,
-            _ => self.released = true,
+            _ => self.gates.released = true,
         }
     }
 
@@ -557,7 +542,7 @@ impl<E> Interpolator<E> {
     /// What comes from now on is planned within other limits; what was read already keeps its own. Overrides stay.
     pub fn set_limits(&mut self, limits: &Limits) {
         self.ring
-            .set_limits(limits, self.overrides, self.rapid_limit_mm_min);
+            .set_limits(limits, self.overrides.percent, self.overrides.rapid_limit_mm_min);
     }
 
     /// Lets the source go on after a barrier.
@@ -580,26 +565,25 @@ impl<E> Interpolator<E> {
                 self.ring.following()
             };
             cut_at.map(|item| {
-                let rest_mm = if unfinished { self.rest } else { item.length };
+                let rest_mm = if unfinished { self.at.rest } else { item.length };
                 Cut {
                     block: item.element.block,
                     sequence: item.element.sequence,
                     covered_mm: item.length - rest_mm,
                     rest_mm,
-                    position: self.position,
+                    position: self.at.position,
                 }
             })
         });
-        self.ring.clear(self.position, self.placement.clone());
+        self.ring.clear(self.at.position, self.at.placement.clone());
         self.after = After::Open;
         self.phase = Phase::Done;
-        (self.speed, self.rest) = (0.0, 0.0);
-        self.released = false;
+        self.at.stay();
+        self.gates.released = false;
         self.stops.forget();
         self.outputs.clear();
         self.ahead.clear();
-        self.coupling = None;
-        self.backward = false;
+        self.led = Led::default();
         self.recalled = None;
         cut
     }
@@ -613,14 +597,14 @@ impl<E> Interpolator<E> {
             late: self.ring.is_late(),
             phase: self.phase,
             length: self.ring.current().map_or(0.0, |item| item.length),
-            rest: self.rest,
+            rest: self.at.rest,
             output_to: self.outputs.to(),
         };
         let recalled = self.recalled.or(Some(executed));
         if self.recalled.is_none() {
             self.ring.set_aside();
         }
-        self.position = position;
+        self.at.position = position;
         let ahead = std::mem::take(&mut self.ahead);
         self.clear();
         (self.recalled, self.ahead) = (recalled, ahead);
@@ -646,7 +630,7 @@ impl<E> Interpolator<E> {
     /// Couples an element that has begun anew, for spindle and axes were moved meanwhile: this position
     /// belongs to that angle of the spindle, degrees.
     pub fn couple_again(&mut self, position: &Position, angle_deg: f64) {
-        let Some((item, coupling)) = self.ring.current().zip(self.coupling.as_mut()) else {
+        let Some((item, coupling)) = self.ring.current().zip(self.led.coupling.as_mut()) else {
             return;
         };
         let (distance, place) = coupling.renew(item, position, angle_deg);
@@ -657,25 +641,12 @@ impl<E> Interpolator<E> {
         if ended && rest != 0.0 {
             self.phase = Phase::Move;
         }
-        self.rest = rest;
-        (self.speed, self.position) = (0.0, place);
+        self.at.rest = rest;
+        (self.at.speed, self.at.position) = (0.0, place);
     }
 
     /// Whether the path follows the spindle: it has begun an element that does so, and none after it.
     pub fn is_coupled(&self) -> bool {
-        self.coupling.is_some()
+        self.led.coupling.is_some()
     }
-}
-
-/// The position with so much of an item to go, mm.
-fn position(item: &Item, rest: f64) -> Position {
-    let PathElement {
-        curve, start, end, ..
-    } = &item.element;
-    let fraction = if item.length > 0.0 {
-        (item.length - rest) / item.length
-    } else {
-        1.0
-    };
-    curve.position(start, end, fraction)
 }

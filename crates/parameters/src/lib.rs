@@ -42,6 +42,7 @@
 mod adjustment;
 mod advice;
 mod citation;
+pub mod compensation;
 pub mod conformance;
 mod consistency;
 mod definition;

@@ -9,10 +9,8 @@ mod table;
 mod test;
 mod window;
 
-pub use files::{
-    CompensationExcess, CompensationSize, LineFault, NotSaved, PalletLine, ParameterFault,
-    ParameterFileFault, TextFile,
-};
+pub use bahn_parameters::compensation::{CompensationExcess, CompensationSize};
+pub use files::{LineFault, NotSaved, PalletLine, ParameterFault, ParameterFileFault, TextFile};
 pub use interface::{DataInterface, HostLink, HostMessage, InterfaceUser};
 pub use motion::{OrientationDirection, PlcAxisCommand, PlcAxisStatus, SpindleOrientation, ToolCallBlock};
 pub use status::{ControlledSpindle, CoordinateKind, JogLimit, SpindlePosition, StatusChange, StatusItem};

@@ -1,6 +1,9 @@
 //! The position loop of an axis.
 
+mod bias;
 mod faults;
+mod fixed;
+mod stiction;
 mod torque;
 
 use crate::settings::AxisSettings;
@@ -15,13 +18,16 @@ use crate::offset::Offset;
 use crate::plant::{AxisCommand, Encoder};
 use crate::reversal::{ReversalPeak, Travel};
 use crate::run_up::RunUp;
-use crate::speed_loop::SpeedLoop;
+use crate::speed_loop::SpeedState;
 use crate::timing::{OUTPUT_VOLTS, Timing};
+use bias::Bias;
+use faults::Faults;
+use fixed::Fixed;
+use stiction::Stiction;
+use torque::{Given, Torque, Wanted};
 
 /// Time constants of the loop after which an axis whose nominal position stands is at rest (inferred).
 const REST_TIME_CONSTANTS: f64 = 5.0;
-/// Counting steps of a grating period in which MP1512 counts [000:3957].
-const STICTION_STEPS: f64 = 256.0;
 
 /// No machine is larger, mm: farther commands are not taken.
 const POSITION_MAX_MM: f64 = 1e9;
@@ -30,9 +36,6 @@ const POSITION_MAX_MM: f64 = 1e9;
 const STANDING_MM: f64 = 1e-9;
 /// So far may the nominal position of an axis in position go without being a movement, mm.
 const REST_MM: f64 = 1e-6;
-/// Counting steps in a contour cycle, and steps of the converter, up to which an axis cannot be told from one that
-/// stands (inferred).
-const STANDING_STEPS: f64 = 1.5;
 
 /// The position loop of one axis: nominal position in, voltage out.
 ///
@@ -56,8 +59,7 @@ pub struct Axis {
     characteristic: Characteristic,
     fixed: Fixed,
     offset: Offset,
-    /// Of axes with digital speed controller.
-    speed_loop: Option<SpeedLoop>,
+    torque: Torque,
     monitor: Monitor,
     method: Method,
     second_set: bool,
@@ -78,34 +80,18 @@ pub struct Axis {
     cycle_begins: bool,
     cycle_actual_mm: f64,
     actual_mm_min: f64,
-    cycle_lag_mm: f64,
-    stiction_mm_min: f64,
+    stiction: Stiction,
     /// Velocity of the nominal position with pre-control.
     profile_mm_min: f64,
     /// Velocity of the nominal value.
     velocity_mm_min: f64,
-    /// What keeps the velocity steady after a change of method or kv; it runs down with the lag.
-    bias_mm_min: f64,
-    changed: bool,
+    bias: Bias,
     /// The last step put a voltage out.
     drove: bool,
     volts: f64,
     standing_steps: u32,
     in_position: bool,
-    fault: Option<Fault>,
-    /// Steps until the residual voltage is switched off after POSITIONING ERROR.
-    residual_steps: u32,
-}
-
-/// What follows from settings and method alone, so that no servo step has to find it again.
-#[derive(Clone, Copy, Debug, Default)]
-struct Fixed {
-    /// Voltage of a velocity, V/(mm/min).
-    volts_per_mm_min: f64,
-    /// What a step leaves of [`Axis::bias_mm_min`].
-    decay: f64,
-    /// The velocity that a loop at rest goes to and fro with, for neither encoder nor converter is finer, mm/min.
-    standing_mm_min: f64,
+    faults: Faults,
 }
 
 impl Axis {
@@ -123,7 +109,7 @@ impl Axis {
             characteristic: Characteristic::straight(1.0),
             fixed: Fixed::default(),
             offset: Offset::default(),
-            speed_loop: SpeedLoop::of(&settings, &timing),
+            torque: Torque::of(&settings, &timing),
             monitor: Monitor::new(&timing),
             method: Method::Lag,
             second_set: false,
@@ -140,18 +126,15 @@ impl Axis {
             cycle_begins: false,
             cycle_actual_mm: 0.0,
             actual_mm_min: 0.0,
-            cycle_lag_mm: 0.0,
-            stiction_mm_min: 0.0,
+            stiction: Stiction::default(),
             profile_mm_min: 0.0,
             velocity_mm_min: 0.0,
-            bias_mm_min: 0.0,
-            changed: false,
+            bias: Bias::default(),
             drove: false,
             volts: 0.0,
             standing_steps: 0,
             in_position: false,
-            fault: None,
-            residual_steps: 0,
+            faults: Faults::default(),
         };
         axis.choose_characteristic();
         axis
@@ -161,9 +144,7 @@ impl Axis {
     pub fn configure(&mut self, settings: AxisSettings) {
         self.settings = settings;
         self.measuring.configure(&settings);
-        if let Some(speed_loop) = &mut self.speed_loop {
-            speed_loop.configure(&settings, &self.timing);
-        }
+        self.torque.configure(&settings, &self.timing);
         self.transient
             .set_entry(self.timing.steps(), settings.precontrol.transient_m_min);
         self.choose_characteristic();
@@ -177,10 +158,7 @@ impl Axis {
     /// Takes an encoder reading; once in each servo step, before [`Axis::step`].
     #[inline]
     pub fn measure(&mut self, encoder: Encoder) {
-        let encoder = match &mut self.speed_loop {
-            Some(speed_loop) => speed_loop.position(encoder),
-            None => encoder,
-        };
+        let encoder = self.torque.position(encoder);
         if let Some(fault) = self.measuring.read(encoder, &self.settings) {
             self.raise(Fault::MeasuringSystem(fault));
         }
@@ -215,7 +193,7 @@ impl Axis {
 
     /// One servo step: the voltage for the nominal value output, V.
     pub fn step(&mut self) -> f64 {
-        if self.is_released() || self.speed_step_mm_min().is_some() {
+        if self.faults.is_released() || self.speed_step_mm_min().is_some() {
             self.follow_actual();
         }
         let rough_now = self.interpolation.now();
@@ -240,7 +218,7 @@ impl Axis {
             0
         };
         self.update_velocity(next - now);
-        let by_torque = self.speed_loop.as_ref().is_some_and(SpeedLoop::is_active);
+        let by_torque = self.torque.is_active();
         // What concerns the voltage of a speed is not monitored then: MP1140 is inactive [000:18360-18365].
         let wanted = if by_torque {
             0.0
@@ -274,7 +252,7 @@ impl Axis {
     #[inline]
     pub fn output(&self) -> AxisCommand {
         let distance_mm = self.next_mm - self.actual_mm;
-        let by_torque = self.speed_loop.as_ref().is_some_and(SpeedLoop::is_active);
+        let by_torque = self.torque.is_active();
         AxisCommand {
             enabled: self.drove,
             volts: self.volts,
@@ -298,8 +276,10 @@ impl Axis {
         let lag = self.lag_mm();
         self.actual_mm_min = (self.actual_mm - self.cycle_actual_mm) / self.timing.contour_min();
         self.cycle_actual_mm = self.actual_mm;
-        self.stiction_mm_min = self.stiction(lag - self.cycle_lag_mm);
-        self.cycle_lag_mm = lag;
+        let profile = (self.method == Method::Precontrol).then_some(self.profile_mm_min);
+        let slope = self.characteristic.slope();
+        self.stiction
+            .begin_cycle(lag, (profile, slope), &self.settings, &self.timing);
         let time_constants =
             f64::from(self.standing_steps) * self.characteristic.slope() * self.timing.step_min();
         let rest = time_constants >= REST_TIME_CONSTANTS;
@@ -308,23 +288,6 @@ impl Axis {
             let loop_volts = self.velocity_mm_min * self.fixed.volts_per_mm_min;
             self.offset.rest(loop_volts, self.settings.output.integral_factor);
         }
-    }
-
-    /// Additional velocity against stiction, mm/min: change of the lag in a cycle / cycle · kv · MP1511
-    /// [000:3935-3965]. "Feed" is read as the nominal velocity of the axis (inferred).
-    fn stiction(&self, change_mm: f64) -> f64 {
-        let compensation = &self.settings.compensation;
-        if self.method != Method::Precontrol
-            || compensation.stiction_us == 0.0
-            || self.profile_mm_min.abs() >= compensation.stiction_feed_mm_min
-        {
-            return 0.0;
-        }
-        let encoder = &self.settings.encoder;
-        let grating_mm = encoder.signal_period_um * f64::from(encoder.interpolation.max(1)) * 1e-3;
-        let limit = compensation.stiction_limit_steps * grating_mm / STICTION_STEPS;
-        let factor = compensation.stiction_us / f64::from(self.timing.contour_us());
-        change_mm.clamp(-limit, limit) * self.characteristic.slope() * factor
     }
 
     /// Velocity of the nominal value for a nominal way in this step.
@@ -338,31 +301,18 @@ impl Axis {
             }
             Method::Precontrol => {
                 let damping = self.settings.precontrol.damping;
-                control + self.run_up.advance(self.profile_mm_min, damping) + self.stiction_mm_min
+                control + self.run_up.advance(self.profile_mm_min, damping) + self.stiction.mm_min
             }
         };
-        if self.bias_mm_min != 0.0 {
-            self.bias_mm_min *= self.fixed.decay;
-            // It never comes to 0 by itself, and processors are slow with numbers that are nearly 0.
-            if self.bias_mm_min.is_subnormal() {
-                self.bias_mm_min = 0.0;
-            }
-        }
-        if std::mem::take(&mut self.changed) {
-            self.bias_mm_min = if self.drove {
-                self.velocity_mm_min - velocity
-            } else {
-                0.0
-            };
-        }
-        self.velocity_mm_min = velocity + self.bias_mm_min;
+        let before = self.drove.then_some(self.velocity_mm_min);
+        self.velocity_mm_min = self.bias.added(velocity, self.fixed.decay, before);
     }
 
     fn watch(&mut self, standing: bool, distance_mm: f64, volts: f64) {
         if let Some(fault) = self.offset.fault() {
             self.raise(Fault::Gross(fault));
         }
-        self.residual_steps = self.residual_steps.saturating_sub(1);
+        self.faults.pass();
         if !self.monitored {
             self.monitor.reset();
             return;
@@ -394,14 +344,12 @@ impl Axis {
 
     /// Whether a voltage is put out at all.
     fn drives(&self) -> bool {
-        self.closed() && self.enabled && !self.is_released()
+        self.closed() && self.enabled && !self.faults.is_released()
     }
 
     /// Closes the loop. The nominal position stays what it was: see [`Axis::transfer`].
     pub fn close(&mut self) {
-        if let Some(speed_loop) = &mut self.speed_loop
-            && !speed_loop.restart()
-        {
+        if !self.torque.restart() {
             return;
         }
         self.closed = true;
@@ -422,6 +370,97 @@ impl Axis {
         self.volts = 0.0;
     }
 
+    /// Enters a fault: what monitoring found, or a slave too far from its master.
+    pub(crate) fn raise(&mut self, fault: Fault) {
+        let residual_steps = self.timing.steps_of(self.settings.monitoring.residual_voltage_s);
+        self.faults.raise(fault, residual_steps);
+    }
+
+    /// The key CE: clears a fault that can be cleared, switches the residual voltage off and makes the
+    /// actual position the nominal one [000:5240-5242].
+    pub fn acknowledge(&mut self) {
+        if self.faults.clear() {
+            self.transfer();
+        }
+    }
+
+    /// The fault that monitoring has found and that was not cleared.
+    pub fn fault(&self) -> Option<Fault> {
+        self.faults.found()
+    }
+
+    /// Whether the axis has a digital speed controller (MP1900) and wants the count of the motor's encoder.
+    #[inline]
+    pub fn is_digital(&self) -> bool {
+        self.torque.is_there()
+    }
+
+    /// Takes the count of the motor's encoder in, before [`Axis::measure`]; `None` from a drive that controls its speed
+    /// itself: it gets the voltage of an axis without MP1900 (inferred).
+    pub fn measure_motor(&mut self, count: Option<i64>) {
+        self.torque.measure(count);
+    }
+
+    /// The speed loop of a servo step: the torque signal, V. It has the counting sense of the motor's encoder, which
+    /// MP1040 gives to the nominal speed and MP1950 to the torque [000:18453-18454]. Without feed enable the axis stops and
+    /// is held.
+    fn torque_volts(&mut self) -> f64 {
+        let given = self.torque.control(&Wanted {
+            drives: self.drives(),
+            closed: self.closed(),
+            velocity_mm_min: self.velocity_mm_min,
+            profile_mm_min: (self.method == Method::Precontrol).then_some(self.profile_mm_min),
+            circular: self.circular,
+            acceleration_m_s2: self.settings.motion.acceleration_m_s2,
+            scale_step_mm: self.measuring.step_mm(),
+        });
+        let rests = matches!(given, Given::Rests);
+        self.closed &= !rests;
+        if let Some(step) = self.torque.step_mm_min().filter(|_| !rests) {
+            self.velocity_mm_min = step;
+        }
+        self.drove = matches!(given, Given::Volts(_));
+        match given {
+            Given::Volts(volts) => return self.timing.convert(volts),
+            Given::Faulty(fault) => self.raise(Fault::Gross(fault)),
+            Given::Rests => {}
+        }
+        0.0
+    }
+
+    /// An EMERGENCY STOP: a digital speed controller ends its torque after MP1980, at once with 0; any other loop stays
+    /// as it is [000:18508-18521].
+    pub fn begin_shutdown(&mut self) {
+        self.torque.begin_shutdown();
+    }
+
+    /// The control voltage is back: the loop may close.
+    pub fn end_shutdown(&mut self) {
+        self.torque.end_shutdown();
+    }
+
+    /// Puts a step of speed out, mm/min, in place of what the position loop asks for; `None` closes the position loop
+    /// again where the axis is. `false` without digital speed controller [000:18747-18756].
+    pub fn set_speed_step(&mut self, speed_mm_min: Option<f64>) -> bool {
+        let ended = self.torque.set_step(speed_mm_min);
+        if ended == Some(true) {
+            self.transfer();
+            // The speed goes on without a jump.
+            self.bias.change();
+        }
+        ended.is_some()
+    }
+
+    /// The speed of the step that is put out, mm/min.
+    pub fn speed_step_mm_min(&self) -> Option<f64> {
+        self.torque.step_mm_min()
+    }
+
+    /// What the speed loop does; `None` where the control closes none.
+    pub fn speed(&self) -> Option<SpeedState> {
+        self.torque.state()
+    }
+
     /// Makes the actual position the nominal one [000:5423-5434].
     pub fn transfer(&mut self) {
         self.monitor.transfer();
@@ -438,7 +477,7 @@ impl Axis {
         self.rest_mm = self.actual_mm;
         self.nominal_mm = self.actual_mm;
         self.next_mm = self.actual_mm;
-        self.bias_mm_min = 0.0;
+        self.bias.clear();
     }
 
     /// Gives or withdraws the feed enable; without it the output is 0 V at once [000:5352]. The nominal
@@ -485,20 +524,9 @@ impl Axis {
             ),
             Method::Precontrol => Characteristic::straight(choose(precontrol.kv, precontrol.kv_m105)),
         };
-        let rapid = self.settings.motion.rapid_mm_min;
-        let volts = self.settings.output.rapid_volts;
-        let seen = self.measuring.measuring_step_mm() / self.timing.contour_min();
-        // A digital drive is not told a voltage: MP1050 is inactive [000:18360-18362].
-        let resolved = match self.settings.digital {
-            Some(_) => 0.0,
-            None => self.timing.resolution_volts() * (rapid / volts),
-        };
-        self.fixed = Fixed {
-            volts_per_mm_min: volts / rapid,
-            decay: (1.0 - self.characteristic.slope() * self.timing.step_min()).max(0.0),
-            standing_mm_min: STANDING_STEPS * seen.max(resolved),
-        };
-        self.changed = true;
+        let (slope, step_mm) = (self.characteristic.slope(), self.measuring.measuring_step_mm());
+        self.fixed = Fixed::of(&self.settings, &self.timing, slope, step_mm);
+        self.bias.change();
     }
 
     /// Says whether the axis moves on a circle, where reversal peaks are compensated [000:3663-3709].
@@ -639,7 +667,7 @@ impl Axis {
 
     /// Velocity that stiction compensation adds, mm/min.
     pub fn stiction_mm_min(&self) -> f64 {
-        self.stiction_mm_min
+        self.stiction.mm_min
     }
 
     /// Voltage of the output, V.
@@ -650,7 +678,7 @@ impl Axis {
     /// Whether the loop is closed; not with a fault that cannot be cleared.
     #[inline]
     pub fn closed(&self) -> bool {
-        self.closed && self.is_sound()
+        self.closed && self.faults.is_sound()
     }
 
     /// So much later than it was commanded the axis is at a position in uniform motion with pre-control, s.

@@ -5,6 +5,7 @@ mod lead;
 mod movement;
 mod orientation;
 mod pace;
+mod rotation;
 pub mod settings;
 mod speed;
 mod speed_code;
@@ -20,6 +21,7 @@ use lead::Lead;
 use movement::Movement;
 use orientation::{Dynamics, Orientation, Phase};
 
+pub use rotation::Rotation;
 pub use speed_code::SpeedCode;
 
 /// Time in position before the offset is adjusted after an orientation, s [000:5716].
@@ -28,27 +30,6 @@ const OFFSET_WAIT_S: f64 = 2.0;
 const OFFSET_INTERVAL_S: f64 = 1.0;
 /// One adjustment, V: 0.152 mV [000:719].
 const OFFSET_STEP_VOLTS: f64 = OUTPUT_VOLTS / 65_536.0;
-
-/// Direction of the spindle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rotation {
-    /// Clockwise: M2485.
-    M3,
-    /// Counterclockwise: M2486.
-    M4,
-    /// Off: M2487.
-    M5,
-}
-
-impl Rotation {
-    fn sign(self) -> f64 {
-        match self {
-            Rotation::M3 => 1.0,
-            Rotation::M4 => -1.0,
-            Rotation::M5 => 0.0,
-        }
-    }
-}
 
 /// Slope of the spindle's voltage: MP3410.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -30,7 +30,7 @@ const LINES_MAX: usize = 700;
 const ROOM_MAX: usize = 16_000;
 
 /// Rooms that are larger. None should be; one that is divided leaves the list.
-const TOO_LARGE: &[&str] = &["control"];
+const TOO_LARGE: &[&str] = &[];
 
 /// The rooms that speak to people by standard output and standard error, or end the process.
 const FACES: &[&str] = &["bahn", "browser", "terminal"];
@@ -39,12 +39,10 @@ const FACES: &[&str] = &["bahn", "browser", "terminal"];
 const CIRCLES: &[(&str, &str)] = &[
     ("interpreter", "checkpoints growing lib oem work"),
     ("panel", "station station::commissioning"),
-    ("servo", "spindle spindle::speed"),
 ];
 
 /// Types of many fields with methods in several files, and these files. None should be.
 const TOO_MUCH: &[(&str, &str, &str)] = &[
-    ("control", "PlcLink", "data_line plc_link"),
     ("trials", "Course", "torture::recovery torture::trial"),
     ("host", "Host", "host saved"),
     (
@@ -58,7 +56,6 @@ const TOO_MUCH: &[(&str, &str, &str)] = &[
         "checkpoints growing lib oem outside reader recording work",
     ),
     ("machine", "Machine", "acting machine"),
-    ("motion", "Interpolator", "interpolator interpolator::view"),
     (
         "panel",
         "Station",
@@ -67,7 +64,6 @@ const TOO_MUCH: &[(&str, &str, &str)] = &[
     ("panel", "TableEditor", "pages::table::editor pages::table::page"),
     ("parameters", "Definition", "definition meaning"),
     ("plc", "Translator", "compile::emit compile::file"),
-    ("servo", "Axis", "axis axis::faults axis::torque"),
 ];
 
 /// Rooms whose names still have words that docs/glossary.md has replaced, and these. A room that says them otherwise
@@ -76,7 +72,7 @@ const REPLACED_WORDS: &[(&str, &str)] = &[];
 
 /// Arrays of five or nine numbers, letters or the like that are not those of axes.
 const NOT_OF_AXES: &[(&str, &str)] = &[
-    ("control/src/touched.rs", "the sums of a circle through points"),
+    ("kernel/src/touched.rs", "the sums of a circle through points"),
     (
         "control/src/handwheel.rs",
         "the rapid traverses from which on a factor is possible, the positions of a switch",

@@ -1,13 +1,11 @@
 //! What moves the axes of a channel in a contour cycle: what its operating mode says, then the PLC.
 
+use bahn_kernel::{Now, reference};
 use bahn_servo::{HandwheelInputs, Measured};
 
 use super::Channel;
 use crate::command::Mode;
 use crate::machine::MachineSide;
-use crate::now::Now;
-use crate::positioning::Moving;
-use crate::reference;
 
 /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the
 /// operating mode waits for axes to come to a standstill.
@@ -21,8 +19,8 @@ pub fn move_axes(channel: &mut Channel, machine: &mut MachineSide, measured: &Me
         .desk
         .count_handwheel(superimposes, &measured.operator.handwheel, &axes, exchange);
     channel.desk.follow_stop(&now, channel.touch.is_chosen());
-    let automatic = now.mode.is_automatic();
-    let rigid = channel.run.taps_rigidly();
+    let automatic = channel.desk.mode().is_automatic();
+    let rigid = channel.run.core.taps_rigidly();
     let ready = axes.choose_methods(automatic && !channel.desk.runs_reference(), rigid);
     // What the mode before moved comes to a standstill first.
     let waits = automatic && !ready && !channel.run.is_active();
@@ -38,7 +36,7 @@ pub fn move_axes(channel: &mut Channel, machine: &mut MachineSide, measured: &Me
 
 fn move_by_mode(channel: &mut Channel, now: &Now, machine: &mut MachineSide, measured: &Measured) {
     let handwheel = &measured.operator.handwheel;
-    match now.mode {
+    match channel.desk.mode() {
         Mode::Manual | Mode::Handwheel => {
             if channel.touch.is_chosen() {
                 if probe_by_hand(channel, machine, measured) {
@@ -57,7 +55,7 @@ fn move_by_mode(channel: &mut Channel, now: &Now, machine: &mut MachineSide, mea
         Mode::Mdi | Mode::SingleBlock | Mode::FullSequence => {
             let nc = machine.memory.of(channel.number).nc();
             let by_hand = channel.run.is_operated_manually(nc) || channel.desk.manual.is_led();
-            if by_hand && !channel.run.track.path.is_coupled() {
+            if by_hand && !channel.run.core.track.path.is_coupled() {
                 move_manually(channel, handwheel, now, machine);
             } else {
                 if now.stop {
@@ -105,14 +103,10 @@ fn move_manually(channel: &mut Channel, handwheel: &HandwheelInputs, now: &Now, 
 
 /// Moves what the PLC commands.
 fn move_for_plc(channel: &mut Channel, now: &Now, machine: &mut MachineSide) {
-    let moving = Moving {
-        now: *now,
-        active: channel.run.is_active(),
-        restores: channel.run.restores(),
-    };
+    let run = [channel.run.is_active(), channel.run.core.restores()];
     let exchange = machine.memory.of_mut(channel.number);
     let mut axes = machine.core.axes.of(channel.number);
-    channel.positioning.moves(&mut axes, exchange, &moving);
+    channel.positioning.moves(&mut axes, exchange, now, run);
     if channel.number == 0 {
         // Modules know the axes of the first channel.
         let statuses = &mut machine.link.plc_axes;

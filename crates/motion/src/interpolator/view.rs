@@ -14,20 +14,20 @@ impl<E> Interpolator<E> {
 
     /// Nominal position on the path.
     pub fn position(&self) -> Position {
-        self.position
+        self.at.position
     }
 
     /// Where the path would be with its spindle at an angle, degrees; where it is when no spindle leads it.
     pub fn position_at(&self, actual_deg: f64) -> Position {
-        match self.ring.current().zip(self.coupling.as_ref()) {
+        match self.ring.current().zip(self.led.coupling.as_ref()) {
             Some((item, coupling)) => coupling.position(item, actual_deg),
-            None => self.position,
+            None => self.at.position,
         }
     }
 
     /// Path speed, mm/s.
     pub fn speed_mm_s(&self) -> f64 {
-        self.speed
+        self.at.speed
     }
 
     /// The element that is executed, or was last.
@@ -48,15 +48,12 @@ impl<E> Interpolator<E> {
     /// Path length to the end of that element, mm. Where the spindle was turned by hand while a thread waited, the axis may stand
     /// beyond: below 0 behind the end, and more than the length of the element before the start.
     pub fn rest_mm(&self) -> f64 {
-        self.rest
+        self.at.rest
     }
 
     /// How much of that element is covered, 0 to 1, also where the axis stands beyond its ends.
     pub fn part(&self) -> f64 {
-        match self.ring.current() {
-            Some(item) if item.length > 0.0 => (1.0 - self.rest / item.length).clamp(0.0, 1.0),
-            _ => 1.0,
-        }
+        self.at.part_of(self.ring.current())
     }
 
     /// Elements that are prepared and not yet executed, the current one included.

@@ -1,42 +1,55 @@
 //! What a fault does to an axis, and what CE does to the fault.
 
-use super::Axis;
 use crate::fault::Fault;
 
-impl Axis {
+/// The fault that monitoring has found, if any.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Faults {
+    found: Option<Fault>,
+    /// Steps until the residual voltage is switched off after POSITIONING ERROR.
+    residual_steps: u32,
+}
+
+impl Faults {
+    /// The fault that was found and not cleared.
+    pub fn found(&self) -> Option<Fault> {
+        self.found
+    }
+
+    /// The loop may be closed.
     #[inline]
-    pub(super) fn is_sound(&self) -> bool {
-        self.fault.is_none_or(|fault| !fault.opens_loop())
+    pub fn is_sound(&self) -> bool {
+        self.found.is_none_or(|fault| !fault.opens_loop())
     }
 
     /// Whether the residual voltage after POSITIONING ERROR is switched off.
-    pub(super) fn is_released(&self) -> bool {
-        self.fault == Some(Fault::Positioning) && self.residual_steps == 0
+    pub fn is_released(&self) -> bool {
+        self.found == Some(Fault::Positioning) && self.residual_steps == 0
     }
 
-    /// Enters a fault: what monitoring found, or a slave too far from its master.
-    pub(crate) fn raise(&mut self, fault: Fault) {
-        match self.fault {
+    /// Enters a fault, after whose first one a residual voltage stays so many steps.
+    pub fn raise(&mut self, fault: Fault, residual_steps: u32) {
+        match self.found {
             None => {
-                self.fault = Some(fault);
-                self.residual_steps = self.timing.steps_of(self.settings.monitoring.residual_voltage_s);
+                self.found = Some(fault);
+                self.residual_steps = residual_steps;
             }
-            Some(known) if !known.opens_loop() && fault.opens_loop() => self.fault = Some(fault),
+            Some(known) if !known.opens_loop() && fault.opens_loop() => self.found = Some(fault),
             Some(_) => {}
         }
     }
 
-    /// The key CE: clears a fault that can be cleared, switches the residual voltage off and makes the
-    /// actual position the nominal one [000:5240-5242].
-    pub fn acknowledge(&mut self) {
-        if self.fault.is_some_and(|fault| !fault.opens_loop()) {
-            self.fault = None;
-            self.transfer();
-        }
+    /// A step passes.
+    pub fn pass(&mut self) {
+        self.residual_steps = self.residual_steps.saturating_sub(1);
     }
 
-    /// The fault that monitoring has found and that was not cleared.
-    pub fn fault(&self) -> Option<Fault> {
-        self.fault
+    /// Clears a fault that can be cleared; whether there was one.
+    pub fn clear(&mut self) -> bool {
+        let clears = self.found.is_some_and(|fault| !fault.opens_loop());
+        if clears {
+            self.found = None;
+        }
+        clears
     }
 }

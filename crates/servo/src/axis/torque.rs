@@ -1,107 +1,132 @@
 //! What an axis with digital speed controller does otherwise: its loop gives torque.
 
-use super::Axis;
-use crate::fault::Fault;
-use crate::method::Method;
+use crate::fault::GrossFault;
+use crate::plant::Encoder;
+use crate::settings::AxisSettings;
 use crate::speed_loop::{SpeedLoop, SpeedState};
+use crate::timing::Timing;
 
-impl Axis {
-    /// Whether the axis has a digital speed controller (MP1900) and wants the count of the motor's encoder.
-    #[inline]
-    pub fn is_digital(&self) -> bool {
-        self.speed_loop.is_some()
+/// The digital speed controller (MP1900), if there is one.
+#[derive(Clone, Debug)]
+pub(super) struct Torque(Option<SpeedLoop>);
+
+/// What the position loop wants of it in a servo step.
+pub(super) struct Wanted {
+    /// The axis is driven; its loop is closed.
+    pub drives: bool,
+    pub closed: bool,
+    /// Velocity of the nominal value, and of the nominal position with pre-control, mm/min.
+    pub velocity_mm_min: f64,
+    pub profile_mm_min: Option<f64>,
+    /// It moves on a circle.
+    pub circular: bool,
+    /// With what it brakes, m/s².
+    pub acceleration_m_s2: f64,
+    pub scale_step_mm: f64,
+}
+
+/// What a servo step of it comes to.
+pub(super) enum Given {
+    /// Nothing: the loop is open.
+    Rests,
+    /// A voltage, before the converter, V.
+    Volts(f64),
+    /// It ends with a fault.
+    Faulty(GrossFault),
+}
+
+impl Torque {
+    pub fn of(settings: &AxisSettings, timing: &Timing) -> Torque {
+        Torque(SpeedLoop::of(settings, timing))
     }
 
-    /// Takes the count of the motor's encoder in, before [`Axis::measure`]; `None` from a drive that controls its speed
-    /// itself: it gets the voltage of an axis without MP1900 (inferred).
-    pub fn measure_motor(&mut self, count: Option<i64>) {
-        if let Some(speed_loop) = &mut self.speed_loop {
+    pub fn configure(&mut self, settings: &AxisSettings, timing: &Timing) {
+        if let Some(speed_loop) = &mut self.0 {
+            speed_loop.configure(settings, timing);
+        }
+    }
+
+    /// There is one.
+    #[inline]
+    pub fn is_there(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// It controls the speed: not where the drive does so itself.
+    #[inline]
+    pub fn is_active(&self) -> bool {
+        self.0.as_ref().is_some_and(SpeedLoop::is_active)
+    }
+
+    pub fn measure(&mut self, count: Option<i64>) {
+        if let Some(speed_loop) = &mut self.0 {
             speed_loop.measure(count);
         }
     }
 
-    /// The speed loop of a servo step: the torque signal, V. It has the counting sense of the motor's encoder, which
-    /// MP1040 gives to the nominal speed and MP1950 to the torque [000:18453-18454]. Without feed enable the axis stops and
-    /// is held.
-    pub(super) fn torque_volts(&mut self) -> f64 {
-        let (drives, closed) = (self.drives(), self.closed());
-        let profile = (self.method == Method::Precontrol).then_some(self.profile_mm_min);
-        let (velocity, circular) = (self.velocity_mm_min, self.circular);
-        let acceleration = self.settings.motion.acceleration_m_s2;
-        let scale_step_mm = self.measuring.step_mm();
-        let Some(speed_loop) = &mut self.speed_loop else {
-            return 0.0;
-        };
-        if speed_loop.shut_down() || !closed && !speed_loop.is_shutting_down() {
-            speed_loop.rest();
-            self.closed = false;
-            self.drove = false;
-            return 0.0;
+    /// The reading that the position counts with.
+    #[inline]
+    pub fn position(&mut self, encoder: Encoder) -> Encoder {
+        match &mut self.0 {
+            Some(speed_loop) => speed_loop.position(encoder),
+            None => encoder,
         }
-        let (volts, fault) = match drives {
-            true => speed_loop.control(velocity, profile, circular),
-            false => speed_loop.hold(acceleration),
-        };
-        if let Some(step) = speed_loop.step_mm_min() {
-            self.velocity_mm_min = step;
-        }
-        let fault = fault.or(speed_loop.check_encoders(scale_step_mm));
-        self.drove = true;
-        if let Some(fault) = fault {
-            speed_loop.end_torque();
-            self.raise(Fault::Gross(fault));
-            self.drove = false;
-            return 0.0;
-        }
-        self.timing.convert(volts)
     }
 
-    /// An EMERGENCY STOP: a digital speed controller ends its torque after MP1980, at once with 0; any other loop stays
-    /// as it is [000:18508-18521].
+    /// The loop is to be closed; whether it may be.
+    pub fn restart(&mut self) -> bool {
+        self.0.as_mut().is_none_or(SpeedLoop::restart)
+    }
+
+    /// The speed loop of a servo step.
+    pub fn control(&mut self, wanted: &Wanted) -> Given {
+        let Some(speed_loop) = &mut self.0 else {
+            return Given::Rests;
+        };
+        if speed_loop.shut_down() || !wanted.closed && !speed_loop.is_shutting_down() {
+            speed_loop.rest();
+            return Given::Rests;
+        }
+        let (volts, fault) = match wanted.drives {
+            true => speed_loop.control(wanted.velocity_mm_min, wanted.profile_mm_min, wanted.circular),
+            false => speed_loop.hold(wanted.acceleration_m_s2),
+        };
+        match fault.or(speed_loop.check_encoders(wanted.scale_step_mm)) {
+            Some(fault) => {
+                speed_loop.end_torque();
+                Given::Faulty(fault)
+            }
+            None => Given::Volts(volts),
+        }
+    }
+
     pub fn begin_shutdown(&mut self) {
-        if let Some(speed_loop) = &mut self.speed_loop {
+        if let Some(speed_loop) = &mut self.0 {
             speed_loop.begin_shutdown();
         }
     }
 
-    /// The control voltage is back: the loop may close.
     pub fn end_shutdown(&mut self) {
-        if let Some(speed_loop) = &mut self.speed_loop {
+        if let Some(speed_loop) = &mut self.0 {
             speed_loop.end_shutdown();
         }
     }
 
-    /// Puts a step of speed out, mm/min, in place of what the position loop asks for; `None` closes the position loop
-    /// again where the axis is. `false` without digital speed controller [000:18747-18756].
-    pub fn set_speed_step(&mut self, speed_mm_min: Option<f64>) -> bool {
-        let Some(speed_loop) = self
-            .speed_loop
-            .as_mut()
-            .filter(|speed_loop| speed_loop.is_active())
-        else {
-            return false;
-        };
+    /// Puts a step of speed out, or ends it; whether one has ended, `None` where no speed is controlled.
+    pub fn set_step(&mut self, speed_mm_min: Option<f64>) -> Option<bool> {
+        let speed_loop = self.0.as_mut().filter(|speed_loop| speed_loop.is_active())?;
         let ended = speed_loop.step_mm_min().is_some() && speed_mm_min.is_none();
         speed_loop.set_step(speed_mm_min);
-        if ended {
-            self.transfer();
-            // The speed goes on without a jump.
-            self.changed = true;
-        }
-        true
+        Some(ended)
     }
 
-    /// The speed of the step that is put out, mm/min.
-    pub fn speed_step_mm_min(&self) -> Option<f64> {
-        self.speed_loop.as_ref().and_then(SpeedLoop::step_mm_min)
+    pub fn step_mm_min(&self) -> Option<f64> {
+        self.0.as_ref().and_then(SpeedLoop::step_mm_min)
     }
 
-    /// What the speed loop does; `None` where the control closes none.
-    pub fn speed(&self) -> Option<SpeedState> {
-        let active = self
-            .speed_loop
-            .as_ref()
-            .filter(|speed_loop| speed_loop.is_active());
+    /// What it does; `None` where the control closes no speed loop.
+    pub fn state(&self) -> Option<SpeedState> {
+        let active = self.0.as_ref().filter(|speed_loop| speed_loop.is_active());
         active.map(SpeedLoop::state)
     }
 }

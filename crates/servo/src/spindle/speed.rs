@@ -1,8 +1,7 @@
 //! From the programmed speed to the voltage [000:5520-5610].
 
+use super::rotation::Rotation;
 use super::settings::{Gear, SpindlePolarity, SpindleSettings};
-
-use super::Rotation;
 
 /// The gear range for a programmed speed in rpm, 0 to 7: the smallest that reaches it. `None` for a speed
 /// that the spindle does not have, also 0 where MP3120 does not permit it: WRONG RPM.

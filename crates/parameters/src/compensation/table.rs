@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use bahn_parameters::{PLC_AXIS_NAMES, PerPlcAxis};
-use bahn_plc::{CompensationExcess, CompensationSize};
 use bahn_servo::ErrorTable;
+
+use super::{CompensationExcess, CompensationSize};
+use crate::{PLC_AXIS_NAMES, PerPlcAxis};
 
 /// A compensation table: errors of several axes over the position of the axis that it is assigned to.
 ///
@@ -13,7 +14,7 @@ use bahn_servo::ErrorTable;
 /// 4 and 5.
 ///
 /// ```
-/// use bahn_control::CompensationTable;
+/// use bahn_parameters::compensation::CompensationTable;
 /// let table = CompensationTable::read(
 ///     "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n\
 ///      0 Y=0 Z=-0.01\n\
@@ -22,7 +23,7 @@ use bahn_servo::ErrorTable;
 /// // Point 1 stands at -90 + 2^16 · 0.1 µm = -83.4464 mm.
 /// assert!((table.error_mm(1, -83.4464) - 0.0025).abs() < 1e-9);
 /// assert!(CompensationTable::read("A MM DATUM 0 DIST 24 Y\n").is_err());
-/// # Ok::<(), bahn_control::CompensationError>(())
+/// # Ok::<(), bahn_parameters::compensation::CompensationError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CompensationTable {
@@ -33,11 +34,11 @@ pub struct CompensationTable {
 /// The assignment: in each line the table of each driving axis. Exactly one line is active, or none.
 ///
 /// ```
-/// use bahn_control::CompensationAssignment;
+/// use bahn_parameters::compensation::CompensationAssignment;
 /// let assignment = CompensationAssignment::read("0 Y=ACHSE-Y Z=ACHSE-Z\n1 Z=ACHSE-Z\nACTIVE 0\n")?;
 /// assert_eq!(assignment.active, Some(0));
 /// assert_eq!(assignment.lines[1][2].as_deref(), Some("ACHSE-Z"));
-/// # Ok::<(), bahn_control::CompensationError>(())
+/// # Ok::<(), bahn_parameters::compensation::CompensationError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CompensationAssignment {
@@ -57,12 +58,12 @@ pub struct CompensationError {
     pub what: &'static str,
 }
 
-pub(crate) fn error<T>(line: usize, what: &'static str) -> Result<T, CompensationError> {
+pub(super) fn error<T>(line: usize, what: &'static str) -> Result<T, CompensationError> {
     Err(CompensationError { line, what })
 }
 
 /// Words of each line that is not empty, with its number.
-pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
+pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
     let lines = (1..).zip(text.lines());
     lines
         .map(|(number, line)| (number, line.split_whitespace().collect::<Vec<_>>()))
@@ -70,7 +71,7 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
 }
 
 /// The index of an axis in the lists of the control.
-pub(crate) fn axis_named(name: &str) -> Option<usize> {
+pub(super) fn axis_named(name: &str) -> Option<usize> {
     PLC_AXIS_NAMES
         .iter()
         .position(|known| known.eq_ignore_ascii_case(name))
@@ -149,7 +150,7 @@ impl CompensationTable {
     }
 
     /// Its columns: axis index and errors.
-    pub(crate) fn columns(&self) -> impl Iterator<Item = &(usize, ErrorTable)> {
+    pub fn columns(&self) -> impl Iterator<Item = &(usize, ErrorTable)> {
         self.columns.iter()
     }
 

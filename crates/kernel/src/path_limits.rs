@@ -1,12 +1,14 @@
 //! The limits of a path: those of its axes, through the kinematics, and those of the list of machine parameters.
 
-use bahn_kernel::{AxisUnit, Kinematics, along_path};
 use bahn_motion::Limits;
 use bahn_parameters::ParameterList;
 use bahn_path::PerAxis;
 
+use crate::axis::AxisUnit;
+use crate::kinematics::{Kinematics, along_path};
+
 /// The limits of a path: those of the axes, through the kinematics.
-pub(crate) fn path_limits<'a>(
+pub fn path_limits<'a>(
     parameters: &ParameterList,
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     kinematics: &dyn Kinematics,

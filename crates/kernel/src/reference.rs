@@ -1,23 +1,24 @@
 //! The reference run: axis by axis over the reference marks.
 //!
 //! The flow charts of the four sequences are lost in the manual's text; what is built here is what remains
-//! of them and what sister manuals say (inferred) [000:4583-4667]. The cam of each axis is the marker M2556
-//! ff. that the PLC copies from its input.
+//! of them and what sister manuals say (inferred) [000:4583-4667]. The cams of the axes are given by their indices.
 
-use bahn_exchange::Image;
-use bahn_kernel::{AxisUnit, Mover, OwnAxes, Progress, gantry};
 use bahn_motion::Aim;
+use bahn_parameters::PerPlcAxis;
 use bahn_servo::settings::MarkKind;
 
-use crate::command::Mode;
-use crate::markers::REFERENCE_CAM;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
+use crate::gantry;
 use crate::now::Now;
-use crate::site::Site;
+
+/// The cams that are closed, by axis index.
+type Cams = PerPlcAxis<bool>;
 
 /// The reference run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct ReferenceRun {
-    /// NC start was given: the axes follow in the order of MP1340.
+pub struct ReferenceRun {
+    /// NC start was given: the axes follow in the order of their machine parameters.
     automatic: bool,
     /// The axis that runs, by its place, and its step.
     running: Option<(usize, Step)>,
@@ -38,6 +39,7 @@ enum Step {
 }
 
 impl ReferenceRun {
+    /// Axes are led over their marks, or are to be.
     pub fn is_running(&self) -> bool {
         self.automatic || self.running.is_some()
     }
@@ -53,24 +55,24 @@ impl ReferenceRun {
         !std::mem::replace(&mut self.asked, true) && is_missing(axes, true)
     }
 
-    /// Moves the axes in PASS OVER REFERENCE MARKS; whether the run is over.
-    pub fn moves(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) -> bool {
+    /// Moves the axes over their reference marks; whether the run is over.
+    pub fn moves(&mut self, axes: &mut OwnAxes, cams: &Cams, now: &Now) -> bool {
         if now.stop {
             self.automatic = false;
         } else if now.start {
             self.automatic = true;
         }
         if self.running.is_none() {
-            self.next_axis(axes, nc, now);
+            self.next_axis(axes, cams, now);
         }
         if let Some((place, step)) = self.running {
             let stop = now.stop || !(self.automatic || key_of(place, axes, now));
-            self.running = run_axis(place, step, stop, axes, nc, now);
+            self.running = run_axis(place, step, stop, axes, cams, now);
         }
         if self.running.is_some() {
             return false;
         }
-        // Axes that MP1340 does not name pass their marks by their keys only [000:4649-4654].
+        // Axes that the machine parameters do not name pass their marks by their keys only [000:4649-4654].
         let over = self.automatic && !is_missing(axes, true) || !is_missing(axes, false);
         if over {
             self.abort();
@@ -79,7 +81,7 @@ impl ReferenceRun {
     }
 
     /// Chooses the axis that runs next; one that is clamped or has no feed enable is waited for.
-    fn next_axis(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) {
+    fn next_axis(&mut self, axes: &mut OwnAxes, cams: &Cams, now: &Now) {
         let next = if self.automatic {
             let named = axes.places().filter_map(|place| {
                 let unit = axes.get(place).filter(|unit| waits(unit))?;
@@ -98,7 +100,7 @@ impl ReferenceRun {
         if !(unit.servo.closed() && unit.enabled && unit.stands()) {
             return;
         }
-        let cam = cam(place, axes, nc);
+        let cam = cam(place, axes, cams);
         for unit in axes.all_mut() {
             let slave = unit.coupling.as_ref().is_some_and(|of| of.master == place);
             if slave {
@@ -123,19 +125,12 @@ fn key_of(place: usize, axes: &OwnAxes, now: &Now) -> bool {
         .is_some_and(Option::is_some)
 }
 
-/// No program is begun, nor goes on, before the axes that MP1340 names have passed their reference marks: until then no
-/// software limit holds and no datum is known [000:4563-4575] [001:953]. What MDI positions may do without, but for M91 and
-/// M92. What the control says then no manual prints (inferred).
-pub(crate) fn bars(progress: &Progress, site: &Site) -> bool {
-    site.now.mode != Mode::Mdi && !progress.is_running() && is_due(site.axes.iter())
-}
-
-/// An axis whose mark is evaluated (MP1340) has not passed it.
-pub(crate) fn is_due<'a>(mut axes: impl Iterator<Item = &'a AxisUnit>) -> bool {
+/// An axis whose mark is evaluated has not passed it.
+pub fn is_due<'a>(mut axes: impl Iterator<Item = &'a AxisUnit>) -> bool {
     axes.any(|unit| waits(unit) && unit.parameters.reference.place.is_some())
 }
 
-/// An axis has not passed its reference mark: any one, or one of those that MP1340 names.
+/// An axis has not passed its reference mark: any one, or one of those that the machine parameters name.
 fn is_missing(axes: &OwnAxes, named: bool) -> bool {
     match named {
         true => is_due(axes.iter()),
@@ -144,10 +139,10 @@ fn is_missing(axes: &OwnAxes, named: bool) -> bool {
 }
 
 /// The cam of an axis is closed.
-fn cam(place: usize, axes: &OwnAxes, nc: &Image) -> bool {
+fn cam(place: usize, axes: &OwnAxes, cams: &Cams) -> bool {
     axes.get(place)
-        .and_then(|unit| REFERENCE_CAM.get(unit.index))
-        .is_some_and(|marker| nc.bit(*marker))
+        .and_then(|unit| cams.get(unit.index))
+        .is_some_and(|cam| *cam)
 }
 
 /// One cycle of the run of an axis; what comes next.
@@ -156,10 +151,10 @@ fn run_axis(
     step: Step,
     stop: bool,
     axes: &mut OwnAxes,
-    nc: &Image,
+    cams: &Cams,
     now: &Now,
 ) -> Option<(usize, Step)> {
-    let (time, cam) = (now.time_s, cam(place, axes, nc));
+    let (time, cam) = (now.time_s, cam(place, axes, cams));
     let unit = axes.get_mut(place)?;
     if !(unit.servo.closed() && unit.enabled) {
         unit.mover = Mover::None;
@@ -176,7 +171,7 @@ fn run_axis(
         unit.mover = Mover::None;
         return None;
     }
-    let (step, synchronous) = next_step(place, step, cam, axes, nc);
+    let (step, synchronous) = next_step(place, step, cam, axes, cams);
     let unit = axes.get_mut(place)?;
     let (direction, feed) = match step {
         Step::Seek { reversed: false } => (forwards, reference.feed_mm_min),
@@ -212,8 +207,8 @@ fn run_axis(
 }
 
 /// What the cam and the marks make of a step, and whether slaves are where they shall be.
-fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, nc: &Image) -> (Step, bool) {
-    let cam_of = |unit: &AxisUnit| REFERENCE_CAM.get(unit.index).is_some_and(|cam| nc.bit(*cam));
+fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, cams: &Cams) -> (Step, bool) {
+    let cam_of = |unit: &AxisUnit| cams.get(unit.index).is_some_and(|cam| *cam);
     let Some(unit) = axes.get_mut(place) else {
         return (Step::Stop, true);
     };
@@ -239,7 +234,7 @@ fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, nc: &Image
 }
 
 /// Axes that are only displayed: the counter is zero on the reference mark [000:4573].
-pub(crate) fn count_display_axes(axes: &mut OwnAxes) {
+pub fn count_display_axes(axes: &mut OwnAxes) {
     for unit in axes.iter_mut().filter(|unit| !unit.parameters.controlled) {
         if unit.referenced {
             continue;
@@ -256,7 +251,7 @@ pub(crate) fn count_display_axes(axes: &mut OwnAxes) {
 }
 
 /// An axis that must pass its reference mark by itself.
-pub(crate) fn waits(unit: &AxisUnit) -> bool {
+pub fn waits(unit: &AxisUnit) -> bool {
     !unit.referenced && unit.parameters.controlled && unit.is_free()
 }
 

@@ -1,52 +1,28 @@
-//! 3D ROT in manual operation: direction keys and handwheel lead the tool along the axes of a tilted working plane, in
+//! A tilted plane by hand: direction keys and handwheel lead the tool along the axes of a tilted working plane, in
 //! which the positions are shown and datums are set [000:4256].
 
 use std::sync::Arc;
 
-use bahn_kernel::{AxisUnit, Chain, Direction, Mover, Offsets, OwnAxes};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::axis::AxisParameters;
 use bahn_path::{Axis, Placement, Position, Swivels};
 
-use crate::message::Message;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Direction, Mover};
+use crate::by_hand::AtLimit;
+use crate::kinematics::{Chain, Offsets};
 use crate::now::Now;
-use crate::plane_command::{PlaneCommand, ROTARY};
-use crate::reach::Reach;
 
 /// The axes of a plane.
-pub(crate) const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+pub const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 /// An axis with a smaller part in a direction does not move along it.
 const NO_PART: f64 = 1e-12;
 /// So near a software limit an axis stands at it, mm: positions in the plane are rounded.
 const AT_LIMIT_MM: f64 = 1e-6;
 
-/// The positions of the swivel axes in the plane, `Some(None)` when it is off; `None` where an angle is said of an axis
-/// that does not swivel.
-pub(crate) fn positions(
-    command: &PlaneCommand,
-    swivels: &Swivels,
-    axes: &OwnAxes,
-) -> Option<Option<Position>> {
-    let Some(angles) = command.angles else {
-        return Some(None);
-    };
-    let mut positions = Position::ZERO;
-    for axis in swivels.free_axes() {
-        positions[axis] = axes.at(axis).map_or(0.0, |unit| unit.nominal);
-    }
-    for (axis, angle) in ROTARY.into_iter().zip(angles) {
-        let Some(angle) = angle else { continue };
-        if !swivels.free_axes().any(|free| free == axis) {
-            return None;
-        }
-        positions[axis] = angle;
-    }
-    Some(Some(positions))
-}
-
 /// What the operator wants of the axes of the plane.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Wish {
+pub struct Wish {
     /// A direction key that counts, with its feed, mm/min.
     pub key: Option<(Direction, f64)>,
     /// What the handwheel was turned, mm.
@@ -57,9 +33,9 @@ pub(crate) struct Wish {
     pub jog_mm_min: f64,
 }
 
-/// The plane of 3D ROT, if it is on.
+/// The tilted plane in which the operator moves the axes, if it is on.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Leaning {
+pub struct Leaning {
     plane: Option<Plane>,
     moving: Option<Moving>,
 }
@@ -102,6 +78,7 @@ impl Plane {
 }
 
 impl Leaning {
+    /// It is on.
     pub fn is_on(&self) -> bool {
         self.plane.is_some()
     }
@@ -111,7 +88,7 @@ impl Leaning {
         self.plane.as_ref().map(|plane| plane.angles)
     }
 
-    /// Switches 3D ROT on, in the plane of these positions of the swivel axes, or off; outside the cycle.
+    /// Switches it on, in the plane of these positions of the swivel axes, or off; outside the cycle.
     pub fn switch(&mut self, angles: Option<Position>, swivels: Swivels, of: Offsets) {
         self.moving = None;
         self.plane = angles.map(|angles| Plane::new(swivels, angles, of));
@@ -130,7 +107,7 @@ impl Leaning {
         }
     }
 
-    /// 3D ROT is switched off, the axes are shown upright again.
+    /// It is switched off, the axes are shown upright again.
     pub fn leave(chain: &mut Chain) {
         chain.place(None);
     }
@@ -155,7 +132,13 @@ impl Leaning {
     }
 
     /// Moves the main axes for a cycle as the operator wants it.
-    pub fn moves(&mut self, wishes: &[Wish; 3], reach: &mut Reach, now: &Now) {
+    pub fn moves(
+        &mut self,
+        wishes: &[Wish; 3],
+        axes: &mut OwnAxes,
+        now: &Now,
+        report: &mut dyn FnMut(AtLimit),
+    ) {
         let Some(rotation) = self.plane.as_ref().and_then(|plane| plane.placement.rotation()) else {
             return;
         };
@@ -180,14 +163,14 @@ impl Leaning {
             Some(part) if part.abs() > NO_PART => *part,
             _ => 0.0,
         };
-        if !is_able(reach.axes, part) {
+        if !is_able(axes, part) {
             // What moved stands on its ramp or at once, as the loops have it.
-            reach.axes.release(|mover| mover == Mover::Manual);
+            axes.release(|mover| mover == Mover::Manual);
             return;
         }
         let wish = wishes.get(moving.along).copied().unwrap_or_default();
-        let ways = [Direction::Minus, Direction::Plus].map(|direction| way_left(reach.axes, direction, part));
-        let least = |of: fn(&AxisParameters) -> f64| least_of(reach.axes, part, of);
+        let ways = [Direction::Minus, Direction::Plus].map(|direction| way_left(axes, direction, part));
+        let least = |of: fn(&AxisParameters) -> f64| least_of(axes, part, of);
         let rapid = least(|parameters| parameters.motion.rapid_mm_min).min(now.rapid_limit_mm_min);
         let acceleration = least(|parameters| parameters.motion.acceleration_m_s2);
         let at = moving.way.position();
@@ -218,7 +201,7 @@ impl Leaning {
         let stands = moving.way.speed_mm_s() == 0.0 && way == 0.0;
         let over =
             stands && (now.stop || wish.key.is_none() && moving.target.is_none_or(|to| moving.way.is_at(to)));
-        for unit in reach.axes.iter_mut().filter(|unit| part(unit.axis) != 0.0) {
+        for unit in axes.iter_mut().filter(|unit| part(unit.axis) != 0.0) {
             unit.mover = if over { Mover::None } else { Mover::Manual };
             unit.follow(unit.nominal + part(unit.axis) * way, now.time_s);
         }
@@ -228,10 +211,10 @@ impl Leaning {
         if let Some(direction) = wish.key.map(|(direction, _)| direction).or(moving.pushed) {
             let [(_, minus), (_, plus)] = ways;
             let limit = if direction == Direction::Plus { plus } else { minus };
-            show_limit(limit.filter(|_| stands), reach);
+            show_limit(limit.filter(|_| stands), axes, report);
         }
         self.moving = (!over).then_some(moving);
-        hide_limits(reach);
+        hide_limits(axes, report);
     }
 }
 
@@ -299,25 +282,23 @@ fn is_at_limit(unit: &AxisUnit, direction: Direction) -> bool {
     }
 }
 
-/// Message and marker of the limit at which an axis of the machine stands.
-fn show_limit(limit: Option<(Axis, Direction)>, reach: &mut Reach) {
+/// What is reported of the limit at which an axis of the machine stands.
+fn show_limit(limit: Option<(Axis, Direction)>, axes: &mut OwnAxes, report: &mut dyn FnMut(AtLimit)) {
     let Some((axis, direction)) = limit else { return };
-    for unit in reach.axes.iter_mut().filter(|unit| unit.axis == axis) {
+    for unit in axes.iter_mut().filter(|unit| unit.axis == axis) {
         if is_at_limit(unit, direction) {
             unit.at_limit = Some(direction);
-            reach
-                .messages
-                .show(Message::limit(unit.id, direction), reach.block);
+            report(AtLimit::Reached(unit.id, direction));
         }
     }
 }
 
 /// They go when the axis leaves it.
-fn hide_limits(reach: &mut Reach) {
-    for unit in reach.axes.iter_mut().filter(|unit| MAIN.contains(&unit.axis)) {
+fn hide_limits(axes: &mut OwnAxes, report: &mut dyn FnMut(AtLimit)) {
+    for unit in axes.iter_mut().filter(|unit| MAIN.contains(&unit.axis)) {
         if let Some(direction) = unit.at_limit.filter(|at| !is_at_limit(unit, *at)) {
             unit.at_limit = None;
-            reach.messages.remove(&Message::limit(unit.id, direction));
+            report(AtLimit::Left(unit.id, direction));
         }
     }
 }

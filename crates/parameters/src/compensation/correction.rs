@@ -1,9 +1,9 @@
 //! Non-linear axis errors: the correction tables of code number 105 296, older than .COM and .CMA [000:3875-3887].
 
-use bahn_parameters::{PLC_AXIS_NAMES, PerPlcAxis};
 use bahn_servo::ErrorTable;
 
-use crate::compensation_table::{CompensationError, axis_named, error, lines};
+use super::table::{CompensationError, axis_named, error, lines};
+use crate::{PLC_AXIS_NAMES, PerPlcAxis};
 
 /// The correction tables of code number 105 296: one for each axis at most, always with 64 points. Where there is an
 /// assignment (.CMA) they do not apply [000:3887].
@@ -14,7 +14,7 @@ use crate::compensation_table::{CompensationError, axis_named, error, lines};
 /// a 64th of the spacing at most.
 ///
 /// ```
-/// use bahn_control::CorrectionTables;
+/// use bahn_parameters::compensation::CorrectionTables;
 /// let mut text = String::from("Z OVER Y MM DATUM -90 DIST 16\n");
 /// for point in 0..64 {
 ///     text += &format!("{point} {}\n", f64::from(point) * 0.01);
@@ -26,7 +26,7 @@ use crate::compensation_table::{CompensationError, axis_named, error, lines};
 /// // 6.5536 mm / 64 = 0.1024 mm: 0.61 after 0.5 is too much.
 /// let wrong = CorrectionTables::read(&text.replace("51 0.51\n", "51 0.61\n")).unwrap_err();
 /// assert_eq!(wrong.line, 53);
-/// # Ok::<(), bahn_control::CompensationError>(())
+/// # Ok::<(), bahn_parameters::compensation::CompensationError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CorrectionTables {
@@ -121,7 +121,7 @@ impl CorrectionTables {
     }
 
     /// Its tables: corrected axis, driving axis, errors.
-    pub(crate) fn columns(&self) -> impl Iterator<Item = (usize, usize, &ErrorTable)> {
+    pub fn columns(&self) -> impl Iterator<Item = (usize, usize, &ErrorTable)> {
         let tables = self.tables.iter().enumerate();
         tables.filter_map(|(axis, own)| own.as_ref().map(|own| (axis, own.driving, &own.table)))
     }

@@ -1,26 +1,28 @@
 //! What probed points come to: sides, corners, circles.
 
 /// A point of the plane, mm.
-pub(crate) type Point = [f64; 2];
+pub type Point = [f64; 2];
 
 /// Points that are nearer than this give no direction, mm (inferred) [003:7896].
 const NEAREST_MM: f64 = 1e-3;
 
 /// Where the ball touched a side of the workpiece: its centre, and the direction in which it was moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Contact {
+pub struct Contact {
+    /// The centre of the ball, mm.
     pub centre: Point,
+    /// The direction in which it was moved.
     pub towards: Point,
 }
 
 /// The angle of a side with the first axis, degrees, more than -90 to 90 [003:1485]; `None` for points that are too near.
-pub(crate) fn angle_deg([a, b]: &[Contact; 2]) -> Option<f64> {
+pub fn angle_deg([a, b]: &[Contact; 2]) -> Option<f64> {
     let [x, y] = way(a, b)?;
     Some(within_90(y.atan2(x).to_degrees()))
 }
 
 /// An angle of a line, more than -90 to 90 degrees.
-pub(crate) fn within_90(angle_deg: f64) -> f64 {
+pub fn within_90(angle_deg: f64) -> f64 {
     let turned = angle_deg.rem_euclid(180.0);
     if turned > 90.0 { turned - 180.0 } else { turned }
 }
@@ -31,7 +33,7 @@ fn way(a: &Contact, b: &Contact) -> Option<Point> {
 }
 
 /// The corner of two sides, each given by two touches of a ball; `None` for sides that are parallel or have no direction.
-pub(crate) fn corner(sides: &[[Contact; 2]; 2], radius: f64) -> Option<Point> {
+pub fn corner(sides: &[[Contact; 2]; 2], radius: f64) -> Option<Point> {
     // normal · p = distance, the normal towards the material.
     let line = |side: &[Contact; 2]| {
         let [a, b] = side;
@@ -51,15 +53,17 @@ pub(crate) fn corner(sides: &[[Contact; 2]; 2], radius: f64) -> Option<Point> {
 
 /// A circle, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Circle {
+pub struct Circle {
+    /// Its centre, mm.
     pub centre: Point,
+    /// Its radius, mm.
     pub radius: f64,
 }
 
 /// The circle that fits best through the centres of touches (least squares of Kåsa, exact for points that lie on one),
 /// then from centres to the wall: outwards when the touches go away from the centre. `None` for fewer than three
 /// points, or points of a line.
-pub(crate) fn circle(contacts: &[Contact], ball_radius: f64) -> Option<Circle> {
+pub fn circle(contacts: &[Contact], ball_radius: f64) -> Option<Circle> {
     if contacts.len() < 3 {
         return None;
     }

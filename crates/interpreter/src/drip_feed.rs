@@ -1,17 +1,14 @@
-//! A program that is executed while it is transferred: its text comes with commands, what is executed is erased
+//! A program that is executed while it is transferred: its text comes piece by piece, what is executed is erased
 //! [000:16951-16968] [003:1650-1690].
 //!
 //! Text waits here until the next preparation, which gives the interpreter a longer version of the program and takes from
 //! it what nobody needs any more. How much waits is what a peripheral is held back by.
 
-use std::fmt;
 use std::sync::Arc;
 
 use bahn_parameters::interfaces::DripFeedMemory;
 use bahn_parameters::{Blockwise, MessageId};
 use bahn_program::Program;
-
-use crate::escapes;
 
 /// Text that one command brings at most, bytes.
 const TEXT_MAX: usize = 1 << 16;
@@ -20,53 +17,6 @@ const TEXT_MAX: usize = 1 << 16;
 const BATCH: usize = 1 << 12;
 /// So few known blocks are not enough to do.
 const FEW_BLOCKS: u32 = 128;
-
-/// What happens on the line of a program that is executed while it is transferred.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Dnc {
-    /// `dnc begin NAME`: NC start runs the program of this name as it comes. A transfer of the program that was broken off
-    /// goes on instead, after what has come.
-    Begin(String),
-    /// `dnc text L X+5\n`: text of it, with the escapes of a byte string. Refused while no more is [wanted](DripFeedState).
-    Text(Arc<[u8]>),
-    /// `dnc end`: nothing more comes.
-    End,
-    /// `dnc broken`: the line is broken. What has come is executed, as far as it does not depend on what follows.
-    Broken,
-}
-
-impl Dnc {
-    /// Reads what stands after `dnc`.
-    pub(crate) fn parse(text: &str) -> Result<Dnc, String> {
-        let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
-        match word {
-            "begin" if !rest.trim().is_empty() => Ok(Dnc::Begin(rest.trim().to_owned())),
-            "text" => escapes::unescaped(rest)
-                .map(|bytes| Dnc::Text(bytes.into()))
-                .ok_or_else(|| {
-                    "`dnc text` takes text with the escapes of a byte string, as `L X+5\\n`".to_owned()
-                }),
-            "end" if rest.is_empty() => Ok(Dnc::End),
-            "broken" if rest.is_empty() => Ok(Dnc::Broken),
-            _ => Err("`dnc` takes `begin` and a name, `text` and text, `end` or `broken`".to_owned()),
-        }
-    }
-}
-
-impl fmt::Display for Dnc {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Dnc::Begin(name) => write!(f, "begin {name}"),
-            Dnc::Text(bytes) => {
-                // Blanks at the ends of a line of a script do not count.
-                let escaped = bytes.escape_ascii().to_string();
-                write!(f, "text {}", escaped.replace(' ', "\\x20"))
-            }
-            Dnc::End => f.write_str("end"),
-            Dnc::Broken => f.write_str("broken"),
-        }
-    }
-}
 
 /// The line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,8 +43,8 @@ pub struct DripFeedState {
 }
 
 /// What has come of a program.
-#[derive(Clone)]
-pub(crate) struct DripFeed {
+#[derive(Clone, Debug)]
+pub struct DripFeed {
     name: String,
     /// As far as it was looked at.
     program: Arc<Program>,
@@ -132,24 +82,12 @@ impl DripFeed {
         }
     }
 
-    /// Does what a command says of a transfer that has begun: whether that is possible, and what is to be said.
-    pub fn follow(&mut self, dnc: &Dnc) -> (bool, Option<MessageId>) {
-        match dnc {
-            Dnc::Begin(_) => (false, None),
-            Dnc::Text(text) => match self.take(text) {
-                Ok(said) => (true, said),
-                Err(Refused) => (false, None),
-            },
-            Dnc::End => (true, self.end()),
-            Dnc::Broken => (true, self.break_off(MessageId::ProgramIncomplete)),
-        }
-    }
-
     /// Whether a program is what has come.
     pub fn brings(&self, program: &Arc<Program>) -> bool {
         Arc::ptr_eq(&self.program, program)
     }
 
+    /// How far it has come.
     pub fn state(&self) -> DripFeedState {
         DripFeedState {
             line: self.line,
@@ -168,6 +106,9 @@ impl DripFeed {
     }
 
     /// The program for a run from a block on.
+    ///
+    /// # Errors
+    /// Why there is none.
     pub fn open(&self, block: u32) -> Result<Arc<Program>, MessageId> {
         if !self.memory.is_enough() {
             return Err(MessageId::ProgramMemoryOverflow);
@@ -195,7 +136,10 @@ impl DripFeed {
     }
 
     /// More text, and what is to be said of it.
-    fn take(&mut self, text: &[u8]) -> Result<Option<MessageId>, Refused> {
+    ///
+    /// # Errors
+    /// It is not wanted now, or too long.
+    pub fn take(&mut self, text: &[u8]) -> Result<Option<MessageId>, Refused> {
         if !self.state().wants_more || text.len() > TEXT_MAX {
             return Err(Refused);
         }
@@ -207,7 +151,7 @@ impl DripFeed {
     }
 
     /// The transfer is broken off; what is to be said of that.
-    fn break_off(&mut self, message: MessageId) -> Option<MessageId> {
+    pub fn break_off(&mut self, message: MessageId) -> Option<MessageId> {
         if self.line != DripFeedLine::Open {
             return None;
         }
@@ -217,7 +161,7 @@ impl DripFeed {
     }
 
     /// Nothing more comes; what has come is executed to its end. What is to be said of that.
-    fn end(&mut self) -> Option<MessageId> {
+    pub fn end(&mut self) -> Option<MessageId> {
         let said_before = self.broken_by.is_some();
         self.line = DripFeedLine::Complete;
         self.look_at();
@@ -278,7 +222,8 @@ impl DripFeed {
 }
 
 /// Text is not wanted now.
-struct Refused;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refused;
 
 /// Looks for block numbers that are too high [003:1662].
 #[derive(Clone, Debug)]

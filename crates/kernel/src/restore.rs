@@ -1,21 +1,20 @@
 //! Block scan and return to the contour [000:6765-6832].
 //!
-//! The scan executes the program without moving an axis up to a block; its functions go to the PLC with
-//! M2059 = 1. RESTORE POSITION then moves the axes to where the path is, or, after MANUAL OPERATION, back to
-//! where it was interrupted.
+//! The scan executes the program without moving an axis up to a block; its functions are output. Then the axes go to where
+//! the path is, or, after they were moved by hand, back to where it was interrupted.
 
 use std::collections::VecDeque;
 
-use bahn_exchange::{Exchange, signal};
-use bahn_kernel::{AxisUnit, Feeder, Mover, Offsets, OwnAxes, RunFault, Track};
 use bahn_motion::Aim;
-use bahn_parameters::MessageId;
 use bahn_parameters::operation::RestartParameters;
 use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
 
-use crate::message::Message;
-use crate::q_transfer::QTransfer;
-use crate::site::Site;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
+use crate::feeder::{Feeder, RunFault};
+use crate::kinematics::Offsets;
+use crate::run_family::{Acting, RunFamily};
+use crate::track::Track;
 
 /// Elements that one call of prepare passes at most.
 const BUDGET: usize = 1000;
@@ -30,34 +29,31 @@ enum Restore {
         /// A dwell time lasts until then, µs since power-on.
         dwell_until_us: u64,
     },
-    /// The scan is at a programmed stop; NC start goes on (MP7680 bit 3 = 0).
+    /// The scan is at a programmed stop; NC start goes on.
     Stopped { block: u32 },
-    /// The axes must be brought to a place, machine coordinates: waiting for RESTORE POSITION.
+    /// The axes must be brought to a place, machine coordinates: waiting until that is asked for.
     Ready { target: Position },
-    /// RESTORE POSITION was given, or the movement was stopped: waiting for NC start.
+    /// It was asked for, or the movement was stopped: waiting for NC start.
     Armed { target: Position },
     /// The axes move, or come to a standstill when they are `stopped`.
     Moving { target: Position, stopped: bool },
 }
 
 /// Why a scan ends before its block.
-pub(crate) enum ScanEnd {
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScanEnd {
     /// The block does not come.
     NotAddressed,
     /// A block is refused.
     Fault(RunFault),
 }
 
-impl ScanEnd {
-    /// The message, when it is none of a block.
-    pub const NOT_ADDRESSED: Message = Message::Plain(MessageId::SelectedBlockNotAddressed);
-}
-
 /// The return to the contour that is on its way, if one is.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Restoration(Option<Restore>);
+pub struct Restoration(Option<Restore>);
 
 impl Restoration {
+    /// Axes are being brought back, or are to be.
     pub fn is_on(&self) -> bool {
         self.0.is_some()
     }
@@ -73,9 +69,8 @@ impl Restoration {
     }
 
     /// The scan to a block begins.
-    pub fn scan(&mut self, block: u32, exchange: &mut Exchange) {
+    pub fn scan(&mut self, block: u32) {
         self.0 = Some(scan_to(block));
-        exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, true);
     }
 
     /// Nothing returns any more.
@@ -94,32 +89,28 @@ impl Restoration {
         }
     }
 
-    /// RESTORE POSITION, from where an interrupted path was left when it `may` return there.
-    pub fn arm(&mut self, may: bool, track: &Track, site: &mut Site) -> bool {
+    /// The axes are to go back with NC start, from where an interrupted path was left when it `may` return there.
+    pub fn arm(&mut self, may: bool, track: &Track, at: &mut Acting) -> bool {
         let target = match &self.0 {
             Some(Restore::Ready { target }) => *target,
             None if may => {
-                let mut target = site.chain.to_axes(&track.stands_at());
-                take_left(&mut site.axes, &mut target);
+                let mut target = at.chain.to_axes(&track.stands_at());
+                take_left(at.axes, &mut target);
                 target
             }
             _ => return false,
         };
-        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
-        site.exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, false);
-        site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, true);
         self.0 = Some(Restore::Armed { target });
         true
     }
 
     /// Goes on with a scan; may allocate. Why it ended, when that was not at its block.
-    pub fn prepare(
+    pub fn prepare<'b>(
         &mut self,
         feeder: &mut Feeder,
-        q_transfer: &mut QTransfer,
         rules: &RestartParameters,
         track: &mut Track,
-        site: &mut Site,
+        family: &mut impl RunFamily<'b>,
     ) -> Option<ScanEnd> {
         for _ in 0..BUDGET {
             let Some(Restore::Scan {
@@ -130,25 +121,27 @@ impl Restoration {
             else {
                 return None;
             };
-            if !site.handshakes.is_idle() || site.now.stop_pressed || site.now.us < *dwell_until_us {
+            let transferred = family.has_transferred();
+            let now = family.acting().now;
+            if !transferred || now.stop_pressed || now.us < *dwell_until_us {
                 return None;
             }
             let block = *block;
             if let Some(function) = functions.pop_front() {
-                q_transfer.strobe();
-                site.output(&function.function, feeder.inch());
+                family.begin();
+                family.output(&function.function);
                 continue;
             }
             match feeder.next() {
                 Step::Element(element) => {
                     // Nobody goes back after what the scan has passed.
                     feeder.forget_before(element.sequence);
-                    self.pass(element, block, feeder, rules, track, site);
+                    self.pass(element, block, feeder, rules, track, &mut family.acting());
                 }
                 Step::Barrier(Barrier::Stop { .. }) if !rules.passes_stops => {
                     self.0 = Some(Restore::Stopped { block });
                 }
-                Step::Barrier(_) => feeder.resume(q_transfer.answer()),
+                Step::Barrier(_) => feeder.resume(family.answer()),
                 Step::Starved => return None,
                 Step::End => return Some(ScanEnd::NotAddressed),
                 Step::Error(fault) => return Some(ScanEnd::Fault(fault)),
@@ -165,17 +158,17 @@ impl Restoration {
         feeder: &mut Feeder,
         rules: &RestartParameters,
         track: &mut Track,
-        site: &mut Site,
+        at: &mut Acting,
     ) {
         if element.block.program == 0 && element.block.block >= block {
-            site.chain.place(element.placement.as_ref());
-            let mut target = site.chain.to_axes(&element.start);
-            for unit in site.axes.iter() {
+            at.chain.place(element.placement.as_ref());
+            let mut target = at.chain.to_axes(&element.start);
+            for unit in at.axes.iter() {
                 if target[unit.axis].is_nan() {
                     target[unit.axis] = unit.nominal;
                 }
             }
-            track.begin_at(element.start, site.chain);
+            track.begin_at(element.start, at.chain);
             feeder.put_back(std::iter::once(element));
             self.0 = Some(Restore::Ready { target });
             return;
@@ -187,33 +180,33 @@ impl Restoration {
         }) = &mut self.0
         {
             if !rules.ignores_dwell {
-                *dwell_until_us = site.now.us + (element.dwell_s * 1e6) as u64;
+                *dwell_until_us = at.now.us + (element.dwell_s * 1e6) as u64;
             }
             functions.extend(element.functions().iter().cloned());
         }
-        pass_tool_change(&element, feeder, rules, site);
+        pass_tool_change(&element, feeder, rules, at);
     }
 
     /// Moves the axes to the contour: those of the working plane first, the tool axis last, unless it has
-    /// to be raised (inferred). The feed is MP4220 of each axis [000:6785]. The path
-    /// goes on from where they stand then: one that another channel gave back meanwhile stays where that has left it.
-    pub fn moves(
+    /// to be raised (inferred). The feed is that of PLC positioning [000:6785]. The path
+    /// goes on from where they stand then: one that another channel gave back meanwhile stays where that has left it. Whether
+    /// it is over with this cycle.
+    pub fn moves<'b>(
         &mut self,
         feeder: Option<&mut Feeder>,
-        q_transfer: &mut QTransfer,
         track: &mut Track,
-        site: &mut Site,
-    ) {
-        let now = site.now;
+        family: &mut impl RunFamily<'b>,
+    ) -> bool {
+        let now = *family.acting().now;
         let start = now.start && !now.stop;
         match &self.0 {
             Some(Restore::Stopped { block }) if start => {
                 let block = *block;
                 if let Some(feeder) = feeder {
-                    feeder.resume(q_transfer.answer());
+                    feeder.resume(family.answer());
                 }
                 self.0 = Some(scan_to(block));
-                return;
+                return false;
             }
             Some(Restore::Armed { target }) if start => {
                 let (target, stopped) = (*target, false);
@@ -222,19 +215,21 @@ impl Restoration {
             _ => {}
         }
         let Some(Restore::Moving { target, stopped }) = &mut self.0 else {
-            return;
+            return false;
         };
         // What has stopped moves again with NC start only.
         *stopped |= now.stop;
         let (target, stopped) = (*target, *stopped);
-        if lead_to(&target, stopped, site) {
-            site.axes.release(|mover| mover == Mover::Positioning);
+        let at = &mut family.acting();
+        let over = lead_to(&target, stopped, at);
+        if over {
+            at.axes.release(|mover| mover == Mover::Positioning);
             self.0 = None;
-            site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, false);
-            track.regain(&site.axes, site.chain);
-        } else if stopped && site.axes.stand() {
+            track.regain(at.axes, at.chain);
+        } else if stopped && at.axes.stand() {
             self.0 = Some(Restore::Armed { target });
         }
+        over
     }
 }
 
@@ -267,10 +262,10 @@ fn take_left(axes: &mut OwnAxes, target: &mut Position) -> bool {
 }
 
 /// Leads the axes to a place for a cycle, or to a standstill; whether they stand there.
-fn lead_to(target: &Position, stopped: bool, site: &mut Site) -> bool {
-    let now = site.now;
-    let tool_axis = site.chain.offsets.tool_axis;
-    let axes = &mut site.axes;
+fn lead_to(target: &Position, stopped: bool, at: &mut Acting) -> bool {
+    let now = at.now;
+    let tool_axis = at.chain.offsets.tool_axis;
+    let axes = &mut *at.axes;
     let there = |unit: &AxisUnit| unit.ptp.is_at(target[unit.axis]);
     let raise = axes
         .iter()
@@ -303,9 +298,9 @@ fn lead_to(target: &Position, stopped: bool, site: &mut Site) -> bool {
     others_there && tool_there && axes.stand()
 }
 
-/// MP951: where a tool change would have left the axes of MP7450, machine coordinates. The scan goes on
+/// Where a tool change would have left some axes, machine coordinates. The scan goes on
 /// from there. 1 = calculate: the list says so, the section the reverse [000:6783-6832].
-fn pass_tool_change(element: &PathElement, feeder: &mut Feeder, rules: &RestartParameters, site: &Site) {
+fn pass_tool_change(element: &PathElement, feeder: &mut Feeder, rules: &RestartParameters, at: &Acting) {
     let call = element
         .functions()
         .iter()
@@ -317,20 +312,20 @@ fn pass_tool_change(element: &PathElement, feeder: &mut Feeder, rules: &RestartP
     let Some(call) = call.filter(|_| places.iter().any(Option::is_some)) else {
         return;
     };
-    let chain = site.chain.with(Offsets {
+    let chain = at.chain.with(Offsets {
         tool_axis: call.axis,
         tool_length: call.shape.length,
-        ..site.chain.offsets
+        ..at.chain.offsets
     });
     let mut position = element.end;
     let mut axes = chain.to_axes(&position);
-    for unit in site.axes.iter() {
+    for unit in at.axes.iter() {
         if let Some(Some(place)) = places.get(unit.index) {
             axes[unit.axis] = *place;
         }
     }
     let changed = chain.to_path(&axes);
-    for unit in site.axes.iter() {
+    for unit in at.axes.iter() {
         if let Some(Some(_)) = places.get(unit.index) {
             position[unit.axis] = changed[unit.axis];
         }
