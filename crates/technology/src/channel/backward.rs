@@ -7,13 +7,14 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use bahn_motion::{Drive, Interpolator};
+use bahn_path::Synchronisation;
 
 use super::Channel;
 use super::back::{Back, FeedBack};
 use super::order::{OrderId, State};
 use super::record::Moment;
 use super::track::Action;
-use crate::synch::{Synch, SynchType};
+use crate::synch::Synch;
 
 impl Channel<'_> {
     /// Spends a cycle on the path. Whether it moved.
@@ -218,9 +219,9 @@ impl Channel<'_> {
             };
             order.waits = order.synch.backward;
             let kind = if order.waits {
-                SynchType::MvsSvs
+                Synchronisation::MvsSvs
             } else {
-                SynchType::Mos
+                Synchronisation::Mos
             };
             // In backward motion a simulated one is waited for all the same (public).
             order.synch = Synch {

@@ -1,12 +1,13 @@
 //! What is done where the path is, and where it has to stop.
 
+use bahn_path::Synchronisation;
+
 use super::Channel;
 use super::order::{Order, OrderId, RangeId};
 use super::record::Moment;
 use super::track::Action;
 use crate::plc::{self, Output, cycle_at};
 use crate::report::EventKind;
-use crate::synch::SynchType;
 
 /// What became of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -191,7 +192,7 @@ impl Channel<'_> {
             speed_mm_s,
         };
         let stamped = self.plan.orders.get(id).is_some_and(|order| {
-            order.synch.kind == SynchType::MosTs && order.range == Some(RangeId::Channel)
+            order.synch.kind == Synchronisation::MosTs && order.range == Some(RangeId::Channel)
         });
         // Below the cycle, however it is rounded.
         let offset_us = stamped.then(|| (left_s * 1e9).floor() / 1e3);

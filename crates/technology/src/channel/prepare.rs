@@ -1,7 +1,7 @@
 //! From blocks to the path: where each function is output, and where the path waits for it.
 
 use bahn_din::{Command, Unit};
-use bahn_path::{Axis, Curve};
+use bahn_path::{Axis, Curve, Synchronisation};
 
 use super::decoding::Edge;
 use super::fault::{named, numbered};
@@ -12,7 +12,6 @@ use super::track::{Action, Driving, Leg, VectorLimit};
 use super::window::{Held, JointFeed};
 use crate::plc::Script;
 use crate::report::{Fault, Warning};
-use crate::synch::SynchType;
 
 /// 0.1 µm are this part of a mm.
 const PER_MM: f64 = 1e4;
@@ -65,7 +64,7 @@ impl Plan<'_> {
             // Nothing is output ahead across the place where such a function is waited for [004:135].
             let waits_after = |id: &&OrderId| {
                 let order = self.orders.get(**id);
-                moves && order.is_some_and(|order| order.synch.kind == SynchType::MvsSns)
+                moves && order.is_some_and(|order| order.synch.kind == Synchronisation::MvsSns)
             };
             if sorted.gate_after.iter().any(|id| waits_after(&id)) {
                 self.window.bar();
@@ -184,7 +183,7 @@ impl Plan<'_> {
             let is_output = order.range.is_some();
             // Without a motion both are MVS_SVS [004:57], so that functions go out in the order of the block.
             let kind = match order.synch.kind {
-                SynchType::MvsSns | SynchType::MnsSns if !moves => SynchType::MvsSvs,
+                Synchronisation::MvsSns | Synchronisation::MnsSns if !moves => Synchronisation::MvsSvs,
                 kind => kind,
             };
             let joint = kind.takes_micro_joint() && order.lead != Lead::None;
@@ -192,15 +191,15 @@ impl Plan<'_> {
                 sorted.commanded.push(id);
             }
             match kind {
-                SynchType::NoSynch => continue,
-                SynchType::MnsSns if joint => sorted.joints_after.push(id),
+                Synchronisation::NoSynch => continue,
+                Synchronisation::MnsSns if joint => sorted.joints_after.push(id),
                 _ if joint => sorted.joints.push(id),
-                SynchType::MepMos | SynchType::MetMos => sorted.ahead.push(id),
-                SynchType::MepSvs | SynchType::MetSvs => {
+                Synchronisation::MepMos | Synchronisation::MetMos => sorted.ahead.push(id),
+                Synchronisation::MepSvs | Synchronisation::MetSvs => {
                     sorted.ahead.push(id);
                     sorted.gate.push(id);
                 }
-                SynchType::MneSns => {
+                Synchronisation::MneSns => {
                     let motion = unit.motion.is_some() && self.decoding.edge.is_some();
                     if !motion {
                         let message = format!("{} without a motion between G108 and G107", order.label());
@@ -208,7 +207,7 @@ impl Plan<'_> {
                     }
                     sorted.measured = Some(id);
                 }
-                SynchType::MnsSns => {
+                Synchronisation::MnsSns => {
                     // The path stands in any case [004:66], also for a spindle that has confirmed by then.
                     let action = if is_output { Action::Output } else { Action::Stand };
                     sorted.after.push(action(id));
@@ -219,10 +218,10 @@ impl Plan<'_> {
             }
             match kind {
                 _ if joint => {}
-                SynchType::MvsSvs => sorted.gate.push(id),
-                SynchType::MvsSns => sorted.gate_after.push(id),
-                SynchType::MvsSlm => self.decoding.late[0].push(id),
-                SynchType::MvsSlp => self.decoding.late[1].push(id),
+                Synchronisation::MvsSvs => sorted.gate.push(id),
+                Synchronisation::MvsSns => sorted.gate_after.push(id),
+                Synchronisation::MvsSlm => self.decoding.late[0].push(id),
+                Synchronisation::MvsSlp => self.decoding.late[1].push(id),
                 _ => {}
             }
         }
@@ -338,7 +337,7 @@ impl Plan<'_> {
         let gate = || Action::Gate(Box::new([id]));
         let mut actions = vec![Action::Output(id)];
         let after = match kind {
-            SynchType::MvsSns if waits => Some(gate()),
+            Synchronisation::MvsSns if waits => Some(gate()),
             _ => {
                 if waits {
                     actions.push(gate());

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bahn_din::{Command, Function, Kind, Place, Target, Unit};
-use bahn_path::Axis;
+use bahn_path::{Axis, Synchronisation};
 
 use super::fault::{named, numbered};
 use super::order::{Lead, Letter, Order, OrderId, Orders, RangeId, State};
@@ -12,7 +12,7 @@ use crate::report::{Fault, Value};
 use crate::settings::{
     ChannelSettings, FUNCTIONS, FunctionSettings, SPINDLE_M, SpindleFunction, SpindleSettings,
 };
-use crate::synch::{Synch, SynchType};
+use crate::synch::Synch;
 
 /// 0.1 µm and µs are these parts of a mm and a second.
 const PER_MM: f64 = 1e4;
@@ -336,7 +336,7 @@ impl Resolve<'_> {
                     format!("{label} twice for the same target"),
                 ));
             }
-            if order.synch.kind == SynchType::MneSns && other.synch.kind == SynchType::MneSns {
+            if order.synch.kind == Synchronisation::MneSns && other.synch.kind == Synchronisation::MneSns {
                 let message = format!("{label} is the second MNE_SNS of the block");
                 return Err(numbered(place, 20156, message));
             }
@@ -401,11 +401,11 @@ fn unknown_spindle(name: &str, place: &Place) -> Fault {
 /// itself that the function is output [004:54], so it stands alone as well (inferred).
 fn output_type(synch: Synch) -> Option<Synch> {
     match synch.kind {
-        SynchType::NoSynch if synch.flush_and_wait => Some(Synch {
-            kind: SynchType::Mos,
+        Synchronisation::NoSynch if synch.flush_and_wait => Some(Synch {
+            kind: Synchronisation::Mos,
             ..synch
         }),
-        SynchType::NoSynch => None,
+        Synchronisation::NoSynch => None,
         _ => Some(synch),
     }
 }
@@ -427,8 +427,8 @@ fn spindle_handling(index: usize, settings: &SpindleSettings, own: SpindleFuncti
     let waits = is_output && synch.kind.is_waited_for();
     let spindle = (!by_plc).then_some(index);
     // Without a type of its own it is output and not waited for.
-    if is_output && synch.kind == SynchType::NoSynch {
-        synch.kind = SynchType::Mos;
+    if is_output && synch.kind == Synchronisation::NoSynch {
+        synch.kind = Synchronisation::Mos;
     }
     Handling {
         synch,
