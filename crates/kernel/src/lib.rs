@@ -7,6 +7,7 @@
 //!   slaves to their masters; [`EmergencyStop`] is the circuit that lets them move at all.
 //! - [`Feeder`] pulls a program from its [`Reader`](bahn_reader::Reader) and refuses what leaves the traverse range; [`Track`]
 //!   moves the axes along the path and says when a function is to be output ([`Outputs`]).
+//! - [`gates`] are the places of a path where functions go out and where it waits for them.
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
 //!   [`Superimposed`] by hand.
 //! - [`Progress`] is how far a run is, [`BlockTime`] how fast blocks are read, [`VoltageOutput`] a voltage along the path.
@@ -34,6 +35,7 @@ mod clock;
 mod emergency;
 mod feeder;
 pub mod gantry;
+pub mod gates;
 mod kinematics;
 pub mod loops;
 mod per_channel;

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use bahn_din::{Command, Function, Kind, Place, Target, Unit};
-use bahn_path::{Axis, Synchronisation};
+use bahn_path::{Ahead, Axis, Synchronisation};
 
 use super::fault::{named, numbered};
-use super::order::{Lead, Letter, Order, OrderId, Orders, RangeId, State};
+use super::order::{Letter, Order, OrderId, Orders, RangeId, State};
 use super::ranges::{Ranges, SLOTS};
 use crate::report::{Fault, Value};
 use crate::settings::{
@@ -34,7 +34,7 @@ struct Handling {
     /// A spindle of the NC executes it.
     spindle: Option<usize>,
     waits: bool,
-    lead: Lead,
+    lead: Option<Ahead>,
     process_us: u32,
     /// Reserved for spindles: it has no additive value.
     reserved: bool,
@@ -228,14 +228,16 @@ impl Resolve<'_> {
         synch: Synch,
         range: RangeId,
         place: &Place,
-    ) -> Result<Lead, Fault> {
+    ) -> Result<Option<Ahead>, Fault> {
         let distance = f64::from(own.lead) / PER_MM;
         match synch.kind {
-            kind if kind.leads_by_time() => Ok(Lead::Time((f64::from(own.lead) / PER_S).max(self.cycle_s))),
-            kind if kind.is_pre_output() => Ok(Lead::Distance(distance)),
+            kind if kind.leads_by_time() => {
+                Ok(Some(Ahead::Time((f64::from(own.lead) / PER_S).max(self.cycle_s))))
+            }
+            kind if kind.is_pre_output() => Ok(Some(Ahead::Distance(distance))),
             kind if kind.takes_micro_joint() && own.lead > 0 => {
                 if self.settings.micro_joint.enabled && range == RangeId::Channel {
-                    return Ok(Lead::Distance(distance));
+                    return Ok(Some(Ahead::Distance(distance)));
                 }
                 if self.settings.micro_joint.enabled {
                     let name = names(range, self.settings).into_iter().next().unwrap_or_default();
@@ -247,7 +249,7 @@ impl Resolve<'_> {
                 let message = format!("a lead with {kind} is a Micro Joint, which is not enabled");
                 Err(named(place, "licence", message))
             }
-            _ => Ok(Lead::None),
+            _ => Ok(None),
         }
     }
 
@@ -275,7 +277,7 @@ impl Resolve<'_> {
             range: Some(range_of(index, settings)),
             spindle: None,
             waits: synch.kind.is_waited_for(),
-            lead: Lead::None,
+            lead: None,
             process_us: settings.s.process_time_us,
             reserved: false,
         }))
@@ -435,7 +437,7 @@ fn spindle_handling(index: usize, settings: &SpindleSettings, own: SpindleFuncti
         range: is_output.then(|| range_of(index, settings)),
         spindle,
         waits,
-        lead: Lead::None,
+        lead: None,
         process_us: own.process_time_us,
         reserved: true,
     }
