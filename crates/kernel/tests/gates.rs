@@ -27,8 +27,8 @@ struct Valves {
     list: Vec<Valve>,
     /// Which went out, where, and whether on the way back.
     outputs: Vec<(usize, f64, f64, bool)>,
-    /// Times at which the path came to rest, and went.
-    told: Vec<(bool, f64)>,
+    /// When it was reported that the path came to rest, or went.
+    reported: Vec<(bool, f64)>,
     ended: bool,
 }
 
@@ -111,7 +111,7 @@ impl Functions for Valves {
     }
 
     fn tell(&mut self, moves: bool, _: &str, at: Moment) {
-        self.told.push((moves, at.t));
+        self.reported.push((moves, at.t));
     }
 
     fn went(&mut self, _: f64, _: f64) {}
@@ -149,7 +149,7 @@ impl Bench {
                 takes,
                 list: vec![Valve::default(); 2],
                 outputs: Vec::new(),
-                told: Vec::new(),
+                reported: Vec::new(),
                 ended: false,
             },
             x: 0.0,
@@ -240,7 +240,7 @@ fn a_wait_place_that_is_open_in_time_is_passed() {
     let run = bench.run(0..0);
     // It begins to move once, and is not at rest again before its end.
     assert_eq!(
-        run.told.iter().map(|(moves, _)| *moves).collect::<Vec<_>>(),
+        run.reported.iter().map(|(moves, _)| *moves).collect::<Vec<_>>(),
         [true]
     );
     near(run.cycle as f64 * T, 20.0 / V + V / A, 5.0 * T);

@@ -94,11 +94,20 @@ impl<T: Copy + Ord, O> Gates<T, O> {
 
     /// Whether the path stops at a place in backward motion.
     fn waits_backward<F: Functions<Ticket = T, Own = O>>(&self, place: u64, family: &F) -> bool {
-        self.ends_block(place) && self.single.stops_at(self.places.distance(place), true)
-            || self
-                .of_place(place)
-                .into_iter()
-                .any(|ticket| family.waits_backward(ticket))
+        let distance = self.places.distance(place);
+        let waits = |ticket| family.waits_backward(ticket);
+        self.ends_block(place) && self.single.stops_at(distance, true)
+            || self.outputs(place).any(waits)
+            || self.leads.of_place(distance).any(waits)
+    }
+
+    /// The functions that have their output place there.
+    fn outputs(&self, place: u64) -> impl Iterator<Item = T> {
+        let actions = self.places.actions(place).iter();
+        actions.filter_map(|action| match action {
+            Action::Output(ticket) => Some(*ticket),
+            _ => None,
+        })
     }
 
     /// Whether a programmed block ends at a place.
@@ -109,12 +118,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
 
     /// The functions of a place that are output in backward motion, in program order.
     fn of_place(&self, place: u64) -> Vec<T> {
-        let actions = self.places.actions(place).iter();
-        let outputs = actions.filter_map(|action| match action {
-            Action::Output(ticket) => Some(*ticket),
-            _ => None,
-        });
-        let mut tickets: Vec<T> = outputs.collect();
+        let mut tickets: Vec<T> = self.outputs(place).collect();
         for ticket in self.leads.of_place(self.places.distance(place)) {
             let after = tickets.iter().position(|other| *other > ticket);
             tickets.insert(after.unwrap_or(tickets.len()), ticket);

@@ -1,4 +1,4 @@
-//! Whether a lead was kept: what went out later before its place than it should is told.
+//! Whether a lead was kept: what went out later before its place than it should is reported.
 //!
 //! A time ahead of a place where the path waits is planned with an end velocity of 0 there; when the acknowledgement comes in
 //! time the path does not stop, and is there sooner [004:87]. M functions that nobody waits for keep their lead (inferred).

@@ -193,7 +193,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         self.motion.still
     }
 
-    /// That it stands was told.
+    /// That it stands was reported.
     pub fn stands(&self) -> bool {
         self.motion.stands
     }

@@ -1,4 +1,4 @@
-//! What the script says of a cycle, and what is told of it.
+//! What the script says of a cycle, and what is reported of it.
 
 use bahn_motion::Drive;
 
@@ -92,7 +92,7 @@ impl Channel<'_> {
         }
     }
 
-    /// The path stands, which is told.
+    /// The path stands, which is reported.
     pub(super) fn come_to_rest(&mut self) {
         if !self.gates.stands() {
             let at = self.now();
