@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use bahn_path::Synchronisation;
+
 /// What is wrong in a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineFault {
@@ -160,28 +162,12 @@ pub(crate) struct Macros(BTreeMap<String, String>);
 /// Most macros of a program.
 const MAX_MACROS: usize = 10_000;
 
-/// Synchronisation types, whose names the listings of Fig. 23 and 24 use without defining them [004:144]: they stand for
-/// their values unless the program defines them (inferred).
-const TYPES: [(&str, &str); 13] = [
-    ("NO_SYNCH", "0"),
-    ("MOS", "1"),
-    ("MVS_SVS", "2"),
-    ("MVS_SNS", "4"),
-    ("MNS_SNS", "8"),
-    ("MNE_SNS", "32"),
-    ("MVS_SLM", "16384"),
-    ("MVS_SLP", "32768"),
-    ("MOS_TS", "262144"),
-    ("MEP_MOS", "1048576"),
-    ("MET_MOS", "2097152"),
-    ("MEP_SVS", "16777216"),
-    ("MET_SVS", "33554432"),
-];
-
 impl Default for Macros {
+    /// Synchronisation types, whose names the listings of Fig. 23 and 24 use without defining them [004:144]: they stand for
+    /// their values unless the program defines them (inferred).
     fn default() -> Macros {
-        let types = TYPES.map(|(name, value)| (name.to_owned(), value.to_owned()));
-        Macros(BTreeMap::from(types))
+        let types = Synchronisation::all().map(|kind| (kind.name().to_owned(), kind.bits().to_string()));
+        Macros(types.collect())
     }
 }
 

@@ -30,11 +30,11 @@ fn functions_are_read() {
     );
     let functions = machine.unwrap().functions;
     let out = |at, synchronisation| Some(OwnFunction::Out { at, synchronisation });
-    let ahead = out(At::Ahead(Ahead::Distance(25.0)), Synchronisation::MvsSvs);
+    let ahead = out(At::Ahead(Ahead::Distance(25.0)), Synchronisation::MepSvs);
     assert_eq!([70, 71].map(|code| functions.get(code)), [ahead; 2]);
     assert_eq!(
         functions.get(72),
-        out(At::Ahead(Ahead::Time(0.3)), Synchronisation::Mos)
+        out(At::Ahead(Ahead::Time(0.3)), Synchronisation::MetMos)
     );
     assert_eq!(functions.get(73), Some(OwnFunction::Point));
     assert_eq!(functions.get(74), None);

@@ -10,6 +10,7 @@
 //! - [`Run`] is the run of a program on its track: start, stop, single block, end, [return](Restoration) to the contour. A
 //!   [`RunFamily`] says where it acts and takes its functions; its [`Demands`] come as data.
 //! - [`probing`] and [`ScanMove`] lead a stylus; [`move_by_hand`], [`Leaning`], [`reference`] and [`Positioning`] single axes.
+//! - [`gates`] are the places of a path where functions go out and where it waits for them.
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
 //!   [`Superimposed`] by hand.
 //! - [`Progress`] is how far a run is, [`BlockTime`] how fast blocks are read, [`VoltageOutput`] a voltage along the path.
@@ -38,6 +39,7 @@ mod clock;
 mod emergency;
 mod feeder;
 pub mod gantry;
+pub mod gates;
 mod kinematics;
 mod leaning;
 pub mod loops;

@@ -1,6 +1,6 @@
 //! Where functions and dwell make the path stop.
 
-use bahn_path::{At, Curve, FeedRate, PathElement, Synchronisation, TechnologyFunction};
+use bahn_path::{At, Curve, FeedRate, OutputPlace, PathElement, TechnologyFunction, WaitPlace};
 
 /// The ends of an element at which the path must stand still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,14 +48,13 @@ impl Gates {
 /// At which end of its element the axes wait for a function in any case, `None` when they do not (MP7440 bit 2), or only
 /// as long as it is not acknowledged ([`late`](crate::late)) [004:54].
 pub(crate) fn wait(function: &TechnologyFunction, element: &PathElement) -> Option<Gate> {
-    match function.synchronisation {
+    let synchronisation = function.synchronisation;
+    match synchronisation.wait() {
         // In the movement that would wait for it, it is a function at its start [004:72].
-        Synchronisation::MvsSlm if is_feed(element) => Some(Gate::Start),
-        Synchronisation::Mos
-        | Synchronisation::MvsSns
-        | Synchronisation::MvsSlm
-        | Synchronisation::MvsSlp => None,
-        Synchronisation::MvsSvs | Synchronisation::MnsSns => place(function),
+        WaitPlace::Feed if is_feed(element) => Some(Gate::Start),
+        WaitPlace::Nowhere | WaitPlace::Feed | WaitPlace::Point => None,
+        WaitPlace::After if synchronisation.output() == OutputPlace::Before => None,
+        WaitPlace::Before | WaitPlace::After | WaitPlace::Output => place(function),
     }
 }
 
@@ -67,12 +66,13 @@ pub(crate) fn is_feed(element: &PathElement) -> bool {
 /// The end of the element at which a function is output, `None` in the midst of the movement. Nothing
 /// can wait there: the type decides at which end a function that waits is output instead.
 pub(crate) fn place(function: &TechnologyFunction) -> Option<Gate> {
-    match (function.at, function.synchronisation) {
-        (At::Ahead(_), _) => None,
-        (At::Start, _) => Some(Gate::Start),
-        (At::End, _) => Some(Gate::End),
-        (At::Length(_) | At::BeforeEnd(_), Synchronisation::Mos) => None,
-        (At::Length(_) | At::BeforeEnd(_), Synchronisation::MnsSns) => Some(Gate::End),
-        (At::Length(_) | At::BeforeEnd(_), _) => Some(Gate::Start),
+    let synchronisation = function.synchronisation;
+    match function.at {
+        At::Ahead(_) => None,
+        At::Start => Some(Gate::Start),
+        At::End => Some(Gate::End),
+        At::Length(_) | At::BeforeEnd(_) if !synchronisation.is_waited_for() => None,
+        At::Length(_) | At::BeforeEnd(_) if synchronisation.output() == OutputPlace::After => Some(Gate::End),
+        At::Length(_) | At::BeforeEnd(_) => Some(Gate::Start),
     }
 }

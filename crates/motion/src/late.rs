@@ -1,6 +1,6 @@
 //! Functions whose acknowledgement the path needs later than where they go out: in time it passes without a stop.
 
-use bahn_path::{At, Function, PathElement, Synchronisation};
+use bahn_path::{At, Function, OutputPlace, PathElement, Synchronisation, WaitPlace};
 
 use crate::gate::is_feed;
 
@@ -41,19 +41,17 @@ impl Late {
         let wanted = functions.iter().any(|one| one.function == Function::Synchronise);
         let point = self.point.take_if(|_| wanted);
         for function in functions {
-            match function.synchronisation {
-                Synchronisation::MvsSns => self.block = Some((number + 1, element.sequence)),
-                Synchronisation::MvsSlm if !is_feed(element) => self.feed = Some(number + 1),
-                Synchronisation::MvsSlp => self.point = Some(number + 1),
+            match function.synchronisation.wait() {
+                WaitPlace::After if function.synchronisation.output() == OutputPlace::Before => {
+                    self.block = Some((number + 1, element.sequence));
+                }
+                WaitPlace::Feed if !is_feed(element) => self.feed = Some(number + 1),
+                WaitPlace::Point => self.point = Some(number + 1),
                 _ => {}
             }
         }
-        let waits_ahead = |synchronisation| {
-            !matches!(
-                synchronisation,
-                Synchronisation::Mos | Synchronisation::MvsSlm | Synchronisation::MvsSlp
-            )
-        };
+        let waits_ahead =
+            |synchronisation: Synchronisation| synchronisation.is_waited_for() && !synchronisation.is_late();
         Awaits {
             before: block.max(feed).max(point).unwrap_or(0),
             ahead: functions

@@ -217,9 +217,9 @@ fn ahead(lead: Ahead, synchronisation: Synchronisation) -> Vec<PathElement> {
 fn ahead_by_a_distance() {
     let distance = 5000.0 / 60.0 * T;
     for (synchronisation, delay, stops) in [
-        (Synchronisation::MvsSvs, 60, vec![]),
-        (Synchronisation::MvsSvs, 1000, vec![40.0]),
-        (Synchronisation::Mos, 1000, vec![]),
+        (Synchronisation::MepSvs, 60, vec![]),
+        (Synchronisation::MepSvs, 1000, vec![40.0]),
+        (Synchronisation::MepMos, 1000, vec![]),
     ] {
         let run = Bench::new(&ahead(Ahead::Distance(25.0), synchronisation), &limits(), delay).run();
         assert!(
@@ -234,7 +234,12 @@ fn ahead_by_a_distance() {
         );
     }
     // More than there is: at the start of the path.
-    let run = Bench::new(&ahead(Ahead::Distance(100.0), Synchronisation::Mos), &limits(), 0).run();
+    let run = Bench::new(
+        &ahead(Ahead::Distance(100.0), Synchronisation::MepMos),
+        &limits(),
+        0,
+    )
+    .run();
     assert!(run.out(96) <= distance, "in the first cycle");
 }
 
@@ -244,8 +249,8 @@ fn ahead_by_a_distance() {
 fn ahead_by_a_time() {
     let (v, a, lead) = (5000.0 / 60.0, 1000.0, 0.3);
     for (synchronisation, place) in [
-        (Synchronisation::MvsSvs, 40.0 - (v * lead - 0.5 * v * v / a)),
-        (Synchronisation::Mos, 40.0 - v * lead),
+        (Synchronisation::MetSvs, 40.0 - (v * lead - 0.5 * v * v / a)),
+        (Synchronisation::MetMos, 40.0 - v * lead),
     ] {
         let run = Bench::new(&ahead(Ahead::Time(lead), synchronisation), &limits(), 5).run();
         let x = run.out(96);
@@ -260,7 +265,7 @@ fn ahead_by_a_time() {
 #[test]
 fn a_recalled_path_goes_on_waiting() {
     let mut bench = Bench::new(
-        &ahead(Ahead::Distance(25.0), Synchronisation::MvsSvs),
+        &ahead(Ahead::Distance(25.0), Synchronisation::MepSvs),
         &limits(),
         5000,
     );
@@ -302,8 +307,8 @@ proptest! {
                 match kind {
                     0 => vec![m(code, At::Start, Synchronisation::MvsSns)],
                     1 => vec![m(code, At::Start, Synchronisation::MvsSlp)],
-                    2 => vec![m(code, At::Ahead(Ahead::Distance(7.0)), Synchronisation::MvsSvs)],
-                    3 => vec![m(code, At::Ahead(Ahead::Time(0.2)), Synchronisation::Mos)],
+                    2 => vec![m(code, At::Ahead(Ahead::Distance(7.0)), Synchronisation::MepSvs)],
+                    3 => vec![m(code, At::Ahead(Ahead::Time(0.2)), Synchronisation::MetMos)],
                     4 => vec![TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)],
                     _ => vec![],
                 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_path::{Ahead, At, Synchronisation};
+use bahn_path::{Ahead, At, OutputPlace, Synchronisation};
 
 use crate::ControlModel;
 use crate::technology::{Output, Technology};
@@ -58,7 +58,8 @@ impl std::fmt::Display for OwnFunctionError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             OwnFunctionError::UnknownType => {
-                let names = OwnFunction::NAMES.map(|(name, _)| name).join(", ");
+                let types = OwnFunction::types().map(Synchronisation::name);
+                let names = types.chain([POINT]).collect::<Vec<_>>().join(", ");
                 write!(f, "there is no such synchronisation; there are {names}")
             }
             OwnFunctionError::NeedsWay => write!(f, "the type needs `lead`, mm"),
@@ -72,31 +73,18 @@ impl std::fmt::Display for OwnFunctionError {
 
 impl std::error::Error for OwnFunctionError {}
 
-/// What a type is, but for the lead.
-#[derive(Clone, Copy)]
-enum Kind {
-    Start(Synchronisation),
-    End(Synchronisation),
-    Way(Synchronisation),
-    Time(Synchronisation),
-    Point,
-}
+/// The place of a program that TF5200 writes `#EXPL SYN`.
+const POINT: &str = "EXPL_SYN";
 
 impl OwnFunction {
-    /// The types by their names [004:54-57]; `EXPL_SYN` is the place of a program that TF5200 writes `#EXPL SYN`.
-    const NAMES: [(&'static str, Kind); 11] = [
-        ("MOS", Kind::Start(Synchronisation::Mos)),
-        ("MVS_SVS", Kind::Start(Synchronisation::MvsSvs)),
-        ("MVS_SNS", Kind::Start(Synchronisation::MvsSns)),
-        ("MNS_SNS", Kind::End(Synchronisation::MnsSns)),
-        ("MVS_SLM", Kind::Start(Synchronisation::MvsSlm)),
-        ("MVS_SLP", Kind::Start(Synchronisation::MvsSlp)),
-        ("MEP_MOS", Kind::Way(Synchronisation::Mos)),
-        ("MEP_SVS", Kind::Way(Synchronisation::MvsSvs)),
-        ("MET_MOS", Kind::Time(Synchronisation::Mos)),
-        ("MET_SVS", Kind::Time(Synchronisation::MvsSvs)),
-        ("EXPL_SYN", Kind::Point),
-    ];
+    /// The types that a function may have [004:54-57]: those of edge banding have their measuring event in another control, and
+    /// for the time of `MOS_TS` the PLC has no word.
+    fn types() -> impl Iterator<Item = Synchronisation> {
+        Synchronisation::all().filter(|kind| {
+            let goes_out = !matches!(kind.output(), OutputPlace::Nowhere | OutputPlace::Event);
+            goes_out && *kind != Synchronisation::MosTs
+        })
+    }
 
     /// The function of a type.
     ///
@@ -105,26 +93,32 @@ impl OwnFunction {
     /// use bahn_path::{Ahead, At, Synchronisation};
     ///
     /// let lead = Lead { distance_mm: Some(25.0), time_s: None };
-    /// let (at, synchronisation) = (At::Ahead(Ahead::Distance(25.0)), Synchronisation::MvsSvs);
+    /// let (at, synchronisation) = (At::Ahead(Ahead::Distance(25.0)), Synchronisation::MepSvs);
     /// assert_eq!(OwnFunction::of("MEP_SVS", lead), Ok(OwnFunction::Out { at, synchronisation }));
     /// ```
     ///
     /// # Errors
     /// When there is no such type, or the lead does not fit it.
     pub fn of(name: &str, lead: Lead) -> Result<OwnFunction, OwnFunctionError> {
-        let known = OwnFunction::NAMES.iter().find(|(known, _)| *known == name);
-        let kind = known.ok_or(OwnFunctionError::UnknownType)?.1;
-        let out = |at, synchronisation| Ok(OwnFunction::Out { at, synchronisation });
-        match (kind, lead.distance_mm, lead.time_s) {
-            (Kind::Start(kind), None, None) => out(At::Start, kind),
-            (Kind::End(kind), None, None) => out(At::End, kind),
-            (Kind::Way(kind), Some(way), None) => out(At::Ahead(Ahead::Distance(way)), kind),
-            (Kind::Time(kind), None, Some(time)) => out(At::Ahead(Ahead::Time(time)), kind),
-            (Kind::Point, None, None) => Ok(OwnFunction::Point),
-            (Kind::Way(_), ..) => Err(OwnFunctionError::NeedsWay),
-            (Kind::Time(_), ..) => Err(OwnFunctionError::NeedsTime),
-            (Kind::Start(_) | Kind::End(_) | Kind::Point, ..) => Err(OwnFunctionError::HasNoLead),
+        let lead = (lead.distance_mm, lead.time_s);
+        if name == POINT {
+            let none = lead == (None, None);
+            return none
+                .then_some(OwnFunction::Point)
+                .ok_or(OwnFunctionError::HasNoLead);
         }
+        let known = OwnFunction::types().find(|known| known.name() == name);
+        let synchronisation = known.ok_or(OwnFunctionError::UnknownType)?;
+        let at = match (synchronisation.output(), lead) {
+            (OutputPlace::Distance, (Some(way), None)) => At::Ahead(Ahead::Distance(way)),
+            (OutputPlace::Distance, _) => return Err(OwnFunctionError::NeedsWay),
+            (OutputPlace::Time, (None, Some(time))) => At::Ahead(Ahead::Time(time)),
+            (OutputPlace::Time, _) => return Err(OwnFunctionError::NeedsTime),
+            (OutputPlace::After, (None, None)) => At::End,
+            (_, (None, None)) => At::Start,
+            _ => return Err(OwnFunctionError::HasNoLead),
+        };
+        Ok(OwnFunction::Out { at, synchronisation })
     }
 }
 

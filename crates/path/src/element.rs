@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Axis, Characteristic, Curve, Placement, Plane, Position};
+use crate::{Axis, Characteristic, Curve, Placement, Plane, Position, Synchronisation};
 
 /// Where in the programs a movement comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -240,25 +240,6 @@ pub enum Ahead {
     Distance(f64),
     /// By a time, s.
     Time(f64),
-}
-
-/// Synchronisation of a function with the path, in the terms of TF5200 [004:54].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Synchronisation {
-    /// Output before the movement, axes do not wait (MP7440 bit 2).
-    Mos,
-    /// Output before the movement; the movement waits for the acknowledgement (start of block).
-    MvsSvs,
-    /// Output after the movement; the next block waits for the acknowledgement (end of block).
-    MnsSns,
-    /// Output before the movement; the next block waits for the acknowledgement, without a stop where that is in time
-    /// [004:63].
-    MvsSns,
-    /// Output before the movement; the next movement with a feed waits for the acknowledgement [004:72].
-    MvsSlm,
-    /// Output before the movement; the path waits for the acknowledgement where the program wants it
-    /// ([`Function::Synchronise`]) [004:75].
-    MvsSlp,
 }
 
 /// The functions that a program can output.

@@ -8,6 +8,7 @@
 //! - [`Swivels`], [`Placement`]: the swivel axes of a machine, and how a tilted or compensated path stands in it;
 //! - [`region`]: areas of a plane with holes and true arcs, for the SL cycles;
 //! - [`PathElement`]: one movement with its feed, block and technology functions;
+//! - [`Synchronisation`]: when a function goes out, and where the path waits for it;
 //! - [`ElementSource`] and [`Step`]: how every stage pulls elements from the stage before it.
 //!
 //! ```
@@ -35,6 +36,7 @@ pub mod region;
 mod scan;
 mod source;
 mod swivel;
+mod synchronisation;
 
 pub use axis::{Axis, AxisSet, PerAxis, Position};
 pub use characteristic::Characteristic;
@@ -43,7 +45,7 @@ pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use cylinder::Cylinder;
 pub use element::{
     Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, Oversize, PathElement,
-    SpindleOrder, Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
+    SpindleOrder, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
 };
 pub use frame::{AxisScaling, Frame};
 pub use placement::Placement;
@@ -54,3 +56,4 @@ pub use scan::{
 };
 pub use source::{Barrier, ElementSource, LiveData, MeasuredPart, Step, ToolMeasuring, Touch};
 pub use swivel::{Link, Swivels};
+pub use synchronisation::{OutputPlace, Synchronisation, WaitPlace};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bahn_din::{Function, Kind, Motion, Place, Target, Unit, Variables};
 use bahn_motion::Limits;
 use bahn_path::{Axis, Curve, PerAxis, Position};
-use bahn_technology::{Blocks, ChannelSettings, Fault, Programs, Run, Script, SynchType};
+use bahn_technology::{Blocks, ChannelSettings, Fault, Programs, Run, Script, Synchronisation};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
@@ -100,7 +100,7 @@ impl Blocks for Decoded {
     }
 }
 
-fn run(bencher: Bencher<'_, '_>, moves: bool, kind: SynchType) {
+fn run(bencher: Bencher<'_, '_>, moves: bool, kind: Synchronisation) {
     let mut settings = ChannelSettings::default();
     for number in 0..u32::from(EACH) {
         settings.h.get_mut(number).unwrap().synch = Some(kind.into());
@@ -136,13 +136,13 @@ fn run(bencher: Bencher<'_, '_>, moves: bool, kind: SynchType) {
 }
 
 /// Blocks without a motion, which is what the ranges take at most.
-#[divan::bench(args = [SynchType::Mos, SynchType::MvsSvs])]
-fn without_motion(bencher: Bencher<'_, '_>, kind: SynchType) {
+#[divan::bench(args = [Synchronisation::Mos, Synchronisation::MvsSvs])]
+fn without_motion(bencher: Bencher<'_, '_>, kind: Synchronisation) {
     run(bencher, false, kind);
 }
 
 /// Blocks of 1 mm.
-#[divan::bench(args = [SynchType::Mos, SynchType::MvsSns])]
-fn along_a_path(bencher: Bencher<'_, '_>, kind: SynchType) {
+#[divan::bench(args = [Synchronisation::Mos, Synchronisation::MvsSns])]
+fn along_a_path(bencher: Bencher<'_, '_>, kind: Synchronisation) {
     run(bencher, true, kind);
 }

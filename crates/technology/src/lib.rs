@@ -62,6 +62,8 @@ mod run;
 mod settings;
 mod synch;
 
+/// When a function goes out and where the path waits for it.
+pub use bahn_path::Synchronisation;
 pub use bounds::Bounds;
 pub use list::{ChannelList, ListFault};
 pub use nc::NcPrograms;
@@ -74,4 +76,4 @@ pub use settings::{
     ChannelSettings, EdgeBanding, FUNCTIONS, FunctionSettings, FunctionTable, MicroJoint, PreOutput,
     SpindleFunction, SpindleSettings,
 };
-pub use synch::{Synch, SynchError, SynchType};
+pub use synch::{Synch, SynchError};

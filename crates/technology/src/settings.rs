@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::synch::{Synch, SynchType};
+use bahn_path::Synchronisation;
+
+use crate::synch::Synch;
 
 /// Numbers of M and H functions that a list has, from 0 on [004:195-204].
 pub const FUNCTIONS: usize = 1000;
@@ -17,10 +19,10 @@ pub(crate) const SPINDLE_M: [u32; 4] = [3, 4, 5, 19];
 /// All that a channel parameter list sets, with the values of an empty list as default.
 ///
 /// ```
-/// use bahn_technology::{ChannelSettings, SynchType};
+/// use bahn_technology::{ChannelSettings, Synchronisation};
 /// let settings = ChannelSettings::default();
 /// // An internal function is known, any other is not before the list says how it is synchronised.
-/// assert_eq!(settings.m.get(30).unwrap().synch.unwrap().kind, SynchType::NoSynch);
+/// assert_eq!(settings.m.get(30).unwrap().synch.unwrap().kind, Synchronisation::NoSynch);
 /// assert_eq!(settings.m.get(25).unwrap().synch, None);
 /// assert!(settings.m.get(1000).is_none());
 /// ```
@@ -60,7 +62,7 @@ impl Default for ChannelSettings {
             .filter(|number| !SPINDLE_M.contains(number))
         {
             if let Some(function) = m.get_mut(number) {
-                function.synch = Some(SynchType::NoSynch.into());
+                function.synch = Some(Synchronisation::NoSynch.into());
             }
         }
         ChannelSettings {

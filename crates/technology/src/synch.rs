@@ -1,60 +1,10 @@
-//! Synchronisation types: when a function is output, and where the path waits for its acknowledgement [004:54-57].
+//! Synchronisation of a function: its type, a row of [`Synchronisation`] [004:54-57], and the bits that are OR-ed to it.
 //!
-//! A value is one type with bits OR-ed to it. `data/synch-types.tsv` has what each of both does, with its citation.
+//! `data/synch-types.tsv` has whose each of both may be, and its citation.
 
 use std::fmt;
 
-/// When a function is output and where the path waits for its acknowledgement [004:54-57] [004:204-207].
-///
-/// Read a name as M-before-block, synchronisation-after-block and so on: `MVS_SNS` is output before the motion of its
-/// block, and waited for after it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum SynchType {
-    /// Neither output nor waited for.
-    #[default]
-    NoSynch,
-    /// Output before the motion, not waited for; the PLC must fetch it.
-    Mos,
-    /// Output and waited for before the motion.
-    MvsSvs,
-    /// Output before the motion, waited for after it.
-    MvsSns,
-    /// Output and waited for after the motion, which stops there in any case.
-    MnsSns,
-    /// Output after the measuring event and the distance to go of edge banding, waited for there.
-    MneSns,
-    /// Output before the motion, waited for at the transition to the next G01, G02 or G03.
-    MvsSlm,
-    /// Output before the motion, waited for at `#EXPL SYN`.
-    MvsSlp,
-    /// Output before the motion with the time that has passed since, not waited for.
-    MosTs,
-    /// Output a distance ahead, not waited for.
-    MepMos,
-    /// Output a time ahead, not waited for.
-    MetMos,
-    /// Output a distance ahead, waited for before the next block.
-    MepSvs,
-    /// Output a time ahead, waited for before the next block.
-    MetSvs,
-}
-
-/// Name and value of each type [004:204-207].
-const TYPES: [(SynchType, &str, u32); 13] = [
-    (SynchType::NoSynch, "NO_SYNCH", 0),
-    (SynchType::Mos, "MOS", 0x1),
-    (SynchType::MvsSvs, "MVS_SVS", 0x2),
-    (SynchType::MvsSns, "MVS_SNS", 0x4),
-    (SynchType::MnsSns, "MNS_SNS", 0x8),
-    (SynchType::MneSns, "MNE_SNS", 0x20),
-    (SynchType::MvsSlm, "MVS_SLM", 0x4000),
-    (SynchType::MvsSlp, "MVS_SLP", 0x8000),
-    (SynchType::MosTs, "MOS_TS", 0x0004_0000),
-    (SynchType::MepMos, "MEP_MOS", 0x0010_0000),
-    (SynchType::MetMos, "MET_MOS", 0x0020_0000),
-    (SynchType::MepSvs, "MEP_SVS", 0x0100_0000),
-    (SynchType::MetSvs, "MET_SVS", 0x0200_0000),
-];
+use bahn_path::Synchronisation;
 
 /// Name and value of each bit that is OR-ed to a type [004:51] [004:54] [004:207].
 const BITS: [(&str, u32); 4] = [
@@ -67,66 +17,13 @@ const BITS: [(&str, u32); 4] = [
 /// The name of what is no function; the manual prints it with two letters exchanged, too [004:204].
 const NOT_VALID: [&str; 2] = ["NOT_VALID", "NOT_VAILD"];
 
-impl SynchType {
-    /// All types in ascending order of their values.
-    pub fn all() -> impl Iterator<Item = SynchType> {
-        TYPES.iter().map(|(kind, ..)| *kind)
-    }
-
-    /// The constant in lists, as `MVS_SVS`.
-    pub fn name(self) -> &'static str {
-        TYPES[self as usize].1
-    }
-
-    /// The value of the constant.
-    pub fn bits(self) -> u32 {
-        TYPES[self as usize].2
-    }
-
-    /// Whether a lead says how far ahead it is output, without Micro Joints.
-    pub(crate) fn is_pre_output(self) -> bool {
-        self.leads_by_time() || matches!(self, SynchType::MepMos | SynchType::MepSvs)
-    }
-
-    /// Whether its lead is a time, µs; the lead of all others is a distance, 0.1 µm.
-    pub(crate) fn leads_by_time(self) -> bool {
-        matches!(self, SynchType::MetMos | SynchType::MetSvs)
-    }
-
-    /// Whether a lead makes it the function of a Micro Joint [004:114-120].
-    pub(crate) fn takes_micro_joint(self) -> bool {
-        matches!(
-            self,
-            SynchType::Mos | SynchType::MvsSvs | SynchType::MvsSns | SynchType::MnsSns | SynchType::MosTs
-        )
-    }
-
-    /// Whether it may remain open over blocks until something asks for it [004:72-78].
-    pub fn is_late(self) -> bool {
-        matches!(self, SynchType::MvsSlm | SynchType::MvsSlp)
-    }
-
-    /// Whether the path waits for its acknowledgement anywhere; what is not waited for must be fetched all the same.
-    pub(crate) fn is_waited_for(self) -> bool {
-        !matches!(
-            self,
-            SynchType::NoSynch | SynchType::Mos | SynchType::MosTs | SynchType::MepMos | SynchType::MetMos
-        )
-    }
-}
-
-impl fmt::Display for SynchType {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
 /// A type and the bits with it.
 ///
 /// ```
-/// use bahn_technology::{Synch, SynchType};
+/// use bahn_path::Synchronisation;
+/// use bahn_technology::Synch;
 /// let synch = Synch::from_bits(0x0002_0004)?;
-/// assert_eq!(synch.kind, SynchType::MvsSns);
+/// assert_eq!(synch.kind, Synchronisation::MvsSns);
 /// assert!(synch.plc_info && !synch.backward);
 /// assert_eq!(synch.to_string(), "PLC_INFO | MVS_SNS");
 /// assert!(Synch::from_bits(0x6).is_err());
@@ -135,7 +32,7 @@ impl fmt::Display for SynchType {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Synch {
     /// The synchronisation type.
-    pub kind: SynchType,
+    pub kind: Synchronisation,
     /// `PLC_INFO`: M functions of an NC spindle go to the PLC, too, and are waited for [004:159].
     pub plc_info: bool,
     /// `BWD_SYNCH`: waited for as `MVS_SVS` while the path is run backward [004:54].
@@ -158,7 +55,7 @@ pub enum SynchError {
     /// `BWD_SYNCH` or `FWD_SYNCH` without a type: they say when a type counts [004:54] [004:207].
     NoType(&'static str),
     /// More than one type; a function has one (inferred).
-    SeveralTypes(SynchType, SynchType),
+    SeveralTypes(Synchronisation, Synchronisation),
 }
 
 impl fmt::Display for SynchError {
@@ -181,8 +78,8 @@ impl fmt::Display for SynchError {
 
 impl std::error::Error for SynchError {}
 
-impl From<SynchType> for Synch {
-    fn from(kind: SynchType) -> Synch {
+impl From<Synchronisation> for Synch {
+    fn from(kind: Synchronisation) -> Synch {
         Synch {
             kind,
             ..Synch::default()
@@ -213,20 +110,22 @@ impl Synch {
         }
         let known = |bits: u32, more: u32| bits | more;
         let flags = BITS.iter().map(|(_, bit)| *bit).fold(0, known);
-        let all = TYPES.iter().map(|(.., bits)| *bits).fold(flags, known);
+        let all = Synchronisation::all()
+            .map(Synchronisation::bits)
+            .fold(flags, known);
         if value & !all != 0 {
             return Err(SynchError::UnknownBits(value & !all));
         }
-        let mut kinds = TYPES.iter().filter(|(.., bits)| value & bits != 0);
-        let kind = kinds.next().map_or(SynchType::NoSynch, |(kind, ..)| *kind);
-        if let Some((second, ..)) = kinds.next() {
-            return Err(SynchError::SeveralTypes(kind, *second));
+        let mut kinds = Synchronisation::all().filter(|kind| value & kind.bits() != 0);
+        let kind = kinds.next().unwrap_or_default();
+        if let Some(second) = kinds.next() {
+            return Err(SynchError::SeveralTypes(kind, second));
         }
         let direction = [("BWD_SYNCH", Synch::BACKWARD), ("FWD_SYNCH", Synch::FORWARD)];
         let of_direction = direction.iter().find(|(_, bit)| value & bit != 0);
         // PLC_INFO and FAW_SYNCH say themselves that the function is output.
         let is_output = value & (Synch::PLC_INFO | Synch::FLUSH_AND_WAIT) != 0;
-        if let Some((bit, _)) = of_direction.filter(|_| kind == SynchType::NoSynch && !is_output) {
+        if let Some((bit, _)) = of_direction.filter(|_| kind == Synchronisation::NoSynch && !is_output) {
             return Err(SynchError::NoType(bit));
         }
         Ok(Synch {
@@ -253,7 +152,7 @@ impl Synch {
         if NOT_VALID.iter().any(|known| known.eq_ignore_ascii_case(name)) {
             return Some(Synch::NOT_VALID);
         }
-        let types = TYPES.iter().map(|(_, name, bits)| (*name, *bits));
+        let types = Synchronisation::all().map(|kind| (kind.name(), kind.bits()));
         types
             .chain(BITS)
             .find(|(known, _)| known.eq_ignore_ascii_case(name))
@@ -281,19 +180,10 @@ impl fmt::Display for Synch {
 mod tests {
     use super::*;
 
-    #[test]
-    fn types_stand_in_the_order_of_the_table() {
-        for (at, (kind, name, bits)) in TYPES.iter().enumerate() {
-            assert_eq!(*kind as usize, at);
-            assert_eq!((kind.name(), kind.bits()), (*name, *bits));
-            assert!(bits.count_ones() <= 1, "{name}");
-        }
-    }
-
     /// Every type with every set of bits goes through number and text.
     #[test]
     fn values_are_read_back() {
-        for kind in SynchType::all() {
+        for kind in Synchronisation::all() {
             for bits in 0..16 {
                 let synch = Synch {
                     kind,
@@ -302,7 +192,7 @@ mod tests {
                     forward: bits & 4 != 0,
                     flush_and_wait: bits & 8 != 0,
                 };
-                let alone = kind == SynchType::NoSynch && matches!(bits, 2 | 4 | 6);
+                let alone = kind == Synchronisation::NoSynch && matches!(bits, 2 | 4 | 6);
                 let bit = if bits & 2 != 0 { "BWD_SYNCH" } else { "FWD_SYNCH" };
                 let known = if alone {
                     Err(SynchError::NoType(bit))
@@ -322,7 +212,7 @@ mod tests {
     fn wrong_values_are_named() {
         assert_eq!(Synch::from_bits(u32::MAX), Err(SynchError::NotValid));
         assert_eq!(Synch::from_bits(0x12), Err(SynchError::UnknownBits(0x10)));
-        let two = SynchError::SeveralTypes(SynchType::MvsSvs, SynchType::MvsSns);
+        let two = SynchError::SeveralTypes(Synchronisation::MvsSvs, Synchronisation::MvsSns);
         assert_eq!(Synch::from_bits(0x6), Err(two));
         assert_eq!(Synch::constant("not_vaild"), Some(Synch::NOT_VALID));
         assert_eq!(Synch::constant("MVS"), None);

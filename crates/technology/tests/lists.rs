@@ -1,7 +1,7 @@
 //! Lists in all the spellings of the manual [004:57] [004:111-126] [004:162-174] [004:192-234].
 #![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
-use bahn_technology::{ChannelList, ChannelSettings, Synch, SynchType};
+use bahn_technology::{ChannelList, ChannelSettings, Synch, Synchronisation};
 
 fn settings(text: &str) -> ChannelSettings {
     let list = ChannelList::from_bytes(text.as_bytes());
@@ -10,7 +10,7 @@ fn settings(text: &str) -> ChannelSettings {
 }
 
 /// The kind of synchronisation of an M function.
-fn m(settings: &ChannelSettings, number: u32) -> SynchType {
+fn m(settings: &ChannelSettings, number: u32) -> Synchronisation {
     settings.m.get(number).unwrap().synch.unwrap().kind
 }
 
@@ -22,19 +22,19 @@ fn values_with_remarks_and_elisions() {
          m_synch[97] MET_SVS 0x02000000\nm_pre_outp[97] 40000 in µs\n\
          m_pre_outp[100] 500 ;in 0.1 um\nm_synch[100] MOS_TS ; laser\n",
     );
-    assert_eq!(m(&read, 0), SynchType::MvsSvs);
-    assert_eq!(m(&read, 8), SynchType::MnsSns);
+    assert_eq!(m(&read, 0), Synchronisation::MvsSvs);
+    assert_eq!(m(&read, 8), Synchronisation::MnsSns);
     assert_eq!(
         (m(&read, 96), read.m.get(96).unwrap().lead),
-        (SynchType::MepSvs, 100_000)
+        (Synchronisation::MepSvs, 100_000)
     );
     assert_eq!(
         (m(&read, 97), read.m.get(97).unwrap().lead),
-        (SynchType::MetSvs, 40_000)
+        (Synchronisation::MetSvs, 40_000)
     );
     assert_eq!(
         (m(&read, 100), read.m.get(100).unwrap().lead),
-        (SynchType::MosTs, 500)
+        (Synchronisation::MosTs, 500)
     );
 }
 
@@ -52,7 +52,7 @@ fn spindles_in_both_languages() {
     assert_eq!(spindle.m4.synch, Synch::from_bits(0x2_0004).ok());
     assert_eq!(spindle.m5.synch, None);
     assert_eq!(spindle.m5.process_time_us, 1_500_000);
-    assert_eq!(spindle.m19.synch, Some(SynchType::MnsSns.into()));
+    assert_eq!(spindle.m19.synch, Some(Synchronisation::MnsSns.into()));
     for name in ["S", "s1"] {
         assert_eq!(
             read.spindle_called(name).map(|(index, _)| index),
@@ -131,7 +131,7 @@ fn the_later_line_counts() {
             (5, "spindel[0].m3_synch stands in line 3, too: this line counts"),
         ]
     );
-    assert_eq!(m(list.settings(), 5), SynchType::MvsSvs);
+    assert_eq!(m(list.settings(), 5), Synchronisation::MvsSvs);
 }
 
 /// Other ends of lines and other bytes than UTF-8.

@@ -15,7 +15,8 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("motion", &["path"]),
     ("din", &["path"]),
     ("nc", &["path", "parameters", "program", "reader", "din"]),
-    ("technology", &["path", "motion", "din"]),
+    ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
+    ("technology", &["path", "motion", "din", "kernel"]),
     ("workpiece", &["path", "picture"]),
     ("viewer", &["path", "workpiece"]),
     ("exchange", &[]),
@@ -37,7 +38,6 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("machine", &["servo"]),
-    ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
     (
         "control",
         &[

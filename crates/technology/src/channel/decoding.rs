@@ -1,15 +1,12 @@
 //! What lies in blocks before the one that is decoded and still has its effect.
 
-use super::order::OrderId;
-use super::track::VectorLimit;
+use bahn_kernel::gates::VectorLimit;
 
 /// What lies in blocks before the one that is decoded and still has its effect.
 #[derive(Debug, Default)]
 pub(super) struct Decoding {
     /// Count of executed blocks, over all programs.
     pub(super) units: u64,
-    /// MVS_SLM and MVS_SLP functions that wait for their place, over all programs.
-    pub(super) late: [Vec<OrderId>; 2],
     /// Decoding goes on when the channel has run empty.
     pub(super) holds: bool,
     /// The end of the program is decoded.
@@ -20,11 +17,10 @@ pub(super) struct Decoding {
 }
 
 impl Decoding {
-    /// Another program begins: what is modal ends, late functions remain.
+    /// Another program begins: what is modal ends.
     pub(super) fn begin(&mut self) {
         *self = Decoding {
             units: self.units,
-            late: std::mem::take(&mut self.late),
             ..Decoding::default()
         };
     }

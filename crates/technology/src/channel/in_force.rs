@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 
 use bahn_din::{FunctionLetter, Variable, Variables};
+use bahn_path::Synchronisation;
 
 use super::fault::number;
 use crate::settings::{ChannelSettings, FunctionSettings, INTERNAL_M};
-use crate::synch::{Synch, SynchType};
+use crate::synch::Synch;
 
 /// Settings as a program has left them so far.
 #[derive(Clone, Debug)]
@@ -120,7 +121,7 @@ impl Variables for InForce {
                 } else {
                     Some(Synch::from_bits(positive(1.0)?).map_err(|error| error.to_string())?)
                 };
-                let m_only = |kind: SynchType| kind.is_late() || kind == SynchType::MosTs;
+                let m_only = |kind: Synchronisation| kind.is_late() || kind == Synchronisation::MosTs;
                 if let Some(synch) = synch.filter(|synch| !m && m_only(synch.kind)) {
                     return Err(format!("{} is for M functions only", synch.kind));
                 }

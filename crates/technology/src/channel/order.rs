@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_din::Place;
-use bahn_path::Axis;
+use bahn_path::{Ahead, Axis};
 
 use crate::plc::WindowRange;
 use crate::report::Value;
@@ -19,16 +19,6 @@ pub(crate) enum Letter {
     M,
     H,
     S,
-}
-
-/// How far ahead of its place it is output.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Lead {
-    None,
-    /// Along the path, mm.
-    Distance(f64),
-    /// By a time, s.
-    Time(f64),
 }
 
 /// The range to which a function goes.
@@ -72,7 +62,8 @@ pub(crate) struct Order {
     pub(crate) spindle: Option<usize>,
     /// Its acknowledgement is waited for.
     pub(crate) waits: bool,
-    pub(crate) lead: Lead,
+    /// How far ahead of its place it is output.
+    pub(crate) lead: Option<Ahead>,
     /// How long PLC or spindle are thought to take, s.
     pub(crate) process_s: f64,
     pub(crate) place: Arc<Place>,

@@ -1,18 +1,16 @@
 //! From blocks to the path: where each function is output, and where the path waits for it.
 
 use bahn_din::{Command, Unit};
-use bahn_path::{Axis, Curve};
+use bahn_kernel::gates::{Action, Driving, Held, JointFeed, Leg, VectorLimit};
+use bahn_path::{Ahead, Axis, Curve, OutputPlace, Synchronisation, WaitPlace};
 
 use super::decoding::Edge;
 use super::fault::{named, numbered};
-use super::order::{Lead, OrderId};
-use super::plan::{Around, Plan};
+use super::order::OrderId;
+use super::own::Own;
+use super::plan::Taking;
 use super::resolve::Resolve;
-use super::track::{Action, Driving, Leg, VectorLimit};
-use super::window::{Held, JointFeed};
-use crate::plc::Script;
 use crate::report::{Fault, Warning};
-use crate::synch::SynchType;
 
 /// 0.1 µm are this part of a mm.
 const PER_MM: f64 = 1e4;
@@ -29,7 +27,7 @@ struct Sorted {
     /// Waited for after it.
     gate_after: Vec<OrderId>,
     /// Done after the motion.
-    after: Vec<Action>,
+    after: Vec<Action<OrderId, Own>>,
     /// Output ahead of the motion.
     ahead: Vec<OrderId>,
     /// Micro Joints before the motion and after it.
@@ -39,25 +37,25 @@ struct Sorted {
     measured: Option<OrderId>,
 }
 
-impl Plan<'_> {
+impl Taking<'_> {
     /// Takes a block into the path.
-    pub(super) fn take(&mut self, unit: &Unit, around: &mut Around<'_>) -> Result<(), Fault> {
+    pub(super) fn take(&mut self, unit: &Unit) -> Result<(), Fault> {
         self.decoding.units += 1;
         let mut resolve = Resolve {
             settings: &self.in_force.settings,
-            ranges: &mut self.ranges,
-            orders: &mut self.orders,
-            cycle_s: around.cycle_s,
+            ranges: self.ranges,
+            orders: self.orders,
+            cycle_s: self.cycle_s,
         };
         let ids = resolve.block(unit)?;
         let flush_and_wait = self.flush_and_wait(&ids, unit)?;
         self.commands(unit)?;
         let moves = unit.motion.as_ref().is_some_and(is_moving);
         let sorted = self.sort(&ids, unit, moves)?;
-        self.before(&sorted, unit, around.warnings)?;
+        self.before(&sorted, unit)?;
         if let Some(motion) = &unit.motion {
             if moves {
-                self.motion(motion, unit, around.script);
+                self.motion(motion, unit);
             }
             if let Some(id) = sorted.measured {
                 self.measured(id, unit);
@@ -65,21 +63,21 @@ impl Plan<'_> {
             // Nothing is output ahead across the place where such a function is waited for [004:135].
             let waits_after = |id: &&OrderId| {
                 let order = self.orders.get(**id);
-                moves && order.is_some_and(|order| order.synch.kind == SynchType::MvsSns)
+                moves && order.is_some_and(|order| is_passed(order.synch.kind))
             };
             if sorted.gate_after.iter().any(|id| waits_after(&id)) {
-                self.window.bar();
+                self.gates.window.bar();
             }
         }
-        self.after(&sorted, unit, around.warnings)?;
+        self.after(&sorted, unit)?;
         // An axis that moves on its own has ended with its block (inferred).
         let moves_alone = |command: &Command| matches!(command, Command::Independent(_));
         let alone = unit.commands.iter().any(moves_alone);
         if alone {
-            self.window.action(Action::AllEnded);
+            self.gates.window.action(Action::Own(Own::AllEnded));
         }
         if (moves || alone) && !unit.ends {
-            self.window.action(Action::BlockEnd);
+            self.gates.window.action(Action::BlockEnd);
         }
         if flush_and_wait || alone {
             self.flush(true);
@@ -87,8 +85,8 @@ impl Plan<'_> {
         if unit.ends {
             self.end();
         }
-        if !self.in_force.settings.micro_joint.enabled || self.window.is_full() {
-            self.window.release(&mut self.track);
+        if !self.in_force.settings.micro_joint.enabled || self.gates.window.is_full() {
+            self.gates.release();
         }
         Ok(())
     }
@@ -115,7 +113,7 @@ impl Plan<'_> {
         for command in &unit.commands {
             match command {
                 Command::ExplicitSynchronisation => {
-                    let ids = std::mem::take(&mut self.decoding.late[1]);
+                    let ids = std::mem::take(&mut self.late[1]);
                     self.gate(ids);
                 }
                 Command::Flush { wait } => self.flush(*wait),
@@ -124,7 +122,7 @@ impl Plan<'_> {
                     feed_mm_min,
                     vector_limit_off,
                 } => {
-                    self.window.next = Some(JointFeed {
+                    self.gates.window.next = Some(JointFeed {
                         entry_mm_min: *entry_mm_min,
                         feed_mm_min: *feed_mm_min,
                         vector_limit_off: *vector_limit_off,
@@ -144,8 +142,9 @@ impl Plan<'_> {
                 Command::EdgeBanding(on) => self.decoding.edge = on.then(Edge::default),
                 Command::RadiusCompensation(on) => self.decoding.radius_compensation = *on,
                 Command::Independent(independent) => {
-                    self.window
-                        .action(Action::Independent(Box::new(independent.clone())));
+                    self.gates
+                        .window
+                        .action(Action::Own(Own::Independent(Box::new(independent.clone()))));
                 }
                 Command::Spindle(order) => {
                     let called = self.in_force.settings.spindle_called(&order.spindle);
@@ -162,16 +161,14 @@ impl Plan<'_> {
 
     /// Nothing is output ahead across this place; with `wait` decoding holds until the channel is empty.
     pub(super) fn flush(&mut self, wait: bool) {
-        self.window.bar();
-        self.window.release(&mut self.track);
-        self.leads.bar(self.window.distance());
+        self.gates.bar();
         self.decoding.holds |= wait;
     }
 
     /// The path stands here until functions are done.
     fn gate(&mut self, ids: Vec<OrderId>) {
         if !ids.is_empty() {
-            self.window.action(Action::Gate(ids.into()));
+            self.gates.window.action(Action::Gate(ids.into()));
         }
     }
 
@@ -182,25 +179,30 @@ impl Plan<'_> {
                 continue;
             };
             let is_output = order.range.is_some();
-            // Without a motion both are MVS_SVS [004:57], so that functions go out in the order of the block.
-            let kind = match order.synch.kind {
-                SynchType::MvsSns | SynchType::MnsSns if !moves => SynchType::MvsSvs,
-                kind => kind,
+            let kind = order.synch.kind;
+            // Without a motion nothing is before or after it [004:57], so that functions go out in the order of the block.
+            let (output, wait) = match kind.wait() {
+                WaitPlace::After if !moves => (OutputPlace::Before, WaitPlace::Before),
+                wait => (kind.output(), wait),
             };
-            let joint = kind.takes_micro_joint() && order.lead != Lead::None;
             if order.spindle.is_some() {
                 sorted.commanded.push(id);
             }
-            match kind {
-                SynchType::NoSynch => continue,
-                SynchType::MnsSns if joint => sorted.joints_after.push(id),
-                _ if joint => sorted.joints.push(id),
-                SynchType::MepMos | SynchType::MetMos => sorted.ahead.push(id),
-                SynchType::MepSvs | SynchType::MetSvs => {
-                    sorted.ahead.push(id);
-                    sorted.gate.push(id);
+            if kind.takes_micro_joint() && order.lead.is_some() {
+                match output {
+                    OutputPlace::After => sorted.joints_after.push(id),
+                    _ => sorted.joints.push(id),
                 }
-                SynchType::MneSns => {
+                continue;
+            }
+            match output {
+                OutputPlace::Before if is_output => sorted.before.push(id),
+                OutputPlace::Before | OutputPlace::Nowhere => {}
+                // The path stands in any case [004:66], also for a spindle that has confirmed by then.
+                OutputPlace::After if is_output => sorted.after.push(Action::Output(id)),
+                OutputPlace::After => sorted.after.push(Action::Stand(id)),
+                OutputPlace::Distance | OutputPlace::Time => sorted.ahead.push(id),
+                OutputPlace::Event => {
                     let motion = unit.motion.is_some() && self.decoding.edge.is_some();
                     if !motion {
                         let message = format!("{} without a motion between G108 and G107", order.label());
@@ -208,53 +210,46 @@ impl Plan<'_> {
                     }
                     sorted.measured = Some(id);
                 }
-                SynchType::MnsSns => {
-                    // The path stands in any case [004:66], also for a spindle that has confirmed by then.
-                    let action = if is_output { Action::Output } else { Action::Stand };
-                    sorted.after.push(action(id));
-                    sorted.gate_after.push(id);
-                }
-                _ if is_output => sorted.before.push(id),
-                _ => {}
             }
-            match kind {
-                _ if joint => {}
-                SynchType::MvsSvs => sorted.gate.push(id),
-                SynchType::MvsSns => sorted.gate_after.push(id),
-                SynchType::MvsSlm => self.decoding.late[0].push(id),
-                SynchType::MvsSlp => self.decoding.late[1].push(id),
-                _ => {}
+            match wait {
+                WaitPlace::Before => sorted.gate.push(id),
+                WaitPlace::After => sorted.gate_after.push(id),
+                WaitPlace::Feed => self.late[0].push(id),
+                WaitPlace::Point => self.late[1].push(id),
+                WaitPlace::Nowhere | WaitPlace::Output => {}
             }
         }
         Ok(sorted)
     }
 
     /// What is done before the motion.
-    fn before(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
+    fn before(&mut self, sorted: &Sorted, unit: &Unit) -> Result<(), Fault> {
         for id in &sorted.commanded {
-            self.window.action(Action::Command(*id));
+            self.gates.window.action(Action::Command(*id));
         }
         for id in &sorted.joints {
-            self.joint(*id, unit, warnings)?;
+            self.joint(*id, unit)?;
         }
         for id in &sorted.before {
-            self.window.action(Action::Output(*id));
+            self.gates.window.action(Action::Output(*id));
         }
         for id in &sorted.ahead {
-            let lead = self.orders.get(*id).map_or(Lead::None, |order| order.lead);
-            let point = self.window.distance();
-            self.leads.push(*id, self.decoding.units, lead, point);
+            let point = self.gates.window.distance();
+            match self.orders.get(*id).and_then(|order| order.lead) {
+                Some(lead) => self.gates.leads.push(*id, self.decoding.units, lead, point),
+                None => self.gates.window.action(Action::Output(*id)),
+            }
         }
         let mut gate = sorted.gate.clone();
         if unit.motion.as_ref().is_some_and(|motion| !motion.rapid) {
-            gate.append(&mut self.decoding.late[0]);
+            gate.append(&mut self.late[0]);
         }
         self.gate(gate);
         Ok(())
     }
 
     /// Takes the motion of a block.
-    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit, script: Option<&Script>) {
+    fn motion(&mut self, motion: &bahn_din::Motion, unit: &Unit) {
         let settings = &self.in_force.settings;
         let leg = Leg {
             curve: motion.curve,
@@ -268,11 +263,9 @@ impl Plan<'_> {
             block: unit.place.block.clone(),
             unit: self.decoding.units,
             length: motion.curve.length(&motion.start, &motion.end),
-            from: self.window.distance(),
+            from: self.gates.window.distance(),
         };
-        let blocks = settings.pre_output.blocks as usize;
-        self.leads.block(leg.from, blocks);
-        if let (Some(edge), Some(script)) = (&mut self.decoding.edge, script)
+        if let (Some(edge), Some(script)) = (&mut self.decoding.edge, self.script)
             && edge.probed.is_none()
         {
             let mut crossings = script.probes.iter().filter_map(|probe| crossing(&leg, *probe));
@@ -283,30 +276,31 @@ impl Plan<'_> {
         } else {
             0
         };
-        self.window.leg(leg, most.max(1), &mut self.track);
+        let blocks = settings.pre_output.blocks as usize;
+        self.gates.push(leg, most.max(1), blocks);
     }
 
     /// What is done after the motion.
-    fn after(&mut self, sorted: &Sorted, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
+    fn after(&mut self, sorted: &Sorted, unit: &Unit) -> Result<(), Fault> {
         if unit.dwell_s > 0.0 {
-            self.window.action(Action::Dwell(unit.dwell_s));
+            self.gates.window.action(Action::Dwell(unit.dwell_s));
         }
         for id in &sorted.joints_after {
-            self.joint(*id, unit, warnings)?;
+            self.joint(*id, unit)?;
         }
         for action in &sorted.after {
-            self.window.action(action.clone());
+            self.gates.window.action(action.clone());
         }
         self.gate(sorted.gate_after.clone());
         Ok(())
     }
 
     /// A function that is output within what was decoded before.
-    fn joint(&mut self, id: OrderId, unit: &Unit, warnings: &mut Vec<Warning>) -> Result<(), Fault> {
+    fn joint(&mut self, id: OrderId, unit: &Unit) -> Result<(), Fault> {
         let Some(order) = self.orders.get(id) else {
             return Ok(());
         };
-        let Lead::Distance(lead) = order.lead else {
+        let Some(Ahead::Distance(lead)) = order.lead else {
             return Ok(());
         };
         let (waits, kind, label) = (order.waits, order.synch.kind, order.label());
@@ -316,7 +310,7 @@ impl Plan<'_> {
         } else {
             f64::INFINITY
         };
-        let planned = self.window.plan(lead, farthest);
+        let planned = self.gates.window.plan(lead, farthest);
         let tolerance = f64::from(settings.tolerance) / PER_MM;
         if settings.tolerance > 0 && planned.deviation > tolerance {
             let message = format!(
@@ -325,8 +319,8 @@ impl Plan<'_> {
             );
             return Err(numbered(&unit.place, 120_815, message));
         }
-        if planned.held == Held::Window {
-            warnings.push(Warning {
+        if planned.held == Held::LookAhead {
+            self.warnings.push(Warning {
                 message: format!(
                     "{label} is output {:.4} mm after its planned place: the look-ahead ends there",
                     planned.deviation
@@ -338,7 +332,7 @@ impl Plan<'_> {
         let gate = || Action::Gate(Box::new([id]));
         let mut actions = vec![Action::Output(id)];
         let after = match kind {
-            SynchType::MvsSns if waits => Some(gate()),
+            kind if waits && is_passed(kind) => Some(gate()),
             _ => {
                 if waits {
                     actions.push(gate());
@@ -346,9 +340,9 @@ impl Plan<'_> {
                 None
             }
         };
-        self.window.insert(planned.real, actions, after);
-        self.window.bar();
-        self.window.release(&mut self.track);
+        self.gates.window.insert(planned.real, actions, after);
+        self.gates.window.bar();
+        self.gates.release();
         Ok(())
     }
 
@@ -364,26 +358,23 @@ impl Plan<'_> {
         let Some(probed) = edge.probed.take() else {
             let message = format!("no measuring event for {label}");
             let fault = named(&unit.place, "probe-missing", message);
-            self.window.action(Action::Fault(Box::new(fault)));
+            self.gates.window.action(Action::Own(Own::Fault(Box::new(fault))));
             return;
         };
         let place = probed + self.in_force.residual_mm;
         let actions = vec![Action::Output(id), Action::Gate(Box::new([id]))];
-        self.window.split_last(place, actions);
-        self.window.bar();
+        self.gates.window.split_last(place, actions);
+        self.gates.window.bar();
     }
 
     /// The end of a program.
     pub(super) fn end(&mut self) {
         if self.in_force.settings.late_sync_ready {
-            let late = &mut self.decoding.late;
-            let mut ids = late[0].clone();
-            ids.append(&mut late[1].clone());
-            late.iter_mut().for_each(Vec::clear);
-            self.gate(ids);
+            let late = std::mem::take(self.late);
+            self.gate(late.concat());
         }
-        self.window.action(Action::AllEnded);
-        self.window.action(Action::End);
+        self.gates.window.action(Action::Own(Own::AllEnded));
+        self.gates.window.action(Action::Own(Own::End));
         self.flush(false);
         self.decoding.ended = true;
     }
@@ -392,10 +383,15 @@ impl Plan<'_> {
     pub(super) fn begin_program(&mut self) {
         self.decoding.begin();
         if self.in_force.settings.late_sync_ready {
-            let late = std::mem::take(&mut self.decoding.late);
+            let late = std::mem::take(self.late);
             self.gate(late.concat());
         }
     }
+}
+
+/// Whether a function goes out before a motion that passes it, and waits after that.
+fn is_passed(kind: Synchronisation) -> bool {
+    (kind.output(), kind.wait()) == (OutputPlace::Before, WaitPlace::After)
 }
 
 /// Whether the axes move.

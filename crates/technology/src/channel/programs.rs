@@ -1,17 +1,15 @@
 //! Programs one after the other.
 
 use bahn_din::{Place, Unit};
+use bahn_kernel::gates::Action;
 use bahn_path::Position;
 
 use super::Channel;
-use super::back::Backward;
 use super::fault::named;
 use super::in_force::InForce;
-use super::plan::Around;
+use super::own::Own;
 use super::record::{self, EVENTS};
-use super::single::braked;
 use super::skipped::Begun;
-use super::track::Action;
 use crate::bounds::Bounds;
 use crate::plc::{PlcMemory, cycle_at};
 use crate::report::{Coordinates, Fault, ProgramEnd, Report, Warning};
@@ -56,12 +54,13 @@ fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -
     let mut begun = None;
     if let Some(block) = run.from {
         let start = channel.now().position;
-        match channel.plan.search(run, block, start, channel.cycle_s) {
+        let Channel { plan, side, .. } = &mut channel;
+        match plan.search(run, block, start, &mut side.ranges, side.cycle_s) {
             Ok(mut found) => {
                 channel.progress.skipped = Some(std::mem::take(&mut found.skipped));
                 begun = Some(found);
             }
-            Err(fault) => channel.progress.fault = Some(fault),
+            Err(fault) => channel.side.fault = Some(fault),
         }
     }
     let first = begun.as_ref().map_or(0, |begun| begun.index);
@@ -70,40 +69,40 @@ fn execute<'a>(run: &'a Run<'a>, memory: Option<&'a mut (dyn PlcMemory + 'a)>) -
         programs.push(ProgramEnd {
             program: run.programs.name(index),
             completed: matches!(ended, Ended::Completed),
-            time_s: record::time(channel.t()),
+            time_s: record::time(channel.side.t()),
         });
         if matches!(ended, Ended::Faulty | Ended::Stuck) {
             break;
         }
     }
-    let end_s = channel.t();
+    let end_s = channel.side.t();
     channel.fetch_the_rest();
     let completed =
         first + programs.len() == run.programs.count() && programs.iter().all(|program| program.completed);
     if completed {
-        channel.record.drop_last_stop();
+        channel.side.record.drop_last_stop();
     }
     Report {
         completed,
-        error: channel.progress.fault.take(),
+        error: channel.side.fault.take(),
         time_s: record::time(end_s),
-        cycle_s: channel.cycle_s,
+        cycle_s: channel.side.cycle_s,
         path_end: Coordinates(channel.now().position),
-        events: channel.record.events,
-        waits: channel.record.waits,
+        events: channel.side.record.events,
+        waits: channel.side.record.waits,
         skipped: channel.progress.skipped,
         programs,
-        warnings: channel.record.warnings,
-        samples: channel.record.samples,
+        warnings: channel.side.record.warnings,
+        samples: channel.side.record.samples,
     }
 }
 
 impl Channel<'_> {
     /// After the end of the run the PLC fetches what was output last: the time of the run does not wait for it.
     fn fetch_the_rest(&mut self) {
-        self.plc.keep_fetches();
-        while let Some(cycle) = self.plc.next_cycle(self.cycle, 0) {
-            self.cycle = self.cycle.max(cycle);
+        self.side.plc.keep_fetches();
+        while let Some(cycle) = self.side.plc.next_cycle(self.side.cycle, 0) {
+            self.side.cycle = self.side.cycle.max(cycle);
             self.plc();
         }
     }
@@ -111,7 +110,7 @@ impl Channel<'_> {
     /// Runs a program of a run, from a block on where one was looked for.
     fn open<'r>(&mut self, run: &'r Run<'_>, index: usize, begun: Option<Begun<'r>>) -> Ended {
         self.progress.program = run.programs.name(index);
-        if self.progress.fault.is_some() {
+        if self.side.fault.is_some() {
             return Ended::Faulty;
         }
         let begun = match begun {
@@ -128,7 +127,7 @@ impl Channel<'_> {
                         commands: Vec::new(),
                     },
                     Err(fault) => {
-                        self.progress.fault = Some(fault);
+                        self.side.fault = Some(fault);
                         return Ended::Faulty;
                     }
                 }
@@ -141,7 +140,8 @@ impl Channel<'_> {
             ..
         } = begun;
         self.begin_path(position);
-        self.plan.begin_program();
+        self.taking().begin_program();
+        self.close();
         if !commands.is_empty() {
             let unit = Unit {
                 place: Place {
@@ -156,7 +156,7 @@ impl Channel<'_> {
                 ends: false,
             };
             if let Err(fault) = self.take(&unit) {
-                self.progress.fault = Some(fault);
+                self.side.fault = Some(fault);
                 return Ended::Faulty;
             }
         }
@@ -164,23 +164,23 @@ impl Channel<'_> {
     }
 
     /// The path begins anew, somewhere.
-    pub(super) fn begin_path(&mut self, start: Position) {
-        let first = self.plan.begin_path(start, self.distance());
-        self.motion.begin(start, first);
-        (self.gates.cursor, self.gates.open_to) = ((first, 0), first);
-        (self.gates.dwell, self.progress.ended) = (None, false);
-        self.backward = Backward::default();
-        self.single.all_block_ends();
+    fn begin_path(&mut self, start: Position) {
+        self.gates.begin(start);
+        self.side.beside.clear();
+        self.side.record.begin_path();
+        self.side.ended = false;
     }
 
     /// Takes a block into the path.
     fn take(&mut self, unit: &Unit) -> Result<(), Fault> {
-        let mut around = Around {
-            cycle_s: self.cycle_s,
-            script: self.plc.script(),
-            warnings: &mut self.record.warnings,
-        };
-        self.plan.take(unit, &mut around)
+        let taken = self.taking().take(unit);
+        self.close();
+        taken
+    }
+
+    /// Tells the gates whether anything comes after what is known.
+    fn close(&mut self) {
+        self.gates.closed = self.plan.decoding.holds || self.plan.decoding.ended;
     }
 
     /// Runs a program to its end.
@@ -191,10 +191,12 @@ impl Channel<'_> {
             self.follow_script();
             let drive = self.drive_now();
             for _ in 0..ROUNDS {
-                let done = if self.backward.is_on() {
-                    self.act_backward()
+                let done = if self.gates.is_backward() {
+                    self.gates.act_backward(&mut self.side)
                 } else {
-                    self.decode(blocks) | self.output_ahead(&drive) | self.act()
+                    self.decode(blocks)
+                        | self.gates.output_ahead(&drive, &mut self.side)
+                        | self.gates.act(&mut self.side)
                 };
                 any |= done;
                 if !done {
@@ -202,36 +204,38 @@ impl Channel<'_> {
                 }
             }
             self.drop_start();
-            self.lists();
+            let at = self.now();
+            self.side.lists(at);
             self.stand();
             self.limits();
-            if self.progress.fault.is_some() {
+            if self.side.fault.is_some() {
                 return Ended::Faulty;
             }
-            if self.progress.ended {
-                self.record.stands_for_nothing(self.t());
+            if self.side.ended {
+                let t = self.side.t();
+                self.side.record.stands_for_nothing(t);
                 return Ended::Completed;
             }
-            if self.resets() && self.motion.still {
+            if self.resets() && self.gates.is_still() {
                 self.reset();
                 return Ended::Reset;
             }
             let moved = self.spend(drive);
             // In a dwell the time of what is output ahead comes nearer.
-            let nears = self.gates.dwell.is_some() && !self.plan.leads.queue.is_empty();
+            let nears = self.gates.dwells_until().is_some() && !self.gates.leads.is_empty();
             quiet = if any || moved || nears { 0 } else { quiet + 1 };
             // Twice without anything to do, and nothing changes until something comes from outside.
             if quiet < 2 {
-                self.cycle += 1;
+                self.side.cycle += 1;
                 continue;
             }
             let next = [
-                self.plc.next_cycle(self.cycle, quiet),
+                self.side.plc.next_cycle(self.side.cycle, quiet),
                 self.next_change(),
-                self.gates.dwell,
+                self.gates.dwells_until(),
             ];
             match next.into_iter().flatten().min() {
-                Some(next) => self.cycle = next.max(self.cycle + 1),
+                Some(next) => self.side.cycle = next.max(self.side.cycle + 1),
                 None => return Ended::Stuck,
             }
         }
@@ -240,114 +244,89 @@ impl Channel<'_> {
     /// Decodes as far ahead as there is room. Whether there was any block.
     fn decode(&mut self, blocks: &mut dyn Blocks) -> bool {
         let mut count = 0;
-        while count < BLOCKS && !self.plan.decoding.ended && self.progress.fault.is_none() {
+        while count < BLOCKS && !self.plan.decoding.ended && self.side.fault.is_none() {
             if self.plan.decoding.holds {
-                if !self.is_empty() {
+                if !self.gates.is_empty() {
                     break;
                 }
                 self.plan.decoding.holds = false;
-                if !self.motion.stands {
-                    let at = self.now();
-                    self.stop(at);
-                }
+                self.come_to_rest();
                 self.take_over();
             }
-            let last = self.plan.track.last();
-            let done = if self.gates.cursor.0 == last {
-                self.gates.cursor.1
-            } else {
-                0
-            };
-            if last > self.motion.reached + AHEAD || self.plan.track.actions(last).len() > ACTIONS + done {
+            let last = self.gates.places.last();
+            let done = self.gates.done_at_end();
+            let known = self.gates.places.actions(last).len();
+            if last > self.gates.reached() + AHEAD || known > ACTIONS + done {
                 break;
             }
             if done > ACTIONS {
-                self.plan.track.forget_done(done);
-                self.gates.cursor.1 = 0;
+                self.gates.forget_done();
             }
             count += 1;
             let taken = match blocks.next(&mut self.plan.in_force) {
                 Ok(Some(unit)) => self.take(&unit),
                 Ok(None) => {
-                    self.plan.end();
-                    self.plan.window.release(&mut self.plan.track);
+                    self.taking().end();
+                    self.gates.release();
                     Ok(())
                 }
                 Err(fault) => Err(self.plan.coded(fault)),
             };
             if let Err(fault) = taken {
-                self.plan.window.release(&mut self.plan.track);
-                self.plan.track.push_action(Action::Fault(Box::new(fault)));
+                self.gates.release();
+                let fault = Own::Fault(Box::new(fault));
+                self.gates.places.push_action(Action::Own(fault));
                 self.plan.decoding.ended = true;
             }
         }
+        self.close();
         count > 0
     }
 
     /// The path goes on from where axes went on their own: all that is decoded is executed.
     fn take_over(&mut self) {
-        if !self.motion.ended_at.known().is_empty() {
-            let position = self.now().position;
-            self.motion.path.set_position(position);
-            self.plan.track.set_end(position);
-            self.motion.ended_at = Position::UNKNOWN;
+        let position = self.now().position;
+        if self.side.beside.take_over() {
+            self.gates.stand_at(position);
         }
-    }
-
-    /// All that is decoded is executed.
-    fn is_empty(&self) -> bool {
-        let last = self.plan.track.last();
-        self.motion.reached == last && self.gates.cursor == (last, self.plan.track.actions(last).len())
-    }
-
-    /// Says which lists of active functions have changed.
-    fn lists(&mut self) {
-        let at = self.now();
-        let record = &mut self.record;
-        self.plan
-            .ranges
-            .changed(|target, letter, numbers| record.active(target, letter, numbers, at));
     }
 
     /// What the script says of this moment.
     fn follow_script(&mut self) {
-        let t = self.t() + 0.5 * self.cycle_s;
-        let simulated = self
-            .plc
-            .script()
-            .is_some_and(|script| script.simulated.iter().any(|range| range.contains(&t)));
-        if simulated != self.gates.simulated {
-            self.gates.simulated = simulated;
-            self.gates.open_to = self.gates.cursor.0;
+        let t = self.side.t() + 0.5 * self.side.cycle_s;
+        let script = self.side.plc.script();
+        let simulated = script.is_some_and(|script| script.simulated.iter().any(|range| range.contains(&t)));
+        if simulated != self.side.simulated {
+            self.side.simulated = simulated;
+            self.gates.look_anew();
         }
-        self.follow_single(t);
-        if self.cycle.is_multiple_of(FORGET) {
-            self.plan.forget_before(self.motion.reached);
+        if let Some(script) = script {
+            self.gates
+                .single_block(script.singles.iter().any(|range| range.contains(&t)));
+            let cycle = self.side.cycle;
+            let over = |start: &f64| cycle_at(*start, self.side.cycle_s) <= cycle;
+            let starts = script.starts.get(self.progress.starts..).unwrap_or_default();
+            for start in starts.iter().take_while(|start| over(start)) {
+                self.progress.starts += 1;
+                self.gates.start(*start);
+            }
         }
-    }
-
-    /// What the script says of single block at this moment.
-    fn follow_single(&mut self, t: f64) {
-        let Some(script) = self.plc.script() else { return };
-        if self.single.switch(script, t) {
-            self.gates.open_to = self.gates.cursor.0;
+        if self.side.cycle.is_multiple_of(FORGET) {
+            let next = self.side.orders.next();
+            let oldest = self.gates.forget().unwrap_or(next);
+            self.side.orders.forget_before(oldest);
         }
-        if self.single.is_unseen() {
-            let distance = self.distance_of(&braked(self.motion.path.clone()));
-            self.single.see(distance);
-        }
-        self.single.take_starts(script, self.cycle, self.cycle_s);
     }
 
     /// A start while the path does not stand at the end of a block has no effect.
     fn drop_start(&mut self) {
-        if let Some(start) = self.single.take_start() {
-            self.record.warnings.push(Warning {
+        if let Some(start) = self.gates.take_start() {
+            self.side.record.warnings.push(Warning {
                 message: format!(
                     "the start at {start} s has no effect: the path does not stand at the end of a block"
                 ),
                 program: self.progress.program.clone(),
-                block: self.plan.track.block_before(self.motion.reached).to_string(),
+                block: self.gates.places.block_before(self.gates.reached()).to_string(),
             });
         }
     }
@@ -355,31 +334,29 @@ impl Channel<'_> {
     /// Whether a reset is to come now.
     pub(super) fn resets(&self) -> bool {
         let next = self
+            .side
             .plc
             .script()
             .and_then(|script| script.resets.get(self.progress.reset_count));
-        next.is_some_and(|reset| cycle_at(*reset, self.cycle_s) <= self.cycle)
+        next.is_some_and(|reset| cycle_at(*reset, self.side.cycle_s) <= self.side.cycle)
     }
 
     /// Drops all that is open: the path stands [004:48] (inferred).
     fn reset(&mut self) {
         self.progress.reset_count += 1;
-        self.record.stands_for_nothing(self.t());
-        if !self.motion.stands {
-            let at = self.now();
-            self.stop(at);
-        }
-        self.plc.reset();
-        self.plan.ranges.reset();
-        self.plan.decoding.late.iter_mut().for_each(Vec::clear);
-        self.lists();
+        let t = self.side.t();
+        self.side.record.stands_for_nothing(t);
+        self.come_to_rest();
+        self.side.reset();
+        let at = self.now();
+        self.side.lists(at);
     }
 
     /// The block in which the path is, or at whose end it stands, for faults of no block.
     pub(super) fn here(&self) -> Place {
         Place {
             program: self.progress.program.as_str().into(),
-            block: self.block_now(),
+            block: self.gates.block_now(),
             line: 0,
         }
     }
@@ -389,13 +366,13 @@ impl Channel<'_> {
         let Bounds { time_s, blocks } = self.progress.bounds;
         let message = if self.plan.decoding.units > blocks {
             format!("more than {blocks} blocks")
-        } else if self.t() > time_s {
+        } else if self.side.t() > time_s {
             format!("longer than {time_s} s")
-        } else if self.record.events.len() > EVENTS {
+        } else if self.side.record.events.len() > EVENTS {
             format!("more than {EVENTS} events")
         } else {
             return;
         };
-        self.progress.fault = Some(named(&self.here(), "endless", message));
+        self.side.fault = Some(named(&self.here(), "endless", message));
     }
 }

@@ -1,6 +1,9 @@
 //! Writes down what happens.
 
-use bahn_path::Position;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use bahn_kernel::gates::Moment;
 
 use super::order::{Order, OrderId};
 use crate::report::{Coordinates, Event, EventKind, Sample, ToGo, Value, Wait, Warning, rounded};
@@ -25,14 +28,8 @@ pub(super) struct Record {
     /// Every so many cycles one is kept.
     every: u64,
     skipped: u64,
-}
-
-/// Where and when something happens.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Moment {
-    pub(super) t: f64,
-    pub(super) position: Position,
-    pub(super) speed_mm_s: f64,
+    /// Leads that were not kept: a block that comes again is reported once.
+    short_leads: BTreeSet<(String, Arc<str>, u32)>,
 }
 
 impl Record {
@@ -76,6 +73,16 @@ impl Record {
             event.offset_us = offset_us;
             event.to_go = to_go;
         }
+    }
+
+    /// The lead of a function in a line of a program was not kept. Whether that is new.
+    pub(super) fn is_first(&mut self, function: String, program: Arc<str>, line: u32) -> bool {
+        self.short_leads.insert((function, program, line))
+    }
+
+    /// The path begins anew: what is reported once may be so again.
+    pub(super) fn begin_path(&mut self) {
+        self.short_leads.clear();
     }
 
     /// The path stands, or moves.

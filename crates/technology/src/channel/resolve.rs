@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use bahn_din::{Command, Function, Kind, Place, Target, Unit};
-use bahn_path::Axis;
+use bahn_path::{Ahead, Axis, Synchronisation};
 
 use super::fault::{named, numbered};
-use super::order::{Lead, Letter, Order, OrderId, Orders, RangeId, State};
+use super::order::{Letter, Order, OrderId, Orders, RangeId, State};
 use super::ranges::{Ranges, SLOTS};
 use crate::report::{Fault, Value};
 use crate::settings::{
     ChannelSettings, FUNCTIONS, FunctionSettings, SPINDLE_M, SpindleFunction, SpindleSettings,
 };
-use crate::synch::{Synch, SynchType};
+use crate::synch::Synch;
 
 /// 0.1 µm and µs are these parts of a mm and a second.
 const PER_MM: f64 = 1e4;
@@ -34,7 +34,7 @@ struct Handling {
     /// A spindle of the NC executes it.
     spindle: Option<usize>,
     waits: bool,
-    lead: Lead,
+    lead: Option<Ahead>,
     process_us: u32,
     /// Reserved for spindles: it has no additive value.
     reserved: bool,
@@ -228,14 +228,16 @@ impl Resolve<'_> {
         synch: Synch,
         range: RangeId,
         place: &Place,
-    ) -> Result<Lead, Fault> {
+    ) -> Result<Option<Ahead>, Fault> {
         let distance = f64::from(own.lead) / PER_MM;
         match synch.kind {
-            kind if kind.leads_by_time() => Ok(Lead::Time((f64::from(own.lead) / PER_S).max(self.cycle_s))),
-            kind if kind.is_pre_output() => Ok(Lead::Distance(distance)),
+            kind if kind.leads_by_time() => {
+                Ok(Some(Ahead::Time((f64::from(own.lead) / PER_S).max(self.cycle_s))))
+            }
+            kind if kind.is_pre_output() => Ok(Some(Ahead::Distance(distance))),
             kind if kind.takes_micro_joint() && own.lead > 0 => {
                 if self.settings.micro_joint.enabled && range == RangeId::Channel {
-                    return Ok(Lead::Distance(distance));
+                    return Ok(Some(Ahead::Distance(distance)));
                 }
                 if self.settings.micro_joint.enabled {
                     let name = names(range, self.settings).into_iter().next().unwrap_or_default();
@@ -247,7 +249,7 @@ impl Resolve<'_> {
                 let message = format!("a lead with {kind} is a Micro Joint, which is not enabled");
                 Err(named(place, "licence", message))
             }
-            _ => Ok(Lead::None),
+            _ => Ok(None),
         }
     }
 
@@ -275,7 +277,7 @@ impl Resolve<'_> {
             range: Some(range_of(index, settings)),
             spindle: None,
             waits: synch.kind.is_waited_for(),
-            lead: Lead::None,
+            lead: None,
             process_us: settings.s.process_time_us,
             reserved: false,
         }))
@@ -336,7 +338,7 @@ impl Resolve<'_> {
                     format!("{label} twice for the same target"),
                 ));
             }
-            if order.synch.kind == SynchType::MneSns && other.synch.kind == SynchType::MneSns {
+            if order.synch.kind == Synchronisation::MneSns && other.synch.kind == Synchronisation::MneSns {
                 let message = format!("{label} is the second MNE_SNS of the block");
                 return Err(numbered(place, 20156, message));
             }
@@ -401,11 +403,11 @@ fn unknown_spindle(name: &str, place: &Place) -> Fault {
 /// itself that the function is output [004:54], so it stands alone as well (inferred).
 fn output_type(synch: Synch) -> Option<Synch> {
     match synch.kind {
-        SynchType::NoSynch if synch.flush_and_wait => Some(Synch {
-            kind: SynchType::Mos,
+        Synchronisation::NoSynch if synch.flush_and_wait => Some(Synch {
+            kind: Synchronisation::Mos,
             ..synch
         }),
-        SynchType::NoSynch => None,
+        Synchronisation::NoSynch => None,
         _ => Some(synch),
     }
 }
@@ -427,15 +429,15 @@ fn spindle_handling(index: usize, settings: &SpindleSettings, own: SpindleFuncti
     let waits = is_output && synch.kind.is_waited_for();
     let spindle = (!by_plc).then_some(index);
     // Without a type of its own it is output and not waited for.
-    if is_output && synch.kind == SynchType::NoSynch {
-        synch.kind = SynchType::Mos;
+    if is_output && synch.kind == Synchronisation::NoSynch {
+        synch.kind = Synchronisation::Mos;
     }
     Handling {
         synch,
         range: is_output.then(|| range_of(index, settings)),
         spindle,
         waits,
-        lead: Lead::None,
+        lead: None,
         process_us: own.process_time_us,
         reserved: true,
     }

@@ -8,6 +8,7 @@ use bahn_path::Position;
 
 use super::in_force::InForce;
 use super::plan::Plan;
+use super::ranges::Ranges;
 use super::resolve::Resolve;
 use crate::report::{Fault, Skipped};
 use crate::run::{Blocks, Run};
@@ -37,6 +38,7 @@ impl Plan<'_> {
         run: &'r Run<'_>,
         block: &str,
         start: Position,
+        ranges: &mut Ranges,
         cycle_s: f64,
     ) -> Result<Begun<'r>, Fault> {
         let mut position = start;
@@ -48,7 +50,13 @@ impl Plan<'_> {
             self.in_force = InForce::new(self.settings);
             let mut blocks = run.programs.open(index, &position)?;
             let mut commands = Vec::new();
-            let found = self.skip_to(blocks.as_mut(), (block, cycle_s), &mut list, &mut commands);
+            let found = self.skip_to(
+                blocks.as_mut(),
+                (block, cycle_s),
+                ranges,
+                &mut list,
+                &mut commands,
+            );
             if found.map_err(|fault| self.coded(fault))? {
                 return Ok(Begun {
                     skipped: list,
@@ -75,6 +83,7 @@ impl Plan<'_> {
         &mut self,
         blocks: &mut dyn Blocks,
         (block, cycle_s): (&str, f64),
+        ranges: &mut Ranges,
         list: &mut Vec<Skipped>,
         commands: &mut Vec<Command>,
     ) -> Result<bool, Fault> {
@@ -82,7 +91,7 @@ impl Plan<'_> {
             let Some(unit) = blocks.next(&mut self.in_force)? else {
                 return Ok(false);
             };
-            self.skip(&unit, cycle_s, list);
+            self.skip(&unit, cycle_s, ranges, list);
             if unit.ends {
                 return Ok(false);
             }
@@ -92,10 +101,10 @@ impl Plan<'_> {
     }
 
     /// Notes the functions of a block that is passed over. What the channel does not know is nobody's state.
-    fn skip(&mut self, unit: &Unit, cycle_s: f64, list: &mut Vec<Skipped>) {
+    fn skip(&mut self, unit: &Unit, cycle_s: f64, ranges: &mut Ranges, list: &mut Vec<Skipped>) {
         let mut resolve = Resolve {
             settings: &self.in_force.settings,
-            ranges: &mut self.ranges,
+            ranges,
             orders: &mut Default::default(),
             cycle_s,
         };

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
+use bahn_path::Synchronisation;
+
 use super::{Entry, ListFault, Value};
 use crate::settings::{ChannelSettings, FunctionSettings, SPINDLE_M};
-use crate::synch::SynchType;
 
 /// Blocks up to which the look-ahead of the interpolator need not be changed [004:222].
 const BLOCKS_WITHOUT_BUFFER: u32 = 70;
@@ -98,7 +99,7 @@ fn gear_stage(settings: &ChannelSettings, entry: &Entry, of: &OfFunction) -> Opt
     let Value::Synch(synch) = entry.value else {
         return None;
     };
-    let is_right = synch.is_some_and(|synch| synch.kind == SynchType::MvsSvs);
+    let is_right = synch.is_some_and(|synch| synch.kind == Synchronisation::MvsSvs);
     (of.is_gear(settings) && !is_right).then(|| {
         entry.at_value(format!(
             "{of} selects a gear stage of the main spindle and must be MVS_SVS"
@@ -163,7 +164,7 @@ fn process_time(entry: &Entry, of: &OfFunction, function: &FunctionSettings) -> 
         return None;
     }
     match function.synch.map(|synch| synch.kind) {
-        Some(SynchType::Mos) => Some(entry.at_value(format!(
+        Some(Synchronisation::Mos) => Some(entry.at_value(format!(
             "{of} is MOS and has a process time: it becomes 0 (message 20760)"
         ))),
         None => Some(entry.at_name(format!(
@@ -177,7 +178,10 @@ fn process_time(entry: &Entry, of: &OfFunction, function: &FunctionSettings) -> 
 pub(super) fn drop_process_times(settings: &mut ChannelSettings) {
     for table in [&mut settings.m, &mut settings.h] {
         for function in table.iter_mut() {
-            if function.synch.is_some_and(|synch| synch.kind == SynchType::Mos) {
+            if function
+                .synch
+                .is_some_and(|synch| synch.kind == Synchronisation::Mos)
+            {
                 function.process_time_us = 0;
             }
         }

@@ -26,9 +26,9 @@ use entry::{Entry, Place, Value};
 /// What a list says, and what is wrong with it.
 ///
 /// ```
-/// use bahn_technology::{ChannelList, SynchType};
+/// use bahn_technology::{ChannelList, Synchronisation};
 /// let list = ChannelList::from_bytes(b"# glue\nm_synch[25] 0x2 MVS_SVS\nm_synch[1000] MOS\n");
-/// assert_eq!(list.settings().m.get(25).unwrap().synch.unwrap().kind, SynchType::MvsSvs);
+/// assert_eq!(list.settings().m.get(25).unwrap().synch.unwrap().kind, Synchronisation::MvsSvs);
 /// let error = &list.errors()[0];
 /// assert_eq!((error.line, error.column), (3, 9));
 /// assert_eq!(error.message, "index 1000 is not within 0 to 999");

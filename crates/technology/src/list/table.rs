@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
+use bahn_path::Synchronisation;
+
 use crate::synch::Synch;
 
 const PARAMETERS: &str = include_str!("../../data/channel-parameters.tsv");
@@ -268,13 +270,14 @@ impl SynchRow {
 
 fn synch_row(line: &'static str) -> Option<SynchRow> {
     let fields: Vec<&str> = line.split('\t').collect();
-    let [name, kind, owners, output, wait, meaning, source] = fields.try_into().ok()?;
+    let [name, kind, owners, meaning, source] = fields.try_into().ok()?;
+    let of = Synchronisation::named(name);
     Some(SynchRow {
         name,
         bits: Synch::constant(name)?,
         is_bit: kind == "bit",
-        output,
-        wait,
+        output: of.map_or("", |of| of.output().words()),
+        wait: of.map_or("", |of| of.wait().words()),
         meaning,
         source,
         owners,
@@ -284,7 +287,6 @@ fn synch_row(line: &'static str) -> Option<SynchRow> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SynchType;
 
     #[test]
     fn every_row_is_read_and_every_name_is_one() {
@@ -311,7 +313,7 @@ mod tests {
 
     #[test]
     fn all_types_and_bits_are_named() {
-        for kind in SynchType::all() {
+        for kind in Synchronisation::all() {
             let row = SynchRow::find(kind.name()).unwrap();
             assert!(!row.is_bit && row.is_for(Owner::M), "{kind}");
             assert!(!row.output.is_empty() && !row.wait.is_empty(), "{kind}");

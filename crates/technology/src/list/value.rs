@@ -1,9 +1,11 @@
 //! What stands after a name: numbers, constants, names, and remarks that mean nothing.
 
+use bahn_path::Synchronisation;
+
 use super::Value;
 use super::line::Fault;
 use super::table::{Kind, Owner, SynchRow};
-use crate::synch::{Synch, SynchType};
+use crate::synch::Synch;
 
 /// A value and what is odd about it.
 pub(super) struct Read {
@@ -192,7 +194,7 @@ fn contradiction(synch: Synch, remark: &str) -> Option<String> {
     let differs = if word.starts_with("0x") || word.starts_with("0X") {
         other != synch
     } else {
-        other.kind != SynchType::NoSynch && other.kind != synch.kind
+        other.kind != Synchronisation::NoSynch && other.kind != synch.kind
     };
     differs.then(|| format!("the remark says {other}, the value is {synch}: the value counts"))
 }
@@ -232,7 +234,7 @@ mod tests {
 
     #[test]
     fn remarks_stand_after_values() {
-        let svs = Value::Synch(Some(SynchType::MvsSvs.into()));
+        let svs = Value::Synch(Some(Synchronisation::MvsSvs.into()));
         for text in [
             "0x00000002 MVS_SVS",
             "MVS_SVS 0x00000002",

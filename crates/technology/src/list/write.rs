@@ -160,7 +160,7 @@ mod tests {
     use super::*;
     use crate::{
         ChannelList, EdgeBanding, FunctionSettings, MicroJoint, PreOutput, SpindleFunction, SpindleSettings,
-        SynchType,
+        Synchronisation,
     };
 
     /// Each line of the template says what it is for, and is a right one when the `#` is taken away.
@@ -215,7 +215,7 @@ mod tests {
         }
     }
 
-    fn synch(kinds: Vec<SynchType>) -> impl Strategy<Value = Synch> {
+    fn synch(kinds: Vec<Synchronisation>) -> impl Strategy<Value = Synch> {
         let any = (proptest::sample::select(kinds), any::<[bool; 4]>()).prop_map(|(kind, bits)| Synch {
             kind,
             plc_info: bits[0],
@@ -233,8 +233,12 @@ mod tests {
     }
 
     fn function(for_h: bool) -> impl Strategy<Value = FunctionSettings> {
-        let not_for_h = [SynchType::MvsSlm, SynchType::MvsSlp, SynchType::MosTs];
-        let kinds = SynchType::all()
+        let not_for_h = [
+            Synchronisation::MvsSlm,
+            Synchronisation::MvsSlp,
+            Synchronisation::MosTs,
+        ];
+        let kinds = Synchronisation::all()
             .filter(|kind| !(for_h && not_for_h.contains(kind)))
             .collect();
         let parts = (
@@ -248,7 +252,7 @@ mod tests {
                 synch,
                 lead,
                 // The check takes it away (message 20760).
-                process_time_us: if synch.is_some_and(|synch| synch.kind == SynchType::Mos) {
+                process_time_us: if synch.is_some_and(|synch| synch.kind == Synchronisation::Mos) {
                     0
                 } else {
                     process_time_us
@@ -259,7 +263,7 @@ mod tests {
     }
 
     fn of_spindle() -> impl Strategy<Value = SpindleFunction> {
-        use SynchType::*;
+        use Synchronisation::*;
         let kinds = vec![NoSynch, Mos, MvsSvs, MvsSns, MnsSns, MneSns, MvsSlm, MvsSlp];
         (proptest::option::of(synch(kinds)), any::<u32>()).prop_map(|(synch, process_time_us)| {
             SpindleFunction {

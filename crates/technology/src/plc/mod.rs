@@ -10,6 +10,7 @@ mod window;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+pub(crate) use bahn_kernel::gates::cycle_at;
 pub use error::ScriptError;
 pub(crate) use output::WindowRange;
 pub use script::Script;
@@ -40,14 +41,6 @@ pub(crate) struct Plc<'a> {
     /// What comes, by cycle and in the order in which it was ordered.
     due: BinaryHeap<Reverse<(u64, u64, Reaction)>>,
     count: u64,
-}
-
-/// What part of a cycle may be rounding.
-const ROUNDING: f64 = 1e-6;
-
-/// The first cycle at a time or after it.
-pub(crate) fn cycle_at(time_s: f64, cycle_s: f64) -> u64 {
-    (time_s / cycle_s - ROUNDING).ceil().max(0.0) as u64
 }
 
 impl<'a> Plc<'a> {

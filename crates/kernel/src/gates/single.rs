@@ -5,27 +5,24 @@
 
 use bahn_motion::{Drive, Interpolator, State};
 
-use super::leads::SAME;
-use crate::plc::{Script, cycle_at};
+use super::held::SAME_MM;
 
 /// What is in force of single block.
 #[derive(Debug, Default)]
-pub(super) struct Single {
+pub struct SingleBlock {
     on: bool,
     /// Distance along the path, mm, at which it can first come to a standstill: block ends before it are passed. Unknown as
     /// long as nobody has looked.
     first: Option<f64>,
     /// The operator starts in this cycle, at this time, s.
     start: Option<f64>,
-    /// Starts that are over.
-    starts: usize,
 }
 
 /// Cycles of braking that are looked at: the slowest axis stands long before.
 const BRAKING: usize = 1_000_000;
 
 /// Where the path would stand if it braked now.
-pub(super) fn braked(mut path: Interpolator<()>) -> Interpolator<()> {
+pub fn braked(mut path: Interpolator<()>) -> Interpolator<()> {
     let drive = Drive {
         hold: true,
         ..Drive::default()
@@ -38,10 +35,9 @@ pub(super) fn braked(mut path: Interpolator<()>) -> Interpolator<()> {
     path
 }
 
-impl Single {
-    /// What the script says of single block at a moment: whether that has changed.
-    pub(super) fn switch(&mut self, script: &Script, t: f64) -> bool {
-        let on = script.singles.iter().any(|range| range.contains(&t));
+impl SingleBlock {
+    /// Single block is on or off now: whether that has changed.
+    pub fn switch(&mut self, on: bool) -> bool {
         let changed = on != self.on;
         if changed {
             (self.on, self.first) = (on, None);
@@ -50,33 +46,27 @@ impl Single {
     }
 
     /// Whether the path has to be looked at: where it can first come to a standstill.
-    pub(super) fn is_unseen(&self) -> bool {
+    pub fn is_unseen(&self) -> bool {
         self.on && self.first.is_none()
     }
 
     /// It can first come to a standstill at this distance along it, mm.
-    pub(super) fn see(&mut self, distance: f64) {
+    pub fn see(&mut self, distance: f64) {
         self.first = Some(distance);
     }
 
-    /// Takes the starts of the script up to a cycle, whose length is in s.
-    pub(super) fn take_starts(&mut self, script: &Script, cycle: u64, cycle_s: f64) {
-        while let Some(start) = script.starts.get(self.starts)
-            && cycle_at(*start, cycle_s) <= cycle
-        {
-            self.starts += 1;
-            // Two in a cycle are one.
-            self.start = Some(*start);
-        }
+    /// The operator starts in this cycle, at this time, s. Two in a cycle are one.
+    pub fn start(&mut self, at_s: f64) {
+        self.start = Some(at_s);
     }
 
     /// In single block the path stops at this end of a block, mm along it, if it still can.
-    pub(super) fn stops_at(&self, distance: f64, backward: bool) -> bool {
+    pub fn stops_at(&self, distance: f64, backward: bool) -> bool {
         let can = |first: f64| {
             if backward {
-                distance <= first + SAME
+                distance <= first + SAME_MM
             } else {
-                distance >= first - SAME
+                distance >= first - SAME_MM
             }
         };
         self.on && self.first.is_none_or(can)
@@ -84,7 +74,7 @@ impl Single {
 
     /// Whether the path stands at this end of a block, mm along it, until the next start. It may still move or have run
     /// over it, if it could not stop any more: then it does so as soon as it can.
-    pub(super) fn stands_at_end(&mut self, distance: f64, backward: bool, moves: bool) -> bool {
+    pub fn stands_at_end(&mut self, distance: f64, backward: bool, moves: bool) -> bool {
         if !self.stops_at(distance, backward) {
             return false;
         }
@@ -96,12 +86,12 @@ impl Single {
     }
 
     /// A start that nothing has taken, s.
-    pub(super) fn take_start(&mut self) -> Option<f64> {
+    pub fn take_start(&mut self) -> Option<f64> {
         self.start.take()
     }
 
     /// The path turns, or begins anew: all ends of blocks count again.
-    pub(super) fn all_block_ends(&mut self) {
+    pub fn all_block_ends(&mut self) {
         self.first = None;
     }
 }

@@ -4,45 +4,38 @@ use std::collections::VecDeque;
 
 use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step};
 
-use super::order::OrderId;
-use super::track::Track;
-
-#[derive(Debug, Default)]
-pub(super) struct Backward {
-    pub(super) back: Option<Back>,
-}
+use super::places::Places;
 
 /// The path goes back.
 #[derive(Debug)]
-pub(super) struct Back {
-    /// The element on which it turned, and how much of that was executed, mm.
-    pub(super) from: u64,
-    pub(super) along: f64,
+pub struct Back<T> {
+    /// The element on which it turned.
+    pub from: u64,
+    /// How much of that was executed, mm.
+    pub along: f64,
     /// Number of the backward motion that the interpolator is given next: the first is 1.
-    pub(super) fed: u64,
-    /// The place to which the path has come back, and the one whose functions were looked at last.
-    pub(super) reached: u64,
-    pub(super) seen: u64,
-    /// Functions that are to be output at that place, and those that are waited for.
-    pub(super) queue: VecDeque<OrderId>,
-    pub(super) gate: Vec<OrderId>,
+    pub fed: u64,
+    /// The place to which the path has come back.
+    pub reached: u64,
+    /// The place whose functions were looked at last.
+    pub seen: u64,
+    /// Functions that are to be output at that place.
+    pub queue: VecDeque<T>,
+    /// Those that are waited for there.
+    pub gate: Vec<T>,
     /// In single block it stands there.
-    pub(super) at_limit: bool,
-}
-
-impl Backward {
-    pub(super) fn is_on(&self) -> bool {
-        self.back.is_some()
-    }
+    pub at_limit: bool,
 }
 
 /// Gives the interpolator the elements of the track from one on back.
-pub(super) struct FeedBack<'a> {
-    pub(super) track: &'a Track,
-    pub(super) back: &'a mut Back,
+pub struct FeedBack<'a, T, O> {
+    /// The path.
+    pub track: &'a Places<T, O>,
+    /// Where it is on it.
+    pub back: &'a mut Back<T>,
 }
 
-impl ElementSource for FeedBack<'_> {
+impl<T: Copy, O> ElementSource for FeedBack<'_, T, O> {
     type Error = ();
 
     fn next(&mut self) -> Step<()> {
@@ -66,14 +59,14 @@ impl ElementSource for FeedBack<'_> {
     fn resume(&mut self, _: LiveData) {}
 }
 
-impl Back {
+impl<T> Back<T> {
     /// The element that is so many back.
-    pub(super) fn element(&self, back: u64) -> Option<u64> {
+    pub fn element(&self, back: u64) -> Option<u64> {
         (self.from + 1).checked_sub(back)
     }
 
     /// It cannot go on where it is.
-    pub(super) fn waits(&self) -> bool {
+    pub fn waits(&self) -> bool {
         !self.queue.is_empty() || !self.gate.is_empty() || self.at_limit
     }
 }

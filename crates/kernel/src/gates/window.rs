@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use super::track::{Action, Leg, Track, VectorLimit};
+use super::held::{Held, SAME_MM};
+use super::leg::{Leg, VectorLimit};
+use super::places::{Action, Places};
 
-/// Places nearer together than this are one, mm: a thousandth of the unit of a lead.
-const SAME: f64 = 1e-7;
 /// Length of the piece at whose feed the path enters a joint (`E=`), mm.
 const ENTRY: f64 = 1e-5;
 
@@ -13,16 +13,16 @@ const ENTRY: f64 = 1e-5;
 const MOST: usize = 4000;
 
 /// What is decoded and may still be split.
-#[derive(Debug, Default)]
-pub(super) struct Window {
-    pieces: VecDeque<Piece>,
+#[derive(Debug)]
+pub struct Window<T, O> {
+    pieces: VecDeque<Piece<T, O>>,
     legs: usize,
     /// Distance along the path to its end, mm.
     distance: f64,
     /// Nothing is output before this, mm.
     barrier: f64,
     /// How the next joint is driven.
-    pub(super) next: Option<JointFeed>,
+    pub next: Option<JointFeed>,
 }
 
 #[allow(
@@ -30,41 +30,48 @@ pub(super) struct Window {
     reason = "most are legs, and they are moved on once"
 )]
 #[derive(Debug)]
-enum Piece {
+enum Piece<T, O> {
     Leg(Leg),
-    Action(Action),
+    Action(Action<T, O>),
 }
 
-/// `#CHANNEL SET [M_PRE_OUTPUT ..]` [004:138].
+/// How a joint is driven, as `#CHANNEL SET [M_PRE_OUTPUT ..]` says [004:138].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct JointFeed {
-    pub(super) entry_mm_min: Option<f64>,
-    pub(super) feed_mm_min: Option<f64>,
-    pub(super) vector_limit_off: bool,
-}
-
-/// What holds a place back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Held {
-    /// Nothing: it is where it was planned.
-    No,
-    /// No more blocks, or no greater distance, are looked at.
-    Window,
-    /// The start, a flush, another joint or a function that is still waited for.
-    Barrier,
+pub struct JointFeed {
+    /// Feed with which the path enters it, mm/min.
+    pub entry_mm_min: Option<f64>,
+    /// Feed after it, mm/min.
+    pub feed_mm_min: Option<f64>,
+    /// Without the limits of the path itself.
+    pub vector_limit_off: bool,
 }
 
 /// Where a function is output that comes before its place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Planned {
-    pub(super) real: f64,
-    pub(super) deviation: f64,
-    pub(super) held: Held,
+pub struct Planned {
+    /// Distance along the path, mm.
+    pub real: f64,
+    /// How far that is after where it was planned, mm.
+    pub deviation: f64,
+    /// Why.
+    pub held: Held,
 }
 
-impl Window {
+impl<T, O> Default for Window<T, O> {
+    fn default() -> Window<T, O> {
+        Window {
+            pieces: VecDeque::new(),
+            legs: 0,
+            distance: 0.0,
+            barrier: 0.0,
+            next: None,
+        }
+    }
+}
+
+impl<T: Copy, O> Window<T, O> {
     /// What is known of the path begins here.
-    pub(super) fn begin(&mut self, distance: f64) {
+    pub fn begin(&mut self, distance: f64) {
         *self = Window {
             distance,
             barrier: distance,
@@ -73,16 +80,17 @@ impl Window {
     }
 
     /// Distance along the path to its end, mm.
-    pub(super) fn distance(&self) -> f64 {
+    pub fn distance(&self) -> f64 {
         self.distance
     }
 
-    pub(super) fn action(&mut self, action: Action) {
+    /// What is done at its end.
+    pub fn action(&mut self, action: Action<T, O>) {
         self.pieces.push_back(Piece::Action(action));
     }
 
     /// An element comes; more than so many are not kept.
-    pub(super) fn leg(&mut self, mut leg: Leg, most: usize, track: &mut Track) {
+    pub fn leg(&mut self, mut leg: Leg, most: usize, track: &mut Places<T, O>) {
         leg.from = self.distance;
         self.distance += leg.length;
         self.pieces.push_back(Piece::Leg(leg));
@@ -93,16 +101,16 @@ impl Window {
     }
 
     /// Nothing in it can be split, or it has no room for more.
-    pub(super) fn is_full(&self) -> bool {
+    pub fn is_full(&self) -> bool {
         self.legs == 0 || self.pieces.len() > MOST
     }
 
     /// Nothing is output before its end as it is now.
-    pub(super) fn bar(&mut self) {
+    pub fn bar(&mut self) {
         self.barrier = self.distance;
     }
 
-    fn release_one(&mut self, track: &mut Track) {
+    fn release_one(&mut self, track: &mut Places<T, O>) {
         match self.pieces.pop_front() {
             Some(Piece::Leg(leg)) => {
                 self.legs -= 1;
@@ -114,7 +122,7 @@ impl Window {
     }
 
     /// All that is kept goes on.
-    pub(super) fn release(&mut self, track: &mut Track) {
+    pub fn release(&mut self, track: &mut Places<T, O>) {
         while !self.pieces.is_empty() {
             self.release_one(track);
         }
@@ -122,7 +130,7 @@ impl Window {
 
     /// Where a function is output that belongs to the end of what is kept and has a lead, mm; `farthest` is how far back
     /// it may be, mm.
-    pub(super) fn plan(&self, lead: f64, farthest: f64) -> Planned {
+    pub fn plan(&self, lead: f64, farthest: f64) -> Planned {
         let first = self.pieces.iter().find_map(|piece| match piece {
             Piece::Leg(leg) => Some(leg.from),
             Piece::Action(_) => None,
@@ -131,10 +139,10 @@ impl Window {
         let planned = self.distance - lead;
         let floor = window.max(self.barrier);
         let real = planned.max(floor);
-        let held = if real <= planned + SAME {
+        let held = if real <= planned + SAME_MM {
             Held::No
-        } else if window > self.barrier + SAME {
-            Held::Window
+        } else if window > self.barrier + SAME_MM {
+            Held::LookAhead
         } else {
             Held::Barrier
         };
@@ -148,12 +156,12 @@ impl Window {
 
     /// Puts what is to be done at a place, which is after all that stands there already. Where an element is split for
     /// it, `after` is done at the end of its block, otherwise at once. The joint goes on to the end of what is kept.
-    pub(super) fn insert(&mut self, real: f64, actions: Vec<Action>, after: Option<Action>) {
+    pub fn insert(&mut self, real: f64, actions: Vec<Action<T, O>>, after: Option<Action<T, O>>) {
         let joint = self.next.take();
         let at = self
             .pieces
             .iter()
-            .position(|piece| matches!(piece, Piece::Leg(leg) if leg.to() > real + SAME));
+            .position(|piece| matches!(piece, Piece::Leg(leg) if leg.to() > real + SAME_MM));
         let Some(mut at) = at else {
             self.pieces
                 .extend(actions.into_iter().chain(after).map(Piece::Action));
@@ -161,7 +169,7 @@ impl Window {
         };
         let mut after = after;
         if let Some(Piece::Leg(leg)) = self.pieces.get(at)
-            && leg.from < real - SAME
+            && leg.from < real - SAME_MM
         {
             let (unit, (first, second)) = (leg.unit, leg.split(real - leg.from));
             self.pieces[at] = Piece::Leg(first);
@@ -169,7 +177,7 @@ impl Window {
             self.pieces.insert(at, Piece::Leg(second));
             self.legs += 1;
             if let Some(gate) = after.take() {
-                let of_block = |piece: &Piece| matches!(piece, Piece::Leg(leg) if leg.unit == unit);
+                let of_block = |piece: &Piece<T, O>| matches!(piece, Piece::Leg(leg) if leg.unit == unit);
                 let last = self.pieces.iter().rposition(of_block).unwrap_or(at);
                 self.pieces.insert(last + 1, Piece::Action(gate));
             }
@@ -207,19 +215,19 @@ impl Window {
     }
 
     /// Splits the last element at a place, mm, with what is to be done there.
-    pub(super) fn split_last(&mut self, place: f64, actions: Vec<Action>) {
-        let last = |piece: &Piece| matches!(piece, Piece::Leg(_));
+    pub fn split_last(&mut self, place: f64, actions: Vec<Action<T, O>>) {
+        let last = |piece: &Piece<T, O>| matches!(piece, Piece::Leg(_));
         let Some(mut at) = self.pieces.iter().rposition(last) else {
             return;
         };
         let Some(Piece::Leg(leg)) = self.pieces.get(at) else {
             return;
         };
-        if place >= leg.to() - SAME {
+        if place >= leg.to() - SAME_MM {
             self.pieces.extend(actions.into_iter().map(Piece::Action));
             return;
         }
-        if place > leg.from + SAME {
+        if place > leg.from + SAME_MM {
             let (first, second) = leg.split(place - leg.from);
             self.pieces[at] = Piece::Leg(first);
             at += 1;

@@ -1,95 +1,93 @@
-//! Functions that are output ahead of the place where they are synchronised, MEP_* and MET_* [004:81-90].
+//! Functions that are output ahead of the place where they are synchronised, `MEP_*` and `MET_*` [004:81-90].
 
-use std::collections::{BTreeSet, VecDeque};
-use std::sync::Arc;
+use std::collections::VecDeque;
 
-use super::order::{Lead, OrderId};
+use bahn_path::Ahead;
 
-/// Places nearer together than this are one, mm.
-pub(super) const SAME: f64 = 1e-7;
+use super::held::{Held, SAME_MM};
 
 /// A function that is still to be output ahead.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ahead {
-    pub(super) id: OrderId,
+pub struct Pending<T> {
+    /// Its ticket.
+    pub id: T,
     /// Count of executed blocks.
-    pub(super) unit: u64,
-    pub(super) lead: Lead,
+    pub unit: u64,
+    /// How far ahead it goes out.
+    pub lead: Ahead,
     /// Distance along the path to the place where it is synchronised, mm.
-    pub(super) point: f64,
+    pub point: f64,
     /// It is not output before this, mm: the look-ahead reaches no farther back.
-    pub(super) earliest: f64,
+    pub earliest: f64,
     /// Why not before that.
-    pub(super) held: Held,
+    pub held: Held,
     /// Where it was output last, mm.
     output: f64,
 }
 
-/// What holds a function back that is to be output ahead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Held {
-    /// The path begins there, or was to come to rest there.
-    Barrier,
-    /// No more blocks are looked at (P-CHAN-00274).
-    LookAhead,
-}
-
-impl Ahead {
+impl<T> Pending<T> {
     /// Distance along the path to where it is output, mm, for a lead along the path.
-    pub(super) fn place(&self) -> f64 {
+    pub fn place(&self) -> f64 {
         match self.lead {
-            Lead::Distance(distance) => (self.point - distance).max(self.earliest),
-            Lead::None => self.point,
-            Lead::Time(_) => self.earliest,
+            Ahead::Distance(distance) => (self.point - distance).max(self.earliest),
+            Ahead::Time(_) => self.earliest,
         }
     }
 }
 
 /// A function that was output ahead of its place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Promise {
-    pub(super) ahead: Ahead,
-    /// When it was output, s, and how long the path was to take to its place then, s.
-    pub(super) output_s: f64,
-    pub(super) planned_s: f64,
-}
-
-/// Functions that were output ahead, until the path passes their places.
-#[derive(Debug, Default)]
-pub(super) struct Watched {
-    pub(super) promises: VecDeque<Promise>,
-    /// What was reported: a block that comes again is reported once.
-    pub(super) reported: BTreeSet<(String, Arc<str>, u32)>,
-}
-
-impl Watched {
-    /// The path turns: it passes their places otherwise.
-    pub(super) fn clear(&mut self) {
-        self.promises.clear();
-    }
+pub struct Promise<T> {
+    /// The function.
+    pub ahead: Pending<T>,
+    /// When it was output, s.
+    pub output_s: f64,
+    /// How long the path was to take to its place then, s.
+    pub planned_s: f64,
 }
 
 /// All that are still to be output ahead, in the order of their blocks.
-#[derive(Debug, Default)]
-pub(super) struct Leads {
-    pub(super) queue: VecDeque<Ahead>,
+#[derive(Debug)]
+pub struct Leads<T> {
+    /// The look-ahead turns to the next place when it has passed the one before (P-CHAN-00212).
+    pub one_by_one: bool,
+    queue: VecDeque<Pending<T>>,
     /// Those that were output and whose places are not passed yet.
-    pub(super) watched: Watched,
+    pub promises: VecDeque<Promise<T>>,
     /// Those that were output, by their places: for backward motion.
-    taken: VecDeque<Ahead>,
+    taken: VecDeque<Pending<T>>,
     /// Distances to the starts of the last blocks, as many as the look-ahead takes.
     blocks: VecDeque<f64>,
     /// Nothing is output before this, mm: the path was to come to rest here.
     barrier: f64,
     /// Where the last one was output, or had to be passed for the next one, mm.
-    pub(super) floor: f64,
+    pub floor: f64,
     /// The place that was turned to last, and its functions (P-CHAN-00212).
-    active: Option<(f64, Vec<OrderId>)>,
+    active: Option<(f64, Vec<T>)>,
 }
 
-impl Leads {
+impl<T: Copy + Ord> Leads<T> {
+    /// Nothing is to be output ahead, on a path that begins.
+    pub fn new(one_by_one: bool) -> Leads<T> {
+        Leads {
+            one_by_one,
+            queue: VecDeque::new(),
+            promises: VecDeque::new(),
+            taken: VecDeque::new(),
+            blocks: VecDeque::new(),
+            barrier: 0.0,
+            floor: 0.0,
+            active: None,
+        }
+    }
+
+    /// Nothing is to be output ahead.
+    pub fn is_empty(&self) -> bool {
+        self.queue.is_empty()
+    }
+
     /// A block with a movement begins at a distance along the path, mm; so many blocks are looked at.
-    pub(super) fn block(&mut self, distance: f64, most: usize) {
+    pub fn block(&mut self, distance: f64, most: usize) {
         self.blocks.push_back(distance);
         while self.blocks.len() > most {
             self.blocks.pop_front();
@@ -97,19 +95,20 @@ impl Leads {
     }
 
     /// Nothing is output across this place, mm.
-    pub(super) fn bar(&mut self, distance: f64) {
+    pub fn bar(&mut self, distance: f64) {
         self.barrier = distance;
         self.blocks.clear();
     }
 
-    pub(super) fn push(&mut self, id: OrderId, unit: u64, lead: Lead, point: f64) {
+    /// A function of a block is to be output a lead ahead of a place, mm along the path.
+    pub fn push(&mut self, id: T, unit: u64, lead: Ahead, point: f64) {
         let first = self.blocks.front().copied().unwrap_or(point);
-        let held = if first > self.barrier + SAME {
+        let held = if first > self.barrier + SAME_MM {
             Held::LookAhead
         } else {
             Held::Barrier
         };
-        self.queue.push_back(Ahead {
+        self.queue.push_back(Pending {
             id,
             unit,
             lead,
@@ -120,17 +119,13 @@ impl Leads {
         });
     }
 
-    /// The functions that may be output now: those of the first block that has any. With `one_by_one` not before the
+    /// The functions that may be output now: those of the first block that has any. One by one not before the
     /// place before is passed: `passed` says so of it and its functions.
-    pub(super) fn next(
-        &self,
-        one_by_one: bool,
-        passed: impl Fn(f64, &[OrderId]) -> bool,
-    ) -> impl Iterator<Item = (usize, &Ahead)> {
+    pub fn next(&self, passed: impl Fn(f64, &[T]) -> bool) -> impl Iterator<Item = (usize, &Pending<T>)> {
         let first = self.queue.front();
-        let held = one_by_one
+        let held = self.one_by_one
             && match (first, &self.active) {
-                (Some(first), Some((point, ids))) => first.point > point + SAME && !passed(*point, ids),
+                (Some(first), Some((point, ids))) => first.point > point + SAME_MM && !passed(*point, ids),
                 _ => false,
             };
         let unit = first.map(|ahead| ahead.unit);
@@ -141,25 +136,25 @@ impl Leads {
     }
 
     /// One of them is output, at a distance along the path, mm.
-    pub(super) fn take(&mut self, index: usize, one_by_one: bool, output: f64) {
+    pub fn take(&mut self, index: usize, output: f64) {
         let Some(ahead) = self.queue.remove(index) else {
             return;
         };
         let at = self.taken.partition_point(|other| other.point <= ahead.point);
-        self.taken.insert(at, Ahead { output, ..ahead });
-        if let Some((point, _)) = self.active.as_ref().filter(|_| one_by_one)
-            && ahead.point > point + SAME
+        self.taken.insert(at, Pending { output, ..ahead });
+        if let Some((point, _)) = self.active.as_ref().filter(|_| self.one_by_one)
+            && ahead.point > point + SAME_MM
         {
             self.floor = self.floor.max(*point);
         }
         match &mut self.active {
-            Some((point, ids)) if (*point - ahead.point).abs() <= SAME => ids.push(ahead.id),
+            Some((point, ids)) if (*point - ahead.point).abs() <= SAME_MM => ids.push(ahead.id),
             active => *active = Some((ahead.point, vec![ahead.id])),
         }
     }
 
     /// One that is output does so at this place of the path, mm.
-    pub(super) fn output_at(&mut self, id: OrderId, distance: f64) {
+    pub fn output_at(&mut self, id: T, distance: f64) {
         self.floor = distance;
         if let Some(ahead) = self.taken.iter_mut().rev().find(|ahead| ahead.id == id) {
             ahead.output = distance;
@@ -167,27 +162,29 @@ impl Leads {
     }
 
     /// Where one that is output was so, mm.
-    pub(super) fn placed(&self, id: OrderId) -> Option<f64> {
+    pub fn placed(&self, id: T) -> Option<f64> {
         let taken = self.taken.iter().rev().find(|ahead| ahead.id == id);
         taken.map(|ahead| ahead.output)
     }
 
     /// The functions that were output and belong to a place, mm.
-    pub(super) fn of_place(&self, distance: f64) -> impl Iterator<Item = OrderId> {
-        let first = self.taken.partition_point(|ahead| ahead.point < distance - SAME);
+    pub fn of_place(&self, distance: f64) -> impl Iterator<Item = T> {
+        let first = self
+            .taken
+            .partition_point(|ahead| ahead.point < distance - SAME_MM);
         let here = self
             .taken
             .range(first..)
-            .take_while(move |ahead| ahead.point <= distance + SAME);
+            .take_while(move |ahead| ahead.point <= distance + SAME_MM);
         here.map(|ahead| ahead.id)
     }
 
     /// The path has turned at a distance along the path, mm, and goes forward again from another one. What it comes over is still to be output:
     /// the place of a function, or where it was output. They are handed on.
-    pub(super) fn repeat(&mut self, turned: f64, from: f64) -> Vec<OrderId> {
-        let (again, over): (Vec<Ahead>, Vec<Ahead>) = self.taken.drain(..).partition(|ahead| {
-            let of_point = ahead.point <= turned + SAME && ahead.point >= from - SAME;
-            of_point || ahead.output >= from - SAME
+    pub fn repeat(&mut self, turned: f64, from: f64) -> Vec<T> {
+        let (again, over): (Vec<Pending<T>>, Vec<Pending<T>>) = self.taken.drain(..).partition(|ahead| {
+            let of_point = ahead.point <= turned + SAME_MM && ahead.point >= from - SAME_MM;
+            of_point || ahead.output >= from - SAME_MM
         });
         self.taken = over.into();
         if !again.is_empty() {
@@ -202,23 +199,23 @@ impl Leads {
         ids
     }
 
-    /// Their orders are others now.
-    pub(super) fn rename(&mut self, new: impl Fn(&mut OrderId)) {
+    /// Their tickets are others now.
+    pub fn rename(&mut self, new: impl Fn(&mut T)) {
         self.queue.iter_mut().for_each(|ahead| new(&mut ahead.id));
     }
 
-    /// Nobody goes back to what lies before this distance along the path, mm; the first order that may still be asked for.
-    pub(super) fn forget_before(&mut self, distance: f64) -> Option<OrderId> {
+    /// Nobody goes back to what lies before this distance along the path, mm; the first function that may still be asked for.
+    pub fn forget_before(&mut self, distance: f64) -> Option<T> {
         self.taken.retain(|ahead| ahead.point >= distance);
         self.taken.iter().map(|ahead| ahead.id).min()
     }
 
     /// The path begins anew.
-    pub(super) fn begin(&mut self, distance: f64) {
+    pub fn begin(&mut self, distance: f64) {
         *self = Leads {
             barrier: distance,
             floor: distance,
-            ..Leads::default()
+            ..Leads::new(self.one_by_one)
         };
     }
 }

@@ -1,100 +1,102 @@
 //! What is done ahead of its place: output by distance or by time, with the time that the path will take as planned.
 
 use bahn_motion::{Drive, State};
+use bahn_path::Ahead;
 
-use super::Channel;
-use super::leads::{Ahead, SAME};
-use super::order::{Lead, OrderId};
-use super::record::Moment;
-use super::track::Action;
-use crate::plc::cycle_at;
-use crate::report::ToGo;
+use super::functions::{Functions, Moment, Way};
+use super::held::SAME_MM;
+use super::leads::Pending;
+use super::places::Action;
+use super::{Gates, cycle_at};
 
 /// Time to go is planned up to this, s.
 const LONGEST_S: f64 = 600.0;
 /// Times nearer together than this are one, s.
 const ROUNDING_S: f64 = 1e-9;
-/// 0.1 µm and µs are these parts of a mm and a second.
-const PER_MM: f64 = 1e4;
-const PER_S: f64 = 1e6;
 
-impl Channel<'_> {
-    /// Outputs the functions whose places come near. Whether there were any.
-    pub(super) fn output_ahead(&mut self, drive: &Drive) -> bool {
+impl<T: Copy + Ord, O> Gates<T, O> {
+    /// Outputs the functions whose places come near, as the path is driven. Whether there were any.
+    pub fn output_ahead<F: Functions<Ticket = T, Own = O>>(&mut self, drive: &Drive, family: &mut F) -> bool {
         let mut any = false;
-        if !self.plan.leads.queue.is_empty() {
-            self.motion.feed(&self.plan);
+        if !self.leads.is_empty() {
+            self.motion.feed(&self.places, self.closed);
         }
-        while let Some((index, ahead)) = self.next_ahead(drive) {
-            let blocked = self.range_of(ahead.id).and_then(|range| self.blocker(range));
-            if blocked.is_some() {
+        while let Some((index, ahead)) = self.next_ahead(drive, family) {
+            if family.blocker(ahead.id).is_some() {
                 break;
             }
             let distance = self.distance();
-            self.plan.leads.take(
-                index,
-                self.plan.in_force.settings.pre_output.value_to_go,
-                distance,
-            );
+            self.leads.take(index, distance);
             any = true;
-            let mut at = self.now();
-            if !matches!(ahead.lead, Lead::Time(_)) {
+            let mut at = self.now(family);
+            if !matches!(ahead.lead, Ahead::Time(_)) {
                 // What could not go out at its place, for that was not known or another came before, does so where the path is.
-                let in_cycle = |place: &f64| (self.motion.distance_before - SAME..=distance).contains(place);
-                let places = [ahead.place(), self.plan.leads.floor];
+                let in_cycle =
+                    |place: &f64| (self.motion.distance_before - SAME_MM..=distance).contains(place);
+                let places = [ahead.place(), self.leads.floor];
                 let place = places.into_iter().find(in_cycle).unwrap_or(distance);
-                self.plan.leads.output_at(ahead.id, place);
+                self.leads.output_at(ahead.id, place);
                 at = Moment {
-                    position: self.plan.track.position_at(place, self.motion.reached + 1),
+                    position: self.places.position_at(place, self.motion.reached + 1),
                     ..at
                 };
             }
-            let to_go = self.to_go(&ahead, drive);
-            let planned_s = self.planned_s(&ahead, drive);
-            self.output(ahead.id, at, None);
-            self.record.output_beside(None, to_go);
-            self.watch(&ahead, at.t, planned_s);
+            let to_go = self.to_go(&ahead, drive, family);
+            let planned_s = self.planned_s(&ahead, drive, family);
+            family.output(ahead.id, at, Way::Ahead(to_go));
+            self.watch(&ahead, at.t, planned_s, family);
         }
         any
     }
 
     /// The next function that is due.
-    fn next_ahead(&self, drive: &Drive) -> Option<(usize, Ahead)> {
+    fn next_ahead<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        drive: &Drive,
+        family: &F,
+    ) -> Option<(usize, Pending<T>)> {
         let distance = self.distance();
-        let passed = |point: f64, ids: &[OrderId]| {
-            distance > point - SAME && ids.iter().all(|id| self.plan.orders.is_done(*id))
+        let passed = |point: f64, tickets: &[T]| {
+            distance > point - SAME_MM && tickets.iter().all(|ticket| family.is_done(*ticket))
         };
-        let one_by_one = self.plan.in_force.settings.pre_output.value_to_go;
-        let mut candidates = self.plan.leads.next(one_by_one, passed);
-        let due = candidates.find(|(_, ahead)| self.is_due(ahead, distance, drive));
+        let mut candidates = self.leads.next(passed);
+        let due = candidates.find(|(_, ahead)| self.is_due(ahead, distance, drive, family));
         due.map(|(index, ahead)| (index, *ahead))
     }
 
     /// The function for which the next one that is due cannot be output.
-    pub(super) fn blocked_lead(&self) -> Option<OrderId> {
-        if self.plan.leads.queue.is_empty()
-            || !self.plan.ranges.any_blocked(self.plc.fetched_before(self.cycle))
-        {
+    pub(super) fn blocked_lead<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        drive: &Drive,
+        family: &F,
+    ) -> Option<T> {
+        if self.leads.is_empty() || !family.any_blocked() {
             return None;
         }
-        let (_, ahead) = self.next_ahead(&self.drive_now())?;
-        self.range_of(ahead.id).and_then(|range| self.blocker(range))
+        let (_, ahead) = self.next_ahead(drive, family)?;
+        family.blocker(ahead.id)
     }
 
-    fn is_due(&self, ahead: &Ahead, distance: f64, drive: &Drive) -> bool {
-        if distance + SAME < ahead.place() {
+    fn is_due<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        ahead: &Pending<T>,
+        distance: f64,
+        drive: &Drive,
+        family: &F,
+    ) -> bool {
+        if distance + SAME_MM < ahead.place() {
             return false;
         }
-        let Lead::Time(lead_s) = ahead.lead else {
+        let Ahead::Time(lead_s) = ahead.lead else {
             return true;
         };
-        if distance + SAME >= ahead.point {
+        if distance + SAME_MM >= ahead.point {
             return true;
         }
         let fastest = self.fastest(ahead.point, drive);
         ahead.point - distance <= fastest * lead_s
             && self
-                .time_to(ahead.point, lead_s, drive)
+                .time_to(ahead.point, lead_s, drive, family)
                 .is_some_and(|time| time <= lead_s + ROUNDING_S)
     }
 
@@ -102,7 +104,7 @@ impl Channel<'_> {
     fn fastest(&self, point: f64, drive: &Drive) -> f64 {
         let mut fastest = 0.0f64;
         let mut number = self.motion.reached;
-        while let Some(leg) = self.plan.track.leg(number).filter(|leg| leg.from < point) {
+        while let Some(leg) = self.places.leg(number).filter(|leg| leg.from < point) {
             if leg.driving.rapid {
                 return f64::INFINITY;
             }
@@ -116,17 +118,23 @@ impl Channel<'_> {
     /// How long the path takes to a place of it, s: as it is planned, with the standstills that are known now. So it stops at
     /// the place of a function that it waits for, whose gate is closed [004:87], and passes that of any other.
     /// `None` when that is longer than asked for.
-    fn time_to(&self, point: f64, most_s: f64, drive: &Drive) -> Option<f64> {
-        let last = self.plan.track.last();
+    fn time_to<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        point: f64,
+        most_s: f64,
+        drive: &Drive,
+        family: &F,
+    ) -> Option<f64> {
+        let last = self.places.last();
         let mut target = self.motion.reached + u64::from(self.motion.path.rest_mm() <= 0.0);
-        while target < last && self.plan.track.distance(target) < point - SAME {
+        while target < last && self.places.distance(target) < point - SAME_MM {
             target += 1;
         }
-        if self.plan.track.distance(target) < point - SAME {
+        if self.places.distance(target) < point - SAME_MM {
             return None;
         }
-        let mut stops = (self.gates.open_to.max(self.motion.reached + 1)..=last)
-            .filter(|place| self.is_closed(*place, 0));
+        let mut stops = (self.open_to.max(self.motion.reached + 1)..=last)
+            .filter(|place| self.is_closed(*place, 0, family));
         let mut path = self.motion.path.clone();
         let mut drive = Drive {
             hold: false,
@@ -135,7 +143,7 @@ impl Channel<'_> {
         };
         path.go_on();
         let most = (most_s / self.cycle_s).ceil() as u64 + 1;
-        let mut cycle = self.dwells_now();
+        let mut cycle = self.dwells_now(family.cycle());
         while cycle < most {
             cycle += 1;
             let state = path.cycle(&drive).state;
@@ -159,7 +167,7 @@ impl Channel<'_> {
 
     /// Cycles that the path dwells at a place to which it came so long before the end of a cycle, s, from one of its actions on.
     fn dwells(&self, place: u64, from: usize, left_s: f64) -> u64 {
-        let actions = self.plan.track.actions(place).get(from..).unwrap_or_default();
+        let actions = self.places.actions(place).get(from..).unwrap_or_default();
         let dwell = actions.iter().filter_map(|action| match action {
             Action::Dwell(seconds) => Some(cycle_at((seconds - left_s).max(0.0), self.cycle_s)),
             _ => None,
@@ -168,15 +176,11 @@ impl Channel<'_> {
     }
 
     /// Cycles that it dwells where it is.
-    fn dwells_now(&self) -> u64 {
+    fn dwells_now(&self, now: u64) -> u64 {
         let place = self.motion.reached;
-        let index = if self.gates.cursor.0 == place {
-            self.gates.cursor.1
-        } else {
-            0
-        };
-        match self.gates.dwell {
-            Some(end) => end.saturating_sub(self.cycle) + self.dwells(place, index + 1, 0.0),
+        let index = if self.cursor.0 == place { self.cursor.1 } else { 0 };
+        match self.dwell {
+            Some(end) => end.saturating_sub(now) + self.dwells(place, index + 1, 0.0),
             None => {
                 let left_s = self.passed(place).map_or(0.0, |passed| passed.0);
                 self.dwells(place, index, left_s)
@@ -185,30 +189,36 @@ impl Channel<'_> {
     }
 
     /// How long the path takes to the place of a function that is output a time ahead of it now, s, up to that time.
-    fn planned_s(&self, ahead: &Ahead, drive: &Drive) -> f64 {
+    fn planned_s<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        ahead: &Pending<T>,
+        drive: &Drive,
+        family: &F,
+    ) -> f64 {
         match ahead.lead {
-            Lead::Time(lead_s) if self.distance() + SAME < ahead.point => {
-                self.time_to(ahead.point, lead_s, drive).unwrap_or(lead_s)
+            Ahead::Time(lead_s) if self.distance() + SAME_MM < ahead.point => {
+                self.time_to(ahead.point, lead_s, drive, family).unwrap_or(lead_s)
             }
             _ => 0.0,
         }
     }
 
-    /// What is left to the place where a function is synchronised that is output now.
-    fn to_go(&self, ahead: &Ahead, drive: &Drive) -> Option<ToGo> {
-        let order = self.plan.orders.get(ahead.id)?;
-        if !self.plan.in_force.settings.pre_output.value_to_go || !order.waits {
+    /// What is left to the place where a function is synchronised that is output now: the distance, mm, and the time, s.
+    fn to_go<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        ahead: &Pending<T>,
+        drive: &Drive,
+        family: &F,
+    ) -> Option<(f64, f64)> {
+        if !self.leads.one_by_one || !family.is_waited_for(ahead.id) {
             return None;
         }
-        let distance = if matches!(ahead.lead, Lead::Time(_)) {
+        let distance = if matches!(ahead.lead, Ahead::Time(_)) {
             self.distance()
         } else {
             ahead.place()
         };
-        let time = self.time_to(ahead.point, LONGEST_S, drive).unwrap_or(0.0);
-        Some(ToGo {
-            path: ((ahead.point - distance) * PER_MM).round() as i64,
-            time: (time * PER_S).round() as i64,
-        })
+        let time = self.time_to(ahead.point, LONGEST_S, drive, family).unwrap_or(0.0);
+        Some((ahead.point - distance, time))
     }
 }

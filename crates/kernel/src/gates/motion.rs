@@ -1,23 +1,22 @@
-//! What moves: the path along its track, and axes on their own.
+//! What moves along the path.
 
-use bahn_motion::{Aim, Interpolator, Limits, PointToPoint, Prepared};
+use bahn_motion::{Interpolator, Limits, Prepared};
 use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, PathElement, Position, Step};
 
-use super::plan::Plan;
-use super::track::Track;
-
-/// Elements that the interpolator looks ahead.
-const LOOK_AHEAD: usize = 512;
+use super::places::Places;
+use crate::track::LOOK_AHEAD;
 
 /// Nearer to a place the path is there, mm.
-pub(super) const ROUNDING_MM: f64 = 1e-9;
+pub const ROUNDING_MM: f64 = 1e-9;
 /// Slower than this it stands, mm/s: it brakes over less than the distance above.
 const STANDS_MM_S: f64 = 1e-3;
 
-/// The path and the axes that move.
-pub(super) struct Motion<'a> {
-    limits: &'a Limits,
-    pub(super) path: Interpolator<()>,
+/// The path in motion.
+#[derive(Debug)]
+pub struct Motion {
+    limits: Limits,
+    /// It, sampled in each cycle.
+    pub path: Interpolator<()>,
     /// Number of the element that the interpolator is given next.
     fed: u64,
     /// So much of it is executed already, mm.
@@ -25,24 +24,20 @@ pub(super) struct Motion<'a> {
     /// Greatest path acceleration that it was given last, mm/s².
     acceleration: f64,
     /// The place that the path has come to or stands at.
-    pub(super) reached: u64,
+    pub reached: u64,
     /// Distance along the path before the last cycle, mm.
-    pub(super) distance_before: f64,
+    pub distance_before: f64,
     /// The path stood still in the last cycle.
-    pub(super) still: bool,
+    pub still: bool,
     /// The standstill was reported.
-    pub(super) stands: bool,
+    pub stands: bool,
     /// It stands because it is held.
-    pub(super) held: bool,
-    /// Where axes stand that moved on their own.
-    pub(super) ended_at: Position,
-    /// Axes that move on their own.
-    pub(super) independent: Vec<(bahn_din::Independent, PointToPoint)>,
+    pub held: bool,
 }
 
 /// Gives the interpolator the elements of the track.
-struct Feed<'a> {
-    track: &'a Track,
+struct Feed<'a, T, O> {
+    track: &'a Places<T, O>,
     fed: &'a mut u64,
     /// So much of the next element is executed already, mm.
     part: &'a mut Option<f64>,
@@ -52,7 +47,7 @@ struct Feed<'a> {
     closed: bool,
 }
 
-impl ElementSource for Feed<'_> {
+impl<T: Copy, O> ElementSource for Feed<'_, T, O> {
     type Error = ();
 
     fn next(&mut self) -> Step<()> {
@@ -79,13 +74,13 @@ impl ElementSource for Feed<'_> {
     fn resume(&mut self, _: LiveData) {}
 }
 
-impl<'a> Motion<'a> {
+impl Motion {
     /// The path stands somewhere.
-    pub(super) fn new(limits: &'a Limits, start: Position) -> Motion<'a> {
+    pub fn new(limits: &Limits, start: Position) -> Motion {
         let mut path = Interpolator::new(limits, LOOK_AHEAD);
         path.set_position(start);
         Motion {
-            limits,
+            limits: limits.clone(),
             path,
             fed: 1,
             part: None,
@@ -95,34 +90,23 @@ impl<'a> Motion<'a> {
             still: true,
             stands: true,
             held: false,
-            ended_at: Position::UNKNOWN,
-            independent: Vec::new(),
         }
     }
 
-    /// The path begins anew, somewhere, with an element.
-    pub(super) fn begin(&mut self, start: Position, first: u64) {
-        self.begin_on(start, first, None);
-        self.ended_at = Position::UNKNOWN;
-        self.independent.clear();
-    }
-
     /// The path goes on from somewhere, with an element of which so much is executed already, mm.
-    pub(super) fn begin_on(&mut self, position: Position, number: u64, part: Option<f64>) {
+    pub fn begin_on(&mut self, position: Position, number: u64, part: Option<f64>) {
         self.turn(position);
         (self.fed, self.reached, self.part) = (number, number, part);
     }
 
     /// The path turns where it is.
-    pub(super) fn turn(&mut self, position: Position) {
+    pub fn turn(&mut self, position: Position) {
         self.path.clear();
         self.path.set_position(position);
     }
 
-    /// Gives the interpolator what is known of the path.
-    pub(super) fn feed(&mut self, plan: &Plan<'_>) {
-        let track = &plan.track;
-        let closed = plan.decoding.holds || plan.decoding.ended;
+    /// Gives the interpolator what is known of the path; nothing comes after that before the path is there when it is `closed`.
+    pub fn feed<T: Copy, O>(&mut self, track: &Places<T, O>, closed: bool) {
         loop {
             let mut feed = Feed {
                 track,
@@ -139,7 +123,7 @@ impl<'a> Motion<'a> {
             match next {
                 Some(limit) if prepared == Prepared::Starved => {
                     self.acceleration = limit.acceleration_mm_s2;
-                    self.path.set_limits(&within(self.limits, self.acceleration));
+                    self.path.set_limits(&within(&self.limits, self.acceleration));
                 }
                 _ => return,
             }
@@ -147,47 +131,13 @@ impl<'a> Motion<'a> {
     }
 
     /// Path speed, mm/s.
-    pub(super) fn speed(&self) -> f64 {
+    pub fn speed(&self) -> f64 {
         let speed = self.path.speed_mm_s();
         if speed < STANDS_MM_S && self.path.rest_mm() < ROUNDING_MM {
             0.0
         } else {
             speed
         }
-    }
-
-    /// An axis begins to move on its own, from where it is.
-    pub(super) fn begin_independent(&mut self, independent: bahn_din::Independent, at: f64) {
-        let at = if at.is_nan() { 0.0 } else { at };
-        self.independent
-            .retain(|(other, _)| other.axis != independent.axis);
-        self.independent.push((independent, PointToPoint::new(at)));
-    }
-
-    /// Axes that move on their own do so for a cycle, s. Whether there are any.
-    pub(super) fn cycle_independent(&mut self, cycle_s: f64) -> bool {
-        let any = !self.independent.is_empty();
-        let limits = self.limits;
-        let mut ended = Vec::new();
-        self.independent.retain_mut(|(order, axis)| {
-            let greatest = limits.max_feed_mm_min[order.axis];
-            let feed = if order.rapid {
-                greatest
-            } else {
-                order.feed_mm_min.min(greatest)
-            };
-            let acceleration = limits.acceleration_m_s2[order.axis];
-            axis.cycle(cycle_s, Aim::Position(order.end), feed, acceleration);
-            let is_at = axis.is_at(order.end);
-            if is_at {
-                ended.push((order.axis, order.end));
-            }
-            !is_at
-        });
-        for (axis, end) in ended {
-            self.ended_at[axis] = end;
-        }
-        any
     }
 }
 

@@ -1,0 +1,252 @@
+//! Backward motion along what was executed, and forward again over it.
+//!
+//! In backward motion functions are output as MOS, those that wait on the way back as MVS_SVS; forward again they have their own
+//! types [004:54] (public: backward motion). What is output ahead is output at the place it belongs to in backward motion, and
+//! forward again ahead of it; where the path turns after that, at once, as what does not come early enough (inferred).
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use bahn_motion::{Drive, Interpolator};
+
+use super::Gates;
+use super::back::{Back, FeedBack};
+use super::functions::{Functions, Moment, Way};
+use super::places::Action;
+
+impl<T: Copy + Ord, O> Gates<T, O> {
+    /// The element on which the path is, and how much of it is executed, mm.
+    fn whereabouts(&self) -> (u64, f64) {
+        let number = self.motion.reached;
+        let leg = self.places.leg(number);
+        let along = leg.map_or(0.0, |leg| self.distance() - leg.from);
+        match number.checked_sub(1).and_then(|before| self.places.leg(before)) {
+            Some(before) if along <= 0.0 => (number - 1, before.length),
+            _ => (number, along),
+        }
+    }
+
+    pub(super) fn turn_back(&mut self) {
+        let (from, along) = self.whereabouts();
+        let position = self.motion.path.position();
+        self.single.all_block_ends();
+        self.leads.promises.clear();
+        self.motion.turn(position);
+        self.back = Some(Back {
+            from,
+            along,
+            fed: 1,
+            reached: from + 1,
+            seen: from + 1,
+            queue: VecDeque::new(),
+            gate: Vec::new(),
+            at_limit: false,
+        });
+    }
+
+    /// The distance along the path, mm, while it is run back.
+    pub(super) fn backward_distance(&self, path: &Interpolator<()>) -> Option<f64> {
+        let back = self.back.as_ref()?;
+        let number = path.element().and_then(|element| back.element(element.sequence));
+        let leg = number.and_then(|number| self.places.leg(number));
+        Some(match leg {
+            Some(leg) => leg.from + path.rest_mm(),
+            None => self.places.leg(back.from).map_or_else(
+                || self.places.distance(self.places.first()),
+                |leg| leg.from + back.along,
+            ),
+        })
+    }
+
+    pub(super) fn cycle_back<F: Functions<Ticket = T, Own = O>>(
+        &mut self,
+        mut drive: Drive,
+        family: &mut F,
+    ) -> bool {
+        let Some(back) = self.back.as_mut() else {
+            return false;
+        };
+        let mut feed = FeedBack {
+            track: &self.places,
+            back,
+        };
+        self.motion.path.prepare(&mut feed, usize::MAX);
+        let (from, seen, reached) = (back.from, back.seen, back.reached);
+        let waits = back.waits();
+        // The next place with a function that is waited for in backward motion.
+        let first = self.places.first();
+        let known = (from + 2).saturating_sub(back.fed).max(first);
+        let stop = (known..seen)
+            .rev()
+            .find(|place| self.waits_backward(*place, family));
+        drive.stop_before = stop.map(|place| from + 2 - place);
+        drive.hold |= waits;
+        if stop != Some(reached) && !waits {
+            self.motion.path.go_on();
+        }
+        let number = if reached > from {
+            from
+        } else {
+            reached.saturating_sub(1)
+        };
+        let block = self.places.leg(number).map(|leg| leg.block.clone());
+        self.drive_once(&drive, block, family)
+    }
+
+    /// Whether the path stops at a place in backward motion.
+    fn waits_backward<F: Functions<Ticket = T, Own = O>>(&self, place: u64, family: &F) -> bool {
+        let distance = self.places.distance(place);
+        let waits = |ticket| family.waits_backward(ticket);
+        self.ends_block(place) && self.single.stops_at(distance, true)
+            || self.outputs(place).any(waits)
+            || self.leads.of_place(distance).any(waits)
+    }
+
+    /// The functions that have their output place there.
+    fn outputs(&self, place: u64) -> impl Iterator<Item = T> {
+        let actions = self.places.actions(place).iter();
+        actions.filter_map(|action| match action {
+            Action::Output(ticket) => Some(*ticket),
+            _ => None,
+        })
+    }
+
+    /// Whether a programmed block ends at a place.
+    fn ends_block(&self, place: u64) -> bool {
+        let actions = self.places.actions(place);
+        actions.iter().any(|action| matches!(action, Action::BlockEnd))
+    }
+
+    /// The functions of a place that are output in backward motion, in program order.
+    fn of_place(&self, place: u64) -> Vec<T> {
+        let mut tickets: Vec<T> = self.outputs(place).collect();
+        for ticket in self.leads.of_place(self.places.distance(place)) {
+            let after = tickets.iter().position(|other| *other > ticket);
+            tickets.insert(after.unwrap_or(tickets.len()), ticket);
+        }
+        tickets
+    }
+
+    /// The path has come to the end of an element.
+    pub(super) fn pass(&mut self, sequence: u64) {
+        match self.back.as_mut() {
+            Some(back) => {
+                if let Some(place) = back.element(sequence) {
+                    back.reached = place;
+                }
+            }
+            None => self.motion.reached = self.motion.reached.max(sequence + 1),
+        }
+    }
+
+    /// Outputs functions in backward motion. Whether anything was done.
+    pub fn act_backward<F: Functions<Ticket = T, Own = O>>(&mut self, family: &mut F) -> bool {
+        let Some(mut back) = self.back.take() else {
+            return false;
+        };
+        let mut any = false;
+        loop {
+            while let Some(ticket) = back.queue.front().copied() {
+                if family.blocker(ticket).is_some() {
+                    break;
+                }
+                back.queue.pop_front();
+                any = true;
+                let at = Moment {
+                    position: self.places.position(back.seen),
+                    ..self.now(family)
+                };
+                family.output(ticket, at, Way::Back);
+                back.gate.push(ticket);
+            }
+            back.gate.retain(|ticket| !family.is_done(*ticket));
+            if back.at_limit && back.queue.is_empty() && back.gate.is_empty() {
+                let moves = !self.motion.still || back.reached < back.seen;
+                let distance = self.places.distance(back.seen);
+                back.at_limit = self.single.stands_at_end(distance, true, moves);
+                any |= !back.at_limit;
+            }
+            if back.waits() || back.seen <= back.reached {
+                break;
+            }
+            back.seen -= 1;
+            any = true;
+            // The last one of the place first.
+            let tickets = self.of_place(back.seen).into_iter().rev();
+            back.queue = tickets.filter_map(|ticket| family.again(ticket, true)).collect();
+            back.at_limit = self.ends_block(back.seen);
+        }
+        self.back = Some(back);
+        any
+    }
+
+    /// The functions for which the path cannot go on back.
+    pub(super) fn missing_backward<F: Functions<Ticket = T, Own = O>>(&self, family: &F) -> Vec<T> {
+        let Some(back) = &self.back else {
+            return Vec::new();
+        };
+        let blocked = back.queue.front().and_then(|ticket| family.blocker(*ticket));
+        back.gate.iter().copied().chain(blocked).collect()
+    }
+
+    /// Goes forward again from where the path stands: what it comes over is output anew.
+    pub(super) fn turn_forward<F: Functions<Ticket = T, Own = O>>(&mut self, family: &mut F) {
+        let distance = self.distance();
+        let Some(back) = self.back.take() else {
+            return;
+        };
+        let number = back.reached.saturating_sub(1).max(self.places.first());
+        let (mut number, mut along) = match self.places.leg(number) {
+            Some(leg) => (number, (distance - leg.from).max(0.0)),
+            // There is nothing to go back: it is still at the place where it turned.
+            None => (number, 0.0),
+        };
+        if self.places.leg(number).is_some_and(|leg| along >= leg.length) {
+            (number, along) = (number + 1, 0.0);
+        }
+        let position = self.motion.path.position();
+        self.single.all_block_ends();
+        let first = if along > 0.0 { number + 1 } else { number };
+        let turned = self
+            .places
+            .leg(back.from)
+            .map_or(distance, |leg| leg.from + back.along);
+        let ahead = self.leads.repeat(turned, distance);
+        self.renew(first, &ahead, family);
+        let done = if along > 0.0 {
+            self.places.actions(number).len()
+        } else {
+            0
+        };
+        let part = (along > 0.0).then_some(along);
+        self.motion.begin_on(position, number, part);
+        (self.cursor, self.open_to, self.dwell) = ((number, done), number, None);
+    }
+
+    /// The functions from a place up to where actions are done next, and these that are output ahead, are new ones.
+    fn renew<F: Functions<Ticket = T, Own = O>>(&mut self, first: u64, ahead: &[T], family: &mut F) {
+        let mut old: BTreeSet<T> = ahead.iter().copied().collect();
+        for place in first..=self.cursor.0 {
+            for action in self.places.actions(place) {
+                if let Action::Output(ticket) | Action::Command(ticket) = action {
+                    old.insert(*ticket);
+                }
+            }
+        }
+        let renewed: BTreeMap<T, T> = old
+            .into_iter()
+            .filter_map(|ticket| Some((ticket, family.again(ticket, false)?)))
+            .collect();
+        let new = |ticket: &mut T| *ticket = renewed.get(ticket).copied().unwrap_or(*ticket);
+        for place in first..=self.places.last() {
+            for action in self.places.actions_mut(place) {
+                match action {
+                    Action::Output(ticket) | Action::Command(ticket) | Action::Stand(ticket) => new(ticket),
+                    Action::Gate(tickets) => tickets.iter_mut().for_each(new),
+                    Action::Dwell(_) | Action::BlockEnd | Action::Own(_) => {}
+                }
+            }
+        }
+        family.renamed(&new);
+        self.leads.rename(new);
+    }
+}
