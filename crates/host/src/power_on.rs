@@ -75,6 +75,17 @@ impl PowerOn {
         }
     }
 
+    /// The simulated machine of the folder as it stands then.
+    pub fn simulated(&self, machine: &LoadedMachine) -> Machine {
+        let mut plant = machine.plant.clone();
+        let kept = self.mechanics.as_ref();
+        let stands = kept.is_some_and(|place| plant.stand_at(place).is_ok());
+        if !stands {
+            load_magazine(&mut plant, machine, &self.remembered);
+        }
+        plant
+    }
+
     /// A machine that finds what it kept, in the folder of its state.
     ///
     /// # Errors
@@ -191,7 +202,7 @@ impl PowerOn {
 }
 
 /// The tools lie in the magazine where the control remembers them.
-pub(crate) fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Remembered) {
+fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Remembered) {
     let moved = |tool: u32| remembered.pockets.iter().find(|moved| moved.tool == tool);
     let tools = machine.tools.iter().flatten().filter_map(|(number, tool)| {
         let pocket = moved(*number).map_or(tool.pocket, |moved| moved.pocket);

@@ -53,6 +53,7 @@ mod site;
 mod station;
 mod status;
 mod steps;
+mod to_enter;
 mod transfer;
 
 pub use bahn_dialogue::{Key, KeyGroup};
@@ -73,6 +74,7 @@ pub use replay::{Ending, Replay, check_session};
 pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
-pub use station::{Station, load};
+pub use station::Station;
+pub use to_enter::load;
 pub use steps::{Stepped, StepsEnd};
 pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};

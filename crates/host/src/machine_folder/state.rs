@@ -11,7 +11,7 @@ use bahn_machine::Mechanics;
 
 use super::mechanics::{Found as Place, Moment, Part, bytes, digits, sum_of_text};
 use super::remembered;
-use crate::action::Operable;
+use crate::operable::Operable;
 use crate::files::{self, NewFile};
 use crate::retained::Retained;
 use crate::{HostError, kept};
