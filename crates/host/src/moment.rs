@@ -9,6 +9,7 @@ use crate::operator::Operator;
 use crate::orders::Waiting;
 
 /// Control, plant, operator and what is ordered: all that decides how a machine goes on, and what is kept to go back.
+#[derive(Clone)]
 pub(crate) struct Moment<P> {
     pub control: Control,
     pub plant: P,

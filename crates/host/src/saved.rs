@@ -13,6 +13,7 @@ use crate::notice::Notice;
 use crate::operable::Operable;
 
 /// Control, plant, operator and what is ordered, as they were.
+#[derive(Clone)]
 pub struct Saved<P> {
     moment: Moment<P>,
     /// The first entry of the journal after it.

@@ -59,7 +59,7 @@ impl Mill {
         let job = (!blocks.is_empty()).then(|| Job::whole("1.H"));
         let operator = Operator::new(Attendance::Full, self.machine.folder.operator.clone(), job);
         let programs = Texts::new(&[("1.H", blocks)]);
-        (Host::new(&self.machine, power_on, programs, operator), warnings)
+        (Host::new(&self.machine, power_on, programs, operator).unwrap(), warnings)
     }
 }
 

@@ -23,7 +23,7 @@ fn switched_on(machine: &LoadedMachine, power_on: PowerOn, attendance: Attendanc
     let operator = Operator::new(attendance, machine.folder.operator.clone(), job(0));
     let operator = operator.with_channel(machine.channels[0].folder.operator.clone(), job(1));
     let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
-    Host::new(machine, power_on, programs, operator)
+    Host::new(machine, power_on, programs, operator).unwrap()
 }
 
 fn channel(host: &Host, number: usize) -> ChannelView<'_> {

@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use bahn_control::{Command, Dnc, DripFeedState, Message, RunState};
-use bahn_host::{Action, Answer, Host, HostError, Next, Notice, Reader, Source, Stamped};
+use bahn_host::{Action, Answer, Host, HostError, Next, Notice, Operable, Reader, Source, Stamped};
 use bahn_link::dnc::{BlockLine, Drip, DripState, Executing};
+use bahn_machine::Machine;
 
 /// One look at the line.
 const LOOK: Duration = Duration::from_millis(20);
@@ -40,9 +41,9 @@ pub struct Wishes {
 }
 
 /// A host and its line.
-pub struct Session<'a> {
+pub struct Session<'a, P = Machine> {
     /// The machine.
-    pub host: Host,
+    pub host: Host<P>,
     line: &'a mut dyn BlockLine,
     wishes: Wishes,
     notices: Reader<Stamped>,
@@ -58,9 +59,9 @@ pub struct Session<'a> {
     ran: bool,
 }
 
-impl<'a> Session<'a> {
+impl<'a, P: Operable> Session<'a, P> {
     /// A machine that is on, with the line that its program comes over.
-    pub fn new(host: Host, line: &'a mut dyn BlockLine, wishes: Wishes) -> Session<'a> {
+    pub fn new(host: Host<P>, line: &'a mut dyn BlockLine, wishes: Wishes) -> Session<'a, P> {
         Session {
             notices: host.notices(),
             host,

@@ -36,7 +36,7 @@ pub(super) fn command(options: &DncRunOptions) -> Result<Outcome, UsageError> {
     };
     let mut line = ProtocolLine::new(channel, settings);
     let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
-    let host = Host::new(&machine, power_on, programs, operator(options, &machine));
+    let host = Host::new(&machine, power_on, programs, operator(options, &machine))?;
     let interrupt = Interrupt::on_ctrl_c();
     let wishes = Wishes {
         name: options.name.clone(),
