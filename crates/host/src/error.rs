@@ -15,6 +15,9 @@ pub enum HostError {
     /// Of so many channels beside the first one the machine knows so many at power-on.
     #[error("the machine has {0} channels beside the first one, and {1} of them are switched on")]
     ChannelsMissing(usize, usize),
+    /// The folder describes no simulated machine, and no other plant was given.
+    #[error("{0}: the folder describes no simulated machine (`plant` in machine.toml)")]
+    NotSimulated(String),
     /// Too many orders wait.
     #[error("too many orders wait")]
     Busy,

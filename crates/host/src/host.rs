@@ -83,14 +83,14 @@ impl Host {
     /// Switches on the simulated machine of a folder.
     ///
     /// # Errors
-    /// When the channels cannot be put together.
+    /// When the folder describes no simulated machine, or the channels cannot be put together.
     pub fn new(
         machine: &LoadedMachine,
         power_on: PowerOn,
         programs: Arc<dyn Programs>,
         operator: Operator,
     ) -> Result<Host, HostError> {
-        let plant = power_on.simulated(machine);
+        let plant = power_on.simulated(machine)?;
         Host::with_plant(machine, plant, power_on, programs, operator)
     }
 }
@@ -150,13 +150,15 @@ impl<P: Operable> Host<P> {
         operator: Operator,
     ) -> Result<(), HostError> {
         let digitized = Digitized::by(&programs, &power_on);
-        let described = power_on.simulated(machine);
+        let described = power_on.simulated(machine).ok();
         let state = power_on.state.take();
         let mut control = control_of(machine, power_on, programs)?;
         control.keep_state(state.is_some());
         control.follow_on(&self.now.control);
         let now = &mut self.now;
-        now.plant.renew(described);
+        if let Some(described) = described {
+            now.plant.renew(described);
+        }
         now.digitizing = vec![Digitizing::default(); control.channels()];
         (now.control, now.operator) = (control, operator);
         (now.before, now.waiting, now.restart) = (Before::default(), Waiting::default(), None);
@@ -230,7 +232,9 @@ impl<P: Operable> Host<P> {
         self.background
             .prepare(&mut self.now.control, beside, &self.break_off);
         self.now.control.show_plc_window(self.looks.window);
-        self.now.control.cycle_watched(&mut self.now.plant, tracer, sampler);
+        self.now
+            .control
+            .cycle_watched(&mut self.now.plant, tracer, sampler);
         self.now.plant.tool_is_called(self.now.control.tool());
         // A message names the program of its block.
         if self.looks.programs || self.now.control.has_news() {
@@ -365,11 +369,18 @@ impl<P: Operable> Host<P> {
     fn keep_digitized(&mut self) -> Result<(), HostError> {
         let mut kept = Ok(());
         for number in 0..self.now.digitizing.len() {
-            let news = self.now.control.channel(number).map(|channel| channel.digitized());
+            let news = self
+                .now
+                .control
+                .channel(number)
+                .map(|channel| channel.digitized());
             let (Some(digitizing), Some(news)) = (self.now.digitizing.get_mut(number), news) else {
                 continue;
             };
-            let complete = match digitizing.follow(news, self.digitized.prints).filter(|_| !self.repeats) {
+            let complete = match digitizing
+                .follow(news, self.digitized.prints)
+                .filter(|_| !self.repeats)
+            {
                 Some(Written::Complete(complete)) => complete,
                 Some(Written::Printed(blocks)) => {
                     for block in blocks.lines() {

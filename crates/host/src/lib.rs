@@ -109,7 +109,7 @@ pub use fault::{FileFault, Marked, Severity};
 pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};
-pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode};
+pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode, tools_fit};
 pub use machine_folder::{read_remembered, write_remembered};
 pub use threads::{ThreadCut, Threads};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.

@@ -36,7 +36,10 @@ pub struct Stage<'a> {
 
 impl<'a> Stage<'a> {
     /// A control with its machine: cycles are its contour cycles.
-    pub fn machine<P: Operable + Send + Sync + 'static>(plant: &'a P, parameters: &'a ParameterList) -> Stage<'a> {
+    pub fn machine<P: Operable + Send + Sync + 'static>(
+        plant: &'a P,
+        parameters: &'a ParameterList,
+    ) -> Stage<'a> {
         Stage {
             plant: Some(plant),
             copy: plant.copied().map(AnyPlant::new),

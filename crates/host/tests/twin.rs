@@ -383,7 +383,7 @@ fn a_log_repeats_both_channels() {
         );
     }
     let machine = machine("twin");
-    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
     let script = Script::of("log".as_ref(), log.as_bytes(), &stage).unwrap();
     let mut again = switched_on(&machine, PowerOn::fresh(&machine), Attendance::Absent);
     let mut play = bahn_host::Play::new(script);

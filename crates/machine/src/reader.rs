@@ -130,7 +130,11 @@ impl<'t> Reader<'t> {
             let line = lines.get(at).copied().unwrap_or_default();
             let before: String = line.chars().take(wire.column).collect();
             let key = line.split('=').next().unwrap_or_default().trim();
-            sections.get(at).copied().unwrap_or_default().clone_into(&mut wire.section);
+            sections
+                .get(at)
+                .copied()
+                .unwrap_or_default()
+                .clone_into(&mut wire.section);
             key.trim_matches('"').clone_into(&mut wire.key);
             wire.opens = before.contains("not ") || line.contains(&format!("not {}", wire.operand));
         }

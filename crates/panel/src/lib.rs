@@ -75,6 +75,6 @@ pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::Station;
-pub use to_enter::load;
 pub use steps::{Stepped, StepsEnd};
+pub use to_enter::load;
 pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};

@@ -16,9 +16,7 @@ use std::time::Duration;
 use bahn_control::{Command, Control, Programs};
 use bahn_dialogue::Key;
 use bahn_graphics::{BeingCut, Graphics, Picture};
-use bahn_host::{
-    Action, Answer, AnyPlant, Clock, Host, HostError, LoadedMachine, Operable, PowerOn, Source,
-};
+use bahn_host::{Action, Answer, AnyPlant, Clock, Host, HostError, LoadedMachine, Operable, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
@@ -102,9 +100,9 @@ impl Station {
     /// The same with what the control finds.
     ///
     /// # Errors
-    /// When the channels do not fit.
+    /// When the folder describes no simulated machine, or the channels do not fit.
     pub fn with(machine: LoadedMachine, power_on: PowerOn) -> Result<Station, HostError> {
-        let plant = power_on.simulated(&machine);
+        let plant = power_on.simulated(&machine)?;
         Station::with_plant(machine, plant, power_on)
     }
 
@@ -202,7 +200,9 @@ impl Station {
         match input {
             Input::Key(key) => self.key(*key)?,
             Input::Held(key, down) => {
-                self.supply.warm_start.hold(*key, *down, self.host.control().time_us());
+                self.supply
+                    .warm_start
+                    .hold(*key, *down, self.host.control().time_us());
                 if *down {
                     self.key(*key)?;
                 }

@@ -7,7 +7,9 @@
 use std::collections::VecDeque;
 
 use bahn_control::{Command, RunState};
-use bahn_host::{Action, AnyPlant, Course, Event, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline};
+use bahn_host::{
+    Action, AnyPlant, Course, Event, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline,
+};
 use bahn_screen::{BranchLine, MarkKind, TimeLine, TimeMark};
 
 use crate::lesson::LessonRun;

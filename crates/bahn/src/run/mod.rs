@@ -133,7 +133,8 @@ fn table(options: &RunMachineOptions, machine: &LoadedMachine, host: &mut Host) 
     if solid.is_some() && host.plant().probe_radius_mm().is_none() {
         return Err(UsageError::new(format!(
             "a solid lies on the table, and {} has no touch probe: [probe] in {}",
-            machine.folder.name, machine.folder.plant
+            machine.folder.name,
+            machine.folder.plant.as_deref().unwrap_or_default()
         )));
     }
     Ok(Table::with(solid, &machine.datum(), host))
@@ -161,7 +162,7 @@ fn load_script(
             path.display()
         ));
     }
-    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let stage = Stage::machine(machine.simulated()?, &machine.parameters);
     Ok(Script::of(path, &bytes, &stage))
 }
 

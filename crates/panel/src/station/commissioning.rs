@@ -120,7 +120,9 @@ impl Station {
         let commissioning = Commissioning::of(&machine, &mut power_on);
         let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
-        let replaced = self.host.replace(&machine, power_on, shared, operator_of(&machine));
+        let replaced = self
+            .host
+            .replace(&machine, power_on, shared, operator_of(&machine));
         replaced.map_err(|error| error.to_string())?;
         self.commissioning = commissioning;
         self.programs = programs;

@@ -44,7 +44,10 @@ impl Station {
         self.has_its_list()?;
         // A number that is none is the beginning.
         let time_us = (time_s.max(0.0) * 1e6).round() as u64;
-        let gone = self.study.past.go_to(&mut self.host, &mut self.study.lesson, time_us, branch);
+        let gone = self
+            .study
+            .past
+            .go_to(&mut self.host, &mut self.study.lesson, time_us, branch);
         let remark = gone.map_err(Refusal)?;
         self.passing.steps.break_off(StepsEnd::Elsewhere);
         self.passing.paused = true;
@@ -87,7 +90,9 @@ impl Station {
 
     /// What the machine waits for, in the language of the dialogue, what is most urgent first.
     pub fn why(&self) -> Vec<Reason> {
-        self.study.waits.reasons(&self.host, &self.machine, self.language())
+        self.study
+            .waits
+            .reasons(&self.host, &self.machine, self.language())
     }
 
     /// Everything that a teacher can break, and how.
@@ -108,7 +113,9 @@ impl Station {
     /// Begins a lesson, as fast as the machine gets ready for it, or ends the one that goes on. One that cannot be read
     /// changes nothing.
     pub(super) fn begin_lesson(&mut self, name: Option<&str>) -> Result<(), Refusal> {
-        let lesson = name.map(|name| lesson::load(&self.machine, self.host.plant(), name)).transpose();
+        let lesson = name
+            .map(|name| lesson::load(&self.machine, self.host.plant(), name))
+            .transpose();
         let lesson = lesson.map_err(Refusal)?;
         if lesson.is_some() {
             self.has_its_list()?;

@@ -6,9 +6,9 @@ use bahn_machine::OperatorKeys;
 use bahn_parameters::MessageId;
 
 use super::Driven;
-use crate::drawer::can_be_done;
 use super::file::{Begin, Lesson};
 use super::player::Player;
+use crate::drawer::can_be_done;
 
 /// The control is off so long.
 const OFF_S: f64 = 2.0;

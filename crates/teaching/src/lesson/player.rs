@@ -38,7 +38,12 @@ impl Player {
     ///
     /// # Errors
     /// When the machine has not what a line names.
-    pub fn follow(&mut self, script: &Script, begun_us: u64, host: &mut Host<AnyPlant>) -> Result<bool, String> {
+    pub fn follow(
+        &mut self,
+        script: &Script,
+        begun_us: u64,
+        host: &mut Host<AnyPlant>,
+    ) -> Result<bool, String> {
         let now_us = host.control().time_us().saturating_sub(begun_us);
         let mut conditions = 0;
         let mut did = false;
