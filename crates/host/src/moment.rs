@@ -38,14 +38,19 @@ impl<P: Operable> Moment<P> {
 
     /// The same once more; `None` where the plant cannot be copied.
     pub fn copied(&self) -> Option<Moment<P>> {
-        Some(Moment {
-            plant: self.plant.copied()?,
+        self.plant.copied().map(|plant| self.with(plant))
+    }
+
+    /// The same with a copy of its plant.
+    pub fn with(&self, plant: P) -> Moment<P> {
+        Moment {
+            plant,
             control: self.control.clone(),
             operator: self.operator.clone(),
             waiting: self.waiting.clone(),
             before: self.before.clone(),
             restart: self.restart.clone(),
             digitizing: self.digitizing.clone(),
-        })
+        }
     }
 }

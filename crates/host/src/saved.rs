@@ -67,9 +67,10 @@ impl<P: Operable> Host<P> {
 impl<P: Operable> Host<P> {
     /// Everything as it is now; `None` where the plant cannot be copied.
     pub fn save(&mut self) -> Option<Saved<P>> {
+        let plant = self.now.plant.copied()?;
         self.background.settle(&mut self.now.control);
         Some(Saved {
-            moment: self.now.copied()?,
+            moment: self.now.with(plant),
             entry: self.journal.end(),
         })
     }

@@ -5,7 +5,7 @@ mod support;
 
 use std::sync::{Arc, Mutex};
 
-use bahn_control::{ChannelView, RunState, Shown};
+use bahn_control::{AxisId, ChannelError, ChannelView, RunState, Shown};
 use bahn_host::{
     Action, Answer, Attendance, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Observed,
     Operator, PowerOn, Script, Sink, Source, Stage, Timeline,
@@ -24,6 +24,25 @@ fn switched_on(machine: &LoadedMachine, power_on: PowerOn, attendance: Attendanc
     let operator = operator.with_channel(machine.channels[0].folder.operator.clone(), job(1));
     let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
     Host::new(machine, power_on, programs, operator).unwrap()
+}
+
+/// Channels that cannot be put together are no machine, and never another one with fewer of them.
+#[test]
+fn channels_that_do_not_fit_are_an_error() {
+    let on = |machine: &LoadedMachine, power_on| {
+        let operator = Operator::new(Attendance::Absent, machine.folder.operator.clone(), None);
+        let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
+        Host::new(machine, power_on, programs, operator).err()
+    };
+    let mut twin = machine("twin");
+    assert_eq!(on(&twin, PowerOn::fresh(&twin)), None);
+    let mut power_on = PowerOn::fresh(&twin);
+    power_on.channels.clear();
+    assert_eq!(on(&twin, power_on), Some(HostError::ChannelsMissing(1, 0)));
+    // X of the first channel is taken by X of the second.
+    twin.channels[0].axes[0] = Some(AxisId::FIRST);
+    let twice = ChannelError::AxisTwice(AxisId::FIRST);
+    assert_eq!(on(&twin, PowerOn::fresh(&twin)), Some(HostError::Channels(twice)));
 }
 
 fn channel(host: &Host, number: usize) -> ChannelView<'_> {

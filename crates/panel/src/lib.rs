@@ -78,3 +78,8 @@ pub use station::Station;
 pub use steps::{Stepped, StepsEnd};
 pub use to_enter::load;
 pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};
+
+/// The examples of `docs/plant.md`.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/plant.md")]
+struct PlantOfYourOwn;

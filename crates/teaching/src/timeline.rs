@@ -33,7 +33,13 @@ struct Way {
 
 impl Way {
     fn replay(&self, host: &mut Host<AnyPlant>, time_us: u64) -> Result<(), HostError> {
-        let saved = self.moments.nearest(time_us).ok_or(HostError::Forgotten)?;
+        let saved = self
+            .moments
+            .nearest(time_us)
+            .ok_or(match self.moments.is_empty() {
+                true => HostError::StaysWhereItIs,
+                false => HostError::Forgotten,
+            })?;
         host.replay_course(&self.course, saved, time_us)
     }
 }
@@ -149,7 +155,7 @@ impl Past {
         let gone = target
             .map_or(&present, |branch| &branch.way)
             .replay(host, time_us);
-        if let Err(error @ (HostError::Logged | HostError::Forgotten)) = gone {
+        if let Err(error @ (HostError::Logged | HostError::StaysWhereItIs | HostError::Forgotten)) = gone {
             // Nothing has happened.
             let looks = here_us < present.course.end_us();
             self.looks = looks.then(|| (present, host.given_count()));
