@@ -18,6 +18,7 @@ use crate::background::Background;
 use crate::digitizing::{Digitizing, Written};
 use crate::error::HostError;
 use crate::feed::Reader;
+use crate::feeds::Feeds;
 use crate::journal::{Given, Journal};
 use crate::log::Sink;
 use crate::machine_folder::{LoadedChannel, LoadedMachine, State};
@@ -28,7 +29,6 @@ use crate::operator::Operator;
 use crate::orders::{Desk, Waiting, When};
 use crate::pace::{Clock, Lateness, Pacing};
 use crate::power_on::{ChannelPowerOn, PowerOn};
-use crate::told::Told;
 
 /// Control and plant, driven cycle by cycle, observed, and kept over power-off.
 ///
@@ -40,7 +40,7 @@ pub struct Host<P = Machine> {
     pub(crate) journal: Journal,
     pub(crate) background: Background,
     digitized: Digitized,
-    told: Told,
+    feeds: Feeds,
     pacing: Pacing,
     looks: Looks,
     /// What was is repeated: nobody is told, and nothing is stored but in the end.
@@ -116,7 +116,7 @@ impl<P: Operable> Host<P> {
             journal: Journal::default(),
             background: Background::default(),
             digitized,
-            told: Told::default(),
+            feeds: Feeds::default(),
             pacing: Pacing::default(),
             looks: Looks::default(),
             repeats: false,
@@ -247,7 +247,7 @@ impl<P: Operable> Host<P> {
         }
         let kept = self.keep().and(self.keep_digitized());
         let now = &mut self.now;
-        self.told.look(&mut now.before, &mut now.control, self.repeats);
+        self.feeds.look(&mut now.before, &mut now.control, self.repeats);
         if !self.repeats {
             self.pacing.keep(self.now.control.time_us());
         }
@@ -414,7 +414,7 @@ impl<P: Operable> Host<P> {
 
     fn tell_in(&self, channel: usize, notice: Notice) {
         if !self.repeats {
-            self.told.tell(self.now.control.time_us(), channel, notice);
+            self.feeds.tell(self.now.control.time_us(), channel, notice);
         }
     }
 
@@ -487,17 +487,17 @@ impl<P: Operable> Host<P> {
 
     /// A reader of what happens from now on.
     pub fn notices(&self) -> Reader<Stamped> {
-        self.told.notices()
+        self.feeds.notices()
     }
 
     /// A reader of the snapshots from now on; see [`Host::take_snapshots`].
     pub fn snapshots(&self) -> Reader<Snapshot> {
-        self.told.snapshots()
+        self.feeds.snapshots()
     }
 
     /// Takes a snapshot every so many µs of the machine from now on; 0 is every contour cycle.
     pub fn take_snapshots(&mut self, every_us: u64) {
-        self.told.take_snapshots(every_us, self.now.control.time_us());
+        self.feeds.take_snapshots(every_us, self.now.control.time_us());
     }
 
     /// Runs by another clock from now on. By that on the wall part programs are read on a thread of their own: what a
@@ -534,7 +534,7 @@ impl<P: Operable> Host<P> {
     /// The clock begins anew: the machine is at another time.
     pub(crate) fn reset_clock(&mut self) {
         self.set_clock(self.pacing.clock());
-        self.told.reset(self.now.control.time_us());
+        self.feeds.reset(self.now.control.time_us());
     }
 
     /// What programs have read is there after every cycle, also in real time: their Q parameters, and

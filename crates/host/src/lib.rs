@@ -60,6 +60,7 @@ mod executed_path;
 mod expectation;
 mod fault;
 mod feed;
+mod feeds;
 pub mod files;
 mod host;
 mod journal;
@@ -92,7 +93,6 @@ mod table_edit;
 mod table_kind;
 mod text;
 mod threads;
-mod told;
 pub mod tool_table;
 
 pub use action::{Action, ActionError, Answer, Source};

@@ -1,4 +1,4 @@
-//! What is told to whoever follows a machine.
+//! What whoever follows a machine reads.
 
 use bahn_control::{Control, Snapshot};
 
@@ -11,16 +11,16 @@ const NOTICES: usize = 1024;
 const SNAPSHOTS: usize = 256;
 
 /// The feeds of a machine.
-pub(crate) struct Told {
+pub(crate) struct Feeds {
     notices: Feed<Stamped>,
     snapshots: Feed<Snapshot>,
     /// Time between two snapshots, µs, and when the next one is due.
     snapshot_us: Option<(u64, u64)>,
 }
 
-impl Default for Told {
-    fn default() -> Told {
-        Told {
+impl Default for Feeds {
+    fn default() -> Feeds {
+        Feeds {
             notices: Feed::new(NOTICES),
             snapshots: Feed::new(SNAPSHOTS),
             snapshot_us: None,
@@ -28,7 +28,7 @@ impl Default for Told {
     }
 }
 
-impl Told {
+impl Feeds {
     pub fn notices(&self) -> Reader<Stamped> {
         self.notices.reader()
     }
