@@ -162,7 +162,7 @@ fn the_files_of_a_machine_fit_together() {
 #[test]
 fn a_description_is_read_strictly() {
     let folder = new("tnc360");
-    edit(&folder, "m/machine.toml", "plant = ", "plantt = ");
+    edit(&folder, "m/machine.toml", "plc = ", "plcc = ");
     edit(
         &folder,
         "m/machine.toml",
@@ -172,8 +172,8 @@ fn a_description_is_read_strictly() {
     let run = folder.bahn("machine check m");
     assert_eq!(run.code(), 1);
     let said = run.err();
-    assert!(said.contains("the machine needs plant"), "{said}");
-    assert!(said.contains("unknown key `plantt`"), "{said}");
+    assert!(said.contains("the machine needs plc"), "{said}");
+    assert!(said.contains("unknown key `plcc`"), "{said}");
     assert!(
         said.contains("`tnc999` is no control model; there are tnc151"),
         "{said}"
@@ -185,6 +185,24 @@ fn a_description_is_read_strictly() {
         said.contains(&format!("machine.toml:{tools}:")) && said.contains("cannot read"),
         "{said}"
     );
+}
+
+/// A folder may describe no simulated machine: it is whole, and only a program with a plant of its own switches it on.
+#[test]
+fn a_folder_without_a_simulated_machine_is_whole() {
+    let folder = new("tnc360");
+    edit(&folder, "m/machine.toml", "plant = \"plant.toml\"", "");
+    let check = folder.bahn("machine check m");
+    assert_eq!(check.code(), 0, "{}", check.err());
+    for command in ["machine list m", "run PLATE.H --machine m", "panel --machine m"] {
+        let run = folder.bahn(command);
+        let said = run.err();
+        assert_eq!(run.code(), 2, "{command}: {said}");
+        assert!(
+            said.contains("the folder describes no simulated machine"),
+            "{command}: {said}"
+        );
+    }
 }
 
 #[test]

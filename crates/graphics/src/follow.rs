@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use bahn_control::{Mode, RunState};
-use bahn_host::{ExecutedPath, Host};
+use bahn_host::{ExecutedPath, Host, Operable};
 use bahn_path::{BlockRef, PathElement};
 
 use crate::stock::{Heard, Stock};
@@ -29,7 +29,7 @@ pub(crate) struct Follower {
 
 impl Follower {
     /// Takes what a cycle has executed.
-    pub fn cycle(&mut self, host: &mut Host, beside: bool) {
+    pub fn cycle<P: Operable>(&mut self, host: &mut Host<P>, beside: bool) {
         let control = host.control();
         let now = control.run_state();
         let by_program = matches!(control.mode(), Mode::FullSequence | Mode::SingleBlock);

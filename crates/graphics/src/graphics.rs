@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_control::Control;
 use bahn_dialogue::Key;
-use bahn_host::{Host, LoadedMachine};
+use bahn_host::{Host, LoadedMachine, Operable};
 use bahn_parameters::ParameterList;
 use bahn_screen::colours::colour;
 use bahn_screen::programs::ProgramMemory;
@@ -70,7 +70,7 @@ pub struct Graphics {
 
 impl Graphics {
     /// Those of a machine that was switched on.
-    pub fn new(host: &mut Host) -> Graphics {
+    pub fn new<P: Operable>(host: &mut Host<P>) -> Graphics {
         host.keep_path();
         Graphics {
             trial: None,
@@ -91,7 +91,7 @@ impl Graphics {
     }
 
     /// Once in every contour cycle.
-    pub fn cycle(&mut self, host: &mut Host) {
+    pub fn cycle<P: Operable>(&mut self, host: &mut Host<P>) {
         self.follower.cycle(host, self.beside);
         if let Some(trial) = &mut self.trial {
             trial.cycle();

@@ -28,7 +28,7 @@ pub fn run(folder: &Path, program: &Path, out: &mut dyn Write) -> Result<(), Box
     let programs = FolderPrograms::new(&machine.root.join(&machine.folder.programs), Some(program))?;
     let job = programs.main_name().map(Job::whole);
     let operator = Operator::new(Attendance::Full, machine.folder.operator.clone(), job);
-    let mut host = Host::new(&machine, PowerOn::fresh(&machine), Arc::new(programs), operator);
+    let mut host = Host::new(&machine, PowerOn::fresh(&machine), Arc::new(programs), operator)?;
     let me = Source::Client("embed".to_owned());
     let (mut notices, mut started) = (host.notices(), false);
     loop {

@@ -3,40 +3,8 @@
 use std::fmt;
 
 use bahn_control::{Command, CommandError, split_channel};
-use bahn_machine::{Event, KeyAction, Machine, Mechanics};
-use bahn_servo::Plant;
+use bahn_machine::{Event, KeyAction};
 use thiserror::Error;
-
-/// A plant that can be operated: it has a panel, and things can happen to it.
-pub trait Operable: Plant {
-    /// Lets something happen to it.
-    ///
-    /// # Errors
-    /// In words, when it has not what the event names.
-    fn operate(&mut self, event: &Event) -> Result<(), String>;
-
-    /// The tool that the control has in the spindle; who changes tools by hand puts it there.
-    fn tool_is_called(&mut self, _tool: u32) {}
-
-    /// Where everything stands, for a plant that ends with the program; a real one stays where it is.
-    fn mechanics(&self) -> Option<Mechanics> {
-        None
-    }
-}
-
-impl Operable for Machine {
-    fn operate(&mut self, event: &Event) -> Result<(), String> {
-        self.act(event).map_err(|error| error.to_string())
-    }
-
-    fn tool_is_called(&mut self, tool: u32) {
-        Machine::tool_is_called(self, tool);
-    }
-
-    fn mechanics(&self) -> Option<Mechanics> {
-        Some(Machine::mechanics(self))
-    }
-}
 
 /// Something that is done.
 ///

@@ -1,5 +1,6 @@
 //! What cannot be done, and why.
 
+use bahn_control::ChannelError;
 use thiserror::Error;
 
 /// Why something cannot be done.
@@ -8,6 +9,15 @@ pub enum HostError {
     /// The folder of a state that another process has.
     #[error("{0}: the machine is switched on already")]
     SwitchedOn(String),
+    /// The channels cannot be put together.
+    #[error("the channels of the machine do not fit: {0}")]
+    Channels(#[from] ChannelError),
+    /// Of so many channels beside the first one the machine knows so many at power-on.
+    #[error("the machine has {0} channels beside the first one, and {1} of them are switched on")]
+    ChannelsMissing(usize, usize),
+    /// The folder describes no simulated machine, and no other plant was given.
+    #[error("{0}: the folder describes no simulated machine (`plant` in machine.toml)")]
+    NotSimulated(String),
     /// Too many orders wait.
     #[error("too many orders wait")]
     Busy,
@@ -20,6 +30,9 @@ pub enum HostError {
     /// A run that is logged goes forward only.
     #[error("a run that is logged does not go back")]
     Logged,
+    /// A plant without copies stays where it is.
+    #[error("this machine does not go back: it is no simulated one")]
+    StaysWhereItIs,
     /// What was done since a saved state is not known any more.
     #[error("what was done since is not known any more")]
     Forgotten,

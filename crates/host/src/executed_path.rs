@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bahn_path::{PathElement, PerAxis};
 
-use crate::Host;
+use crate::{Host, Operable};
 
 /// Way that may be left of an element that is done, mm.
 const DONE_MM: f64 = 1e-6;
@@ -50,7 +50,7 @@ impl ExecutedPath {
     }
 
     /// Takes what a cycle has prepared, and looks how far the axes are.
-    pub fn follow(&mut self, host: &mut Host) {
+    pub fn follow<P: Operable>(&mut self, host: &mut Host<P>) {
         if let Some(dropped) = host.take_dropped_path(self.channel) {
             self.ahead.retain(|element| element.sequence < dropped);
         }

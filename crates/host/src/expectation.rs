@@ -2,9 +2,9 @@
 
 use bahn_control::{ChannelView, Control, Mode, RunState, Signal, TestState, split_channel};
 use bahn_exchange::{Content, Image, Operand, parts};
-use bahn_machine::Machine;
 
 use crate::observable::Observable;
+use crate::operable::Operable;
 
 /// So near counts as equal when a script does not say how near, for values that are no whole numbers: the
 /// last digit of the display.
@@ -126,13 +126,13 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
     ///
     /// # Errors
     /// In words, when one of them is none.
-    pub fn parse_all(text: &str, machine: Option<&Machine>) -> Result<Vec<Expectation>, String> {
+    pub fn parse_all(text: &str, machine: Option<&dyn Operable>) -> Result<Vec<Expectation>, String> {
         parts(text)
             .map(|text| Expectation::parse(text.trim(), machine))
             .collect()
     }
 
-    fn parse(text: &str, machine: Option<&Machine>) -> Result<Expectation, String> {
+    fn parse(text: &str, machine: Option<&dyn Operable>) -> Result<Expectation, String> {
         let Some(machine) = machine else {
             let expectation = Expectation::of_value(text);
             return expectation
@@ -185,7 +185,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
     }
 
     /// What begins with a word: a message, a mode, a state, a lamp; `None` for anything else.
-    fn of_state(text: &str, machine: &Machine) -> Result<Option<Expectation>, String> {
+    fn of_state(text: &str, machine: &dyn Operable) -> Result<Option<Expectation>, String> {
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         let expectation = match word {
@@ -206,8 +206,8 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
             "lamp" => {
                 let (name, value) = rest.split_once('=').ok_or("it is written `lamp NAME=1`")?;
                 let name = name.trim();
-                if machine.lamp(name).is_none() {
-                    let known: Vec<&str> = machine.lamps().collect();
+                if !machine.lamps().iter().any(|(lamp, _)| *lamp == name) {
+                    let known: Vec<&str> = machine.lamps().iter().map(|(lamp, _)| *lamp).collect();
                     let known = known.join(", ");
                     return Err(format!("the machine has no lamp `{name}`; there are {known}"));
                 }
@@ -256,7 +256,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
     }
 
     /// `None` when it is so; otherwise what is.
-    pub fn check(&self, control: &Control, machine: &Machine) -> Option<String> {
+    pub fn check(&self, control: &Control, machine: &dyn Operable) -> Option<String> {
         self.check_in(control.first(), None, control, machine)
     }
 
@@ -266,7 +266,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
         channel: ChannelView,
         only: Option<usize>,
         control: &Control,
-        machine: &Machine,
+        machine: &dyn Operable,
     ) -> Option<String> {
         match self {
             Expectation::Of(number, what) => match control.channel(*number) {
@@ -313,7 +313,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                 })
             }
             Expectation::Lamp(name, on) => {
-                let actual = machine.lamp(name).unwrap_or(false);
+                let actual = machine.lamps().contains(&(name.as_str(), true));
                 (actual != *on).then(|| format!("lamp {name} is {}", u8::from(actual)))
             }
         }
@@ -386,6 +386,7 @@ fn decimal(text: &str) -> Result<f64, String> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may fail")]
     use super::*;
+    use bahn_machine::Machine;
 
     fn read(text: &str) -> Result<Expectation, String> {
         let machine = Machine::from_toml(

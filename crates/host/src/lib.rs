@@ -10,7 +10,7 @@
 //! let programs = FolderPrograms::new(&folder.join("programs"), Some(Path::new("CIRCLE.H")))?;
 //! let job = programs.main_name().map(Job::whole);
 //! let operator = Operator::new(Attendance::Full, machine.folder.operator.clone(), job);
-//! let mut host = Host::new(&machine, PowerOn::fresh(&machine), Arc::new(programs), operator);
+//! let mut host = Host::new(&machine, PowerOn::fresh(&machine), Arc::new(programs), operator)?;
 //! let mut notices = host.notices();
 //! let mut ended = false;
 //! while !ended {
@@ -24,7 +24,8 @@
 //! - [`LoadedMachine`] is everything in the folder of a machine, with all faults of all files at once
 //!   ([`FileFault`]); [`FolderPrograms`] are its part programs;
 //! - [`PowerOn`] is what it begins with, [`Host`] the machine that is on: [`Host::step`] is a contour cycle, by
-//!   whichever [`Clock`];
+//!   whichever [`Clock`]; its plant is the simulated machine of the folder or whatever is [`Operable`], [`AnyPlant`] where
+//!   nobody needs to know which;
 //! - a [`Action`] is done at once ([`Host::act`]) or ordered for a time, from any thread ([`Desk`]), by a
 //!   [`Source`]; a [`Sink`] logs it; an [`Operator`] stands by; a [`Script`] is [played](Play);
 //! - any number of [`Reader`]s follow [`Notice`]s and snapshots; who is slow is told how much he missed;
@@ -46,6 +47,7 @@
 )]
 
 mod action;
+mod any_plant;
 mod background;
 pub mod backup;
 mod called;
@@ -58,6 +60,7 @@ mod executed_path;
 mod expectation;
 mod fault;
 mod feed;
+mod feeds;
 pub mod files;
 mod host;
 mod journal;
@@ -66,9 +69,11 @@ pub mod lists;
 mod log;
 pub mod logic_diagram;
 mod machine_folder;
+mod moment;
 mod notice;
 mod observable;
 pub mod oem_cycles;
+mod operable;
 mod operator;
 mod orders;
 pub mod oscilloscope;
@@ -83,13 +88,17 @@ mod retained;
 pub mod s_records;
 mod saved;
 mod script;
+mod simulated;
 mod table_edit;
 mod table_kind;
 mod text;
 mod threads;
 pub mod tool_table;
 
-pub use action::{Action, ActionError, Answer, Operable, Source};
+pub use action::{Action, ActionError, Answer, Source};
+pub use any_plant::AnyPlant;
+/// What a plant takes and answers, for whoever writes one.
+pub use bahn_machine::{DeviceState, Event, KeyAction, MagazineState, Mechanics};
 pub use called::called_program;
 pub use columns::{Cell, TableFault, TextRow, TextTable, canonical};
 pub use edges::Edges;
@@ -100,7 +109,7 @@ pub use fault::{FileFault, Marked, Severity};
 pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};
-pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode};
+pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode, tools_fit};
 pub use machine_folder::{read_remembered, write_remembered};
 pub use threads::{ThreadCut, Threads};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
@@ -130,6 +139,7 @@ pub use bahn_exchange::{Assignment, Content, Operand};
 pub use machine_folder::{check_nc_tables, check_state};
 pub use notice::{Notice, Stamped, Why};
 pub use observable::{Decimals, MagazineTruth, Observable, Observed, Truth};
+pub use operable::{Operable, StopChain, TrueAxis, Wired};
 pub use operator::{Attendance, Job, Operator, Phase};
 pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Late, Lateness};

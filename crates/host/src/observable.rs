@@ -4,7 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use bahn_control::{AxisSignal, ChannelView, Control, Signal, SignalError, split_channel};
-use bahn_machine::Machine;
+
+use crate::operable::Operable;
 
 /// What only the plant knows of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +45,7 @@ const MAGAZINE: [(&str, MagazineTruth); 6] = [
 ];
 
 impl MagazineTruth {
-    fn value(self, plant: &Machine) -> f64 {
+    fn value(self, plant: &dyn Operable) -> f64 {
         let Some(magazine) = plant.magazine() else {
             return 0.0;
         };
@@ -113,11 +114,11 @@ impl fmt::Display for Observable {
 
 impl Observable {
     /// Its value now, of a channel; an axis that is not there reads 0.
-    pub fn value(&self, channel: ChannelView, plant: &Machine) -> f64 {
+    pub fn value(&self, channel: ChannelView, plant: &dyn Operable) -> f64 {
         match self {
             Observable::Signal(signal) => channel.observe(signal),
             Observable::Magazine(truth) => truth.value(plant),
-            Observable::Truth(letter, truth) => plant.axis(*letter).map_or(0.0, |axis| match truth {
+            Observable::Truth(letter, truth) => plant.true_axis(*letter).map_or(0.0, |axis| match truth {
                 Truth::Table => axis.position,
                 Truth::Force => axis.force,
             }),
@@ -220,7 +221,7 @@ impl fmt::Display for Observed {
 
 impl Observed {
     /// Its value now; of a channel or an axis that is not there 0.
-    pub fn value(&self, control: &Control, plant: &Machine) -> f64 {
+    pub fn value(&self, control: &Control, plant: &dyn Operable) -> f64 {
         let channel = control.channel(self.channel);
         channel.map_or(0.0, |channel| self.what.value(channel, plant))
     }

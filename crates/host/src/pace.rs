@@ -140,6 +140,60 @@ impl Pace {
     }
 }
 
+/// By which clock a machine runs, and how it keeps it.
+#[derive(Default)]
+pub(crate) struct Pacing {
+    clock: Clock,
+    pace: Option<Pace>,
+    /// Whoever lets cycles pass waits for the clock.
+    outside: bool,
+    /// Also in real time nothing is read or computed beside.
+    exact: bool,
+}
+
+impl Pacing {
+    /// The clock begins now, at a time of the machine, µs.
+    pub fn begin(&mut self, clock: Clock, now_us: u64) {
+        self.clock = clock;
+        self.pace = Pace::of(clock, now_us);
+    }
+
+    pub fn clock(&self) -> Clock {
+        self.clock
+    }
+
+    pub fn wait_outside(&mut self) {
+        self.outside = true;
+    }
+
+    pub fn be_exact(&mut self) {
+        self.exact = true;
+    }
+
+    /// Programs are read, and long computations done, on a thread of their own.
+    pub fn works_beside(&self) -> bool {
+        self.pace.is_some() && !self.exact
+    }
+
+    /// A cycle has ended at a time, µs: it waits until that has passed.
+    pub fn keep(&mut self, now_us: u64) {
+        if let Some(pace) = &mut self.pace {
+            pace.note(now_us);
+            if !self.outside {
+                pace.wait();
+            }
+        }
+    }
+
+    pub fn rest(&self) -> Duration {
+        self.pace.as_ref().map_or(Duration::ZERO, Pace::rest)
+    }
+
+    pub fn lateness(&self) -> Option<Lateness> {
+        self.pace.as_ref().map(|pace| pace.lateness)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,6 +10,7 @@ use crate::error::HostError;
 use crate::expectation::Expectation;
 use crate::fault::FileFault;
 use crate::host::Host;
+use crate::operable::Operable;
 use crate::script::{Base, Line, Script, ScriptAction};
 
 /// An expectation that did not hold.
@@ -144,7 +145,7 @@ impl Play {
     ///
     /// # Errors
     /// When the machine has not what it names, or the log cannot be written.
-    pub fn perform(&mut self, line: Line, host: &mut Host) -> Result<bool, HostError> {
+    pub fn perform<P: Operable>(&mut self, line: Line, host: &mut Host<P>) -> Result<bool, HostError> {
         let actions = match line.action {
             ScriptAction::End => return Ok(true),
             ScriptAction::Do(action) => vec![action],
@@ -176,7 +177,7 @@ impl Play {
     ///
     /// # Errors
     /// As [`Play::perform`].
-    pub fn follow(&mut self, host: &mut Host) -> Result<bool, HostError> {
+    pub fn follow<P: Operable>(&mut self, host: &mut Host<P>) -> Result<bool, HostError> {
         let now = host.control().time_us();
         let mut ends = false;
         loop {

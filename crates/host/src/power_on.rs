@@ -75,6 +75,20 @@ impl PowerOn {
         }
     }
 
+    /// The simulated machine of the folder as it stands then.
+    ///
+    /// # Errors
+    /// [`HostError::NotSimulated`].
+    pub fn simulated(&self, machine: &LoadedMachine) -> Result<Machine, HostError> {
+        let mut plant = machine.simulated()?.clone();
+        let kept = self.mechanics.as_ref();
+        let stands = kept.is_some_and(|place| plant.stand_at(place).is_ok());
+        if !stands {
+            load_magazine(&mut plant, machine, &self.remembered);
+        }
+        Ok(plant)
+    }
+
     /// A machine that finds what it kept, in the folder of its state.
     ///
     /// # Errors
@@ -146,11 +160,11 @@ impl PowerOn {
 
     /// Where the mechanics stand, if they are those of this machine; what does not agree with control and PLC is said.
     fn put_up(&mut self, machine: &LoadedMachine, found: Option<FoundMechanics>) {
-        let (Some(found), Some(state)) = (found, &self.state) else {
+        let (Some(found), Some(state), Some(described)) = (found, &self.state, &machine.plant) else {
             return;
         };
         let file = state.mechanics_file().display();
-        let mut plant = machine.plant.clone();
+        let mut plant = described.clone();
         if let Err(what) = plant.stand_at(&found.mechanics) {
             self.warnings.push(format!(
                 "{file} is of another machine: {what}; the machine stands as at its start, its tools lie where the control \
@@ -160,7 +174,7 @@ impl PowerOn {
         }
         if found.loaded_anew {
             load_magazine(&mut plant, machine, &self.remembered);
-            if machine.plant.magazine().is_some() {
+            if described.magazine().is_some() {
                 self.warnings.push(
                     "the pockets of the tables have changed since the last run: the tools lie in the magazine as they say"
                         .to_owned(),
@@ -177,7 +191,7 @@ impl PowerOn {
                 "{file} and {} are not of the same moment: one of them was changed, removed or put there from elsewhere",
                 names.join(", ")
             );
-            for difference in differences(&plant, machine, &self.remembered) {
+            for difference in differences(&plant, described.clone(), machine, &self.remembered) {
                 text += &format!("\n  {difference}");
             }
             text += &format!(
@@ -191,7 +205,7 @@ impl PowerOn {
 }
 
 /// The tools lie in the magazine where the control remembers them.
-pub(crate) fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Remembered) {
+fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Remembered) {
     let moved = |tool: u32| remembered.pockets.iter().find(|moved| moved.tool == tool);
     let tools = machine.tools.iter().flatten().filter_map(|(number, tool)| {
         let pocket = moved(*number).map_or(tool.pocket, |moved| moved.pocket);
@@ -227,8 +241,12 @@ fn pockets_sum(machine: &LoadedMachine) -> u32 {
 }
 
 /// Tools that are elsewhere in the magazine than the control remembers them.
-fn differences(plant: &Machine, machine: &LoadedMachine, remembered: &Remembered) -> Vec<String> {
-    let mut expected = machine.plant.clone();
+fn differences(
+    plant: &Machine,
+    mut expected: Machine,
+    machine: &LoadedMachine,
+    remembered: &Remembered,
+) -> Vec<String> {
     load_magazine(&mut expected, machine, remembered);
     let (Some(is), Some(said)) = (plant.magazine(), expected.magazine()) else {
         return Vec::new();

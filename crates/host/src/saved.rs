@@ -3,28 +3,19 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_control::Control;
-
-use crate::action::{Action, Operable, Source};
+use crate::action::{Action, Source};
 use crate::background::Background;
-use crate::digitizing::Digitizing;
 use crate::error::HostError;
 use crate::host::Host;
 use crate::journal::{Given, Journal};
-use crate::notice::{Before, Notice};
-use crate::operator::Operator;
-use crate::orders::Waiting;
+use crate::moment::Moment;
+use crate::notice::Notice;
+use crate::operable::Operable;
 
 /// Control, plant, operator and what is ordered, as they were.
 #[derive(Clone)]
 pub struct Saved<P> {
-    control: Control,
-    plant: P,
-    operator: Operator,
-    waiting: Waiting,
-    before: Before,
-    restart: Option<String>,
-    digitizing: Vec<Digitizing>,
+    moment: Moment<P>,
     /// The first entry of the journal after it.
     entry: u64,
 }
@@ -32,7 +23,7 @@ pub struct Saved<P> {
 impl<P> Saved<P> {
     /// When it was, µs since power-on.
     pub fn time_us(&self) -> u64 {
-        self.control.time_us()
+        self.moment.control.time_us()
     }
 }
 
@@ -56,7 +47,7 @@ impl<P: Operable> Host<P> {
     pub fn course(&self) -> Course {
         Course {
             journal: self.journal.clone(),
-            end_us: self.control.time_us(),
+            end_us: self.now.control.time_us(),
         }
     }
 
@@ -73,27 +64,22 @@ impl<P: Operable> Host<P> {
     }
 }
 
-impl<P: Operable + Clone> Host<P> {
-    /// Everything as it is now.
-    pub fn save(&mut self) -> Saved<P> {
-        self.background.settle(&mut self.control);
-        Saved {
-            control: self.control.clone(),
-            plant: self.plant.clone(),
-            operator: self.operator.clone(),
-            waiting: self.waiting.clone(),
-            before: self.before.clone(),
-            restart: self.restart.clone(),
-            digitizing: self.digitizing.clone(),
+impl<P: Operable> Host<P> {
+    /// Everything as it is now; `None` where the plant cannot be copied.
+    pub fn save(&mut self) -> Option<Saved<P>> {
+        let plant = self.now.plant.copied()?;
+        self.background.settle(&mut self.now.control);
+        Some(Saved {
+            moment: self.now.with(plant),
             entry: self.journal.end(),
-        }
+        })
     }
 
     /// Goes back to a moment. What was given since is forgotten, what is told goes on after
     /// [`Notice::Restored`], and what survives power-off is that of the moment.
     ///
     /// # Errors
-    /// [`HostError::Logged`], [`HostError::NotStored`].
+    /// [`HostError::Logged`], [`HostError::StaysWhereItIs`], [`HostError::NotStored`].
     pub fn restore(&mut self, saved: &Saved<P>) -> Result<(), HostError> {
         self.replay(saved, saved.time_us())
     }
@@ -102,15 +88,16 @@ impl<P: Operable + Clone> Host<P> {
     /// machine had come. What was given later is forgotten.
     ///
     /// # Errors
-    /// [`HostError::Logged`], [`HostError::Forgotten`], [`HostError::NotStored`], [`HostError::BrokenOff`]. In the
-    /// first two cases everything stays as it is.
+    /// [`HostError::Logged`], [`HostError::StaysWhereItIs`], [`HostError::Forgotten`], [`HostError::NotStored`],
+    /// [`HostError::BrokenOff`]. In the first three cases everything stays as it is.
     pub fn replay(&mut self, saved: &Saved<P>, time_us: u64) -> Result<(), HostError> {
         if self.is_logged() {
             return Err(HostError::Logged);
         }
+        let then = saved.moment.copied().ok_or(HostError::StaysWhereItIs)?;
         let given = self.journal.split_off(saved.entry).ok_or(HostError::Forgotten)?;
-        let end_us = time_us.min(self.control.time_us());
-        self.repeat(saved, given, end_us, false)
+        let end_us = time_us.min(self.now.control.time_us());
+        self.repeat(then, given, end_us, false)
     }
 
     /// Goes to a moment of a course from a moment that was saved in it, as [`Host::replay`] does in that which led here.
@@ -127,25 +114,30 @@ impl<P: Operable + Clone> Host<P> {
         if self.is_logged() {
             return Err(HostError::Logged);
         }
+        let then = saved.moment.copied().ok_or(HostError::StaysWhereItIs)?;
         let mut journal = course.journal.clone();
         let given = journal.split_off(saved.entry).ok_or(HostError::Forgotten)?;
         self.journal = journal;
         let whole = time_us >= course.end_us;
-        self.repeat(saved, given, time_us.min(course.end_us), whole)
+        self.repeat(then, given, time_us.min(course.end_us), whole)
     }
 
     /// Goes back and gives again what was given until a time; `whole`: also what was given at this time.
     fn repeat(
         &mut self,
-        saved: &Saved<P>,
+        then: Moment<P>,
         mut given: VecDeque<(u64, Given)>,
         end_us: u64,
         whole: bool,
     ) -> Result<(), HostError> {
-        self.go_back(saved);
+        self.now = then;
+        // What is repeated is read as it comes, so that it is the same.
+        self.now.control.read_beside(false);
+        // A computation that is on its way belongs to the control that is left.
+        self.background = Background::default();
         self.repeats = true;
         let repeated = loop {
-            let now = self.control.time_us();
+            let now = self.now.control.time_us();
             let at_end = now >= end_us;
             while (!at_end || whole)
                 && given.front().is_some_and(|(time, _)| *time <= now)
@@ -180,20 +172,6 @@ impl<P: Operable + Clone> Host<P> {
         self.tell(Notice::Restored);
         repeated.and_then(|()| self.store())
     }
-
-    fn go_back(&mut self, saved: &Saved<P>) {
-        self.control = saved.control.clone();
-        // What is repeated is read as it comes, so that it is the same.
-        self.control.read_beside(false);
-        self.plant = saved.plant.clone();
-        self.operator = saved.operator.clone();
-        self.waiting = saved.waiting.clone();
-        self.before = saved.before.clone();
-        self.restart = saved.restart.clone();
-        self.digitizing.clone_from(&saved.digitizing);
-        // A computation that is on its way belongs to the control that is left.
-        self.background = Background::default();
-    }
 }
 
 /// Saved moments of a run at regular times, at most so many: when there are more, every other one goes and the
@@ -204,7 +182,7 @@ pub struct Timeline<P> {
     most: usize,
 }
 
-impl<P: Operable + Clone> Timeline<P> {
+impl<P: Operable> Timeline<P> {
     /// Saves every so many µs of the machine, at most so many moments and at least two.
     pub fn new(every_us: u64, most: usize) -> Timeline<P> {
         Timeline {
@@ -226,10 +204,11 @@ impl<P: Operable + Clone> Timeline<P> {
         if !due {
             return;
         }
+        let Some(saved) = host.save() else { return };
         if self.moments.len() >= self.most {
             self.thin();
         }
-        self.moments.push(Arc::new(host.save()));
+        self.moments.push(Arc::new(saved));
     }
 
     /// The last saved moment up to a time.

@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 
 use bahn_control::{Command, split_channel};
 use bahn_exchange::Assignment;
-use bahn_machine::{Event, Machine};
+use bahn_machine::Event;
 use bahn_parameters::ParameterList;
 
 use crate::action::{Action, ActionError};
+use crate::any_plant::AnyPlant;
 use crate::expectation::Expectation;
 use crate::fault::{FileFault, Marked, Severity};
 use crate::machine_folder::decode;
+use crate::operable::Operable;
 
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;
@@ -23,19 +25,24 @@ const CYCLES_MAX: u64 = 10_000_000;
 const FAULTS_MAX: usize = 1000;
 
 /// What a script is played on.
-#[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
     /// The bench of the PLC has none.
-    machine: Option<&'a Machine>,
+    plant: Option<&'a dyn Operable>,
+    /// A copy of it, where it can be copied.
+    copy: Option<AnyPlant>,
     parameters: &'a ParameterList,
     cycle_us: u32,
 }
 
 impl<'a> Stage<'a> {
     /// A control with its machine: cycles are its contour cycles.
-    pub fn machine(machine: &'a Machine, parameters: &'a ParameterList) -> Stage<'a> {
+    pub fn machine<P: Operable + Send + Sync + 'static>(
+        plant: &'a P,
+        parameters: &'a ParameterList,
+    ) -> Stage<'a> {
         Stage {
-            machine: Some(machine),
+            plant: Some(plant),
+            copy: plant.copied().map(AnyPlant::new),
             parameters,
             cycle_us: parameters.model().timing().contour_us(),
         }
@@ -44,7 +51,8 @@ impl<'a> Stage<'a> {
     /// A PLC program alone: cycles are its scans.
     pub fn bench(parameters: &'a ParameterList) -> Stage<'a> {
         Stage {
-            machine: None,
+            plant: None,
+            copy: None,
             parameters,
             cycle_us: parameters.model().limits().plc_cycle_us,
         }
@@ -126,7 +134,8 @@ impl Script {
         };
         let mut faults = Vec::new();
         let mut reader = Reader {
-            machine: stage.machine.cloned(),
+            plant: stage.plant,
+            tried: stage.copy.as_ref().and_then(AnyPlant::copied),
             parameters: stage.parameters.clone(),
             cycle_us: stage.cycle_us,
             last: (Base::PowerOn, 0),
@@ -218,9 +227,11 @@ impl Script {
 }
 
 /// Reads line after line.
-struct Reader {
-    /// What the script does to the machine is tried on it; the bench has none.
-    machine: Option<Machine>,
+struct Reader<'a> {
+    /// The bench has none.
+    plant: Option<&'a dyn Operable>,
+    /// What the script does to the machine is tried on a copy of it; where there is none, it shows when it is done.
+    tried: Option<AnyPlant>,
     /// What it does to machine parameters is tried on them.
     parameters: ParameterList,
     cycle_us: u32,
@@ -229,7 +240,7 @@ struct Reader {
     conditions: usize,
 }
 
-impl Reader {
+impl Reader<'_> {
     fn line(&mut self, number: u32, line: &str) -> Result<Line, Wrong> {
         let Some((time, rest)) = split_time(line) else {
             return Err(wrong(
@@ -273,8 +284,8 @@ impl Reader {
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         match word {
-            "when" => Expectation::parse_all(rest, self.machine.as_ref()),
-            "after" if self.machine.is_none() => Err(NO_CONTROL.to_owned()),
+            "when" => Expectation::parse_all(rest, self.plant),
+            "after" if self.plant.is_none() => Err(NO_CONTROL.to_owned()),
             "after" => {
                 let text = rest.strip_prefix("message").map(str::trim);
                 let text = text.map(|text| text.trim_matches('"'));
@@ -306,7 +317,7 @@ impl Reader {
             return Ok((base, before_us + self.duration(rest)?));
         }
         if let Some(rest) = text.strip_prefix("start") {
-            if self.machine.is_none() {
+            if self.plant.is_none() {
                 return Err("on the bench of the PLC no program is started".to_owned());
             }
             let rest = rest.trim();
@@ -348,7 +359,7 @@ impl Reader {
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         match word {
             "expect" => {
-                return Expectation::parse_all(rest, self.machine.as_ref()).map(ScriptAction::Expect);
+                return Expectation::parse_all(rest, self.plant).map(ScriptAction::Expect);
             }
             "end" if rest.trim().is_empty() => return Ok(ScriptAction::End),
             _ => {}
@@ -356,9 +367,9 @@ impl Reader {
         if split_channel(text).0.is_none() && Assignment::is_meant(text) {
             return self.assignments(text).map(ScriptAction::Set);
         }
-        let Some(machine) = &mut self.machine else {
+        if self.plant.is_none() {
             return Err(NO_CONTROL.to_owned());
-        };
+        }
         let action = Action::parse(text).map_err(|error| match error {
             ActionError::Unknown(word) => format!(
                 "`{word}` is no event and no command; events are {}, expect, end; commands those of the control",
@@ -366,8 +377,8 @@ impl Reader {
             ),
             ActionError::Wrong(what) => what,
         })?;
-        if let Action::Event(event, _) = &action {
-            machine.act(event).map_err(|error| error.to_string())?;
+        if let (Action::Event(event, _), Some(tried)) = (&action, &mut self.tried) {
+            tried.operate(event)?;
         }
         Ok(ScriptAction::Do(action))
     }
@@ -381,7 +392,7 @@ impl Reader {
                     let tried = self.parameters.assign(text);
                     tried.map_err(|error| error.to_string())?;
                 }
-                Assignment::Operand(..) if self.machine.is_none() => {}
+                Assignment::Operand(..) if self.plant.is_none() => {}
                 // On the machine it is a command of the control, which refuses inputs.
                 Assignment::Operand(..) => {
                     let command = assignment.to_string().parse::<Command>();
@@ -443,6 +454,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use bahn_machine::Machine;
 
     fn machine() -> Machine {
         Machine::from_toml(

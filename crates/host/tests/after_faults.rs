@@ -360,7 +360,7 @@ fn no_axis_sinks_after_a_short_emergency_stop() {
         host.step().unwrap();
     }
     let z = |host: &Host| host.plant().axis('Z').unwrap().position;
-    let (from, begun) = (z(&host), host.save());
+    let (from, begun) = (z(&host), host.save().unwrap());
     for cycles in 0..7 {
         host.restore(&begun).unwrap();
         for _ in 0..cycles {
@@ -477,7 +477,7 @@ fn a_short_emergency_stop_does_not_leave_the_spindle_standing() {
             third && control.waiting().is_some()
         });
         seconds(&mut host, 0.1);
-        let begun = host.save();
+        let begun = host.save().unwrap();
         // Scans are 20 ms apart, contour cycles 3 or 6 ms; relays take 10 ms to pull in.
         for (cycles, more) in (0..7).flat_map(|cycles| [(cycles, 0), (cycles, 1)]) {
             host.restore(&begun).unwrap();
@@ -511,7 +511,7 @@ fn what_is_held_when_the_loops_close_waits_for_the_drives() {
     seconds(&mut host, 0.5);
     give(&mut host, "voltage on");
     seconds(&mut host, 0.3);
-    let begun = host.save();
+    let begun = host.save().unwrap();
     let keys = ["NC_START", "X-", "X+", "Y-", "Y+", "Z-", "Z+"];
     for (cycles, key) in (0..16).flat_map(|cycles| keys.map(|key| (cycles, key))) {
         host.restore(&begun).unwrap();
@@ -561,7 +561,7 @@ fn the_way_back_to_a_tool_change_leaves_the_tool_axis() {
     until(&mut host, "the second tool change", |control| {
         commanded(control, Axis::Y) == -25.0
     });
-    let begun = host.save();
+    let begun = host.save().unwrap();
     let before = z(&host);
     let stops = [("voltage off", "voltage on"), ("key NC_STOP tap", "key X+ press")];
     for (cycles, (stop, on)) in (0..7).flat_map(|cycles| stops.map(|stop| (cycles, stop))) {

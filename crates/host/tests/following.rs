@@ -177,7 +177,8 @@ fn another_machine_prints_what_it_digitizes() {
         PowerOn::fresh(&machine),
         Texts::new(&[("1.H", scan)]),
         operator,
-    );
+    )
+    .unwrap();
     let mut reader = host.notices();
     let (mut printed, mut ended) = (Vec::new(), false);
     while !ended {

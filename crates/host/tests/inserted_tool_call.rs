@@ -54,7 +54,7 @@ fn mill_that_inserts(code: u32, program: &str) -> (Copy, Host) {
         Some(Job::whole("PART.NC")),
     );
     let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
-    let host = Host::new(&machine, PowerOn::fresh(&machine), programs, operator);
+    let host = Host::new(&machine, PowerOn::fresh(&machine), programs, operator).unwrap();
     (copy, host)
 }
 

@@ -59,7 +59,7 @@ fn switch_on(copy: &Copy) -> (Host, Vec<String>) {
     let operator = Operator::new(Attendance::Full, machine.folder.operator.clone(), None);
     let programs = FolderPrograms::of_folder(&machine.programs(0));
     (
-        Host::new(&machine, power_on, std::sync::Arc::new(programs), operator),
+        Host::new(&machine, power_on, std::sync::Arc::new(programs), operator).unwrap(),
         warnings,
     )
 }

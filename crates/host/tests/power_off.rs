@@ -59,7 +59,10 @@ impl Mill {
         let job = (!blocks.is_empty()).then(|| Job::whole("1.H"));
         let operator = Operator::new(Attendance::Full, self.machine.folder.operator.clone(), job);
         let programs = Texts::new(&[("1.H", blocks)]);
-        (Host::new(&self.machine, power_on, programs, operator), warnings)
+        (
+            Host::new(&self.machine, power_on, programs, operator).unwrap(),
+            warnings,
+        )
     }
 }
 
@@ -287,7 +290,7 @@ fn mechanics_stand_where_they_stood() {
     drop(host);
     // A fresh one stands at its start.
     let fresh = host_of_fresh(&mill);
-    let start = mill.machine.plant.axis('X').unwrap().position;
+    let start = mill.machine.simulated().unwrap().axis('X').unwrap().position;
     assert_eq!(fresh.plant().axis('X').unwrap().position, start);
     assert_eq!(fresh.plant().magazine().unwrap().spindle, 0);
 }

@@ -89,7 +89,7 @@ fn a_run_is_broken_off() {
     seconds(&mut host, 0.5);
     act(&mut host, "stop");
     assert_eq!(host.control().run_state(), RunState::Idle);
-    let saved = host.save();
+    let saved = host.save().unwrap();
     seconds(&mut host, 0.5);
     host.restore(&saved).unwrap();
     act(&mut host, "mode manual");
@@ -126,7 +126,8 @@ fn a_slow_medium_holds_no_cycle() {
         PowerOn::fresh(&machine),
         Arc::new(Slow(texts)),
         operator,
-    );
+    )
+    .unwrap();
     until(&mut host, |host| host.control().run_state() == RunState::Stopped);
     host.set_clock(Clock::Wall(1.0));
     until(&mut host, |host| host.control().has_ended());

@@ -104,7 +104,7 @@ fn a_moment_is_reached_again_to_the_bit() {
 fn a_course_that_was_left_is_reached_again() {
     let mut host = mill(BLOCKS);
     seconds(&mut host, 5.0);
-    let saved = host.save();
+    let saved = host.save().unwrap();
     let actions = |host: &mut Host, percents: [u8; 2]| {
         for percent in percents {
             let text = format!("override feed {percent}");
@@ -148,7 +148,7 @@ fn a_saved_moment_is_the_beginning_of_another_run() {
     {
         host.step().unwrap();
     }
-    let saved = host.save();
+    let saved = host.save().unwrap();
     let at = bits(&host);
     host.act(Source::Script, action("override feed 20")).unwrap();
     seconds(&mut host, 2.0);
@@ -168,7 +168,7 @@ fn a_saved_moment_is_the_beginning_of_another_run() {
 fn readers_get_the_way_back_and_nothing_that_is_repeated() {
     let mut host = mill(BLOCKS);
     seconds(&mut host, 5.0);
-    let saved = host.save();
+    let saved = host.save().unwrap();
     seconds(&mut host, 5.0);
     let now = host.control().time_us();
     let mut notices = host.notices();
@@ -201,7 +201,7 @@ fn what_is_kept_goes_back_too() {
     host.store().unwrap();
     let file = folder.path().join("state/control.toml");
     let before = std::fs::read_to_string(&file).unwrap();
-    let saved = host.save();
+    let saved = host.save().unwrap();
     let datum = Command::Datum(bahn_path::Axis::X, 12.5);
     let answer = host.act(Source::Operator, Action::Command(0, datum)).unwrap();
     assert_eq!(answer, Answer::Done);
@@ -228,7 +228,7 @@ fn a_run_that_is_logged_goes_forward_only() {
     }
     let mut host = mill("L X+1 R0 F100");
     host.set_log(Box::new(Lines(Log::new(Vec::new(), "a run").unwrap())));
-    let saved = host.save();
+    let saved = host.save().unwrap();
     seconds(&mut host, 0.1);
     let time_us = host.control().time_us();
     assert_eq!(host.restore(&saved), Err(HostError::Logged));

@@ -40,7 +40,7 @@ fn m6_stops_when_the_parameter_says_so_meanwhile() {
             Some(Job::whole("PART.NC")),
         );
         let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
-        let mut host = Host::new(&machine, PowerOn::fresh(&machine), programs, operator);
+        let mut host = Host::new(&machine, PowerOn::fresh(&machine), programs, operator).unwrap();
         let stopped = |host: &Host| host.control().run_state() == RunState::Stopped;
         until(&mut host, "M0", stopped);
         give(&mut host, &format!("MP7440={bits}"));

@@ -15,7 +15,7 @@ const PATIENCE_S: f64 = 400.0;
 /// Plays a script on the mill; what it expects must hold, and its end must come.
 fn play(blocks: &str, script: &str) -> (Host, Vec<Notice>) {
     let machine = machine("mill");
-    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
     let script = Script::of(Path::new("s.txt"), script.as_bytes(), &stage).unwrap();
     let mut play = Play::new(script);
     let mut host = mill(blocks);
@@ -131,7 +131,7 @@ fn what_fails_inside_is_found() {
 #[test]
 fn inputs_belong_to_the_machine() {
     let machine = machine("mill");
-    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
     let faults = Script::of(Path::new("s.txt"), b"20: I4=1\n", &stage).unwrap_err();
     assert!(
         faults[0].label.contains("`fault input I4 1`"),

@@ -5,7 +5,7 @@ mod support;
 
 use std::sync::{Arc, Mutex};
 
-use bahn_control::{ChannelView, RunState, Shown};
+use bahn_control::{AxisId, ChannelError, ChannelView, RunState, Shown};
 use bahn_host::{
     Action, Answer, Attendance, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Observed,
     Operator, PowerOn, Script, Sink, Source, Stage, Timeline,
@@ -23,7 +23,26 @@ fn switched_on(machine: &LoadedMachine, power_on: PowerOn, attendance: Attendanc
     let operator = Operator::new(attendance, machine.folder.operator.clone(), job(0));
     let operator = operator.with_channel(machine.channels[0].folder.operator.clone(), job(1));
     let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
-    Host::new(machine, power_on, programs, operator)
+    Host::new(machine, power_on, programs, operator).unwrap()
+}
+
+/// Channels that cannot be put together are no machine, and never another one with fewer of them.
+#[test]
+fn channels_that_do_not_fit_are_an_error() {
+    let on = |machine: &LoadedMachine, power_on| {
+        let operator = Operator::new(Attendance::Absent, machine.folder.operator.clone(), None);
+        let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
+        Host::new(machine, power_on, programs, operator).err()
+    };
+    let mut twin = machine("twin");
+    assert_eq!(on(&twin, PowerOn::fresh(&twin)), None);
+    let mut power_on = PowerOn::fresh(&twin);
+    power_on.channels.clear();
+    assert_eq!(on(&twin, power_on), Some(HostError::ChannelsMissing(1, 0)));
+    // X of the first channel is taken by X of the second.
+    twin.channels[0].axes[0] = Some(AxisId::FIRST);
+    let twice = ChannelError::AxisTwice(AxisId::FIRST);
+    assert_eq!(on(&twin, PowerOn::fresh(&twin)), Some(HostError::Channels(twice)));
 }
 
 fn channel(host: &Host, number: usize) -> ChannelView<'_> {
@@ -383,7 +402,7 @@ fn a_log_repeats_both_channels() {
         );
     }
     let machine = machine("twin");
-    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
     let script = Script::of("log".as_ref(), log.as_bytes(), &stage).unwrap();
     let mut again = switched_on(&machine, PowerOn::fresh(&machine), Attendance::Absent);
     let mut play = bahn_host::Play::new(script);

@@ -67,7 +67,7 @@ impl Side {
     fn on(folder: Folder) -> Side {
         let machine = LoadedMachine::load(&folder.0).unwrap().unwrap();
         let operator = Operator::new(Attendance::Full, machine.folder.operator.clone(), None);
-        let host = Host::new(&machine, PowerOn::fresh(&machine), Arc::new(NoPrograms), operator);
+        let host = Host::new(&machine, PowerOn::fresh(&machine), Arc::new(NoPrograms), operator).unwrap();
         Side {
             _folder: folder,
             notices: host.notices(),

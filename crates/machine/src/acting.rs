@@ -56,8 +56,8 @@ impl Machine {
                 self.probe()?.insert(*inserted, angle);
             }
             Event::Stylus(letter, force) => self.probe()?.push(*letter, *force),
-            Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
-            Event::Temperature(input, celsius) => set(&mut self.temperatures, *input, *celsius),
+            Event::Analogue(input, volts) => set(&mut self.plc.volts, *input, *volts),
+            Event::Temperature(input, celsius) => set(&mut self.plc.temperatures, *input, *celsius),
             Event::Force(letter, force) => self.axis_mut(*letter)?.push(*force),
             Event::Fault(fault) => self.inject(fault)?,
             Event::Repair(what) => self.repair(what)?,
@@ -155,8 +155,7 @@ impl Machine {
             Fault::Drive(letter, kind) => self.axis_mut(*letter)?.set_drive_fault(Some(*kind)),
             Fault::Offset(letter, volts) => self.axis_mut(*letter)?.offset = *volts,
             Fault::Input(input, fault) => {
-                self.stuck.retain(|(stuck, _)| stuck != input);
-                self.stuck.push((*input, *fault));
+                self.plc.stick(*input, *fault);
             }
             Fault::Brake(letter) => self.axis_mut(*letter)?.brake_lost = true,
             Fault::Clamp(letter) => self.axis_mut(*letter)?.jammed = true,
@@ -251,7 +250,7 @@ impl Machine {
             if let Some(magazine) = &mut self.mechanism.magazine {
                 magazine.fault = None;
             }
-            self.stuck.clear();
+            self.plc.loosen_all();
             self.chain.fault = None;
             self.buffer_battery_low = false;
             if self.mechanism.probe.is_some() {
@@ -260,7 +259,7 @@ impl Machine {
             return Ok(());
         }
         if let Some(input) = input_number(what) {
-            self.stuck.retain(|(stuck, _)| *stuck != input);
+            self.plc.loosen(input);
             return Ok(());
         }
         match what {

@@ -32,8 +32,8 @@ pub struct MachineFolder {
     pub compensation: Option<String>,
     /// Correction tables of code number 105 296, for controls without an assignment [000:3875-3887].
     pub correction_tables: Option<String>,
-    /// Description of the simulated machine.
-    pub plant: String,
+    /// Description of the simulated machine; none where the plant is another one.
+    pub plant: Option<String>,
     /// A solid on the table that the touch probe touches, a mesh (STL) in workpiece coordinates.
     pub solid: Option<String>,
     /// File of the tool table.
@@ -183,7 +183,7 @@ impl MachineFolder {
             plc_dialogues: optional("plc_dialogues"),
             compensation: optional("compensation"),
             correction_tables: optional("correction_tables"),
-            plant: needed("plant"),
+            plant: optional("plant"),
             solid: optional("solid"),
             tools: optional("tools"),
             pockets: optional("pockets"),

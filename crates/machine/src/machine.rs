@@ -2,25 +2,22 @@
 
 use std::sync::Arc;
 
-use bahn_servo::{
-    ANALOGUE_INPUTS, Commands, Encoder, INPUTS, Measured, OUTPUTS, Plant, Probe as Touch, Step,
-};
+use bahn_servo::{Commands, Encoder, INPUTS, Measured, OUTPUTS, Plant, Probe as Touch, Step};
 
 use crate::axis::{Axis, AxisState};
 use crate::by_hand::ByHand;
-use crate::chain::{Chain, ContactFault};
+use crate::chain::Chain;
+use crate::clock::{Clock, TICK_US};
 use crate::device::{Device, DeviceState};
 use crate::magazine::{Magazine, MagazineState};
 use crate::mechanics::Mechanics;
 use crate::mechanism::Mechanism;
 use crate::panel::Panel;
+use crate::plc_side::PlcSide;
 use crate::probe::{Probe, Solid};
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 use crate::tool_probe::ToolProbe;
-
-/// Contacts, relays and things move once in so many µs.
-const TICK_US: u32 = 1000;
 
 /// A simulated machine, described by a TOML file. The same description and the same calls give the
 /// same machine, bit by bit.
@@ -49,12 +46,7 @@ const TICK_US: u32 = 1000;
 #[derive(Clone, Debug)]
 pub struct Machine {
     name: String,
-    step_us: u32,
-    step_s: f64,
-    /// Time that has not filled a step, and steps that have not filled a tick.
-    pending_us: u32,
-    tick_us: u32,
-    time_us: u64,
+    clock: Clock,
     pub(crate) mechanism: Mechanism,
     /// The axes X, Y, Z of the probe among the axes.
     probe_axes: [Option<usize>; 3],
@@ -63,16 +55,9 @@ pub struct Machine {
     /// The place of the key of the control voltage.
     voltage_key: Option<usize>,
     pub(crate) tool_probe: Option<ToolProbe>,
-    pub(crate) volts: [f64; ANALOGUE_INPUTS],
-    pub(crate) temperatures: [f64; ANALOGUE_INPUTS],
-    /// Time has passed since the encoders were read.
-    moved_on: bool,
-    /// As the PLC set them, and as they arrive.
-    outputs: [bool; OUTPUTS],
-    live: [bool; OUTPUTS],
+    pub(crate) plc: PlcSide,
     /// Nothing has moved in the last tick and nobody has acted since: contacts, relays and things stay as they are.
     pub(crate) rests: bool,
-    pub(crate) stuck: Vec<(usize, ContactFault)>,
     /// Of the logic unit.
     pub(crate) buffer_battery_low: bool,
     wires: Vec<Wire>,
@@ -134,23 +119,14 @@ impl Machine {
         let index = |letter| mechanism.axes.iter().position(|axis| axis.letter == letter);
         let mut machine = Machine {
             name: root.text("name").unwrap_or("machine").to_owned(),
-            step_us,
-            step_s,
-            pending_us: 0,
-            tick_us: 0,
-            time_us: 0,
+            clock: Clock::new(step_us),
             probe_axes: ['X', 'Y', 'Z'].map(index),
             chain,
             voltage_key: None,
             panel,
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
-            volts: [0.0; ANALOGUE_INPUTS],
-            temperatures: [20.0; ANALOGUE_INPUTS],
-            moved_on: true,
-            outputs: [false; OUTPUTS],
-            live: [false; OUTPUTS],
+            plc: PlcSide::default(),
             rests: false,
-            stuck: Vec::new(),
             buffer_battery_low: false,
             wires: Vec::new(),
             mechanism,
@@ -207,7 +183,7 @@ impl Machine {
 
     /// Time since power-on, µs.
     pub fn time_us(&self) -> u64 {
-        self.time_us
+        self.clock.time_us
     }
 
     /// The names of the keys.
@@ -244,7 +220,7 @@ impl Machine {
 
     /// Whether a lamp is lit.
     pub fn lamp(&self, name: &str) -> Option<bool> {
-        self.panel.lamp(name, &self.live)
+        self.panel.lamp(name, &self.plc.live)
     }
 
     /// Where everything stands now.
@@ -338,17 +314,17 @@ impl Machine {
         if self.rests && !switches {
             return;
         }
-        self.live = self.chain.live(&self.outputs);
+        self.plc.live = self.chain.live(&self.plc.outputs);
         let mut moves = false;
         for device in &mut self.mechanism.devices {
-            moves |= device.advance(&self.live);
+            moves |= device.advance(&self.plc.live);
         }
         if let Some(magazine) = &mut self.mechanism.magazine {
-            moves |= magazine.advance(&self.live, &mut self.mechanism.devices);
+            moves |= magazine.advance(&self.plc.live, &mut self.mechanism.devices);
         }
         let voltage = self.chain.voltage();
         for axis in &mut self.mechanism.axes {
-            moves |= axis.set_power(voltage, self.chain.control_ready, &self.live);
+            moves |= axis.set_power(voltage, self.chain.control_ready, &self.plc.live);
             axis.clamped = self
                 .mechanism
                 .devices
@@ -356,8 +332,8 @@ impl Machine {
                 .any(|device| device.clamps == Some(axis.letter) && device.is_forth());
         }
         for spindle in &mut self.mechanism.spindles {
-            spindle.set_power(voltage, &self.live);
-            moves |= spindle.shift(&self.live);
+            spindle.set_power(voltage, &self.plc.live);
+            moves |= spindle.shift(&self.plc.live);
         }
         self.rests = !moves;
     }
@@ -378,8 +354,8 @@ impl Plant for Machine {
         measured.probe = self.touch_probe();
         measured.tool_probe = self.tool_probe();
         measured.buffer_battery_low = self.buffer_battery_low;
-        measured.volts = self.volts;
-        measured.temperatures = self.temperatures;
+        measured.volts = self.plc.volts;
+        measured.temperatures = self.plc.temperatures;
     }
 }
 
@@ -402,7 +378,7 @@ impl Machine {
 
     /// What the encoders answer; inputs without encoder stay as they are.
     fn read_encoders(&mut self, measured: &mut Measured) {
-        let again = !std::mem::take(&mut self.moved_on);
+        let again = !std::mem::take(&mut self.clock.moved_on);
         for axis in &mut self.mechanism.axes {
             let input = axis.counter.as_ref().map(|counter| counter.input);
             if let Some(read) = input.and_then(|input| measured.encoders.get_mut(input)) {
@@ -442,28 +418,20 @@ impl Machine {
     /// Lets time pass; after how many µs the acknowledgement "control is ready" changed first.
     fn pass(&mut self, micros: u32) -> Option<u32> {
         let (before, mut changed_at) = (self.control_ready(), None);
-        self.moved_on |= micros > 0;
-        self.time_us += u64::from(micros);
-        self.pending_us = self.pending_us.saturating_add(micros);
-        while self.pending_us >= self.step_us {
-            // Between two ticks the parts do not see each other.
-            let steps = (self.pending_us / self.step_us).min((TICK_US - self.tick_us) / self.step_us);
+        self.clock.add(micros);
+        while let Some(steps) = self.clock.next_steps() {
             for axis in &mut self.mechanism.axes {
-                axis.run(steps, self.step_s);
+                axis.run(steps, self.clock.step_s);
             }
             for spindle in &mut self.mechanism.spindles {
                 for _ in 0..steps {
-                    spindle.step(self.step_s);
+                    spindle.step(self.clock.step_s);
                 }
             }
-            let length_us = steps * self.step_us;
-            self.pending_us -= length_us;
-            self.tick_us += length_us;
-            if self.tick_us >= TICK_US {
-                self.tick_us = 0;
+            if self.clock.ticks() {
                 self.tick();
                 if changed_at.is_none() && self.control_ready() != before {
-                    changed_at = Some(micros.saturating_sub(self.pending_us));
+                    changed_at = Some(micros.saturating_sub(self.clock.pending_us()));
                 }
             }
         }
@@ -527,24 +495,20 @@ impl Machine {
         if let Some(magazine) = &self.mechanism.magazine {
             magazine.set_inputs(inputs);
         }
-        for (input, fault) in &self.stuck {
-            if let Some(level) = inputs.get_mut(*input) {
-                *level = fault.level(self.time_us, *level);
-            }
-        }
+        self.plc.set_stuck(inputs, self.clock.time_us);
     }
 
     /// Sets the PLC outputs.
     pub fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
-        if self.outputs != *outputs {
-            self.outputs = *outputs;
+        if self.plc.outputs != *outputs {
+            self.plc.outputs = *outputs;
             self.rests = false;
         }
     }
 
     /// The PLC outputs as they were set last.
     pub fn outputs(&self) -> &[bool; OUTPUTS] {
-        &self.outputs
+        &self.plc.outputs
     }
 
     /// Switches the output X41/34 "control is ready".
@@ -555,7 +519,7 @@ impl Machine {
 
     /// The acknowledgement at X42/4.
     pub fn control_ready(&self) -> bool {
-        self.chain.acknowledged(&self.stuck, self.time_us)
+        self.plc.acknowledged(&self.chain, self.clock.time_us)
     }
 
     /// No limit switch of an axis is actuated.

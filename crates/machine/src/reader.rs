@@ -30,6 +30,12 @@ pub struct Wire {
     pub column: usize,
     /// The input or output, as `I24` or `O10`.
     pub operand: String,
+    /// The section of the description, as `axis.X`.
+    pub section: String,
+    /// Its key there, as `limit_plus`.
+    pub key: String,
+    /// A contact that opens, or an output that acts when it is off.
+    pub opens: bool,
 }
 
 /// A PLC input and the sense in which it is wired.
@@ -108,12 +114,40 @@ impl<'t> Reader<'t> {
             line,
             column,
             operand,
+            section: String::new(),
+            key: String::new(),
+            opens: false,
         });
     }
 
-    /// The inputs and outputs that were read.
+    /// The inputs and outputs that were read, each with the section and the key where it stands.
     pub fn wires(&self) -> Vec<Wire> {
-        self.wires.take()
+        let lines: Vec<&str> = self.text.lines().collect();
+        let sections: Vec<&str> = lines.iter().scan("", Reader::section_at).collect();
+        let mut wires = self.wires.take();
+        for wire in &mut wires {
+            let at = wire.line.saturating_sub(1);
+            let line = lines.get(at).copied().unwrap_or_default();
+            let before: String = line.chars().take(wire.column).collect();
+            let key = line.split('=').next().unwrap_or_default().trim();
+            sections
+                .get(at)
+                .copied()
+                .unwrap_or_default()
+                .clone_into(&mut wire.section);
+            key.trim_matches('"').clone_into(&mut wire.key);
+            wire.opens = before.contains("not ") || line.contains(&format!("not {}", wire.operand));
+        }
+        wires
+    }
+
+    /// The section of a line after those before it.
+    fn section_at<'l>(section: &mut &'l str, line: &&'l str) -> Option<&'l str> {
+        if let Some(header) = line.trim().strip_prefix('[') {
+            let name = header.split(']').next().unwrap_or_default();
+            *section = name.trim_start_matches('[').trim();
+        }
+        Some(section)
     }
 
     /// The tables of the text; faults in its form are noted.

@@ -52,6 +52,7 @@ mod site;
 mod station;
 mod status;
 mod steps;
+mod to_enter;
 mod transfer;
 
 pub use bahn_dialogue::{Key, KeyGroup};
@@ -72,6 +73,12 @@ pub use replay::{Ending, Replay, check_session};
 pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
-pub use station::{Station, load};
+pub use station::Station;
 pub use steps::{Stepped, StepsEnd};
+pub use to_enter::load;
 pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};
+
+/// The examples of `docs/plant.md`.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/plant.md")]
+struct PlantOfYourOwn;

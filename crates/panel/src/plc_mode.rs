@@ -4,8 +4,8 @@ use std::sync::{Arc, Weak};
 
 use bahn_control::{Control, ServoSampler};
 use bahn_exchange::{Content, Operand};
-use bahn_host::Host;
 use bahn_host::logic_diagram::{Diagram, DiagramRecorder, Trigger};
+use bahn_host::{AnyPlant, Host};
 use bahn_plc::{CodeTrace, PlcProgram, WindowView};
 
 /// Scans of a diagram, and those before its event [000:11461-11472].
@@ -90,7 +90,7 @@ impl PlcMode {
     /// One contour cycle of the machine, with what somebody wants to see in it, and who looks at its servo steps.
     pub fn cycle(
         &mut self,
-        host: &mut Host,
+        host: &mut Host<AnyPlant>,
         sampler: Option<&mut dyn ServoSampler>,
     ) -> Result<(), bahn_host::HostError> {
         host.show_plc_window(IN_SIGHT);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_control::{AxisState, ChannelView, Command, Control, Mode, RunState, Shown};
 use bahn_graphics::Graphics;
-use bahn_host::{Action, Answer, Host, LoadedMachine, Source};
+use bahn_host::{Action, Answer, AnyPlant, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 use bahn_screen::programs::ProgramMemory;
@@ -17,7 +17,7 @@ use crate::transfer::Transfers;
 
 /// The station as a page sees it: the machine that is on, its folder, the program memory and what the operator chose.
 pub(crate) struct Site<'a> {
-    pub host: &'a mut Host,
+    pub host: &'a mut Host<AnyPlant>,
     pub machine: &'a LoadedMachine,
     pub programs: &'a Arc<ProgramMemory>,
     pub settings: &'a mut Settings,

@@ -1,21 +1,22 @@
 //! The operator's station: a machine that is on, and its panel.
 
+mod chosen;
 mod commissioning;
+mod passing;
 mod teaching;
 mod transfers;
 mod warm_start;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-use bahn_control::{Command, Control, Programs, RunState};
+use bahn_control::{Command, Control, Programs};
 use bahn_dialogue::Key;
 use bahn_graphics::{BeingCut, Graphics, Picture};
-use bahn_host::{Action, Answer, Clock, Host, HostError, LoadedMachine, PowerOn, Source};
+use bahn_host::{Action, Answer, AnyPlant, Clock, Host, HostError, LoadedMachine, Operable, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
@@ -30,104 +31,125 @@ use crate::inhibit::{self, Simulated};
 use crate::input::{EMERGENCY_STOP, Input, Refusal};
 use crate::plc_mode::PlcMode;
 use crate::session::Recorder;
-use crate::settings::Settings;
 use crate::site::Site;
 use crate::steps::{Steps, StepsEnd, Ticket};
+use crate::to_enter::{Commissioning, operator_of};
 use crate::transfer::{TransferOrder, Transfers};
 use crate::{pages, status};
-use commissioning::{Commissioning, operator_of};
-
-pub use commissioning::load;
+use chosen::Chosen;
+use passing::Passing;
 use warm_start::WarmStart;
 
 /// Lines of the large window, and of one beside it.
 const LINES: usize = 16;
 /// So often the PLC is told what the screen shows, µs.
 const SCREEN_REPORTED_US: u64 = 50_000;
-/// A minute, µs.
-const MINUTE_US: u64 = 60_000_000;
 /// Stands in the status window while a logic diagram is recorded [000:11466].
 const RECORDING: &str = "PCTR";
 /// Factors by which time may pass.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=100.0;
 
-/// A machine that is on, and its panel. It has no clock of its own: [`Station::cycle`] is one contour cycle.
+/// A machine that is on, and its panel. It has no clock of its own: [`Station::cycle`] is one contour cycle. Its plant is
+/// the simulated machine of the folder, or any other one that can be operated.
 pub struct Station {
-    host: Host,
+    host: Host<AnyPlant>,
     machine: LoadedMachine,
     programs: Arc<ProgramMemory>,
-    settings: Settings,
-    /// What of the settings is on the medium.
-    stored: Settings,
-    state_folder: PathBuf,
+    chosen: Chosen,
     console: Console,
-    speed: f64,
-    in_real_time: bool,
-    paused: bool,
-    steps: Steps,
-    is_on: bool,
-    warm_start: WarmStart,
-    /// Less than a minute of each machine time, µs.
-    timers_us: [u64; 3],
-    recorder: Option<Recorder>,
-    past: Past,
-    waits: Waits,
-    lesson: Option<LessonRun>,
-    plc: PlcMode,
-    graphics: Graphics,
-    transfers: Transfers,
+    passing: Passing,
+    supply: Supply,
+    study: Study,
+    instruments: Instruments,
     /// While the list of machine parameters is entered: what the control kept, which nobody else takes meanwhile.
     commissioning: Option<Commissioning>,
     shown: Screen,
 }
 
+/// The supply of the control, as the operator has it.
+struct Supply {
+    is_on: bool,
+    warm_start: WarmStart,
+}
+
+/// What is known of the time that has passed, and what is asked of it.
+struct Study {
+    recorder: Option<Recorder>,
+    past: Past,
+    waits: Waits,
+    lesson: Option<LessonRun>,
+}
+
+/// What goes on while other pages are shown.
+struct Instruments {
+    plc: PlcMode,
+    graphics: Graphics,
+    transfers: Transfers,
+}
+
 impl Station {
-    /// Switches on the machine of a folder.
+    /// Switches on the machine of a folder, simulated.
     ///
     /// # Errors
-    /// When it is switched on already, or what it kept cannot be read.
+    /// When it is switched on already, what it kept cannot be read, or its channels do not fit.
     pub fn power_on(machine: LoadedMachine) -> Result<Station, HostError> {
         let power_on = PowerOn::kept(&machine)?;
-        Ok(Station::with(machine, power_on))
+        Station::with(machine, power_on)
     }
 
     /// The same with what the control finds.
-    pub fn with(machine: LoadedMachine, mut power_on: PowerOn) -> Station {
+    ///
+    /// # Errors
+    /// When the folder describes no simulated machine, or the channels do not fit.
+    pub fn with(machine: LoadedMachine, power_on: PowerOn) -> Result<Station, HostError> {
+        let plant = power_on.simulated(&machine)?;
+        Station::with_plant(machine, plant, power_on)
+    }
+
+    /// The same with a plant of one's own in place of the one that the folder describes.
+    ///
+    /// # Errors
+    /// When the channels do not fit.
+    pub fn with_plant(
+        machine: LoadedMachine,
+        plant: impl Operable + Send + Sync + 'static,
+        mut power_on: PowerOn,
+    ) -> Result<Station, HostError> {
         let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
         let commissioning = Commissioning::of(&machine, &mut power_on);
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
-        let mut host = Host::new(&machine, power_on, shared, operator_of(&machine));
+        let plant = AnyPlant::new(plant);
+        let mut host = Host::with_plant(&machine, plant, power_on, shared, operator_of(&machine))?;
         // Sessions and the time line repeat what was.
         host.be_exact();
-        let state_folder = machine.root.join(&machine.folder.state);
         let mut station = Station {
             console: Console::new(host.control().mode(), host.control().model()),
-            stored: Settings::default(),
-            speed: 1.0,
-            in_real_time: false,
-            paused: false,
-            steps: Steps::default(),
-            is_on: true,
-            warm_start: WarmStart::default(),
-            timers_us: [0; 3],
-            recorder: None,
-            graphics: Graphics::new(&mut host),
-            past: Past::new(&mut host),
-            waits: Waits::new(&machine),
-            lesson: None,
-            plc: PlcMode::default(),
-            transfers: Transfers::default(),
+            passing: Passing::default(),
+            supply: Supply {
+                is_on: true,
+                warm_start: WarmStart::default(),
+            },
+            instruments: Instruments {
+                plc: PlcMode::default(),
+                graphics: Graphics::new(&mut host),
+                transfers: Transfers::default(),
+            },
+            study: Study {
+                recorder: None,
+                past: Past::new(&mut host),
+                waits: Waits::new(&machine, host.plant()),
+                lesson: None,
+            },
             commissioning,
             shown: Screen::default(),
             host,
             machine,
             programs,
-            settings: Settings::default(),
-            state_folder,
+            chosen: Chosen::default(),
         };
         station.read_settings();
         station.commission();
-        station
+        Ok(station)
     }
 
     /// Whoever lets cycles pass waits for [`Station::rest`] himself; nothing waits for long work while this is set, since
@@ -139,8 +161,8 @@ impl Station {
 
     /// Runs in real time from now on, as fast as the operator chose.
     pub fn run_in_real_time(&mut self) {
-        self.in_real_time = true;
-        self.graphics.run_beside();
+        self.passing.in_real_time = true;
+        self.instruments.graphics.run_beside();
         self.host.set_clock(self.clock());
     }
 
@@ -151,10 +173,7 @@ impl Station {
 
     /// The clock by which the machine runs.
     pub(crate) fn clock(&self) -> Clock {
-        match self.in_real_time {
-            true => Clock::Wall(self.speed),
-            false => Clock::Free,
-        }
+        self.passing.clock()
     }
 
     /// Takes what the operator does, and notes it while a session is recorded.
@@ -165,15 +184,15 @@ impl Station {
         let now_us = self.host.control().time_us();
         self.record_with(|recorder| recorder.note(now_us, input));
         let taken = self.take(input);
-        self.past.settle(&self.host);
+        self.study.past.settle(&self.host);
         taken
     }
 
     /// Does something with the session that is recorded; one that cannot be written ends, and that is said.
     fn record_with(&mut self, write: impl FnOnce(&mut Recorder) -> Result<(), String>) {
-        if let Some(Err(error)) = self.recorder.as_mut().map(write) {
+        if let Some(Err(error)) = self.study.recorder.as_mut().map(write) {
             self.console.say(error);
-            self.recorder = None;
+            self.study.recorder = None;
         }
     }
 
@@ -181,7 +200,9 @@ impl Station {
         match input {
             Input::Key(key) => self.key(*key)?,
             Input::Held(key, down) => {
-                self.warm_start.hold(*key, *down, self.host.control().time_us());
+                self.supply
+                    .warm_start
+                    .hold(*key, *down, self.host.control().time_us());
                 if *down {
                     self.key(*key)?;
                 }
@@ -223,27 +244,27 @@ impl Station {
     /// # Errors
     /// When what survives power-off cannot be written; the machine goes on all the same.
     pub fn cycle(&mut self) -> Result<(), HostError> {
-        self.steps.pass();
+        self.passing.steps.pass();
         // The control begins as after power-on.
-        if self.warm_start.is_due(self.host.control()) {
+        if self.supply.warm_start.is_due(self.host.control()) {
             self.power(false);
             self.console.power_off();
-            self.plc.power_off();
+            self.instruments.plc.power_off();
             self.power(true);
         }
         let keys = self.host.control().oscilloscope();
-        let sampler = self.graphics.scope.sampler(keys);
-        let cycled = self.plc.cycle(&mut self.host, sampler);
+        let sampler = self.instruments.graphics.scope.sampler(keys);
+        let cycled = self.instruments.plc.cycle(&mut self.host, sampler);
         self.follow_plc();
         let is_on = !self.host.control().is_off();
-        if self.is_on && !is_on {
+        if self.supply.is_on && !is_on {
             self.console.power_off();
-            self.plc.power_off();
+            self.instruments.plc.power_off();
         }
-        self.is_on = is_on;
-        self.graphics.cycle(&mut self.host);
+        self.supply.is_on = is_on;
+        self.instruments.graphics.cycle(&mut self.host);
         if is_on {
-            self.count_time();
+            self.chosen.count_time(self.host.control());
         }
         if is_on || self.commissioning.is_some() {
             let (console, mut site) = self.parts();
@@ -257,8 +278,8 @@ impl Station {
         }
         self.follow_commissioning();
         self.record_with(Recorder::keep);
-        self.past.follow(&mut self.host);
-        self.waits.follow(self.host.control());
+        self.study.past.follow(&mut self.host);
+        self.study.waits.follow(self.host.control());
         self.follow_lesson();
         self.store_settings();
         cycled
@@ -268,7 +289,7 @@ impl Station {
     fn tell_screen(&mut self) {
         let control = self.host.control();
         let is_due = control.time_us() % SCREEN_REPORTED_US < u64::from(control.cycle_us());
-        if !is_due || self.past.looks_back() {
+        if !is_due || self.study.past.looks_back() {
             return;
         }
         let has_plc_window = self.plc_window().is_some();
@@ -284,28 +305,28 @@ impl Station {
         let running = self.host.control().plc().program();
         if !Arc::ptr_eq(running, &self.machine.plc) {
             self.machine.plc = Arc::clone(running);
-            self.waits = Waits::new(&self.machine);
+            self.study.waits = Waits::new(&self.machine, self.host.plant());
         }
     }
 
     /// Time stands: the operator lets it, and no cycles are asked for.
     pub fn stands(&self) -> bool {
-        self.paused && !self.steps.wait()
+        self.passing.stands()
     }
 
     /// Cycles that are asked for.
     pub(crate) fn steps(&self) -> &Steps {
-        &self.steps
+        &self.passing.steps
     }
 
     fn pause(&mut self, paused: bool) {
-        self.steps.break_off(StepsEnd::Paused);
-        self.set_going(|station| station.paused = paused);
+        self.passing.steps.break_off(StepsEnd::Paused);
+        self.set_going(|passing| passing.paused = paused);
     }
 
     /// The same as [`Input::Cycles`], for whoever waits for them.
     pub(crate) fn begin_steps(&mut self, cycles: u32) -> Ticket {
-        let ticket = self.steps.clone().ask(cycles);
+        let ticket = self.passing.steps.clone().ask(cycles);
         // They can always be asked for.
         let _ = self.input(&Input::Cycles(cycles));
         ticket
@@ -313,13 +334,13 @@ impl Station {
 
     /// So many cycles are to pass.
     fn ask_for_steps(&mut self, cycles: u32) -> Ticket {
-        self.set_going(|station| station.steps.ask(cycles))
+        self.set_going(|passing| passing.steps.ask(cycles))
     }
 
     /// Time that stood is not made up for when it goes on.
-    fn set_going<T>(&mut self, what: impl FnOnce(&mut Station) -> T) -> T {
+    fn set_going<T>(&mut self, what: impl FnOnce(&mut Passing) -> T) -> T {
         let stood = self.stands();
-        let done = what(self);
+        let done = what(&mut self.passing);
         if stood && !self.stands() {
             self.host.set_clock(self.clock());
         }
@@ -342,7 +363,7 @@ impl Station {
     }
 
     /// The machine's host, to record, save and go back.
-    pub fn host(&mut self) -> &mut Host {
+    pub fn host(&mut self) -> &mut Host<AnyPlant> {
         &mut self.host
     }
 
@@ -361,7 +382,7 @@ impl Station {
     /// [`Input::Transfer`] with `connected 0` or `connected 1`, and then what happens.
     pub fn transfer_orders(&mut self) -> Receiver<TransferOrder> {
         let (sender, orders) = channel();
-        self.transfers.connect(sender);
+        self.instruments.transfers.connect(sender);
         orders
     }
 
@@ -372,7 +393,7 @@ impl Station {
 
     /// Names of the keys of the machine operating panel.
     pub fn machine_keys(&self) -> Vec<String> {
-        self.host.plant().keys().map(str::to_owned).collect()
+        self.host.plant().keys().into_iter().map(str::to_owned).collect()
     }
 
     /// A program run, interrupted or not, has the file of this name.
@@ -402,14 +423,14 @@ impl Station {
 
     /// The screen as it is now. Its serial counts on when it is another one.
     pub fn screen(&mut self) -> &Screen {
-        let mut screen = match self.is_on || self.commissioning.is_some() {
+        let mut screen = match self.supply.is_on || self.commissioning.is_some() {
             true => self.make_screen(),
             false => Screen::default(),
         };
-        screen.timeline = self.past.shown(&self.host);
+        screen.timeline = self.study.past.shown(&self.host);
         screen.why = in_words(&self.why());
         let language = self.language();
-        screen.lesson = self.lesson.as_ref().map(|lesson| lesson.line(language));
+        screen.lesson = self.study.lesson.as_ref().map(|lesson| lesson.line(language));
         screen.machine = self.machine_state();
         screen.time_s = self.host.control().time_us() as f64 / 1e6;
         screen.lamps = self.lamps();
@@ -417,7 +438,7 @@ impl Station {
         screen.serial = self.shown.serial;
         // Time alone makes no other screen.
         self.shown.time_s = screen.time_s;
-        if !self.past.looks_back() {
+        if !self.study.past.looks_back() {
             self.shown.timeline.to_s = screen.timeline.to_s;
             self.shown.timeline.now_s = screen.timeline.now_s;
         }
@@ -433,10 +454,10 @@ impl Station {
             host: &mut self.host,
             machine: &self.machine,
             programs: &self.programs,
-            settings: &mut self.settings,
-            plc: &mut self.plc,
-            graphics: &mut self.graphics,
-            transfers: &mut self.transfers,
+            settings: &mut self.chosen.now,
+            plc: &mut self.instruments.plc,
+            graphics: &mut self.instruments.graphics,
+            transfers: &mut self.instruments.transfers,
         };
         (&mut self.console, site)
     }
@@ -448,11 +469,11 @@ impl Station {
             &snapshot,
             self.host.control(),
             self.parameters(),
-            &self.settings,
+            &self.chosen.now,
             &self.shown.status,
         );
         status.position_type = texts::translate(self.language(), &status.position_type);
-        if self.plc.records() {
+        if self.instruments.plc.records() {
             status.flags.push(RECORDING.to_owned());
         }
         let plc_window = self.plc_window();
@@ -494,22 +515,6 @@ impl Station {
             layout: self.layout(),
             language: self.language(),
             colours: colours::all(self.parameters()),
-        }
-    }
-
-    /// Counts the machine times, which are kept in whole minutes.
-    fn count_time(&mut self) {
-        let control = self.host.control();
-        let runs = control.run_state() == RunState::Running;
-        let turns = control.spindle().actual_rpm.abs() >= 1.0;
-        let cycle_us = u64::from(control.cycle_us());
-        let counters = self.timers_us.iter_mut().zip(&mut self.settings.timers_min);
-        for ((us, minutes), counts) in counters.zip([true, runs, turns]) {
-            *us += if counts { cycle_us } else { 0 };
-            if *us >= MINUTE_US {
-                *us -= MINUTE_US;
-                *minutes += 1;
-            }
         }
     }
 
@@ -560,23 +565,20 @@ impl Station {
     }
 
     fn lamps(&self) -> BTreeMap<String, bool> {
-        let plant = self.host.plant();
-        let names = plant.lamps().map(str::to_owned);
-        names
-            .map(|name| (name.clone(), plant.lamp(&name).unwrap_or(false)))
-            .collect()
+        let lamps = self.host.plant().lamps().into_iter();
+        lamps.map(|(name, lit)| (name.to_owned(), lit)).collect()
     }
 
     fn machine_state(&self) -> MachineState {
         let plant = self.host.plant();
         MachineState {
-            power: self.is_on,
-            emergency_stop: plant.emergency_stop_is_pressed(),
+            power: self.supply.is_on,
+            emergency_stop: plant.stop_chain().pressed,
             knobs: plant.knobs(),
-            held: plant.held_keys().map(str::to_owned).collect(),
+            held: plant.held_keys().into_iter().map(str::to_owned).collect(),
             handwheel: self.handwheel(),
-            speed: self.speed,
-            paused: self.paused,
+            speed: self.passing.speed,
+            paused: self.passing.paused,
         }
     }
 
@@ -596,7 +598,7 @@ impl Station {
             let words = texts::around(self.language(), "the {1} has no key {2}");
             return Err(Refusal(texts::filled(words, &[model.name(), key.name()])));
         }
-        if !self.is_on && self.commissioning.is_none() {
+        if !self.supply.is_on && self.commissioning.is_none() {
             return Ok(());
         }
         let (console, mut site) = self.parts();
@@ -613,7 +615,7 @@ impl Station {
             let pressed = match action {
                 KeyAction::Press => true,
                 KeyAction::Release => false,
-                KeyAction::Tap => !self.host.plant().emergency_stop_is_pressed(),
+                KeyAction::Tap => !self.host.plant().stop_chain().pressed,
             };
             return self.action(if pressed {
                 "emergency press"
@@ -626,7 +628,7 @@ impl Station {
             KeyAction::Release => "release",
             KeyAction::Tap => "tap",
         };
-        self.waits.pressed(name, self.host.control().time_us());
+        self.study.waits.pressed(name, self.host.control().time_us());
         self.action(&format!("key {name} {verb}"))
     }
 
@@ -643,7 +645,7 @@ impl Station {
                 SPEEDS.end()
             )));
         }
-        self.speed = factor;
+        self.passing.speed = factor;
         self.host.set_clock(self.clock());
         Ok(())
     }
@@ -680,12 +682,8 @@ impl Station {
 
     /// What the operator chose is kept as soon as it is another one.
     fn store_settings(&mut self) {
-        if self.settings == self.stored {
-            return;
-        }
-        if let Err(error) = self.settings.write(&self.state_folder) {
+        if let Err(error) = self.chosen.store() {
             self.console.say(error);
         }
-        self.stored = self.settings.clone();
     }
 }

@@ -423,7 +423,7 @@ fn every_machine_has_lessons_and_a_drawer() {
         assert!(screen.messages.is_empty(), "{machine}: {:?}", screen.messages);
         let all = trainee.station.control().first().lacks_reference();
         assert!(!all, "{machine}");
-        let plant = trainee.station.machine().plant.clone();
+        let plant = trainee.station.machine().plant.clone().unwrap();
         for breakable in trainee.station.drawer() {
             for fault in &breakable.faults {
                 let mut plant = plant.clone();
@@ -483,7 +483,7 @@ fn everything_in_the_drawer_can_be_broken_and_repaired() {
     let drawer = trainee.station.drawer();
     let actions: usize = drawer.iter().map(|breakable| breakable.faults.len()).sum();
     assert!(actions > 200, "{actions}");
-    let mut plant = trainee.station.machine().plant.clone();
+    let mut plant = trainee.station.machine().plant.clone().unwrap();
     for breakable in &drawer {
         for fault in &breakable.faults {
             plant.apply(&fault.action).unwrap();

@@ -4,6 +4,7 @@
 
 mod support;
 
+use bahn_host::Operable;
 use bahn_panel::Star;
 use support::Trainee;
 
@@ -312,7 +313,7 @@ fn axis_errors_are_entered_assigned_and_activated() {
     // How far the table of the machine stands from there, mm. The scales of the mill are right.
     let off = |trainee: &mut Trainee| {
         trainee.wait(1.0);
-        trainee.station.host().plant().axis('Y').unwrap().position + 76.8928
+        trainee.station.host().plant().true_axis('Y').unwrap().position + 76.8928
     };
     let close = |is: f64, wanted: f64| assert!((is - wanted).abs() < 0.0005, "{is} is not {wanted}");
     let still = off(&mut trainee);

@@ -36,7 +36,7 @@ fn the_documented_lesson_is_right() {
     let example = page.split("```").nth(1).unwrap();
     let mill = bahn_panel::load(&root.join("machines/mill")).unwrap();
     assert_eq!(
-        check_lesson(&mill.plant, &mill.parameters, example.as_bytes()),
+        check_lesson(mill.simulated().unwrap(), &mill.parameters, example.as_bytes()),
         Ok(())
     );
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use bahn_control::{Command, Dnc, DripFeedState, Message, RunState};
-use bahn_host::{Action, Answer, Host, HostError, Next, Notice, Reader, Source, Stamped};
+use bahn_host::{Action, Answer, Host, HostError, Next, Notice, Operable, Reader, Source, Stamped};
 use bahn_link::dnc::{BlockLine, Drip, DripState, Executing};
 
 /// One look at the line.
@@ -40,9 +40,9 @@ pub struct Wishes {
 }
 
 /// A host and its line.
-pub struct Session<'a> {
+pub struct Session<'a, P> {
     /// The machine.
-    pub host: Host,
+    pub host: Host<P>,
     line: &'a mut dyn BlockLine,
     wishes: Wishes,
     notices: Reader<Stamped>,
@@ -58,9 +58,9 @@ pub struct Session<'a> {
     ran: bool,
 }
 
-impl<'a> Session<'a> {
+impl<'a, P: Operable> Session<'a, P> {
     /// A machine that is on, with the line that its program comes over.
-    pub fn new(host: Host, line: &'a mut dyn BlockLine, wishes: Wishes) -> Session<'a> {
+    pub fn new(host: Host<P>, line: &'a mut dyn BlockLine, wishes: Wishes) -> Session<'a, P> {
         Session {
             notices: host.notices(),
             host,

@@ -92,8 +92,3 @@ pub use speed_loop::SpeedState;
 pub use spindle::settings as spindle_settings;
 pub use spindle::{Ramp, Rotation, SpeedCode, Spindle, Way};
 pub use timing::{OUTPUT_VOLTS, Timing};
-
-/// The example of `docs/plant.md`.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/plant.md")]
-struct PlantOfYourOwn;

@@ -1,7 +1,8 @@
 //! The teacher's drawer: everything of a machine that can be broken, with the action that breaks it and the one that
-//! repairs it. The description of the plant says what there is.
+//! repairs it. What there is, a copy of the plant says: what cannot be done to it is left out, and of a plant without copy
+//! nothing can be broken.
 
-use bahn_host::LoadedMachine;
+use bahn_host::{Action, Operable};
 use bahn_screen::texts::{self, Language};
 use bahn_why::wiring;
 use serde::Serialize;
@@ -89,14 +90,14 @@ const HANDWHEEL: Faults = &[("handwheel unplug", "the handwheel is not plugged i
 
 const GROUPS: [&str; 4] = ["axes and spindle", "things", "inputs", "control and supply"];
 
-/// What can be broken at a machine.
-pub fn of(machine: &LoadedMachine, language: Language) -> Vec<Breakable> {
-    let finder = Finder { machine, language };
+/// What can be broken at a plant.
+pub fn of<P: Operable>(plant: &P, language: Language) -> Vec<Breakable> {
+    let finder = Finder { plant, language };
     let [axes, things, inputs, supply] = GROUPS;
     let in_words = |english| texts::words(language, english);
     let mut found = Vec::new();
-    for axis in machine.plant.axes() {
-        let name = axis.letter.to_string();
+    for letter in plant.axis_letters() {
+        let name = letter.to_string();
         let words = format!("{} {name}", in_words("axis"));
         found.push(finder.breakable(&name, axes, &words, AXIS, &format!("repair {name}")));
         found.push(finder.breakable(&name, axes, &words, OFFSET, &format!("fault offset {name} 0")));
@@ -104,7 +105,7 @@ pub fn of(machine: &LoadedMachine, language: Language) -> Vec<Breakable> {
     }
     found.push(finder.breakable("S", axes, in_words("spindle"), AXIS, "repair S"));
     found.push(finder.breakable("gear", axes, in_words("gear"), THING, "repair gear"));
-    for device in machine.plant.devices() {
+    for device in plant.devices() {
         let name = device.name;
         found.push(finder.breakable(name, things, name, THING, &format!("repair {name}")));
         if let (true, Some(state)) = (device.by_hand, device.state) {
@@ -115,9 +116,9 @@ pub fn of(machine: &LoadedMachine, language: Language) -> Vec<Breakable> {
     found.push(finder.breakable("magazine", things, in_words("magazine"), THING, repair));
     found.push(finder.breakable("magazine", things, in_words("magazine"), MAGAZINE, repair));
     found.push(finder.breakable("probe", things, in_words("touch probe"), PROBE, "repair probe"));
-    for wired in wiring::of(machine) {
+    for wired in plant.wires() {
         let name = &wired.operand;
-        let words = wired.words(machine, language);
+        let words = wiring::in_words(&wired, plant, language);
         found.push(finder.breakable(name, inputs, &words, INPUT, &format!("repair {name}")));
     }
     let voltage = in_words("control voltage");
@@ -132,12 +133,12 @@ pub fn of(machine: &LoadedMachine, language: Language) -> Vec<Breakable> {
     found
 }
 
-struct Finder<'a> {
-    machine: &'a LoadedMachine,
+struct Finder<'a, P> {
+    plant: &'a P,
     language: Language,
 }
 
-impl Finder<'_> {
+impl<P: Operable> Finder<'_, P> {
     /// What the machine does not have is left out.
     fn breakable(
         &self,
@@ -149,8 +150,7 @@ impl Finder<'_> {
     ) -> Breakable {
         let breaking = |(action, words): &(&str, &'static str)| {
             let action = action.replace("{}", name);
-            let is_there = self.machine.plant.clone().apply(&action).is_ok();
-            is_there.then(|| Breaking {
+            can_be_done(self.plant, &action).then(|| Breaking {
                 action,
                 words: texts::words(self.language, words).to_owned(),
             })
@@ -178,6 +178,12 @@ impl Finder<'_> {
             repair: format!("switch {name} {whole}"),
         })
     }
+}
+
+/// Whether a plant has what an action names: it is tried on a copy.
+pub(crate) fn can_be_done<P: Operable>(plant: &P, action: &str) -> bool {
+    let done = |event| plant.copied().map(|mut copy| copy.operate(event));
+    matches!(Action::parse(action), Ok(Action::Event(event, _)) if matches!(done(&event), Some(Ok(()))))
 }
 
 #[cfg(test)]

@@ -5,13 +5,13 @@
 //! - [`timeline`]: any moment since power-on can be gone back to, and from there another way.
 //!
 //! ```no_run
-//! use bahn_host::LoadedMachine;
+//! use bahn_host::{AnyPlant, LoadedMachine};
 //! use bahn_screen::texts::Language;
 //! use bahn_teaching::{drawer, lesson};
 //!
-//! fn choice(machine: &LoadedMachine) -> Vec<String> {
-//!     let lessons = lesson::list(machine, Language::English);
-//!     let broken = drawer::of(machine, Language::English);
+//! fn choice(machine: &LoadedMachine, plant: &AnyPlant) -> Vec<String> {
+//!     let lessons = lesson::list(machine, plant, Language::English);
+//!     let broken = drawer::of(plant, Language::English);
 //!     let titles = lessons.into_iter().map(|(_, title)| title);
 //!     titles.chain(broken.into_iter().map(|thing| thing.words)).collect()
 //! }

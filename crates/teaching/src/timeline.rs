@@ -7,8 +7,9 @@
 use std::collections::VecDeque;
 
 use bahn_control::{Command, RunState};
-use bahn_host::{Action, Course, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline};
-use bahn_machine::{Event, Machine};
+use bahn_host::{
+    Action, AnyPlant, Course, Event, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline,
+};
 use bahn_screen::{BranchLine, MarkKind, TimeLine, TimeMark};
 
 use crate::lesson::LessonRun;
@@ -25,14 +26,20 @@ const MARKS: usize = 256;
 /// A way with everything that belongs to it.
 struct Way {
     course: Course,
-    moments: Timeline<Machine>,
+    moments: Timeline<AnyPlant>,
     marks: Vec<TimeMark>,
     lesson: Option<LessonRun>,
 }
 
 impl Way {
-    fn replay(&self, host: &mut Host, time_us: u64) -> Result<(), HostError> {
-        let saved = self.moments.nearest(time_us).ok_or(HostError::Forgotten)?;
+    fn replay(&self, host: &mut Host<AnyPlant>, time_us: u64) -> Result<(), HostError> {
+        let saved = self
+            .moments
+            .nearest(time_us)
+            .ok_or(match self.moments.is_empty() {
+                true => HostError::StaysWhereItIs,
+                false => HostError::Forgotten,
+            })?;
         host.replay_course(&self.course, saved, time_us)
     }
 }
@@ -47,7 +54,7 @@ struct Branch {
 pub struct Past {
     notices: Reader<Stamped>,
     run: RunState,
-    moments: Timeline<Machine>,
+    moments: Timeline<AnyPlant>,
     marks: Vec<TimeMark>,
     /// While the operator looks back: the way as far as it was gone, and how many actions led to where he looks.
     looks: Option<(Way, u64)>,
@@ -57,7 +64,7 @@ pub struct Past {
 
 impl Past {
     /// The time line of a machine from now on.
-    pub fn new(host: &mut Host) -> Past {
+    pub fn new(host: &mut Host<AnyPlant>) -> Past {
         let mut moments = Timeline::new(EVERY_US, MOMENTS);
         moments.follow(host);
         Past {
@@ -72,7 +79,7 @@ impl Past {
     }
 
     /// To be called after every cycle.
-    pub fn follow(&mut self, host: &mut Host) {
+    pub fn follow(&mut self, host: &mut Host<AnyPlant>) {
         self.go_on(host.control().time_us());
         self.moments.follow(host);
         while let Some(next) = self.notices.next() {
@@ -83,7 +90,7 @@ impl Past {
     }
 
     /// To be called after every input: what the machine was given while the operator looked back leads elsewhere.
-    pub fn settle(&mut self, host: &Host) {
+    pub fn settle(&mut self, host: &Host<AnyPlant>) {
         let given = self.looks.as_ref().map(|(_, given)| *given);
         if given.is_some_and(|given| given != host.given_count()) {
             self.go_on(host.control().time_us());
@@ -122,7 +129,7 @@ impl Past {
     /// When there is no such branch, or its beginning is forgotten; everything stays as it is then.
     pub fn go_to(
         &mut self,
-        host: &mut Host,
+        host: &mut Host<AnyPlant>,
         lesson: &mut Option<LessonRun>,
         time_us: u64,
         branch: Option<u32>,
@@ -148,7 +155,7 @@ impl Past {
         let gone = target
             .map_or(&present, |branch| &branch.way)
             .replay(host, time_us);
-        if let Err(error @ (HostError::Logged | HostError::Forgotten)) = gone {
+        if let Err(error @ (HostError::Logged | HostError::StaysWhereItIs | HostError::Forgotten)) = gone {
             // Nothing has happened.
             let looks = here_us < present.course.end_us();
             self.looks = looks.then(|| (present, host.given_count()));
@@ -166,7 +173,7 @@ impl Past {
     }
 
     /// The machine is on this way now.
-    fn enter(&mut self, host: &Host, lesson: &mut Option<LessonRun>, way: Way) {
+    fn enter(&mut self, host: &Host<AnyPlant>, lesson: &mut Option<LessonRun>, way: Way) {
         let now_us = host.control().time_us();
         self.moments = way.moments.clone();
         self.marks.clone_from(&way.marks);
@@ -190,7 +197,7 @@ impl Past {
     }
 
     /// What is shown of it.
-    pub fn shown(&self, host: &Host) -> TimeLine {
+    pub fn shown(&self, host: &Host<AnyPlant>) -> TimeLine {
         let now_us = host.control().time_us();
         let (to_us, marks) = match &self.looks {
             Some((way, _)) => (way.course.end_us(), &way.marks),
@@ -210,7 +217,7 @@ impl Past {
         }
     }
 
-    fn mark(&mut self, stamped: &Stamped, host: &Host) {
+    fn mark(&mut self, stamped: &Stamped, host: &Host<AnyPlant>) {
         let control = host.control();
         let program = || control.selected_program().unwrap_or_default().to_owned();
         let before = self.run;

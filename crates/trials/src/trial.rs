@@ -62,7 +62,8 @@ pub(crate) fn run_within(
     for channel in &machine.channels {
         operator = operator.with_channel(channel.folder.operator.clone(), None);
     }
-    let mut host = Host::new(machine, power_on, Arc::new(Alone(program)), operator);
+    let mut host = Host::new(machine, power_on, Arc::new(Alone(program)), operator)
+        .map_err(|error| error.to_string())?;
     let mut begun = false;
     loop {
         host.step().map_err(|error| error.to_string())?;

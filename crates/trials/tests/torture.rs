@@ -25,7 +25,7 @@ fn as_found(machine: &str) -> Campaign {
     let mut loaded = support::machine(machine);
     let text = std::fs::read_to_string(loaded.root.join("plant.toml")).unwrap();
     let (without, _) = text.split_once("\n# The touch probe").unwrap();
-    loaded.plant = bahn_machine::Machine::from_toml(without).unwrap();
+    loaded.plant = Some(bahn_machine::Machine::from_toml(without).unwrap());
     of_programs(loaded, programs)
 }
 

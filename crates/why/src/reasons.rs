@@ -3,8 +3,7 @@
 use bahn_control::{AxisState, Control, Message, Mode, RunState, Shown, Snapshot, Waiting};
 use bahn_exchange::signal::{self, SignalOperand};
 use bahn_exchange::{Bit, BitArea};
-use bahn_host::LoadedMachine;
-use bahn_machine::Machine;
+use bahn_host::{LoadedMachine, Operable, Wired};
 use bahn_parameters::MessageId;
 use bahn_path::BlockRef;
 use bahn_screen::texts::{self, Language, filled as fill};
@@ -12,7 +11,7 @@ use bahn_servo::Rotation;
 
 use crate::reason::{Reason, Urgency};
 use crate::trace::{Cause, Trace, Writers};
-use crate::wiring::Wired;
+use crate::wiring;
 
 /// The acknowledgement of the control voltage, X42/4 [000:6149-6228].
 const ACKNOWLEDGEMENT: u16 = 3;
@@ -26,7 +25,7 @@ const SUFFIXES: &str = "XYZ45";
 /// A machine as it is now.
 pub(crate) struct Situation<'a> {
     pub control: &'a Control,
-    pub plant: &'a Machine,
+    pub plant: &'a dyn Operable,
     pub machine: &'a LoadedMachine,
     pub wired: &'a [Wired],
     pub writers: &'a Writers,
@@ -140,15 +139,15 @@ impl Situation<'_> {
 
     /// What keeps the relay of the chain open.
     fn chain(&self) -> Vec<String> {
-        let plant = self.plant;
+        let chain = self.plant.stop_chain();
         let mut causes = Vec::new();
-        if plant.emergency_stop_is_pressed() {
+        if chain.pressed {
             causes.push(self.words("the EMERGENCY STOP button is pressed: release it"));
         }
-        if !plant.has_supply() {
+        if !chain.supply {
             causes.push(self.words("the supply of the control voltage is missing"));
         }
-        if !plant.limit_switches_clear() {
+        if !chain.limits_clear {
             causes.push(self.words("a limit switch of the chain is actuated"));
         }
         if let Some(key) = &self.machine.folder.operator.control_voltage {
@@ -388,7 +387,7 @@ impl Situation<'_> {
             // As if it were pressed: what else keeps the start away?
             for wired in self.wired.iter().filter(|wired| wired.is_key(key)) {
                 if let Ok(bit) = wired.operand.parse::<Bit>() {
-                    image.set_bit(bit, !wired.opens());
+                    image.set_bit(bit, !wired.opens);
                 }
             }
             let trace = Trace {
@@ -457,7 +456,7 @@ impl Situation<'_> {
             .wired
             .iter()
             .filter(|wired| wired.operand == name)
-            .map(|wired| wired.words(self.machine, self.language))
+            .map(|wired| wiring::in_words(wired, self.plant, self.language))
             .collect();
         if !wired.is_empty() {
             return Some(wired.join(", "));

@@ -1,14 +1,13 @@
 //! What is waited for, and since when.
 
 use bahn_control::{Control, RunState, Waiting};
-use bahn_host::{Host, LoadedMachine};
+use bahn_host::{Host, LoadedMachine, Operable, Wired};
 use bahn_path::BlockRef;
 use bahn_screen::texts::Language;
 
 use crate::reason::{Reason, Urgency};
 use crate::reasons::Situation;
 use crate::trace::Writers;
-use crate::wiring::{self, Wired};
 
 /// A key of the panel counts so long as one that was to start something, µs.
 const PRESSED_US: u64 = 20_000_000;
@@ -35,10 +34,10 @@ pub struct Waits {
 }
 
 impl Waits {
-    /// Of a machine.
-    pub fn new(machine: &LoadedMachine) -> Waits {
+    /// Of a machine with its plant.
+    pub fn new(machine: &LoadedMachine, plant: &impl Operable) -> Waits {
         Waits {
-            wired: wiring::of(machine),
+            wired: plant.wires(),
             writers: Writers::of(&machine.plc),
             start: machine.folder.operator.start.clone(),
             waited: Vec::new(),
@@ -96,7 +95,12 @@ impl Waits {
     }
 
     /// The reasons, what is most urgent first.
-    pub fn reasons(&self, host: &Host, machine: &LoadedMachine, language: Language) -> Vec<Reason> {
+    pub fn reasons<P: Operable>(
+        &self,
+        host: &Host<P>,
+        machine: &LoadedMachine,
+        language: Language,
+    ) -> Vec<Reason> {
         let control = host.control();
         let now_us = control.time_us();
         let in_vain = self

@@ -1,22 +1,9 @@
-//! What is wired to the inputs and outputs of the PLC, in words: the description of the plant says where each stands.
+//! What is wired to the inputs and outputs of the PLC, in words: the plant says what each belongs to.
 
-use bahn_host::{LoadedMachine, files};
+use bahn_host::{Operable, Wired};
 use bahn_screen::texts::{self, Language};
 
-/// Something that is wired.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Wired {
-    /// The input or output, as `I24`.
-    pub operand: String,
-    /// The section of the description, as `axis.X`.
-    section: String,
-    /// Its key there.
-    key: String,
-    /// A contact that opens.
-    opens: bool,
-}
-
-/// Keys of the description with their words; `{}` is the name of the section.
+/// Parts and functions of [`Wired`] with their words; `{}` is the name of the part.
 const KEYS: [(&str, &str, &str); 24] = [
     ("axis.", "ready", "drive of {}: ready"),
     ("axis.", "enable", "drive of {}: enable"),
@@ -44,75 +31,31 @@ const KEYS: [(&str, &str, &str); 24] = [
     ("lamps", "", "lamp {}"),
 ];
 
-/// What is wired at a machine, in the order of its description.
-pub fn of(machine: &LoadedMachine) -> Vec<Wired> {
-    let path = machine.root.join(&machine.folder.plant);
-    // Without the text there are only numbers.
-    let text = files::read_description(&path).unwrap_or_default();
-    let text = String::from_utf8_lossy(&text);
-    let mut sections: Vec<&str> = Vec::new();
-    let mut section = "";
-    let lines: Vec<&str> = text.lines().collect();
-    for line in &lines {
-        if let Some(header) = line.trim().strip_prefix('[') {
-            section = header
-                .split(']')
-                .next()
-                .unwrap_or_default()
-                .trim_start_matches('[');
-        }
-        sections.push(section);
-    }
-    let wired = machine.plant.wires().iter().map(|wire| {
-        let at = wire.line.saturating_sub(1);
-        let line = lines.get(at).copied().unwrap_or_default();
-        let before: String = line.chars().take(wire.column).collect();
-        let key = line.split('=').next().unwrap_or_default().trim();
-        Wired {
-            operand: wire.operand.clone(),
-            section: sections.get(at).copied().unwrap_or_default().trim().to_owned(),
-            key: key.trim_matches('"').to_owned(),
-            opens: before.contains("not ") || line.contains(&format!("not {}", wire.operand)),
-        }
+/// What something is that is wired to a plant, in words.
+pub fn in_words(wired: &Wired, plant: &dyn Operable, language: Language) -> String {
+    let known = KEYS.iter().find(|(part, function, _)| {
+        let is_part = match part.ends_with('.') {
+            true => wired.part.starts_with(part),
+            false => wired.part == *part,
+        };
+        is_part && (function.is_empty() || *function == wired.function)
     });
-    wired.collect()
-}
-
-impl Wired {
-    /// It is a contact of this key of the panel.
-    pub fn is_key(&self, name: &str) -> bool {
-        self.section == "keys" && self.key == name
-    }
-
-    /// The contact opens.
-    pub fn opens(&self) -> bool {
-        self.opens
-    }
-
-    /// What it is, in words.
-    pub fn words(&self, machine: &LoadedMachine, language: Language) -> String {
-        let known = KEYS.iter().find(|(section, key, _)| {
-            let is_section = match section.ends_with('.') {
-                true => self.section.starts_with(section),
-                false => self.section == *section,
-            };
-            is_section && (key.is_empty() || *key == self.key)
-        });
-        let Some((section, key, words)) = known else {
-            return format!("{}: {}", self.section, self.key);
-        };
-        let name = match key.is_empty() {
-            true => &self.key,
-            false => self.section.strip_prefix(section).unwrap_or_default(),
-        };
-        let states = machine.plant.device(name).map_or([""; 2], |device| device.states);
-        let text = texts::words(language, words);
-        let text = text.replace("{}", name).replace("{0}", name);
-        let text = text.replace("{1}", states[0]).replace("{2}", states[1]);
-        match self.opens {
-            true => format!("{text} ({})", texts::words(language, "opens")),
-            false => text,
-        }
+    let Some((part, function, words)) = known else {
+        return format!("{}: {}", wired.part, wired.function);
+    };
+    let name = match function.is_empty() {
+        true => &wired.function,
+        false => wired.part.strip_prefix(part).unwrap_or_default(),
+    };
+    let devices = plant.devices();
+    let device = devices.iter().find(|device| device.name == name);
+    let states = device.map_or([""; 2], |device| device.states);
+    let text = texts::words(language, words);
+    let text = text.replace("{}", name).replace("{0}", name);
+    let text = text.replace("{1}", states[0]).replace("{2}", states[1]);
+    match wired.opens {
+        true => format!("{text} ({})", texts::words(language, "opens")),
+        false => text,
     }
 }
 

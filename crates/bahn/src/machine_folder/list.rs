@@ -102,7 +102,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
             return Ok(Outcome::ProgramError);
         }
     };
-    let plant = &machine.plant;
+    let plant = machine.simulated()?;
     let axes: Vec<String> = plant.axes().map(|axis| axis.letter.to_string()).collect();
     let things: Vec<&str> = plant.devices().map(|device| device.name).collect();
     let row = |name: &str, items: Vec<&str>| format!("{name:<10}{}\n", items.join(" "));

@@ -56,7 +56,7 @@ fn load_script(options: &BenchOptions, machine: &LoadedMachine) -> Result<Option
         return Ok(Some(Script::default()));
     };
     let bytes = files::read_table(path)?;
-    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let stage = Stage::machine(machine.simulated()?, &machine.parameters);
     match Script::of(path, &bytes, &stage) {
         Ok(script) => Ok(Some(script)),
         Err(faults) => {

@@ -61,7 +61,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         return Ok(Outcome::WrongUse);
     };
     let shared = Arc::clone(&programs) as Arc<dyn bahn_control::Programs>;
-    let mut host = Host::new(&machine, power_on, shared, operator);
+    let mut host = Host::new(&machine, power_on, shared, operator)?;
     let table = table(options, &machine, &mut host)?;
     if let Some(path) = &options.run.log {
         let program = programs.main_name().unwrap_or("no program");
@@ -104,7 +104,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let mut session = Session::new(host, Play::new(script), executed, recording, patience);
     session.oscilloscope = oscilloscope;
     session.table = table;
-    session.waits = Some(Waits::new(&machine));
+    session.waits = Some(Waits::new(&machine, session.host.plant()));
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(&interrupt);
     progress.begin(blocks);
@@ -133,7 +133,8 @@ fn table(options: &RunMachineOptions, machine: &LoadedMachine, host: &mut Host) 
     if solid.is_some() && host.plant().probe_radius_mm().is_none() {
         return Err(UsageError::new(format!(
             "a solid lies on the table, and {} has no touch probe: [probe] in {}",
-            machine.folder.name, machine.folder.plant
+            machine.folder.name,
+            machine.folder.plant.as_deref().unwrap_or_default()
         )));
     }
     Ok(Table::with(solid, &machine.datum(), host))
@@ -161,7 +162,7 @@ fn load_script(
             path.display()
         ));
     }
-    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let stage = Stage::machine(machine.simulated()?, &machine.parameters);
     Ok(Script::of(path, &bytes, &stage))
 }
 

@@ -50,7 +50,7 @@ impl MachinePlc {
             operator.with_channel(channel.folder.operator.clone(), None)
         });
         let mut plc = MachinePlc {
-            host: Host::new(&machine, PowerOn::fresh(&machine), programs, operator),
+            host: Host::new(&machine, PowerOn::fresh(&machine), programs, operator)?,
             window,
             begin_us: 0,
             begin_scans: 0,

@@ -115,7 +115,6 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "control",
             "exchange",
             "host",
-            "machine",
             "parameters",
             "path",
             "plc",

@@ -40,7 +40,7 @@ impl Loader<'_> {
         folder: &MachineFolder,
         model: ControlModel,
         first: &ParameterList,
-        plant: &Machine,
+        plant: Option<&Machine>,
     ) -> Option<Channels> {
         if folder.channels.len() >= ChannelError::CHANNELS_MAX {
             let line = folder.channels.last().map_or(1, |channel| channel.lines.0);
@@ -158,7 +158,8 @@ impl Loader<'_> {
     }
 
     /// The keys of its operator.
-    fn station(&mut self, channel: &ChannelFolder, plant: &Machine) {
+    fn station(&mut self, channel: &ChannelFolder, plant: Option<&Machine>) {
+        let Some(plant) = plant else { return };
         let keys: Vec<&str> = plant.keys().collect();
         let operator = &channel.operator;
         for name in operator.tool_change.iter().chain([&operator.start]) {

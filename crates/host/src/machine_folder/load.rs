@@ -35,8 +35,8 @@ pub struct LoadedMachine {
     pub plc_messages: Vec<String>,
     /// Texts of PLC dialogues, from 0.
     pub plc_dialogues: Vec<String>,
-    /// The machine at power-on.
-    pub plant: Machine,
+    /// The simulated machine at power-on; `None` where the plant is another one.
+    pub plant: Option<Machine>,
     /// Tools by number; `None` when they come from TOOL DEF.
     pub tools: Option<BTreeMap<u32, Tool>>,
     /// Files that PLC modules and compensation read.
@@ -117,8 +117,9 @@ impl LoadedMachine {
     /// The files that were read, and the lock of the state.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let folder = &self.folder;
-        let named = [&folder.parameters, &folder.plc, &folder.plant].map(Some);
+        let named = [&folder.parameters, &folder.plc].map(Some);
         let further = [
+            &folder.plant,
             &folder.plc_messages,
             &folder.plc_dialogues,
             &folder.compensation,
@@ -131,6 +132,15 @@ impl LoadedMachine {
         let files = named.chain(lists).map(|name| self.root.join(name));
         let lock = self.root.join(&folder.state).join(state::LOCK);
         files.chain(self.tables.iter().cloned()).chain([lock]).collect()
+    }
+
+    /// The simulated machine that the folder describes.
+    ///
+    /// # Errors
+    /// [`HostError::NotSimulated`].
+    pub fn simulated(&self) -> Result<&Machine, HostError> {
+        let name = || HostError::NotSimulated(self.root.display().to_string());
+        self.plant.as_ref().ok_or_else(name)
     }
 
     /// The datum table of `machine.toml`.
@@ -277,9 +287,9 @@ impl Loader<'_> {
         self.nonlinear(&folder.parameters, &parameters, &files);
         let tables = self.nc_memory(&folder, &parameters, &mut files);
         self.further_lists(&mut files, model?);
-        self.agree(&folder, &plant);
+        self.agree(&folder, plant.as_ref());
         let functions = self.functions(&folder, model?);
-        let channels = self.channels(&folder, model?, &parameters, &plant);
+        let channels = self.channels(&folder, model?, &parameters, plant.as_ref());
         let Channels { channels, hand_overs } = channels?;
         for channel in &channels {
             // Tables are those of the axes of the first channel.
@@ -460,15 +470,19 @@ impl Loader<'_> {
         source.compilation.program.take().map(Arc::new)
     }
 
-    fn plant(&mut self, folder: &MachineFolder, model: Option<ControlModel>) -> Option<Machine> {
-        let (path, bytes) = self.read_with("plant", &folder.plant, files::read_description)?;
+    /// The simulated machine, or that there is none; `None` when it is faulty.
+    fn plant(&mut self, folder: &MachineFolder, model: Option<ControlModel>) -> Option<Option<Machine>> {
+        let Some(name) = &folder.plant else {
+            return Some(None);
+        };
+        let (path, bytes) = self.read_with("plant", name, files::read_description)?;
         let text = decode(&bytes);
         match Machine::from_toml(&text) {
             Ok(machine) => {
                 if let Some(model) = model {
                     self.wiring(&path, &text, &machine, model);
                 }
-                Some(machine)
+                Some(Some(machine))
             }
             Err(faults) => {
                 for fault in faults {
@@ -538,8 +552,9 @@ impl Loader<'_> {
         Some(lines)
     }
 
-    /// What must fit between the files.
-    fn agree(&mut self, folder: &MachineFolder, plant: &Machine) {
+    /// What must fit between the files. What another plant has, nobody knows here.
+    fn agree(&mut self, folder: &MachineFolder, plant: Option<&Machine>) {
+        let Some(plant) = plant else { return };
         for (letter, _) in &folder.datum {
             if plant.axis(*letter).is_none() {
                 self.fault_at_key(&letter.to_string(), &format!("the machine has no axis {letter}"));

@@ -20,6 +20,7 @@ pub use load::{LoadedMachine, decode};
 pub use programs::FolderPrograms;
 pub use remembered::{read as read_remembered, write as write_remembered};
 pub use state::{Found, FoundMechanics, State};
+pub use tool_files::tools_fit;
 
 use crate::columns::TableFault;
 

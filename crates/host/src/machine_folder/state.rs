@@ -11,8 +11,8 @@ use bahn_machine::Mechanics;
 
 use super::mechanics::{Found as Place, Moment, Part, bytes, digits, sum_of_text};
 use super::remembered;
-use crate::action::Operable;
 use crate::files::{self, NewFile};
+use crate::operable::Operable;
 use crate::retained::Retained;
 use crate::{HostError, kept};
 

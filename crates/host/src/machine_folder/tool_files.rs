@@ -14,36 +14,40 @@ use crate::{TableForm, files, pocket_table, tool_table};
 /// The tools of a machine; `None` when they come from TOOL DEF.
 pub(super) type Tools = Option<BTreeMap<u32, Tool>>;
 
-impl LoadedMachine {
-    /// Whether another tool or pocket table would fit machine parameters and the other of both [000:9103-9113].
-    ///
-    /// # Errors
-    /// What does not fit.
-    pub fn fits(&self, form: TableForm, text: &str, parameters: &ParameterList) -> Result<(), String> {
-        let sizes = parameters.operation_parameters().tools;
-        let first = |faults: Vec<TableFault>| {
-            faults
-                .first()
-                .map_or_else(String::new, |fault| fault.message.clone())
-        };
-        let read = |name: &Option<String>| {
-            let bytes = files::read_table(&self.root.join(name.as_ref()?)).ok()?;
-            Some(decode(&bytes))
-        };
-        let (tools, pockets) = match form {
-            TableForm::Tool => (Some(text.to_owned()), read(&self.folder.pockets)),
-            TableForm::Pocket => (read(&self.folder.tools), Some(text.to_owned())),
-            _ => return Ok(()),
-        };
-        let Some(tools) = tools else { return Ok(()) };
-        let table = tool_table::parse(&tools).map_err(first)?;
-        tool_table::fits(&tools, &sizes).map_err(first)?;
-        let Some(pockets) = pockets.filter(|_| sizes.pockets > 0) else {
-            return Ok(());
-        };
-        let lines = pocket_table::parse(&pockets).map_err(first)?;
-        pocket_table::fits(&pockets, &lines, &table, &sizes).map_err(first)
-    }
+/// Whether another tool or pocket table of a machine would fit machine parameters and the other of both
+/// [000:9103-9113].
+///
+/// # Errors
+/// What does not fit.
+pub fn tools_fit(
+    machine: &LoadedMachine,
+    form: TableForm,
+    text: &str,
+    parameters: &ParameterList,
+) -> Result<(), String> {
+    let sizes = parameters.operation_parameters().tools;
+    let first = |faults: Vec<TableFault>| {
+        faults
+            .first()
+            .map_or_else(String::new, |fault| fault.message.clone())
+    };
+    let read = |name: &Option<String>| {
+        let bytes = files::read_table(&machine.root.join(name.as_ref()?)).ok()?;
+        Some(decode(&bytes))
+    };
+    let (tools, pockets) = match form {
+        TableForm::Tool => (Some(text.to_owned()), read(&machine.folder.pockets)),
+        TableForm::Pocket => (read(&machine.folder.tools), Some(text.to_owned())),
+        _ => return Ok(()),
+    };
+    let Some(tools) = tools else { return Ok(()) };
+    let table = tool_table::parse(&tools).map_err(first)?;
+    tool_table::fits(&tools, &sizes).map_err(first)?;
+    let Some(pockets) = pockets.filter(|_| sizes.pockets > 0) else {
+        return Ok(());
+    };
+    let lines = pocket_table::parse(&pockets).map_err(first)?;
+    pocket_table::fits(&pockets, &lines, &table, &sizes).map_err(first)
 }
 
 impl Loader<'_> {

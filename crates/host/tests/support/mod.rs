@@ -55,7 +55,7 @@ pub fn host(machine: &LoadedMachine, power_on: PowerOn, blocks: &str) -> Host {
         machine.folder.operator.clone(),
         Some(Job::whole("1.H")),
     );
-    Host::new(machine, power_on, Texts::new(&[("1.H", blocks)]), operator)
+    Host::new(machine, power_on, Texts::new(&[("1.H", blocks)]), operator).unwrap()
 }
 
 /// Steps for so many seconds of the machine.

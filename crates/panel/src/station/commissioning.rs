@@ -2,12 +2,11 @@
 //! and it goes on when the list is whole [000:10011] [000:10050-10066]. And another machine in the place of this one, when
 //! its files are those of a backup.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use bahn_control::{Command, Programs};
 use bahn_host::backup::Restore;
-use bahn_host::{Action, Attendance, LoadedMachine, Operator, PowerOn, Source, State};
+use bahn_host::{Action, PowerOn, Source};
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::texts;
 use bahn_teaching::timeline::Past;
@@ -17,25 +16,7 @@ use super::Station;
 use crate::console::Console;
 use crate::input::Refusal;
 use crate::pages;
-use crate::settings::Settings;
-
-/// The list is entered: the control is off, and what it kept stays as it is.
-pub(super) struct Commissioning {
-    /// Held, so that nobody else switches the machine on.
-    state: Option<State>,
-    /// The editor was presented: the control goes on when it is left.
-    is_presented: bool,
-}
-
-impl Commissioning {
-    /// Takes what the control kept out of its hands, when the list of a machine is to be entered.
-    pub fn of(machine: &LoadedMachine, power_on: &mut PowerOn) -> Option<Commissioning> {
-        machine.to_be_entered.as_ref().map(|_| Commissioning {
-            state: power_on.state.take(),
-            is_presented: false,
-        })
-    }
-}
+use crate::to_enter::{Commissioning, load, operator_of};
 
 impl Station {
     /// Presents the list; without one to be entered nothing happens.
@@ -45,7 +26,7 @@ impl Station {
         }
         let off = Action::Command(0, Command::Power(false));
         let _ = self.host.act(Source::Client("panel".to_owned()), off);
-        self.is_on = false;
+        self.supply.is_on = false;
         let (console, site) = self.parts();
         let presented = pages::commission(&site).map(|page| console.enter(page));
         let is_presented = presented.map_err(|why| console.say(why)).is_ok();
@@ -136,49 +117,32 @@ impl Station {
         }
         self.host.release_state();
         let mut power_on = PowerOn::kept(&machine).map_err(|error| error.to_string())?;
-        self.commissioning = Commissioning::of(&machine, &mut power_on);
-        self.programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
-        let shared = Arc::clone(&self.programs) as Arc<dyn Programs>;
-        self.host
+        let commissioning = Commissioning::of(&machine, &mut power_on);
+        let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
+        let shared = Arc::clone(&programs) as Arc<dyn Programs>;
+        let replaced = self
+            .host
             .replace(&machine, power_on, shared, operator_of(&machine));
-        self.state_folder = machine.root.join(&machine.folder.state);
+        replaced.map_err(|error| error.to_string())?;
+        self.commissioning = commissioning;
+        self.programs = programs;
         self.machine = machine;
-        self.is_on = true;
+        self.supply.is_on = true;
         let control = self.host.control();
         self.console = Console::new(control.mode(), control.model());
         self.read_settings();
-        self.plc.power_off();
-        self.waits = Waits::new(&self.machine);
-        self.past = Past::new(&mut self.host);
+        self.instruments.plc.power_off();
+        self.study.waits = Waits::new(&self.machine, self.host.plant());
+        self.study.past = Past::new(&mut self.host);
         Ok(())
     }
 
     /// What the operator has chosen is what was kept of it; what cannot be read is said.
     pub(super) fn read_settings(&mut self) {
-        let (settings, unread) = Settings::read(&self.state_folder);
-        self.stored = settings.clone();
-        self.settings = settings;
-        if let Some(wrong) = unread {
+        let folder = self.machine.root.join(&self.machine.folder.state);
+        if let Some(wrong) = self.chosen.read(&folder) {
             let words = texts::words(self.language(), "WHAT THE OPERATOR HAS CHOSEN CANNOT BE READ");
             self.console.say(format!("{words}: {wrong}"));
         }
     }
-}
-
-/// Nobody acts at the machine but who has the panel.
-pub(super) fn operator_of(machine: &LoadedMachine) -> Operator {
-    Operator::new(Attendance::Absent, machine.folder.operator.clone(), None)
-}
-
-/// Loads the machine of a folder, with its faults in words. A list of machine parameters that is empty or has faults is
-/// none: it is entered.
-///
-/// # Errors
-/// All faults of all files, one a line.
-pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
-    let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
-    loaded.map_err(|faults| {
-        let lines = faults.iter().map(pages::fault_in_words);
-        lines.collect::<Vec<_>>().join("\n")
-    })
 }

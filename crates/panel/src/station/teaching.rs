@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bahn_host::{Clock, Host, LoadedMachine};
+use bahn_host::{AnyPlant, Clock, Host, LoadedMachine};
 use bahn_screen::texts::Language;
 use bahn_teaching::drawer::{self, Breakable};
 use bahn_teaching::lesson::{self, Driven, LessonRun};
@@ -18,7 +18,7 @@ impl Driven for Station {
         &self.machine
     }
 
-    fn host(&mut self) -> &mut Host {
+    fn host(&mut self) -> &mut Host<AnyPlant> {
         &mut self.host
     }
 
@@ -44,21 +44,24 @@ impl Station {
         self.has_its_list()?;
         // A number that is none is the beginning.
         let time_us = (time_s.max(0.0) * 1e6).round() as u64;
-        let gone = self.past.go_to(&mut self.host, &mut self.lesson, time_us, branch);
+        let gone = self
+            .study
+            .past
+            .go_to(&mut self.host, &mut self.study.lesson, time_us, branch);
         let remark = gone.map_err(Refusal)?;
-        self.steps.break_off(StepsEnd::Elsewhere);
-        self.paused = true;
-        self.is_on = !self.host.control().is_off();
+        self.passing.steps.break_off(StepsEnd::Elsewhere);
+        self.passing.paused = true;
+        self.supply.is_on = !self.host.control().is_off();
         let (mode, model) = (self.host.control().mode(), self.host.control().model());
         self.console.machine_is_elsewhere(mode, model);
-        self.graphics.machine_is_elsewhere();
-        if self.is_on {
+        self.instruments.graphics.machine_is_elsewhere();
+        if self.supply.is_on {
             // The page finds what it shows.
             let (console, mut site) = self.parts();
             console.tick(&mut site);
         }
-        self.waits.forget();
-        self.plc.stop();
+        self.study.waits.forget();
+        self.instruments.plc.stop();
         self.follow_plc();
         remark.map_or(Ok(()), |words| Err(Refusal(words)))
     }
@@ -69,7 +72,7 @@ impl Station {
     /// In words, when the file is there already or cannot be written.
     pub fn record(&mut self, path: &Path) -> Result<(), String> {
         let head = Head::of(&self.machine, self.host.control());
-        self.recorder = Some(Recorder::create(path, &head)?);
+        self.study.recorder = Some(Recorder::create(path, &head)?);
         Ok(())
     }
 
@@ -78,7 +81,7 @@ impl Station {
     /// # Errors
     /// When it cannot be written.
     pub fn end_recording(&mut self) -> Result<(), String> {
-        let Some(recorder) = self.recorder.take() else {
+        let Some(recorder) = self.study.recorder.take() else {
             return Ok(());
         };
         let now_us = self.host.control().time_us();
@@ -87,63 +90,67 @@ impl Station {
 
     /// What the machine waits for, in the language of the dialogue, what is most urgent first.
     pub fn why(&self) -> Vec<Reason> {
-        self.waits.reasons(&self.host, &self.machine, self.language())
+        self.study
+            .waits
+            .reasons(&self.host, &self.machine, self.language())
     }
 
     /// Everything that a teacher can break, and how.
     pub fn drawer(&self) -> Vec<Breakable> {
-        drawer::of(&self.machine, self.language())
+        drawer::of(self.host.plant(), self.language())
     }
 
     /// The lessons of the machine's folder: names and titles; one that cannot be read has its faults as title.
     pub fn lessons(&self) -> Vec<(String, String)> {
-        lesson::list(&self.machine, self.language())
+        lesson::list(&self.machine, self.host.plant(), self.language())
     }
 
     /// The lesson that goes on.
     pub fn lesson(&self) -> Option<&LessonRun> {
-        self.lesson.as_ref()
+        self.study.lesson.as_ref()
     }
 
     /// Begins a lesson, as fast as the machine gets ready for it, or ends the one that goes on. One that cannot be read
     /// changes nothing.
     pub(super) fn begin_lesson(&mut self, name: Option<&str>) -> Result<(), Refusal> {
-        let lesson = name.map(|name| lesson::load(&self.machine, name)).transpose();
+        let lesson = name
+            .map(|name| lesson::load(&self.machine, self.host.plant(), name))
+            .transpose();
         let lesson = lesson.map_err(Refusal)?;
         if lesson.is_some() {
             self.has_its_list()?;
         }
-        self.lesson = None;
+        self.study.lesson = None;
         let Some(lesson) = lesson else {
             return Ok(());
         };
-        self.steps.break_off(StepsEnd::Elsewhere);
+        self.passing.steps.break_off(StepsEnd::Elsewhere);
         self.host.set_clock(Clock::Free);
         let begun = lesson::begin(self, lesson);
         self.host.set_clock(self.clock());
-        self.lesson = Some(begun.map_err(Refusal)?);
+        self.study.lesson = Some(begun.map_err(Refusal)?);
         Ok(())
     }
 
     pub(super) fn hand_in(&mut self) {
-        if let Some(mut lesson) = self.lesson.take() {
+        if let Some(mut lesson) = self.study.lesson.take() {
             let screen = self.screen().clone();
             lesson.hand_in(&mut self.host, &screen);
-            self.lesson = Some(lesson);
+            self.study.lesson = Some(lesson);
         }
     }
 
     /// The lesson looks at what a cycle has changed.
     pub(super) fn follow_lesson(&mut self) {
-        if let Some(mut lesson) = self.lesson.take() {
+        if let Some(mut lesson) = self.study.lesson.take() {
             let screen = lesson.wants_screen(&self.host).then(|| self.screen().clone());
             lesson.follow(&mut self.host, screen.as_ref());
-            self.lesson = Some(lesson);
+            self.study.lesson = Some(lesson);
         }
     }
 
     pub(crate) fn language(&self) -> Language {
         let english = self.machine.parameters.operation_parameters().english;
-        self.settings.language(english)
+        self.chosen.now.language(english)
     }
 }

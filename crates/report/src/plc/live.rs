@@ -56,7 +56,7 @@ impl Live {
         let Some(first) = programs.pop() else {
             return Ok(None);
         };
-        let host = Host::new(machine, power_on, first, operator);
+        let host = Host::new(machine, power_on, first, operator).map_err(|error| error.to_string())?;
         let mut live = Live {
             host,
             play: Play::new(script),

@@ -55,6 +55,11 @@ impl Panel {
         copy(&machines, &folder);
         what(&folder);
         let station = Station::power_on(load(&folder).unwrap()).unwrap();
+        Panel::over(station, folder, tokens)
+    }
+
+    /// That of a station whose folder is removed in the end.
+    pub fn over(station: Station, folder: PathBuf, tokens: Tokens) -> Panel {
         let options = ServerOptions {
             listen: "127.0.0.1:0".parse().unwrap(),
             tokens,
@@ -90,6 +95,15 @@ impl Panel {
             .flat_map(|j| middle(nx).map(move |i| j * nx + i))
             .map(|column| code(&part.heights_mm()[column]))
             .collect()
+    }
+
+    /// What somebody sees who stands at the machine.
+    pub fn at_the_machine<T: Send + 'static>(
+        &self,
+        what: impl FnOnce(&mut Station) -> T + Send + 'static,
+    ) -> T {
+        let link = self.live.as_ref().unwrap().link();
+        link.with(what).unwrap()
     }
 
     /// Memory of this process, which is that of the station and its server, KiB.

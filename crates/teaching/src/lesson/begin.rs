@@ -1,13 +1,14 @@
 //! How a lesson begins: nothing is broken, and the machine is where the task begins.
 
 use bahn_control::{Command, Control, Message, Mode};
-use bahn_host::{Action, LoadedMachine, Source};
+use bahn_host::{Action, AnyPlant, Operable, Source};
 use bahn_machine::OperatorKeys;
 use bahn_parameters::MessageId;
 
 use super::Driven;
 use super::file::{Begin, Lesson};
 use super::player::Player;
+use crate::drawer::can_be_done;
 
 /// The control is off so long.
 const OFF_S: f64 = 2.0;
@@ -44,7 +45,7 @@ pub(super) fn begin(station: &mut dyn Driven, lesson: &Lesson) -> Result<(), Str
 fn switch_on(station: &mut dyn Driven) -> Result<(), String> {
     act(station, "power off");
     wait(station, OFF_S)?;
-    for action in whole(station.machine()) {
+    for action in whole(station.host().plant()) {
         act(station, &action);
     }
     wait(station, PAUSE_S)?;
@@ -53,7 +54,7 @@ fn switch_on(station: &mut dyn Driven) -> Result<(), String> {
 }
 
 /// What puts a machine into the state of its description, as actions.
-fn whole(machine: &LoadedMachine) -> Vec<String> {
+fn whole(plant: &AnyPlant) -> Vec<String> {
     let mut actions: Vec<String> = [
         "repair all",
         "emergency release",
@@ -64,18 +65,16 @@ fn whole(machine: &LoadedMachine) -> Vec<String> {
     ]
     .map(str::to_owned)
     .to_vec();
-    let plant = &machine.plant;
-    actions.extend(plant.keys().map(|key| format!("key {key} release")));
-    for axis in plant.axes() {
-        actions.push(format!("force {} 0", axis.letter));
-        actions.push(format!("fault offset {} 0", axis.letter));
+    actions.extend(plant.keys().iter().map(|key| format!("key {key} release")));
+    for letter in plant.axis_letters() {
+        actions.push(format!("force {letter} 0"));
+        actions.push(format!("fault offset {letter} 0"));
     }
-    let devices = plant
-        .devices()
-        .filter_map(|device| Some((device.name, device.state?)));
+    let devices = plant.devices().into_iter();
+    let devices = devices.filter_map(|device| Some((device.name, device.state?)));
     actions.extend(devices.map(|(name, state)| format!("switch {name} {state}")));
     // What the PLC moves is not moved by hand.
-    actions.retain(|action| plant.clone().apply(action).is_ok());
+    actions.retain(|action| can_be_done(plant, action));
     actions
 }
 

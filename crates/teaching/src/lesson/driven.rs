@@ -1,6 +1,6 @@
 //! What a lesson needs from the station that it runs on.
 
-use bahn_host::{Host, LoadedMachine};
+use bahn_host::{AnyPlant, Host, LoadedMachine};
 
 /// What a lesson drives until its task begins.
 pub trait Driven {
@@ -8,7 +8,7 @@ pub trait Driven {
     fn machine(&self) -> &LoadedMachine;
 
     /// The machine that is on.
-    fn host(&mut self) -> &mut Host;
+    fn host(&mut self) -> &mut Host<AnyPlant>;
 
     /// A contour cycle of the whole station.
     ///

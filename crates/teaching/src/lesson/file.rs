@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use bahn_exchange::parts;
 use bahn_host::{
-    Action, Expectation, FileFault, LoadedMachine, Marked, Script, ScriptAction, Severity, Stage, decode,
+    Action, Expectation, FileFault, Marked, Operable, Script, ScriptAction, Severity, Stage, decode,
 };
-use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
 use bahn_screen::texts::Language;
 
@@ -129,18 +128,14 @@ const SECTIONS: [(&str, Section); 4] = [
 ];
 
 impl Lesson {
-    /// Reads a lesson for a machine.
+    /// Reads a lesson for a machine with its plant.
     ///
     /// # Errors
     /// All faults with their lines.
-    pub fn read(path: &Path, bytes: &[u8], machine: &LoadedMachine) -> Result<Lesson, Vec<FileFault>> {
-        Lesson::of(path, bytes, &machine.plant, &machine.parameters)
-    }
-
-    fn of(
+    pub fn read<P: Operable + Send + Sync + 'static>(
         path: &Path,
         bytes: &[u8],
-        plant: &Machine,
+        plant: &P,
         parameters: &ParameterList,
     ) -> Result<Lesson, Vec<FileFault>> {
         let text = decode(bytes);
@@ -203,7 +198,7 @@ fn name_of(path: &Path) -> String {
 
 struct Reader<'a> {
     path: &'a Path,
-    plant: &'a Machine,
+    plant: &'a dyn Operable,
     faults: Vec<FileFault>,
     lesson: Lesson,
 }
@@ -378,8 +373,12 @@ impl Reader<'_> {
 
 /// Reads a lesson for a machine, for fuzzing; errors name their lines.
 #[doc(hidden)]
-pub fn check_lesson(plant: &Machine, parameters: &ParameterList, bytes: &[u8]) -> Result<(), Vec<u32>> {
-    let read = Lesson::of(Path::new("L.lesson"), bytes, plant, parameters);
+pub fn check_lesson(
+    plant: &bahn_machine::Machine,
+    parameters: &ParameterList,
+    bytes: &[u8],
+) -> Result<(), Vec<u32>> {
+    let read = Lesson::read(Path::new("L.lesson"), bytes, plant, parameters);
     let lines = |faults: Vec<FileFault>| faults.iter().map(|fault| fault.marked.line).collect();
     read.map(drop).map_err(lines)
 }

@@ -9,7 +9,7 @@ mod player;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use bahn_host::{Action, Host, LoadedMachine, Source, files};
+use bahn_host::{Action, AnyPlant, Host, LoadedMachine, Source, files};
 use bahn_screen::texts::{self, Language};
 use bahn_screen::{CheckLine, LessonLine, LessonState, Screen, Window};
 
@@ -76,8 +76,8 @@ pub fn begin(station: &mut dyn Driven, lesson: Lesson) -> Result<LessonRun, Stri
     })
 }
 
-/// The lessons of a machine: names and titles; one that cannot be read has its faults, with file and line, as title.
-pub fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, String)> {
+/// The lessons of a machine, as its plant can do them: names and titles; one that cannot be read has its faults, with file and line, as title.
+pub fn list(machine: &LoadedMachine, plant: &AnyPlant, language: Language) -> Vec<(String, String)> {
     let folder = machine.root.join(FOLDER);
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
@@ -87,7 +87,7 @@ pub fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, String)
     paths.sort();
     let titled = |path: &PathBuf| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        match load(machine, &name) {
+        match load(machine, plant, &name) {
             Ok(lesson) => (lesson.name.clone(), lesson.title.of(language).to_owned()),
             Err(faults) => (name.into_owned(), faults),
         }
@@ -95,17 +95,17 @@ pub fn list(machine: &LoadedMachine, language: Language) -> Vec<(String, String)
     paths.iter().map(titled).collect()
 }
 
-/// Reads a lesson of the machine's folder.
+/// Reads a lesson of the machine's folder, whose plant must have what it names.
 ///
 /// # Errors
 /// In words, each fault with its file and line, when there is none of this name or it has faults.
-pub fn load(machine: &LoadedMachine, name: &str) -> Result<Lesson, String> {
+pub fn load(machine: &LoadedMachine, plant: &AnyPlant, name: &str) -> Result<Lesson, String> {
     if !bahn_screen::programs::is_name(name) {
         return Err(format!("`{name}` is no name of a lesson"));
     }
     let path = machine.root.join(FOLDER).join(format!("{name}.{ENDING}"));
     let bytes = files::read_table(&path).map_err(|error| error.to_string())?;
-    Lesson::read(&path, &bytes, machine).map_err(|faults| {
+    Lesson::read(&path, &bytes, plant, &machine.parameters).map_err(|faults| {
         let line = |fault: &bahn_host::FileFault| {
             format!("{}:{}: {}", path.display(), fault.marked.line, fault.label)
         };
@@ -129,7 +129,7 @@ impl LessonRun {
     }
 
     /// The screen is to be looked at in this cycle.
-    pub fn wants_screen(&self, host: &Host) -> bool {
+    pub fn wants_screen(&self, host: &Host<AnyPlant>) -> bool {
         let now_us = host.control().time_us();
         let cycle_us = u64::from(host.control().cycle_us()).max(1);
         let mut checks = self
@@ -148,7 +148,7 @@ impl LessonRun {
     }
 
     /// To be called after every cycle, with the screen when it is wanted.
-    pub fn follow(&mut self, host: &mut Host, screen: Option<&Screen>) {
+    pub fn follow(&mut self, host: &mut Host<AnyPlant>, screen: Option<&Screen>) {
         if self.now.ended.is_some() {
             return;
         }
@@ -161,7 +161,7 @@ impl LessonRun {
     }
 
     /// The trainee is through: what is still open was not done.
-    pub fn hand_in(&mut self, host: &mut Host, screen: &Screen) {
+    pub fn hand_in(&mut self, host: &mut Host<AnyPlant>, screen: &Screen) {
         self.follow(host, Some(screen));
         if self.now.ended.is_none() {
             self.now.ended = Some(Ended::HandedIn);
@@ -169,7 +169,7 @@ impl LessonRun {
         }
     }
 
-    fn next(&self, host: &mut Host, look: &Look) -> Progress {
+    fn next(&self, host: &mut Host<AnyPlant>, look: &Look) -> Progress {
         let lesson = &self.lesson;
         let mut now = self.now.clone();
         if let Err(why) = now.events.follow(&lesson.events, self.begun_us, host) {
@@ -274,14 +274,14 @@ impl Look {
         }
     }
 
-    fn is_so(&self, check: &Check, host: &Host) -> bool {
+    fn is_so(&self, check: &Check, host: &Host<AnyPlant>) -> bool {
         check
             .conditions
             .iter()
             .all(|condition| self.holds(condition, host))
     }
 
-    fn holds(&self, condition: &Condition, host: &Host) -> bool {
+    fn holds(&self, condition: &Condition, host: &Host<AnyPlant>) -> bool {
         match condition {
             Condition::Machine(expected) => expected.check(host.control(), host.plant()).is_none(),
             Condition::Screen(wanted, there) => {
@@ -293,7 +293,7 @@ impl Look {
     }
 
     /// The trainee has done this since the task began.
-    fn did(&self, wanted: &Action, host: &Host) -> bool {
+    fn did(&self, wanted: &Action, host: &Host<AnyPlant>) -> bool {
         let own = host.given().rev().take_while(|(time, ..)| *time >= self.begun_us);
         let mut own = own.filter(|(_, source, _)| matches!(source, Source::Client(_)));
         own.any(|(_, _, action)| action == wanted)

@@ -1,7 +1,7 @@
 //! What happens in a lesson, and how far it has come: small, so that every state of it is kept for the time line.
 
 use bahn_control::Command;
-use bahn_host::{Action, Answer, Base, Expectation, Host, Line, Script, ScriptAction, Source};
+use bahn_host::{Action, Answer, AnyPlant, Base, Expectation, Host, Line, Script, ScriptAction, Source};
 
 /// How far a script has come.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +38,12 @@ impl Player {
     ///
     /// # Errors
     /// When the machine has not what a line names.
-    pub fn follow(&mut self, script: &Script, begun_us: u64, host: &mut Host) -> Result<bool, String> {
+    pub fn follow(
+        &mut self,
+        script: &Script,
+        begun_us: u64,
+        host: &mut Host<AnyPlant>,
+    ) -> Result<bool, String> {
         let now_us = host.control().time_us().saturating_sub(begun_us);
         let mut conditions = 0;
         let mut did = false;
@@ -65,7 +70,7 @@ impl Player {
         Ok(did)
     }
 
-    fn is_due(&self, line: &Line, now_us: u64, host: &Host) -> bool {
+    fn is_due(&self, line: &Line, now_us: u64, host: &Host<AnyPlant>) -> bool {
         let base_us = match line.base {
             // The start of a program counts as the beginning: a lesson says with a condition that it waits for one.
             Base::PowerOn | Base::Start => Some(0),

@@ -44,7 +44,7 @@ impl Bench {
     /// # Errors
     /// When it does not come to its end by itself.
     pub fn new(machine: &LoadedMachine, program: &str) -> Result<Bench, HostError> {
-        let mut host = host(machine, program);
+        let mut host = host(machine, program)?;
         host.keep_path();
         let mut bench = Bench {
             contours: (0..host.control().channels())
@@ -84,7 +84,7 @@ impl Bench {
                     });
                     every_us *= 2;
                 }
-                bench.moments.push(bench.host.save());
+                bench.moments.extend(bench.host.save());
                 due_us = now + every_us;
             }
             bench.host.step()?;
@@ -169,7 +169,7 @@ impl Programs for ReadOnly {
 }
 
 /// A machine that is switched on for a program, with an operator who stands by.
-fn host(machine: &LoadedMachine, program: &str) -> Host {
+fn host(machine: &LoadedMachine, program: &str) -> Result<Host, HostError> {
     let mut power_on = PowerOn::fresh(machine);
     for (number, channel) in (1..).zip(&mut power_on.channels) {
         channel.programs = Arc::new(ReadOnly(FolderPrograms::of_folder(&machine.programs(number))));

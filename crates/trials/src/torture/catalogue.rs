@@ -78,9 +78,10 @@ pub(super) struct Catalogue {
 }
 
 impl Catalogue {
-    pub fn of(machine: &LoadedMachine) -> Catalogue {
+    /// Of a machine, simulated.
+    pub fn of(machine: &LoadedMachine, plant: &Machine) -> Catalogue {
         let mut found = Finder {
-            plant: &machine.plant,
+            plant,
             mishaps: Vec::new(),
         };
         let others = machine

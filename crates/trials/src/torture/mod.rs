@@ -55,7 +55,7 @@ impl Campaign {
             programs.retain(|name| !others.clone().any(|other| other == name));
         }
         Ok(Campaign {
-            catalogue: Catalogue::of(&machine),
+            catalogue: Catalogue::of(&machine, machine.simulated()?),
             machine,
             programs,
         })

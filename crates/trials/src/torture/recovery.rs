@@ -189,7 +189,7 @@ impl Course<'_> {
                 self.wait(KEY_US)?;
             }
         }
-        if channels.is_empty() && self.anew {
+        if channels.is_empty() && self.power.anew {
             return self.begin_anew();
         }
         if channels.is_empty() {
@@ -264,7 +264,7 @@ impl Course<'_> {
     /// Messages that say why a run does not go on. One that begins anew says again what it says undisturbed: that a tool is
     /// to be changed is no reason.
     fn reported(&self) -> usize {
-        match self.anew {
+        match self.power.anew {
             true => self.unusual,
             false => self.trial.messages.len(),
         }
@@ -273,7 +273,7 @@ impl Course<'_> {
     /// A program that begins anew is not on its way yet.
     fn begins(&self, number: usize) -> bool {
         let state = self.channel(number).map(|channel| channel.run_state());
-        self.anew && state == Some(RunState::Idle)
+        self.power.anew && state == Some(RunState::Idle)
     }
 
     /// A path moves, or has come to its end.
@@ -281,7 +281,7 @@ impl Course<'_> {
         let control = self.control();
         let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
         channels.any(|channel| {
-            channel.has_ended() && !self.anew
+            channel.has_ended() && !self.power.anew
                 || (channel.observe(&Signal::PathSpeed) != 0.0 || is_led(&channel)) && !channel.restores()
         })
     }

@@ -43,10 +43,33 @@ pub(super) struct Course<'a> {
     pub bench: &'a mut Bench,
     pub catalogue: &'a Catalogue,
     notices: Reader<Stamped>,
+    judges: Judges,
+    pub power: Power,
+    paths: Paths,
+    pub trial: Trial,
+    /// Messages that the undisturbed run does not say.
+    pub unusual: usize,
+    cycles: u32,
+}
+
+/// What looks after axes, ways and messages in every cycle.
+#[derive(Default)]
+struct Judges {
     axes: Axes,
     ways: Ways,
     messages: Messages,
-    pub trial: Trial,
+}
+
+impl Judges {
+    /// The control begins anew, or is off.
+    fn restart(&mut self) {
+        self.axes.restart();
+        self.ways.restart();
+    }
+}
+
+/// What is known of the supply, and of what survives without it.
+pub(super) struct Power {
     /// What was written before.
     medium: Medium,
     /// What was remembered when the supply went.
@@ -54,14 +77,44 @@ pub(super) struct Course<'a> {
     starts: u32,
     /// The supply of the control was off: there is no run any more.
     pub anew: bool,
-    /// Messages that the undisturbed run does not say.
-    pub unusual: usize,
-    cycles: u32,
+}
+
+impl Power {
+    fn of(control: &Control) -> Power {
+        Power {
+            medium: Medium::of(control),
+            remembered: None,
+            starts: control.starts(),
+            anew: false,
+        }
+    }
+
+    /// The control has begun anew since it was asked last.
+    fn begins(&mut self, control: &Control) -> bool {
+        let begins = std::mem::replace(&mut self.starts, control.starts()) != control.starts();
+        self.anew |= begins;
+        begins
+    }
+}
+
+/// What the channels follow.
+struct Paths {
     /// The contour of each channel is that of the undisturbed run, and where it was last.
     contours: Vec<(bool, usize)>,
     /// What leads each of them.
     leading: Vec<Leading>,
+    /// How many axes belong to channels.
     owners: usize,
+}
+
+impl Paths {
+    fn of(control: &Control) -> Paths {
+        Paths {
+            contours: vec![(true, 0); control.channels()],
+            leading: vec![Leading::default(); control.channels()],
+            owners: count_axes(control),
+        }
+    }
 }
 
 /// Tries a plan, or a part of what happens in it.
@@ -79,19 +132,12 @@ pub(super) fn run(bench: &mut Bench, catalogue: &Catalogue, plan: &Plan, happeni
     let control = bench.host.control();
     let mut course = Course {
         notices: bench.host.notices(),
-        axes: Axes::default(),
-        ways: Ways::default(),
-        messages: Messages::default(),
+        judges: Judges::default(),
+        power: Power::of(control),
+        paths: Paths::of(control),
         trial: Trial::default(),
-        medium: Medium::of(control),
-        remembered: None,
-        starts: control.starts(),
-        anew: false,
         unusual: 0,
         cycles: 0,
-        contours: vec![(true, 0); control.channels()],
-        leading: vec![Leading::default(); control.channels()],
-        owners: count_axes(control),
         catalogue,
         bench,
     };
@@ -145,7 +191,9 @@ impl Course<'_> {
             kind,
             what: what.to_owned(),
         };
-        self.messages.happens(&happening, self.bench.host.control());
+        self.judges
+            .messages
+            .happens(&happening, self.bench.host.control());
         self.trial.done.push(happening);
         for part in what.split(',') {
             let action = match Action::parse(part.trim()) {
@@ -154,8 +202,8 @@ impl Course<'_> {
             };
             let powers = matches!(action, Action::Command(_, Command::Power(_)));
             if powers && !self.control().is_off() {
-                self.remembered = Some(self.remember());
-                let failed = self.medium.fails(self.control(), self.now());
+                self.power.remembered = Some(self.remember());
+                let failed = self.power.medium.fails(self.control(), self.now());
                 failed.map_err(|values| self.breaks(Rule::Retained, values))?;
             }
             let answer = self.bench.host.act(Source::Script, action);
@@ -165,9 +213,8 @@ impl Course<'_> {
                 Err(error) => return Err(self.breaks(Rule::Alive, format!("{what}: {error}"))),
             }
             if powers && !self.control().is_off() {
-                self.axes.restart();
-                self.ways.restart();
-                if let Some(before) = self.remembered.take()
+                self.judges.restart();
+                if let Some(before) = self.power.remembered.take()
                     && before != self.remember()
                 {
                     let (control, plc) = self.remember();
@@ -204,23 +251,22 @@ impl Course<'_> {
         }
         self.listen()?;
         let control = self.bench.host.control();
-        self.messages.cycle(control)?;
+        self.judges.messages.cycle(control)?;
         let moment = self.moment();
         let (control, plant) = (self.bench.host.control(), self.bench.host.plant());
-        if self.messages.fatal_since == Some(moment.time_us) {
-            self.axes.brake(plant);
+        if self.judges.messages.fatal_since == Some(moment.time_us) {
+            self.judges.axes.brake(plant);
         }
         if moment.on {
             for number in 0..control.channels() {
                 if let Some(channel) = control.channel(number) {
-                    self.axes.channel(channel, &moment)?;
-                    self.ways.channel(channel, plant, &moment)?;
+                    self.judges.axes.channel(channel, &moment)?;
+                    self.judges.ways.channel(channel, plant, &moment)?;
                 }
             }
-            self.axes.distance(plant, &moment)?;
+            self.judges.axes.distance(plant, &moment)?;
         } else {
-            self.axes.restart();
-            self.ways.restart();
+            self.judges.restart();
         }
         self.follow_contours(&moment)?;
         if self.cycles.is_multiple_of(OUTPUTS_EVERY) {
@@ -231,16 +277,15 @@ impl Course<'_> {
 
     fn moment(&mut self) -> Moment {
         let control = self.bench.host.control();
-        let anew = std::mem::replace(&mut self.starts, control.starts()) != control.starts();
-        self.anew |= anew;
+        let anew = self.power.begins(control);
         Moment {
             time_us: control.time_us(),
             cycle_s: f64::from(control.cycle_us()) * 1e-6,
             on: !control.is_off() && !anew,
             loops_closed: control.loops_closed(),
             fatal: is_fatal(control),
-            broken: self.messages.is_broken(),
-            unbraked: self.messages.is_unbraked(),
+            broken: self.judges.messages.is_broken(),
+            unbraked: self.judges.messages.is_unbraked(),
         }
     }
 
@@ -255,10 +300,10 @@ impl Course<'_> {
                 self.trial.messages.push(control.shown_text(&shown));
                 let usual = self.bench.usual.contains(&shown.message);
                 self.unusual += usize::from(!usual);
-                self.messages.shown(&shown, usual, control)?;
+                self.judges.messages.shown(&shown, usual, control)?;
                 let reaction = shown.fault().row().reaction;
                 if matches!(reaction, Reaction::Ramp | Reaction::RampThenOpen) {
-                    self.ways.stops(shown.channel, control.channels());
+                    self.judges.ways.stops(shown.channel, control.channels());
                 }
             }
         }
@@ -269,7 +314,7 @@ impl Course<'_> {
     fn follow_contours(&mut self, moment: &Moment) -> Result<(), Violation> {
         let (control, plant) = (self.bench.host.control(), self.bench.host.plant());
         let undisturbed = self.bench.contours.iter().zip(&self.bench.led);
-        let own = self.contours.iter_mut().zip(&mut self.leading);
+        let own = self.paths.contours.iter_mut().zip(&mut self.paths.leading);
         for (number, ((contour, undisturbed), ((same, hint), leading))) in undisturbed.zip(own).enumerate() {
             let Some(channel) = control.channel(number) else {
                 continue;
@@ -311,10 +356,10 @@ impl Course<'_> {
     /// The PLC is the only one who writes outputs, and every axis belongs to one channel.
     fn look_at_writers(&self) -> Result<(), Violation> {
         let control = self.control();
-        if count_axes(control) != self.owners {
+        if count_axes(control) != self.paths.owners {
             return Err(self.breaks(
                 Rule::Writer,
-                format!("{} axes of {}", count_axes(control), self.owners),
+                format!("{} axes of {}", count_axes(control), self.paths.owners),
             ));
         }
         let outputs = self.bench.host.plant().outputs();

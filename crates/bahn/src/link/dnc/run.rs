@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_control::Mode;
-use bahn_host::{Attendance, Clock, FolderPrograms, Host, Job, LoadedMachine, Operator, PowerOn};
+use bahn_host::{Attendance, Clock, FolderPrograms, Host, Job, LoadedMachine, Operable, Operator, PowerOn};
 use bahn_link::dnc::ProtocolLine;
 use bahn_ports::dnc::{Ended, Session, Wishes};
 
@@ -36,7 +36,7 @@ pub(super) fn command(options: &DncRunOptions) -> Result<Outcome, UsageError> {
     };
     let mut line = ProtocolLine::new(channel, settings);
     let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
-    let host = Host::new(&machine, power_on, programs, operator(options, &machine));
+    let host = Host::new(&machine, power_on, programs, operator(options, &machine))?;
     let interrupt = Interrupt::on_ctrl_c();
     let wishes = Wishes {
         name: options.name.clone(),
@@ -79,7 +79,7 @@ fn operator(options: &DncRunOptions, machine: &LoadedMachine) -> Operator {
     })
 }
 
-fn report(session: &Session, ended: &Ended, options: &DncRunOptions) -> DncReport {
+fn report<P: Operable>(session: &Session<'_, P>, ended: &Ended, options: &DncRunOptions) -> DncReport {
     let control = session.host.control();
     let axes = control.snapshot().axes;
     let position: BTreeMap<char, f64> = axes

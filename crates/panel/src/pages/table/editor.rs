@@ -23,7 +23,7 @@ pub(super) const CELL_MAX: usize = 32;
 pub(super) const WIDTH: usize = 76;
 
 /// Contour cycles after which what tools and PLC have changed is shown.
-pub(super) const RENEWED: u32 = 200;
+const RENEWED: u32 = 200;
 
 /// A table that is edited.
 pub(super) struct TableEditor {
@@ -39,14 +39,50 @@ pub(super) struct TableEditor {
     pub(super) entry: Option<String>,
     /// EDIT ON: keys change cells.
     pub(super) edits: bool,
+    pub(super) asked: Asked,
+    pub(super) fresh: Fresh,
+}
+
+/// What the operator is asked for.
+#[derive(Default)]
+pub(super) struct Asked {
     /// The line that GOTO asks for.
-    pub(super) wanted: Later,
+    pub(super) line: Later,
     /// RESET POCKET TABLE was confirmed.
     pub(super) reset: Later,
+}
+
+/// How new the lines are.
+pub(super) struct Fresh {
     /// The program memory as the file was read.
-    pub(super) version: u64,
+    version: u64,
     /// Cycles until its lines are looked at again.
-    pub(super) rest: u32,
+    rest: u32,
+}
+
+impl Fresh {
+    /// They were read from this state of the program memory.
+    pub(super) fn of(version: u64) -> Fresh {
+        Fresh {
+            version,
+            rest: RENEWED,
+        }
+    }
+
+    /// They were written: this state of the program memory is known.
+    pub(super) fn written(&mut self, version: u64) {
+        self.version = version;
+    }
+
+    /// A cycle has passed; whether they are to be looked at again.
+    pub(super) fn passes(&mut self, version: u64) -> bool {
+        self.rest = self.rest.saturating_sub(1);
+        let is_due = self.version != version || self.rest == 0;
+        if is_due {
+            *self = Fresh::of(version);
+        }
+        is_due
+    }
 }
 
 impl TableEditor {
@@ -72,10 +108,8 @@ impl TableEditor {
             column: 1,
             entry: None,
             edits: true,
-            wanted: Later::default(),
-            reset: Later::default(),
-            version: site.programs.version(),
-            rest: RENEWED,
+            asked: Asked::default(),
+            fresh: Fresh::of(site.programs.version()),
         };
         editor.renew(site)?;
         Ok(editor)
@@ -179,7 +213,7 @@ impl TableEditor {
     /// The new text, when it has no fault, whole or not at all.
     fn store(&mut self, text: String, site: &mut Site) -> Result<(), String> {
         store(&self.name, &self.path, self.form, &text, site)?;
-        self.version = site.programs.version();
+        self.fresh.written(site.programs.version());
         self.text = text;
         Ok(())
     }

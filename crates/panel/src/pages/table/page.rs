@@ -6,7 +6,7 @@ use bahn_parameters::MessageId;
 use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 
 use super::cells::{is_mark, read};
-use super::editor::{CELL_MAX, RENEWED, TableEditor, WIDTH};
+use super::editor::{CELL_MAX, TableEditor, WIDTH};
 use super::{POCKET_FILE, TOOL_FILE, is_open_to_all, pockets, tools};
 use crate::entry::Entry;
 use crate::page::{Overlay, Page, Turn, View};
@@ -94,7 +94,7 @@ impl TableEditor {
         }
         let words = site.words("RESET POCKET TABLE");
         let prompt = format!("{words}: {}", site.words("ERASE = ENT / END = NO ENT"));
-        let reset = self.reset.clone();
+        let reset = self.asked.reset.clone();
         Turn::Open(Choice::confirm(prompt, words, move |_site| {
             reset.set("");
             Turn::Close
@@ -102,7 +102,7 @@ impl TableEditor {
     }
 
     fn goto(&self, site: &Site) -> Turn {
-        self.wanted.ask(site.words("GOTO: NUMBER ="), 8)
+        self.asked.line.ask(site.words("GOTO: NUMBER ="), 8)
     }
 
     /// What the control asks for a column.
@@ -319,12 +319,12 @@ impl Page for TableEditor {
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {
-        if self.reset.take().is_some()
+        if self.asked.reset.take().is_some()
             && let Err(why) = self.reset_pockets(site)
         {
             return Turn::Say(why);
         }
-        if let Some(line) = self.wanted.take() {
+        if let Some(line) = self.asked.line.take() {
             let key = self.shown.names.iter().position(|name| name == self.form.key());
             let is_meant = |row: &Vec<String>| key.and_then(|key| row.get(key)) == Some(&line);
             match self.shown.rows.iter().position(is_meant) {
@@ -332,12 +332,9 @@ impl Page for TableEditor {
                 None => return Turn::Say(site.message(MessageId::EntryValueIncorrect)),
             }
         }
-        self.rest = self.rest.saturating_sub(1);
-        if self.version == site.programs.version() && self.rest > 0 {
+        if !self.fresh.passes(site.programs.version()) {
             return Turn::Done;
         }
-        self.rest = RENEWED;
-        self.version = site.programs.version();
         match read(&self.path) {
             Ok(text) => self.text = text,
             Err(why) => return Turn::CloseSaying(why),

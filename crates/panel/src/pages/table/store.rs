@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bahn_host::{TableForm, files};
+use bahn_host::{TableForm, files, tools_fit};
 use bahn_parameters::MessageId;
 
 use super::{is_of_machine, is_protected};
@@ -25,7 +25,7 @@ pub(super) fn store(
     });
     let of_machine = is_of_machine(name, site);
     let fits = checked.and_then(|()| match of_machine {
-        true => site.machine.fits(form, text, site.parameters()),
+        true => tools_fit(site.machine, form, text, site.parameters()),
         false => Ok(()),
     });
     if let Err(why) = fits {
