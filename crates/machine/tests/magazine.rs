@@ -167,7 +167,7 @@ fn a_tool_probe_has_each_tool_once() {
     let line = text.lines().count() - 2;
     let said: Vec<(usize, &str)> = faults
         .iter()
-        .map(|fault| (fault.line, fault.message.as_str()))
+        .map(|fault| (fault.span.line, fault.message.as_str()))
         .collect();
     assert_eq!(said, [(line, "tool 3 stands here already")]);
 }

@@ -45,6 +45,7 @@ mod citation;
 pub mod conformance;
 mod consistency;
 mod definition;
+mod diagnostic;
 mod error;
 pub mod fault;
 mod fn14;

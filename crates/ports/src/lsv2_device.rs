@@ -5,7 +5,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use bahn_control::{Command, Control, DataLineEvent, HostEvent, Mode, RunState, Shown};
 use bahn_exchange::{Bit, BitArea, Image};
-use bahn_host::{LoadedMachine, PlainTable, TableForm, TextTable, decode, files};
+use bahn_host::{LoadedMachine, PlainTable, TableForm, TextTable, files};
 use bahn_link::lsv2::{
     Area, Device, ErrorNumber, Event, EventKind, Execution, Features, Identity, Message, PlcMessage,
     ProgramState, Run, Tool,
@@ -16,6 +16,7 @@ use bahn_panel::{Input, Key, Link, Station};
 use bahn_parameters::{Definition, ListText, ParameterId};
 use bahn_path::Axis;
 use bahn_plc::HostMessage;
+use bahn_text::decode;
 
 use crate::lsv2_log::LogBook;
 use crate::lsv2_screen;

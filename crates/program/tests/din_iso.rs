@@ -225,7 +225,7 @@ fn fault(text: &str) -> (MessageId, u32, u32) {
     match (read.block.operation, read.faults.first()) {
         (Operation::Invalid(invalid), Some(fault)) => {
             assert_eq!(*fault, invalid.error, "{text}");
-            (fault.message, fault.column, fault.length)
+            (fault.message, fault.span.column, fault.span.length)
         }
         other => panic!("{text}: {other:?}"),
     }
@@ -286,7 +286,10 @@ fn blocks_have_a_length() {
             let all = program.diagnostics(Some(model.limits().into()));
             assert_eq!(all.len(), faults, "{all:?}");
             if let Some(fault) = all.first() {
-                assert_eq!((fault.line, fault.column, fault.length), (2, max as u32 + 1, 1));
+                assert_eq!(
+                    (fault.span.line, fault.span.column, fault.span.length),
+                    (2, max as u32 + 1, 1)
+                );
             }
         }
     }

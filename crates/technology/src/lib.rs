@@ -63,9 +63,9 @@ mod settings;
 mod synch;
 
 pub use bounds::Bounds;
-pub use list::{ChannelList, ListFault};
+pub use list::ChannelList;
 pub use nc::NcPrograms;
-pub use plc::{PlcMemory, Script, ScriptError, WINDOW_BYTES};
+pub use plc::{PlcMemory, Script, WINDOW_BYTES};
 pub use report::{
     Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, Skipped, ToGo, Value, Wait, Warning,
 };

@@ -49,7 +49,7 @@ pub fn of(machine: &LoadedMachine) -> Vec<Wired> {
     let path = machine.root.join(&machine.folder.plant);
     // Without the text there are only numbers.
     let text = files::read_description(&path).unwrap_or_default();
-    let text = String::from_utf8_lossy(&text);
+    let text = bahn_text::decode(&text);
     let mut sections: Vec<&str> = Vec::new();
     let mut section = "";
     let lines: Vec<&str> = text.lines().collect();
@@ -64,9 +64,9 @@ pub fn of(machine: &LoadedMachine) -> Vec<Wired> {
         sections.push(section);
     }
     let wired = machine.plant.wires().iter().map(|wire| {
-        let at = wire.line.saturating_sub(1);
+        let at = (wire.span.line as usize).saturating_sub(1);
         let line = lines.get(at).copied().unwrap_or_default();
-        let before: String = line.chars().take(wire.column).collect();
+        let before: String = line.chars().take(wire.span.column as usize).collect();
         let key = line.split('=').next().unwrap_or_default().trim();
         Wired {
             operand: wire.operand.clone(),

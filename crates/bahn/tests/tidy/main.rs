@@ -4,6 +4,7 @@
 mod names;
 mod rooms;
 mod source;
+mod texts;
 mod uses;
 mod wholes;
 mod words;

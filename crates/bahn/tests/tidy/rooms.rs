@@ -3,27 +3,32 @@
 /// The rooms from the ground floor up: a room may only use rooms that stand before it here and are named
 /// after it.
 pub const ROOMS: &[(&str, &[&str])] = &[
+    ("text", &[]),
     ("path", &[]),
     ("picture", &[]),
     ("browser", &[]),
     ("servo", &[]),
-    ("parameters", &["path", "servo"]),
-    ("program", &["path", "parameters"]),
+    ("parameters", &["text", "path", "servo"]),
+    ("program", &["text", "path", "parameters"]),
     ("dialogue", &["path", "parameters", "program"]),
     ("reader", &["path", "parameters", "program"]),
-    ("interpreter", &["path", "parameters", "program", "reader"]),
+    (
+        "interpreter",
+        &["text", "path", "parameters", "program", "reader"],
+    ),
     ("motion", &["path"]),
-    ("din", &["path"]),
+    ("din", &["text", "path"]),
     ("nc", &["path", "parameters", "program", "reader", "din"]),
-    ("technology", &["path", "motion", "din"]),
+    ("technology", &["text", "path", "motion", "din"]),
     ("workpiece", &["path", "picture"]),
     ("viewer", &["path", "workpiece"]),
     ("exchange", &[]),
-    ("plc", &["exchange", "parameters"]),
+    ("plc", &["text", "exchange", "parameters"]),
     ("convert", &["path", "parameters", "program", "interpreter"]),
     (
         "lsp",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -36,7 +41,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "convert",
         ],
     ),
-    ("machine", &["servo"]),
+    ("machine", &["text", "servo"]),
     ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
     (
         "control",
@@ -56,6 +61,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "host",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -73,6 +79,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "trials",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -87,7 +94,15 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("link", &["parameters", "program", "control", "host"]),
     (
         "screen",
-        &["parameters", "program", "dialogue", "reader", "control", "host"],
+        &[
+            "text",
+            "parameters",
+            "program",
+            "dialogue",
+            "reader",
+            "control",
+            "host",
+        ],
     ),
     (
         "graphics",
@@ -110,6 +125,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "why",
         &[
+            "text",
             "control",
             "exchange",
             "host",
@@ -124,6 +140,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "teaching",
         &[
+            "text",
             "control",
             "exchange",
             "host",
@@ -136,6 +153,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "panel",
         &[
+            "text",
             "control",
             "dialogue",
             "exchange",
@@ -157,6 +175,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "ports",
         &[
+            "text",
             "path",
             "picture",
             "parameters",
@@ -172,6 +191,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "report",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -197,6 +217,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "bahn",
         &[
+            "text",
             "path",
             "parameters",
             "program",

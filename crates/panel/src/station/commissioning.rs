@@ -11,6 +11,7 @@ use bahn_host::{Action, Attendance, LoadedMachine, Operator, PowerOn, Source, St
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::texts;
 use bahn_teaching::timeline::Past;
+use bahn_text::Diagnostic;
 use bahn_why::Waits;
 
 use super::Station;
@@ -178,7 +179,7 @@ pub(super) fn operator_of(machine: &LoadedMachine) -> Operator {
 pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
     let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
     loaded.map_err(|faults| {
-        let lines = faults.iter().map(pages::fault_in_words);
+        let lines = faults.iter().map(Diagnostic::words);
         lines.collect::<Vec<_>>().join("\n")
     })
 }

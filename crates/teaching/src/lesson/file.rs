@@ -1,14 +1,13 @@
 //! Lessons as text files. `docs/lessons.md` tells how one is written.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bahn_exchange::parts;
-use bahn_host::{
-    Action, Expectation, FileFault, LoadedMachine, Marked, Script, ScriptAction, Severity, Stage, decode,
-};
+use bahn_host::{Action, Expectation, LoadedMachine, Script, ScriptAction, Stage};
 use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
 use bahn_screen::texts::Language;
+use bahn_text::{Diagnostic, Span, decode};
 
 /// A text in the languages of the panel; what has no German text is said in English.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -133,7 +132,7 @@ impl Lesson {
     ///
     /// # Errors
     /// All faults with their lines.
-    pub fn read(path: &Path, bytes: &[u8], machine: &LoadedMachine) -> Result<Lesson, Vec<FileFault>> {
+    pub fn read(path: &Path, bytes: &[u8], machine: &LoadedMachine) -> Result<Lesson, Vec<Diagnostic>> {
         Lesson::of(path, bytes, &machine.plant, &machine.parameters)
     }
 
@@ -142,9 +141,8 @@ impl Lesson {
         bytes: &[u8],
         plant: &Machine,
         parameters: &ParameterList,
-    ) -> Result<Lesson, Vec<FileFault>> {
+    ) -> Result<Lesson, Vec<Diagnostic>> {
         let text = decode(bytes);
-        let text = text.trim_start_matches('\u{feff}');
         let mut reader = Reader {
             path,
             plant,
@@ -204,7 +202,7 @@ fn name_of(path: &Path) -> String {
 struct Reader<'a> {
     path: &'a Path,
     plant: &'a Machine,
-    faults: Vec<FileFault>,
+    faults: Vec<Diagnostic>,
     lesson: Lesson,
 }
 
@@ -339,22 +337,11 @@ impl Reader<'_> {
         if self.faults.len() > MANY {
             return;
         }
-        self.faults.push(FileFault {
-            severity: Severity::Error,
-            title: "the lesson is wrong".to_owned(),
-            path: PathBuf::from(self.path),
-            marked: Marked {
-                line: number,
-                text: line.to_owned(),
-                columns: None,
-            },
-            label,
-            help: None,
-            opened: None,
-        });
+        let fault = Diagnostic::error(Span::line(number as usize), "the lesson is wrong");
+        self.faults.push(fault.with_detail(label).at(self.path, line));
     }
 
-    fn finish(mut self) -> Result<Lesson, Vec<FileFault>> {
+    fn finish(mut self) -> Result<Lesson, Vec<Diagnostic>> {
         let lesson = &self.lesson;
         let missing = [
             (lesson.title.english.is_empty(), "it has no `title:`"),
@@ -369,7 +356,7 @@ impl Reader<'_> {
         match self.faults.is_empty() {
             true => Ok(self.lesson),
             false => {
-                self.faults.sort_by_key(|fault| fault.marked.line);
+                self.faults.sort_by_key(|fault| fault.span.line);
                 Err(self.faults)
             }
         }
@@ -380,6 +367,6 @@ impl Reader<'_> {
 #[doc(hidden)]
 pub fn check_lesson(plant: &Machine, parameters: &ParameterList, bytes: &[u8]) -> Result<(), Vec<u32>> {
     let read = Lesson::of(Path::new("L.lesson"), bytes, plant, parameters);
-    let lines = |faults: Vec<FileFault>| faults.iter().map(|fault| fault.marked.line).collect();
+    let lines = |faults: Vec<Diagnostic>| faults.iter().map(|fault| fault.span.line).collect();
     read.map(drop).map_err(lines)
 }
