@@ -348,7 +348,7 @@ proptest! {
             let mut nc = bahn_plc::TestNc::new(list);
             for _ in 0..3 {
                 if let Err(error) = machine.scan(&mut exchange, &mut nc) {
-                    prop_assert!(error.error.number() >= 50 && error.span.line > 0);
+                    prop_assert!(error.error.number() >= 50 && error.line > 0);
                     break;
                 }
             }

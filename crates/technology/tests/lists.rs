@@ -121,7 +121,7 @@ fn the_later_line_counts() {
         b"m_synch[5] MOS\n\nspindel[0].m3_sync 2\nm_synch[5] 2\nspindle[0].m3_synch 4\n",
     );
     let warnings = list.warnings().iter();
-    let reported: Vec<(usize, &str)> = warnings
+    let reported: Vec<(u32, &str)> = warnings
         .map(|fault| (fault.span.line, fault.message.as_str()))
         .collect();
     assert_eq!(

@@ -159,7 +159,7 @@ fn bits_of_backward_motion_need_a_type() {
         let list = ChannelList::from_bytes(format!("m_synch[7] MOS\nm_synch[8] {bit}\n").as_bytes());
         let errors = list.errors();
         assert_eq!(errors.len(), 1, "{bit}: {errors:?}");
-        assert_eq!((errors[0].line, errors[0].column), (2, 12));
+        assert_eq!((errors[0].span.line, errors[0].span.column), (2, 12));
         assert!(
             errors[0].message.contains("needs a type"),
             "{}",

@@ -352,7 +352,7 @@ mod tests {
     #[test]
     fn it_is_said_which_line_of_a_spindle_function_counts() {
         let both = "spindel[0].m3_synch MVS_SVS\nm_synch[3] MVS_SVS\n";
-        let warnings_of = |text: &str| -> Vec<(usize, String)> {
+        let warnings_of = |text: &str| -> Vec<(u32, String)> {
             let found = list(text);
             assert!(found.errors().is_empty(), "{:?}", found.errors());
             let warnings = found.warnings().iter();
