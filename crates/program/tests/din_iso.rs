@@ -225,7 +225,7 @@ fn fault(text: &str) -> (MessageId, u32, u32) {
     match (read.block.operation, read.faults.first()) {
         (Operation::Invalid(invalid), Some(fault)) => {
             assert_eq!(*fault, invalid.error, "{text}");
-            (fault.message, fault.span.column, fault.span.length)
+            (fault.message, fault.column, fault.length)
         }
         other => panic!("{text}: {other:?}"),
     }

@@ -144,7 +144,10 @@ fn lists_of_other_systems() {
         (latin.errors().len(), latin.settings().m.get(1).unwrap().lead),
         (1, 5)
     );
-    assert_eq!((latin.errors()[0].span.line, latin.errors()[0].span.column), (2, 7));
+    assert_eq!(
+        (latin.errors()[0].span.line, latin.errors()[0].span.column),
+        (2, 7)
+    );
 }
 
 /// Every fault stands at its line and column, and does not keep the others from being found.

@@ -6,24 +6,30 @@ use std::path::PathBuf;
 use crate::root;
 use crate::source::{code_of, source_files};
 
-/// Marks of bytes that somebody turns into the text of a file: a byte order mark, one character for each byte.
-const DECODING: &[&str] = &[
-    "\\u{feff}",
-    "\\xef\\xbb\\xbf",
-    "\\xEF\\xBB\\xBF",
-    "char::from(*byte)",
-    "copied().map(char::from)",
-];
+/// Byte order marks: who knows them decodes files by itself.
+const MARKS: &[&str] = &["\\u{feff}", "\\xef\\xbb\\xbf", "\\xEF\\xBB\\xBF"];
 
 /// Files with such marks, and why.
-const NO_DECODING: &[(&str, &str)] = &[
+const NOT_DECODED: &[(&str, &str)] = &[
     ("dialogue/src/entry.rs", "characters that no text of a block has"),
     ("dialogue/src/typing.rs", "characters that no text of a block has"),
-    ("report/src/shelf/csv.rs", "a table that is written with a mark"),
 ];
 
 /// Types with a place in a file of their own, and why.
-const OWN_PLACES: &[(&str, &str)] = &[];
+const OWN_PLACES: &[(&str, &str)] = &[
+    ("bahn/src/check/report.rs: Entry", "what JSON says"),
+    ("bahn/src/diagnostics.rs: Item", "what JSON says"),
+    ("bahn/src/mp/check.rs: Item", "what JSON says"),
+    ("bahn/src/refused.rs: FaultReport", "what JSON says"),
+    ("bahn/src/table/check.rs: Item", "what JSON says"),
+    ("report/src/plc/list.rs: Entry", "what JSON says"),
+    ("panel/src/pages/plc/editor.rs: Editor", "where the cursor stands"),
+    (
+        "plc/src/compile/report.rs: Place",
+        "a word whose length nobody knows yet",
+    ),
+    ("program/src/error.rs: BlockError", "a place within a block"),
+];
 
 /// The source files of all rooms but `text`, with their names below `crates`.
 fn others() -> impl Iterator<Item = (String, PathBuf)> {
@@ -41,10 +47,10 @@ fn others() -> impl Iterator<Item = (String, PathBuf)> {
 #[test]
 fn bytes_become_text_in_one_room() {
     let mut faults = Vec::new();
-    let mut known: Vec<&str> = NO_DECODING.iter().map(|(file, _)| *file).collect();
+    let mut known: Vec<&str> = NOT_DECODED.iter().map(|(file, _)| *file).collect();
     for (name, file) in others() {
         let code = code_of(&file);
-        let found = DECODING.iter().filter(|mark| code.contains(**mark));
+        let found = MARKS.iter().filter(|mark| code.contains(**mark));
         let found: Vec<_> = found.map(|mark| format!("{name} has {mark}")).collect();
         match known.iter().position(|known| *known == name) {
             Some(at) if !found.is_empty() => drop(known.remove(at)),
