@@ -507,7 +507,7 @@ fn a_fault_ends_the_program() {
     let reported: Vec<(u32, String)> = program
         .faults()
         .into_iter()
-        .map(|fault| (fault.line, fault.message))
+        .map(|fault| (fault.span.line, fault.message))
         .collect();
     assert_eq!(
         reported,

@@ -42,8 +42,8 @@ fn is_as_read(edited: &Program) {
             "{text:?}"
         );
         assert_eq!(
-            edited.text_of_line(found.span.line),
-            read.text_of_line(found.span.line),
+            edited.text_of_line(found.line),
+            read.text_of_line(found.line),
             "{text:?}"
         );
     }
