@@ -1,7 +1,7 @@
 //! What is wrong at a place of a file, whatever its language.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::span::Span;
 
@@ -167,11 +167,6 @@ impl Diagnostic {
             0 => exactly.to_owned(),
             line => format!("line {line}: {exactly}"),
         }
-    }
-
-    /// Whether it is one of this file.
-    pub fn is_of(&self, file: &Path) -> bool {
-        self.file == file
     }
 }
 
