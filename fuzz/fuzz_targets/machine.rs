@@ -14,7 +14,7 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|text: &str| {
     let (description, events) = text.split_once("%%%").unwrap_or((text, ""));
     match Machine::from_toml(description) {
-        Err(faults) => assert!(faults.iter().all(|fault| fault.line >= 1 && fault.column >= 1)),
+        Err(faults) => assert!(faults.iter().all(|fault| fault.span.line >= 1 && fault.span.column >= 1)),
         Ok(mut machine) => {
             machine.set_control_ready(true);
             for event in events.lines().take(100) {

@@ -8,8 +8,8 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|bytes: &[u8]| {
     let list = ChannelList::from_bytes(bytes);
     for fault in list.errors().iter().chain(list.warnings()) {
-        assert!(fault.line >= 1 && fault.column >= 1);
-        assert!(fault.column <= list.line(fault.line).chars().count() + 1);
+        assert!(fault.span.line >= 1 && fault.span.column >= 1);
+        assert!(fault.span.column as usize <= list.line(fault.span.line as usize).chars().count() + 1);
     }
     let written = list.settings().to_list();
     let again = ChannelList::from_bytes(written.as_bytes());

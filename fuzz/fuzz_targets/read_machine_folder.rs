@@ -13,5 +13,5 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
     let (_, faults) = MachineFolder::read(text);
-    assert!(faults.iter().all(|fault| fault.line >= 1 && fault.column >= 1));
+    assert!(faults.iter().all(|fault| fault.span.line >= 1 && fault.span.column >= 1));
 });

@@ -11,7 +11,7 @@ fuzz_target!(|data: (u8, f64, &[u8])| {
     let mut text = ListText::from_bytes(model, bytes);
     assert_eq!(text.to_bytes(), bytes);
     for fault in text.all_faults() {
-        assert!(fault.column <= text.line(fault.line).chars().count() + 1);
+        assert!(fault.span.column as usize <= text.line(fault.span.line as usize).chars().count() + 1);
     }
     let mut list = ParameterList::smallest(model);
     list.take(&text);

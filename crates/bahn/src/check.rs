@@ -10,9 +10,10 @@ use std::sync::Arc;
 
 use bahn_interpreter::{Complete, Examination, Found, Settings, examine};
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_program::{Diagnostic as Fault, Program, Severity, Uncounted};
+use bahn_program::{Fault, Program, Uncounted};
+use bahn_text::{Diagnostic, Severity, Span};
 
-use crate::diagnostics::{self, FileFault, Marked};
+use crate::diagnostics;
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Interrupt;
 use crate::options::{CheckOptions, Format};
@@ -80,12 +81,11 @@ pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<C
         complete,
         ..
     } = examination;
-    let count = |severity| {
-        found
-            .iter()
-            .filter(|found| found.fault.severity == severity)
-            .count()
-    };
+    let found: Vec<Diagnostic> = found
+        .iter()
+        .filter_map(|found| diagnostic(found, &programs, path, how.settings.model))
+        .collect();
+    let count = |severity| found.iter().filter(|found| found.severity == severity).count();
     let report = CheckReport {
         file: path.to_string_lossy().into_owned(),
         blocks: match complete {
@@ -95,15 +95,11 @@ pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<C
         errors: count(Severity::Error) + more.errors,
         warnings: count(Severity::Warning) + more.warnings,
         complete: complete == Complete::Yes,
-        diagnostics: found
-            .iter()
-            .map(|found| entry(found, &programs, how.settings.model))
-            .collect(),
+        diagnostics: found.iter().map(Entry::from).collect(),
     };
     if how.format == Format::Text {
-        for found in found.iter().take(diagnostics::PRINTED_MAX) {
-            print(found, &programs, path, how.settings.model);
-        }
+        let shown = found.iter().take(diagnostics::PRINTED_MAX);
+        shown.for_each(diagnostics::print_fault);
         summary(&report, complete);
     }
     Ok(report)
@@ -115,63 +111,26 @@ fn examined(program: Arc<Program>, settings: &Settings, interrupt: &Interrupt) -
     examine(program, settings.clone(), library, &interrupt.flag())
 }
 
-fn entry(found: &Found, programs: &[Arc<Program>], model: ControlModel) -> Entry {
-    let fault = &found.fault;
-    let program = programs.get(found.program);
-    Entry {
-        severity: match fault.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        },
-        message: found.title(model).to_owned(),
-        program: program.map_or(String::new(), |program| files::short_name(program).to_owned()),
-        block: program.map_or(fault.block, |program| program.number_of(fault.block)),
-        line: fault.line,
-        column: fault.column,
-        length: fault.length,
-        detail: fault.detail.to_string(),
-        help: found.help().unwrap_or_default().to_owned(),
-    }
-}
-
-fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlModel) {
-    let fault = &found.fault;
-    let Some(program) = programs.get(found.program) else {
-        return;
-    };
-    let number = program.number_of(fault.block);
+/// A fault at its place in the file that was examined, or in one beside it.
+fn diagnostic(
+    found: &Found,
+    programs: &[Arc<Program>],
+    path: &Path,
+    model: ControlModel,
+) -> Option<Diagnostic> {
+    let program = programs.get(found.program)?;
     let path: PathBuf = match found.program {
         0 => path.to_owned(),
         // Called programs lie beside their caller.
         _ => path.with_file_name(files::short_name(program)),
     };
-    diagnostics::print_fault(&FileFault {
-        severity: match fault.severity {
-            Severity::Error => diagnostics::Severity::Error,
-            Severity::Warning => diagnostics::Severity::Warning,
-        },
-        title: found.title(model).to_owned(),
-        path,
-        marked: Marked {
-            line: fault.line,
-            text: program.text_of_line(fault.line),
-            columns: Some((fault.column, fault.length)),
-        },
-        label: match &*fault.detail {
-            "" => format!("block {number}"),
-            detail => format!("block {number}: {detail}"),
-        },
-        help: found.help().map(str::to_owned),
-        opened: None,
-    });
+    Some(found.diagnostic(program, model, &path))
 }
 
 /// A fault of the whole file, which holds nothing to be examined.
 fn nothing(program: Arc<Program>, message: MessageId, detail: &str) -> Examination {
     let fault = Fault {
-        line: 1,
-        column: 1,
-        length: 1,
+        span: Span::new(1, 1, 1),
         ..program.diagnostic(message, Severity::Error, 0, "", detail)
     };
     Examination {

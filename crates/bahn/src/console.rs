@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use crate::diagnostics::{self, printable_lines};
+use bahn_text::printable_lines;
+
+use crate::diagnostics;
 use crate::{UsageError, refused};
 
 /// Prints text for people to standard output. Names and texts in it may come from anywhere: nothing in it steers the

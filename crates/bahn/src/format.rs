@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use bahn_program::{FormatOptions, Program, format_program};
 
-use crate::diagnostics::printable;
 use crate::files::{self, Loaded, NewFile};
 use crate::options::FmtOptions;
 use crate::{Outcome, UsageError, console, diagnostics, settings};
+use bahn_text::printable;
 
 /// Prints, writes or compares listings.
 pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use bahn_text::Diagnostic;
 use serde::Serialize;
 
 /// The command is to print JSON.
@@ -34,12 +35,12 @@ struct Reported {
 
 /// A fault of a file.
 #[derive(Debug, Serialize)]
-pub(crate) struct FaultReport {
-    pub file: String,
-    pub line: u32,
-    pub column: Option<u32>,
-    pub title: String,
-    pub message: String,
+struct FaultReport {
+    file: String,
+    line: u32,
+    column: Option<u32>,
+    title: String,
+    message: String,
 }
 
 /// Notes whether JSON is wanted.
@@ -62,11 +63,17 @@ pub(crate) fn has_printed() {
 }
 
 /// A fault of a file was told; so many are kept at most.
-pub(crate) fn fault(fault: impl FnOnce() -> FaultReport, most: usize) {
+pub(crate) fn fault(fault: &Diagnostic, most: usize) {
     if OPEN.load(Ordering::Relaxed) {
         let mut reported = REPORTED.lock().unwrap_or_else(PoisonError::into_inner);
         if reported.faults.len() < most {
-            reported.faults.push(fault());
+            reported.faults.push(FaultReport {
+                file: fault.file.display().to_string(),
+                line: fault.span.line,
+                column: fault.span.columns().map(|(column, _)| column),
+                title: fault.message.clone(),
+                message: fault.label(),
+            });
         }
     }
 }

@@ -69,7 +69,7 @@ impl Equipment {
     /// That of a machine.
     pub fn of_folder(option: &str, folder: &Path) -> Result<Equipment, UsageError> {
         let machine = machine_folder::load(folder)?.map_err(|faults| {
-            let first = faults.first().map(|fault| fault.title.clone());
+            let first = faults.first().map(|fault| fault.message.clone());
             UsageError::new(format!(
                 "{option} {}: {}; `bahn machine check` shows all",
                 folder.display(),

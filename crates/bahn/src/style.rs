@@ -2,7 +2,7 @@
 
 use std::io::IsTerminal;
 
-use crate::diagnostics::printable_lines;
+use bahn_text::printable_lines;
 
 /// How text is shown.
 #[derive(Clone, Copy)]

@@ -75,15 +75,15 @@ proptest! {
         }
         prop_assert_ne!(bahn::check_state(format!("{text}\n# end, check by hand\n").as_bytes()), Some(false));
         let (_, faults) = MachineFolder::read(&text);
-        prop_assert!(faults.iter().all(|fault| fault.line >= 1 && fault.column >= 1));
+        prop_assert!(faults.iter().all(|fault| fault.span.line >= 1 && fault.span.column >= 1));
     }
 
     #[test]
     fn damaged_files_of_a_machine(folder in mutated(mill("machine.toml")), plant in mutated(mill("plant.toml")), tools in mutated(mill("tools.tsv"))) {
         let (_, faults) = MachineFolder::read(&folder);
-        prop_assert!(faults.iter().all(|fault| fault.line >= 1 && fault.column >= 1));
+        prop_assert!(faults.iter().all(|fault| fault.span.line >= 1 && fault.span.column >= 1));
         if let Err(faults) = Machine::from_toml(&plant) {
-            prop_assert!(!faults.is_empty() && faults.iter().all(|fault| fault.line >= 1));
+            prop_assert!(!faults.is_empty() && faults.iter().all(|fault| fault.span.line >= 1));
         }
         tables(&tools)?;
     }

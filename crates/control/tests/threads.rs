@@ -44,7 +44,7 @@ fn mill(model: ControlModel) -> Build {
     build.model = model;
     let list = build.list.take().unwrap();
     let errors = ParameterList::reference(model).read(list.as_bytes());
-    let known = |line: &(usize, &str)| errors.iter().all(|error| error.line != line.0 + 1);
+    let known = |line: &(usize, &str)| errors.iter().all(|error| error.span.line as usize != line.0 + 1);
     let lines = list.lines().enumerate().filter(known);
     build.list = Some(lines.map(|(_, text)| format!("{text}\n")).collect());
     build

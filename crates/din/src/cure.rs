@@ -1,8 +1,22 @@
 //! What is probably meant where a block cannot be read.
 
+use std::path::Path;
+
+use bahn_text::Diagnostic;
+
 use crate::command;
 use crate::nearest::nearest;
 use crate::program::{Fault, Program};
+
+impl Fault {
+    /// As people and programs get it; `program` is the one it is in, `file` where that lies.
+    pub fn diagnostic(&self, program: &Program, file: &Path) -> Diagnostic {
+        Diagnostic::error(self.span, self.message.as_str())
+            .in_block(&*self.block)
+            .with_help(program.cure(self))
+            .at(file, program.line(self.span.line))
+    }
+}
 
 impl Program {
     /// What to do about a fault of this file, where that can be guessed: a letter in a number, a bracket that is missing, a
@@ -14,10 +28,10 @@ impl Program {
     /// assert_eq!(program.cure(fault).as_deref(), Some("did you mean `X10`?"));
     /// ```
     pub fn cure(&self, fault: &Fault) -> Option<String> {
-        let line: Vec<char> = self.line(fault.line).chars().collect();
-        let at = (fault.column as usize).checked_sub(1)?;
+        let line: Vec<char> = self.line(fault.span.line).chars().collect();
+        let at = (fault.span.column as usize).checked_sub(1)?;
         digit(&line, at).or_else(|| bracket(&line)).or_else(|| {
-            let words: String = line.get(at..)?.iter().take(fault.length as usize).collect();
+            let words: String = line.get(at..)?.iter().take(fault.span.length as usize).collect();
             let known = nearest(words.strip_prefix('#')?, command::names())?;
             Some(format!("did you mean `#{known}`?"))
         })

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_path::Position;
+use bahn_text::Span;
 
 use crate::block::{self, Block, WordKind};
 use crate::execute::{self, State};
@@ -33,6 +34,17 @@ pub struct BlockFault {
     pub length: u32,
     /// What is wrong, with the name of what is not known.
     pub message: String,
+}
+
+impl BlockFault {
+    /// Where it stands in the file.
+    pub fn span(&self) -> Span {
+        Span {
+            line: self.place.line,
+            column: self.column,
+            length: self.length,
+        }
+    }
 }
 
 /// Subroutines in subroutines end here (inferred).

@@ -22,7 +22,7 @@ const GUESSES: [f64; 2] = [0.0, 1234.567];
 #[derive(Clone, Debug)]
 pub struct Examination {
     /// The faults, those of the file itself first, each by their lines.
-    pub found: Vec<FileFault>,
+    pub found: Vec<Found>,
     /// All programs of the file were executed to their ends.
     pub complete: bool,
     /// P parameters and variables that the programs gave values, by their names (`P10`, `V.G.M_FCT[5].SYNCH`), with the
@@ -32,8 +32,8 @@ pub struct Examination {
 
 /// A fault in one of the files.
 #[derive(Clone, Debug)]
-pub struct FileFault {
-    /// The file that has it.
+pub struct Found {
+    /// The file.
     pub program: Arc<Program>,
     /// What is wrong, with line and column.
     pub fault: Fault,
@@ -56,9 +56,9 @@ pub fn examine(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &Atomi
             continue;
         };
         let is_known =
-            |known: &FileFault| known.program.name() == file.name() && known.fault.line == fault.line;
+            |known: &Found| known.program.name() == file.name() && known.fault.span.line == fault.span.line;
         if !found.iter().any(is_known) {
-            found.push(FileFault {
+            found.push(Found {
                 program: Arc::clone(file),
                 fault,
             });
@@ -66,12 +66,7 @@ pub fn examine(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &Atomi
     }
     found.sort_by_key(|found| {
         let name = found.program.name();
-        (
-            name != program.name(),
-            Arc::clone(name),
-            found.fault.line,
-            found.fault.column,
-        )
+        (name != program.name(), Arc::clone(name), found.fault.span)
     });
     let values = run.values.into_iter();
     let values = match run.is_unsure {
@@ -95,7 +90,7 @@ pub fn examine(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &Atomi
 }
 
 /// Reads files and all that their calls lead to, also after a fault; those that are found are put to the `files`.
-fn read(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf) -> Vec<FileFault> {
+fn read(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf) -> Vec<Found> {
     let mut found = Vec::new();
     let mut macros = BTreeSet::new();
     let mut unknown_macros = Vec::new();
@@ -104,7 +99,7 @@ fn read(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf) -> Vec<FileFault> {
     while let Some(file) = files.get(at).map(Arc::clone) {
         let mut judged = file.judged();
         macros.append(&mut judged.macros);
-        let of_file = |fault| FileFault {
+        let of_file = |fault| Found {
             program: Arc::clone(&file),
             fault,
         };
@@ -189,9 +184,7 @@ impl Run {
             // A fault that may follow from a value that nobody knows here is none.
             if !variables.is_unsure.get() {
                 let own = Fault {
-                    line: fault.place.line,
-                    column: fault.column,
-                    length: fault.length,
+                    span: fault.span(),
                     block: fault.place.block,
                     message: fault.message,
                 };

@@ -67,7 +67,7 @@ mod unit;
 mod words;
 
 pub use decoder::{BlockFault, Decoder, Step};
-pub use examine::{Examination, FileFault, examine};
+pub use examine::{Examination, Found, examine};
 pub use nearest::nearest;
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use bahn_path::Synchronisation;
+use bahn_text::Span;
 
 /// What is wrong in a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,6 +17,15 @@ pub struct LineFault {
 }
 
 impl LineFault {
+    /// Its place in a file where the line has this number.
+    pub(crate) fn span(&self, line: u32) -> Span {
+        Span {
+            line,
+            column: self.column,
+            length: self.length,
+        }
+    }
+
     /// Whether a word is not known, whatever stands after it.
     pub(crate) fn names_unknown(&self) -> bool {
         self.message.starts_with("unknown")

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_path::{Axis, AxisSet};
+use bahn_text::{Encoding, LineIndex, Span};
 
 use crate::block::{self, WordKind};
 use crate::line::{self, Glyph, LineFault, Macros};
@@ -15,26 +16,13 @@ pub struct Program {
     name: Arc<str>,
     text: String,
     encoding: Encoding,
-    /// Where each line begins in the text, and where it ends without its ending.
-    lines: Vec<(usize, usize)>,
+    lines: LineIndex,
     /// Lines that comments of several lines touch, with blanks in their place.
     uncommented: BTreeMap<u32, String>,
     sections: Vec<Section>,
     /// What is wrong with heads of programs.
     heads: Vec<Fault>,
 }
-
-/// How the bytes of a file are its text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Encoding {
-    /// UTF-8, else one character for each byte (Latin-1), which loses nothing.
-    is_utf8: bool,
-    /// A byte-order mark stands in front.
-    has_mark: bool,
-}
-
-/// The byte-order mark of UTF-8.
-const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// A program or subroutine of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,12 +40,8 @@ pub struct Section {
 /// What is wrong in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Line in the file, from 1.
-    pub line: u32,
-    /// Column of the first character, from 1.
-    pub column: u32,
-    /// How many characters it covers.
-    pub length: u32,
+    /// Its place.
+    pub span: Span,
     /// The block: its number, else its line: `N40`, `#12`.
     pub block: Arc<str>,
     /// What is wrong, with the name of what is not known.
@@ -128,18 +112,12 @@ impl Program {
     /// Reads a file; whatever is wrong with it is told by [`Program::faults`]. A file that is no UTF-8 has one
     /// character for each byte.
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Program {
-        let own = bytes.strip_prefix(MARK);
-        let has_mark = own.is_some();
-        let bytes = own.unwrap_or(bytes);
-        let (text, is_utf8) = match std::str::from_utf8(bytes) {
-            Ok(text) => (text.to_owned(), true),
-            Err(_) => (bytes.iter().copied().map(char::from).collect(), false),
-        };
-        let lines = lines(&text);
+        let (text, encoding) = Encoding::read(bytes);
+        let lines = LineIndex::up_to(&text, MAX_LINES);
         let mut program = Program {
             name: name.into(),
             text,
-            encoding: Encoding { is_utf8, has_mark },
+            encoding,
             lines,
             uncommented: BTreeMap::new(),
             sections: Vec::new(),
@@ -147,7 +125,7 @@ impl Program {
         };
         program.find_comments();
         program.find_sections();
-        if program.lines.len() >= MAX_LINES {
+        if program.line_count() as usize >= MAX_LINES {
             let message = format!("more than {MAX_LINES} lines in a file");
             let last = program.line_count();
             program
@@ -176,41 +154,25 @@ impl Program {
 
     /// Number of its lines.
     pub fn line_count(&self) -> u32 {
-        u32::try_from(self.lines.len()).unwrap_or(u32::MAX)
+        u32::try_from(self.lines.count(&self.text)).unwrap_or(u32::MAX)
     }
 
     /// A line without its ending, from 1; empty where there is none.
     pub fn line(&self, number: u32) -> &str {
-        let index = (number as usize).checked_sub(1);
-        let bounds = index.and_then(|index| self.lines.get(index));
-        bounds
-            .and_then(|(start, end)| self.text.get(*start..*end))
-            .unwrap_or_default()
+        self.lines.line(&self.text, number as usize)
     }
 
     /// What stands after a line before the next one: its ending.
     pub(crate) fn ending(&self, number: u32) -> &str {
-        let end = (number as usize)
-            .checked_sub(1)
-            .and_then(|index| self.lines.get(index));
-        let next = self.lines.get(number as usize);
-        let next = next.map_or(self.text.len(), |(start, _)| *start);
-        end.and_then(|(_, end)| self.text.get(*end..next))
-            .unwrap_or_default()
+        let whole = self.lines.whole(&self.text, number as usize);
+        let own = self.lines.range(&self.text, number as usize);
+        self.text.get(own.end..whole.end).unwrap_or_default()
     }
 
     /// A text in the bytes that the file is written in, as one that takes its place has them.
     pub fn encoded(&self, text: &str) -> Vec<u8> {
-        let mut bytes = match self.encoding.has_mark {
-            true => MARK.to_vec(),
-            false => Vec::new(),
-        };
-        match self.encoding.is_utf8 {
-            true => bytes.extend_from_slice(text.as_bytes()),
-            // What has no byte there is not written by the listing.
-            false => bytes.extend(text.chars().map(|c| u8::try_from(c).unwrap_or(b'?'))),
-        }
-        bytes
+        // What has no byte there is not written by the listing.
+        self.encoding.write(text)
     }
 
     /// Whether comments of several lines touch a line.
@@ -322,7 +284,7 @@ impl Program {
                 judged.faults.push(self.fault(line, fault));
             }
         }
-        judged.faults.sort_by_key(|fault| (fault.line, fault.column));
+        judged.faults.sort_by_key(|fault| fault.span);
         judged.faults.truncate(MAX_FAULTS);
         judged
     }
@@ -366,9 +328,7 @@ impl Program {
 
     pub(crate) fn fault(&self, line: u32, fault: LineFault) -> Fault {
         Fault {
-            line,
-            column: fault.column,
-            length: fault.length,
+            span: fault.span(line),
             block: self.block_name(line),
             message: fault.message,
         }
@@ -524,27 +484,4 @@ fn kind(line: &str) -> Line<'_> {
             name: head,
         },
     }
-}
-
-/// Lines end with LF, CR LF or CR.
-fn lines(text: &str) -> Vec<(usize, usize)> {
-    let mut lines = Vec::new();
-    let mut start = 0;
-    let mut bytes = text.bytes().enumerate().peekable();
-    while let Some((at, byte)) = bytes.next() {
-        if lines.len() >= MAX_LINES {
-            return lines;
-        }
-        if byte == b'\n' || byte == b'\r' {
-            lines.push((start, at));
-            start = at + 1;
-            if byte == b'\r' && bytes.next_if(|(_, next)| *next == b'\n').is_some() {
-                start += 1;
-            }
-        }
-    }
-    if start < text.len() {
-        lines.push((start, text.len()));
-    }
-    lines
 }

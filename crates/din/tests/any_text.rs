@@ -105,10 +105,13 @@ fn all_of(bytes: &[u8]) -> String {
     let mut reported = format!("{:?}\n{:?}\n", program.faults(), program.landmarks());
     let lines = program.line_count();
     for fault in program.faults() {
-        let length = program.line(fault.line).chars().count() as u32;
-        assert!((1..=lines.max(1)).contains(&fault.line), "{fault:?}");
-        assert!((1..=length + 1).contains(&fault.column), "{fault:?} of {length}");
-        assert!(fault.length >= 1 && !fault.message.is_empty(), "{fault:?}");
+        let length = program.line(fault.span.line).chars().count() as u32;
+        assert!((1..=lines.max(1)).contains(&fault.span.line), "{fault:?}");
+        assert!(
+            (1..=length + 1).contains(&fault.span.column),
+            "{fault:?} of {length}"
+        );
+        assert!(fault.span.length >= 1 && !fault.message.is_empty(), "{fault:?}");
     }
     for main in program.mains() {
         let shelf = Arc::new(files([("sub", "N1 G91 X1 M7\nLL A\n"), ("sub.nc", "M1")]));

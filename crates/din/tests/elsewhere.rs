@@ -7,7 +7,7 @@ fn reported(text: &str) -> Vec<String> {
     let faults = Program::from_bytes("a.nc", text.as_bytes()).faults();
     faults
         .into_iter()
-        .map(|fault| format!("{}:{} {}", fault.line, fault.column, fault.message))
+        .map(|fault| format!("{}:{} {}", fault.span.line, fault.span.column, fault.message))
         .collect()
 }
 

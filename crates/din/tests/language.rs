@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use bahn_din::{Command, LandmarkKind, Program, Step};
 use bahn_path::{Axis, Curve, Plane, Position};
+use bahn_text::Span;
 use support::{Bench, Files, decoder_with, files, refused, reported, reported_all, run, run_with, variable};
 
 #[test]
@@ -356,7 +357,7 @@ fn comments_over_several_lines() {
     );
     let open = Program::from_bytes("t.nc", b"X1\n  #COMMENT BEGIN\nX2").faults();
     assert_eq!(open.len(), 1);
-    assert_eq!((open[0].line, open[0].column, open[0].length), (2, 3, 14));
+    assert_eq!(open[0].span, Span::new(2, 3, 14));
 }
 
 #[test]
@@ -498,7 +499,7 @@ fn a_fault_ends_the_program() {
     let lines: Vec<(u32, u32, u32)> = Program::from_bytes("t.nc", text)
         .faults()
         .iter()
-        .map(|fault| (fault.line, fault.column, fault.length))
+        .map(|fault| (fault.span.line, fault.span.column, fault.span.length))
         .collect();
     assert_eq!(lines, [(1, 1, 4), (2, 1, 7), (4, 1, 2)]);
     // The text has all of them.
@@ -506,7 +507,7 @@ fn a_fault_ends_the_program() {
     let reported: Vec<(u32, String)> = program
         .faults()
         .into_iter()
-        .map(|fault| (fault.line, fault.message))
+        .map(|fault| (fault.span.line, fault.message))
         .collect();
     assert_eq!(
         reported,

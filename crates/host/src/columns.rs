@@ -1,48 +1,21 @@
 //! Tables as text: a line with the names of the columns, and one line for each row.
 
-use std::fmt;
-
-/// What is wrong in a line of a table, from 1; 0 is the table as a whole.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TableFault {
-    /// The line.
-    pub line: u32,
-    /// The character in the line where what is wrong begins, from 1; 0 is the line as a whole.
-    pub column: u32,
-    /// What is wrong, in words.
-    pub message: String,
-}
-
-impl TableFault {
-    /// What is wrong with a table as a whole.
-    pub fn of_table(message: impl Into<String>) -> TableFault {
-        TableFault {
-            line: 0,
-            column: 0,
-            message: message.into(),
-        }
-    }
-}
-
-impl fmt::Display for TableFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            0 => f.write_str(&self.message),
-            line => write!(f, "line {line}: {}", self.message),
-        }
-    }
-}
+use bahn_text::{Diagnostic, Span, without_mark};
 
 /// What is wrong with a row, and in which of its columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RowFault {
-    column: u32,
+    /// First character and number of characters; zeros for the row as a whole.
+    columns: (u32, u32),
     message: String,
 }
 
 impl From<String> for RowFault {
     fn from(message: String) -> RowFault {
-        RowFault { column: 0, message }
+        RowFault {
+            columns: (0, 0),
+            message,
+        }
     }
 }
 
@@ -104,15 +77,15 @@ impl TextTable {
     ///
     /// # Errors
     /// When it is empty.
-    pub fn read(text: &str) -> Result<TextTable, TableFault> {
-        let text = text.trim_start_matches('\u{feff}');
+    pub fn read(text: &str) -> Result<TextTable, Diagnostic> {
+        let text = without_mark(text);
         let mut lines = (1..)
             .zip(text.lines())
             .filter(|(_, line)| !is_comment(line))
             .peekable();
         let frame = lines.next_if(|(_, line)| first_word(line).eq_ignore_ascii_case("BEGIN"));
         let Some((header_line, header)) = lines.next() else {
-            return Err(TableFault::of_table("the table is empty"));
+            return Err(Diagnostic::error(Span::FILE, "the table is empty"));
         };
         let (names, layout) = layout(header, frame.is_some());
         let rows = lines
@@ -188,11 +161,11 @@ pub(crate) fn read(
     text: &str,
     form: &Form,
     mut take: impl FnMut(&Row<'_>) -> Result<(), RowFault>,
-) -> Result<(), Vec<TableFault>> {
+) -> Result<(), Vec<Diagnostic>> {
     let table = TextTable::read(text).map_err(|fault| vec![fault])?;
     let unit_mm = if table.in_inches() { 25.4 } else { 1.0 };
     form.fits(&table)
-        .map_err(|message| vec![TableFault::of_table(message)])?;
+        .map_err(|message| vec![Diagnostic::error(Span::FILE, message)])?;
     let names: Vec<String> = table
         .names
         .iter()
@@ -201,11 +174,8 @@ pub(crate) fn read(
     let mut faults = Vec::new();
     for row in &table.rows {
         if faults.len() == FAULTS_MAX {
-            faults.push(TableFault {
-                line: row.line,
-                column: 0,
-                message: "too many faults: what follows is not read".to_owned(),
-            });
+            let message = "too many faults: what follows is not read";
+            faults.push(Diagnostic::error(Span::line(row.line as usize), message));
             break;
         }
         let read = Row {
@@ -213,12 +183,9 @@ pub(crate) fn read(
             cells: &row.cells,
             unit_mm,
         };
-        if let Err(RowFault { column, message }) = take(&read) {
-            faults.push(TableFault {
-                line: row.line,
-                column,
-                message,
-            });
+        if let Err(RowFault { columns, message }) = take(&read) {
+            let (line, (column, length)) = (row.line, columns);
+            faults.push(Diagnostic::error(Span { line, column, length }, message));
         }
     }
     if faults.is_empty() { Ok(()) } else { Err(faults) }
@@ -440,7 +407,10 @@ impl Row<'_> {
     /// What is wrong with a column.
     pub fn fault(&self, name: &str, what: &str) -> RowFault {
         RowFault {
-            column: self.cell(name).map_or(0, |cell| cell.column),
+            columns: self.cell(name).map_or((0, 0), |cell| {
+                let length = u32::try_from(cell.text.chars().count()).unwrap_or(u32::MAX);
+                (cell.column, length.max(1))
+            }),
             message: format!("{name}: {what}"),
         }
     }

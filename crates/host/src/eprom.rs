@@ -5,6 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
+use bahn_text::{Diagnostic, Span};
+
 use crate::s_records::Image;
 use crate::{HostError, LoadedMachine, files, oem_cycles};
 
@@ -35,23 +37,12 @@ pub struct ListedFile {
     pub line: u32,
 }
 
-/// What is wrong in a line of the list, from 1; 0 is the list as a whole.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ListFault {
-    /// The line.
-    pub line: u32,
-    /// First character that is meant, from 1.
-    pub column: u32,
-    /// What is wrong.
-    pub message: String,
-}
-
 impl LoadList {
     /// Reads a list: `IDENT 123 456 99` first, then `SIZE 2MB` and `LOAD name`.
     ///
     /// # Errors
     /// All faults of all lines.
-    pub fn parse(text: &str) -> Result<LoadList, Vec<ListFault>> {
+    pub fn parse(text: &str) -> Result<LoadList, Vec<Diagnostic>> {
         let mut list = LoadList::default();
         let mut faults = Vec::new();
         let lines = (1..)
@@ -59,33 +50,31 @@ impl LoadList {
             .filter(|(_, line)| !line.trim().is_empty());
         for (place, (line, words)) in lines.enumerate() {
             if let Err((column, message)) = list.take(place == 0, line, words) {
-                faults.push(ListFault {
-                    line,
-                    column,
+                faults.push(Diagnostic::error(
+                    Span::new(line as usize, column, rest(words, column)),
                     message,
-                });
+                ));
             }
         }
         if list.files.is_empty() && faults.is_empty() {
-            let message = "the list names no file: LOAD name".to_owned();
-            faults.push(ListFault {
-                line: 0,
-                column: 1,
-                message,
-            });
+            let message = "the list names no file: LOAD name";
+            faults.push(Diagnostic::error(Span::FILE, message));
         }
         if faults.is_empty() { Ok(list) } else { Err(faults) }
     }
 
-    fn take(&mut self, is_first: bool, line: u32, text: &str) -> Result<(), (u32, String)> {
+    fn take(&mut self, is_first: bool, line: u32, text: &str) -> Result<(), (usize, String)> {
         let begin = text.len() - text.trim_start().len();
         let (word, rest) = text
             .trim()
             .split_once(char::is_whitespace)
             .unwrap_or((text.trim(), ""));
-        let at = |offset: usize| u32::try_from(begin + offset + 1).unwrap_or(1);
+        let at = |offset: usize| {
+            text.get(..begin + offset)
+                .map_or(1, |before| before.chars().count() + 1)
+        };
         let after = at(text.trim().len() - rest.trim_start().len());
-        let fault = |column: u32, message: &str| Err((column, message.to_owned()));
+        let fault = |column: usize, message: &str| Err((column, message.to_owned()));
         let name: String = rest.chars().filter(|c| !c.is_whitespace()).collect();
         match word.to_ascii_uppercase().as_str() {
             "IDENT" if !is_first => fault(at(0), "IDENT is the first line"),
@@ -202,16 +191,12 @@ impl LoadList {
 pub fn contents(
     machine: &LoadedMachine,
     list: &LoadList,
-) -> Result<(Vec<Vec<u8>>, Vec<ListFault>), HostError> {
+) -> Result<(Vec<Vec<u8>>, Vec<Diagnostic>), HostError> {
     let cycles = oem_cycles::find(&machine.programs(0), &machine.plc_dialogues, &machine.parameters)?;
     let (mut contents, mut faults) = (Vec::new(), Vec::new());
     for file in &list.files {
         let mut fault = |message: String| {
-            faults.push(ListFault {
-                line: file.line,
-                column: 1,
-                message,
-            });
+            faults.push(Diagnostic::error(Span::line(file.line as usize), message));
         };
         let Some(path) = find(machine, file) else {
             fault(format!("there is no file {}", file.name));
@@ -224,6 +209,12 @@ pub fn contents(
         contents.push(files::read_description(&path)?);
     }
     Ok((contents, faults))
+}
+
+/// Characters of a line from a column on, at least the one that is missing.
+fn rest(line: &str, column: usize) -> usize {
+    let count = line.chars().skip(column.saturating_sub(1)).count();
+    count.max(1)
 }
 
 /// Where a file of the control is.

@@ -6,7 +6,7 @@
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/mill"));
-//! let machine = LoadedMachine::load(folder)?.map_err(|faults| faults[0].title.clone())?;
+//! let machine = LoadedMachine::load(folder)?.map_err(|faults| faults[0].message.clone())?;
 //! let programs = FolderPrograms::new(&folder.join("programs"), Some(Path::new("CIRCLE.H")))?;
 //! let job = programs.main_name().map(Job::whole);
 //! let operator = Operator::new(Attendance::Full, machine.folder.operator.clone(), job);
@@ -22,7 +22,7 @@
 //! ```
 //!
 //! - [`LoadedMachine`] is everything in the folder of a machine, with all faults of all files at once
-//!   ([`FileFault`]); [`FolderPrograms`] are its part programs;
+//!   ([`bahn_text::Diagnostic`]); [`FolderPrograms`] are its part programs;
 //! - [`PowerOn`] is what it begins with, [`Host`] the machine that is on: [`Host::step`] is a contour cycle, by
 //!   whichever [`Clock`]; its plant is the simulated machine of the folder or whatever is [`Operable`], [`AnyPlant`] where
 //!   nobody needs to know which;
@@ -58,14 +58,12 @@ pub mod eprom;
 mod error;
 mod executed_path;
 mod expectation;
-mod fault;
 mod feed;
 mod feeds;
 pub mod files;
 mod host;
 mod journal;
 mod kept;
-pub mod lists;
 mod log;
 pub mod logic_diagram;
 mod machine_folder;
@@ -91,7 +89,6 @@ mod script;
 mod simulated;
 mod table_edit;
 mod table_kind;
-mod text;
 mod threads;
 pub mod tool_table;
 
@@ -100,22 +97,21 @@ pub use any_plant::AnyPlant;
 /// What a plant takes and answers, for whoever writes one.
 pub use bahn_machine::{DeviceState, Event, KeyAction, MagazineState, Mechanics};
 pub use called::called_program;
-pub use columns::{Cell, TableFault, TextRow, TextTable, canonical};
+pub use columns::{Cell, TextRow, TextTable, canonical};
 pub use edges::Edges;
 pub use error::HostError;
 pub use executed_path::{ElementId, ExecutedPath};
 pub use expectation::{Expectation, Relation, Run, Tested, run_name};
-pub use fault::{FileFault, Marked, Severity};
 pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};
-pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode, tools_fit};
+pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, tools_fit};
 pub use machine_folder::{read_remembered, write_remembered};
 pub use threads::{ThreadCut, Threads};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]
 pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
-    let faults = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
+    let faults = |faults: Vec<bahn_text::Diagnostic>| faults.iter().map(|fault| fault.span.line).collect();
     tool_table::parse(text).map(drop).map_err(faults)
 }
 
@@ -127,7 +123,8 @@ pub fn check_script(
     bytes: &[u8],
 ) -> [Result<(), Vec<u32>>; 2] {
     [Stage::machine(machine, parameters), Stage::bench(parameters)].map(|stage| {
-        let faults = |faults: Vec<FileFault>| faults.iter().map(|fault| fault.marked.line).collect();
+        let faults =
+            |faults: Vec<bahn_text::Diagnostic>| faults.iter().map(|fault| fault.span.line).collect();
         Script::of(std::path::Path::new("SCRIPT"), bytes, &stage)
             .map(drop)
             .map_err(faults)
@@ -151,4 +148,3 @@ pub use saved::{Course, Saved, Timeline};
 pub use script::{Base, Line, Script, ScriptAction, Stage};
 pub use table_edit::{LineChange, delete_line, set_line, with_column};
 pub use table_kind::{Content as CellContent, KnownColumn, PlainTable, TableForm};
-pub use text::{printable, printable_lines};

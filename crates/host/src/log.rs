@@ -9,7 +9,7 @@ use crc32fast::Hasher;
 use crate::action::Source;
 use crate::error::HostError;
 use crate::files::{self, NewFile};
-use crate::text::printable;
+use bahn_text::printable;
 
 /// Who is told what is done.
 pub trait Sink {

@@ -8,10 +8,10 @@ use serde::Serialize;
 use crate::action::{Action, Answer, Source};
 use crate::error::HostError;
 use crate::expectation::Expectation;
-use crate::fault::FileFault;
 use crate::host::Host;
 use crate::operable::Operable;
 use crate::script::{Base, Line, Script, ScriptAction};
+use bahn_text::Diagnostic;
 
 /// An expectation that did not hold.
 #[derive(Clone, Debug, Serialize)]
@@ -276,7 +276,7 @@ impl Play {
     }
 
     /// Expectations that failed, at their lines.
-    pub fn failures(&self) -> Vec<FileFault> {
+    pub fn failures(&self) -> Vec<Diagnostic> {
         let failed = self.failed.iter();
         failed
             .map(|failed| {

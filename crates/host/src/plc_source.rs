@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_plc::{Compilation, Diagnostic as Fault, Options, ProgramMemory, SourceFiles};
+use bahn_plc::{Compilation, Options, ProgramMemory, SourceFiles};
+use bahn_text::Diagnostic;
 
-use crate::fault::{FileFault, Marked, Severity};
 use crate::files;
 
 /// A compiled program with the folder it comes from.
@@ -29,46 +29,17 @@ impl PlcSource {
         PlcSource { folder, compilation }
     }
 
-    /// What keeps the program from running, then what is accepted although the printed rules refuse it.
-    pub fn faults(&self) -> Vec<FileFault> {
-        let errors = self.compilation.errors.iter();
-        let errors = errors.map(|fault| self.fault(Severity::Error, fault));
-        let warnings = self.compilation.warnings.iter();
-        errors
-            .chain(warnings.map(|fault| self.fault(Severity::Warning, fault)))
-            .collect()
-    }
-
-    fn fault(&self, severity: Severity, fault: &Fault) -> FileFault {
-        let detail = fault
-            .message
-            .strip_prefix(fault.error.text())
-            .unwrap_or(&fault.message);
-        FileFault {
-            severity,
-            title: format!("{} {}", fault.error.number(), fault.error.text()),
-            path: self.folder.path(&fault.file),
-            marked: self.marked(&fault.file, (fault.line, fault.column)),
-            label: detail.trim_start_matches(':').trim().to_owned(),
-            help: Some(format!("{} {}", fault.error.cause(), fault.error.cure())),
-            opened: fault.opened.map(|place| self.marked(&fault.file, place)),
+    /// What keeps the program from running, then what is accepted although the printed rules refuse it; files as they lie
+    /// on the disk.
+    pub fn faults(&self) -> Vec<Diagnostic> {
+        let mut faults = self.compilation.diagnostics();
+        for fault in &mut faults {
+            let place = self.folder.path(&fault.file);
+            let related = fault.related.iter_mut().map(|related| &mut related.file);
+            related.for_each(|file| *file = self.folder.path(file));
+            fault.file = place;
         }
-    }
-
-    /// The word of a file that begins at line and column.
-    fn marked(&self, file: &str, (line, column): (u32, u32)) -> Marked {
-        let file = self.compilation.files.iter().find(|own| own.name == file);
-        let index = (line as usize).saturating_sub(1);
-        let text = file.and_then(|file| file.lines.get(index)).cloned();
-        let text = text.unwrap_or_default();
-        let start = column.saturating_sub(1) as usize;
-        let word = text.chars().skip(start).take_while(|c| !c.is_whitespace());
-        let length = u32::try_from(word.count()).unwrap_or(1).max(1);
-        Marked {
-            line,
-            text,
-            columns: Some((column.max(1), length)),
-        }
+        faults
     }
 }
 
@@ -83,9 +54,9 @@ struct Folder {
 
 impl Folder {
     /// Where a file was found.
-    fn path(&self, name: &str) -> PathBuf {
+    fn path(&self, name: &Path) -> PathBuf {
         let (ram, eprom) = (self.folder.join(name), self.folder.join(EPROM).join(name));
-        let is_ram = name == self.main || self.memory == ProgramMemory::Ram && ram.is_file();
+        let is_ram = name == Path::new(&self.main) || self.memory == ProgramMemory::Ram && ram.is_file();
         if is_ram { ram } else { eprom }
     }
 }

@@ -7,8 +7,9 @@ use std::collections::BTreeMap;
 
 use bahn_control::{Pocket, Tool};
 use bahn_parameters::operation::ToolParameters;
+use bahn_text::Diagnostic;
 
-use crate::columns::{self, Form, Row, RowFault, TableFault};
+use crate::columns::{self, Form, Row, RowFault};
 use crate::tool_table::{self, POCKET_MAX};
 
 /// A line of a pocket table.
@@ -32,7 +33,7 @@ const FORM: Form = Form {
 ///
 /// # Errors
 /// The faults with their lines.
-pub fn parse(text: &str) -> Result<BTreeMap<u16, PocketLine>, Vec<TableFault>> {
+pub fn parse(text: &str) -> Result<BTreeMap<u16, PocketLine>, Vec<Diagnostic>> {
     let mut lines = BTreeMap::new();
     let mut pockets = BTreeMap::new();
     columns::read(text, &FORM, |row| {
@@ -95,7 +96,7 @@ pub fn fits(
     lines: &BTreeMap<u16, PocketLine>,
     tools: &BTreeMap<u32, Tool>,
     sizes: &ToolParameters,
-) -> Result<(), Vec<TableFault>> {
+) -> Result<(), Vec<Diagnostic>> {
     columns::read(text, &FORM, |row| {
         let (number, line) = line(row)?;
         if u32::from(number) > sizes.pockets {
@@ -222,7 +223,10 @@ mod tests {
     fn faults_have_line_and_column() {
         let faults =
             parse("P;T;F;L;PLC\n1;2;;;\n1;3;;;\n2;2;;;\n255;1;;;\n3;4;;L;\n4;x;;;%3\n5;5;?;;\n").unwrap_err();
-        let places: Vec<_> = faults.iter().map(|fault| (fault.line, fault.column)).collect();
+        let places: Vec<_> = faults
+            .iter()
+            .map(|fault| (fault.span.line, fault.span.column))
+            .collect();
         assert_eq!(places, [(3, 1), (4, 3), (5, 1), (6, 6), (7, 3), (8, 5)]);
         assert_eq!(faults[1].message, "T: tool 2 is in pocket 1 already");
     }

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::columns::{self, Form, TableFault};
+use bahn_text::Diagnostic;
+
+use crate::columns::{self, Form};
 
 const FORM: Form = Form {
     needed: &["NR"],
@@ -14,7 +16,7 @@ const FORM: Form = Form {
 ///
 /// # Errors
 /// The faults with their lines and columns, up to a limit.
-pub fn parse(text: &str) -> Result<BTreeMap<u32, [Option<f64>; 3]>, Vec<TableFault>> {
+pub fn parse(text: &str) -> Result<BTreeMap<u32, [Option<f64>; 3]>, Vec<Diagnostic>> {
     let mut points = BTreeMap::new();
     columns::read(text, &FORM, |row| {
         let number = row.text("NR");
@@ -47,7 +49,10 @@ mod tests {
         assert_eq!(points[&0], [Some(25.4), Some(50.8), Some(-25.4)]);
         assert_eq!(points[&12], [Some(-12.7), None, None]);
         let faults = parse("NR X\n0 1\n0 2\nx 1\n3 y\n").unwrap_err();
-        let places: Vec<_> = faults.iter().map(|fault| (fault.line, fault.column)).collect();
+        let places: Vec<_> = faults
+            .iter()
+            .map(|fault| (fault.span.line, fault.span.column))
+            .collect();
         assert_eq!(places, [(3, 1), (4, 1), (5, 3)]);
     }
 }

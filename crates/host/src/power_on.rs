@@ -8,8 +8,8 @@ use bahn_machine::{Machine, Mechanics};
 use bahn_parameters::{InchFeed, ParameterList};
 
 use crate::error::HostError;
-use crate::fault::FileFault;
 use crate::machine_folder::{FolderPrograms, FoundMechanics, LoadedMachine, State};
+use bahn_text::Diagnostic;
 
 /// What a control finds at power-on, and how it takes programs. What is read here can be changed until the
 /// [`Host`](crate::Host) is made of it.
@@ -215,14 +215,14 @@ fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Reme
 }
 
 /// Files with faults that stop nothing, each with its first one.
-fn refused(faults: &[FileFault]) -> Vec<String> {
+fn refused(faults: &[Diagnostic]) -> Vec<String> {
     let mut said: Vec<String> = Vec::new();
     for (at, fault) in faults.iter().enumerate() {
         let earlier = faults.iter().take(at);
-        if !earlier.into_iter().any(|earlier| earlier.path == fault.path) {
+        if !earlier.into_iter().any(|earlier| earlier.file == fault.file) {
             said.push(format!(
                 "{}: {}; it is refused when it is used",
-                fault.path.display(),
+                fault.file.display(),
                 fault.at_line()
             ));
         }

@@ -5,6 +5,8 @@
 
 use std::fmt::Write as _;
 
+use bahn_text::{Diagnostic, Span};
+
 /// Bytes of data in a record.
 const RECORD: usize = 32;
 /// Largest image that is read: the EPROMs are far smaller.
@@ -17,15 +19,6 @@ pub struct Image {
     pub title: String,
     /// The bytes.
     pub bytes: Vec<u8>,
-}
-
-/// What is wrong in a line, from 1; 0 is the file as a whole.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RecordFault {
-    /// The line.
-    pub line: u32,
-    /// What is wrong.
-    pub message: String,
 }
 
 impl Image {
@@ -53,11 +46,11 @@ impl Image {
     ///
     /// # Errors
     /// At the first record that is damaged, missing or out of order.
-    pub fn from_records(text: &str) -> Result<Image, RecordFault> {
+    pub fn from_records(text: &str) -> Result<Image, Diagnostic> {
         let mut image = Image::default();
         let mut ended = false;
         for (line, record) in (1..).zip(text.lines()) {
-            let fault = |message: String| RecordFault { line, message };
+            let fault = |message: String| Diagnostic::error(Span::line(line), message);
             let record = record.trim();
             if record.is_empty() || record == "\u{1a}" {
                 continue;
@@ -87,10 +80,7 @@ impl Image {
         }
         match ended {
             true => Ok(image),
-            false => Err(RecordFault {
-                line: 0,
-                message: "the end record S7 is missing".into(),
-            }),
+            false => Err(Diagnostic::error(Span::FILE, "the end record S7 is missing")),
         }
     }
 }

@@ -10,9 +10,8 @@ use bahn_parameters::ParameterList;
 use crate::action::{Action, ActionError};
 use crate::any_plant::AnyPlant;
 use crate::expectation::Expectation;
-use crate::fault::{FileFault, Marked, Severity};
-use crate::machine_folder::decode;
 use crate::operable::Operable;
+use bahn_text::{Diagnostic, Span, decode};
 
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;
@@ -121,12 +120,11 @@ impl Script {
     ///
     /// # Errors
     /// All faults of the script.
-    pub fn of(path: &Path, bytes: &[u8], stage: &Stage) -> Result<Script, Vec<FileFault>> {
+    pub fn of(path: &Path, bytes: &[u8], stage: &Stage) -> Result<Script, Vec<Diagnostic>> {
         Script::read(path, &decode(bytes), stage)
     }
 
-    fn read(path: &Path, text: &str, stage: &Stage) -> Result<Script, Vec<FileFault>> {
-        let text = text.trim_start_matches('\u{feff}');
+    fn read(path: &Path, text: &str, stage: &Stage) -> Result<Script, Vec<Diagnostic>> {
         let mut script = Script {
             path: path.to_owned(),
             text: text.lines().map(str::to_owned).collect(),
@@ -163,55 +161,34 @@ impl Script {
         }
     }
 
-    fn fault_at(&self, number: u32, wrong: &Wrong) -> FileFault {
-        let count = |value: usize| u32::try_from(value).unwrap_or(1).max(1);
-        FileFault {
-            severity: Severity::Error,
-            title: "the script is wrong".to_owned(),
-            path: self.path.clone(),
-            marked: Marked {
-                line: number,
-                text: self.line_text(number),
-                columns: Some((count(wrong.column), count(wrong.length))),
-            },
-            label: wrong.message.clone(),
-            help: None,
-            opened: None,
-        }
+    fn fault_at(&self, number: u32, wrong: &Wrong) -> Diagnostic {
+        let span = Span::new(number as usize, wrong.column.max(1), wrong.length.max(1));
+        self.at(span, "the script is wrong", wrong.message.clone())
+    }
+
+    fn at(&self, span: Span, title: &str, label: String) -> Diagnostic {
+        Diagnostic::error(span, title)
+            .with_detail(label)
+            .at(self.path.clone(), self.line_text(span.line))
     }
 
     /// A line of the file that was not as expected when its time came.
-    pub fn failure(&self, number: u32, title: &str, label: String) -> FileFault {
-        FileFault {
-            severity: Severity::Error,
-            title: title.to_owned(),
-            path: self.path.clone(),
-            marked: Marked {
-                line: number,
-                text: self.line_text(number),
-                columns: None,
-            },
-            label,
-            help: None,
-            opened: None,
-        }
+    pub fn failure(&self, number: u32, title: &str, label: String) -> Diagnostic {
+        self.at(Span::line(number as usize), title, label)
     }
 
     /// As [`Script::failure`], at the place of an operand in the line.
-    pub fn failure_of(&self, number: u32, operand: &str, title: &str, label: String) -> FileFault {
+    pub fn failure_of(&self, number: u32, operand: &str, title: &str, label: String) -> Diagnostic {
         let text = self.line_text(number);
         // The name as it is written, in a script of the same letters mostly.
         let at = text.to_ascii_uppercase().rfind(operand);
-        let columns = at.map(|at| {
+        let span = at.map_or(Span::line(number as usize), |at| {
             let before = text.get(..at).unwrap_or_default().chars().count();
             let item = text.get(at..).unwrap_or_default();
             let item = item.split([',', ';', '#']).next().unwrap_or_default().trim_end();
-            let count = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-            (count(before + 1), count(item.chars().count()))
+            Span::new(number as usize, before + 1, item.chars().count())
         });
-        let mut fault = self.failure(number, title, label);
-        fault.marked.columns = columns;
-        fault
+        self.at(span, title, label)
     }
 
     /// Where a line stands, as `mill.txt:3`.
@@ -464,13 +441,13 @@ mod tests {
         .unwrap()
     }
 
-    fn read(text: &str) -> Result<Script, Vec<FileFault>> {
+    fn read(text: &str) -> Result<Script, Vec<Diagnostic>> {
         // The contour cycle of the TNC 415 is 3 ms, its PLC cycle 20 ms [000:3685] [000:239].
         let parameters = ParameterList::reference(ControlModel::Tnc415b);
         Script::read(Path::new("s.txt"), text, &Stage::machine(&machine(), &parameters))
     }
 
-    fn read_for_bench(text: &str) -> Result<Script, Vec<FileFault>> {
+    fn read_for_bench(text: &str) -> Result<Script, Vec<Diagnostic>> {
         let parameters = ParameterList::reference(ControlModel::Tnc415b);
         Script::read(Path::new("s.txt"), text, &Stage::bench(&parameters))
     }
@@ -536,7 +513,7 @@ mod tests {
         assert_eq!(script.lines[3].condition, message("LIMIT SWITCH"));
         assert_eq!(script.lines[5].condition, message("A: B"));
         let faults = read("when X.heat > 5: ce\nafter rain: ce\n+2.5 cycles: ce\n1e7: ce").unwrap_err();
-        let lines: Vec<u32> = faults.iter().map(|fault| fault.marked.line).collect();
+        let lines: Vec<u32> = faults.iter().map(|fault| fault.span.line).collect();
         assert_eq!(lines, [1, 2, 3, 4]);
     }
 
@@ -565,7 +542,7 @@ mod tests {
         assert_eq!(conditions, [false, true, true, false]);
         let faults = read("1: 2: key NC_START tap\n1: 2: voltage off\n1: 9: ce\n1: expect 2: test finished")
             .unwrap_err();
-        let lines: Vec<u32> = faults.iter().map(|fault| fault.marked.line).collect();
+        let lines: Vec<u32> = faults.iter().map(|fault| fault.span.line).collect();
         assert_eq!(lines, [1, 2, 3, 4]);
     }
 
@@ -602,7 +579,7 @@ mod tests {
         let text = "cycle 0: M5=1\ncycle 10000001: M5=1\ncycle 1: W7=1\ncycle 1: MP9999=1\ncycle 1: MP4110.2=x\n\
                     cycle 1: M5=1,\ncycle 1: expect MP10=1\n";
         let lines =
-            |faults: Vec<FileFault>| -> Vec<u32> { faults.iter().map(|fault| fault.marked.line).collect() };
+            |faults: Vec<Diagnostic>| -> Vec<u32> { faults.iter().map(|fault| fault.span.line).collect() };
         let all: Vec<u32> = (1..=7).collect();
         assert_eq!(lines(read_for_bench(text).unwrap_err()), all);
         assert_eq!(lines(read(text).unwrap_err()), all);
@@ -610,16 +587,16 @@ mod tests {
                     when mode full: M5=1\n";
         let faults = read_for_bench(text).unwrap_err();
         assert!(
-            faults.iter().all(|fault| fault.label.contains("bench")),
+            faults.iter().all(|fault| fault.detail.contains("bench")),
             "{faults:?}"
         );
         assert_eq!(lines(faults), [1, 2, 3, 4, 5, 6]);
         assert!(read_for_bench("1: I4=1").is_ok());
         let faults = read("1: M5=1, I4=1").unwrap_err();
         assert!(
-            faults[0].label.contains("fault input I4 1"),
+            faults[0].detail.contains("fault input I4 1"),
             "{}",
-            faults[0].label
+            faults[0].detail
         );
     }
 
@@ -637,7 +614,7 @@ mod tests {
             ]
         );
         let faults = read("1: handwheel X 11").unwrap_err();
-        assert!(faults[0].label.contains("from 0 to 10"), "{}", faults[0].label);
+        assert!(faults[0].detail.contains("from 0 to 10"), "{}", faults[0].detail);
     }
 
     #[test]
@@ -648,13 +625,13 @@ mod tests {
         .unwrap_err();
         let places: Vec<_> = faults
             .iter()
-            .map(|fault| (fault.marked.line, fault.marked.columns.unwrap().0))
+            .map(|fault| (fault.span.line, fault.span.column))
             .collect();
         assert_eq!(places, [(2, 1), (3, 4), (4, 6), (5, 1), (6, 4), (7, 4)]);
         assert!(
-            faults[2].label.contains("no key `NC_STOP`; there are NC_START"),
+            faults[2].detail.contains("no key `NC_STOP`; there are NC_START"),
             "{}",
-            faults[2].label
+            faults[2].detail
         );
     }
 
@@ -668,7 +645,7 @@ mod tests {
             for read in [read(&text), read_for_bench(&text)] {
                 if let Err(faults) = read {
                     let lines = text.lines().count() as u32;
-                    prop_assert!(faults.iter().all(|fault| (1..=lines).contains(&fault.marked.line)));
+                    prop_assert!(faults.iter().all(|fault| (1..=lines).contains(&fault.span.line)));
                 }
             }
         }

@@ -6,8 +6,9 @@ use bahn_control::Remembered;
 use bahn_parameters::ParameterList;
 use bahn_parameters::tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, shown_elements};
 use bahn_plc::TableKind;
+use bahn_text::Diagnostic;
 
-use crate::columns::{TableFault, TextRow, TextTable, canonical, quoted};
+use crate::columns::{TextRow, TextTable, canonical, quoted};
 use crate::{machine_folder, pocket_table, point_table, tool_table};
 
 /// A kind of table.
@@ -217,7 +218,7 @@ impl TableForm {
     ///
     /// # Errors
     /// The faults with their lines and columns.
-    pub fn check(self, text: &str) -> Result<(), Vec<TableFault>> {
+    pub fn check(self, text: &str) -> Result<(), Vec<Diagnostic>> {
         match self {
             TableForm::Tool => tool_table::parse(text).map(drop),
             TableForm::Pocket => pocket_table::parse(text).map(drop),

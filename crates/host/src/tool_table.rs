@@ -8,8 +8,9 @@ use bahn_interpreter::{ToolState, tool_key};
 use bahn_parameters::operation::ToolParameters;
 use bahn_parameters::{ControlModel, Definition};
 use bahn_path::{Oversize, ToolShape};
+use bahn_text::{Diagnostic, decode};
 
-use crate::columns::{self, Form, Row, RowFault, TableFault};
+use crate::columns::{self, Form, Row, RowFault};
 use crate::{HostError, files};
 
 /// Reads the tool table of a file for a control, which has as many tools as MP7260 (old MP225) can be: 254, or 99
@@ -19,7 +20,7 @@ use crate::{HostError, files};
 /// When it cannot be read; its first fault.
 pub fn load(path: &Path, model: ControlModel) -> Result<BTreeMap<u32, Tool>, HostError> {
     let bytes = files::read_table(path)?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = decode(&bytes);
     let size = [7260, 225]
         .into_iter()
         .find_map(|number| Definition::find(model, number, 0));
@@ -30,13 +31,13 @@ pub fn load(path: &Path, model: ControlModel) -> Result<BTreeMap<u32, Tool>, Hos
             HostError::new(format!(
                 "{}: {}",
                 path.display(),
-                faults.first().map(TableFault::to_string).unwrap_or_default()
+                faults.first().map(Diagnostic::at_line).unwrap_or_default()
             ))
         })
 }
 
 /// Whether no tool of a table lies after the last one that a control can have.
-fn ends_with(text: &str, most: u32) -> Result<(), Vec<TableFault>> {
+fn ends_with(text: &str, most: u32) -> Result<(), Vec<Diagnostic>> {
     columns::read(text, &FORM, |row| match tool(row)? {
         (number, _) if number & NUMBER_MASK > most => Err(row.fault(
             "T",
@@ -65,7 +66,7 @@ const FORM: Form = Form {
 ///
 /// # Errors
 /// The faults with their lines.
-pub fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
+pub fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<Diagnostic>> {
     let mut table = BTreeMap::new();
     columns::read(text, &FORM, |row| {
         let (number, tool) = tool(row)?;
@@ -91,7 +92,7 @@ pub fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
 ///
 /// # Errors
 /// What does not fit, with its line.
-pub fn fits(text: &str, sizes: &ToolParameters) -> Result<(), Vec<TableFault>> {
+pub fn fits(text: &str, sizes: &ToolParameters) -> Result<(), Vec<Diagnostic>> {
     columns::read(text, &FORM, |row| {
         let (number, tool) = tool(row)?;
         let number = number & NUMBER_MASK;
@@ -314,7 +315,10 @@ mod tests {
             "line 2: P: `255` is no pocket from 0 to 254"
         );
         let all = parse("T R ST\n1 x\n2 5 ?\n3 1\n3 1").unwrap_err();
-        assert_eq!(all.iter().map(|fault| fault.line).collect::<Vec<_>>(), [2, 3, 5]);
+        assert_eq!(
+            all.iter().map(|fault| fault.span.line).collect::<Vec<_>>(),
+            [2, 3, 5]
+        );
     }
 
     /// RT names another tool of the table; numbers end with 254 [000:10397] [003:7785].
@@ -401,7 +405,10 @@ mod tests {
         let own = parse("T;R;CUT;L-OFFS;PLC\n1;5;2;-1,5;7\n").unwrap()[&1];
         assert_eq!((own.edges.count, own.edges.length_offset, own.plc), (2, -1.5, 7));
         let faults = parse("T;R;CUT;PLC;LTOL\n1;5;21;;\n2;5;;%2;\n3;5;;;-1\n4;5;1.5;;\n").unwrap_err();
-        let places: Vec<_> = faults.iter().map(|fault| (fault.line, fault.column)).collect();
+        let places: Vec<_> = faults
+            .iter()
+            .map(|fault| (fault.span.line, fault.span.column))
+            .collect();
         assert_eq!(places, [(2, 5), (3, 6), (4, 7), (5, 5)]);
     }
 

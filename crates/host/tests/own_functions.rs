@@ -14,8 +14,7 @@ fn load(what: &str, functions: &str) -> Result<LoadedMachine, Vec<(String, Strin
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, format!("{text}\n{functions}")).unwrap();
     LoadedMachine::load(copy.path()).unwrap().map_err(|faults| {
-        let marked =
-            |fault: &bahn_host::FileFault| (fault.marked.text.trim().to_owned(), fault.label.clone());
+        let marked = |fault: &bahn_text::Diagnostic| (fault.source.trim().to_owned(), fault.detail.clone());
         faults.iter().map(marked).collect()
     })
 }

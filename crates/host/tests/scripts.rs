@@ -134,9 +134,9 @@ fn inputs_belong_to_the_machine() {
     let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
     let faults = Script::of(Path::new("s.txt"), b"20: I4=1\n", &stage).unwrap_err();
     assert!(
-        faults[0].label.contains("`fault input I4 1`"),
+        faults[0].detail.contains("`fault input I4 1`"),
         "{}",
-        faults[0].label
+        faults[0].detail
     );
 }
 

@@ -444,8 +444,8 @@ fn faults_of_channels_have_their_lines() {
         .iter()
         .map(|fault| {
             (
-                fault.marked.text.trim().split("  ").next().unwrap().to_owned(),
-                fault.label.clone(),
+                fault.source.trim().split("  ").next().unwrap().to_owned(),
+                fault.detail.clone(),
             )
         })
         .collect();
@@ -477,7 +477,7 @@ fn faults_of_channels_have_their_lines() {
         std::fs::write(&file, text.replace(line, wrong_key)).unwrap();
         let faults = LoadedMachine::load(copy.path()).unwrap().err().unwrap();
         assert!(
-            faults.iter().any(|fault| fault.marked.text.contains(wrong_key)),
+            faults.iter().any(|fault| fault.source.contains(wrong_key)),
             "{wrong_key}"
         );
     }

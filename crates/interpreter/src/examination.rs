@@ -1,12 +1,14 @@
 //! All that can be said of a program without machining anything: what reading finds, and what rehearsing finds, each
 //! mistake once.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
-use bahn_program::{Diagnostic, MAX_DIAGNOSTICS, Program, Reading, Severity, Uncounted};
+use bahn_program::{Fault, MAX_DIAGNOSTICS, Program, Reading, Uncounted};
+use bahn_text::{Diagnostic, Severity};
 
 use crate::code::Library;
 use crate::error::{Cause, Message, ProgramError, Warning};
@@ -45,29 +47,28 @@ pub struct Found {
     /// Number of the program; 0 is the one that was examined.
     pub program: usize,
     /// The fault, with its block and line.
-    pub fault: Diagnostic,
+    pub fault: Fault,
+    /// The headline, where it is not that of the message.
     title: Box<str>,
 }
 
 impl Found {
-    /// Its own title, or else the message's text of the model.
-    pub fn title(&self, model: ControlModel) -> &str {
+    /// In the words of a control, as people and programs get it; `program` is the one it is in, `file` where that lies.
+    pub fn diagnostic(&self, program: &Program, model: ControlModel, file: &Path) -> Diagnostic {
+        let fault = self.fault.diagnostic(program, model, file);
         match &*self.title {
-            "" => self.fault.message.text(model),
-            title => title,
+            "" => fault,
+            title => Diagnostic {
+                message: title.to_owned(),
+                ..fault
+            },
         }
-    }
-
-    /// What to do about it. Warnings say that themselves.
-    pub fn help(&self) -> Option<&'static str> {
-        let help = self.fault.help;
-        (self.fault.severity == Severity::Error && !help.is_empty()).then_some(help)
     }
 }
 
-impl From<Diagnostic> for Found {
+impl From<Fault> for Found {
     /// A fault of the program that is examined.
-    fn from(fault: Diagnostic) -> Found {
+    fn from(fault: Fault) -> Found {
         Found {
             program: 0,
             title: "".into(),
@@ -87,7 +88,7 @@ impl From<Diagnostic> for Found {
 /// let text = "BEGIN PGM 1 MM\nFN 0: Q5 = +2\nFN 3: Q5 = +Q5 * +4\nL X+5 Y+9 R0 FMAX Q\nEND PGM 1 MM\n";
 /// let program = Arc::new(Program::from_bytes("1.H", text.into()));
 /// let found = examine(program, Settings::default(), Box::new(NoLibrary), &AtomicBool::new(false));
-/// assert_eq!((found.complete, found.found[0].fault.line), (Complete::Yes, 4));
+/// assert_eq!((found.complete, found.found[0].fault.span.line), (Complete::Yes, 4));
 /// assert_eq!(found.q_values[5], Some(8.0));
 /// ```
 pub fn examine(
@@ -127,8 +128,8 @@ pub fn examine(
 
 /// What was read and what was rehearsed, in the order of programs and blocks. What reading has found at a
 /// block is not said again.
-fn merged(read: Vec<Diagnostic>, rehearsal: &Rehearsal, model: ControlModel) -> Vec<Found> {
-    let is_error = |fault: &&Diagnostic| fault.severity == Severity::Error;
+fn merged(read: Vec<Fault>, rehearsal: &Rehearsal, model: ControlModel) -> Vec<Found> {
+    let is_error = |fault: &&Fault| fault.severity == Severity::Error;
     let known = |error: &ProgramError| {
         read.iter().filter(is_error).any(|fault| {
             let incomplete = fault.message == MessageId::CyclIncomplete

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::reader::{PlantError, Reader, Section};
+use bahn_text::Diagnostic;
+
+use crate::reader::{Reader, Section};
 
 /// What `machine.toml` in the folder of a machine says. Paths count from the folder; no file is opened here.
 ///
@@ -150,7 +152,7 @@ impl MachineFolder {
     ///
     /// # Errors
     /// All faults of the text, in its order.
-    pub fn from_toml(text: &str) -> Result<MachineFolder, Vec<PlantError>> {
+    pub fn from_toml(text: &str) -> Result<MachineFolder, Vec<Diagnostic>> {
         let (folder, faults) = MachineFolder::read(text);
         if faults.is_empty() {
             Ok(folder)
@@ -161,7 +163,7 @@ impl MachineFolder {
 
     /// Reads the text of `machine.toml` as far as it can be understood, with all faults in its order. What
     /// is missing is empty.
-    pub fn read(text: &str) -> (MachineFolder, Vec<PlantError>) {
+    pub fn read(text: &str) -> (MachineFolder, Vec<Diagnostic>) {
         let reader = Reader::new(text);
         let table = reader.parse();
         let root = Section::root(&reader, &table);
@@ -216,7 +218,7 @@ fn needed_text(section: &Section, key: &'static str) -> String {
 
 fn read_channel(section: Section) -> ChannelFolder {
     let window = section.texts("window").into_iter();
-    let window = window.map(|(at, text)| (section.reader.place(at).0, text.to_owned()));
+    let window = window.map(|(at, text)| (section.reader.place(at).line as usize, text.to_owned()));
     if !section.has("operator") {
         section.fault("[[channel]] needs operator, with its start".to_owned());
     }

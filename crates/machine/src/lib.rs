@@ -69,5 +69,5 @@ pub use machine::Machine;
 pub use magazine::MagazineState;
 pub use mechanics::{AxisPlace, DevicePlace, MagazinePlace, Mechanics, SpindlePlace};
 pub use probe::Solid;
-pub use reader::{PlantError, Wire};
+pub use reader::Wire;
 pub use spindle::SpindleState;

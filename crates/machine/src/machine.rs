@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bahn_servo::{Commands, Encoder, INPUTS, Measured, OUTPUTS, Plant, Probe as Touch, Step};
+use bahn_text::Diagnostic;
 
 use crate::axis::{Axis, AxisState};
 use crate::by_hand::ByHand;
@@ -15,7 +16,7 @@ use crate::mechanism::Mechanism;
 use crate::panel::Panel;
 use crate::plc_side::PlcSide;
 use crate::probe::{Probe, Solid};
-use crate::reader::{PlantError, Reader, Section, Wire};
+use crate::reader::{Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 use crate::tool_probe::ToolProbe;
 
@@ -41,7 +42,7 @@ use crate::tool_probe::ToolProbe;
 /// machine.advance(1_000_000);
 /// // 1500 mm/min for a second are 25 mm: 1250 signal periods of 1024 steps.
 /// assert!((machine.encoder(0).count - 1250 * 1024).abs() <= 1);
-/// # Ok::<(), bahn_machine::PlantError>(())
+/// # Ok::<(), bahn_text::Diagnostic>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Machine {
@@ -68,7 +69,7 @@ impl Machine {
     ///
     /// # Errors
     /// All faults of the description, in its order.
-    pub fn from_toml(text: &str) -> Result<Machine, Vec<PlantError>> {
+    pub fn from_toml(text: &str) -> Result<Machine, Vec<Diagnostic>> {
         let reader = Reader::new(text);
         let table = reader.parse();
         let mut machine = Machine::read(Section::root(&reader, &table));

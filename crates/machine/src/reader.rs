@@ -6,28 +6,15 @@ use std::collections::btree_map::Entry;
 use std::ops::RangeInclusive;
 
 use bahn_servo::{ENCODERS, INPUTS, NOMINALS, OUTPUTS};
+use bahn_text::{Diagnostic, LineIndex, Span};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// A fault in the description of a machine.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
-#[error("{line}:{column}: {message}")]
-pub struct PlantError {
-    /// The line, from 1.
-    pub line: usize,
-    /// The column in characters, from 1.
-    pub column: usize,
-    /// What is wrong, and what would be right.
-    pub message: String,
-}
 
 /// Something that is wired to a PLC input or output, and where the description says so.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wire {
-    /// The line, from 1.
-    pub line: usize,
-    /// The column in characters, from 1.
-    pub column: usize,
+    /// The place.
+    pub span: Span,
     /// The input or output, as `I24` or `O10`.
     pub operand: String,
     /// The section of the description, as `axis.X`.
@@ -82,9 +69,8 @@ const WIRES_MAX: usize = 10_000;
 /// The text being read and what was found wrong in it.
 pub(crate) struct Reader<'t> {
     text: &'t str,
-    /// Where each line begins.
-    lines: Vec<usize>,
-    faults: RefCell<Vec<PlantError>>,
+    lines: LineIndex,
+    faults: RefCell<Vec<Diagnostic>>,
     /// The inputs given away: where, which, to whom.
     taken: RefCell<Vec<(usize, usize, String)>>,
     wires: RefCell<Vec<Wire>>,
@@ -94,10 +80,7 @@ impl<'t> Reader<'t> {
     pub fn new(text: &'t str) -> Reader<'t> {
         Reader {
             text,
-            lines: [0]
-                .into_iter()
-                .chain(text.match_indices('\n').map(|(at, _)| at + 1))
-                .collect(),
+            lines: LineIndex::of(text),
             faults: RefCell::default(),
             taken: RefCell::default(),
             wires: RefCell::default(),
@@ -109,10 +92,9 @@ impl<'t> Reader<'t> {
         if self.wires.borrow().len() == WIRES_MAX {
             return self.fault(at, "too many wires".to_owned());
         }
-        let (line, column) = self.place(at);
+        let span = self.place(at);
         self.wires.borrow_mut().push(Wire {
-            line,
-            column,
+            span,
             operand,
             section: String::new(),
             key: String::new(),
@@ -126,9 +108,9 @@ impl<'t> Reader<'t> {
         let sections: Vec<&str> = lines.iter().scan("", Reader::section_at).collect();
         let mut wires = self.wires.take();
         for wire in &mut wires {
-            let at = wire.line.saturating_sub(1);
+            let at = (wire.span.line as usize).saturating_sub(1);
             let line = lines.get(at).copied().unwrap_or_default();
-            let before: String = line.chars().take(wire.column).collect();
+            let before: String = line.chars().take(wire.span.column as usize).collect();
             let key = line.split('=').next().unwrap_or_default().trim();
             sections
                 .get(at)
@@ -169,24 +151,19 @@ impl<'t> Reader<'t> {
             FAULTS_MAX => "too many faults: further ones are not named".to_owned(),
             _ => return,
         };
-        let (line, column) = self.place(at);
-        self.faults.borrow_mut().push(PlantError {
-            line,
-            column,
-            message,
-        });
+        let span = self.place(at);
+        self.faults.borrow_mut().push(Diagnostic::error(span, message));
     }
 
-    /// Line and column of a place of the text, from 1.
-    pub fn place(&self, at: usize) -> (usize, usize) {
-        let line = self.lines.partition_point(|start| *start <= at);
-        let start = self.lines.get(line.saturating_sub(1)).copied().unwrap_or(0);
-        let before = self.text.get(start..at).unwrap_or_default();
-        (line.max(1), before.chars().count() + 1)
+    /// The word that begins at a byte of the text.
+    pub fn place(&self, at: usize) -> Span {
+        let span = self.lines.span(self.text, at..at);
+        let line = self.lines.line(self.text, span.line as usize);
+        Span::word(span.line as usize, span.column as usize, line)
     }
 
     /// All faults in the order of the text.
-    pub fn faults(self) -> Vec<PlantError> {
+    pub fn faults(self) -> Vec<Diagnostic> {
         self.check_taken();
         let mut faults = self.faults.into_inner();
         faults.sort();
@@ -263,7 +240,7 @@ impl<'r, 't> Section<'r, 't> {
 
     /// The line of the table, and of each of its keys, from 1.
     pub fn lines(&self) -> (usize, BTreeMap<String, usize>) {
-        let line = |at| self.reader.place(at).0;
+        let line = |at| self.reader.place(at).line as usize;
         let keys = self.table.iter();
         let keys = keys.map(|(key, _)| (key.get_ref().to_string(), line(key.span().start)));
         (line(self.at), keys.collect())

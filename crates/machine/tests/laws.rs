@@ -100,7 +100,7 @@ proptest! {
         let changed = format!("{}{put}{}", &text[..at], &text[end..]);
         match Machine::from_toml(&changed) {
             Ok(mut machine) => machine.advance(10_000),
-            Err(faults) => prop_assert!(faults.iter().all(|fault| fault.line > 0 && fault.column > 0)),
+            Err(faults) => prop_assert!(faults.iter().all(|fault| fault.span.line > 0 && fault.span.column > 0)),
         }
     }
 

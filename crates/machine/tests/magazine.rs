@@ -164,10 +164,10 @@ fn a_tool_probe_has_each_tool_once() {
     let tool = "[[tool_probe.tool]]\nnumber = 3\nlength = 80\nradius = 5\n";
     let text = format!("{BASE}{IDEAL_X}[tool_probe]\ncentre = [0, 0, 0]\ndiameter = 40\n{tool}{tool}");
     let faults = Machine::from_toml(&text).err().unwrap();
-    let line = text.lines().count() - 2;
-    let said: Vec<(usize, &str)> = faults
+    let line = text.lines().count() as u32 - 2;
+    let said: Vec<(u32, &str)> = faults
         .iter()
-        .map(|fault| (fault.line, fault.message.as_str()))
+        .map(|fault| (fault.span.line, fault.message.as_str()))
         .collect();
     assert_eq!(said, [(line, "tool 3 stands here already")]);
 }

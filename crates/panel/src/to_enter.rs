@@ -4,8 +4,6 @@ use std::path::Path;
 
 use bahn_host::{Attendance, LoadedMachine, Operator, PowerOn, State};
 
-use crate::pages;
-
 /// The list is entered: the control is off, and what it kept stays as it is.
 pub(crate) struct Commissioning {
     /// Held, so that nobody else switches the machine on.
@@ -37,7 +35,7 @@ pub(crate) fn operator_of(machine: &LoadedMachine) -> Operator {
 pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
     let loaded = LoadedMachine::load_to_enter(folder).map_err(|error| error.to_string())?;
     loaded.map_err(|faults| {
-        let lines = faults.iter().map(pages::fault_in_words);
+        let lines = faults.iter().map(bahn_text::Diagnostic::words);
         lines.collect::<Vec<_>>().join("\n")
     })
 }

@@ -191,7 +191,7 @@ fn a_script_drives_it() {
         Script::of(Path::new("S"), text.as_bytes(), &stage)
     };
     let faults = read(&mut station, "1: key Y+ press\n2: expect lamp DOOR=1").unwrap_err();
-    let labels: Vec<&str> = faults.iter().map(|fault| fault.label.as_str()).collect();
+    let labels: Vec<String> = faults.iter().map(bahn_text::Diagnostic::label).collect();
     assert_eq!(
         labels,
         [

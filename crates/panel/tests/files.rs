@@ -378,7 +378,7 @@ fn a_tnc_407_stores_100_files() {
             let path = folder.join("parameters.mp");
             let own = model.parse::<ControlModel>().unwrap();
             let mut list = ListText::from_bytes(own, &std::fs::read(&path).unwrap());
-            while let Some(line) = list.faults().last().map(|fault| fault.line) {
+            while let Some(line) = list.faults().last().map(|fault| fault.span.line as usize) {
                 list.remove_line(line);
             }
             std::fs::write(&path, list.to_bytes()).unwrap();

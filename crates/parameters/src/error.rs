@@ -1,5 +1,7 @@
 //! What can be wrong with a machine parameter or a list of them.
 
+use bahn_text::Span;
+
 use crate::ParameterId;
 
 /// What is wrong with one machine parameter.
@@ -123,14 +125,10 @@ impl ParameterError {
 
 /// An error in the text of a list of machine parameters.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("line {line}: {error}")]
+#[error("line {}: {error}", .span.line)]
 pub struct ListError {
-    /// Line of the text, from 1.
-    pub line: usize,
-    /// First character of the line that is meant, from 1.
-    pub column: usize,
-    /// Number of characters that are meant.
-    pub length: usize,
+    /// Where it stands.
+    pub span: Span,
     /// What is wrong there.
     pub error: ParameterError,
 }

@@ -46,6 +46,7 @@ pub mod compensation;
 pub mod conformance;
 mod consistency;
 mod definition;
+mod diagnostic;
 mod error;
 pub mod fault;
 mod fn14;

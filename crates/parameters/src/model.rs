@@ -110,9 +110,8 @@ impl ControlModel {
     /// assert_eq!(ControlModel::named_in(b"; my mill, TNC 415 B\nMP10 : 1\n"), Some(ControlModel::Tnc415b));
     /// ```
     pub fn named_in(list: &[u8]) -> Option<ControlModel> {
-        let text = String::from_utf8_lossy(list);
+        let text = bahn_text::decode(list);
         let comments = text
-            .trim_start_matches('\u{feff}')
             .lines()
             .take_while(|line| line.trim().is_empty() || line.trim_start().starts_with([';', '*']));
         let letters: String = comments

@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use bahn_text::{MARK_BYTES, Span, utf8_or_latin};
+
 use crate::definition::{parse_id, parse_number};
 use crate::{ControlModel, Definition, ListError, ParameterError, ParameterId};
 
@@ -57,12 +59,10 @@ impl Entry {
     }
 }
 
-const MARK: &[u8] = b"\xEF\xBB\xBF";
-
 impl ListText {
     /// Reads a text for a control model.
     pub fn from_bytes(model: ControlModel, bytes: &[u8]) -> ListText {
-        let plain = bytes.strip_prefix(MARK);
+        let plain = bytes.strip_prefix(MARK_BYTES);
         let mut text = ListText {
             model,
             bytes: plain.unwrap_or(bytes).to_vec(),
@@ -112,9 +112,7 @@ impl ListText {
             .missing()
             .filter(|definition| !definition.is_optional() && !named.contains(&definition.id));
         faults.extend(missing.map(|definition| ListError {
-            line,
-            column: 1,
-            length: 0,
+            span: Span::new(line, 1, 0),
             error: ParameterError::NotDefined(definition.id),
         }));
         faults
@@ -131,15 +129,26 @@ impl ListText {
 
     /// The bytes of the text.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mark = if self.has_mark { MARK } else { &[] };
+        let mark = if self.has_mark { MARK_BYTES } else { &[] };
         [mark, &self.bytes].concat()
     }
 
     /// The text of a line, from 1, without its end; empty for a line that does not exist.
     pub fn line(&self, number: usize) -> String {
         let bytes = self.line_at(number).and_then(|at| self.bytes.get(at));
-        let text = String::from_utf8_lossy(bytes.unwrap_or_default());
+        let text = utf8_or_latin(bytes.unwrap_or_default());
         text.trim_end_matches(['\r', '\n']).to_owned()
+    }
+
+    /// The place of a value.
+    pub(crate) fn span_of(&self, entry: &Entry) -> Span {
+        let start = self.line_at(entry.line).map_or(0, |line| line.start);
+        let count = |bytes: Range<usize>| {
+            let part = self.bytes.get(bytes).unwrap_or_default();
+            utf8_or_latin(part).chars().count()
+        };
+        let value = entry.value_at();
+        Span::new(entry.line, count(start..value.start) + 1, count(value))
     }
 
     /// Sets a value in its place, or appends a line for it with its name. A line of the parameter that cannot be read
@@ -152,7 +161,7 @@ impl ListText {
         let value = definition.check(value)?;
         let written = definition.format_value(value);
         let entry = self.entries.iter().find(|entry| entry.id == definition.id);
-        let unread = self.fault_of(definition.id).map(|fault| fault.line);
+        let unread = self.fault_of(definition.id).map(|fault| fault.span.line as usize);
         match (entry, unread) {
             (Some(entry), _) => self.replace(entry.value_at.clone(), &written),
             (None, Some(line)) => self.mend(line, definition, &written),
@@ -203,7 +212,7 @@ impl ListText {
     /// The comment after a value, without its semicolon; empty where there is none [000:10017].
     pub fn comment(&self, id: ParameterId) -> String {
         let after = self.after(id).map(|at| {
-            let text = String::from_utf8_lossy(self.bytes.get(at).unwrap_or_default()).into_owned();
+            let text = utf8_or_latin(self.bytes.get(at).unwrap_or_default());
             text.split_once(';')
                 .map_or_else(String::new, |(_, comment)| comment.trim().to_owned())
         });
@@ -302,7 +311,7 @@ impl ListText {
         for (index, bytes) in self.bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
             lines.push(start);
             let line = index + 1;
-            let text = String::from_utf8_lossy(bytes);
+            let text = utf8_or_latin(bytes);
             match read_line(self.model, &text) {
                 Ok(None) => (),
                 Ok(Some(found)) => match first_lines.get(&found.id) {
@@ -338,9 +347,7 @@ impl ListText {
 fn fault(error: ParameterError, line: usize, text: &str, at: Range<usize>) -> ListError {
     let characters = |range: Range<usize>| text.get(range).map_or(0, |part| part.chars().count());
     ListError {
-        line,
-        column: characters(0..at.start) + 1,
-        length: characters(at),
+        span: Span::new(line, characters(0..at.start) + 1, characters(at)),
         error,
     }
 }

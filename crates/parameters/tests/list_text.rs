@@ -28,9 +28,9 @@ fn every_fault_has_line_column_length_and_the_control_s_number_and_text() {
         .iter()
         .map(|f| {
             (
-                f.line,
-                f.column,
-                f.length,
+                f.span.line,
+                f.span.column,
+                f.span.length,
                 f.error.number(),
                 f.error.control_text(),
             )
@@ -74,9 +74,12 @@ fn the_value_of_the_manual_s_example_in_its_three_forms() {
 fn a_line_that_cannot_be_read_is_mended() {
     let text = "; mill\nMP7430 : x ;overlap\nMPX : 3\nMP7410 : 1\n";
     let mut list = ListText::from_bytes(MODEL, text.as_bytes());
-    let lines: Vec<usize> = list.faults().iter().map(|fault| fault.line).collect();
+    let lines: Vec<u32> = list.faults().iter().map(|fault| fault.span.line).collect();
     assert_eq!(lines, [2, 3]);
-    assert_eq!(list.fault_of(id(7430, None)).map(|fault| fault.line), Some(2));
+    assert_eq!(
+        list.fault_of(id(7430, None)).map(|fault| fault.span.line),
+        Some(2)
+    );
     assert_eq!(list.fault_of(id(7410, None)), None);
     list.set(id(7430, None), 1.2).unwrap();
     list.remove_line(3);
@@ -119,7 +122,7 @@ fn a_list_that_lacks_parameters_is_refused_with_all_of_them() {
     assert!(
         faults
             .iter()
-            .all(|fault| fault.error.number() == 5 && fault.line == 2)
+            .all(|fault| fault.error.number() == 5 && fault.span.line == 2)
     );
     let missing = |id| {
         faults
@@ -285,8 +288,9 @@ proptest! {
         let text = ListText::from_bytes(model, &bytes);
         prop_assert_eq!(text.to_bytes(), bytes);
         for fault in text.all_faults() {
-            let line = text.line(fault.line);
-            prop_assert!(fault.column - 1 + fault.length <= line.chars().count() + 1, "{fault:?} {line:?}");
+            let line = text.line(fault.span.line as usize);
+            let end = (fault.span.column - 1 + fault.span.length) as usize;
+            prop_assert!(end <= line.chars().count() + 1, "{fault:?} {line:?}");
         }
     }
 
@@ -330,7 +334,8 @@ proptest! {
         let mut text = ListText::from_bytes(model, line.as_bytes());
         prop_assert!(text.entries().len() + text.faults().len() <= 1);
         for fault in text.faults() {
-            prop_assert!(fault.column >= 1 && fault.column - 1 + fault.length <= line.chars().count(), "{fault:?}");
+            let end = (fault.span.column.max(1) - 1 + fault.span.length) as usize;
+            prop_assert!(fault.span.column >= 1 && end <= line.chars().count(), "{fault:?}");
         }
         let _ = text.set(ParameterId { number: 7430, index: None }, value);
         text.complete();

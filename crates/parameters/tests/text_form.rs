@@ -48,7 +48,7 @@ fn all_errors_are_found_in_one_pass_with_their_lines_and_numbers() {
     let text = "hello\nMP1:1\nMP1010:1\nMP7430:1 mm\nMP7430:x\nMP7431:0.1\nMP7410:1\nMP7410:0\nMP7411:1\n";
     let mut list = ParameterList::smallest(ControlModel::Tnc415b);
     let errors = list.read(text.as_bytes());
-    let found: Vec<_> = errors.iter().map(|e| (e.line, e.error.number())).collect();
+    let found: Vec<_> = errors.iter().map(|e| (e.span.line, e.error.number())).collect();
     // The numbers of the list editor [000:10054-10062].
     assert_eq!(found, [(1, 0), (2, 1), (3, 1), (4, 2), (5, 3), (6, 3), (8, 4)]);
     assert_eq!(errors[1].error, ParameterError::UnknownNumber(id(1, None)));

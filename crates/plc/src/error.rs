@@ -239,38 +239,6 @@ impl fmt::Display for PlcError {
     }
 }
 
-/// An error or a warning of the compiler, with its place. A warning carries the number of the error that
-/// it would be if the rule were not narrowed for the manual's own listings.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Diagnostic {
-    /// The error by its number and text.
-    pub error: PlcError,
-    /// The file, as the program names it.
-    pub file: String,
-    /// The line, counted from 1.
-    pub line: u32,
-    /// The character of the line, counted from 1.
-    pub column: u32,
-    /// What is wrong here; begins with the text of the error.
-    pub message: String,
-    /// Line and column of the bracket, structure or table that is still open, where that is what is wrong.
-    pub opened: Option<(u32, u32)>,
-}
-
-impl fmt::Display for Diagnostic {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}:{}:{}: error {}: {}",
-            self.file,
-            self.line,
-            self.column,
-            self.error.number(),
-            self.message
-        )
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

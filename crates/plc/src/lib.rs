@@ -2,7 +2,7 @@
 //!
 //! The face of this room is small:
 //! - [`Compilation::compile`] turns source files into a [`PlcProgram`], with every error and warning of all
-//!   files in one pass ([`Diagnostic`], [`PlcError`]);
+//!   files in one pass ([`Fault`], [`PlcError`]);
 //! - [`Machine`] runs a program scan by scan on a [`bahn_exchange::Exchange`]: timers, counters, edges, submit
 //!   jobs, nominal processing time; [`Tracer`] sees every executed line, [`CodeTrace`] is a scan as the instruction list shows it;
 //! - [`modules`] lists the modules 9000 to 9171; [`Nc`] is what they need from the control, with the types
@@ -39,6 +39,7 @@ mod access;
 mod compile;
 mod error;
 mod fast;
+mod fault;
 mod modules;
 mod nc;
 mod operand;
@@ -49,7 +50,8 @@ mod syntax;
 
 pub use access::{Access, Memory, Subject, accesses};
 pub use compile::{Compilation, Options};
-pub use error::{Detection, Diagnostic, PlcError};
+pub use error::{Detection, PlcError};
+pub use fault::Fault;
 pub use modules::{Module, modules};
 pub use nc::{
     Bar, Cell, Column, CompensationExcess, CompensationSize, ControlledSpindle, CoordinateKind,

@@ -91,70 +91,23 @@ fn spelled(name: &str, read: impl Fn(&str) -> Option<Vec<u8>>) -> Option<Found> 
     })
 }
 
-/// Text of a file: UTF-8, UTF-16 where a byte order mark or the zero bytes of its letters say so, or else the
-/// Latin alphabet of the control's own files. End characters of tapes and a byte order mark are dropped.
+/// Text of a source file without the end characters of tapes.
 pub(crate) fn decode(bytes: &[u8]) -> String {
-    let text = match (utf16_order(bytes), std::str::from_utf8(bytes)) {
-        (Some(order), _) => utf16(bytes, order),
-        (None, Ok(text)) => text.to_owned(),
-        (None, Err(_)) => bytes.iter().map(|byte| char::from(*byte)).collect(),
-    };
-    text.trim_start_matches('\u{feff}')
-        .trim_end_matches(['\u{1a}', '\0'])
-        .to_owned()
-}
-
-/// Which byte of a character of UTF-16 comes first.
-#[derive(Clone, Copy)]
-enum Order {
-    Low,
-    High,
-}
-
-/// A byte order mark, or a first line of letters of which each second byte is zero.
-fn utf16_order(bytes: &[u8]) -> Option<Order> {
-    match bytes {
-        [0xff, 0xfe, ..] => Some(Order::Low),
-        [0xfe, 0xff, ..] => Some(Order::High),
-        [a, 0, b, 0, ..] if *a != 0 && *b != 0 => Some(Order::Low),
-        [0, a, 0, b, ..] if *a != 0 && *b != 0 => Some(Order::High),
-        _ => None,
-    }
-}
-
-fn utf16(bytes: &[u8], order: Order) -> String {
-    let units = bytes.chunks(2).map(|pair| {
-        let pair = [
-            pair.first().copied().unwrap_or(0),
-            pair.get(1).copied().unwrap_or(0),
-        ];
-        match order {
-            Order::Low => u16::from_le_bytes(pair),
-            Order::High => u16::from_be_bytes(pair),
-        }
-    });
-    let characters = char::decode_utf16(units);
-    characters
-        .map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER))
-        .collect()
+    let text = bahn_text::decode(bytes);
+    text.trim_end_matches(['\u{1a}', '\0']).to_owned()
 }
 
 #[cfg(test)]
 mod tests {
     use super::decode;
 
-    /// Files of editors that save UTF-16, with and without byte order mark, and of the control.
     #[test]
-    fn text_is_read_whatever_saved_it() {
-        let text = "L I4 ;Tür\n= O2\n";
-        let low: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
-        let high: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
-        assert_eq!(decode(&low), text);
-        assert_eq!(decode(&high), text);
-        assert_eq!(decode(&[&[0xff, 0xfe], low.as_slice()].concat()), text);
-        assert_eq!(decode(&[&[0xfe, 0xff], high.as_slice(), &[0]].concat()), text);
-        assert_eq!(decode(b"L I4 ;T\xfcr\n"), "L I4 ;Tür\n");
-        assert_eq!(decode(b"\xef\xbb\xbfEM\n\x1a\0\0"), "EM\n");
-        assert_eq!(decode(b"\xff\xfe\x00\xd8"), "\u{fffd}", "half a character");
+    fn end_characters_of_tapes_are_no_text() {
+        assert_eq!(decode(b"\xef\xbb\xbfEM ;T\xc3\xbcr\n\x1a\0\0"), "EM ;Tür\n");
+        assert_eq!(
+            decode(b"E\0M\0\n\0\x1a\0\0"),
+            "EM\n",
+            "UTF-16 with half a character"
+        );
     }
 }

@@ -17,7 +17,7 @@ fn numbers(compilation: &Compilation) -> Vec<(u8, u32)> {
     compilation
         .errors
         .iter()
-        .map(|error| (error.error.number(), error.line))
+        .map(|error| (error.error.number(), error.span.line))
         .collect()
 }
 
@@ -26,7 +26,7 @@ fn linked<const N: usize>(files: [(&str, &str); N]) -> Vec<(u8, String, u32)> {
     let compilation = Compilation::compile(&files, "MAIN.PLC", Options::default());
     let errors = compilation.errors.into_iter();
     errors
-        .map(|error| (error.error.number(), error.file, error.line))
+        .map(|error| (error.error.number(), error.file, error.span.line))
         .collect()
 }
 
@@ -221,9 +221,9 @@ fn a_program_of_the_eprom_links_no_file_of_the_ram() {
     let compilation = compile(&Memories(ram, eprom), ProgramMemory::Eprom);
     assert_eq!(numbers(&compilation), [(35, 1), (39, 3)]);
     assert!(
-        compilation.errors[0].message.contains("RAM"),
+        compilation.errors[0].detail.contains("RAM"),
         "{}",
-        compilation.errors[0].message
+        compilation.errors[0].detail
     );
 }
 
@@ -429,6 +429,7 @@ fn errors_name_what_was_opened() {
         error
             .unwrap_or_else(|| panic!("no error {number}: {program}"))
             .opened
+            .map(|span| (span.line, span.column))
     };
     assert_eq!(
         opened("L I4\nA[\nL I5\n  O[\nL I6\n= O1\n]\n]\n= O2\nEM\n", 10),

@@ -1,11 +1,14 @@
 //! All faults of a program in one pass.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
+use bahn_parameters::ControlModel;
 use bahn_parameters::MessageId::{
     self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted,
     LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
+use bahn_text::{Diagnostic, Severity, Span};
 
 use crate::lines::lines;
 use crate::program::Places;
@@ -16,34 +19,38 @@ use crate::{BlockError, CycleWord, Header, NumberedBlock, Operation, Program, Re
 /// Most diagnostics of one program; with more it is not a program at all.
 pub const MAX_DIAGNOSTICS: usize = 1000;
 
-/// How bad a fault is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// The program runs all the same.
-    Warning,
-    /// The control would stop at the block.
-    Error,
-}
-
 /// A fault of a program and its place in the file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Diagnostic {
-    /// What the control says to it.
+pub struct Fault {
+    /// The control's message.
     pub message: MessageId,
     /// How bad it is.
     pub severity: Severity,
     /// Block number in the normalised listing.
     pub block: u32,
-    /// Line in the file, from 1.
-    pub line: u32,
-    /// Column in the line, in characters counted from 1.
-    pub column: u32,
-    /// Number of characters it covers, at least 1.
-    pub length: u32,
+    /// Place in the file; it covers at least one character.
+    pub span: Span,
     /// What exactly, in a few words for people.
     pub detail: Box<str>,
     /// What to do about it.
     pub help: &'static str,
+}
+
+impl Fault {
+    /// In the words of a control, as people and programs get it. Warnings say themselves what to do.
+    pub fn diagnostic(&self, program: &Program, model: ControlModel, file: &Path) -> Diagnostic {
+        let is_error = self.severity == Severity::Error;
+        let help = Some(self.help).filter(|help| is_error && !help.is_empty());
+        Diagnostic {
+            severity: self.severity,
+            ..Diagnostic::error(self.span, self.message.text(model))
+                .with_code(self.message.name())
+                .in_block(program.number_of(self.block).to_string())
+                .with_detail(&*self.detail)
+                .with_help(help)
+                .at(file, program.text_of_line(self.span.line))
+        }
+    }
 }
 
 /// Faults that were counted only, beyond [`MAX_DIAGNOSTICS`].
@@ -67,18 +74,19 @@ impl Program {
     /// ```
     /// use bahn_parameters::MessageId;
     /// use bahn_program::Program;
+    /// use bahn_text::Span;
     ///
     /// let program = Program::from_bytes("1.H", b"BEGIN PGM 1 MM\n  CALL LBL 7\nEND PGM 1 MM".to_vec());
     /// let faults = program.diagnostics(None);
     /// assert_eq!(faults[0].message, MessageId::LabelNumberNotAllocated);
-    /// assert_eq!((faults[0].block, faults[0].line, faults[0].column, faults[0].length), (1, 2, 12, 1));
+    /// assert_eq!((faults[0].block, faults[0].span), (1, Span::new(2, 12, 1)));
     /// ```
-    pub fn diagnostics(&self, reading: Option<Reading<'_>>) -> Vec<Diagnostic> {
+    pub fn diagnostics(&self, reading: Option<Reading<'_>>) -> Vec<Fault> {
         self.counted_diagnostics(reading).0
     }
 
     /// [`Program::diagnostics`], and how many more there are.
-    pub fn counted_diagnostics(&self, reading: Option<Reading<'_>>) -> (Vec<Diagnostic>, Uncounted) {
+    pub fn counted_diagnostics(&self, reading: Option<Reading<'_>>) -> (Vec<Fault>, Uncounted) {
         let mut pass = Pass {
             program: self,
             reading,
@@ -101,6 +109,16 @@ impl Program {
         (pass.found, pass.more)
     }
 
+    /// The line of a block, and what of it cannot be read if that is so.
+    pub fn span_of(&self, block: u32) -> Span {
+        let chunk = self.decode(block / Program::CHUNK_SIZE);
+        let own = chunk.blocks.get((block % Program::CHUNK_SIZE) as usize);
+        match own.map(|own| &own.operation) {
+            Some(Operation::Invalid(invalid)) => invalid.error.span(self.line_of(block)),
+            _ => Span::line(self.line_of(block) as usize),
+        }
+    }
+
     /// A fault of a block that was found elsewhere, with its place: the value after an address, or the whole
     /// block without one.
     pub fn diagnostic(
@@ -110,16 +128,18 @@ impl Program {
         block: u32,
         address: &str,
         detail: &str,
-    ) -> Diagnostic {
+    ) -> Fault {
         let text = self.text_of(block);
         let (line, column, length) = locate(&text, address);
-        Diagnostic {
+        Fault {
             message,
             severity,
             block,
-            line: self.line_of(block).saturating_add(line),
-            column,
-            length,
+            span: Span {
+                line: self.line_of(block).saturating_add(line),
+                column,
+                length,
+            },
             detail: detail.into(),
             help: message.remedy(),
         }
@@ -130,7 +150,7 @@ struct Pass<'a> {
     program: &'a Program,
     reading: Option<Reading<'a>>,
     sequence: Sequence,
-    found: Vec<Diagnostic>,
+    found: Vec<Fault>,
     more: Uncounted,
     /// Those of the piece that is looked at.
     places: Option<Places<'a>>,
@@ -218,13 +238,11 @@ impl Pass<'_> {
         let Some(error) = fault.filter(|_| !self.is_full(Severity::Error)) else {
             return;
         };
-        self.found.push(Diagnostic {
+        self.found.push(Fault {
             message: error.message,
             severity: Severity::Error,
             block: number,
-            line: line.saturating_add(error.line),
-            column: error.column,
-            length: error.length,
+            span: error.span(line),
             detail: error.detail,
             help: error.message.remedy(),
         });
@@ -268,13 +286,11 @@ impl Pass<'_> {
             if self.is_full(Severity::Error) {
                 continue;
             }
-            self.found.push(Diagnostic {
+            self.found.push(Fault {
                 message: error.message,
                 severity: Severity::Error,
                 block: number,
-                line: line.saturating_add(error.line),
-                column: error.column,
-                length: error.length,
+                span: error.span(line),
                 help: error.help.unwrap_or(error.message.remedy()),
                 detail: error.detail,
             });
@@ -353,13 +369,11 @@ impl Pass<'_> {
         }
         let text = self.program.text_of_line(line);
         let (_, column, length) = locate(&text, "");
-        self.found.push(Diagnostic {
+        self.found.push(Fault {
             message: UnexpectedText,
             severity: Severity::Warning,
             block,
-            line,
-            column,
-            length,
+            span: Span { line, column, length },
             detail: detail.into(),
             help: UnexpectedText.remedy(),
         });

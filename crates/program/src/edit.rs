@@ -4,15 +4,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use bahn_parameters::MessageId;
+use bahn_text::{MARK, MARK_BYTES};
 
 use crate::language::{Landmark, WordKind};
 use crate::lines::{RawBlock, lines};
 use crate::rope::{Rope, pieces};
-use crate::text::{BYTE_ORDER_MARK, is_blank, trim};
+use crate::text::{is_blank, trim};
 use crate::{Block, FormatOptions, Operation, Program};
-
-/// The character of a byte-order mark, which is no text wherever it stands.
-const MARK: char = '\u{feff}';
 
 /// A change of a program. Numbers are those of the normalised listing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,6 +123,7 @@ impl Program {
         let mut own = String::with_capacity(text.len() + self.line_end.len());
         for line in lines(text.as_bytes()) {
             let line = String::from_utf8_lossy(line);
+            // A byte order mark is no text wherever it stands.
             own.extend(line.chars().filter(|&c| c != MARK));
             own.push_str(self.line_end);
         }
@@ -189,7 +188,7 @@ impl Program {
             return Err(EditError::TooLarge);
         }
         let mut region = self.region(first..after, &blocks, text);
-        if first == 0 && region.starts_with(BYTE_ORDER_MARK) {
+        if first == 0 && region.starts_with(MARK_BYTES) {
             // At the front of a file it would be none of the text.
             region.splice(0..0, self.line_end.bytes());
         }

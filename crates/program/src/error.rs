@@ -1,8 +1,9 @@
 //! What can be wrong with a block's text.
 
 use bahn_parameters::MessageId;
+use bahn_text::Span;
 
-/// A fault in the text of a block.
+/// A fault in the text of a block. Its place is one within the block, whose line in the file nobody knows while it is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockError {
     /// What the control says to it.
@@ -17,4 +18,15 @@ pub struct BlockError {
     pub detail: Box<str>,
     /// What to do about it, where the message's own remedy would mislead.
     pub help: Option<&'static str>,
+}
+
+impl BlockError {
+    /// Its place in the file where the block begins in a line.
+    pub(crate) fn span(&self, line: u32) -> Span {
+        Span {
+            line: line.saturating_add(self.line),
+            column: self.column,
+            length: self.length,
+        }
+    }
 }

@@ -66,7 +66,7 @@ mod text;
 pub use assigned::{AssignedParameter, assigned_parameters};
 pub use check::{LimitFault, Reading, check_limits, each_parameter};
 pub use cycles::{CYCLES, Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle, cycle_parameters};
-pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity, Uncounted};
+pub use diagnostics::{Fault, MAX_DIAGNOSTICS, Uncounted};
 pub use digitized::DigitizedText;
 pub use din::DinLanguage;
 pub use edit::{Edit, EditError};

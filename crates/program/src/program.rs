@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
+use bahn_text::as_utf8;
+
 use crate::bulk::Bulk;
 use crate::din::DinLanguage;
 use crate::file_types::bulk_language_of;
@@ -11,7 +13,7 @@ use crate::language::Language;
 use crate::lines::{RawBlock, line_at};
 use crate::rope::{PIECE_BLOCKS, Piece, Rope};
 use crate::survey::Frame;
-use crate::text::{settle_line_ends, text_start, to_text, without_utf16};
+use crate::text::{settle_line_ends, text_start, to_text};
 use crate::{Block, Header, Operation, Unit};
 
 /// A version of a part program.
@@ -74,14 +76,14 @@ impl Program {
     /// decoded; bytes beyond [`Program::MAX_BYTES`] are cut off.
     pub fn from_bytes(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
         let name = name.into();
-        let file = without_utf16(bytes);
+        let file = as_utf8(bytes);
         let language = bulk_language_of(&name, &file);
         Program::of_file(name, file, language)
     }
 
     /// Takes a file of DIN 66025, whatever its name: subroutines have other endings, or none.
     pub fn of_din(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
-        Program::of_file(name.into(), without_utf16(bytes), &DinLanguage)
+        Program::of_file(name.into(), as_utf8(bytes), &DinLanguage)
     }
 
     pub(crate) fn of_file(name: Box<str>, mut file: Vec<u8>, language: &'static dyn Bulk) -> Program {

@@ -1,7 +1,6 @@
-//! Characters of part-program files: 8-bit code pages, UTF-8 and UTF-16, blanks, line ends.
+//! Characters of part-program files: blanks, line ends, words.
 
-/// The byte-order mark of UTF-8.
-pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+use bahn_text::{MARK_BYTES, utf8_or_latin};
 
 /// Whether a byte separates words: blank, tab and every other control character, so that NUL padding,
 /// Ctrl-Z and ETX at the end of transferred files do no harm.
@@ -31,13 +30,9 @@ pub(crate) fn trim_continuation(bytes: &[u8]) -> &[u8] {
     bytes.get(..end).unwrap_or_default()
 }
 
-/// Text of names and comments: UTF-8 where the bytes are, else one character per byte (Latin-1), which
-/// loses nothing whatever the code page was.
+/// Text of names and comments, which loses nothing whatever the code page was.
 pub(crate) fn to_text(bytes: &[u8]) -> String {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
-    }
+    utf8_or_latin(bytes).into_owned()
 }
 
 /// Number of characters that [`to_text`] would give.
@@ -58,23 +53,6 @@ pub(crate) fn to_words(bytes: &[u8]) -> Box<str> {
         joined.extend_from_slice(word);
     }
     to_text(&joined).into_boxed_str()
-}
-
-/// Turns a file in UTF-16 with a byte-order mark into UTF-8; any other file stays as it is.
-pub(crate) fn without_utf16(bytes: Vec<u8>) -> Vec<u8> {
-    let unit: fn([u8; 2]) -> u16 = match bytes.get(..2) {
-        Some([0xff, 0xfe]) => u16::from_le_bytes,
-        Some([0xfe, 0xff]) => u16::from_be_bytes,
-        _ => return bytes,
-    };
-    let units = bytes.chunks_exact(2).skip(1).map(|pair| match pair {
-        [a, b] => unit([*a, *b]),
-        _ => 0,
-    });
-    char::decode_utf16(units)
-        .map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER))
-        .collect::<String>()
-        .into_bytes()
 }
 
 /// Makes a blank of every CR that stands alone in a file whose lines end otherwise: there it is no line end.
@@ -113,8 +91,8 @@ pub(crate) fn line_end_of(text: &[u8]) -> &'static str {
 
 /// Where the text begins, after a byte-order mark.
 pub(crate) fn text_start(file: &[u8]) -> usize {
-    if file.starts_with(BYTE_ORDER_MARK) {
-        BYTE_ORDER_MARK.len()
+    if file.starts_with(MARK_BYTES) {
+        MARK_BYTES.len()
     } else {
         0
     }
@@ -159,12 +137,5 @@ mod tests {
         );
         assert_eq!(blanked("A\rB\rC\r\n"), settled("A\nB\nC\r\n", "\n"));
         assert_eq!(blanked("A\rB\r"), settled("A\rB\r", "\r"));
-    }
-
-    #[test]
-    fn utf16_becomes_utf8() {
-        assert_eq!(without_utf16(b"\xff\xfeL\0 \0X\x001\0".to_vec()), b"L X1");
-        assert_eq!(without_utf16(b"\xfe\xff\0L\0\xf6".to_vec()), "Lö".as_bytes());
-        assert_eq!(without_utf16(b"L X1".to_vec()), b"L X1");
     }
 }

@@ -3,19 +3,20 @@
 use bahn_parameters::ControlModel::{Tnc155, Tnc360, Tnc415b};
 use bahn_parameters::InchFeed;
 use bahn_parameters::MessageId::{self, *};
-use bahn_program::{Diagnostic, MAX_DIAGNOSTICS, Program, Reading, Severity, Unit, check_limits};
+use bahn_program::{Fault, MAX_DIAGNOSTICS, Program, Reading, Unit, check_limits};
+use bahn_text::Severity;
 
 fn program(text: impl AsRef<[u8]>) -> Program {
     Program::from_bytes("TEST.H", text.as_ref().to_vec())
 }
 
 /// Message, block, and what is underlined.
-fn underlined(program: &Program, diagnostic: &Diagnostic) -> (MessageId, u32, String) {
-    let line = program.text_of_line(diagnostic.line);
+fn underlined(program: &Program, diagnostic: &Fault) -> (MessageId, u32, String) {
+    let line = program.text_of_line(diagnostic.span.line);
     let text = line
         .chars()
-        .skip(diagnostic.column as usize - 1)
-        .take(diagnostic.length as usize)
+        .skip(diagnostic.span.column as usize - 1)
+        .take(diagnostic.span.length as usize)
         .collect();
     (diagnostic.message, diagnostic.block, text)
 }
@@ -214,7 +215,7 @@ fn joined_lines_and_code_pages_keep_their_columns() {
         underlined(&latin, &all[0]),
         found(UnexpectedText, 3, "\u{f6}\u{e4}")
     );
-    assert_eq!((all[0].line, all[0].column), (4, 10));
+    assert_eq!((all[0].span.line, all[0].span.column), (4, 10));
     let marked = program("\u{feff}L X+5 oops\nEND PGM");
     let all = marked.diagnostics(None);
     assert_eq!(underlined(&marked, &all[1]), found(UnexpectedText, 1, "oops"));
@@ -310,7 +311,7 @@ fn a_din_iso_program_is_one_line() {
         let all = program.diagnostics(None);
         assert_eq!(all.len(), 1, "{all:?}");
         assert_eq!(
-            (all[0].message, all[0].block, all[0].line),
+            (all[0].message, all[0].block, all[0].span.line),
             (BlockNotSupported, 1, 1)
         );
     }

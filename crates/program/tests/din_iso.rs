@@ -286,7 +286,10 @@ fn blocks_have_a_length() {
             let all = program.diagnostics(Some(model.limits().into()));
             assert_eq!(all.len(), faults, "{all:?}");
             if let Some(fault) = all.first() {
-                assert_eq!((fault.line, fault.column, fault.length), (2, max as u32 + 1, 1));
+                assert_eq!(
+                    (fault.span.line, fault.span.column, fault.span.length),
+                    (2, max as u32 + 1, 1)
+                );
             }
         }
     }

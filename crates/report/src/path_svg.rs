@@ -541,7 +541,7 @@ fn short(value: f64) -> String {
 }
 
 fn escaped(text: &str) -> String {
-    bahn_host::printable(text)
+    bahn_text::printable(text)
         .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

@@ -3,12 +3,14 @@
 use bahn_reader::{Reader, WarningKind};
 use std::collections::HashMap;
 use std::fmt;
+use std::path::Path;
 
 use bahn_interpreter::Interpreter;
 use bahn_motion::Planned;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::{Axis, BlockRef, Curve, FeedRate, Function, PathElement, Position};
-use bahn_program::Unit;
+use bahn_program::{Program, Unit};
+use bahn_text::Diagnostic;
 use bahn_workpiece::{EventKind, Hears, Remark};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -396,6 +398,18 @@ pub struct ErrorReport {
     /// What to do about it.
     #[serde(skip)]
     pub remedy: Option<&'static str>,
+}
+
+impl ErrorReport {
+    /// As people get it; `program` is the one that it stands in, `file` where that lies.
+    pub fn diagnostic(&self, program: &Program, file: &Path) -> Diagnostic {
+        let span = program.span_of(self.at.block);
+        Diagnostic::error(span, self.message.as_str())
+            .in_block(self.block.to_string())
+            .with_detail(self.detail.as_str())
+            .with_help(self.remedy)
+            .at(file, program.text_of_line(span.line))
+    }
 }
 
 /// How far the tool went, mm.

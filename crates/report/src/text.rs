@@ -6,7 +6,7 @@ use bahn_parameters::ControlModel;
 
 use crate::ReportError;
 use crate::record::Report;
-use bahn_host::printable;
+use bahn_text::printable;
 
 /// Entries of a list that are shown; the JSON report has more.
 const SHOWN: usize = 20;

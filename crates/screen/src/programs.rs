@@ -103,7 +103,7 @@ impl ProgramMemory {
     /// The text of any file.
     pub fn text(&self, name: &str) -> Option<String> {
         let bytes = files::read_table(&self.path(name)?).ok()?;
-        Some(String::from_utf8_lossy(&bytes).into_owned())
+        Some(bahn_text::decode(&bytes))
     }
 
     /// Writes a file, whole or not at all; the control reads it from now on.

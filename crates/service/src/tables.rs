@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_host::{PlainTable, TableForm, TextTable, decode, files};
+use bahn_host::{PlainTable, TableForm, TextTable, files};
 use bahn_machine::MachineFolder;
 use bahn_store::{Place, StoreError, TNC, View};
+use bahn_text::decode;
 
 /// Name, form and file of each table that there is.
 pub(crate) struct Files(Vec<(&'static str, TableForm, PathBuf)>);

@@ -65,9 +65,9 @@ mod synch;
 /// When a function goes out and where the path waits for it.
 pub use bahn_path::Synchronisation;
 pub use bounds::Bounds;
-pub use list::{ChannelList, ListFault};
+pub use list::ChannelList;
 pub use nc::NcPrograms;
-pub use plc::{PlcMemory, Script, ScriptError, WINDOW_BYTES};
+pub use plc::{PlcMemory, Script, WINDOW_BYTES};
 pub use report::{
     Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, Skipped, ToGo, Value, Wait, Warning,
 };

@@ -121,8 +121,8 @@ fn the_later_line_counts() {
         b"m_synch[5] MOS\n\nspindel[0].m3_sync 2\nm_synch[5] 2\nspindle[0].m3_synch 4\n",
     );
     let warnings = list.warnings().iter();
-    let reported: Vec<(usize, &str)> = warnings
-        .map(|fault| (fault.line, fault.message.as_str()))
+    let reported: Vec<(u32, &str)> = warnings
+        .map(|fault| (fault.span.line, fault.message.as_str()))
         .collect();
     assert_eq!(
         reported,
@@ -144,7 +144,10 @@ fn lists_of_other_systems() {
         (latin.errors().len(), latin.settings().m.get(1).unwrap().lead),
         (1, 5)
     );
-    assert_eq!((latin.errors()[0].line, latin.errors()[0].column), (2, 7));
+    assert_eq!(
+        (latin.errors()[0].span.line, latin.errors()[0].span.column),
+        (2, 7)
+    );
 }
 
 /// Every fault stands at its line and column, and does not keep the others from being found.
@@ -156,7 +159,7 @@ fn faults_have_their_places() {
           m_synch[40] MOS\nmain_spindle_gear_change 1\n",
     );
     let errors = list.errors().iter();
-    let places: Vec<(usize, usize)> = errors.map(|fault| (fault.line, fault.column)).collect();
+    let places: Vec<(u32, u32)> = errors.map(|fault| (fault.span.line, fault.span.column)).collect();
     let expected = [
         (1, 12),
         (2, 14),

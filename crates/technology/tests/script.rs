@@ -159,7 +159,7 @@ fn bits_of_backward_motion_need_a_type() {
         let list = ChannelList::from_bytes(format!("m_synch[7] MOS\nm_synch[8] {bit}\n").as_bytes());
         let errors = list.errors();
         assert_eq!(errors.len(), 1, "{bit}: {errors:?}");
-        assert_eq!((errors[0].line, errors[0].column), (2, 12));
+        assert_eq!((errors[0].span.line, errors[0].span.column), (2, 12));
         assert!(
             errors[0].message.contains("needs a type"),
             "{}",
@@ -262,7 +262,7 @@ fn scripts_say_what_is_wrong() {
     let (_, errors) = Script::from_text("M25 akc 1\nM26 ack 1\nhold 1\novreride 50 at 1\n");
     let reported = errors
         .iter()
-        .map(|error| (error.line, error.column, error.length));
+        .map(|error| (error.span.line, error.span.column, error.span.length));
     assert_eq!(reported.collect::<Vec<_>>(), [(1, 5, 3), (3, 6, 1), (4, 1, 8)]);
     let help: Vec<_> = errors.iter().filter_map(|error| error.help.as_deref()).collect();
     assert_eq!(help, ["did you mean `ack`?", "did you mean `override`?"]);
@@ -278,7 +278,11 @@ fn scripts_say_what_is_wrong() {
         ("X[M7 ack 0", 1, 1),
     ] {
         let error = text.parse::<Script>().unwrap_err();
-        assert_eq!((error.line, error.column), (line, column), "{text}: {error}");
+        assert_eq!(
+            (error.span.line, error.span.column),
+            (line, column),
+            "{text}: {error}"
+        );
     }
     assert!(
         "# nothing\n\nX[M7] ack 1 # said\nM26 at 3.0\ndefault ack never\n"
@@ -292,14 +296,14 @@ fn scripts_say_what_is_wrong() {
 fn functions_and_spindles_of_a_script_are_those_of_the_channel() {
     let list = "m_synch[25] MOS\nm_synch[26] MVS_SVS\nh_synch[5] MOS\nspindel[0].bezeichnung S1\n";
     let settings = common::settings(list);
-    let unknown = |text: &str| -> Vec<(usize, usize, String, Option<String>)> {
+    let unknown = |text: &str| -> Vec<(u32, u32, String, Option<String>)> {
         let (script, errors) = Script::from_text(text);
         assert_eq!(errors, []);
         let unknown = script
             .unknown(&settings, |function| function == "M77")
             .into_iter();
         unknown
-            .map(|error| (error.line, error.column, error.message, error.help))
+            .map(|error| (error.span.line, error.span.column, error.message, error.help))
             .collect()
     };
     let fine = "M25 ack 1\nX[M26] ack 1\nH5 ack never\nM3 ack 1\nS[M3] ack 1\nS1[M5] ack 0\nM30 ack 1\nS ack 1\n\

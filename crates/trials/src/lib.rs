@@ -11,7 +11,7 @@
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/mill"));
-//! let machine = LoadedMachine::load(folder)?.map_err(|faults| faults[0].title.clone())?;
+//! let machine = LoadedMachine::load(folder)?.map_err(|faults| faults[0].message.clone())?;
 //! assert!(Campaign::new(machine, &["CIRCLE.H".to_owned()]).is_ok());
 //! # Ok(())
 //! # }

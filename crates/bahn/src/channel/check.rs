@@ -17,7 +17,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     // One list is one object; several are an array of them.
     if let ([path], Format::Json) = (options.files.as_slice(), options.format) {
         let list = read(path)?;
-        console::print_json(&Report::new(&list))?;
+        console::print_json(&Report::new(&faults(&list, path)))?;
         return Ok(match list.errors().is_empty() {
             true => Outcome::Fine,
             false => Outcome::ProgramError,
@@ -48,7 +48,9 @@ struct Named<'a> {
 impl Serialize for Named<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let name = self.path.display().to_string();
-        Report::new(&self.list).of_file(name).serialize(serializer)
+        Report::new(&faults(&self.list, self.path))
+            .of_file(name)
+            .serialize(serializer)
     }
 }
 

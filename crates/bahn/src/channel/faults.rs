@@ -2,49 +2,37 @@
 
 use std::path::Path;
 
-use bahn_host::{FileFault, Marked, Severity};
-use bahn_technology::{ChannelList, ListFault};
+use bahn_technology::ChannelList;
+use bahn_text::{Diagnostic, Severity};
 use serde::Serialize;
+
+use crate::diagnostics::Item;
 
 /// What is wrong with a list, for programs.
 #[derive(Debug, Serialize)]
-pub(super) struct Report<'a> {
+pub(super) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     ok: bool,
-    errors: Vec<Item<'a>>,
-    warnings: Vec<Item<'a>>,
+    errors: Vec<Item>,
+    warnings: Vec<Item>,
 }
 
-/// A fault at its place, from 1 on.
-#[derive(Debug, Serialize)]
-struct Item<'a> {
-    line: usize,
-    column: usize,
-    length: usize,
-    message: &'a str,
-    help: &'a str,
-}
-
-impl<'a> Report<'a> {
-    pub fn new(list: &'a ChannelList) -> Report<'a> {
-        let item = |fault: &'a ListFault| Item {
-            line: fault.line,
-            column: fault.column,
-            length: fault.length,
-            message: &fault.message,
-            help: fault.help.as_deref().unwrap_or_default(),
-        };
+impl Report {
+    /// Of the faults of a list.
+    pub fn new(faults: &[Diagnostic]) -> Report {
+        let of = |severity| faults.iter().filter(move |fault| fault.severity == severity);
+        let errors: Vec<Item> = of(Severity::Error).map(Item::from).collect();
         Report {
             file: None,
-            ok: list.errors().is_empty(),
-            errors: list.errors().iter().map(item).collect(),
-            warnings: list.warnings().iter().map(item).collect(),
+            ok: errors.is_empty(),
+            errors,
+            warnings: of(Severity::Warning).map(Item::from).collect(),
         }
     }
 
     /// One of several lists has its name.
-    pub fn of_file(self, name: String) -> Report<'a> {
+    pub fn of_file(self, name: String) -> Report {
         Report {
             file: Some(name),
             ..self
@@ -53,24 +41,11 @@ impl<'a> Report<'a> {
 }
 
 /// Errors, then warnings, each with its line.
-pub(crate) fn faults(list: &ChannelList, path: &Path) -> Vec<FileFault> {
-    let errors = list.errors().iter().map(|fault| (Severity::Error, fault));
-    let warnings = list.warnings().iter().map(|fault| (Severity::Warning, fault));
-    let at_its_place = |(severity, fault): (Severity, &ListFault)| FileFault {
-        severity,
-        title: fault.message.clone(),
-        path: path.to_owned(),
-        marked: Marked {
-            line: u32::try_from(fault.line).unwrap_or(u32::MAX),
-            text: list.line(fault.line).to_owned(),
-            columns: Some((
-                u32::try_from(fault.column).unwrap_or(u32::MAX),
-                u32::try_from(fault.length).unwrap_or(u32::MAX),
-            )),
-        },
-        label: String::new(),
-        help: fault.help.clone(),
-        opened: None,
-    };
-    errors.chain(warnings).map(at_its_place).collect()
+pub(crate) fn faults(list: &ChannelList, path: &Path) -> Vec<Diagnostic> {
+    let all = list.errors().iter().chain(list.warnings());
+    let in_file = all.map(|fault| {
+        let line = list.line(fault.span.line as usize);
+        fault.clone().at(path, line)
+    });
+    in_file.collect()
 }

@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_din::{Fault, FileFault as Found, Program, Shelf, examine};
+use bahn_din::{Fault, Found, Program, Shelf, examine};
 use bahn_interpreter::Complete;
+use bahn_text::{Diagnostic, Span};
 
 use super::{CheckReport, Entry, summary};
 use crate::UsageError;
-use crate::diagnostics::{self, FileFault, Marked};
+use crate::diagnostics;
 use crate::files;
 use crate::interrupt::Interrupt;
 use crate::options::Format;
@@ -33,18 +34,21 @@ pub(super) fn check(path: &Path, format: Format, interrupt: &Interrupt) -> Resul
             (examined.found, complete)
         }
     };
+    let found: Vec<Diagnostic> = found
+        .iter()
+        .map(|found| diagnostic(found, &program, path))
+        .collect();
     let report = CheckReport {
         file: path.to_string_lossy().into_owned(),
         blocks: program.block_count(),
         errors: found.len(),
         warnings: 0,
         complete: complete == Complete::Yes,
-        diagnostics: found.iter().map(entry).collect(),
+        diagnostics: found.iter().map(Entry::from).collect(),
     };
     if format == Format::Text {
-        for found in found.iter().take(diagnostics::PRINTED_MAX) {
-            print(found, &program, path);
-        }
+        let shown = found.iter().take(diagnostics::PRINTED_MAX);
+        shown.for_each(diagnostics::print_fault);
         summary(&report, complete);
     }
     Ok(report)
@@ -53,9 +57,7 @@ pub(super) fn check(path: &Path, format: Format, interrupt: &Interrupt) -> Resul
 /// A fault of the whole file.
 fn whole(program: &Arc<Program>, message: &str) -> Found {
     let fault = Fault {
-        line: 1,
-        column: 1,
-        length: 1,
+        span: Span::new(1, 1, 1),
         block: program.block_name(1),
         message: message.to_owned(),
     };
@@ -65,49 +67,12 @@ fn whole(program: &Arc<Program>, message: &str) -> Found {
     }
 }
 
-fn entry(found: &Found) -> Entry {
-    let fault = &found.fault;
-    Entry {
-        severity: "error",
-        message: fault.message.clone(),
-        program: found.program.name().to_string(),
-        block: number(fault),
-        line: fault.line,
-        column: fault.column,
-        length: fault.length,
-        detail: String::new(),
-        help: found.program.cure(fault).unwrap_or_default(),
-    }
-}
-
-/// The number of a block, without one its line.
-fn number(fault: &Fault) -> u32 {
-    let digits = fault.block.trim_start_matches(['N', '#']);
-    digits.parse().unwrap_or(fault.line)
-}
-
-fn print(found: &Found, main: &Program, path: &Path) {
+/// A fault at its place in the file that was examined, or in one beside it.
+fn diagnostic(found: &Found, main: &Program, path: &Path) -> Diagnostic {
     let path = match found.program.name() == main.name() {
         true => path.to_owned(),
         // Called programs lie beside their caller.
         false => path.with_file_name(&**found.program.name()),
     };
-    diagnostics::print_fault(&located(&found.fault, &found.program, &path));
-}
-
-/// A fault of a program with its line.
-pub(crate) fn located(fault: &Fault, program: &Program, path: &Path) -> FileFault {
-    FileFault {
-        severity: diagnostics::Severity::Error,
-        title: fault.message.clone(),
-        path: path.to_owned(),
-        marked: Marked {
-            line: fault.line,
-            text: program.line(fault.line).to_owned(),
-            columns: Some((fault.column, fault.length)),
-        },
-        label: format!("block {}", fault.block),
-        help: program.cure(fault),
-        opened: None,
-    }
+    found.fault.diagnostic(&found.program, &path)
 }

@@ -1,6 +1,7 @@
 //! What a check has found.
 
 use bahn_interpreter::Complete;
+use bahn_text::Diagnostic;
 
 use crate::diagnostics;
 use bahn_report::count;
@@ -19,15 +20,34 @@ pub(crate) struct CheckReport {
 
 #[derive(Debug, serde::Serialize)]
 pub(super) struct Entry {
-    pub(super) severity: &'static str,
-    pub(super) message: String,
-    pub(super) program: String,
-    pub(super) block: u32,
-    pub(super) line: u32,
-    pub(super) column: u32,
-    pub(super) length: u32,
-    pub(super) detail: String,
-    pub(super) help: String,
+    severity: &'static str,
+    message: String,
+    program: String,
+    block: u32,
+    line: u32,
+    column: u32,
+    length: u32,
+    detail: String,
+    help: String,
+}
+
+impl From<&Diagnostic> for Entry {
+    fn from(fault: &Diagnostic) -> Entry {
+        let program = fault.file.file_name().unwrap_or_default();
+        // `12`, `N40`, without a number the line: `#12`.
+        let block = fault.block.trim_start_matches(['N', '#']);
+        Entry {
+            severity: fault.severity.name(),
+            message: fault.message.clone(),
+            program: program.to_string_lossy().into_owned(),
+            block: block.parse().unwrap_or(fault.span.line),
+            line: fault.span.line,
+            column: fault.span.column,
+            length: fault.span.length,
+            detail: fault.detail.clone(),
+            help: fault.help.clone().unwrap_or_default(),
+        }
+    }
 }
 
 pub(super) fn summary(report: &CheckReport, complete: Complete) {

@@ -8,11 +8,12 @@ use bahn_control::datum_shifts;
 use bahn_host::{LoadedMachine, tool_table};
 use bahn_interpreter::{AbsentAxes, Rules, Settings};
 use bahn_parameters::ParameterList;
+use bahn_text::Severity;
 
 use super::load;
 use super::options::CheckOptions;
 use crate::check::{self, Check, CheckReport};
-use crate::diagnostics::{self, FileFault, Severity};
+use crate::diagnostics::{self, Item};
 use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::reports::{OfFile, Reports};
@@ -25,19 +26,9 @@ struct Report {
     name: Option<String>,
     model: Option<&'static str>,
     ok: bool,
-    faults: Vec<Entry>,
+    faults: Vec<Item>,
     /// The part programs, as `bahn check` reports them.
     programs: Vec<OfFile<CheckReport>>,
-}
-
-#[derive(Debug, Serialize)]
-struct Entry {
-    severity: &'static str,
-    file: String,
-    line: u32,
-    column: Option<u32>,
-    message: String,
-    detail: String,
 }
 
 /// Checks folders and prints what is wrong.
@@ -85,7 +76,7 @@ fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report,
         name: loaded.as_ref().map(|machine| machine.folder.name.clone()),
         model: loaded.as_ref().map(|machine| machine.parameters.model().id()),
         ok: loaded.is_some() && errors == 0 && programs.iter().all(is_fine),
-        faults: faults.iter().map(Entry::new).collect(),
+        faults: faults.iter().map(Item::from).collect(),
         programs,
     })
 }
@@ -156,20 +147,4 @@ fn programs(folder: &Path) -> Vec<PathBuf> {
         .collect();
     programs.sort();
     programs
-}
-
-impl Entry {
-    fn new(fault: &FileFault) -> Entry {
-        Entry {
-            severity: match fault.severity {
-                Severity::Error => "error",
-                Severity::Warning => "warning",
-            },
-            file: fault.path.display().to_string(),
-            line: fault.marked.line,
-            column: fault.marked.columns.map(|(column, _)| column),
-            message: fault.title.clone(),
-            detail: fault.label.clone(),
-        }
-    }
 }

@@ -6,8 +6,8 @@ use bahn_machine::Event;
 use super::load;
 use super::options::ListOptions;
 use crate::diagnostics;
-use crate::diagnostics::printable;
 use crate::{Outcome, UsageError, console};
+use bahn_text::printable;
 
 /// Commands of the control, a line each.
 const COMMANDS: &str = "\

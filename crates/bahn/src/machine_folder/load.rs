@@ -5,13 +5,12 @@ use std::path::Path;
 use bahn_host::LoadedMachine;
 
 use crate::UsageError;
-use crate::diagnostics::FileFault;
 
 /// Loads the machine of a folder; the inner `Err` holds every fault of every file.
 ///
 /// # Errors
 /// When there is no such machine.
-pub(crate) fn load(folder: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
+pub(crate) fn load(folder: &Path) -> Result<Result<LoadedMachine, Vec<bahn_text::Diagnostic>>, UsageError> {
     LoadedMachine::load(folder)
         .map_err(|error| UsageError::new(format!("{error}; `bahn machine new` makes one")))
 }
@@ -20,7 +19,9 @@ pub(crate) fn load(folder: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>
 ///
 /// # Errors
 /// As [`load`].
-pub(crate) fn load_to_enter(folder: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
+pub(crate) fn load_to_enter(
+    folder: &Path,
+) -> Result<Result<LoadedMachine, Vec<bahn_text::Diagnostic>>, UsageError> {
     LoadedMachine::load_to_enter(folder)
         .map_err(|error| UsageError::new(format!("{error}; `bahn machine new` makes one")))
 }
@@ -32,7 +33,7 @@ pub(crate) fn load_to_enter(folder: &Path) -> Result<Result<LoadedMachine, Vec<F
 pub(crate) fn load_with_tools(
     folder: &Path,
     tools: Option<&str>,
-) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
+) -> Result<Result<LoadedMachine, Vec<bahn_text::Diagnostic>>, UsageError> {
     let Some(tools) = tools else { return load(folder) };
     LoadedMachine::load_with_tools(folder, tools).map_err(|error| UsageError::new(error.to_string()))
 }

@@ -131,7 +131,9 @@ fn parameters(text: &str, model: ControlModel) -> String {
     let list = ListText::from_bytes(model, text.as_bytes());
     let unknown = |line: usize| {
         let mut faults = list.faults().iter();
-        faults.any(|fault| fault.line == line && matches!(fault.error, ParameterError::UnknownNumber(_)))
+        faults.any(|fault| {
+            fault.span.line as usize == line && matches!(fault.error, ParameterError::UnknownNumber(_))
+        })
     };
     (1..)
         .zip(text.lines())

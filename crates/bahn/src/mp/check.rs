@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_host::lists;
 use bahn_parameters::conformance::{Effect, Kind, find};
 use bahn_parameters::{Inconsistency, ListError, ListText, ParameterError, ParameterId};
+use bahn_text::Diagnostic;
 use serde::Serialize;
 
 use super::options::CheckOptions;
 use super::source;
-use crate::diagnostics::{self, FileFault};
+use crate::diagnostics;
 use crate::options::Format;
 use crate::reports::Reports;
 use crate::{Outcome, UsageError, files};
@@ -77,9 +77,9 @@ struct Item {
     number: Option<u8>,
     text: String,
     parameter: Option<String>,
-    line: usize,
-    column: usize,
-    length: usize,
+    line: u32,
+    column: u32,
+    length: u32,
     detail: String,
 }
 
@@ -96,12 +96,12 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     };
     let (impossible, doubtful): (Vec<Inconsistency>, Vec<_>) =
         inconsistent.into_iter().partition(|found| found.impossible);
-    let marked = |found: &Inconsistency| lists::inconsistency(found, &text, path);
-    let (impossible_at, warnings): (Vec<FileFault>, Vec<FileFault>) = (
+    let marked = |found: &Inconsistency| found.diagnostic(&text, path);
+    let (impossible_at, warnings): (Vec<Diagnostic>, Vec<Diagnostic>) = (
         impossible.iter().map(marked).collect(),
         doubtful.iter().map(marked).collect(),
     );
-    let items = |found: &[Inconsistency], at: &[FileFault]| -> Vec<Item> {
+    let items = |found: &[Inconsistency], at: &[Diagnostic]| -> Vec<Item> {
         found
             .iter()
             .zip(at)
@@ -123,10 +123,10 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         warnings: items(&doubtful, &warnings),
     };
     if options.format == Format::Text {
-        let unreadable: Vec<FileFault> = faults
+        let unreadable: Vec<Diagnostic> = faults
             .iter()
             .filter(|fault| !is_missing(fault))
-            .map(|fault| lists::fault(fault, &text, path))
+            .map(|fault| fault.diagnostic(&text, path))
             .collect();
         diagnostics::print_faults(&unreadable);
         let missing: Vec<&ListError> = faults.iter().filter(|fault| is_missing(fault)).collect();
@@ -173,22 +173,22 @@ fn error_item(fault: &ListError) -> Item {
         number: Some(fault.error.number()),
         text: fault.error.control_text().to_owned(),
         parameter: fault.error.id().map(|id| id.to_string()),
-        line: fault.line,
-        column: fault.column,
-        length: fault.length,
+        line: fault.span.line,
+        column: fault.span.column,
+        length: fault.span.length,
         detail: fault.error.to_string(),
     }
 }
 
-fn inconsistent_item(found: &Inconsistency, fault: &FileFault) -> Item {
+fn inconsistent_item(found: &Inconsistency, fault: &Diagnostic) -> Item {
     Item {
         number: None,
-        text: fault.title.clone(),
+        text: fault.message.clone(),
         parameter: Some(found.id.to_string()),
-        line: fault.marked.line as usize,
-        column: 1,
-        length: 0,
-        detail: fault.label.clone(),
+        line: fault.span.line,
+        column: fault.span.column.max(1),
+        length: fault.span.length,
+        detail: fault.detail.clone(),
     }
 }
 

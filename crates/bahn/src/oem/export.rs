@@ -1,12 +1,11 @@
 //! `bahn oem export`: S records for an EPROM.
 
 use std::io::Write as _;
-use std::path::Path;
 
-use bahn_host::eprom::{self, ListFault, LoadList};
+use bahn_host::eprom::{self, LoadList};
 use bahn_host::files::{self, NewFile};
 use bahn_host::s_records::Image;
-use bahn_host::{FileFault, Marked, Severity, decode};
+use bahn_text::{Diagnostic, Span, decode};
 
 use super::options::ExportOptions;
 use crate::{Outcome, UsageError, console, diagnostics};
@@ -20,7 +19,10 @@ pub(super) fn command(options: &ExportOptions) -> Result<Outcome, UsageError> {
         crate::files::keep_inputs(&[&options.list], &[("--output", output)])?;
     }
     let text = decode(&files::read_table(&options.list)?);
-    let fault = |fault: ListFault| of_list(&options.list, &text, fault);
+    let fault = |fault: Diagnostic| {
+        let fault = fault.under("the EPROM cannot be written");
+        fault.in_text(options.list.as_path(), &text)
+    };
     let list = match LoadList::parse(&text) {
         Ok(list) => list,
         Err(faults) => return Ok(print(faults.into_iter().map(fault).collect())),
@@ -29,13 +31,7 @@ pub(super) fn command(options: &ExportOptions) -> Result<Outcome, UsageError> {
     if !faults.is_empty() {
         return Ok(print(faults.into_iter().map(fault).collect()));
     }
-    let whole = |message| {
-        fault(ListFault {
-            line: 0,
-            column: 1,
-            message,
-        })
-    };
+    let whole = |message: String| fault(Diagnostic::error(Span::FILE, message));
     let image = match list.image(&contents) {
         Ok(image) => image,
         Err(message) => return Ok(print(vec![whole(message)])),
@@ -61,32 +57,7 @@ pub(super) fn command(options: &ExportOptions) -> Result<Outcome, UsageError> {
     Ok(Outcome::Fine)
 }
 
-fn of_list(path: &Path, text: &str, fault: ListFault) -> FileFault {
-    let line = text
-        .lines()
-        .nth((fault.line as usize).saturating_sub(1))
-        .unwrap_or_default();
-    let rest = line
-        .chars()
-        .skip((fault.column as usize).saturating_sub(1))
-        .count();
-    let length = u32::try_from(rest).unwrap_or(1).max(1);
-    FileFault {
-        severity: Severity::Error,
-        title: "the EPROM cannot be written".into(),
-        path: path.to_owned(),
-        marked: Marked {
-            line: fault.line,
-            text: line.to_owned(),
-            columns: (fault.line > 0).then_some((fault.column, length)),
-        },
-        label: fault.message,
-        help: None,
-        opened: None,
-    }
-}
-
-fn print(faults: Vec<FileFault>) -> Outcome {
+fn print(faults: Vec<Diagnostic>) -> Outcome {
     diagnostics::print_faults(&faults);
     Outcome::ProgramError
 }

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use bahn_host::eprom::LoadList;
 use bahn_host::files::{self, NewFile};
 use bahn_host::s_records::Image;
-use bahn_host::{FileFault, Marked, Severity, decode};
+use bahn_text::{Diagnostic, Span, decode};
 
 use super::options::ImportOptions;
 use crate::{Outcome, UsageError, console, diagnostics};
@@ -13,29 +13,14 @@ use crate::{Outcome, UsageError, console, diagnostics};
 /// Verifies the records, and shows or writes their files.
 pub(super) fn command(options: &ImportOptions) -> Result<Outcome, UsageError> {
     let text = decode(&files::read_description(&options.records)?);
-    let read = Image::from_records(&text)
-        .map_err(|fault| (fault.line, fault.message))
-        .and_then(|image| LoadList::of_image(&image).map_err(|message| (0, message)));
+    let read = Image::from_records(&text).and_then(|image| {
+        LoadList::of_image(&image).map_err(|message| Diagnostic::error(Span::FILE, message))
+    });
     let (list, contents) = match read {
         Ok(read) => read,
-        Err((line, message)) => {
-            let line_text = text
-                .lines()
-                .nth((line as usize).saturating_sub(1))
-                .unwrap_or_default();
-            diagnostics::print_fault(&FileFault {
-                severity: Severity::Error,
-                title: "these are no records of an EPROM".into(),
-                path: options.records.clone(),
-                marked: Marked {
-                    line,
-                    text: line_text.to_owned(),
-                    columns: None,
-                },
-                label: message,
-                help: None,
-                opened: None,
-            });
+        Err(fault) => {
+            let fault = fault.under("these are no records of an EPROM");
+            diagnostics::print_fault(&fault.in_text(options.records.as_path(), &text));
             return Ok(Outcome::ProgramError);
         }
     };

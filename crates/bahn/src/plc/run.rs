@@ -23,7 +23,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     let first_error = source.compilation.errors.first().map(|fault| Stop {
         number: fault.error.number(),
         file: fault.file.clone(),
-        line: fault.line,
+        line: fault.span.line,
     });
     let parameters = source.parameters.clone();
     let Some(program) = source.program() else {

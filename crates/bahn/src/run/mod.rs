@@ -25,7 +25,7 @@ use bahn_report::{Follower, junit, solid};
 use bahn_workpiece::{Columns, Cutting, Projection};
 
 use crate::cutting::{self, Written};
-use crate::diagnostics::{self, FileFault};
+use crate::diagnostics;
 use crate::interrupt::Interrupt;
 use crate::machine_folder;
 use crate::options::Format;
@@ -141,7 +141,7 @@ fn table(options: &RunMachineOptions, machine: &LoadedMachine, host: &mut Host) 
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
-fn refused(faults: &[FileFault]) -> Result<Outcome, UsageError> {
+fn refused(faults: &[bahn_text::Diagnostic]) -> Result<Outcome, UsageError> {
     diagnostics::print_faults(faults);
     Ok(Outcome::ProgramError)
 }
@@ -149,7 +149,7 @@ fn refused(faults: &[FileFault]) -> Result<Outcome, UsageError> {
 fn load_script(
     options: &RunMachineOptions,
     machine: &LoadedMachine,
-) -> Result<Result<Script, Vec<FileFault>>, UsageError> {
+) -> Result<Result<Script, Vec<bahn_text::Diagnostic>>, UsageError> {
     let (path, is_log) = match (&options.run.script, &options.run.replay) {
         (Some(path), _) => (path, false),
         (None, Some(path)) => (path, true),

@@ -40,7 +40,7 @@ pub(super) fn load(path: &Path, options: &TestOptions, datum: &Position) -> Resu
     }
     let bytes = files::read_program(path)?
         .ok_or_else(|| UsageError::new(format!("{}: {}", path.display(), files::TOO_LARGE)))?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = bahn_text::decode(&bytes);
     let earlier = shelf::read(&text);
     if let Some(rows) = earlier.map_err(|error| UsageError::new(format!("{}: {error}", path.display())))? {
         return Ok(Other::Report(rows));

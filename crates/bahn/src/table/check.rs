@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use bahn_host::{LoadedMachine, TableFault};
+use bahn_host::LoadedMachine;
+use bahn_text::Diagnostic;
 use serde::Serialize;
 
 use super::options::CheckOptions;
@@ -47,6 +48,22 @@ struct Item {
     message: String,
 }
 
+impl Item {
+    /// What exactly is wrong: a machine has a headline over it.
+    fn new(file: String, fault: &Diagnostic) -> Item {
+        let message = match fault.detail.as_str() {
+            "" => &fault.message,
+            detail => detail,
+        };
+        Item {
+            file,
+            line: fault.span.line,
+            column: fault.span.column,
+            message: message.to_owned(),
+        }
+    }
+}
+
 fn of_file(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     let source = source::read(path, options.kind)?;
     let faults = source.kind.check(&source.text).err().unwrap_or_default();
@@ -54,12 +71,7 @@ fn of_file(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         source.print(&faults);
     }
     let file = path.display().to_string();
-    let item = |fault: TableFault| Item {
-        file: file.clone(),
-        line: fault.line,
-        column: fault.column,
-        message: fault.message,
-    };
+    let item = |fault: Diagnostic| Item::new(file.clone(), &fault);
     Ok(Report {
         kind: source.kind.name(),
         rows: source.table.rows.len(),
@@ -80,12 +92,7 @@ fn of_machine(path: &Path, options: &CheckOptions) -> Result<Report, UsageError>
     if options.format == Format::Text {
         diagnostics::print_faults(&faults);
     }
-    let item = |fault: bahn_host::FileFault| Item {
-        file: fault.path.display().to_string(),
-        line: fault.marked.line,
-        column: fault.marked.columns.map_or(0, |(column, _)| column),
-        message: fault.label,
-    };
+    let item = |fault: Diagnostic| Item::new(fault.file.display().to_string(), &fault);
     Ok(Report {
         file: path.display().to_string(),
         kind: "machine",

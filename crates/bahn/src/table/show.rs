@@ -5,8 +5,8 @@ use serde_json::{Map, Value, json};
 
 use super::options::{ShowFormat, ShowOptions};
 use super::source::{self, Source};
-use crate::diagnostics::printable_lines;
 use crate::{Outcome, UsageError, console};
+use bahn_text::printable_lines;
 
 pub(super) fn command(options: &ShowOptions) -> Result<Outcome, UsageError> {
     let machine = source::machine(&options.table)?;

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_host::{FileFault, LoadedMachine, Marked, Severity, TableFault, TableForm, TextTable, decode};
+use bahn_host::{LoadedMachine, TableForm, TextTable};
 use bahn_machine::MachineFolder;
+use bahn_text::{Diagnostic, decode};
 
 use super::options::KindOption;
 use crate::{UsageError, diagnostics, files};
@@ -33,7 +34,7 @@ impl From<KindOption> for TableForm {
 pub(super) fn read(path: &Path, kind: Option<KindOption>) -> Result<Source, UsageError> {
     let text = decode(&files::read_table(path)?);
     let at = |message: &str| UsageError::new(format!("{}: {message}", path.display()));
-    let table = TextTable::read(&text).map_err(|fault| at(&fault.to_string()))?;
+    let table = TextTable::read(&text).map_err(|fault| at(&fault.at_line()))?;
     let kind = kind.map(TableForm::from).or_else(|| TableForm::of(path, &table));
     let kind = kind.ok_or_else(|| at("nobody can tell what kind of table this is; say it with --kind"))?;
     Ok(Source {
@@ -45,36 +46,12 @@ pub(super) fn read(path: &Path, kind: Option<KindOption>) -> Result<Source, Usag
 }
 
 impl Source {
-    /// Prints the faults of the table with their lines.
-    pub fn print(&self, faults: &[TableFault]) {
+    /// The faults of the table, printed.
+    pub fn print(&self, faults: &[Diagnostic]) {
+        let headline = format!("the {} table is wrong", self.kind.name());
         for fault in faults {
-            diagnostics::print_fault(&self.fault(fault));
-        }
-    }
-
-    /// A fault with its place in the file.
-    fn fault(&self, fault: &TableFault) -> FileFault {
-        let line = fault.line.max(1);
-        let shown = self.text.lines().nth(line as usize - 1).unwrap_or_default();
-        let row = self.table.rows.iter().find(|row| row.line == line);
-        let cells = row.into_iter().flat_map(|row| &row.cells);
-        let length = cells
-            .filter(|cell| cell.column == fault.column)
-            .map(|cell| cell.text.chars().count())
-            .next();
-        let length = u32::try_from(length.unwrap_or(1)).unwrap_or(1).max(1);
-        FileFault {
-            severity: Severity::Error,
-            title: format!("the {} table is wrong", self.kind.name()),
-            path: self.path.clone(),
-            marked: Marked {
-                line,
-                text: shown.to_owned(),
-                columns: (fault.column > 0).then_some((fault.column, length)),
-            },
-            label: fault.message.clone(),
-            help: None,
-            opened: None,
+            let fault = fault.clone().under(headline.as_str());
+            diagnostics::print_fault(&fault.in_text(self.path.as_path(), &self.text));
         }
     }
 }

@@ -3,19 +3,20 @@
 use std::cell::LazyCell;
 use std::path::PathBuf;
 
-use bahn_technology::{ChannelSettings, EventKind, Report, Run, Script, ScriptError, WINDOW_BYTES};
+use bahn_technology::{ChannelSettings, EventKind, Report, Run, Script, WINDOW_BYTES};
+use bahn_text::{Diagnostic, decode};
 
 use super::machine::MachinePlc;
 use super::options::TechnologyOptions;
 use super::programs::Sources;
-use crate::diagnostics::{self, FileFault, Marked, Severity};
+use crate::diagnostics;
 use crate::{UsageError, files};
 
 /// Script or machine that answers functions: what `--plc` names.
 pub(super) struct Answering {
     script: Option<Script>,
     /// What is wrong in the text of the script.
-    pub faults: Vec<FileFault>,
+    pub faults: Vec<Diagnostic>,
     source: Option<(PathBuf, String)>,
     machine: Option<MachinePlc>,
 }
@@ -34,7 +35,7 @@ impl Answering {
         }
         let source = match scripts.first() {
             Some(path) => {
-                let text = String::from_utf8_lossy(&files::read_table(path)?).into_owned();
+                let text = decode(&files::read_table(path)?);
                 Some((PathBuf::from(path), text))
             }
             None => None,
@@ -44,7 +45,7 @@ impl Answering {
             Some((script, errors)) => (Some(script), errors),
             None => (None, Vec::new()),
         };
-        let faults = located(&source, &errors);
+        let faults = located(&source, errors);
         let Some(folder) = folders.first() else {
             return Ok(Some(Answering {
                 script,
@@ -73,9 +74,9 @@ impl Answering {
         // Programs give types, too; only where one seems to lack they are examined.
         let typed = LazyCell::new(|| sources.typed());
         let unknown = script.unknown(settings, |function| typed.contains(function));
-        let unknown = located(&self.source, &unknown);
+        let unknown = located(&self.source, unknown);
         self.faults.extend(unknown);
-        self.faults.sort_by_key(|fault| fault.marked.line);
+        self.faults.sort_by_key(|fault| fault.span.line);
     }
 
     /// Executes a run on the machine, or with the answers of the script.
@@ -97,24 +98,11 @@ impl Answering {
     }
 }
 
-/// Errors of a script with their lines.
-fn located(source: &Option<(PathBuf, String)>, errors: &[ScriptError]) -> Vec<FileFault> {
+/// Errors of a script in its file.
+fn located(source: &Option<(PathBuf, String)>, errors: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let Some((path, text)) = source else {
         return Vec::new();
     };
-    let number = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
-    let faults = errors.iter().map(|error| FileFault {
-        severity: Severity::Error,
-        title: error.message.clone(),
-        path: path.clone(),
-        marked: Marked {
-            line: number(error.line),
-            text: text.lines().nth(error.line - 1).unwrap_or_default().to_owned(),
-            columns: Some((number(error.column), number(error.length))),
-        },
-        label: String::new(),
-        help: error.help.clone(),
-        opened: None,
-    });
-    faults.collect()
+    let errors = errors.into_iter();
+    errors.map(|error| error.in_text(path.as_path(), text)).collect()
 }

@@ -22,9 +22,10 @@ use bahn_parameters::ControlModel;
 use bahn_path::Position;
 use bahn_report::scope::write;
 use bahn_report::technology::{sheet, text};
-use bahn_technology::{Bounds, ChannelList, Coordinates, Fault, ListFault, NcPrograms, Report, Run};
+use bahn_technology::{Bounds, ChannelList, Coordinates, Fault, NcPrograms, Report, Run};
+use bahn_text::Diagnostic;
 
-use crate::diagnostics::{self, FileFault};
+use crate::diagnostics::{self, Item};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, files, settings};
 use answering::Answering;
@@ -85,7 +86,7 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
         Format::Text => console::print(&text(&report))?,
         Format::Json => console::print_json(&WithFaults {
             report: &report,
-            diagnostics: faults::items(&faults),
+            diagnostics: faults.iter().map(Item::from).collect(),
         })?,
     }
     Ok(if !is_scripted {
@@ -121,28 +122,31 @@ fn inputs(options: &TechnologyOptions) -> impl Iterator<Item = &PathBuf> {
 struct WithFaults<'a> {
     #[serde(flatten)]
     report: &'a Report,
-    diagnostics: Vec<faults::Item<'a>>,
+    diagnostics: Vec<Item>,
 }
 
 /// The first error of a list.
-fn list_fault(fault: &ListFault, path: &Path) -> Fault {
+fn list_fault(fault: &Diagnostic, path: &Path) -> Fault {
     Fault {
         code: "channel-list".to_owned(),
-        message: format!("line {}, column {}: {}", fault.line, fault.column, fault.message),
+        message: format!(
+            "line {}, column {}: {}",
+            fault.span.line, fault.span.column, fault.message
+        ),
         program: programs::file_name(path),
-        block: format!("#{}", fault.line),
-        line: u32::try_from(fault.line).unwrap_or_default(),
+        block: format!("#{}", fault.span.line),
+        line: fault.span.line,
     }
 }
 
 /// The first error of a script, which stands after those of all others.
-fn script_fault(faults: &[FileFault]) -> Fault {
+fn script_fault(faults: &[Diagnostic]) -> Fault {
     let last = faults.last();
-    let line = last.map_or(0, |fault| fault.marked.line);
+    let line = last.map_or(0, |fault| fault.span.line);
     Fault {
         code: "script".to_owned(),
-        message: last.map_or_else(String::new, |fault| fault.title.clone()),
-        program: last.map_or_else(String::new, |fault| programs::file_name(&fault.path)),
+        message: last.map_or_else(String::new, |fault| fault.message.clone()),
+        program: last.map_or_else(String::new, |fault| programs::file_name(&fault.file)),
         block: format!("#{line}"),
         line,
     }

@@ -22,7 +22,7 @@ pub(crate) use bench::bench;
 pub(crate) use options::{EXAMPLES, TestOptions};
 
 use crate::cutting::{self, Written};
-use crate::diagnostics::{self, FileFault, Marked, Severity};
+use crate::diagnostics;
 use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::progress::Progress;
@@ -129,18 +129,7 @@ pub(crate) fn print_error(error: &ErrorReport, run: &dyn Reader, main: &Path) {
         0 => main.to_owned(),
         _ => main.with_file_name(files::short_name(program)),
     };
-    diagnostics::print_fault(&FileFault {
-        severity: Severity::Error,
-        title: error.message.clone(),
-        path,
-        marked: Marked::of_block(program, error.at.block),
-        label: match error.detail.as_str() {
-            "" => format!("block {}", error.block),
-            detail => format!("block {}: {detail}", error.block),
-        },
-        help: error.remedy.map(str::to_owned),
-        opened: None,
-    });
+    diagnostics::print_fault(&error.diagnostic(program, &path));
 }
 
 fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(), UsageError> {

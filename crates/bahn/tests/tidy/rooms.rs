@@ -3,28 +3,33 @@
 /// The rooms from the ground floor up: a room may only use rooms that stand before it here and are named
 /// after it.
 pub const ROOMS: &[(&str, &[&str])] = &[
+    ("text", &[]),
     ("path", &[]),
     ("picture", &[]),
     ("browser", &[]),
     ("servo", &[]),
-    ("parameters", &["path", "servo"]),
-    ("program", &["path", "parameters"]),
+    ("parameters", &["text", "path", "servo"]),
+    ("program", &["text", "path", "parameters"]),
     ("dialogue", &["path", "parameters", "program"]),
     ("reader", &["path", "parameters", "program"]),
-    ("interpreter", &["path", "parameters", "program", "reader"]),
+    (
+        "interpreter",
+        &["text", "path", "parameters", "program", "reader"],
+    ),
     ("motion", &["path"]),
-    ("din", &["path"]),
+    ("din", &["text", "path"]),
     ("nc", &["path", "parameters", "program", "reader", "din"]),
     ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
-    ("technology", &["path", "motion", "din", "kernel"]),
+    ("technology", &["text", "path", "motion", "din", "kernel"]),
     ("workpiece", &["path", "picture"]),
     ("viewer", &["path", "workpiece"]),
     ("exchange", &[]),
-    ("plc", &["exchange", "parameters"]),
+    ("plc", &["text", "exchange", "parameters"]),
     ("convert", &["path", "parameters", "program", "interpreter"]),
     (
         "lsp",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -37,7 +42,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "convert",
         ],
     ),
-    ("machine", &["servo"]),
+    ("machine", &["text", "servo"]),
     (
         "control",
         &[
@@ -56,6 +61,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "host",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -73,6 +79,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "trials",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -89,7 +96,15 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("link", &["access", "store", "parameters", "control", "host"]),
     (
         "screen",
-        &["parameters", "program", "dialogue", "reader", "control", "host"],
+        &[
+            "text",
+            "parameters",
+            "program",
+            "dialogue",
+            "reader",
+            "control",
+            "host",
+        ],
     ),
     (
         "graphics",
@@ -112,6 +127,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "why",
         &[
+            "text",
             "control",
             "exchange",
             "host",
@@ -125,6 +141,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "teaching",
         &[
+            "text",
             "control",
             "exchange",
             "host",
@@ -137,6 +154,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "panel",
         &[
+            "text",
             "control",
             "dialogue",
             "exchange",
@@ -166,6 +184,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "path",
             "plc",
             "store",
+            "text",
         ],
     ),
     ("server", &["service", "viewer"]),
@@ -177,6 +196,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "report",
         &[
+            "text",
             "path",
             "parameters",
             "program",
@@ -202,6 +222,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "bahn",
         &[
+            "text",
             "path",
             "parameters",
             "program",

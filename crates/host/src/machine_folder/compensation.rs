@@ -7,9 +7,10 @@ use bahn_control::{CompensationAssignment, CompensationError, CompensationTable,
 use bahn_machine::MachineFolder;
 use bahn_parameters::operation::Station;
 use bahn_parameters::{Inconsistency, ListText, PLC_AXIS_NAMES, ParameterId, ParameterList};
+use bahn_text::{Diagnostic, Span, decode};
 
-use super::load::{Loader, decode, file_fault};
-use crate::{files, lists};
+use super::load::Loader;
+use crate::files;
 
 impl Loader<'_> {
     /// The assignment of the axis-error compensation with its tables.
@@ -66,14 +67,8 @@ impl Loader<'_> {
             Ok(read) => return Some(read),
             Err(fault) => fault,
         };
-        let place = (fault.line, None);
-        self.faults.push(file_fault(
-            path,
-            text,
-            place,
-            "the compensation is wrong",
-            fault.what,
-        ));
+        let fault = Diagnostic::error(Span::line(fault.line), fault.what).under("the compensation is wrong");
+        self.faults.push(fault.in_text(path, text));
         None
     }
 
@@ -103,9 +98,7 @@ impl Loader<'_> {
             return;
         };
         let text = ListText::from_bytes(list.model(), &bytes);
-        let warnings = found
-            .iter()
-            .map(|found| lists::inconsistency(found, &text, &path));
+        let warnings = found.iter().map(|found| found.diagnostic(&text, &path));
         self.warnings.extend(warnings);
     }
 }

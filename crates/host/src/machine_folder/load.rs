@@ -11,12 +11,12 @@ use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::Position;
 use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
+use bahn_text::{Diagnostic, Severity, Span, decode};
 
 use super::channel::{Channels, LoadedChannel, position};
 use super::{remembered, state};
-use crate::fault::{FileFault, Marked, Severity};
 use crate::plc_source::PlcSource;
-use crate::{HostError, files, lists};
+use crate::{HostError, files};
 
 /// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
 const MESSAGES: usize = 100;
@@ -50,13 +50,13 @@ pub struct LoadedMachine {
     /// The M functions that are synchronised otherwise than the control model does.
     pub functions: OwnFunctions,
     /// What is accepted, but looks wrong.
-    pub warnings: Vec<FileFault>,
+    pub warnings: Vec<Diagnostic>,
     /// The first list of machine parameters, of it or of a channel, that is empty or has faults: it is to be entered before the
     /// control goes on.
     pub to_be_entered: Option<String>,
     /// Faults of files that are refused when they are used: they come from outside, so that none of them keeps a machine
     /// from being switched on.
-    pub refused: Vec<FileFault>,
+    pub refused: Vec<Diagnostic>,
 }
 
 impl LoadedMachine {
@@ -64,7 +64,7 @@ impl LoadedMachine {
     ///
     /// # Errors
     /// When there is no such folder or no `machine.toml` in it.
-    pub fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+    pub fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<Diagnostic>>, HostError> {
         load(root, &Instead::default())
     }
 
@@ -76,7 +76,7 @@ impl LoadedMachine {
     pub fn load_with_tools(
         root: &Path,
         tools: &str,
-    ) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+    ) -> Result<Result<LoadedMachine, Vec<Diagnostic>>, HostError> {
         let instead = Instead {
             tools: Some(tools),
             ..Instead::default()
@@ -93,7 +93,7 @@ impl LoadedMachine {
         root: &Path,
         name: &str,
         bytes: &[u8],
-    ) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+    ) -> Result<Result<LoadedMachine, Vec<Diagnostic>>, HostError> {
         let instead = Instead {
             file: Some((name, bytes)),
             ..Instead::default()
@@ -106,7 +106,7 @@ impl LoadedMachine {
     ///
     /// # Errors
     /// As [`LoadedMachine::load`].
-    pub fn load_to_enter(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+    pub fn load_to_enter(root: &Path) -> Result<Result<LoadedMachine, Vec<Diagnostic>>, HostError> {
         let instead = Instead {
             enters: true,
             ..Instead::default()
@@ -198,7 +198,7 @@ impl LoadedMachine {
 }
 
 /// See [`LoadedMachine::load`].
-fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<Diagnostic>>, HostError> {
     let file = root.join(MachineFolder::FILE);
     let bytes = files::read_description(&file).map_err(|error| {
         HostError::new(format!(
@@ -222,7 +222,12 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
         description: (file.clone(), text),
     };
     for fault in faults {
-        loader.fault_in_description(fault.line, fault.column, fault.message);
+        // At the begin of a line all of it is meant.
+        let span = match fault.span.column {
+            ..=1 => Span::line(fault.span.line as usize),
+            _ => fault.span,
+        };
+        loader.fault_in_description(Diagnostic { span, ..fault });
     }
     let machine = loader.load(folder);
     Ok(match machine {
@@ -259,10 +264,10 @@ pub(super) struct Loader<'a> {
     /// Lists of machine parameters can be entered, and the first that is to be.
     enters: bool,
     pub to_be_entered: Option<String>,
-    pub faults: Vec<FileFault>,
-    pub warnings: Vec<FileFault>,
+    pub faults: Vec<Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
     /// See [`LoadedMachine::refused`].
-    pub refused: Vec<FileFault>,
+    pub refused: Vec<Diagnostic>,
     /// `machine.toml`: its path and text.
     description: (PathBuf, String),
 }
@@ -402,7 +407,7 @@ impl Loader<'_> {
         let text = ListText::from_bytes(model, &bytes);
         let mut list = ParameterList::reference(model);
         list.take(&text);
-        let found = lists::machine_list(&text, &list, &path);
+        let found = text.diagnostics(&list, &path);
         let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
         match faulty || text.entries().is_empty() {
             true => {
@@ -425,7 +430,7 @@ impl Loader<'_> {
         let text = ListText::from_bytes(model, &bytes);
         let mut list = ParameterList::reference(model);
         list.take(&text);
-        let found = lists::machine_list(&text, &list, &path);
+        let found = text.diagnostics(&list, &path);
         self.sort(found).then_some(list)
     }
 
@@ -441,7 +446,7 @@ impl Loader<'_> {
                 let text = ListText::from_bytes(model, &bytes);
                 let mut list = ParameterList::reference(model);
                 list.take(&text);
-                let found = lists::machine_list(&text, &list, &entry.path());
+                let found = text.diagnostics(&list, &entry.path());
                 let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
                 (!faulty).then_some(list)
             });
@@ -485,16 +490,10 @@ impl Loader<'_> {
                 Some(Some(machine))
             }
             Err(faults) => {
-                for fault in faults {
-                    let place = (fault.line, Some(fault.column));
-                    self.faults.push(file_fault(
-                        &path,
-                        &text,
-                        place,
-                        "the machine is wrong",
-                        &fault.message,
-                    ));
-                }
+                let faults = faults.into_iter();
+                self.faults.extend(
+                    faults.map(|fault| fault.under("the machine is wrong").in_text(path.clone(), &text)),
+                );
                 None
             }
         }
@@ -530,9 +529,8 @@ impl Loader<'_> {
                 wire.operand,
                 there.join(", ")
             );
-            let place = (wire.line, Some(wire.column));
-            self.faults
-                .push(file_fault(path, text, place, "the wiring is wrong", &message));
+            let fault = Diagnostic::error(wire.span, message).under("the wiring is wrong");
+            self.faults.push(fault.in_text(path, text));
         }
     }
 
@@ -544,10 +542,9 @@ impl Loader<'_> {
         let text = decode(&bytes);
         let lines: Vec<String> = text.lines().map(|line| line.trim_end().to_owned()).collect();
         if lines.len() > most {
-            let place = (most + 1, None);
             let message = format!("there are {most} texts at most");
-            self.faults
-                .push(file_fault(&path, &text, place, "too many texts", &message));
+            let fault = Diagnostic::error(Span::line(most + 1), message).under("too many texts");
+            self.faults.push(fault.in_text(path, &text));
         }
         Some(lines)
     }
@@ -577,7 +574,7 @@ impl Loader<'_> {
     }
 
     /// Keeps warnings, and errors as faults; whether there was no error.
-    fn sort(&mut self, found: Vec<FileFault>) -> bool {
+    fn sort(&mut self, found: Vec<Diagnostic>) -> bool {
         let before = self.faults.len();
         for fault in found {
             match fault.severity {
@@ -604,69 +601,23 @@ impl Loader<'_> {
 
     pub(super) fn fault_at_key(&mut self, key: &str, message: &str) {
         let line = self.line_of(key).unwrap_or(1);
-        self.fault_in_description(line, 1, message.to_owned());
+        self.fault_at_line(line, message.to_owned());
     }
 
     pub(super) fn warning_at_key(&mut self, key: &str, message: &str) {
         let (path, text) = &self.description;
-        let place = (self.line_of(key).unwrap_or(1), None);
-        let fault = file_fault(path, text, place, "something is not used", message);
-        self.warnings.push(FileFault {
-            severity: Severity::Warning,
-            ..fault
-        });
+        let place = Span::line(self.line_of(key).unwrap_or(1));
+        let fault = Diagnostic::warning(place, message).under("something is not used");
+        self.warnings.push(fault.in_text(path, text));
     }
 
     pub(super) fn fault_at_line(&mut self, line: usize, message: String) {
-        self.fault_in_description(line, 1, message);
+        self.fault_in_description(Diagnostic::error(Span::line(line), message));
     }
 
-    fn fault_in_description(&mut self, line: usize, column: usize, message: String) {
+    fn fault_in_description(&mut self, fault: Diagnostic) {
         let (path, text) = &self.description;
-        let place = (line, (column > 1).then_some(column));
-        let fault = file_fault(path, text, place, "the machine's description is wrong", &message);
-        self.faults.push(fault);
+        let fault = fault.under("the machine's description is wrong");
+        self.faults.push(fault.in_text(path, text));
     }
-}
-
-/// A fault at a line of a text, at a column or as a whole.
-pub(super) fn file_fault(
-    path: &Path,
-    text: &str,
-    (line, column): (usize, Option<usize>),
-    title: &str,
-    message: &str,
-) -> FileFault {
-    let shown = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
-    let columns = column.map(|column| {
-        let length = shown
-            .chars()
-            .skip(column.saturating_sub(1))
-            .take_while(|c| !c.is_whitespace())
-            .count();
-        let number = |value: usize| u32::try_from(value).unwrap_or(1).max(1);
-        (number(column), number(length))
-    });
-    FileFault {
-        severity: Severity::Error,
-        title: title.to_owned(),
-        path: path.to_owned(),
-        marked: Marked {
-            line: u32::try_from(line).unwrap_or(1),
-            text: shown.to_owned(),
-            columns,
-        },
-        label: message.to_owned(),
-        help: None,
-        opened: None,
-    }
-}
-
-/// Text of a file: UTF-8, or else the Latin alphabet of the control's own files.
-pub fn decode(bytes: &[u8]) -> String {
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),
-    };
-    text.trim_start_matches('\u{feff}').to_owned()
 }

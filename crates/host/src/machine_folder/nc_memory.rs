@@ -10,10 +10,10 @@ use bahn_machine::MachineFolder;
 use bahn_parameters::{PLC_AXIS_NAMES, ParameterList, PerPlcAxis};
 use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
 
-use super::load::{Loader, decode, file_fault};
-use crate::columns::{self, Form, Row, RowFault, TableFault};
-use crate::fault::FileFault;
+use super::load::Loader;
+use crate::columns::{self, Form, Row, RowFault};
 use crate::files;
+use bahn_text::{Diagnostic, Span, decode};
 
 /// Lines that MP7226 gives a table at most [000:6892-6896].
 pub(super) const LINES_MAX: u16 = 255;
@@ -77,7 +77,7 @@ impl DatumAxes {
 }
 
 /// Reads a datum table. A later control writes a column for each axis it can have: those that this machine has not are 0.
-pub(super) fn datum_table(text: &str, axes: &DatumAxes, most: u16) -> Result<MemoryTable, Vec<TableFault>> {
+pub(super) fn datum_table(text: &str, axes: &DatumAxes, most: u16) -> Result<MemoryTable, Vec<Diagnostic>> {
     let mut lines: BTreeMap<i32, PerPlcAxis<f64>> = BTreeMap::new();
     columns::read(text, &DATUM_TABLE, |row| {
         let mut values = PerPlcAxis::splat(0.0);
@@ -109,7 +109,7 @@ pub(super) fn datum_table(text: &str, axes: &DatumAxes, most: u16) -> Result<Mem
 }
 
 /// Reads a pallet file of so many lines at most.
-pub(super) fn pallet_file(text: &str, most: u16) -> Result<BTreeMap<i32, PalletLine>, Vec<TableFault>> {
+pub(super) fn pallet_file(text: &str, most: u16) -> Result<BTreeMap<i32, PalletLine>, Vec<Diagnostic>> {
     let mut lines = BTreeMap::new();
     columns::read(text, &PALLET_FILE, |row| {
         let name = |column: &str| {
@@ -166,13 +166,18 @@ impl Loader<'_> {
             {
                 let message = format!("the datum table {} has the same name", other.display());
                 twice.insert(name, message.clone());
-                self.fault_in_table(&entry.path(), WRONG, "", vec![TableFault::of_table(message)]);
+                self.fault_in_table(
+                    &entry.path(),
+                    WRONG,
+                    "",
+                    vec![Diagnostic::error(Span::FILE, message)],
+                );
             }
         }
         for (name, path) in paths.iter().filter(|(name, _)| name.ends_with(".D")) {
             let before = self.faults.len();
             let table = self.table(path, WRONG, |text| datum_table(text, &axes, datum_lines));
-            let first = || self.faults.get(before).map(FileFault::at_line);
+            let first = || self.faults.get(before).map(Diagnostic::at_line);
             match table.ok_or_else(first) {
                 Ok(_) if twice.contains_key(name) => {}
                 Ok(table) => drop(memory.datum_tables.insert(name.clone(), table)),
@@ -209,12 +214,17 @@ impl Loader<'_> {
         &mut self,
         path: &Path,
         title: &str,
-        read: impl FnOnce(&str) -> Result<T, Vec<TableFault>>,
+        read: impl FnOnce(&str) -> Result<T, Vec<Diagnostic>>,
     ) -> Option<T> {
         let bytes = match files::read_table(path) {
             Ok(bytes) => bytes,
             Err(error) => {
-                self.fault_in_table(path, title, "", vec![TableFault::of_table(error.to_string())]);
+                self.fault_in_table(
+                    path,
+                    title,
+                    "",
+                    vec![Diagnostic::error(Span::FILE, error.to_string())],
+                );
                 return None;
             }
         };
@@ -224,13 +234,10 @@ impl Loader<'_> {
             .ok()
     }
 
-    pub(super) fn fault_in_table(&mut self, path: &Path, title: &str, text: &str, faults: Vec<TableFault>) {
-        for fault in faults {
-            let column = (fault.column > 0).then_some(fault.column as usize);
-            let place = (fault.line.max(1) as usize, column);
-            self.faults
-                .push(file_fault(path, text, place, title, &fault.message));
-        }
+    pub(super) fn fault_in_table(&mut self, path: &Path, title: &str, text: &str, faults: Vec<Diagnostic>) {
+        let faults = faults.into_iter();
+        self.faults
+            .extend(faults.map(|fault| fault.under(title).in_text(path, text)));
     }
 }
 
@@ -291,7 +298,7 @@ mod tests {
             LINES_MAX,
         );
         let faults = faults.unwrap_err();
-        assert_eq!((faults.len(), faults[0].line), (1, 3));
+        assert_eq!((faults.len(), faults[0].span.line), (1, 3));
         assert_eq!(faults[0].message, "W: the machine has no axis W");
     }
 
@@ -299,7 +306,7 @@ mod tests {
     fn faults_of_datum_tables_have_their_lines() {
         let found = |text: &str| -> Vec<u32> {
             let faults = datum_table(text, LENGTHS, LINES_MAX).err().unwrap_or_default();
-            faults.iter().map(|fault| fault.line).collect()
+            faults.iter().map(|fault| fault.span.line).collect()
         };
         assert_eq!(
             found("NR X\n0 1\n0 2\n255 1\nx 1\n3 nan\n4 1e9\n5 7\n"),
@@ -317,7 +324,7 @@ mod tests {
         assert!(datum_table("NR X\n0 1\n9 1\n", LENGTHS, 10).is_ok());
         let faults = datum_table("NR X\n9 1\n  10 1\n", LENGTHS, 10).unwrap_err();
         assert_eq!(faults.len(), 1);
-        assert_eq!((faults[0].line, faults[0].column), (3, 3));
+        assert_eq!((faults[0].span.line, faults[0].span.column), (3, 3));
         assert_eq!(faults[0].message, "NR: `10` is no line from 0 to 9");
         let none = pallet_file("NR PGM\n0 A\n", 0).unwrap_err();
         assert_eq!(none[0].message, "NR: this table has no lines (MP7226 = 0)");
@@ -336,6 +343,9 @@ mod tests {
             [(0, "PART.H", Some("ZERO")), (1, "7432", None), (4, "B.I", None)]
         );
         let faults = pallet_file("NR PGM DATUM\n0 A\n1\n0 B\n", LINES_MAX).unwrap_err();
-        assert_eq!(faults.iter().map(|fault| fault.line).collect::<Vec<_>>(), [3, 4]);
+        assert_eq!(
+            faults.iter().map(|fault| fault.span.line).collect::<Vec<_>>(),
+            [3, 4]
+        );
     }
 }

@@ -6,9 +6,9 @@ use bahn_control::{NcFiles, Tool};
 use bahn_machine::MachineFolder;
 use bahn_parameters::ParameterList;
 use bahn_parameters::operation::ToolParameters;
+use bahn_text::{Diagnostic, decode};
 
-use super::load::{LoadedMachine, Loader, decode};
-use crate::columns::TableFault;
+use super::load::{LoadedMachine, Loader};
 use crate::{TableForm, files, pocket_table, tool_table};
 
 /// The tools of a machine; `None` when they come from TOOL DEF.
@@ -26,7 +26,7 @@ pub fn tools_fit(
     parameters: &ParameterList,
 ) -> Result<(), String> {
     let sizes = parameters.operation_parameters().tools;
-    let first = |faults: Vec<TableFault>| {
+    let first = |faults: Vec<Diagnostic>| {
         faults
             .first()
             .map_or_else(String::new, |fault| fault.message.clone())

@@ -4,12 +4,12 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use bahn_technology::ChannelList;
 use bahn_technology::list::{Definition, SynchRow};
-use bahn_technology::{ChannelList, ListFault};
+use bahn_text::{Diagnostic, Span};
 
 use crate::language::{
-    Analysis, Completion, CompletionKind, Examined, Fault, Fold, Hover, Mention, Severity, Symbol,
-    SymbolKind, Thing, Token,
+    Analysis, Completion, CompletionKind, Examined, Fold, Hover, Mention, Symbol, SymbolKind, Thing, Token,
 };
 use crate::markdown::Markdown;
 use crate::text::Text;
@@ -51,17 +51,14 @@ impl ChannelText {
         line.start + start..at + length
     }
 
-    fn fault(&self, lines: &[Range<usize>], fault: &ListFault, severity: Severity) -> Fault {
-        let line = fault.line.checked_sub(1).and_then(|index| lines.get(index));
-        let help = fault.help.as_ref().map(|help| format!("\n{help}"));
-        Fault {
-            range: self
-                .text
-                .characters(line.cloned().unwrap_or_default(), fault.column, fault.length),
-            severity,
-            code: String::new(),
-            message: fault.message.clone() + &help.unwrap_or_default(),
-            related: Vec::new(),
+    fn fault(&self, lines: &[Range<usize>], fault: &Diagnostic) -> Diagnostic {
+        let Span { line, column, length } = fault.span;
+        let line = (line as usize).checked_sub(1).and_then(|index| lines.get(index));
+        let line = line.cloned().unwrap_or_default();
+        let place = self.text.characters(line, column as usize, length as usize);
+        Diagnostic {
+            span: self.text.span(&place),
+            ..fault.clone()
         }
     }
 
@@ -107,14 +104,9 @@ fn synchronisation(row: &SynchRow) -> String {
 impl Analysis for ChannelText {
     fn examine(&self, _: &World, _: &AtomicBool) -> Examined {
         let lines = self.lines();
-        let faults = |found: &[ListFault], severity| -> Vec<Fault> {
-            let faults = found.iter().map(|fault| self.fault(&lines, fault, severity));
-            faults.collect()
-        };
-        let mut all = faults(self.list.errors(), Severity::Error);
-        all.extend(faults(self.list.warnings(), Severity::Warning));
+        let all = self.list.errors().iter().chain(self.list.warnings());
         Examined {
-            faults: all,
+            faults: all.map(|fault| self.fault(&lines, fault)).collect(),
             ..Examined::default()
         }
     }

@@ -8,10 +8,11 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use bahn_din::{Landmark, LandmarkKind, Program, Shelf, SpanKind};
+use bahn_text::Diagnostic;
 
 use crate::language::{
-    Analysis, Completion, Elsewhere, Examined, Fault, Fold, Hover, Mention, Place, Related, Role, Severity,
-    Symbol, SymbolKind, Thing, Token, mention_at, mentions_of,
+    Analysis, Completion, Elsewhere, Examined, Fold, Hover, Mention, Role, Symbol, SymbolKind, Thing, Token,
+    led_to, mention_at, mentions_of,
 };
 use crate::markdown::Markdown;
 use crate::text::Text;
@@ -201,37 +202,22 @@ impl Analysis for DinProgram {
         });
         let examined = bahn_din::examine(&self.program, &shelf, interrupt);
         let faults = examined.found.into_iter().map(|found| {
-            let fault = found.fault;
+            let name = found.program.name().to_string();
+            let fault = found.fault.diagnostic(&found.program, &folder.join(&name));
             if found.program.name() == self.program.name() {
-                let line = self.line(fault.line);
-                return Fault {
-                    range: self
-                        .text
-                        .characters(line, fault.column as usize, fault.length as usize),
-                    severity: Severity::Error,
-                    code: String::new(),
-                    message: fault.message,
-                    related: Vec::new(),
+                let (line, span) = (self.line(fault.span.line), fault.span);
+                let place = self
+                    .text
+                    .characters(line, span.column as usize, span.length as usize);
+                return Diagnostic {
+                    span: self.text.span(&place),
+                    ..fault
                 };
             }
-            let name = found.program.name().to_string();
-            let thing = Thing::File(name.clone());
-            let call = mentions_of(self.mentions(), &thing).next();
-            let column = fault.column.saturating_sub(1);
-            Fault {
-                range: call.map_or_else(|| self.line(1), |call| call.range.clone()),
-                severity: Severity::Error,
-                code: String::new(),
-                message: format!("{name}, block {}: {}", fault.block, fault.message),
-                related: vec![Related {
-                    path: Some(folder.join(&name)),
-                    place: Place::There {
-                        line: fault.line.saturating_sub(1),
-                        characters: column..column.saturating_add(fault.length),
-                    },
-                    message: fault.message,
-                }],
-            }
+            let file = Thing::File(name);
+            let call = mentions_of(self.mentions(), &file).next();
+            let place = call.map_or_else(|| self.line(1), |call| call.range.clone());
+            led_to(fault, self.text.span(&place))
         });
         Examined {
             faults: faults.collect(),

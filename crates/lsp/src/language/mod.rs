@@ -8,6 +8,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
+use bahn_text::{Diagnostic, Related, Span};
+
 pub(crate) use kind::Kind;
 pub(crate) use mention::{Mention, Role, Thing, at as mention_at, of as mentions_of};
 
@@ -70,39 +72,25 @@ pub(crate) trait Analysis: Send + Sync {
 /// Largest text that is looked at, 16 MiB: a program with half a million blocks.
 pub(crate) const BYTES_MAX: usize = 16 << 20;
 
-/// How bad a fault is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Severity {
-    Error,
-    Warning,
-}
-
-/// Something wrong at a place.
-#[derive(Clone, Debug)]
-pub(crate) struct Fault {
-    pub(crate) range: Range<usize>,
-    pub(crate) severity: Severity,
-    /// Name or number by which it is explained.
-    pub(crate) code: String,
-    pub(crate) message: String,
-    /// Other places that belong to it.
-    pub(crate) related: Vec<Related>,
-}
-
-/// A place that belongs to a fault.
-#[derive(Clone, Debug)]
-pub(crate) struct Related {
-    /// The file, if it is another one.
-    pub(crate) path: Option<PathBuf>,
-    pub(crate) place: Place,
-    pub(crate) message: String,
-}
-
-/// A place: bytes of the own text, or line and characters from 0 of a text that nobody has open.
-#[derive(Clone, Debug)]
-pub(crate) enum Place {
-    Here(Range<usize>),
-    There { line: u32, characters: Range<u32> },
+/// A fault of another file, at the place in this one that leads there.
+pub(crate) fn led_to(fault: Diagnostic, at: Span) -> Diagnostic {
+    let name = fault.file.file_name().unwrap_or_default().to_string_lossy();
+    let place = match fault.block.as_str() {
+        "" => format!("line {}", fault.span.line),
+        block => format!("block {block}"),
+    };
+    let message = format!("{name}, {place}: {}", fault.message);
+    Diagnostic {
+        related: vec![Related {
+            file: fault.file.clone(),
+            span: fault.span,
+            message: fault.words(),
+            source: fault.source.clone(),
+        }],
+        span: at,
+        message,
+        ..fault
+    }
 }
 
 /// A place in a file that may not be open: line and characters from 0.
@@ -127,7 +115,8 @@ impl Elsewhere {
 /// What examining has found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Examined {
-    pub(crate) faults: Vec<Fault>,
+    /// Their places are those of the document.
+    pub(crate) faults: Vec<Diagnostic>,
     /// Faults that were counted only.
     pub(crate) not_listed: usize,
     /// The Q parameters at the end of a run; none where the program does not set them.

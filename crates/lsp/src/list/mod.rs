@@ -7,11 +7,10 @@ mod parameter_text;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use bahn_parameters::chapters;
+use bahn_text::Diagnostic;
 
 use crate::language::{
-    Analysis, Completion, Examined, Fault, Fold, Hover, Mention, Role, Severity, Symbol, SymbolKind, Thing,
-    Token,
+    Analysis, Completion, Examined, Fold, Hover, Mention, Role, Symbol, SymbolKind, Thing, Token,
 };
 use crate::world::World;
 
@@ -20,32 +19,16 @@ pub(crate) use parameter_text::ParameterText;
 
 impl Analysis for ParameterText {
     fn examine(&self, _: &World, _: &AtomicBool) -> Examined {
-        let mut faults: Vec<Fault> = self.list.faults().iter().map(|fault| self.fault(fault)).collect();
+        let read = self.list.faults().iter();
+        let mut faults: Vec<Diagnostic> = read
+            .map(|fault| fault.diagnostic(&self.list, &self.path))
+            .collect();
         let missing = self.missing();
         if faults.is_empty() && missing.is_none() {
-            let entries = self.entries();
             let found = self.list.inconsistencies();
-            faults.extend(found.iter().map(|found| {
-                Fault {
-                    range: entries
-                        .iter()
-                        .find(|entry| entry.definition.id == found.id)
-                        .map_or_else(|| self.line(1), |entry| entry.value.clone()),
-                    severity: match found.impossible {
-                        true => Severity::Error,
-                        false => Severity::Warning,
-                    },
-                    code: found.id.to_string(),
-                    message: format!(
-                        "{}: {} ({})",
-                        found.rule,
-                        found.detail,
-                        chapters(found.source).join("; ")
-                    ),
-                    related: Vec::new(),
-                }
-            }));
+            faults.extend(found.iter().map(|found| found.diagnostic(&self.list, &self.path)));
         }
+        let mut faults: Vec<Diagnostic> = faults.into_iter().map(|fault| self.placed(fault)).collect();
         faults.extend(missing);
         Examined {
             faults,

@@ -1,12 +1,13 @@
 //! A list of machine parameters, read for all questions about it.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use bahn_parameters::{ControlModel, Definition, ListError, ListText, ParameterError};
+use bahn_parameters::{ControlModel, Definition, ListText, ParameterError};
+use bahn_text::{Diagnostic, Span, without_mark};
 
-use crate::language::{Fault, Mention, Place, Related, Severity};
+use crate::language::Mention;
 use crate::text::Text;
 use crate::world::World;
 
@@ -14,6 +15,7 @@ use crate::world::World;
 pub(crate) struct ParameterText {
     pub(super) text: Arc<Text>,
     pub(super) model: ControlModel,
+    pub(super) path: PathBuf,
     pub(super) list: ListText,
     /// Bytes of a mark in front, which the list does not count.
     pub(super) front: usize,
@@ -27,8 +29,9 @@ impl ParameterText {
         let model = set.or_else(|| ControlModel::named_in(bytes)).unwrap_or_default();
         ParameterText {
             model,
+            path: path.to_owned(),
             list: ListText::from_bytes(model, bytes),
-            front: if text.text.starts_with('\u{feff}') { 3 } else { 0 },
+            front: text.text.len() - without_mark(&text.text).len(),
             text,
             mentions: OnceLock::new(),
         }
@@ -72,29 +75,26 @@ impl ParameterText {
         entries.collect()
     }
 
-    pub(super) fn fault(&self, fault: &ListError) -> Fault {
-        let number = fault.error.number();
-        let mut related = Vec::new();
-        if let ParameterError::DoublyDefined { first_line, .. } = fault.error {
-            related.push(Related {
-                path: None,
-                place: Place::Here(self.line(first_line)),
-                message: "it is defined here first".to_owned(),
-            });
+    /// A fault of the list at its place in the document.
+    pub(super) fn placed(&self, fault: Diagnostic) -> Diagnostic {
+        let bytes = |span: Span| {
+            let line = self.line(span.line as usize);
+            match span.columns() {
+                Some((column, length)) => self.text.characters(line, column as usize, length as usize),
+                None => line,
+            }
+        };
+        let span = |span: Span| self.text.span(&bytes(span));
+        let mut placed = fault;
+        placed.span = span(placed.span);
+        for related in &mut placed.related {
+            related.span = span(related.span);
         }
-        Fault {
-            range: self
-                .text
-                .characters(self.line(fault.line), fault.column, fault.length),
-            severity: Severity::Error,
-            code: number.to_string(),
-            message: format!("{}: {}", fault.error.control_text(), fault.error),
-            related,
-        }
+        placed
     }
 
     /// Parameters that the control would miss, in one fault: a list of changes lacks most of them.
-    pub(super) fn missing(&self) -> Option<Fault> {
+    pub(super) fn missing(&self) -> Option<Diagnostic> {
         let all = self.list.all_faults();
         let missing: Vec<String> = all
             .iter()
@@ -109,16 +109,13 @@ impl ParameterText {
             .unwrap_or_default()
             .join(" ");
         let more = if missing.len() > NAMED { " ..." } else { "" };
-        (!missing.is_empty()).then(|| Fault {
-            range: self.line(1),
-            severity: Severity::Warning,
-            code: "5".to_owned(),
-            message: format!(
+        (!missing.is_empty()).then(|| {
+            let message = format!(
                 "MP not defined: {} of the {} ({named}{more}); a whole list must have them",
                 missing.len(),
                 self.model.name()
-            ),
-            related: Vec::new(),
+            );
+            Diagnostic::warning(self.text.span(&self.line(1)), message).with_code("5")
         })
     }
 }

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use bahn_parameters::ControlModel;
 use bahn_program::{Block, BlockText, Language, Lines, Operation, Program, WordSpan};
+use bahn_text::MARK_BYTES;
 
 use crate::language::Mention;
 use crate::text::Text;
@@ -49,7 +50,11 @@ impl PartProgram {
         let program = Program::from_bytes(name, text.text.as_bytes().to_vec());
         // Line ends may be settled otherwise, byte by byte.
         let bytes = program.to_bytes();
-        let front = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        let front = if bytes.starts_with(MARK_BYTES) {
+            MARK_BYTES.len()
+        } else {
+            0
+        };
         let body = bytes.get(front..).unwrap_or_default();
         let mut lines = Vec::new();
         let mut each = Lines::new(body, 1);

@@ -3,10 +3,11 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use bahn_plc::{Compilation, Diagnostic, LineOperand, Options, SourceFiles, line_words};
+use bahn_plc::{Compilation, LineOperand, Options, SourceFiles, line_words};
+use bahn_text::{Diagnostic, Span, decode};
 
 use super::PlcSource;
-use crate::language::{Elsewhere, Examined, Fault, Place, Related, Severity};
+use crate::language::{Elsewhere, Examined, led_to};
 use crate::world::World;
 
 /// Files of a folder that are looked through for the one that links this.
@@ -20,15 +21,9 @@ pub(super) fn examine(source: &PlcSource, world: &World) -> Examined {
     }
     let main = main_of(&source.path, world);
     let compilation = compiled(source, &main, world);
-    let of = |severity: Severity, all: &[Diagnostic]| -> Vec<Fault> {
-        let located = all
-            .iter()
-            .filter_map(|fault| located(source, &main, severity, fault));
-        located.collect()
-    };
-    let mut faults = of(Severity::Error, &compilation.errors);
-    faults.extend(of(Severity::Warning, &compilation.warnings));
-    faults.sort_by_key(|fault| fault.range.start);
+    let faults = compilation.diagnostics().into_iter();
+    let mut faults: Vec<Diagnostic> = faults.filter_map(|fault| located(source, &main, fault)).collect();
+    faults.sort_by_key(|fault| fault.span);
     Examined {
         faults,
         not_listed: compilation.not_listed,
@@ -49,69 +44,36 @@ fn compiled(source: &PlcSource, main: &Path, world: &World) -> Compilation {
 }
 
 /// A fault of this file at its place; one of a linked file where this one links it.
-fn located(source: &PlcSource, main: &Path, severity: Severity, fault: &Diagnostic) -> Option<Fault> {
+fn located(source: &PlcSource, main: &Path, fault: Diagnostic) -> Option<Diagnostic> {
     let folder = main.parent().unwrap_or(Path::new(""));
-    let error = fault.error;
-    let message = format!(
-        "{} {}\n{} {}",
-        error.number(),
-        fault.message,
-        error.cause(),
-        error.cure()
-    );
-    let path = folder.join(&fault.file);
-    let code = format!("PLC {}", error.number());
-    if is_same(&path, &source.path) {
-        let word = |line: u32, column: u32| word_at(source, line, column);
-        let related = fault.opened.map(|(line, column)| Related {
-            path: None,
-            place: Place::Here(word(line, column)),
-            message: "opened here".to_owned(),
-        });
-        return Some(Fault {
-            range: word(fault.line, fault.column),
-            severity,
-            code,
-            message,
-            related: related.into_iter().collect(),
-        });
+    let name = fault.file.to_string_lossy().into_owned();
+    let mut fault = Diagnostic {
+        file: folder.join(&fault.file),
+        ..fault
+    };
+    if is_same(&fault.file, &source.path) {
+        let place = |span: Span| source.text.span(&bytes_at(source, span));
+        fault.span = place(fault.span);
+        for related in &mut fault.related {
+            related.file = PathBuf::new();
+            related.span = place(related.span);
+        }
+        return Some(fault);
     }
     // The main file shows all errors; a linked file only its own.
     let is_main = is_same(main, &source.path);
-    let line = fault.line.saturating_sub(1);
-    let column = fault.column.saturating_sub(1);
-    is_main.then(|| Fault {
-        range: link_to(source, &fault.file),
-        severity,
-        code,
-        message: format!("{}, line {}: {message}", fault.file, fault.line),
-        related: vec![Related {
-            path: Some(path),
-            place: Place::There {
-                line,
-                characters: column..column + 1,
-            },
-            message: fault.message.clone(),
-        }],
-    })
+    is_main.then(|| led_to(fault, source.text.span(&link_to(source, &name))))
 }
 
-/// The word that begins at a line and column, both from 1.
-fn word_at(source: &PlcSource, line: u32, column: u32) -> Range<usize> {
-    let Some(line) = source.lines.get((line as usize).saturating_sub(1)) else {
+/// The bytes of a word.
+fn bytes_at(source: &PlcSource, span: Span) -> Range<usize> {
+    let Some(line) = source.lines.get((span.line as usize).saturating_sub(1)) else {
         let end = source.text.text.len();
         return end..end;
     };
-    let text = source.text.get(line.bytes.clone());
-    let start = column.saturating_sub(1) as usize;
-    let length = text
-        .chars()
-        .skip(start)
-        .take_while(|c| !c.is_whitespace())
-        .count();
     source
         .text
-        .characters(line.bytes.clone(), column as usize, length.max(1))
+        .characters(line.bytes.clone(), span.column as usize, span.length as usize)
 }
 
 /// The line that links a file, else the first.
@@ -151,7 +113,7 @@ fn linking(path: &Path, world: &World) -> Option<PathBuf> {
         .map(|name| folder.join(name))
         .find(|other| {
             let bytes = world.read(other).unwrap_or_default();
-            let text = String::from_utf8_lossy(&bytes);
+            let text = decode(&bytes);
             let mut links = text.lines().filter_map(|line| {
                 let code = line.trim();
                 let front = code.get(..4)?;

@@ -1,14 +1,13 @@
 //! What is wrong with a document, published without a request.
 
-use std::ops::Range as Bytes;
-
+use bahn_text::{Diagnostic as Fault, Related, Severity, Span};
 use lsp_types::{
     Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Position,
-    PublishDiagnosticsParams, Range, Uri,
+    PublishDiagnosticsParams, Range,
 };
 
 use crate::document::Document;
-use crate::language::{BYTES_MAX, Examined, Fault, Place, Related, Severity};
+use crate::language::{BYTES_MAX, Examined};
 use crate::uri::uri_of;
 
 /// Most faults that are shown: who has more has another kind of file.
@@ -37,33 +36,33 @@ pub(crate) fn diagnostics(document: &Document, examined: &Examined) -> PublishDi
 }
 
 fn diagnostic(document: &Document, fault: &Fault) -> Diagnostic {
-    let related: Vec<_> = fault
-        .related
-        .iter()
+    let related = fault.related.iter();
+    let related: Vec<_> = related
         .filter_map(|related| information(document, related))
         .collect();
+    let mut message = fault.words();
+    if let Some(help) = &fault.help {
+        message = format!("{message}\n{help}");
+    }
     Diagnostic {
-        range: document.version.text.range(&fault.range),
+        range: document.version.text.range_of(fault.span),
         severity: Some(match fault.severity {
             Severity::Error => DiagnosticSeverity::ERROR,
             Severity::Warning => DiagnosticSeverity::WARNING,
         }),
         code: (!fault.code.is_empty()).then(|| NumberOrString::String(fault.code.clone())),
         source: Some("bahn".to_owned()),
-        message: fault.message.clone(),
+        message,
         related_information: (!related.is_empty()).then_some(related),
         ..Diagnostic::default()
     }
 }
 
 fn information(document: &Document, related: &Related) -> Option<DiagnosticRelatedInformation> {
-    let uri: Uri = match &related.path {
-        Some(path) => uri_of(path)?,
-        None => document.uri.clone(),
-    };
-    let range = match &related.place {
-        Place::Here(bytes) => document.version.text.range(bytes),
-        Place::There { line, characters } => characters_of(*line, characters),
+    let is_here = related.file.as_os_str().is_empty() || related.file == document.version.path;
+    let (uri, range) = match is_here {
+        true => (document.uri.clone(), document.version.text.range_of(related.span)),
+        false => (uri_of(&related.file)?, characters_of(related.span)),
     };
     Some(DiagnosticRelatedInformation {
         location: Location::new(uri, range),
@@ -71,10 +70,12 @@ fn information(document: &Document, related: &Related) -> Option<DiagnosticRelat
     })
 }
 
-fn characters_of(line: u32, characters: &Bytes<u32>) -> Range {
+/// A place in a file that nobody has open.
+fn characters_of(span: Span) -> Range {
+    let (line, column) = (span.line.saturating_sub(1), span.column.saturating_sub(1));
     Range::new(
-        Position::new(line, characters.start),
-        Position::new(line, characters.end),
+        Position::new(line, column),
+        Position::new(line, column.saturating_add(span.length)),
     )
 }
 

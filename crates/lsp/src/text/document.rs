@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use bahn_text::Span;
 use lsp_types::{Position, TextDocumentContentChangeEvent};
 
 use super::LineIndex;
@@ -54,6 +55,16 @@ impl Text {
 
     pub(crate) fn range(&self, range: &Range<usize>) -> lsp_types::Range {
         lsp_types::Range::new(self.position(range.start), self.position(range.end))
+    }
+
+    /// Bytes as faults have their places.
+    pub(crate) fn span(&self, range: &Range<usize>) -> Span {
+        self.lines.span(&self.text, range.clone())
+    }
+
+    /// The place of a fault as the protocol has it.
+    pub(crate) fn range_of(&self, span: Span) -> lsp_types::Range {
+        self.range(&self.lines.bytes(&self.text, span))
     }
 
     /// A part of it; nothing where there is no such part.

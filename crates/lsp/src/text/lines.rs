@@ -2,40 +2,36 @@
 
 use std::ops::Range;
 
+use bahn_text::Span;
 use lsp_types::Position;
 
-/// The lines of a text. They end with LF, CR LF or CR; places in them are UTF-16 units, as the protocol counts.
+/// The lines of a text, from 0; places in them are UTF-16 units, as the protocol counts.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct LineIndex {
-    starts: Vec<usize>,
-}
+pub(crate) struct LineIndex(bahn_text::LineIndex);
 
 impl LineIndex {
     pub(crate) fn of(text: &str) -> LineIndex {
-        let bytes = text.as_bytes();
-        let mut starts = vec![0];
-        for (at, byte) in bytes.iter().enumerate() {
-            let ends = *byte == b'\n' || *byte == b'\r' && bytes.get(at + 1) != Some(&b'\n');
-            if ends {
-                starts.push(at + 1);
-            }
-        }
-        LineIndex { starts }
+        LineIndex(bahn_text::LineIndex::of(text))
     }
 
-    /// The line that holds a byte, from 0.
+    /// The line that holds a byte.
     pub(crate) fn line_of(&self, offset: usize) -> usize {
-        self.starts
-            .partition_point(|start| *start <= offset)
-            .saturating_sub(1)
+        self.0.at(offset) - 1
     }
 
     /// The bytes of a line without its end; of one after the last the end of the text.
     pub(crate) fn range(&self, text: &str, line: usize) -> Range<usize> {
-        let start = self.starts.get(line).copied().unwrap_or(text.len());
-        let end = self.starts.get(line + 1).copied().unwrap_or(text.len());
-        let whole = text.get(start..end).unwrap_or_default();
-        start..start + whole.trim_end_matches(['\r', '\n']).len()
+        self.0.range(text, line + 1)
+    }
+
+    /// Bytes as faults have them: lines from 1, characters.
+    pub(crate) fn span(&self, text: &str, bytes: Range<usize>) -> Span {
+        self.0.span(text, bytes)
+    }
+
+    /// The bytes of such a place.
+    pub(crate) fn bytes(&self, text: &str, span: Span) -> Range<usize> {
+        self.0.bytes(text, span)
     }
 
     /// The place of a byte; of one inside a character that of the character.
@@ -45,7 +41,7 @@ impl LineIndex {
             offset -= 1;
         }
         let line = self.line_of(offset);
-        let start = self.starts.get(line).copied().unwrap_or_default();
+        let start = self.range(text, line).start;
         let before = text.get(start..offset).unwrap_or_default();
         Position {
             line: small(line),

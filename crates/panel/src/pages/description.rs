@@ -1,6 +1,7 @@
 //! `machine.toml`, which names the files that belong to a machine: what an editor reads and writes of it.
 
-use bahn_host::{FileFault, LoadedMachine, files};
+use bahn_host::{LoadedMachine, files};
+use bahn_text::{Diagnostic, Encoding, decode};
 
 use crate::site::Site;
 
@@ -10,8 +11,7 @@ const MACHINE: &str = "machine.toml";
 /// What an entry says now; it may have been written since the machine was loaded.
 pub(crate) fn value(key: &str, site: &Site) -> Option<String> {
     let text = files::read_table(&site.machine.root.join(MACHINE)).unwrap_or_default();
-    let text = String::from_utf8_lossy(&text).into_owned();
-    entry_of(&text, key).map(str::to_owned)
+    entry_of(&decode(&text), key).map(str::to_owned)
 }
 
 /// Gives an entry another value; the other lines stay. The machine as it is loaded then.
@@ -21,8 +21,9 @@ pub(crate) fn value(key: &str, site: &Site) -> Option<String> {
 pub(crate) fn set(key: &str, value: &str, site: &Site) -> Result<LoadedMachine, String> {
     let path = site.machine.root.join(MACHINE);
     let before = files::read_table(&path).map_err(|error| error.to_string())?;
-    let text = with_entry(&String::from_utf8_lossy(&before), key, value);
-    files::write_whole(&path, text.as_bytes()).map_err(|error| error.to_string())?;
+    let (text, encoding) = Encoding::read(&before);
+    let text = encoding.write(&with_entry(&text, key, value));
+    files::write_whole(&path, &text).map_err(|error| error.to_string())?;
     loaded(site).or_else(|why| {
         files::write_whole(&path, &before).map_err(|error| error.to_string())?;
         Err(why)
@@ -36,14 +37,9 @@ pub(crate) fn set(key: &str, value: &str, site: &Site) -> Result<LoadedMachine, 
 pub(crate) fn loaded(site: &Site) -> Result<LoadedMachine, String> {
     match LoadedMachine::load(&site.machine.root) {
         Ok(Ok(machine)) => Ok(machine),
-        Ok(Err(faults)) => Err(faults.first().map_or_else(String::new, in_words)),
+        Ok(Err(faults)) => Err(faults.first().map_or_else(String::new, Diagnostic::words)),
         Err(error) => Err(error.to_string()),
     }
-}
-
-/// A fault of a file: what is wrong, and why.
-pub(crate) fn in_words(fault: &FileFault) -> String {
-    format!("{}: {}", fault.title, fault.label)
 }
 
 /// The value of an entry: a string of either kind, in one line.

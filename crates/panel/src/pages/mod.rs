@@ -39,7 +39,6 @@ use crate::page::{Page, Side, Turn};
 use crate::site::Site;
 
 pub(crate) use backup::{ended as backup_ended, everything, restored};
-pub(crate) use description::in_words as fault_in_words;
 pub(crate) use files::{is_needed, runs};
 pub(crate) use help::follow as follow_help;
 pub(crate) use parameters::commission;

@@ -1,6 +1,8 @@
 //! What the compiler makes of a program.
 
-use crate::Diagnostic;
+use bahn_text::{Diagnostic, Severity};
+
+use crate::Fault;
 use crate::program::{PlcProgram, SourceText};
 
 /// What the compiler makes of a program.
@@ -11,7 +13,7 @@ use crate::program::{PlcProgram, SourceText};
 /// let compilation = Compilation::compile(&files, "MAIN.PLC", Options::default());
 /// assert!(compilation.program.is_none());
 /// let error = &compilation.errors[0];
-/// assert_eq!((error.error.number(), error.line), (21, 3), "the word accumulator is not loaded");
+/// assert_eq!((error.error.number(), error.span.line), (21, 3), "the word accumulator is not loaded");
 /// ```
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
@@ -19,9 +21,9 @@ pub struct Compilation {
     /// The program, when there is no error.
     pub program: Option<PlcProgram>,
     /// The errors of all files, by file in the order of linking, then by line; the first thousand of them.
-    pub errors: Vec<Diagnostic>,
+    pub errors: Vec<Fault>,
     /// What is accepted although the printed rules refuse it, in the same order, the first thousand.
-    pub warnings: Vec<Diagnostic>,
+    pub warnings: Vec<Fault>,
     /// Errors and warnings beyond those.
     pub not_listed: usize,
     /// The files that were read, main file first, also when there are errors.
@@ -34,6 +36,19 @@ pub struct Compilation {
 }
 
 impl Compilation {
+    /// What keeps the program from running, then what is accepted although the printed rules refuse it.
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
+        let of = |severity, faults: &[Fault]| -> Vec<Diagnostic> {
+            let faults = faults.iter().map(|fault| fault.diagnostic(severity, &self.files));
+            faults.collect()
+        };
+        [
+            of(Severity::Error, &self.errors),
+            of(Severity::Warning, &self.warnings),
+        ]
+        .concat()
+    }
+
     /// The nominal time in percent, as the PLC menu shows it: 100 % are 5 ms [000:12038].
     pub fn nominal_percent(&self) -> f64 {
         crate::run::percent(self.nominal_time)

@@ -35,7 +35,7 @@ pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> 
     }
     let globals = globals(&linked, &mut reports);
     check_externs(&linked, &globals, &mut reports);
-    let texts = linked.iter().map(|file| file.text.clone()).collect();
+    let texts: Vec<SourceText> = linked.iter().map(|file| file.text.clone()).collect();
     let program = reports.errors.is_empty().then(|| PlcProgram {
         size_bytes,
         ..join(linked, &globals)
@@ -43,8 +43,8 @@ pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> 
     Compilation {
         nominal_time: program.as_ref().map_or(0, time::nominal_time),
         program,
-        errors: Reports::sorted(reports.errors),
-        warnings: Reports::sorted(reports.warnings),
+        errors: Reports::sorted(reports.errors, &texts),
+        warnings: Reports::sorted(reports.warnings, &texts),
         not_listed: reports.not_listed,
         files: texts,
         size_bytes,

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::fmt::Display;
 
+use bahn_text::MARK;
+
 use super::options::FormatOptions;
 use crate::lines::lines;
 use crate::text::{is_blank, text_start, to_text, trim};
@@ -67,6 +69,3 @@ pub(super) fn verbatim(f: &mut fmt::Formatter<'_>, text: &[u8]) -> fmt::Result {
         writeln!(f, "{blank}{line}")
     })
 }
-
-/// The byte-order mark as a character.
-pub(super) const MARK: char = '\u{feff}';

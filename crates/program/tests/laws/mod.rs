@@ -44,9 +44,9 @@ pub fn check_listings(file: &str, bytes: &[u8], written: [FormatOptions; 2], mod
         .sum();
     assert_eq!(joined, all.len());
     for diagnostic in program.diagnostics(Some(model.limits().into())) {
-        let line = program.text_of_line(diagnostic.line);
-        let end = diagnostic.column + diagnostic.length - 1;
-        let inside = diagnostic.column >= 1 && end as usize <= line.chars().count() + 1;
+        let line = program.text_of_line(diagnostic.span.line);
+        let end = diagnostic.span.column + diagnostic.span.length - 1;
+        let inside = diagnostic.span.column >= 1 && end as usize <= line.chars().count() + 1;
         assert!(
             inside,
             "{diagnostic:?} lies outside of {line:?} {:?}",

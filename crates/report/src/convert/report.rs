@@ -6,7 +6,7 @@ use bahn_convert::{Listed, Proof};
 use serde::Serialize;
 
 use crate::text::LABEL;
-use bahn_host::printable;
+use bahn_text::printable;
 
 /// Entries of a list that are shown; the JSON report has all.
 const SHOWN: usize = 20;

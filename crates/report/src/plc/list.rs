@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use bahn_plc::{Compilation, Diagnostic, Nesting, listed_code, nesting, split_comment};
+use bahn_plc::{Compilation, Fault, Nesting, listed_code, nesting, split_comment};
 
-use bahn_host::printable;
+use bahn_text::printable;
 
 /// A file of a program.
 #[derive(Debug, serde::Serialize)]
@@ -35,11 +35,11 @@ impl<'a> Listing<'a> {
     }
 
     fn new(name: &'a str, lines: &'a [String], compilation: &Compilation) -> Listing<'a> {
-        let of_file = |faults: &[bahn_plc::Diagnostic]| {
+        let of_file = |faults: &[Fault]| {
             let mut by_line: BTreeMap<usize, Vec<Entry>> = BTreeMap::new();
             for fault in faults.iter().filter(|fault| fault.file == name) {
                 by_line
-                    .entry(fault.line as usize)
+                    .entry(fault.span.line as usize)
                     .or_default()
                     .push(Entry::new(fault));
             }
@@ -122,13 +122,13 @@ pub struct Entry {
 
 impl Entry {
     /// That of the compiler.
-    pub fn new(fault: &Diagnostic) -> Entry {
+    pub fn new(fault: &Fault) -> Entry {
         Entry {
             number: fault.error.number(),
             file: fault.file.clone(),
-            line: fault.line,
-            column: fault.column,
-            message: fault.message.clone(),
+            line: fault.span.line,
+            column: fault.span.column,
+            message: fault.message(),
         }
     }
 }

@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use bahn_control::{Command, RunState};
 use bahn_host::{
-    Action, Assignment, Attendance, Content, FileFault, FolderPrograms, Host, HostError, Job, LoadedMachine,
-    Operand, Operator, Phase, Play, PowerOn, Script, Source, run_name,
+    Action, Assignment, Attendance, Content, FolderPrograms, Host, HostError, Job, LoadedMachine, Operand,
+    Operator, Phase, Play, PowerOn, Script, Source, run_name,
 };
 use bahn_plc::{Machine, Tracer};
+use bahn_text::Diagnostic;
 
 use super::halt::Halt;
 
@@ -182,7 +183,7 @@ impl Live {
     }
 
     /// The expectations that did not hold, with their lines of the script.
-    pub fn failures(&self) -> Vec<FileFault> {
+    pub fn failures(&self) -> Vec<Diagnostic> {
         self.play.failures()
     }
 }

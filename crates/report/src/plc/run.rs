@@ -1,7 +1,8 @@
 //! A PLC program on the bench, cycle by cycle, with stimuli and expectations.
 
-use bahn_host::{Content, FileFault, Operand, Retained};
+use bahn_host::{Content, Operand, Retained};
 use bahn_plc::{ProcessingTime, RuntimeError};
+use bahn_text::Diagnostic;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::bench::{Bench, Failure};
@@ -97,7 +98,7 @@ impl Scans {
     }
 
     /// The expectations that did not hold, with their lines of the script.
-    pub fn failures(&self) -> Vec<FileFault> {
+    pub fn failures(&self) -> Vec<Diagnostic> {
         let script = self.bench.play.script();
         let fault = |failure: &Failure| {
             let found = format!("found {}", failure.found);

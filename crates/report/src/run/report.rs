@@ -176,7 +176,7 @@ impl RunReport {
     pub fn text(&self, model: ControlModel, result: &str, written: &[String]) -> String {
         let mut text = String::new();
         let mut row = |label: &str, value: &str| {
-            text += &format!("{label:<LABEL$}{}\n", bahn_host::printable(value));
+            text += &format!("{label:<LABEL$}{}\n", bahn_text::printable(value));
         };
         row(
             "Machine",

@@ -51,13 +51,13 @@ impl Table {
     pub fn load(path: &Path) -> Result<Table, ReportError> {
         let bytes = files::read_program(path)?
             .ok_or_else(|| ReportError::new(format!("{}: {}", path.display(), files::TOO_LARGE)))?;
-        Table::read(&String::from_utf8_lossy(&bytes))
+        Table::read(&bahn_text::decode(&bytes))
             .map_err(|error| ReportError::new(format!("{}:{error}", path.display())))
     }
 
     /// An error begins with its line.
     pub fn read(text: &str) -> Result<Table, String> {
-        let mut lines = text.trim_start_matches('\u{feff}').lines();
+        let mut lines = bahn_text::without_mark(text).lines();
         let mut columns: Vec<&str> = lines
             .next()
             .unwrap_or_default()

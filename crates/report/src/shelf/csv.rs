@@ -4,7 +4,7 @@ use bahn_path::Axis;
 
 use super::row::{Fault, Row, Said, Travel, Use, Verdict};
 use crate::path_csv::push_number;
-use bahn_host::printable;
+use bahn_text::{MARK, printable, without_mark};
 
 const COLUMNS: [&str; 22] = [
     "path",
@@ -80,7 +80,7 @@ pub fn write(rows: &[&Row], style: Style) -> String {
         .map(Axis::to_string)
         .filter(|axis| rows.iter().any(|row| row.travel.contains_key(axis)))
         .collect();
-    let mut out = String::from(if style.comma { "\u{feff}" } else { "" });
+    let mut out: String = [MARK].into_iter().filter(|_| style.comma).collect();
     let mut line = |fields: Vec<String>| {
         let fields: Vec<String> = fields.iter().map(|field| style.field(field)).collect();
         out += &fields.join(&style.separator().to_string());
@@ -145,7 +145,7 @@ fn warning_text(said: &Said) -> String {
 /// The rows of a table that [`write`] wrote; `None` when the text is none. What a comparison needs is there,
 /// not more.
 pub fn read(text: &str) -> Option<Vec<Row>> {
-    let text = text.trim_start_matches('\u{feff}');
+    let text = without_mark(text);
     let comma = text.starts_with("path;result;");
     if !comma && !text.starts_with("path,result,") {
         return None;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::row::{Row, Verdict};
 use super::{About, Totals};
 use crate::text::clock;
-use bahn_host::printable;
+use bahn_text::printable;
 
 /// Widest column of names; longer ones push the rest of their line.
 const NAME_MAX: usize = 48;

@@ -22,7 +22,6 @@ use crate::block_time::BlockTime;
 use crate::follower::Follower;
 use crate::record::{End, ErrorReport, Notice, Place, Record, Report};
 use crate::stop::Stop;
-use bahn_host::Marked;
 use bahn_host::files::{self, FileLibrary, Loaded};
 
 /// What programs run on: model, machine parameters, tools.
@@ -333,7 +332,7 @@ impl TestRun {
         let Place { program, block, .. } = Place::of(&**run, error.block);
         let line = run
             .program(error.block.program)
-            .map_or(0, |program| Marked::of_block(program, error.block.block).line);
+            .map_or(0, |program| program.span_of(error.block.block).line);
         let remedy = error.remedy();
         ErrorReport {
             message: error.message.text(self.model).to_owned(),

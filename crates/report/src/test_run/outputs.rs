@@ -11,7 +11,7 @@ use crate::path_csv::PathTable;
 use crate::path_svg::PathDrawing;
 use crate::record::{Notice, Record};
 use bahn_host::files::{self, NewFile};
-use bahn_host::printable;
+use bahn_text::printable;
 
 /// A file for the tool path.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,13 +1,12 @@
 //! Lessons as text files. `docs/lessons.md` tells how one is written.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bahn_exchange::parts;
-use bahn_host::{
-    Action, Expectation, FileFault, Marked, Operable, Script, ScriptAction, Severity, Stage, decode,
-};
+use bahn_host::{Action, Expectation, Operable, Script, ScriptAction, Stage};
 use bahn_parameters::ParameterList;
 use bahn_screen::texts::Language;
+use bahn_text::{Diagnostic, Span, decode};
 
 /// A text in the languages of the panel; what has no German text is said in English.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -137,9 +136,8 @@ impl Lesson {
         bytes: &[u8],
         plant: &P,
         parameters: &ParameterList,
-    ) -> Result<Lesson, Vec<FileFault>> {
+    ) -> Result<Lesson, Vec<Diagnostic>> {
         let text = decode(bytes);
-        let text = text.trim_start_matches('\u{feff}');
         let mut reader = Reader {
             path,
             plant,
@@ -199,7 +197,7 @@ fn name_of(path: &Path) -> String {
 struct Reader<'a> {
     path: &'a Path,
     plant: &'a dyn Operable,
-    faults: Vec<FileFault>,
+    faults: Vec<Diagnostic>,
     lesson: Lesson,
 }
 
@@ -334,22 +332,11 @@ impl Reader<'_> {
         if self.faults.len() > MANY {
             return;
         }
-        self.faults.push(FileFault {
-            severity: Severity::Error,
-            title: "the lesson is wrong".to_owned(),
-            path: PathBuf::from(self.path),
-            marked: Marked {
-                line: number,
-                text: line.to_owned(),
-                columns: None,
-            },
-            label,
-            help: None,
-            opened: None,
-        });
+        let fault = Diagnostic::error(Span::line(number as usize), "the lesson is wrong");
+        self.faults.push(fault.with_detail(label).at(self.path, line));
     }
 
-    fn finish(mut self) -> Result<Lesson, Vec<FileFault>> {
+    fn finish(mut self) -> Result<Lesson, Vec<Diagnostic>> {
         let lesson = &self.lesson;
         let missing = [
             (lesson.title.english.is_empty(), "it has no `title:`"),
@@ -364,7 +351,7 @@ impl Reader<'_> {
         match self.faults.is_empty() {
             true => Ok(self.lesson),
             false => {
-                self.faults.sort_by_key(|fault| fault.marked.line);
+                self.faults.sort_by_key(|fault| fault.span.line);
                 Err(self.faults)
             }
         }
@@ -379,6 +366,6 @@ pub fn check_lesson(
     bytes: &[u8],
 ) -> Result<(), Vec<u32>> {
     let read = Lesson::read(Path::new("L.lesson"), bytes, plant, parameters);
-    let lines = |faults: Vec<FileFault>| faults.iter().map(|fault| fault.marked.line).collect();
+    let lines = |faults: Vec<Diagnostic>| faults.iter().map(|fault| fault.span.line).collect();
     read.map(drop).map_err(lines)
 }

@@ -106,8 +106,8 @@ pub fn load(machine: &LoadedMachine, plant: &AnyPlant, name: &str) -> Result<Les
     let path = machine.root.join(FOLDER).join(format!("{name}.{ENDING}"));
     let bytes = files::read_table(&path).map_err(|error| error.to_string())?;
     Lesson::read(&path, &bytes, plant, &machine.parameters).map_err(|faults| {
-        let line = |fault: &bahn_host::FileFault| {
-            format!("{}:{}: {}", path.display(), fault.marked.line, fault.label)
+        let line = |fault: &bahn_text::Diagnostic| {
+            format!("{}:{}: {}", path.display(), fault.span.line, fault.detail)
         };
         faults.iter().map(line).collect::<Vec<_>>().join("\n")
     })

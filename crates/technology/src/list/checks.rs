@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use bahn_path::Synchronisation;
+use bahn_text::{Diagnostic, Severity};
 
-use super::{Entry, ListFault, Value};
+use super::{Entry, Value};
 use crate::settings::{ChannelSettings, FunctionSettings, SPINDLE_M};
 
 /// Blocks up to which the look-ahead of the interpolator need not be changed [004:222].
@@ -19,7 +20,7 @@ pub(super) fn check(
     settings: &ChannelSettings,
     entries: &[Entry],
     cycle_us: u32,
-) -> (Vec<ListFault>, Vec<ListFault>) {
+) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let functions = || {
         entries
             .iter()
@@ -95,15 +96,17 @@ fn of_function(entry: &Entry) -> Option<OfFunction> {
 }
 
 /// M40 to M45 with gear stages must be `MVS_SVS` [004:174].
-fn gear_stage(settings: &ChannelSettings, entry: &Entry, of: &OfFunction) -> Option<ListFault> {
+fn gear_stage(settings: &ChannelSettings, entry: &Entry, of: &OfFunction) -> Option<Diagnostic> {
     let Value::Synch(synch) = entry.value else {
         return None;
     };
     let is_right = synch.is_some_and(|synch| synch.kind == Synchronisation::MvsSvs);
     (of.is_gear(settings) && !is_right).then(|| {
-        entry.at_value(format!(
-            "{of} selects a gear stage of the main spindle and must be MVS_SVS"
-        ))
+        let message = format!("{of} selects a gear stage of the main spindle and must be MVS_SVS");
+        Diagnostic {
+            severity: Severity::Error,
+            ..entry.at_value(message)
+        }
     })
 }
 
@@ -113,7 +116,7 @@ fn lead(
     entry: &Entry,
     of: &OfFunction,
     function: &FunctionSettings,
-) -> Option<ListFault> {
+) -> Option<Diagnostic> {
     let Some(synch) = function.synch else {
         let message = format!("{of} has a lead and no synchronisation type: to program it is P-ERR-20157");
         return Some(entry.at_name(message));
@@ -147,7 +150,7 @@ fn short_lead(
     of: &OfFunction,
     function: &FunctionSettings,
     cycle_us: u32,
-) -> Option<ListFault> {
+) -> Option<Diagnostic> {
     let leads_by_time = function.synch.is_some_and(|synch| synch.kind.leads_by_time());
     (leads_by_time && function.lead < cycle_us).then(|| {
         entry.at_value(format!(
@@ -159,7 +162,7 @@ fn short_lead(
 }
 
 /// A process time where nobody waits (public: message 20760).
-fn process_time(entry: &Entry, of: &OfFunction, function: &FunctionSettings) -> Option<ListFault> {
+fn process_time(entry: &Entry, of: &OfFunction, function: &FunctionSettings) -> Option<Diagnostic> {
     if function.process_time_us == 0 {
         return None;
     }
@@ -190,7 +193,7 @@ pub(super) fn drop_process_times(settings: &mut ChannelSettings) {
 
 /// Which of two lines counts for M3, M4, M5 and M19: that of the spindle, or, when they are free, that of the channel
 /// [004:51] [004:159]. Without its line a function is refused where it is programmed.
-fn spindle_functions(settings: &ChannelSettings, entry: &Entry) -> Option<ListFault> {
+fn spindle_functions(settings: &ChannelSettings, entry: &Entry) -> Option<Diagnostic> {
     let is_free = settings.spindle_m_free;
     if entry.place.definition.name == "spindle_m_fct_free" && is_free {
         let of = |number: &u32| settings.m.get(*number).and_then(|function| function.synch);
@@ -226,7 +229,7 @@ fn spindle_functions(settings: &ChannelSettings, entry: &Entry) -> Option<ListFa
 }
 
 /// More blocks of look-ahead than the interpolator has [004:222].
-fn look_ahead(entries: &[Entry], entry: &Entry) -> Option<ListFault> {
+fn look_ahead(entries: &[Entry], entry: &Entry) -> Option<Diagnostic> {
     let Value::Number(blocks) = entry.value else {
         return None;
     };
@@ -247,7 +250,7 @@ fn look_ahead(entries: &[Entry], entry: &Entry) -> Option<ListFault> {
 }
 
 /// Constants of functions that Bahn does not know; a misspelt one is among them.
-fn unknown_functions(entry: &Entry) -> Option<ListFault> {
+fn unknown_functions(entry: &Entry) -> Option<Diagnostic> {
     let Value::Functions(names) = &entry.value else {
         return None;
     };
@@ -275,10 +278,10 @@ mod tests {
         ChannelList::from_bytes(text.as_bytes())
     }
 
-    fn messages(faults: &[ListFault]) -> Vec<(usize, usize, &str)> {
+    fn messages(faults: &[Diagnostic]) -> Vec<(u32, u32, &str)> {
         faults
             .iter()
-            .map(|fault| (fault.line, fault.column, fault.message.as_str()))
+            .map(|fault| (fault.span.line, fault.span.column, fault.message.as_str()))
             .collect()
     }
 
@@ -301,7 +304,7 @@ mod tests {
         let [warning] = found.warnings() else {
             panic!("{:?}", found.warnings())
         };
-        assert_eq!((warning.line, warning.column), (2, 15));
+        assert_eq!((warning.span.line, warning.span.column), (2, 15));
         assert!(warning.message.contains("licence error"));
         let enabled =
             format!("{text}configuration.path_preparation.function FCT_DEFAULT | FCT_M_PRE_OUTPUT\n");
@@ -318,7 +321,7 @@ mod tests {
         let places: Vec<_> = found
             .warnings()
             .iter()
-            .map(|fault| (fault.line, fault.column))
+            .map(|fault| (fault.span.line, fault.span.column))
             .collect();
         assert_eq!(places, [(2, 19), (4, 15)]);
         assert!(found.warnings()[0].message.contains("20760"));
@@ -344,7 +347,7 @@ mod tests {
         let enough = format!("{text}configuration.channel[0].interpolator.parameter 100\n");
         let warnings = list(&enough);
         assert_eq!(warnings.warnings().len(), 1, "the buffer itself has no effect");
-        assert_eq!(warnings.warnings()[0].line, 2);
+        assert_eq!(warnings.warnings()[0].span.line, 2);
         assert!(list("m_h_pre_outp_nbr_block 70\n").warnings().is_empty());
     }
 
@@ -352,12 +355,12 @@ mod tests {
     #[test]
     fn it_is_said_which_line_of_a_spindle_function_counts() {
         let both = "spindel[0].m3_synch MVS_SVS\nm_synch[3] MVS_SVS\n";
-        let warnings_of = |text: &str| -> Vec<(usize, String)> {
+        let warnings_of = |text: &str| -> Vec<(u32, String)> {
             let found = list(text);
             assert!(found.errors().is_empty(), "{:?}", found.errors());
             let warnings = found.warnings().iter();
             warnings
-                .map(|fault| (fault.line, fault.message.clone()))
+                .map(|fault| (fault.span.line, fault.message.clone()))
                 .collect()
         };
         let [(line, message)] = warnings_of(both).try_into().unwrap();

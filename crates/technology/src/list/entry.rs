@@ -1,22 +1,9 @@
 //! An assignment of a list, and where it stands.
 
+use bahn_text::{Diagnostic, Span};
+
 use super::table::Definition;
 use crate::synch::Synch;
-
-/// What is wrong or odd in a list, with its place there.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct ListFault {
-    /// The line, from 1 on.
-    pub line: usize,
-    /// The column in characters, from 1 on.
-    pub column: usize,
-    /// How many characters are meant.
-    pub length: usize,
-    /// What is wrong, in words.
-    pub message: String,
-    /// What to do about it, where that can be guessed.
-    pub help: Option<String>,
-}
 
 /// A parameter with its indices.
 #[derive(Clone, Debug)]
@@ -49,30 +36,18 @@ pub(super) enum Value {
 pub(super) struct Entry {
     pub(super) place: Place,
     pub(super) value: Value,
-    pub(super) line: usize,
-    pub(super) name: (usize, usize),
-    pub(super) column: usize,
-    pub(super) length: usize,
+    /// Where its name stands.
+    pub(super) name: Span,
+    /// Where its value stands.
+    pub(super) at: Span,
 }
 
 impl Entry {
-    pub(super) fn at_name(&self, message: String) -> ListFault {
-        ListFault {
-            line: self.line,
-            column: self.name.0,
-            length: self.name.1,
-            message,
-            help: None,
-        }
+    pub(super) fn at_name(&self, message: String) -> Diagnostic {
+        Diagnostic::warning(self.name, message)
     }
 
-    pub(super) fn at_value(&self, message: String) -> ListFault {
-        ListFault {
-            line: self.line,
-            column: self.column,
-            length: self.length,
-            message,
-            help: None,
-        }
+    pub(super) fn at_value(&self, message: String) -> Diagnostic {
+        Diagnostic::warning(self.at, message)
     }
 }

@@ -18,9 +18,10 @@ pub use write::template;
 
 use std::collections::BTreeMap;
 
+use bahn_text::{Diagnostic, Span};
+
 use crate::settings::ChannelSettings;
 
-pub use entry::ListFault;
 use entry::{Entry, Place, Value};
 
 /// What a list says, and what is wrong with it.
@@ -30,7 +31,7 @@ use entry::{Entry, Place, Value};
 /// let list = ChannelList::from_bytes(b"# glue\nm_synch[25] 0x2 MVS_SVS\nm_synch[1000] MOS\n");
 /// assert_eq!(list.settings().m.get(25).unwrap().synch.unwrap().kind, Synchronisation::MvsSvs);
 /// let error = &list.errors()[0];
-/// assert_eq!((error.line, error.column), (3, 9));
+/// assert_eq!((error.span.line, error.span.column), (3, 9));
 /// assert_eq!(error.message, "index 1000 is not within 0 to 999");
 /// ```
 #[derive(Clone, Debug)]
@@ -38,26 +39,22 @@ pub struct ChannelList {
     settings: ChannelSettings,
     lines: Vec<String>,
     entries: Vec<Entry>,
-    errors: Vec<ListFault>,
-    warnings: Vec<ListFault>,
+    errors: Vec<Diagnostic>,
+    warnings: Vec<Diagnostic>,
 }
 
 /// Contour cycle where nobody says which machine the list is for, s: that of a TNC 415 B.
 const CYCLE_S: f64 = 0.003;
 
 impl ChannelList {
-    /// Reads a list in UTF-8 or Latin-1.
+    /// Reads a list.
     pub fn from_bytes(bytes: &[u8]) -> ChannelList {
         ChannelList::for_cycle(bytes, CYCLE_S)
     }
 
     /// Reads a list for a channel whose contour cycle takes so long, s: leads by time are at least one.
     pub fn for_cycle(bytes: &[u8], cycle_s: f64) -> ChannelList {
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        let text = match std::str::from_utf8(bytes) {
-            Ok(text) => text.to_owned(),
-            Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),
-        };
+        let text = bahn_text::decode(bytes);
         let mut list = ChannelList {
             settings: ChannelSettings::default(),
             lines: text.lines().map(str::to_owned).collect(),
@@ -85,12 +82,12 @@ impl ChannelList {
     }
 
     /// What keeps it from being used, by line and column.
-    pub fn errors(&self) -> &[ListFault] {
+    pub fn errors(&self) -> &[Diagnostic] {
         &self.errors
     }
 
     /// What is odd in it, by line and column.
-    pub fn warnings(&self) -> &[ListFault] {
+    pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
     }
 
@@ -109,12 +106,9 @@ impl ChannelList {
         let number = at + 1;
         let Some(text) = self.lines.get(at) else { return };
         let Some(line) = line::split(text) else { return };
-        let fault = |(column, length, message)| ListFault {
-            line: number,
-            column,
-            length,
-            message,
-            help: cure::cure(&line),
+        let fault = |(column, length, message): line::Fault| {
+            let at = Span::new(number, column, length);
+            Diagnostic::error(at, message).with_help(cure::cure(&line))
         };
         let read = line::place(&line).and_then(|place| {
             let read = value::read(place.definition.kind, line.value, line.value_column)?;
@@ -125,10 +119,8 @@ impl ChannelList {
                 let entry = Entry {
                     place,
                     value: read.value,
-                    line: number,
-                    name: (line.name_column, line.name.chars().count()),
-                    column: line.value_column,
-                    length: read.length,
+                    name: Span::new(number, line.name_column, line.name.chars().count()),
+                    at: Span::new(number, line.value_column, read.length),
                 };
                 let odd = read.odd.into_iter().map(|message| entry.at_value(message));
                 self.warnings.extend(odd);
@@ -140,7 +132,7 @@ impl ChannelList {
 
     /// Puts the values in their places; of two lines for the same the later one counts (inferred).
     fn take_entries(&mut self) {
-        let mut lines: BTreeMap<String, usize> = BTreeMap::new();
+        let mut lines: BTreeMap<String, u32> = BTreeMap::new();
         for entry in &self.entries {
             let name = entry.place.name();
             if entry.place.is_of_other_channel {
@@ -156,7 +148,7 @@ impl ChannelList {
             } else if !acts {
                 self.warnings.push(entry.at_name(without_effect(&entry.place)));
             }
-            if let Some(first) = lines.insert(name.clone(), entry.line) {
+            if let Some(first) = lines.insert(name.clone(), entry.at.line) {
                 let message = format!("{name} stands in line {first}, too: this line counts");
                 self.warnings.push(entry.at_name(message));
             }

@@ -381,8 +381,9 @@ mod tests {
         ) {
             let list = ChannelList::from_bytes(text.as_bytes());
             for fault in list.errors().iter().chain(list.warnings()) {
-                prop_assert!(fault.line >= 1 && fault.column >= 1);
-                prop_assert!(fault.column <= list.line(fault.line).chars().count() + 1);
+                prop_assert!(fault.span.line >= 1 && fault.span.column >= 1);
+                let line = list.line(fault.span.line as usize);
+                prop_assert!(fault.span.column as usize <= line.chars().count() + 1);
             }
         }
     }

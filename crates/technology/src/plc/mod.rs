@@ -1,7 +1,6 @@
 //! The PLC at the other side of the ranges: a script says what it does, it does all in its process time, or a real one reads
 //! and answers in a window of bytes.
 
-mod error;
 mod output;
 mod said;
 mod script;
@@ -11,7 +10,6 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 pub(crate) use bahn_kernel::gates::cycle_at;
-pub use error::ScriptError;
 pub(crate) use output::WindowRange;
 pub use script::Script;
 pub(crate) use script::{After, Reply};

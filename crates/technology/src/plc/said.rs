@@ -2,15 +2,15 @@
 
 use bahn_din::nearest;
 use bahn_path::Axis;
+use bahn_text::Diagnostic;
 
-use super::error::ScriptError;
 use crate::settings::{ChannelSettings, SPINDLE_M};
 
 /// A name that stands somewhere in a script.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Said {
     /// The error that it is, still without its words.
-    place: ScriptError,
+    place: Diagnostic,
     named: Named,
 }
 
@@ -23,7 +23,7 @@ pub(super) enum Named {
 }
 
 impl Said {
-    pub(super) fn new(place: ScriptError, named: Named) -> Said {
+    pub(super) fn new(place: Diagnostic, named: Named) -> Said {
         Said { place, named }
     }
 
@@ -32,7 +32,7 @@ impl Said {
         &self,
         settings: &ChannelSettings,
         typed: &impl Fn(&str) -> bool,
-    ) -> Option<ScriptError> {
+    ) -> Option<Diagnostic> {
         let (message, near) = match &self.named {
             Named::Spindle(name) => spindle(settings, name)?,
             Named::Function(range, _) if !range.is_empty() && !is_range(settings, range) => {
@@ -49,7 +49,7 @@ impl Said {
                 )
             }
         };
-        Some(ScriptError {
+        Some(Diagnostic {
             message,
             help: near.map(|name| format!("did you mean `{name}`?")),
             ..self.place.clone()

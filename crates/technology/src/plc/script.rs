@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use bahn_din::nearest;
 use bahn_path::Axis;
+use bahn_text::{Diagnostic, Span};
 
-use super::error::ScriptError;
 use super::said::{Named, Said};
 use crate::settings::ChannelSettings;
 
@@ -33,7 +33,7 @@ const COMMANDS: [&str; 10] = [
 /// let wrong = "M25 ack soon".parse::<Script>().unwrap_err();
 /// assert_eq!((wrong.line, wrong.column), (1, 9));
 /// # let _ = script;
-/// # Ok::<(), bahn_technology::ScriptError>(())
+/// # Ok::<(), bahn_text::Diagnostic>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Script {
@@ -105,9 +105,9 @@ impl Script {
 }
 
 impl FromStr for Script {
-    type Err = ScriptError;
+    type Err = Diagnostic;
 
-    fn from_str(text: &str) -> Result<Script, ScriptError> {
+    fn from_str(text: &str) -> Result<Script, Diagnostic> {
         let (script, errors) = Script::from_text(text);
         errors.into_iter().next().map_or(Ok(script), Err)
     }
@@ -115,7 +115,7 @@ impl FromStr for Script {
 
 impl Script {
     /// Reads a script, with all that is wrong in it; lines with errors say nothing.
-    pub fn from_text(text: &str) -> (Script, Vec<ScriptError>) {
+    pub fn from_text(text: &str) -> (Script, Vec<Diagnostic>) {
         let mut script = Script::default();
         let mut errors = Vec::new();
         for (line, text) in (1..).zip(text.lines()) {
@@ -137,12 +137,12 @@ impl Script {
 
     /// Functions, ranges and spindles that a channel with these settings does not have; the programs may give functions their
     /// types as well.
-    pub fn unknown(&self, settings: &ChannelSettings, typed: impl Fn(&str) -> bool) -> Vec<ScriptError> {
+    pub fn unknown(&self, settings: &ChannelSettings, typed: impl Fn(&str) -> bool) -> Vec<Diagnostic> {
         let errors = self.said.iter().filter_map(|said| said.unknown(settings, &typed));
         errors.collect()
     }
 
-    fn read<'a>(&mut self, first: Word<'a>, words: &mut Words<'a>) -> Result<(), ScriptError> {
+    fn read<'a>(&mut self, first: Word<'a>, words: &mut Words<'a>) -> Result<(), Diagnostic> {
         match first.1 {
             "default" => self.default = words.reply()?,
             "spindle" => {
@@ -176,7 +176,7 @@ impl Script {
                 self.overrides.push((words.time("a time, s")?, percent));
             }
             name => {
-                let wrong = || ScriptError {
+                let wrong = || Diagnostic {
                     help: nearest(name, COMMANDS).map(|known| format!("did you mean `{known}`?")),
                     ..words.error(first, format!("`{name}` is no function and no command"))
                 };
@@ -230,48 +230,43 @@ impl<'a> Words<'a> {
         Some((from, self.code.get(from..to)?))
     }
 
-    fn error(&self, at: Word<'_>, message: String) -> ScriptError {
+    fn error(&self, at: Word<'_>, message: String) -> Diagnostic {
         let before = self.code.get(..at.0).unwrap_or_default();
-        ScriptError {
-            line: self.line,
-            column: before.chars().count() + 1,
-            length: at.1.chars().count().max(1),
-            message,
-            help: None,
-        }
+        let (column, length) = (before.chars().count() + 1, at.1.chars().count().max(1));
+        Diagnostic::error(Span::new(self.line, column, length), message)
     }
 
-    fn some(&mut self, what: &str) -> Result<Word<'a>, ScriptError> {
+    fn some(&mut self, what: &str) -> Result<Word<'a>, Diagnostic> {
         let end = (self.code.trim_end().len(), "");
         self.next()
             .ok_or_else(|| self.error(end, format!("{what} is missing")))
     }
 
-    fn keyword(&mut self, keyword: &str) -> Result<(), ScriptError> {
+    fn keyword(&mut self, keyword: &str) -> Result<(), Diagnostic> {
         let word = self.some(&format!("`{keyword}`"))?;
         if word.1 == keyword {
             return Ok(());
         }
         let near = nearest(word.1, [keyword]).map(|known| format!("did you mean `{known}`?"));
-        Err(ScriptError {
+        Err(Diagnostic {
             help: near,
             ..self.error(word, format!("`{}` stands where `{keyword}` is expected", word.1))
         })
     }
 
-    fn number(&self, word: Word<'_>, text: &str, what: &str) -> Result<f64, ScriptError> {
+    fn number(&self, word: Word<'_>, text: &str, what: &str) -> Result<f64, Diagnostic> {
         let number = text.parse().ok();
         number
             .filter(|number: &f64| number.is_finite() && *number >= 0.0)
             .ok_or_else(|| self.error(word, format!("`{text}` is not {what}")))
     }
 
-    fn time(&mut self, what: &str) -> Result<f64, ScriptError> {
+    fn time(&mut self, what: &str) -> Result<f64, Diagnostic> {
         let word = self.some(what)?;
         self.number(word, word.1, what)
     }
 
-    fn after(&mut self) -> Result<After, ScriptError> {
+    fn after(&mut self) -> Result<After, Diagnostic> {
         let word = self.some("a time, s, or `never`")?;
         if word.1 == "never" {
             return Ok(After::Never);
@@ -280,7 +275,7 @@ impl<'a> Words<'a> {
             .map(After::Seconds)
     }
 
-    fn range(&mut self) -> Result<Range<f64>, ScriptError> {
+    fn range(&mut self) -> Result<Range<f64>, Diagnostic> {
         let what = "a range of times as 2.0..2.5";
         let word = self.some(what)?;
         let (from, to) = word
@@ -294,7 +289,7 @@ impl<'a> Words<'a> {
         Ok(range)
     }
 
-    fn reply(&mut self) -> Result<Reply, ScriptError> {
+    fn reply(&mut self) -> Result<Reply, Diagnostic> {
         let word = self.some("`ack`, `at` or `nofetch`")?;
         match word.1 {
             "ack" => self.after().map(Reply::Acknowledge),
@@ -303,7 +298,7 @@ impl<'a> Words<'a> {
             other => {
                 let message = format!("`{other}` stands where `ack`, `at` or `nofetch` is expected");
                 let near = nearest(other, ["ack", "at", "nofetch"]);
-                Err(ScriptError {
+                Err(Diagnostic {
                     help: near.map(|known| format!("did you mean `{known}`?")),
                     ..self.error(word, message)
                 })

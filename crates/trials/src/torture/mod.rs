@@ -29,8 +29,9 @@ pub use rule::{Rule, Violation};
 pub use trial::Trial;
 
 use bahn_host::Action;
+use bahn_host::HostError;
 use bahn_host::LoadedMachine;
-use bahn_host::{FileFault, HostError};
+use bahn_text::Diagnostic;
 use bench::Bench;
 use catalogue::Catalogue;
 use plan::{Choice, Scene};
@@ -65,7 +66,7 @@ impl Campaign {
     ///
     /// # Errors
     /// When there is no such folder, or its programs cannot be read.
-    pub fn load(folder: &Path, named: &[String]) -> Result<Result<Campaign, Vec<FileFault>>, HostError> {
+    pub fn load(folder: &Path, named: &[String]) -> Result<Result<Campaign, Vec<Diagnostic>>, HostError> {
         Ok(match LoadedMachine::load(folder)? {
             Ok(machine) => Ok(Campaign::new(machine, named)?),
             Err(faults) => Err(faults),

@@ -8,8 +8,8 @@ use ratatui::text::Line;
 use ratatui::widgets::{Block, Cell, Paragraph, Row, Table, TableState, Wrap};
 
 use super::Watch;
-use crate::diagnostics::printable;
 use bahn_host::{Content, Operand};
+use bahn_text::printable;
 
 const KEYS: &str = "r run  s stop  c cycle  l line  n anew  enter set  space turn over  a add  d remove  \
      b break at line  x break on change  t trend  q end";

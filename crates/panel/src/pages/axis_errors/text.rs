@@ -6,8 +6,9 @@ use bahn_control::{
     CompensationAssignment, CompensationError, CompensationFiles, CompensationTable, CorrectionTables,
     Renewed,
 };
-use bahn_host::{LoadedMachine, decode, files};
+use bahn_host::{LoadedMachine, files};
 use bahn_parameters::MessageId;
+use bahn_text::decode;
 
 use crate::pages::description;
 use crate::site::Site;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use bahn_control::Renewed;
-use bahn_host::{FileFault, LoadedMachine, files};
+use bahn_host::{LoadedMachine, files};
 use bahn_parameters::{ListError, ListText, ParameterId, ParameterList};
+use bahn_text::Diagnostic;
 
-use crate::pages::description::in_words;
 use crate::site::Site;
 
 /// The lists of the machine: the usual one, and the files `NAME.MP` of its folder [000:14894-14896].
@@ -131,10 +131,10 @@ impl ListFile {
         let own = lists.swap_remove(own.unwrap_or(lists.len() - 1));
         let loaded = LoadedMachine::load_with_file(root, own, &text.to_bytes());
         let faults = loaded.map_err(|error| Refused::Words(error.to_string()))?.err();
-        let is_elsewhere = |fault: &FileFault| lists.iter().any(|name| root.join(name) == fault.path);
+        let is_elsewhere = |fault: &Diagnostic| lists.iter().any(|name| root.join(name) == fault.file);
         let mut faults = faults.into_iter().flatten();
         match faults.find(|fault| !is_elsewhere(fault)) {
-            Some(fault) => Err(Refused::Words(in_words(&fault))),
+            Some(fault) => Err(Refused::Words(fault.words())),
             None => Ok(list),
         }
     }

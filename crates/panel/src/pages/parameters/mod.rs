@@ -167,7 +167,7 @@ impl Parameters {
         self.list = ParameterList::reference(text.model());
         self.list.take(&text);
         self.rows.retain(|row| row.definition.is_some());
-        let found = |fault: &ListError| (fault.clone(), text.line(fault.line));
+        let found = |fault: &ListError| (fault.clone(), text.line(fault.span.line as usize));
         for row in &mut self.rows {
             let fault = row.definition.and_then(|own| text.fault_of(own.id));
             row.fault = fault.map(found);
@@ -192,7 +192,7 @@ impl Parameters {
 
     /// The cursor goes to the first line of the file that cannot be read; whether there is one.
     fn go_to_fault(&mut self) -> bool {
-        let line = |row: &Row| Some(row.fault.as_ref()?.0.line);
+        let line = |row: &Row| Some(row.fault.as_ref()?.0.span.line);
         let faults = self.rows.iter().enumerate();
         let faults = faults.filter_map(|(place, row)| Some((line(row)?, place)));
         let first = faults.min();
@@ -261,7 +261,7 @@ impl Parameters {
                 false => Turn::Close,
             };
         };
-        self.entered.removed.insert(fault.line, text);
+        self.entered.removed.insert(fault.span.line as usize, text);
         self.rows.remove(self.current);
         Turn::Done
     }
@@ -344,7 +344,7 @@ impl Parameters {
             return Turn::Say(why);
         }
         self.go_to_fault();
-        Turn::Say(format!("{}: {}", fault.line, said(&fault.error, site)))
+        Turn::Say(format!("{}: {}", fault.span.line, said(&fault.error, site)))
     }
 
     /// Another list is edited from now on. The one before is left as with END; one that is not in force is written, and
@@ -467,8 +467,8 @@ impl Parameters {
         match (entry, &row.fault) {
             (Some(entry), _) => entry.clone(),
             (None, Some((fault, text))) => {
-                let wrong = text.chars().skip(fault.column.saturating_sub(1));
-                wrong.take(fault.length).collect()
+                let wrong = text.chars().skip((fault.span.column as usize).saturating_sub(1));
+                wrong.take(fault.span.length as usize).collect()
             }
             (None, None) => self.value(definition),
         }
@@ -480,7 +480,7 @@ impl Parameters {
             let (line, text) = row
                 .fault
                 .as_ref()
-                .map_or((0, ""), |(fault, text)| (fault.line, text));
+                .map_or((0, ""), |(fault, text)| (fault.span.line, text));
             let text = format!("{line:>5}: {text}");
             return Line {
                 marks: match current {

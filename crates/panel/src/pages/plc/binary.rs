@@ -43,7 +43,7 @@ fn write(text: &str, site: &Site) -> Turn {
         Ok(list) => list,
         Err(faults) => {
             let first = faults.first();
-            return first.map_or(Turn::Refused, |fault| line(fault.line, &fault.message));
+            return first.map_or(Turn::Refused, |fault| line(fault.span.line, &fault.message));
         }
     };
     let (contents, faults) = match eprom::contents(site.machine, &list) {
@@ -51,7 +51,7 @@ fn write(text: &str, site: &Site) -> Turn {
         Err(error) => return Turn::Say(error.to_string()),
     };
     if let Some(fault) = faults.first() {
-        return line(fault.line, &fault.message);
+        return line(fault.span.line, &fault.message);
     }
     let name = format!("{}{ENDING}", list.ident);
     let image = match list.image(&contents) {

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use bahn_control::Renewed;
-use bahn_host::{FileFault, PlcSource, Severity};
+use bahn_host::PlcSource;
 use bahn_plc::{Options, ProgramMemory};
+use bahn_text::{Diagnostic, Severity};
 
 use super::editor::Editor;
 use super::source;
@@ -18,7 +19,7 @@ use crate::site::Site;
 pub(super) fn run(name: &str, site: &mut Site) -> Turn {
     let mut compiled = source_of(name, site);
     let faults = compiled.faults().into_iter();
-    let faults: Vec<Fault> = faults.map(|fault| Fault::of(fault, site)).collect();
+    let faults: Vec<Fault> = faults.map(|fault| Fault::of(&fault, site)).collect();
     let Some(program) = compiled.compilation.program.take() else {
         return Turn::Replace(Box::new(Menu::new(Faults { faults })));
     };
@@ -95,28 +96,21 @@ struct Fault {
 
 impl Fault {
     /// In the words of `bahn plc check`.
-    fn of(fault: FileFault, site: &Site) -> Fault {
+    fn of(fault: &Diagnostic, site: &Site) -> Fault {
         let file = fault
-            .path
+            .file
             .file_name()
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
         // "INPUT ERROR n", with its number [000:11919].
         let kind = match fault.severity {
-            Severity::Error if fault.title.starts_with(|first: char| first.is_ascii_digit()) => {
-                format!("{} ", site.words("INPUT ERROR"))
-            }
-            Severity::Error => String::new(),
+            Severity::Error => format!("{} ", site.words("INPUT ERROR")),
             Severity::Warning => "warning: ".to_owned(),
         };
-        let detail = match fault.label.is_empty() {
-            true => String::new(),
-            false => format!(": {}", fault.label),
-        };
         Fault {
-            text: format!("{kind}{}{detail}", fault.title),
-            line: fault.marked.line,
+            text: format!("{kind}{}", fault.words()),
+            line: fault.span.line,
             file,
         }
     }

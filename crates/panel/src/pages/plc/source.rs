@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use bahn_host::files;
 use bahn_parameters::MessageId;
 use bahn_screen::programs::is_name;
+use bahn_text::Encoding;
 
 use crate::pages::description;
 use crate::pages::external::Own;
@@ -22,20 +23,13 @@ pub(super) const FILES: Own = Own {
 /// Bytes of a source file at most.
 const SIZE_MAX: u64 = 4 << 20;
 
-/// How a file writes its characters: bytes that are no UTF-8 are the control's own Latin letters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Letters {
-    Utf8,
-    Latin,
-}
-
 /// A source file.
 #[derive(Debug)]
 pub(super) struct Source {
     path: PathBuf,
     /// Its lines, without what ends them.
     pub lines: Vec<String>,
-    letters: Letters,
+    encoding: Encoding,
     ending: &'static str,
     /// What lies on the medium, as far as is known here.
     stored: Vec<u8>,
@@ -71,19 +65,13 @@ impl Source {
         if stored.contains(&0) {
             return Err(format!("{} is no text of single bytes", path.display()));
         }
-        let (letters, text) = match std::str::from_utf8(&stored) {
-            Ok(text) => (Letters::Utf8, text.to_owned()),
-            Err(_) => (
-                Letters::Latin,
-                stored.iter().map(|byte| char::from(*byte)).collect(),
-            ),
-        };
+        let (text, encoding) = Encoding::read(&stored);
         let ending = if text.contains("\r\n") { "\r\n" } else { "\n" };
         let lines = text.lines().map(str::to_owned).collect();
         Ok(Source {
             path,
             lines,
-            letters,
+            encoding,
             ending,
             stored,
         })
@@ -94,10 +82,7 @@ impl Source {
         if !text.is_empty() {
             text.push_str(self.ending);
         }
-        match self.letters {
-            Letters::Utf8 => text.into_bytes(),
-            Letters::Latin => text.chars().map(|c| u8::try_from(c).unwrap_or(b'?')).collect(),
-        }
+        self.encoding.write(&text)
     }
 
     /// Writes what has changed, whole or not at all.

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use bahn_host::{LineChange, TableForm, decode, files, set_line};
+use bahn_host::{LineChange, TableForm, files, set_line};
+use bahn_text::decode;
 
 /// A mark: ENT sets it, NO ENT takes it away [003:1906-1911].
 pub(super) fn is_mark(form: TableForm, column: &str) -> bool {

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use bahn_control::Command;
 use bahn_dialogue::Key;
 use bahn_host::{
-    CellContent, PlainTable, TableForm, TextTable, canonical, decode, delete_line, files, set_line,
-    with_column,
+    CellContent, PlainTable, TableForm, TextTable, canonical, delete_line, files, set_line, with_column,
 };
+use bahn_text::decode;
 
 use super::cells::{element_value, read, with_line};
 use super::{POCKET_FILE, TOOL_FILE, store};
