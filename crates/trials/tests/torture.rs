@@ -273,6 +273,24 @@ fn the_handwheel_turns_under_m118() {
     }
 }
 
+/// The operator of the campaign and its rules: START that came under a message is pressed again before the reference marks; an
+/// encoder whose fault another one replaces within a millisecond need not be seen by the monitoring of the first.
+#[test]
+fn the_operator_starts_again_and_a_replaced_fault_need_not_be_seen() {
+    holds(
+        &campaign("mill-tnc360"),
+        "PLATE.H",
+        11_106_380,
+        &["fault drive X reversed", "mode full"],
+    );
+    holds(
+        &campaign("dig425"),
+        "PALLETS.H",
+        11_800_246,
+        &["fault encoder X edges", "fault encoder X no-marks"],
+    );
+}
+
 /// Axes that were led by a spindle or a handwheel when their drives were taken away go on with no jump: from a thread whose end was
 /// reached in nominal values alone, from beside a thread in a tilted plane, from a handwheel that was still being followed.
 #[test]

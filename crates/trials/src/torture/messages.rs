@@ -54,6 +54,11 @@ impl Messages {
             self.due.clear();
             return;
         }
+        // An encoder has one fault: another one takes its place, maybe before its monitoring has seen it.
+        if let Some((letter, _)) = encoder_fault(&happening.what) {
+            self.due
+                .retain(|due| encoder_fault(&due.why).is_none_or(|(other, _)| other != letter));
+        }
         let stopped = control
             .shown()
             .iter()
@@ -73,17 +78,21 @@ impl Messages {
                 why: happening.what.clone(),
             });
         }
-        let words: Vec<&str> = happening.what.split_whitespace().collect();
-        let ["fault", "encoder", letter, signal] = words.as_slice() else {
-            return;
-        };
-        let (fault, monitor) = match *signal {
+        if let Some((letter, signal)) = encoder_fault(&happening.what) {
+            self.encoder_fails(letter, signal, happening, control);
+        }
+    }
+
+    /// A signal of an encoder fails, and its monitoring must say so.
+    fn encoder_fails(&mut self, letter: &str, signal: &str, happening: &Happening, control: &Control) {
+        let first = control.channel(0);
+        let named = |watch: &AxisWatch| letter.starts_with(watch.axis.letter());
+        let now = happening.time_us.max(control.time_us());
+        let (fault, monitor) = match signal {
             "amplitude" => (FaultId::EncoderAmplitude, 0),
             "edges" => (FaultId::EncoderEdges, 1),
             _ => return,
         };
-        let first = control.channel(0);
-        let named = |watch: &AxisWatch| letter.starts_with(watch.axis.letter());
         // On a machine of several channels a letter of the plant may be another one of the control.
         let axis = first
             .filter(|_| control.channels() == 1)
@@ -209,6 +218,15 @@ impl Messages {
             return fault("the PLC runs under a flashing message".to_owned());
         }
         Ok(())
+    }
+}
+
+/// Axis and signal of `fault encoder X edges`.
+fn encoder_fault(what: &str) -> Option<(&str, &str)> {
+    let mut words = what.split_whitespace();
+    match [words.next(), words.next(), words.next(), words.next()] {
+        [Some("fault"), Some("encoder"), letter, signal] => letter.zip(signal),
+        _ => None,
     }
 }
 

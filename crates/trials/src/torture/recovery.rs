@@ -81,6 +81,7 @@ impl Course<'_> {
     /// Waits for loops and reference run; `false` when a flashing message is in the way.
     fn comes_up(&mut self) -> Result<bool, Violation> {
         let until_us = self.now() + REFERENCE_US;
+        let mut again_us = self.now() + START_AGAIN_US;
         let clear = |course: &Self| course.bench.host.plant().limit_switches_clear();
         while clear(self) && (!self.control().loops_closed() || self.mode() == Mode::Reference) {
             if is_fatal(self.control()) {
@@ -98,9 +99,27 @@ impl Course<'_> {
                 };
                 return Err(self.breaks(Rule::Recovery, waits));
             }
+            if self.now() > again_us {
+                // START that came while a message was shown has begun nothing.
+                again_us += START_AGAIN_US;
+                self.start_reference_runs()?;
+            }
             self.cycle()?;
         }
         self.pass_marks()
+    }
+
+    /// START for each channel that stands before its reference marks.
+    fn start_reference_runs(&mut self) -> Result<(), Violation> {
+        for number in 0..self.control().channels() {
+            let waits = self
+                .channel(number)
+                .is_some_and(|channel| channel.mode() == Mode::Reference);
+            if waits && self.control().loops_closed() && self.stands(number) {
+                self.press_start(number)?;
+            }
+        }
+        Ok(())
     }
 
     /// Where another mode was chosen before the reference marks were passed, they are passed now; `false` when a flashing
