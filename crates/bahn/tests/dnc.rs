@@ -409,12 +409,13 @@ fn in_real_time() {
     };
     let (fast, slow) = std::thread::scope(|scope| {
         let fast = scope.spawn(|| run(""));
-        let slow = scope.spawn(|| run(",baud=38400"));
+        let slow = scope.spawn(|| run(",baud=9600"));
         (fast.join().unwrap(), slow.join().unwrap())
     });
     // Each block has STX, ETB, BCC and DC1 around it, and an acknowledgement; a character has ten bits.
     let characters: usize = text.lines().map(|line| line.len() + 5).sum();
-    let line = characters as f64 * 10.0 / 38_400.0;
+    // Slow enough that a busy computer does not make a fast line look as slow.
+    let line = characters as f64 * 10.0 / 9_600.0;
     assert!(slow > line && slow < line * 2.0, "{slow} s, the line {line} s");
     // 60 mm with F6000 and the ramps.
     assert!(fast > 0.6 && fast < line, "{fast} s, the line {line} s");

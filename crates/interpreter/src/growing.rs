@@ -1,16 +1,16 @@
-//! Main programs that are still being transferred while they run [003:1640-1690], and what must not stand in them.
+//! Main programs that are still being transferred while they run [003:1640-1690].
 
 use std::sync::Arc;
 
 use bahn_parameters::MessageId;
 use bahn_path::BlockRef;
-use bahn_program::{Block, CycleBlock, MFunctions, Operation, Program};
+use bahn_program::{Block, MFunctions, Operation, Program};
 
+use crate::Interpreter;
 use crate::checkpoints::Kept;
 use crate::code::Fetched;
 use crate::error::Fault;
 use crate::run::Run;
-use crate::{Interpreter, Settings};
 
 impl Interpreter {
     /// The main program has grown: a later version of it, see [`Program::more`]. After [`Step::Starved`] the run
@@ -99,37 +99,6 @@ impl Interpreter {
         };
         contours || !self.code.program(0).is_some_and(known)
     }
-}
-
-/// Refuses what must not stand in a main program that is transferred while it runs.
-pub(crate) fn permit(run: &Run, operation: &Operation, settings: &Settings) -> Result<(), Fault> {
-    if !settings.transferred || run.at.program != 0 {
-        return Ok(());
-    }
-    let limits = settings.model.limits().blockwise;
-    let digitizes = |block: &CycleBlock| (5..=7).contains(&block.number);
-    let what = match operation {
-        Operation::CallLabel { repeats: Some(_), .. } => "CALL LBL REP".to_owned(),
-        Operation::CallLabel { .. } => "CALL LBL".to_owned(),
-        // Their contours are subprograms.
-        Operation::Cycle(block) if block.number == 14 => "CYCL DEF 14".to_owned(),
-        Operation::Probe(block) if digitizes(block) && !limits.digitizes_and_prints => {
-            format!("TCH PROBE {}", block.number)
-        }
-        Operation::Print(_) if !limits.digitizes_and_prints => "FN15".to_owned(),
-        Operation::ToolDefinition { .. } => {
-            return match limits.tool_definitions_max {
-                Some(max) if run.tools.definitions() > usize::from(max) => {
-                    let detail = format!("the control holds {max} TOOL DEF blocks");
-                    Err(Fault::new(MessageId::NotInBlockwiseTransfer, detail))
-                }
-                _ => Ok(()),
-            };
-        }
-        _ => return Ok(()),
-    };
-    let detail = format!("{what} must not stand in a program that is transferred while it runs");
-    Err(Fault::new(MessageId::NotInBlockwiseTransfer, detail))
 }
 
 fn calls_cycle(block: &Block) -> bool {

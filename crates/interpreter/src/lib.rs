@@ -42,6 +42,7 @@ mod code;
 mod context;
 mod contour;
 mod cycles;
+mod deferred;
 mod definition;
 mod digitize;
 mod drip_feed;
@@ -50,11 +51,13 @@ mod examination;
 mod execute;
 mod flow;
 mod functions;
+mod going_back;
 mod growing;
 mod modal;
 mod normals;
 mod numbers;
 mod oem;
+mod oem_calls;
 mod output;
 mod outside;
 mod path_functions;
@@ -74,6 +77,7 @@ mod surface_feed;
 mod tilting;
 mod tool_measuring;
 mod tools;
+mod transferred;
 mod unrolled;
 mod voltage;
 mod work;
@@ -102,7 +106,7 @@ pub use settings::{
 pub use status::Status;
 pub use work::{Done, Work};
 
-use crate::checkpoints::{Kept, acts};
+use crate::checkpoints::{Ended, Kept, acts};
 use crate::code::{Code, Fetched};
 use crate::contour::Contour;
 use crate::cycles::Halt;
@@ -111,7 +115,7 @@ use crate::execute::execute;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
 use crate::run::Run;
-use crate::work::Pending;
+use crate::work::{Effort, Pending};
 
 /// Runs a program and hands out its path element by element.
 ///
@@ -142,11 +146,7 @@ pub struct Interpreter {
     interrupt: Option<Arc<AtomicBool>>,
     /// States before blocks, kept for whoever asked for them.
     kept: Option<Kept>,
-    /// Work that may still be done before [`Step::Starved`]; `None` for any amount.
-    work: Option<u32>,
-    /// Long computations are left to whoever drives, and the one that is pending.
-    defers: bool,
-    pending: Pending,
+    effort: Effort,
     /// Cycles of the machine builder that were looked for: a run keeps what it found.
     oem_cycles: BTreeMap<u16, Option<oem::Cycle>>,
     /// A main program that is still being transferred has no block to go on with.
@@ -160,12 +160,6 @@ const INTERRUPT_PERIOD: u64 = 1 << 14;
 
 /// What a block costs whose state is kept: the copy takes most of its time.
 pub const STATE_COST: u32 = 16;
-
-#[derive(Clone, Debug)]
-enum Ended {
-    Finished,
-    Failed(Box<ProgramError>),
-}
 
 impl Interpreter {
     /// Prepares the run of a main program.
@@ -181,9 +175,7 @@ impl Interpreter {
             waiting: None,
             interrupt: None,
             kept: None,
-            work: None,
-            defers: false,
-            pending: Pending::None,
+            effort: Effort::default(),
             oem_cycles: BTreeMap::new(),
             starved: false,
             position,
@@ -258,12 +250,12 @@ impl Interpreter {
     /// other things to do, too. When it is done, the next step is [`Step::Starved`]. A block costs 1, each
     /// further element of a block, too; a block whose state is kept costs [`STATE_COST`].
     pub fn allow(&mut self, work: u32) {
-        self.work = Some(work);
+        self.effort.work = Some(work);
     }
 
     /// After an error: the run goes on with the block that failed.
     pub fn retry(&mut self) {
-        self.pending = Pending::None;
+        self.effort.pending = Pending::None;
         self.ended = None;
         self.waiting = None;
     }
@@ -281,7 +273,7 @@ impl Interpreter {
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
         let reported = std::mem::take(&mut self.run.reported);
-        self.pending = Pending::None;
+        self.effort.pending = Pending::None;
         self.run = (*checkpoint.run).clone();
         self.run.reported = reported;
         self.ended = checkpoint.ended.clone();
@@ -331,7 +323,7 @@ impl Interpreter {
     pub fn goto(&mut self, block: u32) {
         self.run.at = flow::Position::at(0, block);
         self.run.modal.begins_inside = block > 0;
-        self.pending = Pending::None;
+        self.effort.pending = Pending::None;
         self.ended = None;
         self.enter_unit();
     }
@@ -343,10 +335,10 @@ impl Interpreter {
 
     /// Executes blocks until a step is finished or the run ends.
     fn advance(&mut self) {
-        if self.pending.is_lost() {
+        if self.effort.pending.is_lost() {
             self.give_up_work();
         }
-        while self.run.pen.out.queue.is_empty() && self.ended.is_none() && self.pending.is_none() {
+        while self.run.pen.out.queue.is_empty() && self.ended.is_none() && self.effort.pending.is_none() {
             if !self.spend(1) {
                 return;
             }
@@ -369,7 +361,7 @@ impl Interpreter {
     /// Takes work from what is allowed; `false` when nothing is left.
     #[inline]
     fn spend(&mut self, cost: u32) -> bool {
-        match &mut self.work {
+        match &mut self.effort.work {
             Some(0) => return false,
             Some(work) => *work = work.saturating_sub(cost),
             None => {}
@@ -412,7 +404,7 @@ impl Interpreter {
             && acts(&block.operation)
         {
             kept.keep(&mut self.run, self.position);
-            self.work = self.work.map(|work| work.saturating_sub(STATE_COST - 1));
+            self.effort.work = self.effort.work.map(|work| work.saturating_sub(STATE_COST - 1));
         }
         self.run.pen.block = at;
         if rounded {
@@ -442,7 +434,7 @@ impl Interpreter {
         }
         let flow = execute(&mut self.run, &block.operation, &self.settings)?;
         for part in block.operation.parts() {
-            growing::permit(&self.run, part, &self.settings)?;
+            transferred::permit(&self.run, part, &self.settings)?;
         }
         if label != 0 {
             self.check_label(label, at)?;

@@ -86,7 +86,7 @@ impl Interpreter {
         }
         let run = &self.run;
         self.waiting.is_none()
-            && self.pending.is_none()
+            && self.effort.pending.is_none()
             && run.is_between_contours(tool)
             && run.pen.contour.is_empty()
     }

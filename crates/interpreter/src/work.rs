@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::Interpreter;
 use crate::cycles::{ContourJob, Halt, Watch};
 use crate::run::Run;
 use crate::settings::Settings;
@@ -17,6 +16,17 @@ pub(crate) enum Pending {
     Waiting(Box<ContourJob>),
     /// Somebody does it, and sends what was wanted.
     Taken(Wanted),
+}
+
+/// What may be done at once, and what is left to whoever drives.
+#[derive(Clone, Default)]
+pub(crate) struct Effort {
+    /// Work that may still be done before [`Step::Starved`](bahn_path::Step::Starved); `None` for any amount.
+    pub work: Option<u32>,
+    /// Long computations are left to whoever drives.
+    pub defers: bool,
+    /// The one that is pending.
+    pub pending: Pending,
 }
 
 /// Tells a computation from others, and that nobody wants it any more: dropped, it ends it.
@@ -124,58 +134,5 @@ impl Pending {
         *run = *done.run;
         run.reported.put_before(warnings);
         Some(done.result)
-    }
-}
-
-impl Interpreter {
-    /// Leaves long computations to whoever drives: while one is pending the next step is
-    /// [`Step::Starved`], see [`Interpreter::take_work`].
-    pub fn defer_work(&mut self) {
-        self.defers = true;
-    }
-
-    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to. When it is
-    /// dropped instead, the next step finds that out, and it can be taken again.
-    pub fn take_work(&mut self) -> Option<Work> {
-        self.pending
-            .take(&mut self.run, &self.settings, self.interrupt.as_ref())
-    }
-
-    /// Gives a computation up that is pending: its block is executed anew when the run goes on.
-    pub fn give_up_work(&mut self) {
-        self.pending = Pending::None;
-    }
-
-    /// The run waits for a computation that is done, or to be done, beside.
-    pub fn is_computing(&self) -> bool {
-        !self.pending.is_none() && !self.pending.is_lost()
-    }
-
-    /// Whether this computation is what the run waits for.
-    pub fn waits_for(&self, done: &Done) -> bool {
-        self.pending.is_of(done)
-    }
-
-    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
-    pub fn finish_work(&mut self, done: Done) {
-        match self.pending.finish(done, &mut self.run) {
-            Some(Ok(())) => self.run.at.block += 1,
-            Some(Err(Halt::Fault(fault))) => self.fail(fault, self.run.pen.block),
-            // Its block is executed anew when the run goes on.
-            Some(Err(Halt::Interrupted)) | None => {}
-        }
-    }
-
-    /// Runs an SL cycle, or leaves it to whoever drives.
-    pub(crate) fn contour_cycle(&mut self) -> Result<(), Halt> {
-        let job = self.record_contours()?;
-        if self.defers {
-            self.pending = Pending::Waiting(Box::new(job));
-            return Ok(());
-        }
-        let watch = Watch::new([self.interrupt.as_deref(), None]);
-        self.run.contour_cycle(&job, &self.settings, &watch)?;
-        self.run.at.block += 1;
-        Ok(())
     }
 }

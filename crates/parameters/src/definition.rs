@@ -4,7 +4,7 @@ mod id;
 
 use std::sync::OnceLock;
 
-use crate::{ControlModel, ParameterError};
+use crate::{ControlModel, ParameterError, meaning};
 
 pub use id::ParameterId;
 pub(crate) use id::parse_id;
@@ -111,6 +111,30 @@ impl Definition {
     pub fn find(model: ControlModel, number: u16, index: u8) -> Option<&'static Definition> {
         let all = Definition::all(model);
         Definition::position(model, number, index).and_then(|at| all.get(at))
+    }
+
+    /// What a value means in words of the list: the value's own, or those of its bits, one item each. Empty
+    /// for a quantity.
+    pub fn meaning(&self, value: f64) -> Vec<String> {
+        meaning::of_value(self.values, value)
+    }
+
+    /// The items of the column of values and bits, as the list prints them.
+    pub fn choices(&self) -> impl Iterator<Item = &'static str> {
+        meaning::items(self.values)
+    }
+
+    /// Least and greatest value as they are best written; `None` where no range is printed.
+    pub fn range_text(&self) -> Option<[String; 2]> {
+        let hexadecimal = matches!(self.format, Format::Hexadecimal(_));
+        let text = |value: f64| {
+            if hexadecimal && self.max < 10.0 {
+                value.to_string()
+            } else {
+                self.format_value(value)
+            }
+        };
+        self.min.is_finite().then(|| [text(self.min), text(self.max)])
     }
 
     /// Where it stands in [`Definition::all`].

@@ -1,7 +1,5 @@
 //! What a value means: reads the column of values and bits.
 
-use crate::{Definition, Format};
-
 /// A possible value or bit of a parameter.
 struct Choice<'a> {
     key: Key,
@@ -18,62 +16,44 @@ enum Key {
     Summand(u64),
 }
 
-impl Definition {
-    /// What a value means in words of the list: the value's own, or those of its bits, one item each. Empty
-    /// for a quantity.
-    pub fn meaning(&self, value: f64) -> Vec<String> {
-        let choices: Vec<Choice> = self.values.split(';').filter_map(choice).collect();
-        let of_value = |wanted: f64| {
-            let found = choices.iter().find(|choice| choice.key == Key::Value(wanted));
-            found.map(|choice| choice.text)
-        };
-        let bits = value as u64;
-        let mut meaning: Vec<String> = choices
-            .iter()
-            .filter_map(|choice| match choice.key {
-                Key::Bit(bit) => Some(bit_meaning(choice.text, bits >> bit & 1 == 1, &of_value)),
-                Key::Summand(summand) => (bits & summand == summand).then(|| choice.text.to_owned()),
-                Key::Value(_) => None,
-            })
-            .collect();
-        let has_bits = choices.iter().any(|choice| matches!(choice.key, Key::Bit(_)));
-        let has_summands = choices.iter().any(|choice| matches!(choice.key, Key::Summand(_)));
-        // Without the summands, what is left is a value of its own.
-        let rest = choices.iter().fold(bits, |rest, choice| match choice.key {
-            Key::Summand(summand) => rest & !summand,
-            _ => rest,
-        });
-        let own = if has_summands {
-            of_value(rest as f64)
-        } else {
-            of_value(value)
-        };
-        if let (false, Some(text)) = (has_bits, own) {
-            meaning.insert(0, text.to_owned());
-        }
-        meaning
+/// What a value means by the items of the column: the value's own words, or those of its bits, one item each. Empty for a
+/// quantity.
+pub(crate) fn of_value(values: &str, value: f64) -> Vec<String> {
+    let choices: Vec<Choice> = values.split(';').filter_map(choice).collect();
+    let of_value = |wanted: f64| {
+        let found = choices.iter().find(|choice| choice.key == Key::Value(wanted));
+        found.map(|choice| choice.text)
+    };
+    let bits = value as u64;
+    let mut meaning: Vec<String> = choices
+        .iter()
+        .filter_map(|choice| match choice.key {
+            Key::Bit(bit) => Some(bit_meaning(choice.text, bits >> bit & 1 == 1, &of_value)),
+            Key::Summand(summand) => (bits & summand == summand).then(|| choice.text.to_owned()),
+            Key::Value(_) => None,
+        })
+        .collect();
+    let has_bits = choices.iter().any(|choice| matches!(choice.key, Key::Bit(_)));
+    let has_summands = choices.iter().any(|choice| matches!(choice.key, Key::Summand(_)));
+    // Without the summands, what is left is a value of its own.
+    let rest = choices.iter().fold(bits, |rest, choice| match choice.key {
+        Key::Summand(summand) => rest & !summand,
+        _ => rest,
+    });
+    let own = if has_summands {
+        of_value(rest as f64)
+    } else {
+        of_value(value)
+    };
+    if let (false, Some(text)) = (has_bits, own) {
+        meaning.insert(0, text.to_owned());
     }
+    meaning
+}
 
-    /// The items of the column of values and bits, as the list prints them.
-    pub fn choices(&self) -> impl Iterator<Item = &'static str> {
-        self.values
-            .split(';')
-            .map(str::trim)
-            .filter(|item| !item.is_empty())
-    }
-
-    /// Least and greatest value as they are best written; `None` where no range is printed.
-    pub fn range_text(&self) -> Option<[String; 2]> {
-        let hexadecimal = matches!(self.format, Format::Hexadecimal(_));
-        let text = |value: f64| {
-            if hexadecimal && self.max < 10.0 {
-                value.to_string()
-            } else {
-                self.format_value(value)
-            }
-        };
-        self.min.is_finite().then(|| [text(self.min), text(self.max)])
-    }
+/// The items of the column of values and bits, as the list prints them.
+pub(crate) fn items(values: &'static str) -> impl Iterator<Item = &'static str> {
+    values.split(';').map(str::trim).filter(|item| !item.is_empty())
 }
 
 /// What a bit means: its name with `0=..` and `1=..` of its own or of the whole parameter.

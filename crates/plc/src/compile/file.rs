@@ -63,8 +63,7 @@ pub(super) fn translate(
         block: None,
         linking: true,
         tnc355: false,
-        file: index,
-        file_name: name,
+        file: (index, name),
         options,
         reports,
         place: Place::default(),
@@ -101,8 +100,8 @@ pub(super) struct Translator<'a> {
     linking: bool,
     /// Whether a command of the TNC 355 was read.
     tnc355: bool,
-    file: usize,
-    file_name: &'a str,
+    /// Number and name of the file.
+    file: (usize, &'a str),
     options: Options,
     reports: &'a mut Reports,
     pub(super) place: Place,
@@ -213,7 +212,7 @@ impl Translator<'_> {
         self.out.bytes = self.out.bytes.saturating_add(cost.bytes.into());
         self.out.code.push(Instruction {
             op,
-            file: u16::try_from(self.file).unwrap_or(u16::MAX),
+            file: u16::try_from(self.file.0).unwrap_or(u16::MAX),
             line: self.place.line,
             time: cost.time,
             time_skipped: cost.skipped,
@@ -266,8 +265,7 @@ impl Translator<'_> {
 
     /// Reports an error of another line: that which opened what is wrong.
     pub(super) fn report_at(&mut self, place: Place, error: PlcError, detail: &str) {
-        self.reports
-            .error((self.file, self.file_name), place, error, detail);
+        self.reports.error(self.file, place, error, detail);
     }
 
     fn unreadable(&mut self, error: &LineError) {
@@ -285,7 +283,7 @@ impl Translator<'_> {
                 ..self.place
             };
             let is_error = note.error == PlcError::NoEndOfLine || self.options.strict && !command.tnc355;
-            let file = (self.file, self.file_name);
+            let file = self.file;
             if is_error {
                 self.reports.error(file, place, note.error, &note.detail);
             } else {
@@ -303,7 +301,7 @@ impl Translator<'_> {
 
     fn global(&mut self, name: &str) {
         self.link_command();
-        if self.file == 0 {
+        if self.file.0 == 0 {
             self.report(Some(PlcError::GlobalInMain), name);
             return;
         }
@@ -477,7 +475,7 @@ impl Translator<'_> {
                 // An EM is appended when a program of the TNC 355 is read [000:16199].
                 let detail = "EM appended, as for a program of the TNC 355";
                 self.reports
-                    .warning((self.file, self.file_name), block, PlcError::NoEndOfBlock, detail);
+                    .warning(self.file, block, PlcError::NoEndOfBlock, detail);
                 self.emit_with(
                     Op::Return {
                         condition: Condition::Always,
