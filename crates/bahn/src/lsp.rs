@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_host::called_program;
-use bahn_lsp::{Files, Settings, Streams, serve};
+use bahn_lsp::{Disk, Settings, Streams, serve};
 use bahn_machine::MachineFolder;
 use bahn_parameters::ControlModel;
+use bahn_text::{Files, NamedFile};
 use clap::Args;
 
 use crate::options::model_parser;
@@ -55,7 +56,7 @@ pub(crate) fn command(options: &LspOptions) -> Result<Outcome, UsageError> {
     };
     let input = BufReader::new(std::io::stdin());
     let (connection, streams) = Streams::connect(input, std::io::stdout());
-    let served = serve(&connection, Arc::new(Disk), &settings);
+    let served = serve(&connection, Arc::new(Folders), &settings);
     drop(connection);
     streams
         .end(served)
@@ -64,13 +65,17 @@ pub(crate) fn command(options: &LspOptions) -> Result<Outcome, UsageError> {
 }
 
 /// The files beside a document.
-struct Disk;
+struct Folders;
 
-impl Files for Disk {
-    fn read(&self, path: &Path) -> Option<Vec<u8>> {
-        files::read_table(path).ok()
+impl Files for Folders {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        let bytes = files::read_table(Path::new(name)).ok()?;
+        let name = name.to_owned();
+        Some(NamedFile { name, bytes })
     }
+}
 
+impl Disk for Folders {
     fn called(&self, name: &str, caller: &Path) -> Option<PathBuf> {
         called_program(name, caller)
     }

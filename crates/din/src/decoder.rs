@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_path::Position;
-use bahn_text::Span;
+use bahn_text::{Files, Span};
 
 use crate::block::{self, Block, WordKind};
 use crate::execute::{self, State};
 use crate::line::LineFault;
 use crate::program::{Program, Section, not_found};
-use crate::unit::{Command, Place, Shelf, Unit, Variables};
+use crate::unit::{Command, Place, Unit, Variables};
 
 /// What the next block is.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,7 @@ const ENDINGS: [&str; 3] = ["", ".nc", ".sub"];
 /// Executes a program of a file.
 #[derive(Clone)]
 pub struct Decoder {
-    shelf: Arc<dyn Shelf>,
+    beside: Arc<dyn Files>,
     /// The program from its beginning.
     main: Frame,
     /// Subroutines that were called from other files, by the name in the call.
@@ -83,10 +83,10 @@ struct Frame {
 impl Decoder {
     /// Begins a program of a file. The path stands at `start`; an axis without a position there stands at 0 when it is
     /// programmed first (inferred).
-    pub fn new(program: Arc<Program>, main: &Section, start: Position, shelf: Arc<dyn Shelf>) -> Decoder {
+    pub fn new(program: Arc<Program>, main: &Section, start: Position, beside: Arc<dyn Files>) -> Decoder {
         let frame = Frame::of(program, main);
         Decoder {
-            shelf,
+            beside,
             main: frame.clone(),
             files: BTreeMap::new(),
             stack: vec![frame],
@@ -300,7 +300,7 @@ impl Decoder {
         if let Some(known) = self.files.get(name) {
             return Ok(Some(Arc::clone(known)));
         }
-        let Some(program) = called_file(&*self.shelf, name) else {
+        let Some(program) = called_file(&*self.beside, name) else {
             return Ok(None);
         };
         if self.files.len() >= MAX_FILES {
@@ -313,12 +313,12 @@ impl Decoder {
 }
 
 /// The file that a call names.
-pub(crate) fn called_file(shelf: &dyn Shelf, name: &str) -> Option<Program> {
+pub(crate) fn called_file(beside: &dyn Files, name: &str) -> Option<Program> {
     let mut found = ENDINGS
         .iter()
-        .filter_map(|ending| shelf.text(&format!("{name}{ending}")));
-    let (file, text) = found.next()?;
-    Some(Program::from_bytes(&file, &text))
+        .filter_map(|ending| beside.read(&format!("{name}{ending}")));
+    let file = found.next()?;
+    Some(Program::from_bytes(&file.name, &file.bytes))
 }
 
 impl Frame {

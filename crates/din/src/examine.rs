@@ -6,10 +6,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_path::{Axis, Position};
+use bahn_text::Files;
 
 use crate::decoder::{BlockFault, Decoder, MAX_FILES, Step, called_file};
 use crate::program::{Fault, Program};
-use crate::unit::{FunctionLetter, Shelf, Variable, Variables};
+use crate::unit::{FunctionLetter, Variable, Variables};
 
 /// Most blocks that are executed: without jumps no program is endless, but subroutines that call each other
 /// many times are long.
@@ -41,16 +42,16 @@ pub struct Found {
 
 /// Reads every block of a file and of those that it calls, and executes the programs of the file in turn, until
 /// `interrupt` is set.
-pub fn examine(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &AtomicBool) -> Examination {
+pub fn examine(program: &Arc<Program>, beside: &Arc<dyn Files>, interrupt: &AtomicBool) -> Examination {
     let [guess, other] = GUESSES;
-    let run = Run::of(program, shelf, interrupt, guess);
+    let run = Run::of(program, beside, interrupt, guess);
     let mut files = vec![Arc::clone(program)];
     for file in run.called {
         if files.iter().all(|known| known.name() != file.name()) {
             files.push(file);
         }
     }
-    let mut found = read(&mut files, shelf.as_ref());
+    let mut found = read(&mut files, beside.as_ref());
     for (name, fault) in run.faults {
         let Some(file) = files.iter().find(|file| *file.name() == name) else {
             continue;
@@ -72,7 +73,7 @@ pub fn examine(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &Atomi
     let values = match run.is_unsure {
         false => values.map(|(name, value)| (name, Some(value))).collect(),
         true => {
-            let otherwise = Run::of(program, shelf, interrupt, other).values;
+            let otherwise = Run::of(program, beside, interrupt, other).values;
             let known = |name: &str, value| otherwise.get(name) == Some(&value);
             values
                 .map(|(name, value)| {
@@ -90,7 +91,7 @@ pub fn examine(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &Atomi
 }
 
 /// Reads files and all that their calls lead to, also after a fault; those that are found are put to the `files`.
-fn read(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf) -> Vec<Found> {
+fn read(files: &mut Vec<Arc<Program>>, beside: &dyn Files) -> Vec<Found> {
     let mut found = Vec::new();
     let mut macros = BTreeSet::new();
     let mut unknown_macros = Vec::new();
@@ -110,7 +111,7 @@ fn read(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf) -> Vec<Found> {
             let there = !call.local
                 && *asked
                     .entry(call.name)
-                    .or_insert_with_key(|name| add(files, shelf, name));
+                    .or_insert_with_key(|name| add(files, beside, name));
             if !there {
                 judged.faults.push(call.fault);
             }
@@ -129,11 +130,11 @@ fn read(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf) -> Vec<Found> {
 }
 
 /// Puts the file that a call names to the others; false if there is none.
-fn add(files: &mut Vec<Arc<Program>>, shelf: &dyn Shelf, name: &str) -> bool {
+fn add(files: &mut Vec<Arc<Program>>, beside: &dyn Files, name: &str) -> bool {
     if files.len() > MAX_FILES {
         return true;
     }
-    let Some(file) = called_file(shelf, name) else {
+    let Some(file) = called_file(beside, name) else {
         return false;
     };
     if files.iter().all(|known| known.name() != file.name()) {
@@ -155,7 +156,7 @@ struct Run {
 
 impl Run {
     /// Executes the programs with a value for each variable that is not known.
-    fn of(program: &Arc<Program>, shelf: &Arc<dyn Shelf>, interrupt: &AtomicBool, guess: f64) -> Run {
+    fn of(program: &Arc<Program>, beside: &Arc<dyn Files>, interrupt: &AtomicBool, guess: f64) -> Run {
         let mut run = Run {
             complete: true,
             ..Run::default()
@@ -165,7 +166,7 @@ impl Run {
             position[axis] = 0.0;
         }
         for section in program.mains() {
-            let mut decoder = Decoder::new(Arc::clone(program), section, position, Arc::clone(shelf));
+            let mut decoder = Decoder::new(Arc::clone(program), section, position, Arc::clone(beside));
             let mut variables = Rehearsed::new(guess);
             let fault = execute(&mut decoder, &mut variables, interrupt, &mut run.complete);
             position = decoder.position();

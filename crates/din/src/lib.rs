@@ -3,7 +3,7 @@
 //! A [`Program`] is the text of one file: its [`Section`]s are programs and subroutines, [`Program::faults`] tells what is
 //! wrong in it with line and column. A [`Decoder`] executes one program block by block and gives for each a
 //! [`Unit`]: what it moves, which functions it orders, what else it commands. Whoever follows it answers for the
-//! variables of the channel ([`Variables`]) and finds subroutines ([`Shelf`]).
+//! variables of the channel ([`Variables`]) and finds subroutines ([`Files`](bahn_text::Files)).
 //!
 //! [`examine`] tells all that is wrong with a file and those that it calls, without a channel.
 //!
@@ -14,10 +14,11 @@
 //! ```
 //! use std::sync::Arc;
 //!
-//! use bahn_din::{Decoder, FunctionLetter, Kind, Program, Shelf, Step, Variable, Variables};
+//! use bahn_din::{Decoder, FunctionLetter, Kind, Program, Step, Variable, Variables};
 //! use bahn_path::{Axis, Position};
+//! use bahn_text::MemoryFiles;
 //!
-//! /// A channel without variables and subroutines.
+//! /// A channel without variables.
 //! struct Bare;
 //!
 //! impl Variables for Bare {
@@ -32,16 +33,11 @@
 //!     }
 //! }
 //!
-//! impl Shelf for Bare {
-//!     fn text(&self, _name: &str) -> Option<(String, Vec<u8>)> {
-//!         None
-//!     }
-//! }
-//!
 //! let program = Arc::new(Program::from_bytes("part.nc", b"N10 G01 X25 F2000 M7=3\nN20 M30\n"));
 //! assert!(program.faults().is_empty());
 //! if let Some(main) = program.mains().next() {
-//!     let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, Arc::new(Bare));
+//!     let beside = Arc::new(MemoryFiles::default());
+//!     let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, beside);
 //!     if let Step::Unit(unit) = decoder.next(&mut Bare) {
 //!         assert_eq!(&*unit.place.block, "N10");
 //!         assert_eq!(unit.motion.map(|motion| motion.end[Axis::X]), Some(25.0));
@@ -71,7 +67,7 @@ pub use examine::{Examination, Found, examine};
 pub use nearest::nearest;
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{
-    Command, Function, FunctionLetter, Independent, Kind, Motion, Place, Shelf, SpindleOrder, Target, Unit,
+    Command, Function, FunctionLetter, Independent, Kind, Motion, Place, SpindleOrder, Target, Unit,
     Variable, Variables,
 };
 pub use words::{Span, SpanKind, words};

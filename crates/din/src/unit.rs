@@ -205,9 +205,3 @@ pub trait Variables {
     /// Whether a function has a synchronisation type (`EXIST[M80]`).
     fn exists(&self, letter: FunctionLetter, number: u16) -> bool;
 }
-
-/// Where subroutines are found.
-pub trait Shelf: Send + Sync {
-    /// The text of the program of this name (`L Laser_on.sub`); its file name as it is called in reports.
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)>;
-}

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use bahn_din::{Decoder, Program, Step, words};
 use bahn_path::Position;
+use bahn_text::MemoryFiles;
 use proptest::prelude::*;
-use support::{Bench, files};
+use support::Bench;
 
 /// Parts of which lines are made, so that many of them can be read.
 const PARTS: &[&str] = &[
@@ -114,8 +115,11 @@ fn all_of(bytes: &[u8]) -> String {
         assert!(fault.span.length >= 1 && !fault.message.is_empty(), "{fault:?}");
     }
     for main in program.mains() {
-        let shelf = Arc::new(files([("sub", "N1 G91 X1 M7\nLL A\n"), ("sub.nc", "M1")]));
-        let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, shelf);
+        let beside = Arc::new(MemoryFiles::from([
+            ("sub", "N1 G91 X1 M7\nLL A\n"),
+            ("sub.nc", "M1"),
+        ]));
+        let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, beside);
         let mut bench = Bench::default();
         for _ in 0..2000 {
             let step = decoder.next(&mut bench);
@@ -171,7 +175,7 @@ proptest! {
         let x = f64::from(x) / 1000.0;
         prop_assume!(x != 0.0 && ![2, 17, 29, 30].contains(&m));
         let text = format!("N7{blank}G01{blank}X{x}{blank}F{feed}{blank}M{m}={value}");
-        let (units, fault) = support::run_with(&text, &mut Bench::default(), files([]));
+        let (units, fault) = support::run_with(&text, &mut Bench::default(), MemoryFiles::default());
         prop_assert_eq!(fault, None);
         prop_assert_eq!(support::reported(&units[0]), format!("N7 M{m}={value} to X{x} Y0 F{feed}"));
     }

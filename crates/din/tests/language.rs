@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use bahn_din::{Command, LandmarkKind, Program, Step};
 use bahn_path::{Axis, Curve, Plane, Position};
-use bahn_text::Span;
-use support::{Bench, Files, decoder_with, files, refused, reported, reported_all, run, run_with, variable};
+use bahn_text::{MemoryFiles, Span};
+use support::{Bench, decoder_with, refused, reported, reported_all, run, run_with, variable};
 
 #[test]
 fn incremental_and_absolute_coordinates() {
@@ -177,7 +177,7 @@ fn a_function_may_be_asked_for() {
     let (units, fault) = run_with(
         "X[EXIST[M80]*5+EXIST[H3]] Y[EXIST[M81]+EXIST[H80]]",
         &mut bench,
-        Files::default(),
+        MemoryFiles::default(),
     );
     assert_eq!((reported(&units[0]), fault), ("#1 to X6 Y0 rapid".into(), None));
 }
@@ -186,7 +186,10 @@ fn a_function_may_be_asked_for() {
 fn everything_is_executed_before_an_external_variable_is_read() {
     // [004:126]
     let mut bench = Bench::default();
-    let mut decoder = decoder_with("N10 X10\nN20 M5=V.E.STATE X20\nN30 V.E.STATE=3", Files::default());
+    let mut decoder = decoder_with(
+        "N10 X10\nN20 M5=V.E.STATE X20\nN30 V.E.STATE=3",
+        MemoryFiles::default(),
+    );
     let mut next = |bench: &mut Bench| match decoder.next(bench) {
         Step::Unit(unit) => *unit,
         other => panic!("{other:?}"),
@@ -224,8 +227,8 @@ fn subroutines_of_the_same_file() {
 
 #[test]
 fn a_subroutine_may_end_the_program() {
-    let shelf = files([("end.nc", "M30\n"), ("deep.nc", "L end\nM50")]);
-    let (units, fault) = run_with("L deep\nM51", &mut Bench::default(), shelf);
+    let beside = MemoryFiles::from([("end.nc", "M30\n"), ("deep.nc", "L end\nM50")]);
+    let (units, fault) = run_with("L deep\nM51", &mut Bench::default(), beside);
     assert_eq!(
         (reported_all(&units), fault),
         (vec!["#1".into(), "#1".into(), "#1 M30 end".into()], None)
@@ -234,8 +237,8 @@ fn a_subroutine_may_end_the_program() {
 
 #[test]
 fn subroutines_end_somewhere() {
-    let shelf = files([("loop.nc", "L loop.nc")]);
-    let (units, fault) = run_with("L loop.nc", &mut Bench::default(), shelf);
+    let beside = MemoryFiles::from([("loop.nc", "L loop.nc")]);
+    let (units, fault) = run_with("L loop.nc", &mut Bench::default(), beside);
     let message = fault.map(|fault| fault.message).unwrap_or_default();
     assert_eq!(
         message,
@@ -264,9 +267,9 @@ fn skip_to(decoder: &mut bahn_din::Decoder, block: &str, bench: &mut Bench) -> O
 
 #[test]
 fn search_for_a_block_executes_what_stands_before_it() {
-    let shelf = || files([("sub.nc", "N50 G91 X5 M7\nV.G.RW=4\nN70 X2")]);
+    let beside = || MemoryFiles::from([("sub.nc", "N50 G91 X5 M7\nV.G.RW=4\nN70 X2")]);
     let text = "N10 G01 F500 X10 M3\nN30 L sub.nc\nN37 #EXPL SYN\n(here)\nN50 X1 M9\nN60 M30";
-    let mut decoder = decoder_with(text, shelf());
+    let mut decoder = decoder_with(text, beside());
     let mut bench = Bench::default();
     // A block of the program itself goes before one of the same name in a subroutine; G91 and F of that are in force.
     assert_eq!(
@@ -276,7 +279,7 @@ fn search_for_a_block_executes_what_stands_before_it() {
     assert_eq!(bench.log, ["write V.G.RW 4"]);
 
     // What the program itself does not have is looked for in the subroutines that it calls; after their end it goes on.
-    let mut decoder = decoder_with(text, shelf());
+    let mut decoder = decoder_with(text, beside());
     assert!(!decoder.has("N70") && decoder.has("N50") && !decoder.has("#4"));
     assert_eq!(
         skip_to(&mut decoder, "N70", &mut bench).as_deref(),
@@ -284,13 +287,13 @@ fn search_for_a_block_executes_what_stands_before_it() {
     );
     assert!(decoder.next_is("N37"));
 
-    let mut missing = decoder_with(text, shelf());
+    let mut missing = decoder_with(text, beside());
     assert_eq!(skip_to(&mut missing, "N99", &mut bench), None);
     assert_eq!(
         (&*missing.begin().block, &*missing.begin().program),
         ("N10", "test.nc")
     );
-    let mut line = decoder_with("X1\n\nX2", Files::default());
+    let mut line = decoder_with("X1\n\nX2", MemoryFiles::default());
     assert!(skip_to(&mut line, "#3", &mut bench).is_some());
     assert_eq!(line.position()[Axis::X], 2.0);
 }
@@ -331,7 +334,12 @@ fn programs_of_a_file_are_distinguished() {
     let main = program.mains().nth(2).expect("a program").clone();
     let mut start = Position::UNKNOWN;
     start[Axis::X] = 7.0;
-    let mut decoder = bahn_din::Decoder::new(Arc::clone(&program), &main, start, Arc::new(Files::default()));
+    let mut decoder = bahn_din::Decoder::new(
+        Arc::clone(&program),
+        &main,
+        start,
+        Arc::new(MemoryFiles::default()),
+    );
     let Step::Unit(unit) = decoder.next(&mut Bench::default()) else {
         panic!("no unit")
     };
@@ -487,7 +495,11 @@ fn what_is_wrong_is_reported_where_it_stands() {
 
 #[test]
 fn a_fault_ends_the_program() {
-    let (units, fault) = run_with("N10 X1\nN20 T1\nN30 X2", &mut Bench::default(), Files::default());
+    let (units, fault) = run_with(
+        "N10 X1\nN20 T1\nN30 X2",
+        &mut Bench::default(),
+        MemoryFiles::default(),
+    );
     assert_eq!(reported_all(&units), ["N10 to X1 Y0 rapid"]);
     let fault = fault.expect("a fault");
     assert_eq!(

@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use bahn_din::{Decoder, Program, Step};
 use bahn_path::Position;
+use bahn_text::MemoryFiles;
 use proptest::prelude::*;
 use proptest::sample::select;
-use support::{Bench, files};
+use support::Bench;
 
 fn listing(text: &str) -> String {
     Program::from_bytes("a.nc", text.as_bytes()).listing()
@@ -19,8 +20,8 @@ fn ordered(text: &str) -> String {
     let program = Arc::new(Program::from_bytes("a.nc", text.as_bytes()));
     let mut reported = format!("{:?}\n", program.landmarks());
     for main in program.mains() {
-        let shelf = Arc::new(files([("sub", "N1 G91 X1 M7\nLL A\n")]));
-        let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, shelf);
+        let beside = Arc::new(MemoryFiles::from([("sub", "N1 G91 X1 M7\nLL A\n")]));
+        let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, beside);
         let mut bench = Bench::default();
         for _ in 0..500 {
             let mut step = decoder.next(&mut bench);

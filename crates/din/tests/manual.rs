@@ -4,7 +4,8 @@ mod support;
 
 use bahn_din::{Command, Independent, SpindleOrder};
 use bahn_path::Axis;
-use support::{Bench, Files, files, reported, reported_all, run, run_with, variable};
+use bahn_text::MemoryFiles;
+use support::{Bench, reported, reported_all, run, run_with, variable};
 
 #[test]
 fn functions_stand_in_their_block_with_its_motion() {
@@ -157,7 +158,7 @@ N20 X200 M11 H12 M13
 M30
 ";
     let mut bench = Bench::default();
-    let (units, fault) = run_with(text, &mut bench, Files::default());
+    let (units, fault) = run_with(text, &mut bench, MemoryFiles::default());
     assert_eq!(fault, None);
     assert_eq!(
         bench.log,
@@ -177,7 +178,7 @@ fn the_figures_use_types_without_defining_them() {
     // [004:144]: SYNCH = "MOS" at the beginning of the listing.
     let mut bench = Bench::default();
     let text = "V.G.M_FCT[11].SYNCH = \"MOS\"\nV.G.M_FCT[12].SYNCH = \"MVS_SLP\"\n\"MOS\"=\"4\"\nV.G.M_FCT[11].SYNCH = \"MOS\"";
-    assert_eq!(run_with(text, &mut bench, Files::default()).1, None);
+    assert_eq!(run_with(text, &mut bench, MemoryFiles::default()).1, None);
     assert_eq!(
         bench.log,
         [
@@ -234,12 +235,12 @@ M30");
 #[test]
 fn subroutines_of_other_files() {
     // [004:114]
-    let shelf = files([
+    let beside = MemoryFiles::from([
         ("Laser_on.sub", "N1 M300\nN2 M17\nN3 M99\n"),
         ("Laser_off.sub", "(* no head, no end *)\nG91 X1 M500"),
     ]);
     let text = "N10 G00 G90 X0 Y0\nN15 L Laser_on.sub\nN20 G01 F5000\nN25 Y7\nN30 M500 M300 ;joint\nN55 L Laser_off.sub\nN99 M30";
-    let (units, fault) = run_with(text, &mut Bench::default(), shelf);
+    let (units, fault) = run_with(text, &mut Bench::default(), beside);
     assert_eq!(fault, None);
     assert_eq!(
         reported_all(&units),

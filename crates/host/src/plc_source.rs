@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_plc::{Compilation, Options, ProgramMemory, SourceFiles};
-use bahn_text::Diagnostic;
+use bahn_plc::{Compilation, Memories, Options, ProgramMemory};
+use bahn_text::{Diagnostic, Files, NamedFile, names_in_folder};
 
 use crate::files;
 
 /// A compiled program with the folder it comes from.
 pub struct PlcSource {
-    folder: Folder,
+    folder: PathBuf,
+    main: String,
+    memory: ProgramMemory,
     /// What the compiler made of it.
     pub compilation: Compilation,
 }
@@ -19,14 +21,23 @@ impl PlcSource {
     /// read only once.
     pub fn compile(file: &Path, bytes: Option<Vec<u8>>, options: Options) -> PlcSource {
         let main = file.file_name().unwrap_or_default().to_string_lossy();
-        let folder = Folder {
-            folder: file.parent().map(Path::to_owned).unwrap_or_default(),
-            main: main.to_string(),
-            bytes,
-            memory: options.memory,
+        let folder = file.parent().map(Path::to_owned).unwrap_or_default();
+        let bytes = bytes.or_else(|| read_in(&folder, &main));
+        let memory = |folder| Folder {
+            folder,
+            main: &main,
+            bytes: bytes.as_deref(),
         };
-        let compilation = Compilation::compile(&folder, &main, options);
-        PlcSource { folder, compilation }
+        let files = Memories {
+            ram: &memory(folder.clone()),
+            eprom: Some(&memory(folder.join(EPROM))),
+        };
+        PlcSource {
+            compilation: Compilation::compile(files, &main, options),
+            folder,
+            main: main.into_owned(),
+            memory: options.memory,
+        }
     }
 
     /// What keeps the program from running, then what is accepted although the printed rules refuse it; files as they lie
@@ -34,25 +45,14 @@ impl PlcSource {
     pub fn faults(&self) -> Vec<Diagnostic> {
         let mut faults = self.compilation.diagnostics();
         for fault in &mut faults {
-            let place = self.folder.path(&fault.file);
+            let place = self.path(&fault.file);
             let related = fault.related.iter_mut().map(|related| &mut related.file);
-            related.for_each(|file| *file = self.folder.path(file));
+            related.for_each(|file| *file = self.path(file));
             fault.file = place;
         }
         faults
     }
-}
 
-/// The source files beside the main file, and those in its folder EPROM; names lose folders.
-struct Folder {
-    folder: PathBuf,
-    main: String,
-    /// Of the main file, where it was read before.
-    bytes: Option<Vec<u8>>,
-    memory: ProgramMemory,
-}
-
-impl Folder {
     /// Where a file was found.
     fn path(&self, name: &Path) -> PathBuf {
         let (ram, eprom) = (self.folder.join(name), self.folder.join(EPROM).join(name));
@@ -64,28 +64,27 @@ impl Folder {
 /// The folder that stands for the EPROM.
 const EPROM: &str = "EPROM";
 
-impl SourceFiles for Folder {
-    fn read(&self, name: &str) -> Option<Vec<u8>> {
-        let main = self.bytes.as_ref().filter(|_| name == self.main);
-        main.cloned().or_else(|| read_in(&self.folder, name))
-    }
+/// The source files of a memory.
+struct Folder<'a> {
+    folder: PathBuf,
+    main: &'a str,
+    /// Of the main file, which runs from wherever it is.
+    bytes: Option<&'a [u8]>,
+}
 
-    /// The main file runs from wherever it is.
-    fn read_eprom(&self, name: &str) -> Option<Vec<u8>> {
-        if name == self.main {
-            return self.read(name);
-        }
-        read_in(&self.folder.join(EPROM), name)
+impl Files for Folder<'_> {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        let bytes = match name == self.main {
+            true => self.bytes.map(<[u8]>::to_vec)?,
+            false => read_in(&self.folder, name)?,
+        };
+        let name = name.to_owned();
+        Some(NamedFile { name, bytes })
     }
 }
 
 fn read_in(folder: &Path, name: &str) -> Option<Vec<u8>> {
-    let name = name.rsplit(['\\', '/', ':']).next().unwrap_or_default();
-    if name.is_empty() || name == "." || name == ".." {
-        return None;
-    }
-    [name.to_owned(), name.to_ascii_lowercase()]
-        .iter()
+    names_in_folder(name)
         .map(|name| folder.join(name))
         .find(|path| path.is_file())
         .and_then(|path| files::read_table(&path).ok())

@@ -18,6 +18,8 @@ pub struct Listed {
 }
 
 /// What a protocol needs of the files it transfers. [`Store`] is one; [`Memory`] another.
+///
+/// It is no `bahn_text::Files`: a transfer lists, protects and writes, and streams files of any length past a slow line.
 pub trait Files: Send {
     /// All files, by name.
     fn list(&mut self) -> Vec<Listed>;

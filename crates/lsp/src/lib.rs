@@ -2,17 +2,20 @@
 //!
 //! The face of this room:
 //! - [`serve`]: answers one editor over a [`Connection`], until it says that it has done;
-//! - [`Files`]: what the server wants to know of the disk;
+//! - [`Disk`]: what the server wants to know of the disk;
 //! - [`Settings`]: how documents are read, unless the editor says otherwise.
 //!
 //! ```
 //! use std::path::{Path, PathBuf};
 //! use std::sync::Arc;
-//! use bahn_lsp::{Connection, Files, Settings, serve};
+//! use bahn_lsp::{Connection, Disk, Settings, serve};
+//! use bahn_text::{Files, NamedFile};
 //!
 //! struct NoFiles;
 //! impl Files for NoFiles {
-//!     fn read(&self, _: &Path) -> Option<Vec<u8>> { None }
+//!     fn read(&self, _: &str) -> Option<NamedFile> { None }
+//! }
+//! impl Disk for NoFiles {
 //!     fn called(&self, _: &str, _: &Path) -> Option<PathBuf> { None }
 //!     fn model_of(&self, _: &Path) -> Option<bahn_parameters::ControlModel> { None }
 //!     fn names(&self, _: &Path) -> Vec<String> { Vec::new() }
@@ -51,6 +54,6 @@ pub use lsp_server::Connection;
 pub use server::serve;
 pub use settings::Settings;
 pub use transport::{Frame, Streams, read};
-pub use world::Files;
+pub use world::Disk;
 
 pub use error::ServeError;

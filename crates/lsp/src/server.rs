@@ -25,13 +25,13 @@ use crate::requests::{self, Answer};
 use crate::settings::Settings;
 use crate::text::Text;
 use crate::uri::path_of;
-use crate::world::{Files, World};
+use crate::world::{Disk, World};
 
 /// Serves one editor until it says that it has done.
 ///
 /// # Errors
 /// When the editor breaks the protocol or goes away.
-pub fn serve(connection: &Connection, files: Arc<dyn Files>, settings: &Settings) -> Result<(), ServeError> {
+pub fn serve(connection: &Connection, files: Arc<dyn Disk>, settings: &Settings) -> Result<(), ServeError> {
     let (id, params) = connection.initialize_start()?;
     let params: InitializeParams = serde_json::from_value(params)?;
     connection.initialize_finish(id, serde_json::to_value(capabilities::offered())?)?;

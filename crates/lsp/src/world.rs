@@ -6,15 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_parameters::ControlModel;
+use bahn_text::Files;
 
 use crate::settings::Settings;
 use crate::text::Text;
 
-/// Files on the disk, as the command line reads them.
-pub trait Files: Send + Sync {
-    /// The bytes of a file; `None` when it is not there, cannot be read, or is too large.
-    fn read(&self, path: &Path) -> Option<Vec<u8>>;
-
+/// Files on the disk, as the command line reads them: they are read by their paths; what is too large is not.
+pub trait Disk: Files {
     /// The file that a call of this name means in a program.
     fn called(&self, name: &str, caller: &Path) -> Option<PathBuf>;
 
@@ -28,7 +26,7 @@ pub trait Files: Send + Sync {
 /// What a document sees around it, at one moment.
 #[derive(Clone)]
 pub(crate) struct World {
-    pub(crate) files: Arc<dyn Files>,
+    pub(crate) files: Arc<dyn Disk>,
     pub(crate) settings: Arc<Settings>,
     /// Texts that are open in the editor: they count, not those on the disk.
     pub(crate) open: Arc<HashMap<PathBuf, Arc<Text>>>,
@@ -47,7 +45,7 @@ impl World {
     pub(crate) fn read(&self, path: &Path) -> Option<Vec<u8>> {
         match self.open.get(path) {
             Some(text) => Some(text.text.as_bytes().to_vec()),
-            None => self.files.read(path),
+            None => Some(self.files.read(path.to_str()?)?.bytes),
         }
     }
 

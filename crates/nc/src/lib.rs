@@ -8,25 +8,17 @@
 //! ```
 //! use std::sync::Arc;
 //!
-//! use bahn_din::Shelf;
 //! use bahn_nc::NcReader;
 //! use bahn_parameters::own_functions::OwnFunctions;
 //! use bahn_parameters::{ControlModel, ParameterList};
 //! use bahn_path::{Axis, AxisSet, ElementSource, Position, Step};
 //! use bahn_reader::Start;
-//!
-//! /// Nothing lies beside the program.
-//! struct Alone;
-//!
-//! impl Shelf for Alone {
-//!     fn text(&self, _name: &str) -> Option<(String, Vec<u8>)> {
-//!         None
-//!     }
-//! }
+//! use bahn_text::MemoryFiles;
 //!
 //! let list = ParameterList::reference(ControlModel::Tnc415b);
 //! let start = Start::of(&list, OwnFunctions::default(), AxisSet::EMPTY, Position::ZERO);
-//! let mut run = NcReader::new("part.nc", b"N10 G01 X25 F2000 M8\nN20 M30\n", start, Arc::new(Alone));
+//! let beside = Arc::new(MemoryFiles::default()); // No subroutines.
+//! let mut run = NcReader::new("part.nc", b"N10 G01 X25 F2000 M8\nN20 M30\n", start, beside);
 //! if let Step::Element(element) = run.next() {
 //!     assert_eq!(element.end[Axis::X], 25.0);
 //!     assert_eq!(element.functions().len(), 1);

@@ -5,13 +5,14 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bahn_din::{BlockFault, Command, Decoder, Motion, Shelf, Unit};
+use bahn_din::{BlockFault, Command, Decoder, Motion, Unit};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step,
 };
 use bahn_program::Program;
 use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning, synchronisation_point};
+use bahn_text::Files;
 
 use crate::functions::{self, Ordered, Refusal};
 use crate::onward;
@@ -24,7 +25,7 @@ pub struct NcReader {
     start: Start,
     texts: Texts,
     file: Arc<bahn_din::Program>,
-    shelf: Arc<dyn Shelf>,
+    beside: Arc<dyn Files>,
     run: Run,
     /// States before blocks whose elements were handed out, when they are kept.
     kept: Option<VecDeque<(Mark, Run)>>,
@@ -89,12 +90,12 @@ impl Run {
 }
 
 impl NcReader {
-    /// Prepares the run of the programs of a file; `name` is its path, `shelf` finds the subroutines beside it.
-    pub fn new(name: &str, bytes: &[u8], start: Start, shelf: Arc<dyn Shelf>) -> NcReader {
+    /// Prepares the run of the programs of a file; `name` is its path, `beside` finds the subroutines beside it.
+    pub fn new(name: &str, bytes: &[u8], start: Start, beside: Arc<dyn Files>) -> NcReader {
         let file = Arc::new(bahn_din::Program::from_bytes(name, bytes));
         let texts = Texts::new(name, bytes);
         let decoder = match file.mains().next() {
-            Some(main) => Ok(Decoder::new(file.clone(), main, start.position, shelf.clone())),
+            Some(main) => Ok(Decoder::new(file.clone(), main, start.position, beside.clone())),
             None => Err(texts.failure(Refusal::of_data(NO_PROGRAM), BlockRef::default())),
         };
         NcReader {
@@ -102,7 +103,7 @@ impl NcReader {
             start,
             texts,
             file,
-            shelf,
+            beside,
             kept: None,
             work: None,
             interrupt: None,
@@ -134,7 +135,7 @@ impl NcReader {
             return Err(Refusal::of_data(NO_PROGRAM));
         };
         let file = Arc::clone(&self.file);
-        let mut decoder = Decoder::new(file, main, self.run.position, Arc::clone(&self.shelf));
+        let mut decoder = Decoder::new(file, main, self.run.position, Arc::clone(&self.beside));
         decoder.goto(line);
         Ok((program, decoder))
     }

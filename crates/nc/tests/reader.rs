@@ -5,10 +5,8 @@
     reason = "a helper that panics fails its test"
 )]
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_din::Shelf;
 use bahn_nc::NcReader;
 use bahn_parameters::own_functions::{Lead, OwnFunction, OwnFunctions};
 use bahn_parameters::{ControlModel, ParameterList};
@@ -17,18 +15,9 @@ use bahn_path::{
     SpindleOrder, Step, Synchronisation,
 };
 use bahn_reader::{ProgramError, Reader, Start};
+use bahn_text::MemoryFiles;
 
 const MODEL: ControlModel = ControlModel::Tnc415b;
-
-/// Files beside the program, by their names.
-struct Beside(BTreeMap<&'static str, &'static str>);
-
-impl Shelf for Beside {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
-        let text = self.0.get(name)?;
-        Some((name.to_owned(), text.as_bytes().to_vec()))
-    }
-}
 
 fn start(functions: OwnFunctions) -> Start {
     Start::of(
@@ -40,7 +29,7 @@ fn start(functions: OwnFunctions) -> Start {
 }
 
 fn reader(text: &str) -> NcReader {
-    let beside = Beside([("side.sub", "N1 G01 Y5 F500\nN2 M17\n")].into());
+    let beside = MemoryFiles::from([("side.sub", "N1 G01 Y5 F500\nN2 M17\n")]);
     NcReader::new(
         "part.nc",
         text.as_bytes(),
@@ -142,7 +131,7 @@ fn own_functions() {
         "a.nc",
         b"N10 G01 X10 F100 M40\n",
         start(own),
-        Arc::new(Beside(BTreeMap::new())),
+        Arc::new(MemoryFiles::default()),
     );
     let path = elements(&mut run);
     assert_eq!(path[0].functions()[0].synchronisation, Synchronisation::MvsSns);
@@ -398,7 +387,7 @@ fn an_arc_from_an_unknown_place() {
         ..start(OwnFunctions::default())
     };
     let text = b"N10 G03 X20 I10 J0 F100\n";
-    let mut run = NcReader::new("a.nc", text, unknown, Arc::new(Beside(BTreeMap::new())));
+    let mut run = NcReader::new("a.nc", text, unknown, Arc::new(MemoryFiles::default()));
     let mut untouched = run.clone();
     assert_eq!(sweep(&mut untouched), Some(180.0));
     let mut stands = Position::ZERO;

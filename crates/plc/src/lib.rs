@@ -49,6 +49,7 @@ mod source;
 mod syntax;
 
 pub use access::{Access, Memory, Subject, accesses};
+pub use bahn_text::MemoryFiles;
 pub use compile::{Compilation, Options};
 pub use error::{Detection, PlcError};
 pub use fault::Fault;
@@ -72,7 +73,7 @@ pub use run::{
     CodeTrace, Executed, Machine, OperandContent, ProcessingTime, Registers, RuntimeError, ScanReport, Start,
     TraceStep, Tracer,
 };
-pub use source::{MemoryFiles, ProgramMemory, SourceFiles};
+pub use source::{Memories, ProgramMemory};
 pub use syntax::{
     InstructionForm, LineOperand, LineWords, Nesting, check_line, code_of_line, instructions, line_words,
     listed_code, nesting, split_comment,

@@ -1,6 +1,6 @@
 //! Where source files come from.
 
-use std::collections::BTreeMap;
+use bahn_text::{Files, NamedFile};
 
 /// Where the control takes its PLC program from: MP4010 [000:11896-11903].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -12,47 +12,20 @@ pub enum ProgramMemory {
     Eprom,
 }
 
-/// The source files that a program may link.
-pub trait SourceFiles {
-    /// The bytes of a file in the RAM; `None` when there is none of that name. Names are tried as written,
-    /// in capitals, and with `.PLC` after them.
-    fn read(&self, name: &str) -> Option<Vec<u8>>;
-
-    /// The bytes of a file in the EPROM; there is none without one.
-    fn read_eprom(&self, name: &str) -> Option<Vec<u8>> {
-        let _ = name;
-        None
-    }
+/// The source files that a program may link. Names are tried as written, in capitals, and with `.PLC` after them.
+#[derive(Clone, Copy)]
+pub struct Memories<'a> {
+    /// Those of the RAM.
+    pub ram: &'a dyn Files,
+    /// Those of the EPROM, where there is one.
+    pub eprom: Option<&'a dyn Files>,
 }
 
-/// Source files in memory, by name.
-///
-/// ```
-/// use bahn_plc::MemoryFiles;
-/// let files = MemoryFiles::from([("MAIN.PLC", "L I4\n= O2\nEM\n")]);
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct MemoryFiles(BTreeMap<String, Vec<u8>>);
-
-impl<const N: usize, T: AsRef<[u8]>> From<[(&str, T); N]> for MemoryFiles {
-    fn from(files: [(&str, T); N]) -> MemoryFiles {
-        let entries = files
-            .into_iter()
-            .map(|(name, text)| (name.to_owned(), text.as_ref().to_vec()));
-        MemoryFiles(entries.collect())
+impl<'a, F: Files> From<&'a F> for Memories<'a> {
+    /// A RAM alone.
+    fn from(ram: &'a F) -> Memories<'a> {
+        Memories { ram, eprom: None }
     }
-}
-
-impl SourceFiles for MemoryFiles {
-    fn read(&self, name: &str) -> Option<Vec<u8>> {
-        self.0.get(name).cloned()
-    }
-}
-
-/// A file that was found under one of the spellings of its name.
-pub(crate) struct Found {
-    pub(crate) name: String,
-    pub(crate) bytes: Vec<u8>,
 }
 
 /// Why a file cannot be linked.
@@ -64,10 +37,10 @@ pub(crate) enum Missing {
     InRamOnly,
 }
 
-/// Reads a file of the memory that programs run from.
-pub(crate) fn find(files: &dyn SourceFiles, memory: ProgramMemory, name: &str) -> Result<Found, Missing> {
-    let ram = || spelled(name, |spelling| files.read(spelling));
-    let eprom = || spelled(name, |spelling| files.read_eprom(spelling));
+/// Reads a file of the memory that programs run from; its name is the spelling under which it was found.
+pub(crate) fn find(files: Memories, memory: ProgramMemory, name: &str) -> Result<NamedFile, Missing> {
+    let ram = || spelled(name, files.ram);
+    let eprom = || spelled(name, files.eprom?);
     match memory {
         ProgramMemory::Ram => ram().or_else(eprom).ok_or(Missing::NoFile),
         ProgramMemory::Eprom => eprom().ok_or_else(|| match ram() {
@@ -77,7 +50,7 @@ pub(crate) fn find(files: &dyn SourceFiles, memory: ProgramMemory, name: &str) -
     }
 }
 
-fn spelled(name: &str, read: impl Fn(&str) -> Option<Vec<u8>>) -> Option<Found> {
+fn spelled(name: &str, files: &dyn Files) -> Option<NamedFile> {
     let upper = name.to_ascii_uppercase();
     let spellings = [
         name.to_owned(),
@@ -85,10 +58,7 @@ fn spelled(name: &str, read: impl Fn(&str) -> Option<Vec<u8>>) -> Option<Found> 
         format!("{name}.PLC"),
         format!("{upper}.PLC"),
     ];
-    spellings.into_iter().find_map(|name| {
-        let bytes = read(&name)?;
-        Some(Found { name, bytes })
-    })
+    spellings.iter().find_map(|name| files.read(name))
 }
 
 /// Text of a source file without the end characters of tapes.

@@ -4,7 +4,8 @@
 mod common;
 
 use bahn_parameters::ControlModel;
-use bahn_plc::{Compilation, MemoryFiles, Options, ProgramMemory, SourceFiles};
+use bahn_plc::{Compilation, Memories, MemoryFiles, Options, ProgramMemory};
+use bahn_text::{Files, NamedFile};
 use common::compile;
 use proptest::prelude::*;
 
@@ -181,19 +182,6 @@ fn linked_files() {
     assert_eq!(linked(files), [at(7, "PART.PLC", 1)]);
 }
 
-/// What lies in RAM and EPROM.
-struct Memories(MemoryFiles, MemoryFiles);
-
-impl SourceFiles for Memories {
-    fn read(&self, name: &str) -> Option<Vec<u8>> {
-        self.0.read(name)
-    }
-
-    fn read_eprom(&self, name: &str) -> Option<Vec<u8>> {
-        self.1.read(name)
-    }
-}
-
 #[test]
 fn a_program_of_the_eprom_links_no_file_of_the_ram() {
     // MP4010 [000:14616-14618]: from the RAM both are searched, RAM first.
@@ -204,12 +192,15 @@ fn a_program_of_the_eprom_links_no_file_of_the_ram() {
         ("OTHER.PLC", "LBL 1\nEM\n"),
         ("PART.PLC", "GLOBAL P\nLBL P\nINC B0\nINC B0\nEM\n"),
     ]);
-    let compile = |files: &Memories, memory| {
+    let compile = |eprom: &MemoryFiles, memory| {
+        let files = Memories {
+            ram: &ram,
+            eprom: Some(eprom),
+        };
         Compilation::compile(files, "MAIN.PLC", Options::default().stored_in(memory))
     };
-    let both = Memories(ram.clone(), eprom);
     let size = |memory| {
-        let compilation = compile(&both, memory);
+        let compilation = compile(&eprom, memory);
         assert_eq!(compilation.errors, []);
         compilation.size_bytes
     };
@@ -218,7 +209,7 @@ fn a_program_of_the_eprom_links_no_file_of_the_ram() {
         "another PART.PLC"
     );
     let eprom = MemoryFiles::from([("MAIN.PLC", main), ("OTHER.PLC", "LBL 1\nEM\n")]);
-    let compilation = compile(&Memories(ram, eprom), ProgramMemory::Eprom);
+    let compilation = compile(&eprom, ProgramMemory::Eprom);
     assert_eq!(numbers(&compilation), [(35, 1), (39, 3)]);
     assert!(
         compilation.errors[0].detail.contains("RAM"),
@@ -252,13 +243,14 @@ fn sixty_four_files_are_linked_and_not_more() {
     let compile = |count: usize| {
         let uses: String = (1..count).map(|n| format!("USES F{n}\n")).collect();
         struct Many(String);
-        impl bahn_plc::SourceFiles for Many {
-            fn read(&self, name: &str) -> Option<Vec<u8>> {
-                Some(if name == "MAIN.PLC" {
-                    self.0.clone().into()
-                } else {
-                    b"LBL 1\nEM\n".to_vec()
-                })
+        impl Files for Many {
+            fn read(&self, name: &str) -> Option<NamedFile> {
+                let bytes = match name {
+                    "MAIN.PLC" => self.0.clone().into_bytes(),
+                    _ => b"LBL 1\nEM\n".to_vec(),
+                };
+                let name = name.to_owned();
+                Some(NamedFile { name, bytes })
             }
         }
         numbers(&Compilation::compile(

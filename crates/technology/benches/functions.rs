@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bahn_din::{Function, Kind, Motion, Place, Target, Unit, Variables};
 use bahn_motion::Limits;
 use bahn_path::{Axis, Curve, PerAxis, Position};
-use bahn_technology::{Blocks, ChannelSettings, Fault, Programs, Run, Script, Synchronisation};
+use bahn_technology::{Blocks, ChannelSettings, Fault, Run, Script, Sequence, Synchronisation};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
@@ -29,7 +29,7 @@ struct Decoded {
     place: Place,
 }
 
-impl Programs for Functions {
+impl Sequence for Functions {
     fn count(&self) -> usize {
         1
     }

@@ -9,24 +9,18 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use bahn_din::{Program, Shelf};
+//! use bahn_din::Program;
 //! use bahn_motion::{Limits, SERVO_WINDOW_S};
 //! use bahn_path::{PerAxis, Position};
 //! use bahn_technology::{ChannelList, EventKind, NcPrograms, Run, Script};
-//!
-//! struct NoSubroutines;
-//! impl Shelf for NoSubroutines {
-//!     fn text(&self, _name: &str) -> Option<(String, Vec<u8>)> {
-//!         None
-//!     }
-//! }
+//! use bahn_text::MemoryFiles;
 //!
 //! // M25 is output before the motion of its block, which waits for the PLC.
 //! let list = ChannelList::from_bytes(b"m_synch[25] MVS_SVS\n");
 //! let script: Script = "M25 ack 0.5\n".parse()?;
 //! let program = Program::from_bytes("glue.nc", b"N10 G01 F1000 X10\nN20 X20 M25\nM30\n");
 //! let report = Run {
-//!     programs: &NcPrograms::new(&[Arc::new(program)], Arc::new(NoSubroutines))?,
+//!     programs: &NcPrograms::new(&[Arc::new(program)], Arc::new(MemoryFiles::default()))?,
 //!     settings: list.settings(),
 //!     limits: &Limits {
 //!         max_feed_mm_min: PerAxis::splat(10_000.0),
@@ -71,7 +65,7 @@ pub use plc::{PlcMemory, Script, WINDOW_BYTES};
 pub use report::{
     Coordinates, Event, EventKind, Fault, ProgramEnd, Report, Sample, Skipped, ToGo, Value, Wait, Warning,
 };
-pub use run::{Blocks, Programs, Run};
+pub use run::{Blocks, Run, Sequence};
 pub use settings::{
     ChannelSettings, EdgeBanding, FUNCTIONS, FunctionSettings, FunctionTable, MicroJoint, PreOutput,
     SpindleFunction, SpindleSettings,

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use bahn_din::{BlockFault, Decoder, Place, Program, Section, Shelf, Step, Unit, Variables};
+use bahn_din::{BlockFault, Decoder, Place, Program, Section, Step, Unit, Variables};
 use bahn_path::{AxisSet, Position};
+use bahn_text::Files;
 
 use crate::report::Fault;
-use crate::run::{Blocks, Programs};
+use crate::run::{Blocks, Sequence};
 
 /// The code of what is wrong with the text of a block: the manuals have no number for it.
 const SYNTAX: &str = "syntax";
@@ -14,15 +15,15 @@ const SYNTAX: &str = "syntax";
 /// The programs of files, one after the other: of a file with several all of them.
 pub struct NcPrograms {
     list: Vec<(Arc<Program>, Section)>,
-    shelf: Arc<dyn Shelf>,
+    beside: Arc<dyn Files>,
 }
 
 impl NcPrograms {
-    /// The programs of these files; subroutines are found on a shelf.
+    /// The programs of these files; subroutines are found `beside` them.
     ///
     /// # Errors
     /// When a file has no program but subroutines alone.
-    pub fn new(files: &[Arc<Program>], shelf: Arc<dyn Shelf>) -> Result<NcPrograms, Fault> {
+    pub fn new(files: &[Arc<Program>], beside: Arc<dyn Files>) -> Result<NcPrograms, Fault> {
         let mut list = Vec::new();
         for file in files {
             let before = list.len();
@@ -37,7 +38,7 @@ impl NcPrograms {
                 });
             }
         }
-        Ok(NcPrograms { list, shelf })
+        Ok(NcPrograms { list, beside })
     }
 
     /// The axes that their files name.
@@ -47,7 +48,7 @@ impl NcPrograms {
     }
 }
 
-impl Programs for NcPrograms {
+impl Sequence for NcPrograms {
     fn count(&self) -> usize {
         self.list.len()
     }
@@ -68,7 +69,7 @@ impl Programs for NcPrograms {
                 line: 0,
             });
         };
-        let decoder = Decoder::new(file.clone(), main, *start, self.shelf.clone());
+        let decoder = Decoder::new(file.clone(), main, *start, self.beside.clone());
         Ok(Box::new(NcBlocks { decoder }))
     }
 }

@@ -13,8 +13,8 @@ use crate::settings::ChannelSettings;
 ///
 /// Time, PLC, spindles and functions that are still open go over from one to the next, which starts where it ended.
 pub struct Run<'a> {
-    /// The programs that may be run and called.
-    pub programs: &'a dyn Programs,
+    /// The programs, the first of them first.
+    pub programs: &'a dyn Sequence,
     /// What the channel parameter list says.
     pub settings: &'a ChannelSettings,
     /// Dynamics; a cycle of the PLC is one of the path.
@@ -30,8 +30,8 @@ pub struct Run<'a> {
     pub script: Option<&'a Script>,
 }
 
-/// Where a run has its programs from.
-pub trait Programs {
+/// The programs of a run in their order: it asks for each by its place, for none by a name.
+pub trait Sequence {
     /// How many there are.
     fn count(&self) -> usize;
 

@@ -1,5 +1,6 @@
 //! Texts of files, whatever their language: how bytes are text ([`decode`], [`Encoding`]), where its lines are
-//! ([`LineIndex`]), a place in it ([`Span`]), and what is wrong there ([`Diagnostic`], as [`render`] shows it to people). Nothing here knows what a text means.
+//! ([`LineIndex`]), a place in it ([`Span`]), what is wrong there ([`Diagnostic`], as [`render`] shows it to people), and where
+//! the files are that it names ([`Files`]). Nothing here knows what a text means.
 //!
 //! ```
 //! use bahn_text::{Diagnostic, Span, decode, render};
@@ -12,6 +13,7 @@
 
 mod diagnostic;
 mod encoding;
+mod files;
 mod lines;
 mod printable;
 mod render;
@@ -19,6 +21,7 @@ mod span;
 
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use encoding::{Encoding, MARK, MARK_BYTES, as_utf8, decode, utf8_or_latin, without_mark};
+pub use files::{Files, MemoryFiles, NamedFile, names_in_folder, path_below};
 pub use lines::LineIndex;
 pub use printable::{printable, printable_lines};
 pub use render::render;

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_din::{Fault, Found, Program, Shelf, examine};
+use bahn_din::{Fault, Found, Program, examine};
 use bahn_interpreter::Complete;
-use bahn_text::{Diagnostic, Span};
+use bahn_text::{Diagnostic, Files, Span};
 
 use super::{CheckReport, Entry, summary};
 use crate::UsageError;
@@ -25,8 +25,8 @@ pub(super) fn check(path: &Path, format: Format, interrupt: &Interrupt) -> Resul
         true => (vec![whole(&program, files::TOO_LARGE)], Complete::NotBegun),
         false if bytes.trim_ascii().is_empty() => (vec![whole(&program, files::EMPTY)], Complete::NotBegun),
         false => {
-            let shelf: Arc<dyn Shelf> = Arc::new(files::NcFolder::of(path));
-            let examined = examine(&program, &shelf, &interrupt.flag());
+            let beside: Arc<dyn Files> = Arc::new(files::NcFolder::of(path));
+            let examined = examine(&program, &beside, &interrupt.flag());
             let complete = match examined.complete {
                 true => Complete::Yes,
                 false => Complete::No,

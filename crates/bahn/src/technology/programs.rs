@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_din::{Program, Shelf};
+use bahn_din::Program;
 use bahn_technology::NcPrograms;
+use bahn_text::{Files, NamedFile};
 
 use crate::{UsageError, files};
 
@@ -40,9 +41,9 @@ impl Sources {
     /// Functions that the programs give types: `M5` for `V.G.M_FCT[5].SYNCH`.
     pub fn typed(&self) -> BTreeSet<String> {
         let folders = self.files.iter().filter_map(|(path, _)| path.parent());
-        let shelf: Arc<dyn Shelf> = Arc::new(Folders(folders.map(Path::to_owned).collect()));
+        let beside: Arc<dyn Files> = Arc::new(Folders(folders.map(Path::to_owned).collect()));
         let values = self.files.iter().flat_map(|(_, program)| {
-            let examined = bahn_din::examine(program, &shelf, &AtomicBool::new(false));
+            let examined = bahn_din::examine(program, &beside, &AtomicBool::new(false));
             examined.values.into_keys()
         });
         let of = |name: String| {
@@ -82,11 +83,12 @@ pub(super) fn file_name(path: &Path) -> String {
 /// The folders of the programs, where their subroutines lie.
 struct Folders(Vec<PathBuf>);
 
-impl Shelf for Folders {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
+impl Files for Folders {
+    fn read(&self, name: &str) -> Option<NamedFile> {
         let path = self.0.iter().find_map(|folder| find(folder, name))?;
         let bytes = files::read_program(&path).ok()??;
-        Some((file_name(&path), bytes))
+        let name = file_name(&path);
+        Some(NamedFile { name, bytes })
     }
 }
 

@@ -121,3 +121,49 @@ fn places_are_found() {
         [""; 0]
     );
 }
+
+/// What finds the bytes of a file by its name is a `bahn_text::Files`: no other room has a trait for that.
+#[test]
+fn files_by_name_have_one_trait() {
+    let faults: Vec<String> = others()
+        .flat_map(|(name, file)| {
+            let code = code_of(&file);
+            let traits: Vec<String> = traits_with_files(&code)
+                .iter()
+                .map(|found| format!("{name}: {found}"))
+                .collect();
+            traits
+        })
+        .collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// The traits of a text with a method that gives bytes, if there are any, for a name or a path.
+fn traits_with_files(code: &str) -> Vec<&str> {
+    let gives_bytes = |method: &str| {
+        let head = method.split(['{', ';']).next().unwrap_or_default();
+        let (of, gives) = head.split_once("->").unwrap_or((head, ""));
+        let gives = gives.trim();
+        (of.contains("&str") || of.contains("&Path"))
+            && gives.starts_with("Option<")
+            && gives.contains("Vec<u8>")
+    };
+    let mut found = Vec::new();
+    for part in code.split("trait ").skip(1) {
+        let body = part.split("\n}").next().unwrap_or_default();
+        if body.split("fn ").skip(1).any(gives_bytes) {
+            found.extend(part.split(|c: char| !c.is_alphanumeric()).next());
+        }
+    }
+    found
+}
+
+#[test]
+fn traits_with_files_are_found() {
+    let text = "pub trait Shelf: Send {\n    fn text(&self, name: &str) -> Option<(String, Vec<u8>)>;\n}\n\
+                trait Disk {\n    fn list(&self);\n    fn read(&self, path: &Path) -> Option<Vec<u8>> {\n        None\n    }\n}\n";
+    assert_eq!(traits_with_files(text), ["Shelf", "Disk"]);
+    let others = "trait Port {\n    fn take(&mut self) -> Option<Vec<u8>>;\n    fn say(&self, text: &str);\n}\n\
+                  fn read(name: &str) -> Option<Vec<u8>> {\n    None\n}\n";
+    assert_eq!(traits_with_files(others), [""; 0]);
+}

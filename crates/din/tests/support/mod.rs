@@ -8,14 +8,14 @@
     reason = "what fails in a helper fails the test"
 )]
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use bahn_din::{
-    BlockFault, Decoder, Function, FunctionLetter, Kind, Program, Shelf, Step, Target, Unit, Variable,
-    Variables,
+    BlockFault, Decoder, Function, FunctionLetter, Kind, Program, Step, Target, Unit, Variable, Variables,
 };
 use bahn_path::{Axis, Position};
+use bahn_text::MemoryFiles;
 
 /// Variables that keep what is written, and functions that exist.
 #[derive(Clone, Debug, Default)]
@@ -67,40 +67,20 @@ impl Variables for Bench {
     }
 }
 
-/// Files by name.
-#[derive(Clone, Debug, Default)]
-pub struct Files(pub BTreeMap<String, String>);
-
-impl Shelf for Files {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
-        let text = self.0.get(name)?;
-        Some((name.to_owned(), text.clone().into_bytes()))
-    }
-}
-
-pub fn files<const N: usize>(files: [(&str, &str); N]) -> Files {
-    Files(
-        files
-            .into_iter()
-            .map(|(name, text)| (name.to_owned(), text.to_owned()))
-            .collect(),
-    )
-}
-
 /// A decoder of the first program of a text.
-pub fn decoder_with(text: &str, shelf: Files) -> Decoder {
+pub fn decoder_with(text: &str, beside: MemoryFiles) -> Decoder {
     let program = Arc::new(Program::from_bytes("test.nc", text.as_bytes()));
     let main = program.mains().next().expect("a program").clone();
     let mut start = Position::UNKNOWN;
     for axis in [Axis::X, Axis::Y, Axis::Z] {
         start[axis] = 0.0;
     }
-    Decoder::new(program, &main, start, Arc::new(shelf))
+    Decoder::new(program, &main, start, Arc::new(beside))
 }
 
 /// All units of a text, and the fault that ended it.
-pub fn run_with(text: &str, bench: &mut Bench, shelf: Files) -> (Vec<Unit>, Option<BlockFault>) {
-    let mut decoder = decoder_with(text, shelf);
+pub fn run_with(text: &str, bench: &mut Bench, beside: MemoryFiles) -> (Vec<Unit>, Option<BlockFault>) {
+    let mut decoder = decoder_with(text, beside);
     let mut units = Vec::new();
     loop {
         match decoder.next(bench) {
@@ -115,14 +95,14 @@ pub fn run_with(text: &str, bench: &mut Bench, shelf: Files) -> (Vec<Unit>, Opti
 pub fn run(text: &str) -> Vec<Unit> {
     let faults = Program::from_bytes("test.nc", text.as_bytes()).faults();
     assert_eq!(faults, [], "{text}");
-    let (units, fault) = run_with(text, &mut Bench::default(), Files::default());
+    let (units, fault) = run_with(text, &mut Bench::default(), MemoryFiles::default());
     assert_eq!(fault, None, "{text}");
     units
 }
 
 /// The fault of a text: block, column and message.
 pub fn refused(text: &str) -> (String, u32, String) {
-    let (_, fault) = run_with(text, &mut Bench::default(), Files::default());
+    let (_, fault) = run_with(text, &mut Bench::default(), MemoryFiles::default());
     let fault = fault.unwrap_or_else(|| panic!("nothing is wrong with {text}"));
     (fault.place.block.to_string(), fault.column, fault.message)
 }

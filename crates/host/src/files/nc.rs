@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_din::Shelf;
 use bahn_nc::NcReader;
 use bahn_program::Program;
 use bahn_reader::Start;
+use bahn_text::{Files, NamedFile, path_below};
 
 use super::read_program;
 
@@ -35,17 +35,11 @@ impl NcFolder {
     }
 }
 
-impl Shelf for NcFolder {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
-        let relative = name.replace('\\', "/");
-        let inside = relative
-            .split('/')
-            .all(|part| !part.is_empty() && part != ".." && !part.contains(':'));
-        let path = self.0.join(&relative);
-        if !inside || !path.is_file() {
-            return None;
-        }
+impl Files for NcFolder {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        let name = path_below(name)?;
+        let path = Some(self.0.join(&name)).filter(|path| path.is_file())?;
         let bytes = read_program(&path).ok()??;
-        Some((relative, bytes))
+        Some(NamedFile { name, bytes })
     }
 }

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
-use bahn_din::{Landmark, LandmarkKind, Program, Shelf, SpanKind};
-use bahn_text::Diagnostic;
+use bahn_din::{Landmark, LandmarkKind, Program, SpanKind};
+use bahn_text::{Diagnostic, Files, NamedFile, path_below};
 
 use crate::language::{
     Analysis, Completion, Elsewhere, Examined, Fold, Hover, Mention, Role, Symbol, SymbolKind, Thing, Token,
@@ -179,14 +179,11 @@ struct Beside {
     world: World,
 }
 
-impl Shelf for Beside {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
-        let relative = name.replace('\\', "/");
-        let inside = relative
-            .split('/')
-            .all(|part| !part.is_empty() && part != ".." && !part.contains(':'));
-        let bytes = self.world.read(&self.folder.join(&relative)).filter(|_| inside)?;
-        Some((relative, bytes))
+impl Files for Beside {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        let name = path_below(name)?;
+        let bytes = self.world.read(&self.folder.join(&name))?;
+        Some(NamedFile { name, bytes })
     }
 }
 
@@ -196,11 +193,11 @@ impl Analysis for DinProgram {
             return Examined::default();
         }
         let folder = self.path.parent().unwrap_or(Path::new("")).to_owned();
-        let shelf: Arc<dyn Shelf> = Arc::new(Beside {
+        let beside: Arc<dyn Files> = Arc::new(Beside {
             folder: folder.clone(),
             world: world.clone(),
         });
-        let examined = bahn_din::examine(&self.program, &shelf, interrupt);
+        let examined = bahn_din::examine(&self.program, &beside, interrupt);
         let faults = examined.found.into_iter().map(|found| {
             let name = found.program.name().to_string();
             let fault = found.fault.diagnostic(&found.program, &folder.join(&name));

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use bahn_plc::{Compilation, LineOperand, Options, SourceFiles, line_words};
-use bahn_text::{Diagnostic, Span, decode};
+use bahn_plc::{Compilation, LineOperand, Memories, Options, line_words};
+use bahn_text::{Diagnostic, Files, NamedFile, Span, decode, names_in_folder};
 
 use super::PlcSource;
 use crate::language::{Elsewhere, Examined, led_to};
@@ -33,14 +33,16 @@ pub(super) fn examine(source: &PlcSource, world: &World) -> Examined {
 }
 
 fn compiled(source: &PlcSource, main: &Path, world: &World) -> Compilation {
-    let folder = Folder {
-        folder: main.parent().unwrap_or(Path::new("")),
-        world,
+    let folder = main.parent().unwrap_or(Path::new(""));
+    let memory = |folder| Folder { folder, world };
+    let files = Memories {
+        ram: &memory(folder.to_owned()),
+        eprom: Some(&memory(folder.join("EPROM"))),
     };
     let mut options = Options::for_model(source.model);
     options.strict = world.settings.strict;
     let name = main.file_name().unwrap_or_default().to_string_lossy();
-    Compilation::compile(&folder, &name, options)
+    Compilation::compile(files, &name, options)
 }
 
 /// A fault of this file at its place; one of a linked file where this one links it.
@@ -187,28 +189,16 @@ pub(super) fn label_elsewhere(source: &PlcSource, label: &str, world: &World) ->
     None
 }
 
-/// The files beside the main one, and those of its folder EPROM.
+/// The source files of a folder, as the editor shows them, else from the disk.
 struct Folder<'a> {
-    folder: &'a Path,
+    folder: PathBuf,
     world: &'a World,
 }
 
-impl SourceFiles for Folder<'_> {
-    fn read(&self, name: &str) -> Option<Vec<u8>> {
-        read_in(self.folder, name, self.world)
+impl Files for Folder<'_> {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        let bytes = names_in_folder(name).find_map(|name| self.world.read(&self.folder.join(name)))?;
+        let name = name.to_owned();
+        Some(NamedFile { name, bytes })
     }
-
-    fn read_eprom(&self, name: &str) -> Option<Vec<u8>> {
-        read_in(&self.folder.join("EPROM"), name, self.world)
-    }
-}
-
-/// Names lose their folders.
-fn read_in(folder: &Path, name: &str, world: &World) -> Option<Vec<u8>> {
-    let name = name.rsplit(['\\', '/', ':']).next().unwrap_or_default();
-    if name.is_empty() || name == "." || name == ".." {
-        return None;
-    }
-    let names = [name.to_owned(), name.to_ascii_lowercase()];
-    names.iter().find_map(|name| world.read(&folder.join(name)))
 }

@@ -17,20 +17,25 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use bahn_lsp::{Connection, Files, ServeError, Settings, serve};
+use bahn_lsp::{Connection, Disk, ServeError, Settings, serve};
 use bahn_parameters::ControlModel;
+use bahn_text::{Files, NamedFile};
 use serde_json::Value;
 
 use client::Wire;
 
 /// Files as they lie in folders.
-struct Disk;
+struct Folders;
 
-impl Files for Disk {
-    fn read(&self, path: &Path) -> Option<Vec<u8>> {
-        std::fs::read(path).ok()
+impl Files for Folders {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        let bytes = std::fs::read(name).ok()?;
+        let name = name.to_owned();
+        Some(NamedFile { name, bytes })
     }
+}
 
+impl Disk for Folders {
     fn called(&self, name: &str, caller: &Path) -> Option<PathBuf> {
         let folder = caller.parent()?;
         ["", ".H", ".I", ".nc"]
@@ -62,7 +67,7 @@ pub struct InProcess {
 impl InProcess {
     pub fn start() -> InProcess {
         let (editor, server) = Connection::memory();
-        let thread = std::thread::spawn(move || serve(&server, Arc::new(Disk), &Settings::default()));
+        let thread = std::thread::spawn(move || serve(&server, Arc::new(Folders), &Settings::default()));
         InProcess {
             connection: Some(editor),
             thread: Some(thread),

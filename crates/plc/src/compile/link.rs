@@ -2,12 +2,14 @@
 
 use std::collections::{HashMap, VecDeque};
 
+use bahn_text::NamedFile;
+
 use super::file::{FileCode, Slot, translate};
 use super::labels::Definition;
 use super::{Compilation, Options, Place, Reports, time};
 use crate::PlcError;
 use crate::program::{Label, LabelPlace, Op, PlcProgram, SourceLine, SourceText, Target};
-use crate::source::{Found, Missing, SourceFiles, decode, find};
+use crate::source::{Memories, Missing, decode, find};
 
 /// Files of a program at most [000:14604].
 const FILES_MAX: usize = 64;
@@ -20,7 +22,7 @@ struct Linked {
     code: FileCode,
 }
 
-pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> Compilation {
+pub(super) fn compile(files: Memories, main: &str, options: Options) -> Compilation {
     let mut reports = Reports::default();
     let linked = read_all(files, main, options, &mut reports);
     let size_bytes = linked
@@ -54,7 +56,7 @@ pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> 
 const START: Place = Place { line: 1, column: 1 };
 
 /// Reads the main file and everything that USES names, each file once.
-fn read_all(files: &dyn SourceFiles, main: &str, options: Options, reports: &mut Reports) -> Vec<Linked> {
+fn read_all(files: Memories, main: &str, options: Options, reports: &mut Reports) -> Vec<Linked> {
     let mut linked: Vec<Linked> = Vec::new();
     let mut known: Vec<String> = Vec::new();
     let mut wanted = VecDeque::from([(main.to_owned(), 0, main.to_owned(), START)]);
@@ -65,7 +67,7 @@ fn read_all(files: &dyn SourceFiles, main: &str, options: Options, reports: &mut
             continue;
         }
         let (found, bytes) = match find(files, options.memory, &name) {
-            Ok(Found { name, bytes }) => (name, bytes),
+            Ok(NamedFile { name, bytes }) => (name, bytes),
             Err(missing) => {
                 let detail = match missing {
                     Missing::NoFile => name,

@@ -14,7 +14,7 @@ mod time;
 
 use report::{Place, Reports};
 
-use crate::source::SourceFiles;
+use crate::source::Memories;
 
 pub use options::Options;
 
@@ -22,7 +22,7 @@ pub use compilation::Compilation;
 
 impl Compilation {
     /// Compiles a main file and all that it links. Never fails: errors are in the result.
-    pub fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> Compilation {
-        link::compile(files, main, options)
+    pub fn compile<'a>(files: impl Into<Memories<'a>>, main: &str, options: Options) -> Compilation {
+        link::compile(files.into(), main, options)
     }
 }

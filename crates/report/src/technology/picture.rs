@@ -447,10 +447,11 @@ fn way_at(report: &Report, time_s: f64) -> f64 {
 mod tests {
     use std::sync::Arc;
 
-    use bahn_din::{Program, Shelf};
+    use bahn_din::Program;
     use bahn_parameters::{ControlModel, ParameterList};
     use bahn_path::Position;
     use bahn_technology::{ChannelList, NcPrograms, Run, Script};
+    use bahn_text::MemoryFiles;
 
     use super::*;
 
@@ -463,14 +464,6 @@ mod tests {
         list
     }
 
-    struct Empty;
-
-    impl Shelf for Empty {
-        fn text(&self, _: &str) -> Option<(String, Vec<u8>)> {
-            None
-        }
-    }
-
     /// The same function of the same block twice, the way back between: fetched only, then waited for.
     #[test]
     fn a_function_has_its_own_acknowledgement() {
@@ -481,7 +474,7 @@ mod tests {
         let mut start = Position::UNKNOWN;
         start[bahn_path::Axis::X] = 0.0;
         let report = Run {
-            programs: &NcPrograms::new(&[Arc::new(program)], Arc::new(Empty)).unwrap(),
+            programs: &NcPrograms::new(&[Arc::new(program)], Arc::new(MemoryFiles::default())).unwrap(),
             settings: list.settings(),
             limits: &crate::test_run::limits(&plain(), 100.0),
             start,

@@ -3,12 +3,13 @@
 
 use std::sync::Arc;
 
-use bahn_din::{Program, Shelf};
+use bahn_din::Program;
 use bahn_motion::Limits;
 use bahn_path::{Axis, PerAxis, Position};
 use bahn_technology::{
     Bounds, ChannelList, ChannelSettings, Event, EventKind, NcPrograms, PlcMemory, Report, Run, Script,
 };
+use bahn_text::MemoryFiles;
 
 /// A cycle, s.
 pub const T: f64 = 0.001;
@@ -33,19 +34,6 @@ pub fn limits() -> Limits {
     }
 }
 
-/// Subroutines by name.
-#[derive(Clone, Debug, Default)]
-pub struct Texts(pub Vec<(String, String)>);
-
-impl Shelf for Texts {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
-        let mut texts = self.0.iter().filter(|(own, _)| own == name);
-        texts
-            .next()
-            .map(|(name, text)| (name.clone(), text.clone().into_bytes()))
-    }
-}
-
 pub fn settings(list: &str) -> ChannelSettings {
     let list = ChannelList::from_bytes(list.as_bytes());
     assert!(list.errors().is_empty(), "{:?}", list.errors());
@@ -60,7 +48,8 @@ pub struct Bench {
     pub script: Option<String>,
     pub start: [f64; 2],
     pub from: Option<String>,
-    pub subroutines: Texts,
+    /// Names and texts.
+    pub subroutines: Vec<(String, String)>,
     pub limits: Limits,
     pub bounds: Bounds,
 }
@@ -73,7 +62,7 @@ impl Bench {
             script: Some(String::new()),
             start: [0.0, 0.0],
             from: None,
-            subroutines: Texts::default(),
+            subroutines: Vec::new(),
             limits: limits(),
             bounds: Bounds::default(),
         }
@@ -101,7 +90,7 @@ impl Bench {
     }
 
     pub fn subroutine(mut self, name: &str, text: &str) -> Bench {
-        self.subroutines.0.push((name.to_owned(), text.to_owned()));
+        self.subroutines.push((name.to_owned(), text.to_owned()));
         self
     }
 
@@ -121,7 +110,12 @@ impl Bench {
             .zip(1..)
             .map(|(text, number)| Arc::new(Program::from_bytes(&format!("p{number}.nc"), text.as_bytes())))
             .collect();
-        let programs = NcPrograms::new(&files, Arc::new(self.subroutines.clone())).unwrap();
+        let beside: MemoryFiles = self
+            .subroutines
+            .iter()
+            .map(|(name, text)| (name.as_str(), text))
+            .collect();
+        let programs = NcPrograms::new(&files, Arc::new(beside)).unwrap();
         let settings = settings(&self.list);
         let script: Option<Script> = self.script.as_ref().map(|script| script.parse().unwrap());
         let mut start = Position::UNKNOWN;
