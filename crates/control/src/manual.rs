@@ -37,7 +37,6 @@ pub(crate) struct Manual {
     jogging: PerPlcAxis<Option<f64>>,
     /// Handwheel or jog increment would lead beyond a limit.
     pushed: PerPlcAxis<Option<Direction>>,
-    /// The electronic handwheel.
     pub handwheel: Handwheel,
     /// Axis key pressed last.
     last_key: usize,
@@ -94,7 +93,7 @@ impl Manual {
         self.led |= self.stylus.is_some();
     }
 
-    /// PNT is on.
+    /// PNT is on: the axes follow the stylus.
     pub fn follows_stylus(&self) -> bool {
         self.stylus.is_some()
     }
@@ -173,7 +172,7 @@ impl Manual {
         }
     }
 
-    /// Module 9036.
+    /// Takes what module 9036 sets: handwheel axis, factors, jog limit.
     pub fn take_status(&mut self, changes: StatusChanges) {
         self.handwheel.take(changes.factors, changes.handwheel_axis);
         match changes.jog_limit {

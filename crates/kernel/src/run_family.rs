@@ -11,11 +11,11 @@ use crate::track::Outputs;
 
 /// Where a run acts: axes and spindle of a channel.
 pub struct Acting<'a, 'b> {
-    /// The axes.
+    /// The axes of the channel.
     pub axes: &'a mut OwnAxes<'b>,
     /// The kinematics with datum and tool.
     pub chain: &'a mut Chain,
-    /// The spindle.
+    /// The spindle that threads lead.
     pub spindle: &'a mut SpindleLoop,
     /// What holds now.
     pub now: &'a Now,

@@ -9,9 +9,9 @@ const DEG_S_PER_RPM: f64 = 6.0;
 /// Where a spindle is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpindleWiring {
-    /// Its analogue output.
+    /// Place of its analogue output among the machine's, from 0.
     pub output: usize,
-    /// Its encoder input.
+    /// Place of its encoder among the machine's inputs, from 0.
     pub input: usize,
 }
 
@@ -29,7 +29,7 @@ pub struct SpindleLoop {
     pub wiring: SpindleWiring,
     /// What the machine builder says of it.
     pub parameters: SpindleParameters,
-    /// Its loop.
+    /// Its speed and position loop, which gives the voltage to the drive.
     pub servo: Spindle,
     /// The path of a thread leads it.
     led: bool,

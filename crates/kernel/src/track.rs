@@ -24,7 +24,7 @@ pub trait Outputs {
     /// A block gives its functions now; they follow in their order.
     fn begin(&mut self);
 
-    /// A function of it.
+    /// The block that was begun gives a function.
     fn output(&mut self, function: &Function);
 
     /// An order for the voltage along the path, by the block with a sequence.
