@@ -5,7 +5,7 @@ use std::fmt;
 /// What is wrong in a line of a table, from 1; 0 is the table as a whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableFault {
-    /// The line.
+    /// Line of the file, from 1; 0 is the table as a whole.
     pub line: u32,
     /// The character in the line where what is wrong begins, from 1; 0 is the line as a whole.
     pub column: u32,
@@ -76,7 +76,7 @@ pub struct TextTable {
     pub names: Vec<String>,
     /// The line of the names, from 1.
     pub header_line: u32,
-    /// Its rows.
+    /// The rows below the names, in their order.
     pub rows: Vec<TextRow>,
     layout: Layout,
 }

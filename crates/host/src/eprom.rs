@@ -18,7 +18,7 @@ const NAME_MAX: usize = 20;
 pub struct LoadList {
     /// Id number of the EPROM: eight digits.
     pub ident: String,
-    /// SIZE 2MB.
+    /// `SIZE 2MB`: the EPROM holds 2 MB.
     pub is_large: bool,
     /// The files in their order.
     pub files: Vec<ListedFile>,
@@ -38,11 +38,11 @@ pub struct ListedFile {
 /// What is wrong in a line of the list, from 1; 0 is the list as a whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ListFault {
-    /// The line.
+    /// Line of the list, from 1; 0 is the list as a whole.
     pub line: u32,
     /// First character that is meant, from 1.
     pub column: u32,
-    /// What is wrong.
+    /// What is wrong, in words.
     pub message: String,
 }
 

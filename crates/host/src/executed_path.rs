@@ -18,7 +18,7 @@ pub struct ElementId {
 }
 
 impl ElementId {
-    /// Of an element.
+    /// What tells this element from all others of its run.
     pub fn of(element: &PathElement) -> ElementId {
         ElementId {
             sequence: element.sequence,

@@ -9,11 +9,11 @@ use bahn_program::{Operation, Program};
 pub struct FileFault {
     /// How bad it is.
     pub severity: Severity,
-    /// The message.
+    /// What is wrong, as the title of the report.
     pub title: String,
-    /// The file.
+    /// The file in which it is.
     pub path: PathBuf,
-    /// Its place there.
+    /// Line and characters of the file that are meant.
     pub marked: Marked,
     /// What exactly is wrong; may be empty.
     pub label: String,
@@ -44,7 +44,7 @@ pub enum Severity {
 pub struct Marked {
     /// Line in the file, from 1.
     pub line: u32,
-    /// Its text.
+    /// What stands in the line.
     pub text: String,
     /// First character, from 1, and number of characters; `None` for the whole line.
     pub columns: Option<(u32, u32)>,

@@ -18,7 +18,7 @@ pub struct PocketLine {
     pub tool: Option<u32>,
     /// ST: it is a special tool.
     pub special: bool,
-    /// The pocket itself.
+    /// What the table says of the pocket beside the tool in it.
     pub pocket: Pocket,
 }
 

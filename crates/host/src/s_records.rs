@@ -13,18 +13,18 @@ const IMAGE_MAX: usize = 1 << 22;
 /// Contents of a memory from address 0 on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Image {
-    /// Title, ASCII.
+    /// Title of the header record, ASCII.
     pub title: String,
-    /// The bytes.
+    /// The bytes from address 0 on.
     pub bytes: Vec<u8>,
 }
 
 /// What is wrong in a line, from 1; 0 is the file as a whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordFault {
-    /// The line.
+    /// Line of the file, from 1; 0 is the file as a whole.
     pub line: u32,
-    /// What is wrong.
+    /// What is wrong, in words.
     pub message: String,
 }
 

@@ -10,9 +10,9 @@ const THREADS_MAX: usize = 1000;
 /// A thread that was cut, or begun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreadCut {
-    /// Its block.
+    /// Block whose cycle cuts it.
     pub block: BlockRef,
-    /// 2, 17 or 18.
+    /// Number of the cycle: 2, 17 or 18.
     pub cycle: u8,
     /// Depth from where the tool axis begins, mm, as it is commanded.
     pub depth_mm: f64,
@@ -59,7 +59,7 @@ struct Cut {
     direction: Position,
     pitch_mm: f64,
     depth_mm: f64,
-    /// Where it begins.
+    /// Where tool axis and spindle stand when it begins.
     begin: Place,
     /// The path has begun to move.
     moves: bool,

@@ -23,13 +23,13 @@ const MESSAGES: usize = 100;
 
 /// A machine that can be switched on.
 pub struct LoadedMachine {
-    /// The folder.
+    /// Folder of the machine.
     pub root: PathBuf,
-    /// What `machine.toml` says.
+    /// What `machine.toml` says: model, files, wiring, plant.
     pub folder: MachineFolder,
-    /// Its machine parameters.
+    /// The list of machine parameters with its values.
     pub parameters: ParameterList,
-    /// Its PLC program.
+    /// The PLC program, translated.
     pub plc: Arc<PlcProgram>,
     /// Texts of PLC messages, from 0.
     pub plc_messages: Vec<String>,
@@ -197,7 +197,7 @@ impl LoadedMachine {
     }
 }
 
-/// See [`LoadedMachine::load`].
+/// Reads a machine with what is taken in place of its files; see [`LoadedMachine::load`].
 fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
     let file = root.join(MachineFolder::FILE);
     let bytes = files::read_description(&file).map_err(|error| {
@@ -244,7 +244,7 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
 /// What is taken in place of what the folder says.
 #[derive(Default)]
 struct Instead<'a> {
-    /// The tool table.
+    /// Text of the tool table.
     tools: Option<&'a str>,
     /// The bytes of a file.
     file: Option<(&'a str, &'a [u8])>,
@@ -261,7 +261,6 @@ pub(super) struct Loader<'a> {
     pub to_be_entered: Option<String>,
     pub faults: Vec<FileFault>,
     pub warnings: Vec<FileFault>,
-    /// See [`LoadedMachine::refused`].
     pub refused: Vec<FileFault>,
     /// `machine.toml`: its path and text.
     description: (PathBuf, String),
