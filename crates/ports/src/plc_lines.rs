@@ -33,9 +33,9 @@ pub struct PlcLines {
     tell: Tell,
 }
 
-/// Where FN15 prints.
+/// Where the texts of FN15 go.
 enum Printer {
-    /// At a port.
+    /// To the device at a port.
     Port(PlcHold),
     /// Lines are added to a file.
     File(PathBuf),

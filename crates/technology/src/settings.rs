@@ -154,7 +154,7 @@ impl FunctionTable {
 /// What a list says of one spindle.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SpindleSettings {
-    /// `bezeichnung`; see [`SpindleSettings::name`].
+    /// `bezeichnung`: the name of the spindle; see [`SpindleSettings::name`].
     pub label: Option<String>,
     /// `log_achs_nr`, the logical axis number.
     pub log_axis: Option<u32>,

@@ -5,9 +5,9 @@ use std::fmt;
 /// What is wrong with a script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScriptError {
-    /// Line, from 1.
+    /// Line of the script, from 1.
     pub line: usize,
-    /// Column, from 1.
+    /// First character of the line that is meant, from 1.
     pub column: usize,
     /// How many characters are meant.
     pub length: usize,

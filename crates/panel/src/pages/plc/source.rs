@@ -29,7 +29,7 @@ enum Letters {
     Latin,
 }
 
-/// A source file.
+/// A source file as it is edited, with the letters and line ends that it had.
 #[derive(Debug)]
 pub(super) struct Source {
     path: PathBuf,
@@ -46,7 +46,7 @@ pub(super) struct Source {
 pub(super) enum NotWritten {
     /// Somebody else has written it since it was read.
     Changed,
-    /// It is protected.
+    /// The file is read-only on the medium.
     Protected,
     /// In words: the medium does not do it.
     Words(String),
