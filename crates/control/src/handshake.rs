@@ -146,7 +146,7 @@ impl Transfer {
     }
 }
 
-/// What a transfer waits for.
+/// What the PLC has to do before the handshake goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waiting {
     /// The PLC must set the acknowledgement.

@@ -29,7 +29,7 @@ const SWITCHED_OFF: [u16; 2] = [5, 9];
 pub(crate) struct Manual {
     /// Direction keys that were latched (M2450 with MP7680 bit 0): they count until NC stop [000:7545-7552].
     latched: PerPlcAxis<Option<Direction>>,
-    /// Jog increment, mm.
+    /// Distance of a jog, mm.
     pub increment: f64,
     /// Limit of the jog increment by module 9036, mm.
     increment_limit: Option<f64>,

@@ -61,7 +61,7 @@ enum Aim {
 /// What a screen shows of the function, coordinates from the datum, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ProbeShown {
-    /// Surfaces that were touched since the function was chosen.
+    /// Touches that the next result has already.
     pub touches: usize,
     /// DATUM X =, DATUM Y =: of surface, corner or centre.
     pub datum: Position,

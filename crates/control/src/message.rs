@@ -222,7 +222,7 @@ fn of_axis(id: MessageId, letter: Option<&str>) -> FaultId {
 /// A message with how it is shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// What is shown.
+    /// What the control has to say.
     pub message: Message,
     /// It flashes: only power-off clears it.
     pub flashing: bool,

@@ -146,7 +146,7 @@ const ITEMS: usize = StatusItem::ALL.len();
 pub(crate) struct PlcLink {
     /// The list in force, with what 9031 changed.
     parameters: ParameterList,
-    /// The list as it is edited.
+    /// The list as its editor has it, without what 9031 changed.
     edited: ParameterList,
     messages: Vec<String>,
     dialogues: Vec<String>,
@@ -218,7 +218,7 @@ impl PlcLink {
         &self.dialogues
     }
 
-    /// The texts of the machine for FN14 and FN15.
+    /// Texts that FN14 and FN15 take by their numbers.
     pub fn machine_texts(&self) -> &MachineTexts {
         &self.texts
     }
@@ -232,7 +232,7 @@ impl PlcLink {
         &self.parameters
     }
 
-    /// The list as it is edited.
+    /// The list as its editor has it, without what module 9031 changed.
     pub fn edited_list(&self) -> &ParameterList {
         &self.edited
     }

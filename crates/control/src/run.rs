@@ -70,7 +70,7 @@ impl ProgramRun {
         site.exchange.nc_put(signal::RIGID_TAPPING_ACTIVE, taps.rigid);
     }
 
-    /// Shows a message of the run.
+    /// Shows a message with the block that is executed.
     fn show(&self, message: Message, site: &mut Site) {
         let block = match &message {
             Message::Program(error) => Some(error.block),

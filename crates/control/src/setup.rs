@@ -95,7 +95,7 @@ impl ChannelError {
 /// AXIS LIMIT: the operator allows an axis less than its traverse range [003:7115-7157].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisLimit {
-    /// The axis that is limited.
+    /// Axis whose range is made smaller.
     pub axis: Axis,
     /// Traverse range, 1 to 3.
     pub range: u8,

@@ -187,7 +187,6 @@ impl TestRun {
     }
 }
 
-/// The message of a fault.
 fn message<'a>(fault: RunFault, mut axes: impl Iterator<Item = &'a AxisUnit>) -> Message {
     match fault {
         RunFault::Program(error) => Message::Program(error),

@@ -55,7 +55,7 @@ pub(crate) struct Form {
     pub needed: &'static [&'static str],
     /// The columns that it may have; `None` when others are passed over.
     pub known: Option<&'static [&'static str]>,
-    /// The columns of an example.
+    /// Names of columns as a message shows them for an example.
     pub example: &'static str,
 }
 

@@ -18,7 +18,7 @@ const NAME_MAX: usize = 20;
 pub struct LoadList {
     /// Id number of the EPROM: eight digits.
     pub ident: String,
-    /// `SIZE 2MB`: the EPROM holds 2 MB.
+    /// `SIZE 2MB`: an EPROM of 2 Mbit, otherwise of 1 Mbit (inferred).
     pub is_large: bool,
     /// The files in their order.
     pub files: Vec<ListedFile>,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bahn_exchange::{Content, Operand};
 
-/// Operands of a diagram [000:11461].
+/// Operands that a diagram has at most [000:11461].
 pub const OPERANDS_MAX: usize = 16;
 
 /// Operands over scans of the PLC.

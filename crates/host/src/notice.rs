@@ -65,7 +65,7 @@ pub struct Stamped {
     pub time_us: u64,
     /// The channel in which it happened, from 0; 0 for the machine as a whole, too.
     pub channel: usize,
-    /// The event.
+    /// What happened then.
     pub notice: Notice,
 }
 

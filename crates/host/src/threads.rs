@@ -55,7 +55,7 @@ struct Cut {
     block: BlockRef,
     sequence: u64,
     cycle: u8,
-    /// The way of the axes into the thread, of length 1.
+    /// The direction of the axes into the thread, of length 1.
     direction: Position,
     pitch_mm: f64,
     depth_mm: f64,
@@ -189,7 +189,7 @@ fn cycle_of(element: &PathElement) -> Option<u8> {
     }
 }
 
-/// The way of an element in the machine, of length 1: 0 for an axis that it does not move.
+/// The direction of an element in the machine, of length 1: 0 for an axis that it does not move.
 fn direction(element: &PathElement) -> Position {
     let nose = |path: &Position| match &element.placement {
         Some(placement) => placement.to_nose(path),

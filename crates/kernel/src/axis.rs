@@ -25,7 +25,7 @@ impl AxisId {
         (number < AxisId::COUNT && number != AxisId::SPINDLE.0).then_some(AxisId(number))
     }
 
-    /// The number from 0, as markers and word masks of the PLC count axes: 4 is the fifth one.
+    /// Its number on the machine, from 0; 0 to 4 are those of the first channel by their indices.
     pub fn number(self) -> u8 {
         self.0
     }
@@ -34,9 +34,9 @@ impl AxisId {
 /// A direction of traverse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Towards greater positions.
+    /// The position grows.
     Plus,
-    /// Towards lesser ones.
+    /// The position becomes less.
     Minus,
 }
 
@@ -432,7 +432,7 @@ impl AxisUnit {
         self.parameters = parameters;
     }
 
-    /// Goes on by a contour cycle: counts the way, remembers direction and lag.
+    /// Goes on by a contour cycle: counts the distance, remembers direction and lag.
     pub fn count(&mut self) {
         let actual = self.servo.actual_mm();
         self.travelled += (actual - self.last_actual).abs();

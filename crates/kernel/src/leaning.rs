@@ -112,7 +112,7 @@ impl Leaning {
         chain.place(None);
     }
 
-    /// By how much the workpiece datum moves, mm of the machine, when it moves by a way along an axis of the plane; `None`
+    /// By how much the workpiece datum moves, mm of the machine, when it moves by a distance along an axis of the plane; `None`
     /// where nothing is tilted.
     pub fn datum_shift(&self, axis: Axis, way: f64) -> Option<[f64; 3]> {
         let plane = self.plane.as_ref()?;

@@ -16,7 +16,7 @@ pub enum RunState {
     BlockEnd,
 }
 
-/// The progress of a run.
+/// How far a run has come, and what it is to do next.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress {
     state: RunState,

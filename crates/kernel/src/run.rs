@@ -271,7 +271,7 @@ impl Run {
         self.block_time.allow(now_us, BUDGET)
     }
 
-    /// Scans to a block.
+    /// Seeks the start of a block, without movements, with everything in force as if it had run to there.
     pub fn scan(&mut self, block: u32) {
         self.progress.scan();
         self.restoration.scan(block);

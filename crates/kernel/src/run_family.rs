@@ -17,7 +17,7 @@ pub struct Acting<'a, 'b> {
     pub chain: &'a mut Chain,
     /// The spindle that threads lead.
     pub spindle: &'a mut SpindleLoop,
-    /// What holds now.
+    /// What holds for all movements of this cycle.
     pub now: &'a Now,
 }
 

@@ -22,7 +22,7 @@ impl Default for SpindleWiring {
     }
 }
 
-/// A spindle in its loop.
+/// A spindle with its position loop, and what threads want of it.
 #[derive(Clone, Debug)]
 pub struct SpindleLoop {
     /// Where it is connected.

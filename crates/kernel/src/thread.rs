@@ -40,7 +40,7 @@ pub struct Standing<'a> {
     pub chain: &'a Chain,
     /// The spindle that threads lead.
     pub spindle: &'a SpindleLoop,
-    /// What holds now.
+    /// What holds for all movements of this cycle.
     pub now: &'a Now,
 }
 
@@ -52,7 +52,7 @@ pub struct Leading<'a, 'b> {
     pub chain: &'a Chain,
     /// The spindle that threads lead.
     pub spindle: &'a mut SpindleLoop,
-    /// What holds now.
+    /// What holds for all movements of this cycle.
     pub now: &'a Now,
 }
 

@@ -54,9 +54,9 @@ pub fn corner(sides: &[[Contact; 2]; 2], radius: f64) -> Option<Point> {
 /// A circle in the plane of the touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
-    /// Its centre, mm.
+    /// Centre in the plane of the touches, mm.
     pub centre: Point,
-    /// Its radius, mm.
+    /// Radius of the wall, mm.
     pub radius: f64,
 }
 

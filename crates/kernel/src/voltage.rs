@@ -9,7 +9,7 @@ pub struct Along {
     pub sequence: u64,
     /// How much of it is covered, 0 to 1.
     pub part: f64,
-    /// Path speed, mm/min.
+    /// Speed along the path, mm/min.
     pub mm_min: f64,
 }
 

@@ -14,7 +14,7 @@ use crate::{PortError, Tell};
 /// A port as the PLC may have it.
 #[derive(Clone)]
 pub struct PlcPort {
-    /// Its hold on the port.
+    /// By what the PLC takes the port and gives it back.
     pub hold: PlcHold,
     /// What the operator has set up.
     pub mode: Mode,

@@ -19,7 +19,7 @@ const LOOK: Duration = Duration::from_millis(20);
 pub struct Event {
     /// Counts the events since the machine runs, from 1.
     pub number: u64,
-    /// Time of day in the world.
+    /// Real time at which it happened.
     pub time: SystemTime,
     /// Key or message.
     pub kind: EventKind,

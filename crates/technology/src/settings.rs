@@ -28,9 +28,9 @@ pub(crate) const SPINDLE_M: [u32; 4] = [3, 4, 5, 19];
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelSettings {
-    /// The settings of the M functions.
+    /// M functions by their numbers, with their synchronisation.
     pub m: FunctionTable,
-    /// The settings of the H functions.
+    /// H functions by their numbers, with their synchronisation.
     pub h: FunctionTable,
     /// Spindles by the index of `spindel[i]`.
     pub spindles: BTreeMap<usize, SpindleSettings>,

@@ -80,7 +80,7 @@ pub struct Moment {
     pub t: f64,
     /// Where the axes are.
     pub position: Position,
-    /// Path speed, mm/s.
+    /// Speed along the path, mm/s.
     pub speed_mm_s: f64,
 }
 
