@@ -92,6 +92,7 @@ pub(crate) struct MeasuredTool {
 /// What a check found [000:8025].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ToolCondition {
+    /// Within LTOL and RTOL.
     Good,
     /// Beyond LTOL or RTOL.
     Worn,
