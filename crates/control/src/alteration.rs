@@ -9,7 +9,6 @@ use crate::tnc::Tnc;
 /// What came of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Altered {
-    /// It is so.
     Done,
     /// It is not possible now.
     Refused,

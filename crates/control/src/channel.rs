@@ -31,7 +31,7 @@ use crate::test_run::TestRun;
 use crate::tools::Tools;
 use crate::{inserted_call, run_command, status, strobes, tables, upkeep};
 
-/// A channel.
+/// What runs programs on axes of its own: operator's side, run, datums and handshakes.
 #[derive(Clone)]
 pub(crate) struct Channel {
     number: usize,
@@ -120,7 +120,7 @@ impl Channel {
         &self.datums.chain
     }
 
-    /// What holds now.
+    /// What movements of this cycle need to know of operator, PLC and faults.
     fn now(&self, machine: &MachineSide) -> Now {
         let mut axes = machine.core.axes.owned(self.number);
         let fault = axes.any(|unit| unit.servo.fault().is_some());

@@ -19,10 +19,10 @@ use crate::test_command::TestCommand;
 /// The machine operating modes, as W272 codes them [000:4680-4687].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// MANUAL OPERATION.
+    /// MANUAL OPERATION: direction keys and jog increment move the axes.
     #[default]
     Manual,
-    /// ELECTRONIC HANDWHEEL.
+    /// ELECTRONIC HANDWHEEL: the handwheel moves an axis.
     Handwheel,
     /// POSITIONING WITH MANUAL DATA INPUT.
     Mdi,
@@ -35,7 +35,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// All modes.
+    /// All modes, in the order of their codes.
     pub const ALL: [Mode; 6] = [
         Mode::Manual,
         Mode::Handwheel,
@@ -349,7 +349,7 @@ fn axis_key(name: &str, rest: &str) -> Result<Command, CommandError> {
     }
 }
 
-/// Recording by hand.
+/// `start`, `stop`: begins or ends a recording of the oscilloscope.
 fn oscilloscope(rest: &str) -> Result<Command, CommandError> {
     match rest {
         "start" | "stop" => Ok(Command::Oscilloscope(rest == "start")),
@@ -381,7 +381,7 @@ fn assignment(text: &str) -> Result<Assignment, CommandError> {
     }
 }
 
-/// `rs422 received "FA81"`.
+/// An event at a data line, as `rs422 received "FA81"` names it.
 fn data_line(name: &str, rest: &str) -> Result<Command, CommandError> {
     let wrong = || CommandError::Wrong(format!("nothing like `{rest}` happens at `{name}`"));
     DataLineEvent::parse(name, rest)
@@ -403,7 +403,7 @@ fn axis<'a>(name: &str, text: &'a str) -> Result<(Axis, &'a str), CommandError> 
     }
 }
 
-/// `12 -0.5`.
+/// Number of the Q parameter and its value, as in `12 -0.5`.
 fn q_parameter(name: &str, rest: &str) -> Result<Command, CommandError> {
     let (q, rest) = rest.split_once(' ').unwrap_or((rest, ""));
     let q = number(name, q, 0, u32::from(u16::MAX))?;

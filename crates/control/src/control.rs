@@ -540,12 +540,12 @@ impl Control {
         reader.map(Reader::take_warnings).unwrap_or_default()
     }
 
-    /// Operating mode.
+    /// Operating mode of the first channel.
     pub fn mode(&self) -> Mode {
         self.tnc.channels.first().desk().mode()
     }
 
-    /// State of the run.
+    /// State of the first channel's run.
     pub fn run_state(&self) -> RunState {
         self.tnc.channels.first().run.progress().state()
     }
@@ -606,7 +606,7 @@ impl Control {
         self.tnc.channels.first().desk().feed_percent()
     }
 
-    /// Spindle.
+    /// State of the first spindle.
     pub fn spindle(&self) -> SpindleState {
         self.tnc.machine.spindles.first().state()
     }
@@ -631,7 +631,7 @@ impl Control {
         signal.value(self.tnc.channels.first(), &self.tnc.machine, &self.tnc.clock)
     }
 
-    /// The model.
+    /// Model whose limits and functions the control has.
     pub fn model(&self) -> ControlModel {
         self.tnc.machine.model
     }

@@ -55,7 +55,7 @@ pub enum LineEvent {
 /// Something happens at the connection with a host by LSV/2.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HostEvent {
-    /// `connected`, `disconnected`.
+    /// `connected`, `disconnected`: the connection was made, or has ended.
     Connected(bool),
     /// `message 42`, `message "TEXT"`: a message to the PLC. Not possible when too many wait to be read.
     Message(HostMessage),
@@ -90,7 +90,7 @@ pub enum DataLineOrder {
 /// How the PLC wants to use a line [000:15609-15636].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineSetup {
-    /// Baud rate.
+    /// Data transfer rate, baud.
     pub baud: u32,
     /// Format and protocol of the operating mode that the operator chose, not those of MP5020.2, MP5030.2 and so on.
     pub of_mode: bool,

@@ -24,7 +24,7 @@ use crate::probing::{Guarded, Probe, Stylus};
 use crate::reach::Reach;
 use crate::status::{self, ByHand};
 
-/// Code numbers [000:6928-6947].
+/// Code numbers that the operator enters [000:6928-6947].
 const ERASE_MEMORY: u32 = 531_210;
 const OFFSET_ADJUSTMENT: u32 = 75_368;
 const CODE_84159: u32 = 84_159;

@@ -34,7 +34,7 @@ pub fn unescaped(text: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Bytes between quotes.
+/// The bytes that a text in quotes stands for, `None` when it is not quoted or holds a wrong escape.
 pub(crate) fn quoted(text: &str) -> Option<Vec<u8>> {
     let inner = text.strip_prefix('"')?.strip_suffix('"')?;
     let read = unescaped(inner)?;

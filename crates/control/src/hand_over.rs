@@ -18,11 +18,11 @@ use crate::status;
 /// An axis that goes to another channel when the PLC orders it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HandOver {
-    /// The axis.
+    /// The axis that changes its channel.
     pub axis: AxisId,
     /// The channel that gets it, from 0.
     pub to: usize,
-    /// Its letter there.
+    /// Letter by which the channel that gets it programs it.
     pub letter: Axis,
     /// Its index of markers there.
     pub index: usize,

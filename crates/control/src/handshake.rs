@@ -22,7 +22,7 @@ pub enum Transfer {
         w262: i16,
         /// Tool number where W262 is a pocket.
         w264: i16,
-        /// Another code follows.
+        /// Another code follows for the same tool change.
         more: bool,
     },
     /// TOOL DEF: W262 and W264, M2047 [000:9227-9229].
@@ -146,7 +146,7 @@ impl Transfer {
     }
 }
 
-/// What a transfer waits for.
+/// What the PLC has to do before the handshake goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waiting {
     /// The PLC must set the acknowledgement.
@@ -260,7 +260,7 @@ impl Handshakes {
             .filter(|transfer| nc.bit(transfer.handshake().acknowledge))
     }
 
-    /// What is waited for.
+    /// The acknowledgement, or its reset, that the next step waits for; `None` when nothing is held up.
     pub fn waiting(&self, nc: &Image) -> Option<Waiting> {
         if let Some(transfer) = self.active {
             return Some(Waiting::Acknowledge(transfer.handshake()));

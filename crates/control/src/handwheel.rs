@@ -15,7 +15,7 @@ use crate::reach::Reach;
 pub const HANDWHEEL_STEPS: f64 = 1000.0;
 /// Travel of a turn with interpolation factor 0, mm [000:8071-8094].
 const TRAVEL_MM: f64 = 20.0;
-/// Highest interpolation factor.
+/// Highest interpolation factor: the slowest travel.
 const FACTOR_MAX: u8 = 10;
 /// Missing: the control asks for it.
 const MISSING: Message = Message::Plain(MessageId::HandwheelMissing);
@@ -53,7 +53,7 @@ pub(crate) struct Handwheel {
     highlight: Option<usize>,
 }
 
-/// One wheel.
+/// A handwheel, by the axis that it leads.
 #[derive(Clone, Copy, Debug, Default)]
 struct Wheel {
     /// Count up to which it was followed.

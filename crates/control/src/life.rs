@@ -57,7 +57,7 @@ impl LifeCount {
         changed
     }
 
-    /// Counts a cycle.
+    /// Adds the time that has passed to the life of the tool in the spindle.
     fn count(&mut self, counting: Counting, tools: &Tools, magazine: &mut Magazine, files: &mut NcFiles) {
         let counts = tools.counts && counting.runs && !tools.is_changing();
         let goes_on = counts && self.tool == tools.number;

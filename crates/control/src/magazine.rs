@@ -26,7 +26,7 @@ pub(crate) enum Kind {
     Normal,
     /// Without a pocket: changed by hand.
     Manual,
-    /// A special tool.
+    /// ST of the pocket table: a special tool, with a pocket.
     Special,
 }
 

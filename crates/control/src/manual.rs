@@ -29,7 +29,7 @@ const SWITCHED_OFF: [u16; 2] = [5, 9];
 pub(crate) struct Manual {
     /// Direction keys that were latched (M2450 with MP7680 bit 0): they count until NC stop [000:7545-7552].
     latched: PerPlcAxis<Option<Direction>>,
-    /// Jog increment, mm.
+    /// Distance of a jog, mm.
     pub increment: f64,
     /// Limit of the jog increment by module 9036, mm.
     increment_limit: Option<f64>,
@@ -37,7 +37,6 @@ pub(crate) struct Manual {
     jogging: PerPlcAxis<Option<f64>>,
     /// Handwheel or jog increment would lead beyond a limit.
     pushed: PerPlcAxis<Option<Direction>>,
-    /// The electronic handwheel.
     pub handwheel: Handwheel,
     /// Axis key pressed last.
     last_key: usize,
@@ -94,7 +93,7 @@ impl Manual {
         self.led |= self.stylus.is_some();
     }
 
-    /// PNT is on.
+    /// PNT is on: the axes follow the stylus.
     pub fn follows_stylus(&self) -> bool {
         self.stylus.is_some()
     }
@@ -173,7 +172,7 @@ impl Manual {
         }
     }
 
-    /// Module 9036.
+    /// Takes what module 9036 sets: handwheel axis, factors, jog limit.
     pub fn take_status(&mut self, changes: StatusChanges) {
         self.handwheel.take(changes.factors, changes.handwheel_axis);
         match changes.jog_limit {

@@ -61,7 +61,7 @@ enum Aim {
 /// What a screen shows of the function, coordinates from the datum, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ProbeShown {
-    /// Touches so far.
+    /// Touches that the next result has already.
     pub touches: usize,
     /// DATUM X =, DATUM Y =: of surface, corner or centre.
     pub datum: Position,
@@ -92,7 +92,7 @@ impl ManualProbing {
         self.job.is_some()
     }
 
-    /// Leaves the function.
+    /// Leaves the function; what was calibrated is kept.
     pub fn leave(&mut self) {
         self.job = None;
     }

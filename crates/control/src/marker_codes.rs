@@ -8,7 +8,6 @@ use bahn_exchange::{Bit, BitRange, Exchange, Image, signal};
 /// How a number is written in markers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Coding {
-    /// Powers of two.
     Binary,
     /// Decades of four markers each, 8-4-2-1 [001:562].
     Bcd,

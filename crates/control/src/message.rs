@@ -37,18 +37,18 @@ pub enum Message {
     Plain(MessageId),
     /// A message of one axis, with what stands after it, `A` to `E` or `3F`, where it has one.
     Axis {
-        /// The message.
+        /// Text and class of the message.
         id: MessageId,
         /// Number of the axis ([`AxisId`]); 5 is the spindle.
         axis: u8,
-        /// The letter.
+        /// What stands after its text; `None` for nothing.
         letter: Option<&'static str>,
     },
     /// `LIMIT SWITCH` with axis and sign.
     Limit {
         /// Number of the axis ([`AxisId`]).
         axis: u8,
-        /// The positive limit.
+        /// It stands at the positive limit, otherwise at the negative one.
         plus: bool,
     },
     /// `ERROR IN PLC-PROGRAM` with the code of the markers that contradict each other.
@@ -57,9 +57,9 @@ pub enum Message {
     PlcStopped {
         /// Error number 50 to 56.
         number: u8,
-        /// Source file.
+        /// Source file of the PLC program.
         file: String,
-        /// Line, from 1.
+        /// Line of that file, from 1.
         line: u32,
     },
     /// PLC message 0 to 99 (M2924 to M3023).
@@ -70,7 +70,7 @@ pub enum Message {
     HandOver {
         /// Number of the axis ([`AxisId`]).
         axis: u8,
-        /// Why.
+        /// What keeps it in its channel.
         why: HandOverError,
     },
 }
@@ -222,7 +222,7 @@ fn of_axis(id: MessageId, letter: Option<&str>) -> FaultId {
 /// A message with how it is shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// The message.
+    /// What the control has to say.
     pub message: Message,
     /// It flashes: only power-off clears it.
     pub flashing: bool,
@@ -458,7 +458,7 @@ impl Messages {
         shown.for_each(|shown| shown.flashing = true);
     }
 
-    /// M2190 and M2191.
+    /// M2190: a message stands that does not flash; M2191: `EXTERNAL EMERGENCY STOP` does.
     pub fn markers(&self) -> [(bahn_exchange::Bit, bool); 2] {
         [
             (

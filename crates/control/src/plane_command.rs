@@ -62,7 +62,7 @@ impl PlaneCommand {
 
 /// `A+10 B-30`: each axis once.
 fn angles<'a>(words: &mut impl Iterator<Item = &'a str>) -> Option<[Option<f64>; 3]> {
-    /// Greatest angle, degrees.
+    /// Greatest angle that can be entered, degrees.
     const MAX: f64 = 99_999.999_9;
     let mut angles = [None; 3];
     for word in words {

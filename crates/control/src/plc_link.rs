@@ -24,7 +24,7 @@ use crate::screen_command::ScreenCommand;
 /// Files and tables of the NC memory that modules read.
 #[derive(Clone, Debug, Default)]
 pub struct NcFiles {
-    /// Names with extension.
+    /// Names of all files, with extension.
     pub names: BTreeSet<String>,
     /// Lines of the pallet file with M status by their number.
     pub pallet: Option<BTreeMap<i32, PalletLine>>,
@@ -146,7 +146,7 @@ const ITEMS: usize = StatusItem::ALL.len();
 pub(crate) struct PlcLink {
     /// The list in force, with what 9031 changed.
     parameters: ParameterList,
-    /// The list as it is edited.
+    /// The list as its editor has it, without what 9031 changed.
     edited: ParameterList,
     messages: Vec<String>,
     dialogues: Vec<String>,
@@ -218,7 +218,7 @@ impl PlcLink {
         &self.dialogues
     }
 
-    /// The texts of the machine for FN14 and FN15.
+    /// Texts that FN14 and FN15 take by their numbers.
     pub fn machine_texts(&self) -> &MachineTexts {
         &self.texts
     }
@@ -232,7 +232,7 @@ impl PlcLink {
         &self.parameters
     }
 
-    /// The list as it is edited.
+    /// The list as its editor has it, without what module 9031 changed.
     pub fn edited_list(&self) -> &ParameterList {
         &self.edited
     }
@@ -320,13 +320,13 @@ impl PlcLink {
 /// An element of a table that the PLC has written with module 9094.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenElement {
-    /// The table.
+    /// The table that was written to.
     pub table: TableKind,
     /// Number of tool, vector or pocket.
     pub line: i32,
     /// Number of the element [000:15414-15454].
     pub element: usize,
-    /// Its value.
+    /// What the PLC wrote.
     pub value: f64,
     /// Its value in the file of the table. Where that says another one, the file counts.
     pub file: f64,

@@ -105,7 +105,7 @@ fn axis(letter: &str) -> Option<Axis> {
     Axis::from_letter(letter.to_ascii_uppercase())
 }
 
-/// `X+`
+/// Axis, and whether it is in positive direction, of `X+` or `X-`.
 fn direction(text: &str) -> Option<(Axis, bool)> {
     let plus = text.ends_with('+');
     let letter = text.strip_suffix(['+', '-'])?;

@@ -19,7 +19,7 @@ pub(crate) struct Stylus {
     deflected: bool,
     /// A probing has deflected it, and it is not yet free again.
     probed: bool,
-    /// NC stop.
+    /// The stylus was deflected where it may not be: NC stop holds.
     pub stops: bool,
     /// What the probe says.
     pub touch: ProbeState,
@@ -36,7 +36,7 @@ struct Wanted {
 /// What a probing comes to in a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Probed {
-    /// It goes on.
+    /// The movement goes on.
     Moves,
     /// It is over: the program learns of the touch, or that there was none.
     Over(Option<Touch>),

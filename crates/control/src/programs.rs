@@ -91,7 +91,7 @@ pub(crate) struct Selection {
     pub program: Option<String>,
     /// Block at which the next run starts.
     pub start_block: u32,
-    /// Blocks of MDI.
+    /// Blocks that MDI executes; `None` before any were entered.
     pub mdi: Option<String>,
 }
 

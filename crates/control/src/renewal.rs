@@ -35,7 +35,7 @@ pub enum Renewed {
 /// The files of the non-linear axis-error compensation.
 #[derive(Clone, Debug, Default)]
 pub struct CompensationFiles {
-    /// The assignment (.CMA).
+    /// The assignment (.CMA) of tables to axes.
     pub assignment: Option<CompensationAssignment>,
     /// Its tables (.COM) by name.
     pub tables: BTreeMap<String, CompensationTable>,

@@ -14,7 +14,7 @@ const SAME_RADIUS_MM: f64 = 1e-6;
 /// What M101 makes of the tool in the spindle [000:9175].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wear {
-    /// It works on.
+    /// Nothing: the tool works on.
     None,
     /// Its life is over: this tool replaces it.
     Replace(u32),

@@ -30,7 +30,7 @@ pub(crate) struct ProgramRun {
     pub selection: Selection,
     pub source: Source,
     pub core: Run,
-    /// A probing movement.
+    /// Probings, scans and measurements of tools that the program orders.
     pub probe: Probe,
     /// Q100 to Q107 as the PLC wrote them.
     q_transfer: QTransfer,
@@ -70,7 +70,7 @@ impl ProgramRun {
         site.exchange.nc_put(signal::RIGID_TAPPING_ACTIVE, taps.rigid);
     }
 
-    /// Shows a message of the run.
+    /// Shows a message with the block that is executed.
     fn show(&self, message: Message, site: &mut Site) {
         let block = match &message {
             Message::Program(error) => Some(error.block),
@@ -325,7 +325,7 @@ impl ProgramRun {
         self.progress().state() == RunState::Interrupted && nc.bit(signal::MANUAL_OPERATION_PRESSED)
     }
 
-    /// RESTORE POSITION.
+    /// RESTORE POSITION: the axes may return to the contour. Whether they may.
     pub fn restore_position(&mut self, site: &mut Site) -> bool {
         let may = self.is_operated_manually(site.exchange.nc());
         let armed = self.core.restore(may, &mut site.acting());
@@ -490,7 +490,7 @@ impl ProgramRun {
         }
     }
 
-    /// Selects a program.
+    /// Selects the program of the automatic modes; `false` while a run is active.
     pub fn select(&mut self, name: String, site: &mut Site, basis: &Basis) -> bool {
         let possible = !self.is_active();
         if possible {
@@ -520,7 +520,7 @@ impl ProgramRun {
         self.source.forget();
     }
 
-    /// The blocks of MDI.
+    /// Sets the blocks that MDI executes; `false` while a run is active.
     pub fn set_mdi(&mut self, blocks: String) -> bool {
         let possible = !self.is_active();
         if possible {
@@ -529,7 +529,7 @@ impl ProgramRun {
         possible
     }
 
-    /// The rest of the way of an axis in the block that is executed, mm or degrees.
+    /// Distance that an axis has to go in the block that is executed, mm or degrees.
     pub fn distance_to_go(&self, unit: &AxisUnit, chain: &Chain) -> f64 {
         let element = self.core.element();
         element.map_or(0.0, |element| distance_to_go(element, unit, chain))

@@ -29,7 +29,7 @@ pub enum Digitized {
 pub struct DigitizedNews {
     /// It grows with everything that is said.
     pub number: u64,
-    /// What is said.
+    /// What was said last; `None` before anything was.
     pub what: Option<Digitized>,
 }
 

@@ -95,7 +95,7 @@ impl ChannelError {
 /// AXIS LIMIT: the operator allows an axis less than its traverse range [003:7115-7157].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisLimit {
-    /// The axis.
+    /// Axis whose range is made smaller.
     pub axis: Axis,
     /// Traverse range, 1 to 3.
     pub range: u8,
@@ -112,7 +112,7 @@ pub struct Remembered {
     pub tool: u32,
     /// Length of the tool in the spindle, mm.
     pub tool_length: f64,
-    /// Axis of the tool.
+    /// Axis along which the tool lies; `None` counts as Z.
     pub tool_axis: Option<Axis>,
     /// Where the contact of the tool probe was found.
     pub tool_probe: Option<ToolProbeCalibration>,
@@ -146,7 +146,7 @@ pub struct Remembered {
 /// reset [000:15555].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SelectedLine {
-    /// The line.
+    /// Line of the assignment, from 0.
     pub line: usize,
     /// The active line that the file named then. When it names another one, that counts.
     pub file: Option<usize>,
@@ -170,7 +170,7 @@ impl Remembered {
 /// What TCH PROBE 30 has found: X, Y, Z of the middle of the contact in machine coordinates and its width, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolProbeCalibration {
-    /// Where it is.
+    /// X, Y, Z of the middle of the contact in machine coordinates, and its width, mm.
     pub found: [f64; 4],
     /// What the list said then, MP6580 and MP6531: when it says something else, it counts again.
     pub list: [f64; 4],
@@ -188,7 +188,7 @@ pub struct ProbeMemory {
 /// The effective size of the touch probe [003:1246-1280].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Calibration {
-    /// Effective length, mm.
+    /// Effective length of the touch probe, mm.
     pub length_mm: f64,
     /// Effective radius of the ball, mm.
     pub radius_mm: f64,

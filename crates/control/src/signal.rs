@@ -83,7 +83,7 @@ pub enum Signal {
     SpindleVolts,
     /// `S.angle`: angle of the spindle since power-on with all turns, degrees; positive as M03.
     SpindleAngle,
-    /// `path.distance`: way to the end of the element that is executed, mm; below 0 where a thread waits after it.
+    /// `path.distance`: distance to the end of the element that is executed, mm; below 0 where a thread waits after it.
     PathDistance,
     /// `mode`: the operating mode as W272 codes it: manual 1, handwheel 2, mdi 3, single 4, full 5, reference 7.
     Mode,

@@ -14,7 +14,7 @@ use crate::spindle::SpindleState;
 /// The state of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisState {
-    /// Its letter.
+    /// Letter by which programs name the axis.
     pub letter: char,
     /// Axis index of markers and machine parameters.
     pub index: usize,
@@ -38,7 +38,7 @@ pub struct AxisState {
     pub closed: bool,
     /// The feed is enabled.
     pub enabled: bool,
-    /// In position.
+    /// It is in position after a movement, as M2008 ff. say.
     pub in_position: bool,
 }
 
@@ -47,9 +47,9 @@ pub struct AxisState {
 pub struct Snapshot {
     /// Time since power-on, µs.
     pub time_us: u64,
-    /// Operating mode.
+    /// Operating mode of the channel.
     pub mode: Mode,
-    /// State of the run.
+    /// State of the channel's run.
     pub run: RunState,
     /// The run came to its end.
     pub ended: bool,
@@ -59,7 +59,7 @@ pub struct Snapshot {
     pub block: Option<BlockRef>,
     /// Axes in the order of their indices.
     pub axes: Vec<AxisState>,
-    /// Path speed, mm/min.
+    /// Speed along the path now, mm/min.
     pub feed_mm_min: f64,
     /// Programmed feed, mm/min, between blocks that which was programmed last; `None` while a block moves in rapid traverse.
     pub programmed_feed_mm_min: Option<f64>,
@@ -67,7 +67,7 @@ pub struct Snapshot {
     pub feed_override_percent: f64,
     /// Spindle override in force, %.
     pub spindle_override_percent: f64,
-    /// Spindle.
+    /// State of the spindle of the channel.
     pub spindle: SpindleState,
     /// Tool in the spindle.
     pub tool: u32,

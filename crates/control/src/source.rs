@@ -69,7 +69,7 @@ pub(crate) struct Source {
     feeder: Option<Feeder>,
     /// The program that runs is read elsewhere: it is not here.
     loan: Option<Loan>,
-    /// Loans so far.
+    /// Loans so far: the number of the last one.
     loans: u64,
     /// Programs are read beside the control.
     beside: bool,

@@ -27,13 +27,13 @@ const ANGLE_OF_CYCLE: i32 = i32::MIN;
 /// The state of the spindle for displays and reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleState {
-    /// Programmed speed, rpm.
+    /// Speed of the S word, rpm.
     pub programmed_rpm: f64,
     /// Nominal speed with override and limits, rpm.
     pub nominal_rpm: f64,
     /// Actual speed, rpm, negative as M04.
     pub actual_rpm: f64,
-    /// Voltage, V.
+    /// Nominal voltage at the output, V.
     pub volts: f64,
     /// Gear range, 1 to 8.
     pub gear: u8,
@@ -43,7 +43,7 @@ pub struct SpindleState {
     pub angle_deg: Option<f64>,
 }
 
-/// The spindle.
+/// A spindle with what program, operator and PLC want of it.
 #[derive(Clone, Debug)]
 pub(crate) struct SpindleUnit {
     pub drive: SpindleLoop,
@@ -56,7 +56,7 @@ pub(crate) struct SpindleUnit {
     cycle_deg: f64,
     /// A speed was refused since somebody asked.
     wrong_speed: bool,
-    /// M2092.
+    /// The speed was refused (M2092).
     wrong: bool,
     /// Markers as of the last scan, for their edges.
     shown: [bool; 3],
@@ -72,7 +72,6 @@ pub(crate) struct SpindleUnit {
     plc_volts: f64,
     feed_volts: f64,
     by_program: VoltageOutput,
-    /// Contour cycle, s.
     cycle_s: f64,
 }
 
@@ -114,7 +113,7 @@ impl SpindleUnit {
         marker_codes::SPEED_STEP.put(codes.step.into(), exchange);
     }
 
-    /// One servo step.
+    /// Gives the voltage of a servo step, and the enable, to the drive.
     pub fn output(&mut self, commands: &mut Commands) {
         let volts = self.drive.servo.step();
         let (enabled, volts, speed) = if self.is_analogue() {
@@ -300,7 +299,7 @@ impl SpindleUnit {
         self.cycle_deg
     }
 
-    /// Turns it by a way from where it stands, degrees: M2712 until it is there. `false` when it cannot be.
+    /// Turns it from where it stands by a distance, degrees: M2712 until it is there. `false` when it cannot be.
     pub fn turn_by(&mut self, turn_deg: f64, exchange: &mut Exchange) -> bool {
         let turns = self.drive.can_be_led() && self.drive.servo.turn_by(turn_deg);
         if turns {

@@ -163,7 +163,7 @@ pub(crate) fn end_key(done: bool, exchange: &mut Exchange) {
     exchange.nc_set(key_strobe(exchange.nc()), false);
 }
 
-/// M2548 ff.: the PLC lubricated; the way counts anew. The NC acts on the level and leaves the marker
+/// M2548 ff.: the PLC lubricated; the distance counts anew. The NC acts on the level and leaves the marker
 /// to the PLC [000:3575-3598].
 pub(crate) fn take_lubrication(axes: &mut OwnAxes, exchange: &mut Exchange) {
     for unit in axes.iter_mut() {

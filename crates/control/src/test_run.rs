@@ -15,7 +15,7 @@ use crate::test_command::TestCommand;
 /// Elements that one call of prepare tests at most: the machine comes first.
 const BUDGET: usize = 500;
 
-/// A test run.
+/// A program that is executed without a machine, as far as it has come.
 #[derive(Clone)]
 pub(crate) struct TestRun {
     program: String,
@@ -38,7 +38,7 @@ fn speed(function: &Function) -> Option<f64> {
 /// What a test run came to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum TestState {
-    /// It goes on.
+    /// Blocks are tested one after the other.
     #[default]
     Running,
     /// By the operator, or by a programmed stop: it goes on when he says so [003:1531-1535] [003:2234].
@@ -52,11 +52,11 @@ pub enum TestState {
 /// A test run for the display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestReport {
-    /// The program.
+    /// Name of the program that is tested.
     pub program: String,
     /// Block that was tested last.
     pub block: BlockRef,
-    /// Blocks executed.
+    /// Number of blocks that were executed, repeats counted each time.
     pub blocks: u64,
     /// What it came to.
     pub state: TestState,
@@ -187,7 +187,6 @@ impl TestRun {
     }
 }
 
-/// The message of a fault.
 fn message<'a>(fault: RunFault, mut axes: impl Iterator<Item = &'a AxisUnit>) -> Message {
     match fault {
         RunFault::Program(error) => Message::Program(error),

@@ -77,7 +77,7 @@ pub(crate) fn in_table_steps(mm: f64) -> f64 {
 /// What was found of a tool, for the tool table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeasuredTool {
-    /// The tool.
+    /// Number of the tool.
     pub number: u32,
     /// Of the radius, not of the length.
     pub radius: bool,
@@ -92,7 +92,7 @@ pub(crate) struct MeasuredTool {
 /// What a check found [000:8025].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ToolCondition {
-    /// Within the tolerances.
+    /// Within LTOL and RTOL.
     Good,
     /// Beyond LTOL or RTOL.
     Worn,
@@ -103,9 +103,9 @@ pub(crate) enum ToolCondition {
 /// A tool that is not in the pocket of the tool table any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovedTool {
-    /// Its number.
+    /// Number of the tool.
     pub tool: u32,
-    /// Its pocket now.
+    /// The pocket in which it is now; `None` when it is in none.
     pub pocket: Option<u16>,
     /// Its pocket in the tool table. Where the table says another one, the magazine was loaded anew.
     pub table: Option<u16>,
@@ -134,7 +134,7 @@ impl ToolLife {
         }
     }
 
-    /// TIME1 is over.
+    /// It has worked for longer than TIME1.
     pub(crate) fn time1_elapsed(&self) -> bool {
         self.is_beyond(self.time1_min)
     }

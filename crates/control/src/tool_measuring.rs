@@ -160,7 +160,7 @@ impl ToolMeasurement {
         run.touch = Some(chain.to_path(&actual)[run.contact.axis]);
     }
 
-    /// One contour cycle.
+    /// Leads the axes of the measurement for a contour cycle.
     pub fn moves(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Measuring {
         let Some(run) = &mut self.0 else {
             return Measuring::Moves;

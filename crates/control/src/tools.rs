@@ -308,7 +308,7 @@ pub(crate) fn inserted_axis(number: i32) -> Option<Axis> {
     }
 }
 
-/// MP6580 and MP6531.
+/// Centre (MP6580) and width (MP6531) of the tool probe, mm.
 fn place_of(probe: &ToolProbeParameters) -> [f64; 4] {
     let [x, y, z] = probe.centre_mm;
     [x, y, z, probe.width_mm]

@@ -103,7 +103,7 @@ pub(crate) fn by_index<'a, T: Copy + Default>(
     values
 }
 
-/// The way of each axis beyond MP4060: it asks for lubrication [000:3575-3577].
+/// The distance of each axis beyond MP4060: it asks for lubrication [000:3575-3577].
 pub(crate) fn lubricate(axes: &OwnAxes, exchange: &mut Exchange) {
     for unit in axes.iter() {
         let Some(limit) = unit.parameters.travel.lubrication_mm else {

@@ -22,15 +22,15 @@ use bahn_kernel::Clock;
 /// What the status display shows of a program beside positions [003:1297].
 #[derive(Clone, Debug, PartialEq)]
 pub struct InForce {
-    /// Axis of the tool.
+    /// Axis along which the tool lies.
     pub tool_axis: Axis,
     /// `N`: axes whose datum is shifted.
     pub shifted: Vec<Axis>,
-    /// `S`: mirrored axes.
+    /// `S`: axes that are mirrored by cycle 8.
     pub mirrored: Vec<Axis>,
     /// `ROT`: rotation or basic rotation.
     pub rotated: bool,
-    /// `SCL`: scaling.
+    /// `SCL`: a scaling factor is in force.
     pub scaled: bool,
     /// Positions are those of a tilted working plane: of a program that runs, or of 3D ROT by hand [000:4254-4256].
     pub tilted: bool,
@@ -58,7 +58,7 @@ impl<'a> ChannelView<'a> {
         self.channel.number()
     }
 
-    /// Operating mode.
+    /// Operating mode of the channel.
     pub fn mode(&self) -> Mode {
         self.channel.desk().mode()
     }
@@ -78,7 +78,7 @@ impl<'a> ChannelView<'a> {
             .any(reference::waits)
     }
 
-    /// State of the run.
+    /// State of the channel's run.
     pub fn run_state(&self) -> RunState {
         self.channel.run.progress().state()
     }
@@ -313,7 +313,7 @@ impl<'a> ChannelView<'a> {
         signal.value(self.channel, self.machine, self.seam)
     }
 
-    /// Its state.
+    /// Positions, run, messages and spindle of the channel as of now.
     pub fn snapshot(&self) -> Snapshot {
         Snapshot::of(self.channel, self.machine, None)
     }

@@ -19,15 +19,15 @@ pub struct AxisWatch {
     pub beside: f64,
     /// Speed that is commanded, mm/s, with its sign.
     pub speed_mm_s: f64,
-    /// Where it is.
+    /// Position by its encoder, machine coordinates, mm or degrees.
     pub actual: f64,
-    /// Servo lag.
+    /// Nominal minus actual position, mm or degrees.
     pub lag: f64,
-    /// Nominal value, V.
+    /// Nominal value that its loop gives out, V.
     pub volts: f64,
     /// What the handwheel adds to its path (M118), and how far it may to either side, mm or degrees.
     pub superimposed: f64,
-    /// See `superimposed`.
+    /// How far the handwheel may be added to either side, mm or degrees.
     pub superimposable: f64,
     /// The loop is closed.
     pub closed: bool,

@@ -177,14 +177,14 @@ impl fmt::Display for Variable {
 /// Whose number a function has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FunctionLetter {
-    /// `M80`.
+    /// An M function, `M80`.
     M,
-    /// `H5`.
+    /// An H function, `H5`.
     H,
 }
 
 impl FunctionLetter {
-    /// That of a letter.
+    /// The letter of a function; `None` for any other one.
     pub(crate) fn of(letter: char) -> Option<FunctionLetter> {
         match letter {
             'M' => Some(FunctionLetter::M),

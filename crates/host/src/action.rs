@@ -101,12 +101,12 @@ impl fmt::Display for Action {
     }
 }
 
-/// Who does it.
+/// Who has something done to the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The operator who stands by.
     Operator,
-    /// A script.
+    /// A line of a script whose time has come.
     Script,
     /// The log of another run.
     Log,
@@ -117,7 +117,7 @@ pub enum Source {
 /// What came of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// It was done.
+    /// The machine has taken it.
     Done,
     /// The control refuses the command now.
     Refused,

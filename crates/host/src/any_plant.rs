@@ -23,7 +23,7 @@ use crate::operable::{Operable, StopChain, TrueAxis, Wired};
 pub struct AnyPlant(Box<dyn Copying + Send + Sync>);
 
 impl AnyPlant {
-    /// A plant.
+    /// Takes a plant of any kind.
     pub fn new(plant: impl Operable + Send + Sync + 'static) -> AnyPlant {
         AnyPlant(Box::new(plant))
     }

@@ -48,13 +48,13 @@ pub enum BackupError {
     Damaged {
         /// The line, from 1.
         line: u64,
-        /// What is wrong.
+        /// What is wrong in it, in words.
         what: &'static str,
     },
     /// A file that no backup carries.
     #[error("cannot back up {path}: {why}")]
     NotCarried {
-        /// The file.
+        /// Path of the file in the machine's folder.
         path: String,
         /// What it has that cannot be carried.
         why: &'static str,

@@ -6,7 +6,7 @@ use bahn_path::{PathElement, PerAxis};
 
 use crate::{Host, Operable};
 
-/// Way that may be left of an element that is done, mm.
+/// Distance that may be left of an element that is done, mm.
 const DONE_MM: f64 = 1e-6;
 
 /// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
@@ -18,7 +18,7 @@ pub struct ElementId {
 }
 
 impl ElementId {
-    /// Of an element.
+    /// What tells this element from all others of its run.
     pub fn of(element: &PathElement) -> ElementId {
         ElementId {
             sequence: element.sequence,
@@ -36,7 +36,7 @@ pub struct ExecutedPath {
     ahead: VecDeque<PathElement>,
     /// So many of them, from the front, are executed.
     done: usize,
-    /// The element that was executed last, with the way that was left of it.
+    /// The element that was executed last, with the distance that was left of it.
     last_seen: Option<(ElementId, f64)>,
 }
 

@@ -19,15 +19,15 @@ pub enum Expectation {
     Text(usize, String),
     /// `message "TEXT"`, `no message "TEXT"`: a message that is shown contains the text; any without text.
     Message(String, bool),
-    /// `mode full`.
+    /// `mode full`: the operating mode.
     Mode(Mode),
-    /// `run stopped`.
+    /// `run stopped`: the state of the run.
     Run(Run),
     /// `tool=3`: the tool in the spindle.
     Tool(u32),
     /// `test finished`: the test run beside.
     Test(Tested),
-    /// `lamp NC_START=1`.
+    /// `lamp NC_START=1`: whether a lamp of the operating panel is lit.
     Lamp(String, bool),
     /// `2:X.actual=100`, `2: run ended`: of a channel, from 0; signal, message, mode, run or tool.
     Of(usize, Box<Expectation>),
@@ -38,9 +38,9 @@ pub enum Expectation {
 pub enum Relation {
     /// Equal within a tolerance.
     Equal(f64),
-    /// `<`
+    /// `<`: the value is less.
     Less,
-    /// `>`
+    /// `>`: the value is greater.
     Greater,
 }
 
@@ -65,7 +65,7 @@ const RUNS: [(&str, Run); 6] = [
 /// States of the test run by their names in scripts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tested {
-    /// It goes on.
+    /// Blocks are being tested.
     Running,
     /// It waits for the operator.
     Interrupted,

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub enum Next<T> {
     /// So many were overwritten before they were read.
     Missed(u64),
-    /// The next one.
+    /// The next one that was not read yet.
     Item(T),
 }
 

@@ -31,7 +31,7 @@ const MAX_DESCRIPTION_BYTES: u64 = 1 << 20;
 
 /// What became of reading a program.
 pub enum Loaded {
-    /// The program.
+    /// A program with at least one block.
     Program(Arc<Program>),
     /// The file holds no block at all: nothing, or blanks and NULs only.
     Empty(Arc<Program>),

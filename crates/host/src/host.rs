@@ -432,7 +432,7 @@ impl<P: Operable> Host<P> {
         }
     }
 
-    /// The control.
+    /// The control as of now, to be looked at.
     pub fn control(&self) -> &Control {
         &self.now.control
     }
@@ -465,7 +465,7 @@ impl<P: Operable> Host<P> {
         done
     }
 
-    /// The plant.
+    /// The plant as of now, to be looked at.
     pub fn plant(&self) -> &P {
         &self.now.plant
     }
@@ -581,7 +581,7 @@ impl<P: Operable> Host<P> {
         self.break_off = flag;
     }
 
-    /// It is set.
+    /// The flag that breaks off is set.
     pub fn is_broken_off(&self) -> bool {
         self.break_off.load(Ordering::Relaxed)
     }

@@ -18,7 +18,7 @@ const TEXT_MAX: usize = 16 << 20;
 pub(crate) enum Given {
     /// By whoever drives the host, at once.
     AtOnce(Source, Action),
-    /// At the desk.
+    /// By an order of somebody beside the host, when its time had come.
     Order(Order),
     /// What an editor has written.
     Renewed(Renewed),

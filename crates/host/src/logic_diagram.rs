@@ -4,15 +4,15 @@ use std::collections::VecDeque;
 
 use bahn_exchange::{Content, Operand};
 
-/// Operands of a diagram [000:11461].
+/// Operands that a diagram has at most [000:11461].
 pub const OPERANDS_MAX: usize = 16;
 
 /// Operands over scans of the PLC.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Diagram {
-    /// Its rows.
+    /// The operands that were recorded, one a row.
     pub operands: Vec<Operand>,
-    /// The first scan.
+    /// Number of the first recorded scan.
     pub first: u64,
     /// The scan that triggered.
     pub trigger: Option<u64>,
@@ -55,7 +55,7 @@ impl Diagram {
 /// What makes a recorder keep what it has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Trigger {
-    /// Its first scan.
+    /// Its first scan: recording begins at once.
     Start,
     /// Nothing: it goes on, and keeps the latest scans.
     Never,
@@ -173,7 +173,7 @@ impl DiagramRecorder {
         &self.diagram
     }
 
-    /// What is recorded.
+    /// The recorder ends and gives what it has recorded.
     pub fn into_diagram(self) -> Diagram {
         self.diagram
     }

@@ -23,7 +23,7 @@ pub(crate) struct Moment<P> {
 }
 
 impl<P: Operable> Moment<P> {
-    /// At power-on.
+    /// The moment of power-on: nothing is waited for or digitized.
     pub fn new(control: Control, plant: P, operator: Operator) -> Moment<P> {
         Moment {
             digitizing: vec![Digitizing::default(); control.channels()],

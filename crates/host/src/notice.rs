@@ -7,7 +7,7 @@ use bahn_path::BlockRef;
 
 use crate::action::{Action, Answer, Source};
 
-/// Something that happened.
+/// An event that those who follow a run are told of.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Notice {
     /// A message came up.
@@ -26,9 +26,9 @@ pub enum Notice {
     Given(Source, Action, Answer),
     /// The operator pressed a key because the run waited for him.
     Confirmed {
-        /// The key.
+        /// Name of the key.
         key: String,
-        /// Why.
+        /// What the run waited for.
         why: Why,
     },
     /// Module 9033 has selected this list of machine parameters: the control has been reset and begins with it.
@@ -52,7 +52,7 @@ pub enum Notice {
 pub enum Why {
     /// Voltage, reference run, start of the program, next block of single block.
     Routine,
-    /// A programmed stop.
+    /// The program has stopped the run: STOP, M0, M6.
     Stop,
     /// A tool change waits for him.
     ToolChange,
@@ -61,11 +61,11 @@ pub enum Why {
 /// A notice with its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stamped {
-    /// Since power-on, µs.
+    /// Time since power-on, µs.
     pub time_us: u64,
     /// The channel in which it happened, from 0; 0 for the machine as a whole, too.
     pub channel: usize,
-    /// What happened.
+    /// What happened then.
     pub notice: Notice,
 }
 

@@ -22,7 +22,7 @@ const FIRST_INHIBIT: u32 = 2240;
 pub struct OemCycle {
     /// Its number, 68 to 99.
     pub number: u32,
-    /// Its program.
+    /// File of its program.
     pub path: PathBuf,
     /// It is in the EPROM, not in the program memory.
     pub in_eprom: bool,
@@ -45,7 +45,7 @@ pub struct OemDialog {
     pub parameters: Vec<(u32, Text)>,
 }
 
-/// A dialogue text.
+/// A dialogue text by its number in the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Text {
     /// Number of the dialogue: the line of the file, from 0.

@@ -44,7 +44,7 @@ pub enum Phase {
     Ready,
 }
 
-/// What he starts.
+/// The program that the operator starts, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
     /// The name of the program.

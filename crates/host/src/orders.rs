@@ -12,11 +12,11 @@ pub(crate) const ORDERS_MAX: usize = 4096;
 /// Something to be done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
-    /// Who wants it.
+    /// Who wants it done.
     pub source: Source,
-    /// When.
+    /// The cycle before which it is done.
     pub when: When,
-    /// What.
+    /// What is done then.
     pub action: Action,
 }
 

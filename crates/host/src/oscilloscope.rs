@@ -7,7 +7,7 @@ use bahn_control::{ServoSampler, ServoSignal, ServoView};
 
 /// Samples in the memory of a channel [000:18748].
 pub const SAMPLES: usize = 4096;
-/// Channels [000:18640].
+/// Channels that record at the same time [000:18640].
 pub const CHANNELS: usize = 4;
 /// The shortest and the longest time between two samples, µs [000:18748].
 pub const SAMPLE_TIME_US: std::ops::RangeInclusive<u32> = 600..=6000;
@@ -17,7 +17,7 @@ pub const SAMPLE_TIME_US: std::ops::RangeInclusive<u32> = 600..=6000;
 pub struct Curve {
     /// Letter of the axis.
     pub axis: char,
-    /// What of it.
+    /// Signal of the axis that is recorded.
     pub signal: ServoSignal,
 }
 
@@ -60,7 +60,7 @@ pub enum Trigger {
         curve: Curve,
         /// In the unit of the curve: mm for trailing errors.
         threshold: f64,
-        /// Upwards.
+        /// The curve crosses the threshold upwards; otherwise downwards.
         rising: bool,
     },
 }
@@ -95,14 +95,14 @@ impl FromStr for Trigger {
     }
 }
 
-/// What is recorded.
+/// What is recorded, how fast, and what ends the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OscilloscopeSetup {
     /// Channels 1 to 4.
     pub channels: Vec<Curve>,
     /// SAMPLE TIME, µs: a multiple of the servo step of the control.
     pub sample_us: u32,
-    /// TRIGGER.
+    /// TRIGGER with threshold and slope: what ends the recording.
     pub trigger: Trigger,
     /// PRE-TRIGGER: so much of the memory lies before the trigger, 0, 25, 50, 75 or 100 %.
     pub pre_trigger_percent: u8,
@@ -112,7 +112,7 @@ pub struct OscilloscopeSetup {
 #[derive(Clone, Debug)]
 pub struct Oscilloscope {
     setup: OscilloscopeSetup,
-    /// A ring.
+    /// Samples in a ring: a new one takes the place of the oldest.
     memory: Vec<[f64; CHANNELS]>,
     /// Samples that were taken; the next one goes to the place of this number.
     taken: u64,
@@ -128,7 +128,7 @@ pub struct Oscilloscope {
 /// What the memory holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OscilloscopeRecord {
-    /// The channels.
+    /// What the channels recorded, in the order of the values of a sample.
     pub channels: Vec<Curve>,
     /// Time between two samples, µs.
     pub sample_us: u32,

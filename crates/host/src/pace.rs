@@ -38,7 +38,7 @@ pub struct Lateness {
 pub struct Late {
     /// ms; `None` for any more.
     pub at_most_ms: Option<f64>,
-    /// How many.
+    /// Number of cycles that were so late.
     pub cycles: u64,
 }
 
@@ -128,7 +128,7 @@ impl Pace {
         self.due.saturating_sub(self.started.elapsed())
     }
 
-    /// Waits until then.
+    /// Waits until the cycle is due; the last part without sleep.
     pub fn wait(&mut self) {
         if let Some(sleep) = self.rest().checked_sub(SPIN) {
             std::thread::sleep(sleep);

@@ -31,7 +31,7 @@ pub struct FailedExpectation {
 pub struct Case {
     /// File and line of the expectation.
     pub place: String,
-    /// What is expected.
+    /// The expectation as the script writes it.
     pub name: String,
     /// What became of it.
     pub verdict: Verdict,
@@ -40,7 +40,7 @@ pub struct Case {
 /// What became of an expectation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It held.
+    /// It was so at its time.
     Held,
     /// With what was found instead.
     Failed(String),

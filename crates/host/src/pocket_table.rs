@@ -15,11 +15,11 @@ use crate::tool_table::{self, POCKET_MAX};
 /// A line of a pocket table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PocketLine {
-    /// The tool in the pocket.
+    /// Number of the tool in the pocket; `None` for an empty one.
     pub tool: Option<u32>,
     /// ST: it is a special tool.
     pub special: bool,
-    /// The pocket itself.
+    /// What the table says of the pocket beside the tool in it.
     pub pocket: Pocket,
 }
 

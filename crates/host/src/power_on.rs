@@ -16,7 +16,7 @@ use bahn_text::Diagnostic;
 pub struct PowerOn {
     /// Machine parameters: those of the machine, or the list that module 9033 has selected.
     pub parameters: ParameterList,
-    /// What it remembers.
+    /// What the control kept over power-off: datums, tool, Q parameters and so on.
     pub remembered: Remembered,
     /// Memory of the PLC.
     pub exchange: Exchange,
@@ -40,9 +40,9 @@ pub struct PowerOn {
 /// What a channel beside the first one begins with.
 #[derive(Clone)]
 pub struct ChannelPowerOn {
-    /// What it remembers.
+    /// What the channel kept over power-off.
     pub remembered: Remembered,
-    /// Its part programs.
+    /// Part programs that the channel can select and call.
     pub programs: Arc<dyn Programs>,
 }
 

@@ -61,7 +61,7 @@ impl<'a> Stage<'a> {
 /// What a time counts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
-    /// Power-on.
+    /// Power-on of the machine.
     PowerOn,
     /// The start of the program.
     Start,
@@ -69,7 +69,7 @@ pub enum Base {
     Condition(usize),
 }
 
-/// What happens.
+/// What a line of a script does at its time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ScriptAction {
     /// Something is done to a machine.
@@ -78,7 +78,7 @@ pub enum ScriptAction {
     Set(Vec<Assignment>),
     /// Nothing; all of this must be so.
     Expect(Vec<Expectation>),
-    /// The run ends.
+    /// The run ends, whatever is still to come.
     End,
 }
 
@@ -89,13 +89,13 @@ pub struct Line {
     pub number: u32,
     /// What its time counts from.
     pub base: Base,
-    /// Its time, µs.
+    /// Time of the line after its base, µs.
     pub offset_us: u64,
     /// It comes before everything else of this time: it looks at the cycle that has ended then.
     pub after: bool,
     /// It waits from then on until all of this is so.
     pub condition: Vec<Expectation>,
-    /// What happens.
+    /// What happens at that time.
     pub action: ScriptAction,
 }
 
@@ -104,7 +104,7 @@ pub struct Line {
 pub struct Script {
     path: PathBuf,
     text: Vec<String>,
-    /// Its lines.
+    /// What it does, a line each, in the order of the file.
     pub lines: Vec<Line>,
 }
 
@@ -309,7 +309,7 @@ impl Reader<'_> {
         Ok((Base::PowerOn, self.duration(text)?))
     }
 
-    /// µs.
+    /// A time, or a count of control cycles, in µs.
     fn duration(&self, text: &str) -> Result<u64, String> {
         let cycles = ["cycles", "cycle"];
         let cycles = cycles.iter().find_map(|unit| text.trim().strip_suffix(unit));
@@ -360,7 +360,7 @@ impl Reader<'_> {
         Ok(ScriptAction::Do(action))
     }
 
-    /// `I4=1, W6=100, MP4110.2=4`.
+    /// Values of operands and parameters: `I4=1, W6=100, MP4110.2=4`.
     fn assignments(&mut self, text: &str) -> Result<Vec<Assignment>, String> {
         let all = Assignment::parse_all(text)?;
         for assignment in &all {

@@ -6,9 +6,9 @@ use crate::table_kind::{PlainTable, TableForm};
 /// What became of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineChange {
-    /// It was there.
+    /// The line was in the table.
     Changed,
-    /// It is new.
+    /// The line was appended.
     Added,
 }
 

@@ -14,15 +14,15 @@ use crate::{machine_folder, pocket_table, point_table, tool_table};
 /// A kind of table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableForm {
-    /// Tool table, .T.
+    /// Tool table, .T: a tool a line.
     Tool,
-    /// Pocket table, .TCH.
+    /// Pocket table, .TCH: a pocket of the magazine a line.
     Pocket,
-    /// Datum table, .D.
+    /// Datum table, .D: shifts for cycle 7.
     Datum,
-    /// Pallet file, .P.
+    /// Pallet file, .P: program and datums for each pallet.
     Pallet,
-    /// Point table, .PNT.
+    /// Point table, .PNT: digitized points.
     Point,
 }
 
@@ -73,7 +73,7 @@ const TOOL: &[KnownColumn] = &[
     ("T-ANGLE", Number),
 ];
 
-/// MP7267 [000:9145-9149].
+/// Columns of the pocket table, which MP7267 orders [000:9145-9149].
 const POCKET: &[KnownColumn] = &[
     ("P", Number),
     ("T", Text),
@@ -94,7 +94,7 @@ const DATUM: &[KnownColumn] = &[
     ("DOC", Text),
 ];
 
-/// [000:15332-15340].
+/// Columns of the pallet file [000:15332-15340].
 const PALLET: &[KnownColumn] = &[("NR", Number), ("PGM", Text), ("DATUM", Text), ("DOC", Text)];
 
 const POINT: &[KnownColumn] = &[
@@ -106,7 +106,7 @@ const POINT: &[KnownColumn] = &[
 ];
 
 impl TableForm {
-    /// All kinds.
+    /// All kinds, in the order of their declaration.
     pub const ALL: [TableForm; 5] = [
         TableForm::Tool,
         TableForm::Pocket,
@@ -232,7 +232,7 @@ impl TableForm {
 /// A table taken out of its file: millimetres, and the names of the control for its columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlainTable {
-    /// Its kind.
+    /// Kind of table that its columns belong to.
     pub kind: TableForm,
     /// Names of the columns.
     pub names: Vec<String>,

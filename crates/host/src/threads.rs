@@ -10,9 +10,9 @@ const THREADS_MAX: usize = 1000;
 /// A thread that was cut, or begun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreadCut {
-    /// Its block.
+    /// Block whose cycle cuts it.
     pub block: BlockRef,
-    /// 2, 17 or 18.
+    /// Number of the cycle: 2, 17 or 18.
     pub cycle: u8,
     /// Depth from where the tool axis begins, mm, as it is commanded.
     pub depth_mm: f64,
@@ -55,11 +55,11 @@ struct Cut {
     block: BlockRef,
     sequence: u64,
     cycle: u8,
-    /// The way of the axes into the thread, of length 1.
+    /// The direction of the axes into the thread, of length 1.
     direction: Position,
     pitch_mm: f64,
     depth_mm: f64,
-    /// Where it begins.
+    /// Where tool axis and spindle stand when it begins.
     begin: Place,
     /// The path has begun to move.
     moves: bool,
@@ -189,7 +189,7 @@ fn cycle_of(element: &PathElement) -> Option<u8> {
     }
 }
 
-/// The way of an element in the machine, of length 1: 0 for an axis that it does not move.
+/// The direction of an element in the machine, of length 1: 0 for an axis that it does not move.
 fn direction(element: &PathElement) -> Position {
     let nose = |path: &Position| match &element.placement {
         Some(placement) => placement.to_nose(path),

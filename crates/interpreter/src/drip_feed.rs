@@ -18,12 +18,12 @@ const BATCH: usize = 1 << 12;
 /// So few known blocks are not enough to do.
 const FEW_BLOCKS: u32 = 128;
 
-/// The line.
+/// Whether more text comes over the line from which a program is executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DripFeedLine {
     /// More may come.
     Open,
-    /// It is broken.
+    /// The line is broken: nothing more comes.
     Broken,
     /// Everything has come.
     Complete,
@@ -32,7 +32,7 @@ pub enum DripFeedLine {
 /// A program that is executed while it is transferred, as of now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DripFeedState {
-    /// The line.
+    /// Whether more text comes.
     pub line: DripFeedLine,
     /// More text is wanted: its memory is not full, or 256 bytes of a full one are free again [000:16961].
     pub wants_more: bool,

@@ -25,7 +25,7 @@ impl AxisId {
         (number < AxisId::COUNT && number != AxisId::SPINDLE.0).then_some(AxisId(number))
     }
 
-    /// Its number.
+    /// Its number on the machine, from 0; 0 to 4 are those of the first channel by their indices.
     pub fn number(self) -> u8 {
         self.0
     }
@@ -34,9 +34,9 @@ impl AxisId {
 /// A direction of traverse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Towards greater positions.
+    /// The position grows.
     Plus,
-    /// Towards lesser ones.
+    /// The position becomes less.
     Minus,
 }
 
@@ -50,7 +50,7 @@ impl Direction {
         }
     }
 
-    /// +1 or -1.
+    /// +1 for plus, -1 for minus: the factor of a distance or feed.
     pub fn sign(self) -> f64 {
         match self {
             Direction::Plus => 1.0,
@@ -69,13 +69,13 @@ pub enum Mover {
     Path,
     /// Direction keys, handwheel, jog increment.
     Manual,
-    /// The reference run.
+    /// The reference run: the axis seeks its reference mark.
     Reference,
     /// PLC positioning, return to the contour.
     Positioning,
     /// A PLC axis on command of modules.
     Plc,
-    /// Free rotation.
+    /// Free rotation: a rotary axis turns without end.
     Rotation,
 }
 
@@ -90,7 +90,7 @@ pub struct Coupling {
     pub switched_on: bool,
 }
 
-/// An axis.
+/// An axis of the machine with its position loop, and what the control knows of it.
 #[derive(Clone, Debug)]
 pub struct AxisUnit {
     /// Its number on the machine.
@@ -107,7 +107,7 @@ pub struct AxisUnit {
     pub axis: Axis,
     /// What the machine builder says of it.
     pub parameters: AxisParameters,
-    /// Its loop.
+    /// Its position loop, which gives the voltage to the drive.
     pub servo: Servo,
     /// Its reference mark was passed.
     pub referenced: bool,
@@ -123,9 +123,9 @@ pub struct AxisUnit {
     pub enabled: bool,
     /// Direction of the last movement.
     pub direction: Direction,
-    /// Way since the last lubrication, mm.
+    /// Distance since the last lubrication, mm.
     pub travelled: f64,
-    /// Actual position of the last cycle, for the way travelled.
+    /// Actual position of the last cycle, for the distance travelled.
     last_actual: f64,
     /// Largest lag since power-on, mm.
     pub max_lag: f64,
@@ -432,7 +432,7 @@ impl AxisUnit {
         self.parameters = parameters;
     }
 
-    /// Goes on by a contour cycle: counts the way, remembers direction and lag.
+    /// Goes on by a contour cycle: counts the distance, remembers direction and lag.
     pub fn count(&mut self) {
         let actual = self.servo.actual_mm();
         self.travelled += (actual - self.last_actual).abs();

@@ -103,7 +103,7 @@ pub struct Clock {
     now_us: u64,
     /// What the machine was told last.
     pub commands: Commands,
-    /// What it answered.
+    /// What the machine measured in the last servo step.
     pub measured: Measured,
 }
 

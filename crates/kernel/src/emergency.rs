@@ -19,7 +19,7 @@ pub enum Circuit {
     VoltageMissing,
     /// The output is being tested.
     Testing,
-    /// `EMERGENCY STOP DEFECTIVE`.
+    /// `EMERGENCY STOP DEFECTIVE`: the test of the output failed.
     Defective,
     /// The control voltage is on.
     Ready,
@@ -106,7 +106,7 @@ impl EmergencyStop {
         matches!(self.state, State::Dropped { .. })
     }
 
-    /// The output X41/34.
+    /// The output X41/34, control is ready: off, it opens the chain of EMERGENCY STOP.
     pub fn output(&self) -> bool {
         !matches!(
             self.state,

@@ -27,11 +27,11 @@ pub enum RunFault {
     Program(Box<ProgramError>),
     /// A block would leave the traverse range [000:3522].
     Limit {
-        /// Which axis.
+        /// The axis that would leave its range.
         axis: Axis,
         /// At which of its limits.
         direction: Direction,
-        /// Which block.
+        /// Program and number of the block.
         block: BlockRef,
         /// Its place in the order of execution.
         sequence: u64,
@@ -39,9 +39,9 @@ pub enum RunFault {
     /// A block would move an axis that the channel does not have: it has gone to another one, or never was there, or a
     /// master or the PLC moves it.
     Absent {
-        /// Which axis.
+        /// The axis that is missing.
         axis: Axis,
-        /// Which block.
+        /// Program and number of the block.
         block: BlockRef,
         /// Its place in the order of execution.
         sequence: u64,

@@ -15,7 +15,7 @@ pub type Box2 = [Position; 2];
 pub struct Offsets {
     /// Machine position of the workpiece datum, mm or degrees.
     pub datum: Position,
-    /// Axis of the tool.
+    /// Axis along which the tool lies: its length counts there.
     pub tool_axis: Axis,
     /// Length of the tool, mm.
     pub tool_length: f64,
@@ -61,7 +61,7 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     }
 }
 
-/// See [`Kinematics::shares`].
+/// Shares of the axes in the slots of the path, as [`Kinematics::shares`] gives them.
 pub type Shares = PerAxis<PerAxis<f64>>;
 
 /// What each slot of the path may have of something of which each axis has a limit, so that all slots together leave no
@@ -99,7 +99,7 @@ impl Kinematics for Cartesian {
 #[derive(Clone, Debug)]
 pub struct Chain {
     kinematics: Arc<dyn Kinematics>,
-    /// Datum and tool.
+    /// Datum and tool that stand between path and machine positions.
     pub offsets: Offsets,
     /// What the handwheel adds to the axes.
     pub superimposed: Superimposed,
@@ -118,7 +118,7 @@ impl Chain {
         }
     }
 
-    /// The kinematics alone.
+    /// The kinematics without datum, tool, handwheel and tilted plane.
     pub fn kinematics(&self) -> &dyn Kinematics {
         self.kinematics.as_ref()
     }

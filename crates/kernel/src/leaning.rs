@@ -54,7 +54,7 @@ struct Plane {
 #[derive(Clone, Copy, Debug)]
 struct Moving {
     along: usize,
-    /// Way since its begin, mm.
+    /// Distance since its begin, mm.
     way: PointToPoint,
     /// Where the handwheel or a jog increment leads.
     target: Option<f64>,
@@ -78,7 +78,7 @@ impl Plane {
 }
 
 impl Leaning {
-    /// It is on.
+    /// A tilted plane is chosen: by hand the axes move along it.
     pub fn is_on(&self) -> bool {
         self.plane.is_some()
     }
@@ -112,7 +112,7 @@ impl Leaning {
         chain.place(None);
     }
 
-    /// By how much the workpiece datum moves, mm of the machine, when it moves by a way along an axis of the plane; `None`
+    /// By how much the workpiece datum moves, mm of the machine, when it moves by a distance along an axis of the plane; `None`
     /// where nothing is tilted.
     pub fn datum_shift(&self, axis: Axis, way: f64) -> Option<[f64; 3]> {
         let plane = self.plane.as_ref()?;

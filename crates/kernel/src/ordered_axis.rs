@@ -14,21 +14,21 @@ pub enum AxisOrder {
         target: f64,
         /// It is a distance.
         incremental: bool,
-        /// The feed.
+        /// The feed, mm/min or degrees/min, before the override.
         feed: f64,
     },
-    /// To a standstill.
+    /// Brakes to a standstill.
     Stop,
     /// On until its reference mark is found, with no limit switches and no override.
     FindMark {
-        /// The feed.
+        /// The feed, mm/min or degrees/min; no override acts on it.
         feed: f64,
-        /// In negative direction.
+        /// It seeks in negative direction.
         negative: bool,
     },
 }
 
-/// Such an axis.
+/// An axis with what the PLC orders of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OrderedAxis {
     pub order: Option<AxisOrder>,

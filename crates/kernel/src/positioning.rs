@@ -13,7 +13,7 @@ use crate::ordered_axis::{AxisOrder, OrderedAxis};
 pub struct Goal {
     /// Machine coordinate, mm or degrees.
     pub position: f64,
-    /// The feed, mm/min.
+    /// Feed, mm/min or degrees/min.
     pub feed_mm_min: f64,
 }
 

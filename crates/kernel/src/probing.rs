@@ -9,7 +9,7 @@ use crate::kinematics::Chain;
 use crate::now::Now;
 use crate::straight::Straight;
 
-/// A probing movement.
+/// A straight movement that ends where the stylus touches.
 #[derive(Clone, Copy, Debug)]
 pub struct Probing {
     phase: Phase,
@@ -39,7 +39,7 @@ enum Phase {
 /// What a probing movement comes to in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Probed {
-    /// It goes on.
+    /// The movement goes on; nothing was touched yet.
     Moves,
     /// The stylus was deflected in this cycle; the axes still move.
     Touches,
@@ -70,7 +70,7 @@ impl Probing {
         }
     }
 
-    /// It may begin.
+    /// The movement may set off, and the stylus may be deflected.
     pub fn begin(&mut self) {
         self.phase = Phase::Search;
     }
@@ -80,7 +80,7 @@ impl Probing {
         self.phase != Phase::Waits
     }
 
-    /// Its way.
+    /// The line on which the axes go to the surface.
     pub fn line(&mut self) -> &mut Straight {
         &mut self.line
     }

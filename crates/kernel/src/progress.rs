@@ -6,7 +6,7 @@ pub enum RunState {
     /// Nothing was started, or it was broken off or ended.
     #[default]
     Idle,
-    /// Blocks are executed.
+    /// Blocks are executed one after the other.
     Running,
     /// An external stop: `*` flashes. NC start goes on [000:6581-6587].
     Interrupted,
@@ -16,7 +16,7 @@ pub enum RunState {
     BlockEnd,
 }
 
-/// The progress of a run.
+/// How far a run has come, and what it is to do next.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress {
     state: RunState,
@@ -85,7 +85,7 @@ impl Progress {
         self.state = state;
     }
 
-    /// NC stop.
+    /// NC stop: a run that goes on is interrupted, one that was to begin does not.
     pub fn stop(&mut self) {
         self.begin_wanted = false;
         if self.state == RunState::Running {

@@ -15,7 +15,7 @@ use crate::now::Now;
 /// The cams that are closed, by axis index.
 type Cams = PerPlcAxis<bool>;
 
-/// The reference run.
+/// What is left of the reference run: the axes seek their marks one after the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReferenceRun {
     /// NC start was given: the axes follow in the order of their machine parameters.

@@ -233,7 +233,6 @@ impl Restoration {
     }
 }
 
-/// A scan to a block.
 fn scan_to(block: u32) -> Restore {
     Restore::Scan {
         block,

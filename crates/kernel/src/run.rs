@@ -20,7 +20,7 @@ const BUDGET: usize = 256;
 /// The run of a program.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Its path.
+    /// The path that it goes, with its look-ahead.
     pub track: Track,
     /// What threads need of the spindle.
     pub tapping: Tapping,
@@ -125,7 +125,7 @@ impl Run {
         self.tapping.follow(&self.track, active, &mut at.leading())
     }
 
-    /// NC start.
+    /// NC start: begins a run, or goes on with one that stands.
     pub fn start<'b>(&mut self, family: &mut impl RunFamily<'b>) -> Started {
         let mut started = Started::On;
         match self.progress.state() {
@@ -218,7 +218,7 @@ impl Run {
         self.progress.take_begin(may)
     }
 
-    /// A run begins.
+    /// A run begins: what the last one left of positions and answers is forgotten.
     pub fn begin(&mut self) {
         self.progress.begin();
         self.track.forget_position();
@@ -271,7 +271,7 @@ impl Run {
         self.block_time.allow(now_us, BUDGET)
     }
 
-    /// Scans to a block.
+    /// Seeks the start of a block, without movements, with everything in force as if it had run to there.
     pub fn scan(&mut self, block: u32) {
         self.progress.scan();
         self.restoration.scan(block);

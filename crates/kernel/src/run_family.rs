@@ -11,13 +11,13 @@ use crate::track::Outputs;
 
 /// Where a run acts: axes and spindle of a channel.
 pub struct Acting<'a, 'b> {
-    /// The axes.
+    /// The axes of the channel.
     pub axes: &'a mut OwnAxes<'b>,
     /// The kinematics with datum and tool.
     pub chain: &'a mut Chain,
-    /// The spindle.
+    /// The spindle that threads lead.
     pub spindle: &'a mut SpindleLoop,
-    /// What holds now.
+    /// What holds for all movements of this cycle.
     pub now: &'a Now,
 }
 

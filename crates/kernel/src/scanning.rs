@@ -15,7 +15,7 @@ const ELSEWHERE_MM: f64 = 1e-6;
 /// What the stylus says in a cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt {
-    /// It is deflected.
+    /// The stylus is off its rest position.
     pub deflected: bool,
     /// How far, along the axes of the machine, mm.
     pub deflection_mm: ScanPoint,
@@ -59,17 +59,17 @@ impl ScanMove {
         }
     }
 
-    /// It may begin.
+    /// The scan may set off: its clock begins now.
     pub fn begin(&mut self, now: &Now) {
         self.moved_us = now.us;
     }
 
-    /// What is scanned.
+    /// Range, pattern and feeds of the scan.
     pub fn job(&self) -> &ScanJob {
         &self.job
     }
 
-    /// It leads an axis.
+    /// A scan moves this axis: X, Y or Z.
     pub fn leads(axis: Axis) -> bool {
         MAIN.contains(&axis)
     }

@@ -9,9 +9,9 @@ const DEG_S_PER_RPM: f64 = 6.0;
 /// Where a spindle is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpindleWiring {
-    /// Its analogue output.
+    /// Place of its analogue output among the machine's, from 0.
     pub output: usize,
-    /// Its encoder input.
+    /// Place of its encoder among the machine's inputs, from 0.
     pub input: usize,
 }
 
@@ -22,14 +22,14 @@ impl Default for SpindleWiring {
     }
 }
 
-/// A spindle in its loop.
+/// A spindle with its position loop, and what threads want of it.
 #[derive(Clone, Debug)]
 pub struct SpindleLoop {
     /// Where it is connected.
     pub wiring: SpindleWiring,
     /// What the machine builder says of it.
     pub parameters: SpindleParameters,
-    /// Its loop.
+    /// Its speed and position loop, which gives the voltage to the drive.
     pub servo: Spindle,
     /// The path of a thread leads it.
     led: bool,

@@ -16,7 +16,7 @@ pub struct Straight {
     length: f64,
     /// Of the path, m/s².
     acceleration_m_s2: f64,
-    /// Way along the line, mm.
+    /// Distance along the line, mm.
     way: PointToPoint,
 }
 
@@ -42,7 +42,7 @@ impl Straight {
         [self.from, self.to]
     }
 
-    /// Its length, mm.
+    /// Length from start to end, mm.
     pub fn length(&self) -> f64 {
         self.length
     }

@@ -34,25 +34,25 @@ const BESIDE_MM: f64 = 1e-6;
 /// Axes and spindle of a channel, to be looked at.
 #[derive(Clone, Copy)]
 pub struct Standing<'a> {
-    /// The axes.
+    /// The axes of the channel.
     pub axes: &'a OwnAxes<'a>,
     /// The kinematics with datum and tool.
     pub chain: &'a Chain,
-    /// The spindle.
+    /// The spindle that threads lead.
     pub spindle: &'a SpindleLoop,
-    /// What holds now.
+    /// What holds for all movements of this cycle.
     pub now: &'a Now,
 }
 
 /// Axes and spindle of a channel, to be led.
 pub struct Leading<'a, 'b> {
-    /// The axes.
+    /// The axes of the channel.
     pub axes: &'a mut OwnAxes<'b>,
     /// The kinematics with datum and tool.
     pub chain: &'a Chain,
-    /// The spindle.
+    /// The spindle that threads lead.
     pub spindle: &'a mut SpindleLoop,
-    /// What holds now.
+    /// What holds for all movements of this cycle.
     pub now: &'a Now,
 }
 
@@ -68,7 +68,7 @@ impl Leading<'_, '_> {
     }
 }
 
-/// What taps now.
+/// Which kind of tapping is in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Taps {
     /// A tap is in its hole: cycle 2, or a thread that goes back as well.
@@ -77,7 +77,7 @@ pub struct Taps {
     pub rigid: bool,
 }
 
-/// What tapping remembers.
+/// What a run keeps of its thread from cycle to cycle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tapping {
     /// The orientation before the thread was asked for.
@@ -97,7 +97,7 @@ pub fn is_rigid(element: Option<&PathElement>) -> bool {
     element.is_some_and(|element| element.thread().is_some())
 }
 
-/// Cycle 2 taps.
+/// The element is a tapping of cycle 2: the spindle turns freely in a floating holder.
 pub fn is_floating(element: Option<&PathElement>) -> bool {
     matches!(
         element.map(|element| element.override_law),
@@ -108,7 +108,7 @@ pub fn is_floating(element: Option<&PathElement>) -> bool {
 /// What a thread comes to before its spindle is led.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preparation {
-    /// It goes on.
+    /// The spindle is still being brought to where the thread begins.
     Waits,
     /// The spindle cannot be led.
     Refused,

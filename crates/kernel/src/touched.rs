@@ -51,12 +51,12 @@ pub fn corner(sides: &[[Contact; 2]; 2], radius: f64) -> Option<Point> {
     (det.abs() > PARALLEL).then(|| [(c * m[1] - d * n[1]) / det, (n[0] * d - m[0] * c) / det])
 }
 
-/// A circle, mm.
+/// A circle in the plane of the touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
-    /// Its centre, mm.
+    /// Centre in the plane of the touches, mm.
     pub centre: Point,
-    /// Its radius, mm.
+    /// Radius of the wall, mm.
     pub radius: f64,
 }
 

@@ -24,7 +24,7 @@ pub trait Outputs {
     /// A block gives its functions now; they follow in their order.
     fn begin(&mut self);
 
-    /// A function of it.
+    /// The block that was begun gives a function.
     fn output(&mut self, function: &Function);
 
     /// An order for the voltage along the path, by the block with a sequence.
@@ -322,7 +322,7 @@ fn is_circular(element: &PathElement, axis: Axis) -> bool {
     }
 }
 
-/// The rest of the way of an axis in an element, mm or degrees.
+/// Distance that an axis has to go in an element, mm or degrees.
 pub fn distance_to_go(element: &PathElement, unit: &AxisUnit, chain: &Chain) -> f64 {
     let end = chain.to_axes(&element.end)[unit.axis];
     if end.is_finite() { end - unit.nominal } else { 0.0 }

@@ -9,7 +9,7 @@ pub struct Along {
     pub sequence: u64,
     /// How much of it is covered, 0 to 1.
     pub part: f64,
-    /// Path speed, mm/min.
+    /// Speed along the path, mm/min.
     pub mm_min: f64,
 }
 
@@ -22,12 +22,11 @@ pub struct VoltageOutput {
 
 #[derive(Clone, Copy, Debug, Default)]
 enum Course {
-    /// The voltage stays.
     #[default]
     Stays,
     /// Linear along the block with this sequence.
     Along { sequence: u64, from: f64, to: f64 },
-    /// By the velocity.
+    /// As the characteristic gives it for the speed of the path.
     ByVelocity(Characteristic),
     /// Linear in time, so much of it to go.
     Ramp { to: f64, left_s: f64 },
@@ -36,7 +35,7 @@ enum Course {
 }
 
 impl VoltageOutput {
-    /// The voltage, V.
+    /// Voltage at the output now, V.
     pub fn volts(&self) -> f64 {
         self.volts
     }

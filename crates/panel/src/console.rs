@@ -17,9 +17,9 @@ const NOTES: usize = 8;
 /// Modes of the programming side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Programming {
-    /// PROGRAMMING AND EDITING.
+    /// PROGRAMMING AND EDITING: programs are written.
     Edit,
-    /// TEST RUN.
+    /// TEST RUN: a program is tested without the machine.
     Test,
 }
 

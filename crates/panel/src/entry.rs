@@ -37,7 +37,7 @@ impl Entry {
         true
     }
 
-    /// Nothing was typed.
+    /// No digit and no sign was typed.
     pub fn is_empty(&self) -> bool {
         self.text.is_empty() && !self.negative
     }

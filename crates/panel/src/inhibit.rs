@@ -19,7 +19,7 @@ const CODES: [(u16, Key); 6] = [
 /// What the PLC presses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Simulated {
-    /// A key.
+    /// A key of the keyboard.
     Key(Key),
     /// The soft key with this name, wherever it is shown.
     SoftKey(&'static str),

@@ -73,19 +73,19 @@ pub struct InputText {
     /// A line of text.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
-    /// Feed override, %.
+    /// Where the feed override stands, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feed_override: Option<f64>,
-    /// Spindle override, %.
+    /// Where the spindle override stands, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spindle_override: Option<f64>,
     /// Counting steps of the handwheel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub handwheel: Option<i64>,
-    /// Axis of the handwheel.
+    /// Letter of the axis that the handwheel is to lead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub handwheel_axis: Option<char>,
-    /// Its factor.
+    /// Interpolation factor of the handwheel: each step up halves its travel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub factor: Option<u8>,
     /// The supply of the control.
@@ -94,10 +94,10 @@ pub struct InputText {
     /// How fast time passes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
-    /// Time stands.
+    /// Time is to stand, or to go on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pause: Option<bool>,
-    /// Contour cycles.
+    /// Number of contour cycles that pass, also while time stands.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cycles: Option<u32>,
     /// A moment, s since power-on.

@@ -29,7 +29,7 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// A screen that was published.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
-    /// The screen.
+    /// What the screen showed when it was published.
     pub screen: Arc<Screen>,
 }
 
@@ -41,7 +41,7 @@ enum Order {
     With(Box<dyn FnOnce(&mut Station) + Send>),
     /// Somebody looks at the station: nothing changes, and no screen is made for it.
     Look(Box<dyn FnOnce(&Station) + Send>),
-    /// Something urgent waits.
+    /// Wakes who waits for orders: an urgent one is in the other queue.
     Urgent,
     End,
 }

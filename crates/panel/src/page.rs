@@ -27,7 +27,7 @@ impl Side {
 
 /// What came of a key.
 pub(crate) enum Turn {
-    /// It was taken.
+    /// The page has taken the key, and stays.
     Done,
     /// The page is through: what stood below it has the keys again.
     Close,
@@ -103,15 +103,15 @@ pub(crate) enum Overlay {
     /// Nothing, or what belongs to the mode.
     #[default]
     None,
-    /// MOD.
+    /// The MOD function.
     Mode,
     /// A directory, or EXT.
     Directory,
-    /// The machine parameters.
+    /// The editor of machine parameters.
     Parameters,
     /// A table: that of the tools on the machine screen, a file of the mode on the editing screen.
     Table,
-    /// The PLC mode.
+    /// A page of the PLC mode.
     Plc,
 }
 
@@ -135,7 +135,7 @@ impl Overlay {
 pub(crate) struct View {
     /// Its window; `None` leaves that of the page below.
     pub window: Option<Window>,
-    /// The dialogue line.
+    /// What the dialogue line asks or says.
     pub dialogue: Dialogue,
 }
 

@@ -56,7 +56,7 @@ impl PlcMode {
         self.records = true;
     }
 
-    /// STOP TRACE.
+    /// STOP TRACE: no more scans are recorded; those that were stay.
     pub fn stop(&mut self) {
         self.records = false;
     }

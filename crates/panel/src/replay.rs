@@ -102,7 +102,7 @@ impl Replay {
         self.inputs.len()
     }
 
-    /// Nothing was recorded.
+    /// The session has no inputs.
     pub fn is_empty(&self) -> bool {
         self.inputs.is_empty()
     }

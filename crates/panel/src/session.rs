@@ -35,7 +35,7 @@ pub struct Head {
     pub machine: String,
     /// Model of the control.
     pub model: String,
-    /// Version of Bahn.
+    /// Version of Bahn that recorded the session.
     pub version: String,
     /// Check sum of what the control had kept.
     pub kept: String,

@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum PositionType {
-    /// Actual position.
+    /// ACTL: actual position from the workpiece datum.
     #[default]
     Actl,
-    /// Nominal position.
+    /// NOML: nominal position from the workpiece datum.
     Noml,
-    /// Servo lag.
+    /// LAG: nominal minus actual position.
     Lag,
-    /// Distance to go.
+    /// DIST: distance to the end of the block.
     Dist,
     /// Actual position from the machine datum.
     Ref,
@@ -54,7 +54,7 @@ pub(crate) enum InterfaceMode {
     /// Floppy disk unit, whose directory is asked for.
     #[default]
     Fe1,
-    /// Floppy disk unit.
+    /// Floppy disk unit, whose directory is not asked for.
     Fe2,
     /// Magnetic tape unit.
     Me,
@@ -117,7 +117,7 @@ impl Default for Interface {
 /// A kind of transfer, which takes one of both interfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TransferOf {
-    /// Of whole files.
+    /// Of whole files, to read in or out.
     Files,
     /// Of a program that is executed meanwhile.
     ProgramRun,
@@ -127,15 +127,15 @@ pub(crate) enum TransferOf {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub(crate) struct Settings {
-    /// POSITION DISPLAY.
+    /// POSITION DISPLAY: what the axes are shown with.
     pub position_type: PositionType,
-    /// CHANGE MM/INCH: inches.
+    /// CHANGE MM/INCH: positions are shown and entered in inches.
     pub inch: bool,
     /// Dialogue language; `None` as MP7230 says.
     pub language: Option<String>,
-    /// PROGRAM INPUT: ISO.
+    /// PROGRAM INPUT: ISO, otherwise HEIDENHAIN.
     pub iso: bool,
-    /// RS-232-C/V.24 and RS-422/V.11.
+    /// How RS-232-C/V.24 and RS-422/V.11 are set.
     pub interfaces: [Interface; 2],
     /// Transfers of files, and of programs that run meanwhile, take the second interface.
     pub second_interface: [bool; 2],

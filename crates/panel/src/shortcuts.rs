@@ -20,9 +20,9 @@ pub enum Press {
 pub struct Shortcut {
     /// The real key, by its name in a browser: `Enter`, `F1`, `g`.
     pub real: &'static str,
-    /// With Alt.
+    /// Alt is held down with it.
     pub alt: bool,
-    /// What it does.
+    /// Key or knob of the control that it stands for.
     pub press: Press,
 }
 

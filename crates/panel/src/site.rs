@@ -59,7 +59,7 @@ impl Site<'_> {
         matches!(answer, Ok(Answer::Done))
     }
 
-    /// The control.
+    /// The control of the machine, to be looked at.
     pub fn control(&self) -> &Control {
         self.host.control()
     }

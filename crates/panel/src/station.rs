@@ -357,7 +357,7 @@ impl Station {
         self.host.store()
     }
 
-    /// The control.
+    /// The control of the machine, to be looked at.
     pub fn control(&self) -> &Control {
         self.host.control()
     }

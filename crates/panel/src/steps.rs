@@ -9,7 +9,7 @@ const MOST: u64 = 10_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StepsEnd {
-    /// All have passed.
+    /// As many as were asked for have passed.
     Complete,
     /// No more than 10,000 wait at a time: so many have passed.
     Limit,

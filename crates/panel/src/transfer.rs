@@ -17,11 +17,11 @@ pub struct TransferOrder {
     pub port: usize,
     /// The device that MOD says is connected: `fe1`, `fe2`, `me`, `ext1` or `ext2`.
     pub mode: &'static str,
-    /// Its baud rate.
+    /// Data transfer rate of the interface, baud.
     pub baud: u32,
     /// Which programs are read in where no name says it, by their ending: `H` or `I`, as PROGRAM INPUT says.
     pub kind: &'static str,
-    /// Among which files.
+    /// The kind of files that are transferred.
     pub files: TransferFiles,
     /// What is to be done.
     pub action: TransferAction,
@@ -69,7 +69,7 @@ impl TransferFiles {
 pub enum TransferAction {
     /// PROGRAM DIRECTORY: the names on the medium.
     Directory,
-    /// READ-IN ALL PROGRAMS.
+    /// READ-IN ALL PROGRAMS: every program of the medium.
     ReadAll,
     /// READ-IN PROGRAM OFFERED: each after a question.
     ReadOffered,
@@ -92,7 +92,7 @@ pub enum TransferNews {
     Connected(usize),
     /// A name on the medium, with its sectors.
     Listed(String, Option<u32>),
-    /// Free sectors.
+    /// Sectors that are free on the medium.
     Free(u32),
     /// A file is stored.
     Received(String),
@@ -255,7 +255,7 @@ impl Transfers {
         }
     }
 
-    /// Something has happened.
+    /// Takes what has come of the transfer.
     pub fn news(&mut self, news: TransferNews) {
         match news {
             TransferNews::Connected(port) => {

@@ -66,7 +66,7 @@ pub enum OutputPlace {
 /// Where the path waits for the acknowledgement of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaitPlace {
-    /// Nowhere.
+    /// The path does not wait for it.
     Nowhere,
     /// Before the motion of its block.
     Before,

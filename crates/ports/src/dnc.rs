@@ -23,15 +23,15 @@ const START_US: u64 = 5_000_000;
 pub enum Ended {
     /// The program came to its end.
     Completed,
-    /// A message stands.
+    /// What control or line say has stopped it.
     Message(String),
-    /// By Ctrl-C.
+    /// The operator has broken it off with Ctrl-C.
     Interrupted,
 }
 
 /// What is to be done.
 pub struct Wishes {
-    /// The program.
+    /// Name of the program that the line delivers.
     pub name: String,
     /// How often it is begun again when the line breaks.
     pub restarts: u32,
@@ -41,7 +41,7 @@ pub struct Wishes {
 
 /// A host and its line.
 pub struct Session<'a, P> {
-    /// The machine.
+    /// The machine that executes it.
     pub host: Host<P>,
     line: &'a mut dyn BlockLine,
     wishes: Wishes,

@@ -14,7 +14,7 @@ use crate::{PortError, Tell};
 /// A port as the PLC may have it.
 #[derive(Clone)]
 pub struct PlcPort {
-    /// Its hold on the port.
+    /// By what the PLC takes the port and gives it back.
     pub hold: PlcHold,
     /// What the operator has set up.
     pub mode: Mode,
@@ -33,9 +33,9 @@ pub struct PlcLines {
     tell: Tell,
 }
 
-/// Where FN15 prints.
+/// Where the texts of FN15 go.
 enum Printer {
-    /// At a port.
+    /// To the device at a port.
     Port(PlcHold),
     /// Lines are added to a file.
     File(PathBuf),

@@ -5,7 +5,7 @@
 use bahn_picture::{Anchor, Colour, Image, mix};
 use bahn_service::{Line, Picture, Screen, Star, Window, WindowKind};
 
-/// Pixels.
+/// Width and height of the picture, pixels.
 const SIZE: [u32; 2] = [640, 480];
 /// Pixels of a character.
 const CELL: [f64; 2] = [8.0, 16.0];
@@ -63,7 +63,7 @@ pub fn draw(screen: &Screen, picture: Option<&Picture>) -> Image {
     sheet.image
 }
 
-/// `#d28220`.
+/// The colour that a text such as `#d28220` names.
 fn of_text(text: &str) -> Option<Colour> {
     let packed = u32::from_str_radix(text.strip_prefix('#')?, 16).ok()?;
     let [_, red, green, blue] = packed.to_be_bytes();

@@ -116,7 +116,7 @@ pub type Attendants =
 pub struct Attendance {
     /// A file that is there already is asked for before it is replaced.
     pub asks: bool,
-    /// Who attends each.
+    /// Makes who attends a port, one for each.
     pub attendant: Attendants,
     /// Hears of what goes wrong.
     pub tell: Tell,
@@ -152,7 +152,7 @@ impl Serving {
         Ok(Serving { stop, threads, trace })
     }
 
-    /// Closes them.
+    /// Closes the ports, and waits until nothing more passes.
     pub fn end(self) -> Result<(), PortError> {
         self.stop.store(true, Ordering::Relaxed);
         for thread in self.threads {

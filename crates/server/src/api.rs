@@ -15,7 +15,7 @@ use serde_json::json;
 use crate::pictures::{PIXELS, SIDE};
 use crate::shared::Shared;
 
-/// `GET /api/station`.
+/// `GET /api/station`: what does not change while the station is on.
 pub(crate) async fn station(State(shared): State<Shared>) -> Response {
     Json(shared.about.as_ref()).into_response()
 }
@@ -39,7 +39,7 @@ pub(crate) async fn texts(State(shared): State<Shared>, Query(spoken): Query<Spo
     }
 }
 
-/// `GET /api/screen`.
+/// `GET /api/screen`: what the screen shows now.
 pub(crate) async fn screen(State(shared): State<Shared>) -> Response {
     Json(shared.machine.screen().as_ref()).into_response()
 }

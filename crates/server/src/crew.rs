@@ -170,7 +170,7 @@ pub(crate) enum Taking {
     New,
     /// It was done before its connection broke.
     Twice,
-    /// Another viewer operates.
+    /// Another viewer has the operating panel.
     NotOperator,
     /// He may only look.
     Looks,

@@ -82,7 +82,7 @@ struct CrewView<'a> {
     asks: Option<&'a str>,
 }
 
-/// `GET /ws?name=...&key=...`.
+/// `GET /ws?name=...&key=...`: the connection over which a viewer sees and operates the machine.
 pub(crate) async fn open(
     State(shared): State<Shared>,
     Extension(role): Extension<Role>,

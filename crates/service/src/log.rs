@@ -19,15 +19,15 @@ const LOOK: Duration = Duration::from_millis(20);
 pub struct Event {
     /// Counts the events since the machine runs, from 1.
     pub number: u64,
-    /// When it was.
+    /// Real time at which it happened.
     pub time: SystemTime,
-    /// Its kind.
+    /// Key or message.
     pub kind: EventKind,
     /// Name of the key, or text of the message.
     pub text: String,
 }
 
-/// Kind of an event.
+/// What the log of a control keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EventKind {
     /// A key of the keyboard was pressed.
@@ -146,7 +146,7 @@ impl Log {
         }
     }
 
-    /// Something has happened.
+    /// Appends an event of this kind; the oldest goes where there are too many.
     pub fn note(&self, kind: EventKind, text: String) {
         self.kept().note(kind, text);
     }

@@ -18,7 +18,7 @@ use crate::tables;
 pub struct Machine {
     /// Name of the machine.
     pub name: String,
-    /// The control model.
+    /// Model whose limits, keys and functions the control has.
     pub model: ControlModel,
     /// Keys of the keyboard of the model.
     pub keyboard: Vec<Key>,
@@ -31,7 +31,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// That of a station.
+    /// What of a station does not change while it runs.
     pub fn of(station: &Station) -> Machine {
         let folder = &station.machine().folder;
         let plc = Path::new(&folder.plc).file_name().unwrap_or_default();

@@ -15,10 +15,10 @@ pub struct State {
     /// Time since power-on, s.
     #[serde(rename = "t")]
     pub time_s: f64,
-    /// Operating mode.
+    /// Operating mode of the first channel.
     #[serde(serialize_with = "mode")]
     pub mode: Mode,
-    /// State of the run.
+    /// State of the first channel's run.
     #[serde(serialize_with = "run")]
     pub run: RunState,
     /// The run has come to the end of its program.
@@ -35,7 +35,7 @@ pub struct State {
     pub running: Option<RunningBlock>,
     /// The axes in the order of their indices.
     pub axes: Vec<AxisPosition>,
-    /// Path speed, mm/min.
+    /// Speed along the path now, mm/min.
     #[serde(rename = "feed")]
     pub feed_mm_min: f64,
     /// Programmed feed, mm/min; `None` while a block moves in rapid traverse.
@@ -47,7 +47,7 @@ pub struct State {
     /// Spindle override in force, %.
     #[serde(rename = "spindle_override")]
     pub spindle_override_percent: f64,
-    /// The spindle.
+    /// The spindle of the first channel.
     pub spindle: SpindleState,
     /// Number of the tool in the spindle.
     pub tool: u32,
@@ -74,7 +74,7 @@ pub struct RunningBlock {
 /// An axis, mm or degrees.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AxisPosition {
-    /// Its letter.
+    /// Letter by which programs name the axis.
     pub letter: char,
     /// Actual position from the workpiece datum.
     pub actual: f64,
@@ -82,28 +82,28 @@ pub struct AxisPosition {
     pub nominal: f64,
     /// Actual position from the machine datum.
     pub machine: f64,
-    /// Servo lag.
+    /// Nominal minus actual position.
     pub lag: f64,
-    /// Distance to go.
+    /// Distance to the end of the block that is executed.
     pub distance_to_go: f64,
     /// It has crossed its reference mark.
     pub referenced: bool,
     /// Its position loop is closed.
     pub closed: bool,
-    /// It may move.
+    /// The PLC has enabled its feed.
     pub enabled: bool,
     /// It is within its positioning window.
     pub in_position: bool,
 }
 
-/// The spindle.
+/// Speeds, voltage and gear range of a spindle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SpindleState {
-    /// Programmed speed, rpm.
+    /// Speed of the S word, rpm.
     pub programmed_rpm: f64,
     /// Actual speed, rpm, negative as M04.
     pub actual_rpm: f64,
-    /// Nominal voltage, V.
+    /// Nominal voltage at the output, V.
     pub volts: f64,
     /// Gear range, 1 to 8.
     pub gear: u8,
@@ -114,9 +114,9 @@ pub struct SpindleState {
 pub struct Tool {
     /// Its axis, when a run has chosen one.
     pub axis: Option<Axis>,
-    /// Tool length, mm.
+    /// Length in the tool axis, mm.
     pub length_mm: f64,
-    /// Tool radius, mm.
+    /// Radius in the working plane, mm.
     pub radius_mm: f64,
 }
 

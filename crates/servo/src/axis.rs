@@ -32,7 +32,7 @@ const REST_TIME_CONSTANTS: f64 = 5.0;
 /// No machine is larger, mm: farther commands are not taken.
 const POSITION_MAX_MM: f64 = 1e9;
 
-/// A nominal way of a servo step that is rounding and not movement, mm.
+/// A nominal distance of a servo step that is rounding and not movement, mm.
 const STANDING_MM: f64 = 1e-9;
 /// So far may the nominal position of an axis in position go without being a movement, mm.
 const REST_MM: f64 = 1e-6;
@@ -290,7 +290,7 @@ impl Axis {
         }
     }
 
-    /// Velocity of the nominal value for a nominal way in this step.
+    /// Velocity of the nominal value for a nominal distance in this step.
     fn update_velocity(&mut self, distance_mm: f64) {
         self.profile_mm_min = distance_mm / self.timing.step_min();
         let control = self.characteristic.velocity_mm_min(self.lag_mm());
@@ -566,7 +566,7 @@ impl Axis {
         shift
     }
 
-    /// Counts from elsewhere: nominal and actual position shift by a way, mm, and nothing moves. A rotary
+    /// Counts from elsewhere: nominal and actual position shift by a distance, mm, and nothing moves. A rotary
     /// axis that has turned goes on within one turn.
     pub fn shift(&mut self, distance_mm: f64) {
         self.measuring.shift(distance_mm);

@@ -15,7 +15,7 @@ pub struct Gantry {
     offset_mm: f64,
     /// Where the offset is driven to, mm.
     goal_mm: f64,
-    /// Way in a contour cycle in which it is driven, mm.
+    /// Distance in a contour cycle in which it is driven, mm.
     part_mm: f64,
     limit_mm: Option<f64>,
     from_marks: bool,

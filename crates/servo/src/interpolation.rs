@@ -1,6 +1,6 @@
 //! Nominal positions of the servo steps: fine interpolation and transient response.
 
-/// Divides the way of a contour cycle evenly among its servo steps [000:212-224].
+/// Divides the distance of a contour cycle evenly among its servo steps [000:212-224].
 #[derive(Clone, Debug)]
 pub(crate) struct FineInterpolation {
     start: f64,

@@ -95,12 +95,12 @@ impl MeasuringSystem {
         self.backlash_mm = compensation.backlash_mm;
     }
 
-    /// Way of a counting step, mm, with the sense of counting.
+    /// Distance of a counting step, mm, with the sense of counting.
     pub(crate) fn step_mm(&self) -> f64 {
         self.step_mm
     }
 
-    /// The least way that is seen, mm.
+    /// The least distance that is seen, mm.
     pub(crate) fn measuring_step_mm(&self) -> f64 {
         self.step_mm.abs() * self.measuring_steps as f64
     }
@@ -160,7 +160,7 @@ impl MeasuringSystem {
         }
     }
 
-    /// Where the table is, mm: the way of the encoder by its signal period, the linear error (positive
+    /// Where the table is, mm: the distance of the encoder by its signal period, the linear error (positive
     /// where the table travels too far) [000:3736], the error of the tables, the play, and without the
     /// tracked offset, which moves the machine but not the display [000:3902-3904].
     pub(crate) fn actual_mm(&self) -> f64 {
@@ -208,7 +208,7 @@ impl MeasuringSystem {
         self.scale_zero = None;
     }
 
-    /// Every count is a position farther on by a way, mm.
+    /// Every count is a position farther on by a distance, mm.
     pub(crate) fn shift(&mut self, distance_mm: f64) {
         self.datum_mm += distance_mm / self.linear_factor;
     }

@@ -6,10 +6,10 @@ use crate::fault::{Fault, GrossFault};
 use crate::method::Method;
 use crate::timing::{OUTPUT_VOLTS, Timing};
 
-/// Time over which the way is compared with the calculated one, s (inferred: "several servo cycles"
+/// Time over which the distance is compared with the calculated one, s (inferred: "several servo cycles"
 /// [000:5270]).
 pub(crate) const MOVEMENT_WINDOW_S: f64 = 0.1;
-/// Part of the calculated way by which the way may differ (inferred): a drive that accelerates after its
+/// Part of the calculated distance by which the distance may differ (inferred): a drive that accelerates after its
 /// nominal value stays below it.
 pub(crate) const MOVEMENT_TOLERANCE: f64 = 0.5;
 
@@ -17,7 +17,7 @@ pub(crate) const MOVEMENT_TOLERANCE: f64 = 0.5;
 pub(crate) struct Sample {
     pub actual_mm: f64,
     pub lag_mm: f64,
-    /// Nominal way of the step.
+    /// Nominal distance of the step.
     pub distance_mm: f64,
     /// The nominal position stands.
     pub standing: bool,

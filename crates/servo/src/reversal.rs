@@ -41,7 +41,7 @@ impl Travel {
     }
 }
 
-/// The way that is put on top of the nominal position after a reversal: it grows to the height of the peak
+/// The distance that is put on top of the nominal position after a reversal: it grows to the height of the peak
 /// by a part in each contour cycle [000:3671-3732], and goes back by the same parts (inferred).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ReversalPeak {
@@ -55,7 +55,7 @@ impl ReversalPeak {
         self.goal_mm = direction * height_mm;
     }
 
-    /// A contour cycle; the way to put on top at its end, mm.
+    /// A contour cycle; the distance to put on top at its end, mm.
     pub(crate) fn advance(&mut self, part_mm: f64) -> f64 {
         let part = if part_mm > 0.0 { part_mm } else { f64::INFINITY };
         self.value_mm += (self.goal_mm - self.value_mm).clamp(-part, part);

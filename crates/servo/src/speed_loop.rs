@@ -21,7 +21,7 @@ const LIMIT_VOLTS: f64 = 15.0;
 pub struct SpeedState {
     /// N NOMINAL: what the position loop asks for, or the step of the oscilloscope.
     pub nominal_mm_min: f64,
-    /// N ACTUAL: the way of the motor's encoder in the last step.
+    /// N ACTUAL: the distance of the motor's encoder in the last step.
     pub actual_mm_min: f64,
     /// N INT: their difference.
     pub difference_mm_min: f64,
@@ -33,7 +33,7 @@ pub struct SpeedState {
 pub(crate) struct SpeedLoop {
     settings: SpeedLoopSettings,
     step_min: f64,
-    /// Way of a counting step of the motor's encoder, mm, in the sense of the axis (MP1040), and the speed of one for
+    /// Distance of a counting step of the motor's encoder, mm, in the sense of the axis (MP1040), and the speed of one for
     /// each servo step, mm/min.
     step_mm: f64,
     per_step: f64,
@@ -52,7 +52,7 @@ pub(crate) struct SpeedLoop {
     /// Counts of motor and position encoder at which the two were found together.
     together: Option<(i64, i64)>,
     sum_steps: f64,
-    /// The nominal way of the last step.
+    /// The nominal distance of the last step.
     asked_steps: f64,
     profile_mm_min: f64,
     direction: f64,

@@ -223,7 +223,7 @@ impl Spindle {
         }
     }
 
-    /// Turns a spindle that stands by a way in degrees from where it is held, at MP3520.1; the reference mark need not
+    /// Turns a spindle that stands by a distance in degrees from where it is held, at MP3520.1; the reference mark need not
     /// be known. `false` for one that turns.
     pub fn turn_by(&mut self, turn_deg: f64) -> bool {
         if self.turning() != 0.0 || !turn_deg.is_finite() {

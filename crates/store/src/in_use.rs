@@ -16,7 +16,7 @@ pub enum Change {
 /// Says of a file whether the machine has it in use, so that this cannot be done to it now.
 pub struct InUse(pub Box<Question>);
 
-/// What is asked.
+/// Whether a file must stay as it is: this change cannot be made now.
 type Question = dyn Fn(&Place, Change) -> bool + Send + Sync;
 
 impl InUse {

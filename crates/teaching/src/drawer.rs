@@ -16,16 +16,16 @@ pub struct Breakable {
     pub group: String,
     /// What it is, in words.
     pub words: String,
-    /// How it breaks.
+    /// The faults that it can have.
     pub faults: Vec<Breaking>,
     /// The action that makes it whole.
     pub repair: String,
 }
 
-/// A way to break.
+/// A fault that something can have.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Breaking {
-    /// The action.
+    /// The action that brings the fault about, as a script writes it.
     pub action: String,
     /// What happens, in words.
     pub words: String,

@@ -196,7 +196,7 @@ impl Past {
         self.looks.is_some()
     }
 
-    /// What is shown of it.
+    /// The line and its marks, as the screen shows them.
     pub fn shown(&self, host: &Host<AnyPlant>) -> TimeLine {
         let now_us = host.control().time_us();
         let (to_us, marks) = match &self.looks {

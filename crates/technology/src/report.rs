@@ -76,7 +76,7 @@ pub struct Warning {
     pub block: String,
 }
 
-/// How a program ended.
+/// Whether and when a program came to its end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProgramEnd {
     /// Name of the file.
@@ -92,7 +92,7 @@ pub struct ProgramEnd {
 pub struct Event {
     /// The cycle in which the PLC sees it, s.
     pub t: f64,
-    /// The kind of event.
+    /// What happened to the function, or to the path.
     pub kind: EventKind,
     /// Letter and number without leading zeros: `M25`, `H5`, `S`; of `active` the letter alone.
     pub function: Option<String>,
@@ -100,7 +100,7 @@ pub struct Event {
     pub value: Value,
     /// Only of MOS_TS in the range of the channel: `t` less the instant at which the path passed the place, µs.
     pub offset_us: Option<f64>,
-    /// Path velocity, mm/min.
+    /// Velocity along the path at that time, mm/min.
     pub v: f64,
     /// Range: `channel`, `X`, name of the spindle.
     pub target: Option<String>,
@@ -116,7 +116,7 @@ pub struct Event {
     pub order: Option<u64>,
 }
 
-/// Kinds of events.
+/// What reports tell of functions and of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EventKind {
@@ -209,7 +209,7 @@ pub struct Sample {
     pub t: f64,
     /// Distance along the path, mm.
     pub distance_mm: f64,
-    /// Path velocity, mm/min.
+    /// Velocity along the path at that time, mm/min.
     pub v: f64,
 }
 

@@ -28,9 +28,9 @@ pub(crate) const SPINDLE_M: [u32; 4] = [3, 4, 5, 19];
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelSettings {
-    /// The settings of the M functions.
+    /// M functions by their numbers, with their synchronisation.
     pub m: FunctionTable,
-    /// The settings of the H functions.
+    /// H functions by their numbers, with their synchronisation.
     pub h: FunctionTable,
     /// Spindles by the index of `spindel[i]`.
     pub spindles: BTreeMap<usize, SpindleSettings>,
@@ -154,7 +154,7 @@ impl FunctionTable {
 /// What a list says of one spindle.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SpindleSettings {
-    /// `bezeichnung`; see [`SpindleSettings::name`].
+    /// `bezeichnung`: the name of the spindle; see [`SpindleSettings::name`].
     pub label: Option<String>,
     /// `log_achs_nr`, the logical axis number.
     pub log_axis: Option<u32>,

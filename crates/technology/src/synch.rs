@@ -31,7 +31,7 @@ const NOT_VALID: [&str; 2] = ["NOT_VALID", "NOT_VAILD"];
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Synch {
-    /// The synchronisation type.
+    /// When the function is output, and who waits for its acknowledgement.
     pub kind: Synchronisation,
     /// `PLC_INFO`: M functions of an NC spindle go to the PLC, too, and are waited for [004:159].
     pub plc_info: bool,

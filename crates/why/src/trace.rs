@@ -29,7 +29,7 @@ pub(crate) enum Cause {
 pub(crate) struct Writers(HashMap<Bit, Vec<usize>>);
 
 impl Writers {
-    /// Of a program.
+    /// Finds where a program writes each operand.
     pub fn of(program: &PlcProgram) -> Writers {
         let mut writers = Writers::default();
         for (place, instruction) in program.code.iter().enumerate() {

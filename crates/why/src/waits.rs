@@ -34,7 +34,7 @@ pub struct Waits {
 }
 
 impl Waits {
-    /// Of a machine with its plant.
+    /// What it has to know of a machine and its plant; nothing is waited for yet.
     pub fn new(machine: &LoadedMachine, plant: &impl Operable) -> Waits {
         Waits {
             wired: plant.wires(),

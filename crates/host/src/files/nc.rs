@@ -29,7 +29,7 @@ pub fn nc_reader(program: &Program, start: &Start) -> Option<NcReader> {
 pub struct NcFolder(PathBuf);
 
 impl NcFolder {
-    /// The folder of a program.
+    /// The folder in which a program lies.
     pub fn of(program: &Path) -> NcFolder {
         NcFolder(program.parent().unwrap_or(Path::new("")).to_owned())
     }

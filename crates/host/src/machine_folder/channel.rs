@@ -10,7 +10,7 @@ use bahn_path::{Axis, Position};
 pub struct LoadedChannel {
     /// What `machine.toml` says of it.
     pub folder: ChannelFolder,
-    /// Its machine parameters.
+    /// Its own list of machine parameters with the values.
     pub parameters: ParameterList,
     /// The number on the machine of each of its axes, by their indices.
     pub axes: PerPlcAxis<Option<AxisId>>,

@@ -31,7 +31,7 @@ pub(super) struct Moment {
     pub plc: Part,
     /// What the control remembers, of each channel.
     pub control: Vec<Part>,
-    /// Where everything stands.
+    /// Where axes, spindle and tools of the simulated machine stand.
     pub mechanics: Mechanics,
 }
 
@@ -53,7 +53,7 @@ pub(super) enum Found {
     Same,
     /// As it was before: the process ended before it was written.
     Before,
-    /// Otherwise.
+    /// Somebody has written it since.
     Other,
 }
 

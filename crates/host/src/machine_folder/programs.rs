@@ -64,7 +64,7 @@ impl FolderPrograms {
         self.main.as_ref().map(|main| files::short_name(main))
     }
 
-    /// The main program.
+    /// The main program; `None` where none was named.
     pub fn main(&self) -> Option<&Arc<Program>> {
         self.main.as_ref()
     }

@@ -77,7 +77,7 @@ pub struct Found {
 
 /// Where the mechanics stand, and whether the rest is of the same moment.
 pub struct FoundMechanics {
-    /// Where everything is.
+    /// Where axes, spindle and tools of the simulated machine stand.
     pub mechanics: Mechanics,
     /// The pockets of the tables have changed since: who changed them has put the tools there.
     pub loaded_anew: bool,

@@ -29,7 +29,7 @@ pub struct Back<T> {
 
 /// Gives the interpolator the elements of the track from one on back.
 pub struct FeedBack<'a, T, O> {
-    /// The path.
+    /// The path that is driven backwards.
     pub track: &'a Places<T, O>,
     /// Where it is on it.
     pub back: &'a mut Back<T>,

@@ -80,7 +80,7 @@ pub struct Moment {
     pub t: f64,
     /// Where the axes are.
     pub position: Position,
-    /// Path speed, mm/s.
+    /// Speed along the path, mm/s.
     pub speed_mm_s: f64,
 }
 
@@ -98,13 +98,13 @@ pub enum Way {
 /// A lead that was not kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Short {
-    /// What it was.
+    /// The lead that was kept, s or mm.
     pub is: f64,
-    /// What it should be.
+    /// The lead that was asked for, s or mm.
     pub asked: f64,
     /// They are times, s; otherwise distances, mm.
     pub is_time: bool,
-    /// Why.
+    /// What kept it from more.
     pub why: Why,
 }
 

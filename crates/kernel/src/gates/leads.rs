@@ -9,7 +9,7 @@ use super::held::{Held, SAME_MM};
 /// A function that is still to be output ahead.
 #[derive(Clone, Copy, Debug)]
 pub struct Pending<T> {
-    /// Its ticket.
+    /// The ticket by which its family knows it.
     pub id: T,
     /// Count of executed blocks.
     pub unit: u64,
@@ -38,7 +38,7 @@ impl<T> Pending<T> {
 /// A function that was output ahead of its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Promise<T> {
-    /// The function.
+    /// The function, with the lead that was asked for.
     pub ahead: Pending<T>,
     /// When it was output, s.
     pub output_s: f64,

@@ -7,9 +7,9 @@ use bahn_path::{BlockRef, Curve, FeedRate, PathElement, Position};
 /// How a movement is driven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Driving {
-    /// In rapid traverse.
+    /// It goes in rapid traverse.
     pub rapid: bool,
-    /// Its feed, mm/min.
+    /// Programmed feed, mm/min.
     pub feed_mm_min: f64,
     /// What limits it beside the axes.
     pub limit: VectorLimit,
@@ -18,14 +18,14 @@ pub struct Driving {
 /// Limits of the path itself, as `#VECTOR LIMIT` sets them: infinite where there are none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VectorLimit {
-    /// Greatest velocity, mm/min.
+    /// Greatest velocity along the path, mm/min.
     pub velocity_mm_min: f64,
     /// Greatest acceleration, mm/s²: both slopes have the lesser of ACC and DEC.
     pub acceleration_mm_s2: f64,
 }
 
 impl VectorLimit {
-    /// No limits.
+    /// The axes alone limit the path.
     pub const NONE: VectorLimit = VectorLimit {
         velocity_mm_min: f64::INFINITY,
         acceleration_mm_s2: f64::INFINITY,
@@ -35,11 +35,11 @@ impl VectorLimit {
 /// An element of the path.
 #[derive(Clone, Debug)]
 pub struct Leg {
-    /// Its shape.
+    /// Line or arc from start to end.
     pub curve: Curve,
-    /// Where it begins.
+    /// Path position where it begins.
     pub start: Position,
-    /// Where it ends.
+    /// Path position where it ends.
     pub end: Position,
     /// How it is driven.
     pub driving: Driving,
@@ -47,7 +47,7 @@ pub struct Leg {
     pub block: Arc<str>,
     /// Count of executed blocks.
     pub unit: u64,
-    /// Its length, mm.
+    /// Length along the path, mm.
     pub length: f64,
     /// Distance along the path to its start, mm.
     pub from: f64,

@@ -130,7 +130,7 @@ impl Motion {
         }
     }
 
-    /// Path speed, mm/s.
+    /// Path speed, mm/s: 0 where a rest below the rounding is left.
     pub fn speed(&self) -> f64 {
         let speed = self.path.speed_mm_s();
         if speed < STANDS_MM_S && self.path.rest_mm() < ROUNDING_MM {

@@ -152,7 +152,7 @@ impl<T: Copy, O> Places<T, O> {
         self.tail.drain(..count.min(self.tail.len()));
     }
 
-    /// An element more.
+    /// Appends an element at the end of the path.
     pub fn push_leg(&mut self, mut leg: Leg) {
         leg.from = self.distance;
         self.distance += leg.length;

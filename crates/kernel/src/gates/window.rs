@@ -53,7 +53,7 @@ pub struct Planned {
     pub real: f64,
     /// How far that is after where it was planned, mm.
     pub deviation: f64,
-    /// Why.
+    /// What kept it from going out where it was planned.
     pub held: Held,
 }
 

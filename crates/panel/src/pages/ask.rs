@@ -20,7 +20,7 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    /// Asks.
+    /// A question with the soft keys of yes and no; `answered` learns which.
     pub fn ask(
         prompt: String,
         names: [String; 2],
@@ -94,12 +94,12 @@ impl Later {
         }))
     }
 
-    /// Gives the answer.
+    /// The question was answered with this text.
     pub fn set(&self, text: &str) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(text.to_owned());
     }
 
-    /// The answer, once.
+    /// The answer, if there is one; it is given once.
     pub fn take(&self) -> Option<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

@@ -20,7 +20,7 @@ fn name() -> String {
     format!("{BACKUP_NAME}.A")
 }
 
-/// BACKUP DATA.
+/// BACKUP DATA: writes everything that the control keeps to the device.
 pub(crate) fn save(site: &mut Site) -> Turn {
     let written = everything(site).and_then(|text| site.programs.write(&name(), text.as_bytes()));
     match written {

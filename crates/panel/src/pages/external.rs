@@ -31,7 +31,7 @@ const MENU: [&str; 7] = [
 /// What an editor transfers.
 #[derive(Clone, Copy)]
 pub(crate) struct Own {
-    /// Which files.
+    /// The kind of files that it transfers.
     pub files: TransferFiles,
     /// The names of all of them.
     pub names: fn(&Site) -> Vec<String>,
@@ -39,7 +39,7 @@ pub(crate) struct Own {
     pub named: fn(&str, &Site) -> String,
 }
 
-/// Programs and tables.
+/// What the directory of programs and tables transfers.
 const PROGRAMS: Own = Own {
     files: TransferFiles::Programs,
     names: |site| site.programs.list().into_iter().map(|entry| entry.name).collect(),
@@ -66,7 +66,6 @@ pub(crate) fn open(side: Side, site: &mut Site) -> Turn {
     }
 }
 
-/// The menu.
 struct Menu {
     current: usize,
     own: Own,

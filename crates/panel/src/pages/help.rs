@@ -235,7 +235,7 @@ impl Explanation {
     }
 }
 
-/// Words in lines.
+/// A text in lines of the window's width, broken between words.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

@@ -26,7 +26,7 @@ const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
 enum Row {
     /// Mode of operation of an interface.
     Mode(usize),
-    /// Its baud rate.
+    /// Data transfer rate of an interface, baud.
     Baud(usize),
     /// The interface of a kind of transfer.
     Assigned(TransferOf),
@@ -34,7 +34,7 @@ enum Row {
     Ext(usize),
 }
 
-/// The page.
+/// RS-232/RS-422 SETUP of the MOD function.
 pub(crate) fn page() -> Box<dyn Page> {
     Box::new(Menu::new(Interfaces { backs_up: false }))
 }

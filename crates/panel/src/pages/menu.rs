@@ -12,7 +12,7 @@ const SOFT_KEYS: [&str; 2] = ["SELECT", "END"];
 
 /// A line of a menu.
 pub(crate) struct Item {
-    /// What it is.
+    /// What can be chosen or set in this line.
     pub name: String,
     /// What it stands at.
     pub value: String,
@@ -30,7 +30,7 @@ impl Item {
 
 /// What a menu has to say, and what a choice comes to.
 pub(crate) trait Items: Send {
-    /// Its title.
+    /// What stands above the lines.
     fn title(&self, site: &Site) -> String;
     /// Its lines as they are now.
     fn items(&self, site: &Site) -> Vec<Item>;
@@ -52,7 +52,7 @@ pub(crate) trait Items: Send {
     fn overlay(&self) -> Overlay {
         Overlay::None
     }
-    /// It is left.
+    /// The menu is closed: what is unfinished ends.
     fn leave(&mut self, _site: &mut Site) {}
     /// What is asked meanwhile.
     fn prompt(&self, _site: &Site) -> String {
@@ -60,7 +60,7 @@ pub(crate) trait Items: Send {
     }
 }
 
-/// A menu.
+/// Lines of which one has the cursor.
 pub(crate) struct Menu<I> {
     items: I,
     current: usize,

@@ -54,7 +54,7 @@ pub(crate) fn of_mode(mode: Mode, model: ControlModel) -> Box<dyn Page> {
     }
 }
 
-/// PROGRAMMING AND EDITING.
+/// The page of PROGRAMMING AND EDITING.
 pub(crate) fn editing(site: &mut Site) -> Box<dyn Page> {
     Box::new(programming::Programming::new(site))
 }
@@ -69,7 +69,7 @@ pub(crate) fn everywhere(key: Key, side: Side, note: Option<&str>, site: &mut Si
     }
 }
 
-/// TEST RUN.
+/// The page of TEST RUN.
 pub(crate) fn test_run(site: &mut Site) -> Box<dyn Page> {
     Box::new(test_run::TestRun::new(site))
 }

@@ -13,7 +13,7 @@ const SWITCHES: [(&str, bool); 2] = [("PROGRAM RUN", true), ("MANUAL OPERATION",
 /// The axes that may swivel.
 const LETTERS: [char; 3] = ['A', 'B', 'C'];
 
-/// The menu.
+/// 3D ROT: where a tilted plane is on, and its angles.
 pub(super) fn menu() -> Turn {
     Turn::Open(Box::new(Menu::new(Plane)))
 }

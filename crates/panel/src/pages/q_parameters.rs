@@ -11,10 +11,9 @@ use crate::pages::ask::Later;
 use crate::pages::list;
 use crate::site::Site;
 
-/// Its soft keys.
 const SOFT_KEYS: [&str; 3] = ["PAGE UP", "PAGE DOWN", "END"];
 
-/// The Q parameters.
+/// Values of the Q parameters, to be looked at and changed.
 #[derive(Default)]
 pub(crate) struct QParameters {
     current: u16,

@@ -116,7 +116,6 @@ fn go_on(site: &mut Site) -> Turn {
     Turn::Done
 }
 
-/// The soft keys.
 const KEYS: [Key; 5] = [Key::Start, Key::Stop, Key::Graphics, Key::BlkForm, Key::Magn];
 
 impl Page for TestRun {

@@ -6,7 +6,7 @@ use bahn_control::{Control, RunState};
 
 use crate::settings::Settings;
 
-/// A minute, µs.
+/// µs of a minute.
 const MINUTE_US: u64 = 60_000_000;
 
 /// The settings, and what of them is on the medium.

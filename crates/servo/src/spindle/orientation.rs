@@ -37,7 +37,7 @@ pub(super) struct Dynamics {
 }
 
 impl Dynamics {
-    /// The velocity at a way from the target, degrees/min: kv, at most the speed of the orientation, and no
+    /// The velocity at a distance from the target, degrees/min: kv, at most the speed of the orientation, and no
     /// more than the ramp can brake.
     pub(super) fn velocity(&self, turn_deg: f64) -> f64 {
         let brakes = (2.0 * self.deceleration * turn_deg.abs()).sqrt();
@@ -45,12 +45,12 @@ impl Dynamics {
         amount.copysign(turn_deg)
     }
 
-    /// Way in which the spindle comes to its target from a speed in degrees/min: of the ramp and of kv.
+    /// Distance in which the spindle comes to its target from a speed in degrees/min: of the ramp and of kv.
     fn stopping_deg(&self, speed: f64) -> f64 {
         speed * speed / (2.0 * self.deceleration) + speed / self.slope
     }
 
-    /// The way to an angle, degrees, from an angle at a velocity (degrees/min, 0 at standstill) and in a
+    /// The distance to an angle, degrees, from an angle at a velocity (degrees/min, 0 at standstill) and in a
     /// direction: +1, -1, or 0 for the shorter way.
     pub(super) fn turn_deg(&self, from_deg: f64, to_deg: f64, velocity: f64, direction: f64) -> f64 {
         let forward = (to_deg - from_deg).rem_euclid(360.0);

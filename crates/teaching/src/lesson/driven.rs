@@ -4,7 +4,7 @@ use bahn_host::{AnyPlant, Host, LoadedMachine};
 
 /// What a lesson drives until its task begins.
 pub trait Driven {
-    /// The machine's folder.
+    /// What the machine's folder says, as it was loaded.
     fn machine(&self) -> &LoadedMachine;
 
     /// The machine that is on.

@@ -16,7 +16,7 @@ pub(crate) struct Words {
 }
 
 impl Words {
-    /// In a language.
+    /// The text in a language; English where it has none.
     pub fn of(&self, language: Language) -> &str {
         match language {
             Language::German if !self.german.is_empty() => &self.german,
@@ -49,7 +49,7 @@ impl Words {
 /// What the machine is when the task begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Begin {
-    /// As it is.
+    /// The machine as it stands, whatever was done before.
     Here,
     /// Nothing is broken, and the control was switched on just now.
     PowerOn,
@@ -78,9 +78,9 @@ pub(crate) enum Condition {
 /// Conditions with the words for them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Check {
-    /// What it is.
+    /// What the check asks for, in words.
     pub words: Words,
-    /// All of this.
+    /// All of this must be so at the same time.
     pub conditions: Vec<Condition>,
 }
 

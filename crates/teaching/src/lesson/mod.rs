@@ -114,7 +114,7 @@ pub fn load(machine: &LoadedMachine, plant: &AnyPlant, name: &str) -> Result<Les
 }
 
 impl LessonRun {
-    /// Where it stands.
+    /// Whether the lesson runs, or how it has ended.
     pub fn state(&self) -> LessonState {
         match self.now.ended {
             None => LessonState::Running,
@@ -259,7 +259,7 @@ impl LessonRun {
     }
 }
 
-/// What is looked at.
+/// Screen and begin that conditions look at.
 struct Look {
     /// What can be read on the screen, when somebody has looked.
     text: Option<String>,

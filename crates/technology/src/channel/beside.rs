@@ -12,7 +12,7 @@ pub(super) struct Beside<'a> {
 }
 
 impl<'a> Beside<'a> {
-    /// None does.
+    /// No axis moves beside the path yet.
     pub(super) fn new(limits: &'a Limits) -> Beside<'a> {
         Beside {
             limits,
@@ -27,7 +27,7 @@ impl<'a> Beside<'a> {
         self.ended_at = Position::UNKNOWN;
     }
 
-    /// All have ended.
+    /// No axis moves beside the path any more.
     pub(super) fn all_ended(&self) -> bool {
         self.moving.is_empty()
     }

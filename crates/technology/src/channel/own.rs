@@ -11,6 +11,6 @@ pub(crate) enum Own {
     AllEnded,
     /// The program cannot go on.
     Fault(Box<Fault>),
-    /// The program ends.
+    /// The program is at its end.
     End,
 }

@@ -28,14 +28,13 @@ pub(super) struct Taking<'t> {
     pub(super) ranges: &'t mut Ranges,
     /// MVS_SLM and MVS_SLP functions that wait for their place.
     pub(super) late: &'t mut [Vec<OrderId>; 2],
-    /// Contour cycle, s.
     pub(super) cycle_s: f64,
     pub(super) script: Option<&'t Script>,
     pub(super) warnings: &'t mut Vec<Warning>,
 }
 
 impl<'a> Plan<'a> {
-    /// Nothing is decoded.
+    /// A plan with nothing decoded yet.
     pub(super) fn new(settings: &'a ChannelSettings) -> Plan<'a> {
         Plan {
             settings,

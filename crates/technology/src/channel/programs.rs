@@ -25,7 +25,6 @@ const ROUNDS: usize = 8;
 /// What the path has passed is forgotten every so many cycles.
 const FORGET: u64 = 1024;
 
-/// How a program ended.
 enum Ended {
     Completed,
     Reset,

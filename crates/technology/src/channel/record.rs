@@ -14,7 +14,7 @@ const SAMPLES: usize = 20_000;
 pub(super) const EVENTS: usize = 5_000_000;
 /// Times are multiples of a cycle: what binary fractions add is less than this part of a second.
 const PER_S: f64 = 1e9;
-/// mm/s to mm/min.
+/// From mm/s to mm/min.
 const PER_MIN: f64 = 60.0;
 
 #[derive(Debug, Default)]

@@ -13,13 +13,13 @@ const SYNCH_TYPES: &str = include_str!("../../data/synch-types.tsv");
 /// Whose synchronisation a value is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// An M function.
+    /// An M function of the channel.
     M,
-    /// An H function.
+    /// An H function of the channel.
     H,
     /// A function of a spindle.
     Spindle,
-    /// The T word.
+    /// The T word of a tool.
     Tool,
 }
 
@@ -50,11 +50,11 @@ impl Owner {
 pub enum Kind {
     /// A synchronisation type, by constants or as a number.
     Synch(Owner),
-    /// A whole number.
+    /// A whole number within limits.
     Number {
-        /// Least value.
+        /// Least value that is accepted.
         min: u32,
-        /// Greatest value.
+        /// Greatest value that is accepted.
         max: u32,
     },
     /// A flag, 0 or 1.

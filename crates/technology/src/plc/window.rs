@@ -20,7 +20,7 @@ use super::{Answer, Id, Output};
 
 /// Bytes of a slot.
 const SLOT: usize = 16;
-/// Slots of the window.
+/// Functions that the window takes at a time.
 const SLOTS: usize = 8;
 /// Bytes of the window: eight functions at a time.
 pub const WINDOW_BYTES: u16 = (SLOT * SLOTS) as u16;

@@ -30,7 +30,7 @@ const KEY: &str = "compensation";
 /// Width of a column.
 const WIDTH: usize = 12;
 
-/// The editor.
+/// Editor of an assignment (.CMA): the tables of the axes, a set a line.
 struct Assignment {
     name: String,
     file: ErrorFile,
@@ -42,7 +42,7 @@ struct Assignment {
     asks: bool,
 }
 
-/// Opens an assignment.
+/// Opens the assignment of a name; in words, why it cannot be read.
 pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
     let mut assignment = Assignment {
         name: name.to_owned(),

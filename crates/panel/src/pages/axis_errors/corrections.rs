@@ -14,7 +14,6 @@ use crate::pages::ask::Choice;
 use crate::pages::{description, list};
 use crate::site::Site;
 
-/// Its soft keys.
 const SOFT_KEYS: [&str; 6] = [
     "PAGE UP",
     "PAGE DOWN",

@@ -27,7 +27,7 @@ pub(super) struct Head {
     fields: Vec<Field>,
 }
 
-/// Opens it.
+/// Opens the head line of a file with its fields.
 pub(super) fn open(file: ErrorFile, line: usize, fields: Vec<Field>) -> Turn {
     Turn::Open(Box::new(Menu::new(Head { file, line, fields })))
 }

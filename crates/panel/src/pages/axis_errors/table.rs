@@ -16,7 +16,7 @@ use crate::page::{Page, Turn, View};
 use crate::pages::list;
 use crate::site::Site;
 
-/// Its soft keys [000:3829].
+/// Soft keys of the editor [000:3829].
 const SOFT_KEYS: [&str; 8] = [
     "BEGIN",
     "LAST LINE",
@@ -32,7 +32,7 @@ const COLUMNS: usize = 6;
 /// Width of number, position and column in the window.
 const WIDTHS: [usize; 3] = [5, 12, 11];
 
-/// The editor.
+/// Editor of a compensation table (.COM): points, and corrections at them.
 struct Table {
     name: String,
     file: ErrorFile,
@@ -47,7 +47,7 @@ struct Table {
     heads: bool,
 }
 
-/// Opens a table.
+/// Opens the table of a name; in words, why it cannot be read.
 pub(super) fn open(name: &str, path: &Path) -> Result<Turn, String> {
     let mut table = Table {
         name: name.to_owned(),

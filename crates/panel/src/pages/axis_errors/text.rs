@@ -21,7 +21,7 @@ pub(super) const NEW_HEAD: &str = "MM DATUM 0 DIST 16";
 pub(super) enum Kind {
     /// A compensation table (.COM).
     Table,
-    /// An assignment (.CMA).
+    /// Which table counts for which axis (.CMA).
     Assignment,
     /// The correction tables of code number 105 296.
     Corrections,
@@ -120,7 +120,7 @@ fn lines(text: &str) -> Vec<String> {
     lines.filter(|line| !line.is_empty()).map(str::to_owned).collect()
 }
 
-/// A text of lines.
+/// The lines as a file, each with its end.
 pub(super) fn text_of(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{line}\n")).collect()
 }

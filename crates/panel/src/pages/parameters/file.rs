@@ -32,12 +32,12 @@ pub(super) fn in_force(site: &Site) -> String {
     selected.unwrap_or_else(|| site.machine.folder.parameters.clone())
 }
 
-/// What was entered.
+/// What the editor has changed and not yet written.
 #[derive(Default)]
 pub(super) struct Entered {
-    /// Values by parameter.
+    /// New values of parameters.
     pub values: BTreeMap<ParameterId, f64>,
-    /// Comments [000:10017].
+    /// New comments of parameters [000:10017].
     pub comments: BTreeMap<ParameterId, String>,
     /// Lines that were taken away, from 1, with what stood there.
     pub removed: BTreeMap<usize, String>,
@@ -62,7 +62,7 @@ pub(super) struct ListFile {
 pub(super) enum Refused {
     /// A line of it cannot be read.
     Line(ListError),
-    /// In words.
+    /// What is wrong with its values or its file, in words.
     Words(String),
 }
 

@@ -34,7 +34,6 @@ const LISTS: Own = Own {
 const VALUE_MAX: usize = 40;
 /// Lines below the list: what the value under the cursor means.
 const MEANING: usize = 4;
-/// Its soft keys.
 const SOFT_KEYS: [&str; 8] = ["%", "$", "PAGE UP", "PAGE DOWN", "FIND", ";", "QUIT", "END"];
 /// Characters of a comment at most (inferred).
 const COMMENT_MAX: usize = 60;
@@ -59,7 +58,7 @@ impl Row {
     }
 }
 
-/// The editor.
+/// Editor of a list of machine parameters.
 struct Parameters {
     title: String,
     /// Which parameters are shown.
@@ -76,7 +75,7 @@ struct Parameters {
     comment: Later,
     goto: Later,
     find: Later,
-    /// Another list.
+    /// Name of another list, which is to be edited.
     chosen: Later,
 }
 
@@ -99,7 +98,7 @@ pub(crate) fn commission(site: &Site) -> Result<Box<dyn Page>, String> {
     Ok(Box::new(editor))
 }
 
-/// The whole list.
+/// Opens the editor with all parameters of the list.
 pub(crate) fn all(site: &Site) -> Turn {
     editor(site, |_| true)
 }

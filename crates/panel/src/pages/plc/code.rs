@@ -31,7 +31,7 @@ const WORD_MAX: usize = 32;
 /// Digits of a line number at most.
 const NUMBER_MAX: usize = 6;
 
-/// TRACE IN CODE.
+/// TRACE IN CODE: the program with the operands of a scan beside its lines.
 pub(super) struct Code {
     program: Arc<PlcProgram>,
     /// The scan that stands, while the display does not go on.

@@ -21,11 +21,11 @@ const COLUMN: usize = 10;
 /// What becomes of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
-    /// With line numbers.
+    /// The source with line numbers.
     Listing,
     /// What uses each operand.
     References,
-    /// Both.
+    /// Listing and references in a text.
     Both,
     /// Without the columns that its editor makes.
     Unformatted,
@@ -39,7 +39,7 @@ pub(super) const FORMS: [(&str, Form); 4] = [
     ("UNFORM.", Form::Unformatted),
 ];
 
-/// Their names.
+/// Names of the soft keys, in the order of [`FORMS`].
 pub(super) const KEYS: [&str; 4] = ["LISTING", "CROSSREF", "LISTING+CROSSREF", "UNFORM."];
 
 /// Asks for the name of the text, and writes it.

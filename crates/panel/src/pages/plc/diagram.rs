@@ -16,7 +16,7 @@ const COLUMNS: usize = 64;
 /// Characters of an operand at most.
 const OPERAND_MAX: usize = 6;
 
-/// Table and curves.
+/// LOGIC DIAGRAM: the operands that are recorded, and their curves.
 #[derive(Default)]
 pub(super) struct LogicDiagram {
     current: usize,

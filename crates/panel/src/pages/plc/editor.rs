@@ -40,7 +40,7 @@ const CHARACTERS: [&str; 16] = [
     "BLANK", "=", ";", "_", "+", ",", "#", "\"", "(", ")", "[", "]", "<", ">", "*", "/",
 ];
 
-/// The editor.
+/// Editor of a source file of the PLC.
 pub(super) struct Editor {
     name: String,
     source: Source,

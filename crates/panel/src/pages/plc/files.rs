@@ -43,7 +43,7 @@ const ONE: [[&str; 8]; 2] = [
         "END",
     ],
 ];
-/// With two windows.
+/// Soft keys while two windows are shown.
 const TWO: [[&str; 8]; 2] = [
     [
         "PAGE UP",
@@ -66,11 +66,11 @@ const TWO: [[&str; 8]; 2] = [
         "END",
     ],
 ];
-/// SELECT TYPE [000:11335-11350].
+/// Soft keys of SELECT TYPE: the ending of the files that are shown [000:11335-11350].
 const TYPES: &[&str] = &[
     "SHOW ALL", ".PLC", ".ER1", ".ERE", ".DI1", ".DIE", ".A", "END", ".HLP", ".BIN", ".COM", ".CMA",
 ];
-/// MODIFY WINDOW [000:11300-11304].
+/// Soft keys of MODIFY WINDOW: the memory that a window shows [000:11300-11304].
 const DEVICES: &[&str] = &["SELECT TYPE", TNC, EPROM, EXT];
 const TNC: &str = "SELECT TNC";
 const EPROM: &str = "SELECT TNC/EPROM";
@@ -88,7 +88,7 @@ struct Entry {
     eprom: Option<(String, Vec<u8>)>,
 }
 
-/// A window.
+/// A window with files of one memory.
 #[derive(Default)]
 struct Pane {
     entries: Vec<Entry>,

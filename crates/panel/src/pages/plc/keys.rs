@@ -7,7 +7,7 @@ use crate::pages::ask::Later;
 use crate::pages::list;
 use crate::site::Site;
 
-/// Leaves them.
+/// Soft key that leaves the rows.
 const END: &str = "END";
 
 /// The rows, the last soft key of each of which is END.

@@ -43,7 +43,7 @@ const SOFT_KEYS: [&str; 8] = [
     "END",
 ];
 
-/// The main menu [000:11203-11241].
+/// Main menu of the PLC mode [000:11203-11241].
 struct MainMenu;
 
 impl MainMenu {

@@ -33,7 +33,7 @@ const BYTES: u16 = 1024;
 /// What a table has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Area {
-    /// Bits.
+    /// Inputs, outputs, markers and the like: 0 or 1.
     Bits(BitArea),
     /// Bytes, words or doublewords.
     Numbers(Size),
@@ -81,7 +81,7 @@ impl Area {
     }
 }
 
-/// The table.
+/// Operands with their contents after the last scan.
 pub(super) struct Table {
     area: Area,
     operands: Vec<Operand>,

@@ -40,7 +40,7 @@ enum Function {
     /// OSZI: the oscilloscope without its code number, once it was entered [000:18674-18675].
     Oscilloscope,
     Help,
-    /// RS-232/RS-422 SETUP [000:17216-17218].
+    /// Modes and baud rates of both interfaces [000:17216-17218].
     Interfaces,
 }
 

@@ -7,7 +7,7 @@ use bahn_screen::{Line, Window, WindowKind};
 use crate::page::{Page, Turn, View};
 use crate::site::Site;
 
-/// Opens the dialogue.
+/// Opens the dialogue; refused while the control shows no offsets.
 pub(super) fn open(site: &Site) -> Turn {
     match site.control().offsets_shown() {
         Some(_) => Turn::Open(Box::new(Offsets)),

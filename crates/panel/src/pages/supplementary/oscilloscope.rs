@@ -15,7 +15,7 @@ use crate::site::Site;
 
 use super::parameters;
 
-/// PRE-TRIGGER, % [000:18728-18729].
+/// What PRE-TRIGGER can be set to, % [000:18728-18729].
 const PRE_TRIGGERS: [u8; 5] = [0, 25, 50, 75, 100];
 /// Greatest NOML. FEED RATE, mm/min: that of MP1010.
 const MOST_FEED: f64 = 300_000.0;
@@ -62,7 +62,7 @@ pub(super) fn open() -> Turn {
     Turn::Open(Box::new(MainDisplay::default()))
 }
 
-/// The main display.
+/// What is recorded and triggered, a line each.
 #[derive(Default)]
 struct MainDisplay {
     current: usize,
@@ -312,7 +312,7 @@ impl Page for MainDisplay {
     }
 }
 
-/// The curves.
+/// Curves of the last recording.
 struct Display;
 
 /// What a soft key of the curves does, row by row as the manual has them [000:18675-18680]; its pictures are lost, so that

@@ -6,10 +6,9 @@ use bahn_screen::{Line, Window, WindowKind};
 use crate::page::{Page, Turn, View};
 use crate::site::Site;
 
-/// The timers.
 pub(super) struct Timers;
 
-/// Hours and minutes.
+/// Minutes as hours and minutes.
 fn time(minutes: u64) -> String {
     format!("{:>6}:{:02}", minutes / 60, minutes % 60)
 }

@@ -50,7 +50,7 @@ pub(crate) fn has_tools(site: &Site) -> bool {
     sizes.table_size > 0 && !is_disabled(TOOL_FILE, site)
 }
 
-/// The pocket table.
+/// Opens the editor of the pocket table.
 pub(crate) fn pockets(site: &mut Site) -> Turn {
     open(POCKET_FILE, site)
 }
