@@ -43,8 +43,8 @@ test: deps
 		$(CARGO) check --manifest-path fuzz/Cargo.toml --locked --quiet
 	$(CARGO) package --workspace --locked --no-verify --allow-dirty --quiet
 	@mkdir -p $(OUT)
-	BAHN_TRAIL=$(CURDIR)/$(OUT)/debug.trail $(CARGO) test -p bahn-control --locked --quiet --test reproducible twice
-	BAHN_TRAIL=$(CURDIR)/$(OUT)/release.trail $(CARGO) test -p bahn-control --locked --quiet --release --test reproducible twice
+	BAHN_TRAIL=$(CURDIR)/$(OUT)/debug.trail $(CARGO) test -p bahn-tnc --locked --quiet --test reproducible twice
+	BAHN_TRAIL=$(CURDIR)/$(OUT)/release.trail $(CARGO) test -p bahn-tnc --locked --quiet --release --test reproducible twice
 	cmp $(OUT)/debug.trail $(OUT)/release.trail
 
 # What a change is looked at with before everything is tried: format, lints, the order of the house, the tests of the

@@ -7,7 +7,7 @@
 
 #![no_main]
 
-use bahn_control::{CompensationAssignment, CompensationTable, CorrectionTables};
+use bahn_tnc::{CompensationAssignment, CompensationTable, CorrectionTables};
 use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 

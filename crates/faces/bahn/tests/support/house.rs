@@ -1,0 +1,58 @@
+//! The folders of the rooms: each stands in that of its layer, below `crates`.
+#![allow(dead_code, reason = "each test uses a part")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The layers from the ground up, each a folder of rooms.
+pub const LAYERS: [&str; 10] = [
+    "base", "drives", "models", "programs", "kernel", "families", "machine", "part", "faces", "test",
+];
+
+/// The folder of the project.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .find(|folder| folder.join("Cargo.lock").exists())
+        .unwrap()
+        .to_owned()
+}
+
+/// The folder of each room, by layer and name.
+pub fn rooms() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    manifests_below(&root().join("crates"), &mut found);
+    found.sort_by_key(|room| (layer(room), name(room)));
+    found
+}
+
+/// The place of a room's layer among them.
+pub fn layer(room: &Path) -> usize {
+    let folder = name(room.parent().unwrap());
+    let place = LAYERS.iter().position(|layer| *layer == folder);
+    place.unwrap_or_else(|| panic!("{folder} is no layer: {}", room.display()))
+}
+
+fn manifests_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        if path.join("Cargo.toml").exists() {
+            found.push(path);
+        } else if path.is_dir() {
+            manifests_below(&path, found);
+        }
+    }
+}
+
+/// The name of a room.
+pub fn name(room: &Path) -> String {
+    room.file_name().unwrap().to_string_lossy().into_owned()
+}
+
+/// A file that is named as the documents name it, from its room on: `path/src/frame.rs`.
+pub fn file(named: &str) -> PathBuf {
+    let (room, rest) = named.split_once('/').unwrap_or((named, ""));
+    rooms()
+        .into_iter()
+        .find(|folder| name(folder) == room)
+        .map_or_else(|| root().join(named), |folder| folder.join(rest))
+}
