@@ -6,7 +6,7 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test check deps bench doc pictures conformance faults torture trails tools browser terminal axe pylsv2 clean
+.PHONY: run test check deps bench doc pictures conformance decisions faults torture trails tools browser terminal axe pylsv2 clean
 
 # Built for the first look: without the screens in the terminal, and with the profile for it.
 BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
@@ -79,6 +79,10 @@ trails:
 # docs/conformance.md, made anew from the registry.
 conformance:
 	BAHN_WRITE_DOCS=1 $(CARGO) test -p bahn --locked --quiet --test conformance the_document
+
+# docs/decisions.md, made anew from the decisions beside the code.
+decisions:
+	BAHN_WRITE_DOCS=1 $(CARGO) test -p bahn --locked --quiet --test decisions the_document
 
 # docs/faults.md, made anew from the table of faults.
 faults:

@@ -1,4 +1,9 @@
 //! Coordinate transformations of the program as one frame.
+//!
+//! Decision: `point = shift + rotation · mirror · scaling · programmed`
+//!
+//! Decision: The basic rotation turns the frame of a program from outside, about the datum; the axes and the display
+//! stay as they are
 
 use crate::{Axis, PerAxis, Plane, Position};
 

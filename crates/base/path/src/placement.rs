@@ -1,5 +1,10 @@
 //! Between the path as it is programmed and the axes: a tilted working plane, the compensation of swivel axes, and an
 //! unrolled cylinder surface.
+//!
+//! Decision: An element of a tilted plane or under M114 has its coordinates in it and a `Placement`, which says where
+//! the tool datum is: motion asks it for what the axes do, the control for where they are and whether they stay in
+//! their range. Upright ones have none. Files of the path list the coordinates of the plane (also
+//! `motion/src/placed.rs`, `kernel/src/kinematics.rs`)
 
 use std::sync::Arc;
 

@@ -3,6 +3,9 @@
 //! The links of a head lead from the tool datum outwards, to where no free rotary axis is left before the machine; those of
 //! a table from the centre of its first axis, as seen from the workpiece, outwards. With all free axes at 0 the head holds
 //! the tool as a machine without swivel axes does [000:4258-4264].
+//!
+//! Decision: Tables turn against the sense of their axes; fixed rotations turn the coordinate system of the links
+//! behind them; what M114 compensates is the head alone
 
 use crate::frame::sin_cos_deg;
 use crate::{Axis, Position};

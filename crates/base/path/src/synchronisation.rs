@@ -1,4 +1,7 @@
 //! When a function goes out, and where the path waits for its acknowledgement: the types of TF5200, a row for each.
+//!
+//! Decision: The thirteen synchronisation types are rows of one table at the bottom of the house, since the rooms
+//! that read it have no other in common
 
 use std::fmt;
 

@@ -1,4 +1,9 @@
 //! What is wrong at a place of a file, whatever its language.
+//!
+//! Decision: What is wrong with a file as a whole is shown at its first line
+//!
+//! Decision: Only what is a fault of a text becomes a `Diagnostic`: a page of a picture that is too small, and the
+//! error of a run in a report, have no place in a file that somebody reads
 
 use std::fmt;
 use std::path::PathBuf;

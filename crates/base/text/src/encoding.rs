@@ -1,4 +1,8 @@
 //! How the bytes of a file are its text.
+//!
+//! Decision: A file is UTF-16 where a byte order mark or the zero bytes of its first letters say so, UTF-8 where all
+//! of it is, else Latin-1: one rule for programs, tables, lists, scripts, descriptions and PLC sources, since editors
+//! and controls write any of them. What is edited is written as it was read
 
 use std::borrow::Cow;
 

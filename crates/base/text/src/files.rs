@@ -1,4 +1,8 @@
 //! Files by their names, wherever they lie.
+//!
+//! Decision: Files that a text names are `Files`, whatever the language; what finds them knows folders, the language
+//! knows spellings and endings. The RAM and the EPROM of the PLC are two of them. The files of a data interface are
+//! others: they are listed, written and streamed (also `plc/src/source.rs`, `link/src/files.rs`)
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,7 @@
 //! A place in a file.
+//!
+//! Decision: Columns count characters: they are what people count, and what is shown. The language server alone
+//! converts them to the UTF-16 units of its protocol (also `lsp/src/text/lines.rs`)
 
 /// A place in a file. Lines and columns count from 1. Columns and lengths count characters (Unicode scalar values), not
 /// bytes and not UTF-16 units: who speaks to an editor converts them.

@@ -18,6 +18,12 @@
 //!   `v² <= r · a`;
 //! - [`SHARE`] covers that a step acts at one instant of its own time, in the worst case the middle of
 //!   the triangle.
+//!
+//! Decision: Corners without compensation stop unless tangential, within MP7460 or M90; those are passed at the feed
+//! as far as the servo follows the step of velocity (`SERVO_WINDOW_S`)
+//!
+//! Decision: A rotary axis that moves beside linear ones keeps to MP7460 with a degree for a mm counted as a mm, at
+//! tangential joints too; M90 passes it
 
 use bahn_path::{Axis, PerAxis};
 

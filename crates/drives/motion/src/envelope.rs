@@ -5,6 +5,9 @@
 //! [*wanted*](Wanted) and may be lowered at any time, even below the speed of the path. The path then brakes with
 //! all that it has, and so stays below the envelope of what is allowed: it was below it before, and no path within the
 //! acceleration can fall faster.
+//!
+//! Decision: Overrides may fall below the speed of the path at any time: it then brakes with all it has and so stays
+//! below what the geometry allows
 
 use crate::allowed::Allowed;
 use crate::joints::Caps;

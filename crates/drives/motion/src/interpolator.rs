@@ -1,4 +1,12 @@
 //! The path in contour cycles, with overrides and stops that come at any moment.
+//!
+//! Decision: Axes that followed the spindle, and were moved when the drives were taken away, go on from where they
+//! stand: what is left of the thread is driven again, though its end was output, and beyond an end of it they go back
+//! on the ramp of the spindle; a tool that is out of the thread goes back to where that begins. They are coupled when
+//! the spindle stands. In a tilted plane NC start leads them back beside the thread first; a run that waited for its
+//! feed enable does so itself (also `kernel/src/thread.rs`)
+//!
+//! Decision: Dwell is interrupted by NC stop; it comes before the functions at the end of its block
 
 mod ahead;
 mod master;

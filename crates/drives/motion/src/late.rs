@@ -1,4 +1,7 @@
 //! Functions whose acknowledgement the path needs later than where they go out: in time it passes without a stop.
+//!
+//! Decision: The path plans a stop where a function may still have to be acknowledged, and takes it back when it is:
+//! an acknowledgement in time costs nothing
 
 use bahn_path::{At, Function, OutputPlace, PathElement, Synchronisation, WaitPlace};
 

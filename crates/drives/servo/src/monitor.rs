@@ -1,4 +1,11 @@
 //! Monitoring of lag, voltage, movement and standstill [000:5160-5300].
+//!
+//! Decision: Without feed enable the limits of servo lag hold, also with pre-control, until the lag is run down
+//!
+//! Decision: After POSITIONING ERROR, MP1150 later, the actual position becomes the nominal one once and the drive
+//! gets 0 V until CE; the position monitoring goes on from there, so that an axis that runs or sinks farther than
+//! MP1720 is GROSS POSITIONING ERROR A, as one without feed enable. Movement and standstill monitoring begin anew
+//! with CE: they would take the run-on of a sound drive for a fault
 
 use crate::settings::AxisSettings;
 

@@ -1,4 +1,10 @@
 //! The seam between control and machine.
+//!
+//! Decision: The fault word of a drive is GROSS POSITIONING ERROR C: the axis does not move as it is told; status
+//! words are not judged
+//!
+//! Decision: What a square-wave input counts begins with a whole measuring step where the encoder stands at power-on;
+//! inputs of models whose manuals name none are for sine signals (also `parameters/src/limits.rs`)
 
 use crate::handwheel::HandwheelInputs;
 

@@ -1,4 +1,8 @@
 //! The transient response on acceleration: the pre-controlled velocity runs up damped.
+//!
+//! Decision: MP1530 (MP64) is the part of the missing velocity that pre-control keeps back in each servo step while
+//! the axis accelerates; braking is not damped, and what is kept back is lag. Software without MP1530 is its smallest
+//! entry, which the lists have
 
 /// The pre-controlled part of the nominal velocity. While an axis accelerates it comes up with the velocity of the
 /// profile damped by MP1530, MP64 of the TNC 151/155; when the profile brakes it goes down with it at once, for that

@@ -1,4 +1,7 @@
 //! The digital speed controller of a TNC 425: nominal speed in, torque out [000:18117-18521].
+//!
+//! Decision: MP1940 counts 20 times what MP1920 does; MP1925 is the time constant with which the sum of the integral
+//! part forgets; MP1960 is put into that sum
 
 use crate::settings::{AxisSettings, SpeedLoopSettings};
 

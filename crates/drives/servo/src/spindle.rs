@@ -1,4 +1,7 @@
 //! The main spindle: speed, gear, ramps, orientation [000:5438-5945].
+//!
+//! Decision: A spindle turns when it is faster than its loop is at the edge of the window MP3420; slower it stands,
+//! and an orientation goes the way that is asked
 
 mod encoder;
 mod lead;

@@ -13,6 +13,9 @@
 //! ```
 //!
 //! Nothing here knows a protocol or a machine.
+//!
+//! Decision: How long a token or a password is compared depends on what is said alone, neither on the length of the
+//! secret nor on how much of it is right
 
 #![cfg_attr(
     test,

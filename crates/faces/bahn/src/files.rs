@@ -1,4 +1,7 @@
 //! Files of the command line: outputs replace no input. How files are read and written is the host's.
+//!
+//! Decision: An output replaces no program, list, table, description or memory, whoever reads it; one that cannot be
+//! written ends a run with its report (also `bahn/src/run/mod.rs`)
 
 use std::fs;
 use std::io::Write;

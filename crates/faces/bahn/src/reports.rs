@@ -1,5 +1,8 @@
 //! The reports of several files, one after the other: one that cannot be read is told, has its place among the others, and
 //! hides none of them.
+//!
+//! Decision: Of several files that a command reports as JSON one that cannot be read has its place with `file`,
+//! `completed` false and `error` (also `bahn/src/refused.rs`)
 
 use std::path::Path;
 

@@ -1,4 +1,10 @@
 //! From options to the settings of the other rooms.
+//!
+//! Decision: In `bahn test --machine` the workpiece lies at the datum of machine.toml; who is compared by `--against`
+//! lies where this run lies
+//!
+//! Decision: A list with MP10 or MP410 (TNC 151/155: MP72, MP90) means its axes and no others in a test run, too;
+//! without a machine and such a list there are all
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -78,26 +78,6 @@ fn the_index_names_every_document() {
     }
 }
 
-/// A decision stands beside the code that holds it: the files that its row names are there.
-#[test]
-fn decisions_name_files_that_are_there() {
-    let text = fs::read_to_string(root().join("docs/decisions.md")).unwrap();
-    let rows = text
-        .lines()
-        .filter(|line| line.starts_with("| ") && !line.starts_with("| decision"));
-    let mut count = 0;
-    for row in rows {
-        let (_, places) = row.trim_end_matches([' ', '|']).rsplit_once(" | ").unwrap();
-        let named: Vec<_> = places.split('`').skip(1).step_by(2).collect();
-        assert!(!named.is_empty(), "no file is named: {row}");
-        for file in named.iter().filter(|name| name.contains('/')) {
-            assert!(house::file(file).exists(), "{file} is not there: {row}");
-        }
-        count += 1;
-    }
-    assert!(count > 250, "{count}");
-}
-
 /// The map stays one that is read at a sitting.
 const MAP_BYTES: usize = 20_000;
 /// Promises of the map that name their test.

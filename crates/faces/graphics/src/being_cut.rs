@@ -1,4 +1,7 @@
 //! The part that is being cut, for whoever looks at it from every side.
+//!
+//! Decision: The tool stands in the view where the element that is executed has brought it; the element itself is cut
+//! at its end
 
 use std::sync::Arc;
 

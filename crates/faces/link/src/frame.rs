@@ -1,4 +1,7 @@
 //! Blocks with check characters [000:17351-17440].
+//!
+//! Decision: With 8 data bits the check character checks the eighth, too; a blank before ETB is taken away only where
+//! the check character says that it was put there
 
 use crate::settings::Settings;
 use crate::text::LINE_MAX;

@@ -3,6 +3,9 @@
 //! Machine parameters 226 to 229 are the characters that set the printer up, 230 to 233 those before each line, in words whose
 //! high byte goes first; the first byte is their number. A line is eight rows of dots, a byte for each column with the upper
 //! dot in its highest bit *(inferred)*.
+//!
+//! Decision: In a hard copy the upper dot is the highest bit; a picture becomes 512 dots wide, greys are dots of
+//! sixteen, what shines is black
 
 use bahn_parameters::ParameterList;
 

@@ -2,6 +2,10 @@
 //!
 //! The manual says what modules 9100 to 9107 do, and nothing of the bytes. With the standard protocol a text is a line, with
 //! the blockwise one it is a block; what comes is acknowledged when the PLC has room for it *(inferred)*.
+//!
+//! Decision: A text of the PLC is a line with CR LF in the standard protocol, a block that is acknowledged in the
+//! other; what comes is acknowledged, or the other side let go on, when the PLC has taken the text before; a text
+//! with nobody at the line is refused (`M3171`)
 
 use std::collections::VecDeque;
 use std::time::Duration;

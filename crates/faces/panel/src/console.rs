@@ -1,5 +1,10 @@
 //! Who has the keys: the machine side with its operating mode, or programming beside it, and the pages that stand on
 //! them.
+//!
+//! Decision: To module 9035 positions stand on every screen that is displayed, and graphics where the page has them;
+//! a table on the editing screen is its file and lies over nothing; the machine screen has no code for the editors
+//! that a code number opens, so it is MOD; .CMA and .COM are the compensation table (7), the file is the one that is
+//! edited or tested (also `panel/src/page.rs`)
 
 use bahn_dialogue::Key;
 use bahn_graphics::Subject;

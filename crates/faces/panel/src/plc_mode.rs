@@ -1,4 +1,10 @@
 //! What the PLC mode keeps while other pages are shown: the diagram that is recorded, the scan that is traced.
+//!
+//! Decision: A logic diagram with several triggers waits for the first edge of any; it goes on recording while other
+//! pages are shown. TRACE looks at every scan in the reference interpreter as long as its page lies open
+//!
+//! Decision: The window of the PLC is displayed and in the foreground all the time, since the screen shows it beside
+//! every mode: what module 9081 tells follows from no screen that is chosen
 
 use std::sync::{Arc, Weak};
 

@@ -1,4 +1,8 @@
 //! What a page may touch.
+//!
+//! Decision: What is captured is what the display shows, with the tool length in the tool axis, in input steps and in
+//! the unit of the program; by hand CAPTURE writes a block after the selected one only while no block is open there;
+//! its axes stand in the order of the machine (also `panel/src/pages/editing.rs`, `dialogue/src/capture.rs`)
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! The operator's station: a machine that is on, and its panel.
+//!
+//! Decision: At the operating panel a cycle waits for what programs need to be read and computed, also in real time:
+//! sessions and the time line repeat what was, at the price of cycles that come late (also `host/src/host.rs`)
 
 mod chosen;
 mod commissioning;

@@ -1,4 +1,10 @@
 //! The status display, made of what the control shows [003:949-971].
+//!
+//! Decision: With MP7285 = 0 the display, and DATUM SET with it, are of the nose of the spindle; CAPTURE and the
+//! probing by hand stay with the tip of the tool (also `panel/src/pages/datum.rs`)
+//!
+//! Decision: F is highlighted when any controlled axis lacks its feed enable; between blocks it is the last feed that
+//! was programmed, 0 after the choice of a program (also `kernel/src/track.rs`)
 
 use bahn_exchange::signal;
 use bahn_parameters::ParameterList;

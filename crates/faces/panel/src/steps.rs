@@ -1,4 +1,8 @@
 //! Contour cycles that somebody asks for: they pass one by one, and what is given meanwhile is done between two of them.
+//!
+//! Decision: Contour cycles that somebody asks for while time stands pass in real time, 10,000 wait at most, and what
+//! is given meanwhile is done between them; pausing or going on breaks them off; EMERGENCY STOP goes before all other
+//! inputs and breaks off what takes long (also `panel/src/live.rs`)
 
 use serde::Serialize;
 

@@ -1,4 +1,7 @@
 //! The screen as data: what every front end shows, a test reads and a screen reader speaks.
+//!
+//! Decision: A TNC 360 and older have a screen without colours and with one column: one operating mode at a time,
+//! graphics in the place of the program (also `screen/src/colours.rs`)
 
 use std::collections::BTreeMap;
 

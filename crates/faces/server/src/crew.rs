@@ -1,4 +1,6 @@
 //! Who looks at a station, and who of them operates.
+//!
+//! Decision: A viewer is who knows his key, which his page makes; a name is shown and proves nothing
 
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -4,6 +4,9 @@
 //! never said a word before those who look, these before those who operate, those who wait before those who are being
 //! answered, and of alike ones whoever is silent longest. So connections that are opened and left open push each other
 //! out, and nobody who operates.
+//!
+//! Decision: A connection that comes to the panel always gets a place: who has never asked goes first, then who
+//! looks, who operates last, of alike ones the longest silent
 
 use std::collections::HashMap;
 use std::net::{IpAddr, Ipv6Addr};

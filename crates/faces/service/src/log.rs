@@ -1,4 +1,7 @@
 //! The log book: the last keys and messages [000:17526], each with a number.
+//!
+//! Decision: The log book has all keys of the keyboard, whichever interface presses them, and all messages; a message
+//! comes into it within 20 ms, so that its time is right and none is lost while nobody asks
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -1,4 +1,11 @@
 //! The handle on a machine that runs.
+//!
+//! Decision: A program that a run has, interrupted or not, is neither replaced, renamed nor deleted by any interface,
+//! as the panel does not let it be erased or edited; a datum table or pallet table that machine.toml names may be
+//! replaced, and is there as long as the machine needs it (also `store/src/in_use.rs`)
+//!
+//! Decision: The folders of part programs and of the PLC are made where a machine lacks them, since every interface
+//! shows them as drives
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};

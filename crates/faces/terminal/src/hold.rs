@@ -3,6 +3,9 @@
 //! Most terminals report that a key was pressed, and repeat that while it stays down, but not that it was let
 //! go. A key counts as held as long as it is repeated; one that is tapped is down for [`RENEWED`]. Terminals with the
 //! keyboard protocol of kitty report when a key was let go, but not of one that writes a letter.
+//!
+//! Decision: In the terminal a key of the machine is held as long as the terminal repeats it, at most 200 ms after
+//! the last time; one that is tapped is down so long. Where the keyboard protocol of kitty tells releases, they count
 
 use std::time::{Duration, Instant};
 

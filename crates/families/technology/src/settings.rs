@@ -1,4 +1,10 @@
 //! What a channel parameter list sets, typed: what the channel does with each function [004:195-234].
+//!
+//! Decision: Free spindle functions (`spindle_m_fct_free 1`) need an entry in `m_synch` as any other; without that
+//! switch they are internal (also `technology/src/channel/resolve.rs`)
+//!
+//! Decision: A spindle without `bezeichnung` is called S, S2, S3 by its index; the main spindle is `spindel[0]`
+//! unless `main_spindle_ax_nr` names another
 
 use std::collections::BTreeMap;
 

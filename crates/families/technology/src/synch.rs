@@ -1,6 +1,9 @@
 //! Synchronisation of a function: its type, a row of [`Synchronisation`] [004:54-57], and the bits that are OR-ed to it.
 //!
 //! `data/synch-types.tsv` has whose each of both may be, and its citation.
+//!
+//! Decision: `FAW_SYNCH` alone is `MOS` with it; `BWD_SYNCH` and `FWD_SYNCH` alone are an error, since they say when
+//! a type counts (also `technology/src/channel/resolve.rs`)
 
 use std::fmt;
 

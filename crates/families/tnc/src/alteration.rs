@@ -1,5 +1,8 @@
 //! What is set from outside while the control runs: operands of the PLC, machine parameters with what their change needs
 //! [000:10088].
+//!
+//! Decision: Power-off, and a machine parameter that needs a reset, make the control anew of what it was made of and
+//! of what survives; time goes on counting, so that scripts, logs and recordings go on
 
 use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_parameters::{Change, Definition, ParameterList, Reaction};

@@ -1,4 +1,8 @@
 //! Part programs that are read ahead beside the control: on a thread of whoever drives it.
+//!
+//! Decision: In real time a program is handed over to a thread that reads it ahead, a thousand blocks at a time;
+//! cycles go on with what was read, a command waits until it is back. In simulation time nothing is handed over, so
+//! that every run is the same (also `host/src/reading.rs`)
 
 use bahn_interpreter::Rules;
 use bahn_kernel::Feeder;

@@ -1,5 +1,8 @@
 //! A channel: operating mode, program run and all that belongs to it. It moves its axes and drives its spindle
 //! on the machine side, and has its own window into the memory of the PLC.
+//!
+//! Decision: A tool change, a datum, a write of module 9094 is on the medium before the next cycle; the strobe of a
+//! change waits for it. A change that is broken off did not happen (also `host/src/machine_folder/state.rs`)
 
 pub(crate) mod moves;
 

@@ -1,4 +1,7 @@
 //! What an operator, a script or a screen asks the control to do.
+//!
+//! Decision: An operand that somebody sets from outside is set as in the table of the PLC menu; inputs are the
+//! plant's
 
 use std::fmt;
 use std::str::FromStr;

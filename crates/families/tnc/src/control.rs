@@ -1,4 +1,7 @@
 //! The control as others see it: commands in, state and messages out; and its supply, which makes the TNC anew.
+//!
+//! Decision: After power-off axes that were handed over are those of the channel whose list describes them; the
+//! operator passes the reference marks again and starts no program (also `host/src/operator.rs`)
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! What the PLC wrote into datum tables with module 9094, and keeps over power-off [000:15328-15545].
+//!
+//! Decision: What module 9094 writes into a datum table is kept beside it under its name; a shift that is in force
+//! stays until the next cycle 7
 
 use std::collections::BTreeMap;
 

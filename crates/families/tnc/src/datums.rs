@@ -1,4 +1,7 @@
 //! The workpiece datums, the traverse range and the datum correction of a channel.
+//!
+//! Decision: AXIS LIMIT counts from machine zero, as REF shows, in its traverse range; it must leave something of the
+//! software limits, and is entered while no program runs
 
 use std::sync::Arc;
 

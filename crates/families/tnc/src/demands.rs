@@ -1,4 +1,6 @@
 //! What the PLC and the operating mode demand of a program run in a contour cycle.
+//!
+//! Decision: Transfers that the PLC does not take hold the path; none is dropped
 
 use bahn_exchange::{Image, signal};
 use bahn_kernel::{Demands, OwnAxes};

@@ -1,4 +1,11 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
+//!
+//! Decision: Axis keys of the keyboard highlight their axis for M2096 to M2099 and M2148 in the modes by hand, as
+//! direction keys do; as key codes X, Y and Z alone, since those of IV and V are in the manual's lost table. With
+//! MP7640 = 2 highlight and handwheel go together (also `tnc/src/handwheel.rs`)
+//!
+//! Decision: M, S and TOUCH PROBE that the PLC presses are on the screen in MANUAL OPERATION and ELECTRONIC
+//! HANDWHEEL; codes of the soft-key row, whose table is lost, are M2187
 
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_kernel::reference::ReferenceRun;

@@ -4,6 +4,10 @@
 //! best while both channels stand at the strobe of an M function; the control gives the axis over where nothing
 //! that was read ahead can move it, says so by another marker as long as the order stands, and the PLC acknowledges
 //! the M functions.
+//!
+//! Decision: An axis goes to another channel when the PLC orders it by a marker: between programs, or where both
+//! stand at the strobe of an M function after which nothing is read, at a programmed stop or at the end; the control
+//! answers by a marker as long as the order stands
 
 use bahn_exchange::Bit;
 use bahn_kernel::{AxisId, PerChannel, RunState};

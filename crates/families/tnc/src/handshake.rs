@@ -3,6 +3,13 @@
 //! For every function the NC writes the data and sets the strobe; the PLC works and sets the
 //! acknowledgement; the NC resets the strobe and goes on; the PLC resets the acknowledgement. As long as an
 //! acknowledgement is still set, no further strobe is sent [000:7188-7204] [000:11750-11752].
+//!
+//! Decision: With MP7440 bit 2 = 1 the PLC neither positions axes nor corrects the datum during an M strobe, since
+//! the path goes on: corrections come to nothing, positions are taken when no program runs. It may orient the spindle
+//! and change the traverse range, which moves no axis of the path
+//!
+//! Decision: M2614 holds the path at the end of the block whose strobe was acknowledged under it; without a strobe it
+//! holds nothing
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,7 @@
 //! The electronic handwheel: which axis its wheels lead and how far, and where its keys go [000:8060-8446].
+//!
+//! Decision: Direction keys of a handwheel move axes in the mode Electronic Handwheel only; an HR 332 with all keys
+//! at the PLC has its axis keys where places are left
 
 use bahn_exchange::{Image, signal};
 use bahn_kernel::{Direction, OwnAxes, within};

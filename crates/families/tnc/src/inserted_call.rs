@@ -1,4 +1,7 @@
 //! The TOOL CALL that module 9150 inserts: whether the program that runs can take it up [000:16063-16118].
+//!
+//! Decision: A TOOL CALL of module 9150 into a program that has no tools (DIN 66025) is an erroneous one: the run
+//! ends before the block of the strobe with FUNCTION NOT YET SUPPORTED; the tool stays
 
 use bahn_plc::ToolCallBlock;
 

@@ -1,5 +1,7 @@
 //! Tool life: what is counted from TOOL CALL to TOOL CALL in the automatic modes, and what its end leads to
 //! [000:9160-9192].
+//!
+//! Decision: Tool life counts from TOOL CALL on, in steps of 0.1 minutes beside the tool table
 
 use bahn_exchange::{Exchange, signal};
 use bahn_plc::{TableFile, TableKind};

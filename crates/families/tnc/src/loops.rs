@@ -1,4 +1,11 @@
 //! Loops and feed enable: whether an axis may move at all.
+//!
+//! Decision: Withdrawn feed enable is 0 V until it is back; the lag that was left is driven out on a path, by hand
+//! the axis stands where it stopped; an axis that stands is held in its loop
+//!
+//! Decision: An axis of a running program whose loop was open, and which was moved farther than MP1110 meanwhile, is
+//! monitored as at standstill when its loop closes (GROSS POSITIONING ERROR D); by hand and interrupted its actual
+//! value is transferred
 
 use bahn_exchange::{Image, signal};
 use bahn_kernel::{AxisId, OwnAxes, loops};

@@ -1,5 +1,9 @@
 //! The machine side: axes, spindles, PLC and its memory, EMERGENCY STOP, messages, inputs and outputs, and what
 //! survives power-off.
+//!
+//! Decision: A cell of a table that is edited is on the medium and counts at once, as what module 9094 writes; a new
+//! line counts from power-on. The file of a pocket table takes over where the tools are (also
+//! `panel/src/pages/table/editor.rs`)
 
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
 use bahn_kernel::{Axes, AxisId, Circuit, CircuitOrder, Core, EmergencyStop, PerChannel};

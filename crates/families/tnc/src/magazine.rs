@@ -1,4 +1,7 @@
 //! The magazine of the machine: the tool table with the pockets as they are now.
+//!
+//! Decision: A tool with F has two codes under variable coding whatever follows it, and so has the tool that follows;
+//! the pocket table stays
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,11 @@
 //! Manual operation: axis direction keys, jog increment, electronic handwheel.
+//!
+//! Decision: MP7270 + 2 of a TNC 360: after NC stop in manual operation what was entered of S and M is forgotten, and
+//! M5 and M9 are output
+//!
+//! Decision: With MP7270 + 2 an NC stop ends S and M by hand where it is pressed there: not one that is held from
+//! another operating mode or from the TOUCH PROBE menu; M5 and M9 that still wait when the operator leaves for
+//! another mode do not go out later
 
 use bahn_exchange::signal;
 use bahn_kernel::{

@@ -1,5 +1,19 @@
 //! The functions of the TOUCH PROBE menu in MANUAL and HANDWHEEL [003:1217-1512]: calibration, basic rotation,
 //! datums. NC start probes in the chosen direction and goes back in rapid traverse to where it started.
+//!
+//! Decision: ROTATION ANGLE is the basic rotation in force and the nominal angle of the side that is probed next:
+//! without setting it to 0 a second side gives the angle between both
+//!
+//! Decision: NC stop ends a probing by hand; the function stays chosen, and the next start probes again
+//!
+//! Decision: In the plane of 3D ROT the probe finds datums, which move along it; a basic rotation is measured with
+//! the swivel axes at 0 only, the probe calibrated upright: else PLANE WRONGLY DEFINED
+//!
+//! Decision: A TM 110 that is calibrated probes the ring again as soon as it is turned (MP6321), with no other start;
+//! NC stop leaves that out, and a spindle that cannot be turned is KEY NON-FUNCTIONAL
+//!
+//! Decision: The probe is turned back by itself when its centre offset is found; a circle is fitted through all
+//! touches, three at least (also `kernel/src/touched.rs`)
 
 use bahn_interpreter::{BasicRotation, Rules};
 use bahn_kernel::touched::{self, Contact};

@@ -2,6 +2,9 @@
 //!
 //! The codes of T, S, M and gear functions stand there beside their words, whatever M2719 says: it is about strobes
 //! only. Which marker carries which bit is the table below.
+//!
+//! Decision: Codes of the TNC 355: M, S, the lowest S code and its step are decades (eight markers for 0 to 99),
+//! gears binary, the T code as M2597 says in M2032 ff. and in decades in M2112 ff.; what does not fit is all ones
 
 use bahn_exchange::{Bit, BitRange, Exchange, Image, signal};
 

@@ -2,6 +2,8 @@
 //!
 //! Non-flashing messages are cleared with CE, one after another; flashing ones need switching off
 //! [000:6619-6649]. M2190 is 1 while a non-flashing one is shown, M2191 while `EXTERNAL EMERGENCY STOP` is.
+//!
+//! Decision: Whatever M2815 finds shown of the PLC's messages flashes with it
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! Probing in the program: the axes move until the stylus is deflected [000:7613-7718].
+//!
+//! Decision: A deflected stylus (M2502) stops until all axes stand and no key moves them; programs go on when it is
+//! free
 
 use bahn_exchange::signal;
 use bahn_kernel::probing::{self, Probing};

@@ -1,4 +1,8 @@
 //! How fast a rotating tool turns and moves while the tool probe measures it [000:7985-8021].
+//!
+//! Decision: With MP6507 = 2 the probing feed is the tolerance in each turn, too, so that it falls below the constant
+//! of the manual where a small tool would turn faster than 1000 rpm: the measuring error keeps to its limit. A radius
+//! of 30 mm is one of the first step of MP6507 = 1
 
 use bahn_parameters::machining::{ToolProbeParameters, ToolProbeTolerance};
 

@@ -1,4 +1,8 @@
 //! M101: a tool whose life is over is replaced between two blocks [000:9175-9177].
+//!
+//! Decision: M101 replaces a worn tool after a block, outside contours with radius compensation: what was read ahead
+//! is read again after the change, and the path comes back to where it was, the tool axis last (also
+//! `interpreter/src/outside.rs`)
 
 use bahn_kernel::{Feeder, Track};
 use bahn_parameters::MessageId;

@@ -1,4 +1,14 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
+//!
+//! Decision: No program starts, and no block scan, before the axes that MP1340 names have passed their marks: KEY
+//! NON-FUNCTIONAL; MDI does, without M91 and M92
+//!
+//! Decision: A block without path of its own (Q, labels) belongs to the next one in single block
+//!
+//! Decision: After the end of a program the tilted plane stays in force for the next start as shifts do; by hand 3D
+//! ROT alone tilts
+//!
+//! Decision: A test run knows the axes of the whole machine, also those that another channel has now
 
 use bahn_exchange::{Image, signal};
 use bahn_kernel::reference::is_due;

@@ -1,4 +1,7 @@
 //! Commands that act on the program run.
+//!
+//! Decision: A Q parameter that is changed while a run is interrupted counts from the block that was cut: what was
+//! read ahead is read again from there
 
 use bahn_interpreter::DripFeed;
 use bahn_kernel::{Feeder, RunState};

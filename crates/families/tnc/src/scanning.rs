@@ -1,4 +1,8 @@
 //! Digitizing in the program: the stylus scans a surface with the axes [003:6532-6882] [000:7722-7880].
+//!
+//! Decision: After an EMERGENCY STOP or without feed enable a scan goes on from where the axes stand, off the surface
+//! first; a probe that is not ready any more ends it, a low battery is said once, at the end of the first line after
+//! which it is low (also `kernel/src/scanning.rs`)
 
 use bahn_exchange::signal;
 use bahn_kernel::{AxisUnit, Chain, Felt, ScanMove};

@@ -1,5 +1,15 @@
 //! Where the blocks of a run come from: the program that is read, the one that MDI has set aside, where a
 //! run that was broken off goes on, what is in force between runs.
+//!
+//! Decision: After the end of a program transformations, feed and tool data stay in force for the next start until
+//! MP7300 cancels them; a tool without its data stays in the spindle, and a block of MDI is no program
+//!
+//! Decision: Text of a transferred program comes by commands, so that logs and sessions repeat it; the next
+//! preparation gives the interpreter a longer version, in batches while it has enough to do (also
+//! `interpreter/src/drip_feed.rs`)
+//!
+//! Decision: After INTERNAL STOP and a fault the current block is that with which NC start goes on; arrows and GOTO
+//! count in the main program, so that out of a called one GOTO alone leads (also `panel/src/pages/run.rs`)
 
 use std::sync::Arc;
 

@@ -1,5 +1,11 @@
 //! The spindle as the kernel sees it: speed and gear towards the PLC, the PLC's markers towards the servo
 //! [000:5438-5945].
+//!
+//! Decision: The PL 410 has analogue inputs only; the one analogue voltage that a PLC program gives is output S, by
+//! module 9130
+//!
+//! Decision: What the PLC asks of a spindle in a thread waits for the end of the thread; an EMERGENCY STOP ends its
+//! orientation and resets M2712
 
 use bahn_exchange::{Bit, Exchange, Image, signal};
 use bahn_kernel::{Along, SpindleLoop, SpindleWiring, VoltageOutput};

@@ -1,4 +1,7 @@
 //! What the NC tells the PLC of itself: markers and words of state, before every scan.
+//!
+//! Decision: Type 6 of modules 9040 and 9041 is the actual value less the datum shift of the program alone, whatever
+//! is turned or mirrored around it
 
 use bahn_exchange::{Exchange, signal};
 use bahn_kernel::{AxisUnit, Chain, Direction, Mover, OwnAxes, RunState, path_positions};

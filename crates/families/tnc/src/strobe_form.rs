@@ -5,6 +5,12 @@
 //! of the marker form that move something have a complement. It is 1 at rest; the PLC sets the strobe and resets the
 //! complement together, the NC does the reverse at the end [000:10737-10740] [000:10803-10806]. Where the two agree
 //! the PLC program is faulty, as with the keys of the panel [000:7543-7585].
+//!
+//! Decision: M2719 = 0 takes the strobes of the TNC 355, M2719 = 1 those with words; codes from the NC stand in words
+//! and markers always (also `tnc/src/marker_codes.rs`)
+//!
+//! Decision: Strobes of movements of the TNC 355 agree with their complements as ERROR IN PLC-PROGRAM 1E to 1H, 2K,
+//! 2P, the codes that the manual's series leave out
 
 use bahn_exchange::{Bit, Exchange, Image, signal as s};
 

@@ -1,6 +1,10 @@
 //! What the PLC asks the NC for between the big handshakes: traverse range, datum correction, Q
 //! parameters, actual-value transfer, keys, lubrication and lag tracking. Each strobe is taken after the scan
 //! that set it, and reset, but for M2809 of the TNC 355, which the PLC resets itself [000:16286].
+//!
+//! Decision: M2809 transfers a whole number of four decades with sign once for each rising edge; M2585 to M2589 are
+//! the code of M2527 although they are also listed as not implemented; M2598 and M2599, listed both ways, too, are
+//! not there: modules 9093 and 9094 are (also `tnc/src/marker_codes.rs`)
 
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_kernel::{Mover, OwnAxes};

@@ -1,5 +1,9 @@
 //! PNT in POSITIONING WITH MDI: the axes go where the stylus of a measuring probe is pushed, so that it shows whether the
 //! probe counts as the axes do (MP6320) [000:7907].
+//!
+//! Decision: PNT moves X, Y and Z with MP6360, as far as MP6310 deflected or farther, in proportion before; the
+//! manual names no feed, and these are those of a scan. Below 0.1 mm, the least MP6310, the stylus leads nothing.
+//! What stops axes ends PNT, NC start does nothing meanwhile, M2502 does not stop it (also `tnc/src/manual.rs`)
 
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::MeasuringProbe;

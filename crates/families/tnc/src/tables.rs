@@ -1,5 +1,7 @@
 //! Tool and pocket table as modules 9092 to 9094 see them [000:15375-15545]: what the PLC writes there counts
 //! at once and survives power-off.
+//!
+//! Decision: What module 9094 writes is kept beside the tool table; a tool table that was changed since counts
 
 use std::collections::BTreeMap;
 

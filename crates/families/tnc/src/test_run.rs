@@ -1,5 +1,9 @@
 //! TEST RUN beside what the machine does: a program is executed without moving an axis, to find what is
 //! wrong with it [003:1514-1535]. Nothing goes to the PLC.
+//!
+//! Decision: STOP interrupts a test run, STOP again ends it; STOP AT N interrupts it at block N, or the first one
+//! after that moves or stops; the graphics are interrupted at their own place, and each stop is passed once (also
+//! `graphics/src/trial.rs`)
 
 use bahn_interpreter::Interpreter;
 use bahn_kernel::{AxisId, AxisUnit, Feeder, RunFault};

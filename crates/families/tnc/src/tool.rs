@@ -1,4 +1,6 @@
 //! A tool of the tool table with its lives [000:9160-9192].
+//!
+//! Decision: What is measured of a tool is kept in 1/10 000 mm, the unit of module 9093
 
 use bahn_interpreter::ToolState;
 use bahn_path::ToolShape;

@@ -3,6 +3,10 @@
 //! A tool that turns is touched once. Teeth are touched one by one, each turned to the contact: the first
 //! looks in the angle reference axis when the spindle is oriented to 0° (inferred). Calibrating touches the upper face and four sides, each side a
 //! second time with the spindle turned by half a turn, so that a tool that runs out of true does not count (inferred).
+//!
+//! Decision: Of single teeth the first looks in the angle reference axis when the spindle is at 0°; the longest is
+//! the tool, the one that is farthest off counts for the tolerances; the PLC orients (MP6560 > 0) to the angle of
+//! cycle 13
 
 use bahn_parameters::machining::ToolProbeParameters;
 use bahn_path::{Axis, MeasuredPart, Plane, Position, ToolMeasuring};

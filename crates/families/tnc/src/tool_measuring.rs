@@ -1,5 +1,9 @@
 //! Tools are measured with the tool probe, and the tool probe with a tool: the tool goes over its contact, turns
 //! backwards or is oriented, and probes it, once or at each of its places [000:7960-8058].
+//!
+//! Decision: TCH PROBE 30, 31 and 32 have the blocks of later controls; the control measures at a barrier: the tool
+//! turns against its cutting direction, CHECK 0 makes what was found its data, CHECK 1 the difference its oversize, a
+//! broken tool keeps its data; Q115 and Q116 are the differences; a measuring that is broken off stops the spindle
 
 use bahn_exchange::{Exchange, signal};
 use bahn_kernel::{AxisUnit, Chain, OwnAxes, Straight};

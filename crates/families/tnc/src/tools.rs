@@ -1,4 +1,11 @@
 //! Tools: what TOOL CALL and TOOL DEF hand to the PLC (MP7480).
+//!
+//! Decision: The control takes the acknowledgement of a tool change after the scan that gives it, whenever the supply
+//! goes or an EMERGENCY STOP comes then: the PLC program may rely on that. M2093 falls with a change that is broken
+//! off between its codes (also `tnc/src/handshake.rs`)
+//!
+//! Decision: TCH PROBE 30 probes the face and four sides, each at 0° and 180°; what it finds is remembered and counts
+//! until MP6580 or MP6531 are changed
 
 use bahn_exchange::{Exchange, signal};
 use bahn_kernel::Offsets;

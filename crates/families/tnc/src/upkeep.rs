@@ -1,5 +1,8 @@
 //! What the control looks after beside the movements: offsets of the drives, lubrication, limits that axes
 //! have left, the buffer battery.
+//!
+//! Decision: EXCHANGE BUFFER BATTERY comes as soon as the battery is low, once since power-on; nothing stops, and the
+//! memory is kept
 
 use bahn_exchange::Exchange;
 use bahn_kernel::{Axes, AxisUnit, Direction, OwnAxes};

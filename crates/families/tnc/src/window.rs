@@ -5,6 +5,10 @@
 //! memory of the PLC *(inferred)*: `M2448` of the second channel may be `M100` for the PLC program. A marker
 //! or word whose place is its own number is shared with the first channel. What the table does not name
 //! the PLC can neither see nor set: commands of the panel rest, and NC stop (M2488 = 0) is given.
+//!
+//! Decision: The PLC of the manuals knows one channel: every other one has a window, a memory with the same markers
+//! and words, and a table of where they stand in the PLC's memory; its panel is among them. Modules see the first
+//! channel
 
 use bahn_exchange::{Bit, BitArea, Exchange, Number, signal};
 

@@ -1,4 +1,12 @@
 //! The servo axes of the machine, and those of them that a channel moves.
+//!
+//! Decision: MANUAL OPERATION remembers where a probe has led the axes: RESTORE POSITION brings them back there, not
+//! to the start of the probing
+//!
+//! Decision: An axis belongs to one channel, which gives it a slot of its path and an index of its markers; after
+//! power-on it is where its list describes it
+//!
+//! Decision: An axis of the PLC has no place in the positions of a program
 
 use bahn_motion::Aim;
 use bahn_parameters::{PLC_AXES, ParameterList, PerPlcAxis};

@@ -1,4 +1,18 @@
 //! One axis of the machine as the kernel sees it: its loop, its nominal position, what moves it.
+//!
+//! Decision: A clamped axis that keys, reference run or PLC want drops its marker M2008 ff. as a block does, so that
+//! the PLC unclamps it
+//!
+//! Decision: A list of machine parameters counts outputs and encoder inputs from 1, as the manuals do; a further
+//! channel says at which connector of the machine that is
+//!
+//! Decision: Numbers 0 to 4 are the axes of the first channel; 5 is left to the spindle, the sixth axis of messages
+//!
+//! Decision: Coded marks that put an axis farther out of its traverse ranges than half of their width are refused,
+//! with MP30 as MEASURING SYSTEM DEFECTIVE C
+//!
+//! Decision: `output step` ends when the key is released or the mode changes: the position loop goes on where the
+//! axis is, on its ramp
 
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::axis::AxisParameters;

@@ -1,4 +1,7 @@
 //! The time that the control needs to process a block [000:143] [003:7815].
+//!
+//! Decision: Block processing time is spent for every element of the path from the first one on; of time in which
+//! nothing is read one element is saved
 
 /// A simulated processing time: elements of the path are read only as fast as it allows.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,5 +1,13 @@
 //! From the part program to the interpolator: an element source that keeps a checkpoint for each block and
 //! refuses what leaves the traverse range.
+//!
+//! Decision: A block that would leave the traverse range is refused before it moves
+//!
+//! Decision: A block outside the traverse range is judged when everything before it is executed: a function may
+//! change the range
+//!
+//! Decision: A block that moves an axis which the channel does not have is WRONG AXIS PROGRAMMED where it stands,
+//! when everything before it is executed
 
 use std::collections::VecDeque;
 

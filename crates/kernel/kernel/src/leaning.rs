@@ -1,5 +1,12 @@
 //! A tilted plane by hand: direction keys and handwheel lead the tool along the axes of a tilted working plane, in
 //! which the positions are shown and datums are set [000:4256].
+//!
+//! Decision: 3D ROT by hand is the plane of the swivel axes as they stood when it was switched on, or of the
+//! positions that were entered; that for program run is the plane in which each program begins (one of DIN 66025,
+//! which has no planes, is refused) until the menu or cycle 19 says something else, whatever MP7300 cancels: it is
+//! refused where cycle 19 would be, with a basic rotation, and while a program can go on. Programs are not in the
+//! plane by hand, after them it is there again; one axis of the plane moves at a time, also by jog increments, and a
+//! datum set in it moves that of the machine along the plane
 
 use std::sync::Arc;
 

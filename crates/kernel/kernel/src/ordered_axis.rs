@@ -1,4 +1,7 @@
 //! An axis that modules of a PLC lead for itself, beside all programs.
+//!
+//! Decision: An axis of the PLC that does not follow stops on its ramp, and its order is over; a reference run by
+//! module 9123 cancels the error, its message stays until CE
 
 use bahn_motion::Aim;
 

@@ -1,4 +1,7 @@
 //! How far a run is: started, interrupted, stopped, ended.
+//!
+//! Decision: A fault of a program interrupts the run; the next start tries its block again, and another program can
+//! be chosen meanwhile
 
 /// What the run does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

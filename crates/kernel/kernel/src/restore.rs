@@ -2,6 +2,15 @@
 //!
 //! The scan executes the program without moving an axis up to a block; its functions are output. Then the axes go to where
 //! the path is, or, after they were moved by hand, back to where it was interrupted.
+//!
+//! Decision: After EMERGENCY STOP or POSITIONING ERROR the loops close where the axes stand; NC start first brings
+//! them back to where the path left them
+//!
+//! Decision: A clamped axis need not go back to the contour within MP1110; farther away the PLC is asked to unclamp
+//! it. Until axes are back nothing is taken over from where they stand (also `kernel/src/track.rs`)
+//!
+//! Decision: After the way back to the contour the path goes on from where an axis stands that another channel gave
+//! back meanwhile
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,7 @@
 //! The run of a program on its track: start, stop, single block, end, and what is waited for.
+//!
+//! Decision: What is after an acknowledgement, a programmed stop or the end waits until the axes are back there; a
+//! way back that was stopped goes on with NC start only (also `kernel/src/restore.rs`)
 
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::operation::RestartParameters;

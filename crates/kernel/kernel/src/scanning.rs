@@ -1,4 +1,7 @@
 //! A stylus is led along a surface: the axes follow a [`Scan`], and tell it where they are.
+//!
+//! Decision: On a machine the points are those of the servo step in which the stylus is deflected; an axis that
+//! stands in its position window is where it is to be
 
 use bahn_motion::{Scan, ScanStep, Sense};
 use bahn_path::{Axis, Position, ScanFault, ScanJob, ScanPoint};

@@ -1,4 +1,13 @@
 //! M118: handwheel movements on top of the path of a program [000:742].
+//!
+//! Decision: M118 leads the axes of the machine beside the path, whatever plane it stands in, on a ramp of MP1060 of
+//! their own, so that path and handwheel together reach twice of it and no more, also at NC stop and not in a thread;
+//! no faster than the path leaves it of MP1010 in the same cycle, and where the path gains more than that ramp
+//! brakes, at a corner, the wheel gives way at once, since the axis then just keeps MP1010; a fault of an axis stops
+//! it as the machine [000:5198]; a block on whose way the range reaches beyond the traverse range is refused,
+//! measuring is, too; M118 without words goes back, end of program and INTERNAL STOP leave the axes where they are;
+//! what is turned while loops are open, the PLC positions the axis, or until axes are back on their path, adds
+//! nothing (also `kernel/src/feeder.rs`)
 
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::PerPlcAxis;

@@ -11,6 +11,10 @@
 //! In cycle 2 nothing couples them. When the spindle was taken away in the hole, NC start would pull at a tap that does
 //! not turn: it is refused, and INTERNAL STOP leaves the tap to the operator, who turns it out by hand with M03 or M04
 //! and the axis key (inferred).
+//!
+//! Decision: NC stop acts in cycle 2 when the tool is out of the thread; when EMERGENCY STOP has taken the spindle
+//! away there, NC start is refused and INTERNAL STOP leaves the tap to the operator; the spindle stands after cycle
+//! 17 (also `interpreter/src/cycles/drilling.rs`)
 
 use bahn_motion::{Lead, Master};
 use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Position, Thread};

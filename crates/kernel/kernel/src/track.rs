@@ -1,4 +1,11 @@
 //! The axes along the path, contour cycle by contour cycle, and what is output on it.
+//!
+//! Decision: Where the axes stand elsewhere than the path (datum correction, PLC positioning, tool length), what is
+//! not executed is taken back and given again from there; axes that a block does not move stay (also
+//! `motion/src/interpolator/recall.rs`)
+//!
+//! Decision: That the path compensation is to be terminated before a PLC positioning is the programmer's business:
+//! after a strobe in a compensated block the path goes on from where the axes are
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,6 @@
 //! Output S for lasers and water jets: M200 to M204 set its voltage, synchronously with the path [000:9841-9909].
+//!
+//! Decision: The voltage of M200 to M204 stays after the end of a program; EMERGENCY STOP takes it away
 
 use bahn_path::{Characteristic, Voltage};
 

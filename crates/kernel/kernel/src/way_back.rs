@@ -1,4 +1,7 @@
 //! The way back of an axis that ran on without feed enable.
+//!
+//! Decision: What an axis of a path ran on without feed enable it goes back on the ramp of MP1060 when the enable is
+//! back; the path waits for it
 
 use bahn_motion::{Aim, PointToPoint};
 

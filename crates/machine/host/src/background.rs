@@ -1,4 +1,7 @@
 //! Long computations of the control on a thread of their own: the machine goes on, or Ctrl-C counts, meanwhile.
+//!
+//! Decision: A contour that takes long is computed on a thread of whoever drives the control; in simulation time the
+//! machine stands still meanwhile
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, sync_channel};

@@ -13,6 +13,10 @@
 //!
 //! After `FILE` stand bytes, check sum (CRC-32) and path. An end of line is only where `\n` says so; lines may be cut
 //! anywhere else.
+//!
+//! Decision: `$BACKUP` is text of printable characters with sizes and check sums, so that seven data bits carry it;
+//! it is restored as a whole or not at all, through no symbolic link, and what it does not have stays; a file that it
+//! cannot carry is named, and there is no backup: one that lacks something is found out too late
 
 use std::fs;
 use std::io::{self, BufRead, Read as _, Write as _};

@@ -1,5 +1,8 @@
 //! The program that a digitizing writes: kept in memory until the range is scanned, then stored as a whole; or printed block by
 //! block at a data interface, as the interface function PRINT says [003:6554-6557].
+//!
+//! Decision: With PRINT at a port digitizing stores nothing; what was printed of a scan that is broken off ends at
+//! its last point. PRINT holds for scans that begin, and stays when the machine is switched on anew
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! What happens to operands inside a scan of the PLC, where before and after it there is nothing to be seen.
+//!
+//! Decision: A recording of operands looks into every scan in the reference interpreter, which does the same bits:
+//! values that are gone again at its end are events
 
 use bahn_exchange::{Content, Image, Operand};
 use bahn_plc::{TraceStep, Tracer};

@@ -2,6 +2,9 @@
 //!
 //! How the control lays out its EPROM no manual says: here it is a directory in the words of the list, with the size of each
 //! file, an empty line, and the files one after the other (inferred).
+//!
+//! Decision: What lies where in an EPROM no manual says: `bahn oem export` writes a directory in the words of the
+//! LOAD list and the files after it, 1 Mbit or with SIZE 2MB 2 Mbit
 
 use std::path::{Path, PathBuf};
 

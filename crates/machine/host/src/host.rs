@@ -1,4 +1,13 @@
 //! A machine that is switched on.
+//!
+//! Decision: Channels that cannot be put together, or of which some are missing at power-on, are an error and never a
+//! machine with fewer of them
+//!
+//! Decision: Planning ahead and the cycle share the control, and so a thread, in real time, too; contours that take
+//! long have one of their own
+//!
+//! Decision: At power-on tools lie in the simulated magazine where the control remembers them: chain and arm are
+//! mechanics, which survive by themselves
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,5 +1,8 @@
 //! What was done to control and machine, in the form of a script. Its last line holds a check sum, so that a
 //! replay tells a log that was damaged, cut off or edited from one that is as it was written.
+//!
+//! Decision: A log ends with a check sum; a replay of one that is not as it was written is warned of, since logs may
+//! be edited
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,7 @@
 //! What of a plant an operator, a script, a teacher and a panel have in their hands and before their eyes.
+//!
+//! Decision: What a plant does not say of itself it does not have; one without copy stays where it is, and what a
+//! script does to it is tried when it is done, not when it is read
 
 use bahn_machine::{DeviceState, Event, MagazineState, Mechanics};
 use bahn_servo::Plant;

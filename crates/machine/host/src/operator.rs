@@ -1,5 +1,8 @@
 //! The operator who stands by: switches on, passes the reference marks, starts the program, and lets the
 //! run go on where it waits for him.
+//!
+//! Decision: Programs of further channels begin when all channels have passed their reference marks; a run ends when
+//! all programs have
 
 use bahn_exchange::signal;
 use bahn_machine::OperatorKeys;

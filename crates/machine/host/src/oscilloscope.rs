@@ -1,4 +1,7 @@
 //! The oscilloscope of the control: four curves in a memory of 4096 samples, and what triggers it [000:18638-18794].
+//!
+//! Decision: START of `--oscilloscope` is the start of the program, without one the end of the reference run; with a
+//! pre-trigger of 100 % the trigger stands after the last sample
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,4 +1,7 @@
 //! Keeps pace with real time.
+//!
+//! Decision: A cycle that needs more processor time than it has is an overrun; what else is late is the operating
+//! system's or a medium's doing
 
 use std::time::{Duration, Instant};
 

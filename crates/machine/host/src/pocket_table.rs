@@ -2,6 +2,9 @@
 //!
 //! Written as tool tables are, with the columns P (number of the pocket), T, ST, F, L and PLC; columns of later
 //! controls (TNAME, RSV, DOC) are passed over. Pocket 0 is the spindle there, and says nothing here.
+//!
+//! Decision: A pocket table is a file of its own; without pockets (MP7261 = 0) it is not read, with one the tool
+//! table has no pockets. F and L belong to the pocket, ST to the tool; the magazine is a ring for MP7264
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,7 @@
 //! What a machine begins with when it is switched on.
+//!
+//! Decision: A list of machine parameters that module 9033 has selected, and that is missing or faulty at power-on,
+//! keeps no machine off: that is said with its name, the usual list counts, and the selection is forgotten
 
 use std::sync::Arc;
 

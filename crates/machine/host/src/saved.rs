@@ -1,4 +1,7 @@
 //! Moments that can be gone back to.
+//!
+//! Decision: A moment of a run is reached again from a copy of control, plant and operator by doing again what was
+//! given since; notices go on with new numbers behind `Notice::Restored`, and a run that is logged goes forward only
 
 use std::collections::VecDeque;
 use std::sync::Arc;

@@ -1,4 +1,6 @@
 //! Scripts: what happens at which time, and what is expected. A log of a run has the same form.
+//!
+//! Decision: On the bench of the PLC what a script does in cycle n comes before its scan, what it expects after it
 
 use std::path::{Path, PathBuf};
 

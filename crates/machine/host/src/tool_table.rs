@@ -1,4 +1,7 @@
 //! Tool tables: text with a line of column names and one line for each tool.
+//!
+//! Decision: A tool table whose RT names no other tool of it, whose T0 has a size or whose numbers go beyond the
+//! control's is refused at its line
 
 use std::collections::BTreeMap;
 use std::path::Path;

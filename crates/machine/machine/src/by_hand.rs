@@ -1,4 +1,7 @@
 //! The tool that somebody has put into the spindle by hand.
+//!
+//! Decision: Who changes a tool by hand puts in the one that is called, unless the arm of the magazine has moved one
+//! since power-on
 
 /// See the module. 0 is no tool.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,5 +1,8 @@
 //! A drive that follows its voltage as torque, and the encoder of its motor: what a TNC 425 closes the speed loop of
 //! [000:18329-18333].
+//!
+//! Decision: A drive that goes on without control voltage does so only while the control is ready: without it nobody
+//! gives torque, and its brake closes
 
 use bahn_servo::Encoder;
 use bahn_servo::rounding::floor_to_i64;

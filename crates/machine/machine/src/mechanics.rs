@@ -2,6 +2,9 @@
 //!
 //! Speeds, voltages and relays are gone when the power is: a machine that is put where another one stood begins at rest. Faults
 //! and what the operator holds (keys, potentiometers, EMERGENCY STOP) are no places, and begin anew (inferred).
+//!
+//! Decision: Mechanics that are put up again begin at rest; faults, keys and the EMERGENCY STOP button begin anew.
+//! Changed pockets of the tables have put the tools there (also `host/src/power_on.rs`)
 
 use serde::{Deserialize, Serialize};
 

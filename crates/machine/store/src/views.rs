@@ -1,5 +1,8 @@
 //! Files of a drive that lie elsewhere: the tool table of a machine as `TNC:\TOOL.T`, in the form of the control. They are
 //! read and copied, nothing else.
+//!
+//! Decision: Tool and pocket table of machine.toml are shown to hosts as `TNC:\TOOL.T` and `TNC:\TOOL_P.TCH`, to be
+//! read only: their form there is that of the control (also `service/src/tables.rs`)
 
 use std::fmt;
 use std::path::PathBuf;

@@ -1,5 +1,8 @@
 //! A laser interferometer beside the machine: where each table stands in truth, against where the control says that it
 //! stands, and what compensates the difference [000:3632-3865].
+//!
+//! Decision: `bahn compensate` goes to its points with servo lag and at most kv 1.5, so that no table is pushed to
+//! the other side of its play; drift is taken out in proportion to the time
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,7 @@
 //! From citations to chapters: `[000:3174-3176]` is for those who have the text at hand, everybody else is
 //! told the manual and the chapter.
+//!
+//! Decision: Printed sources are chapters, by a table of line ranges; comments keep lines
 
 use std::sync::OnceLock;
 

@@ -1,6 +1,9 @@
 //! Values that are in range each, but do not go together.
 //!
 //! The control's editor does not look for them; each rule is a sentence of the manual.
+//!
+//! Decision: A list of which no machine can be (MP850 to itself, in a circle or to an absent axis, two axes of one
+//! letter) is an error at its line, at power-on and in the list editor, too
 
 use crate::settings::{AxisParameters, SpindleOutput, SpindleParameters, Station};
 use crate::{ControlModel, ListText, ParameterId, ParameterList};

@@ -10,6 +10,10 @@
 //! assert_eq!((lag.reaction, lag.clearing), (Reaction::Ramp, Clearing::Ce));
 //! assert!(FaultId::GrossDeviation.row().flashes());
 //! ```
+//!
+//! Decision: Flashing messages of any kind switch "control is ready" off and stop the PLC
+//!
+//! Decision: STYLUS DEFLECTION EXCEEDS MAX flashes, and so switches "control is ready" off
 
 use bahn_servo::{EncoderFault, Fault as AxisFault, GrossFault};
 

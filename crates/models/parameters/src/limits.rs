@@ -1,6 +1,11 @@
 //! Limits and functions of the control models: what programs are checked against, and what a model has.
 //!
 //! Each model is a constant of [`models`], beside the one it inherits from.
+//!
+//! Decision: Inputs and outputs of the TNC 360, which no manual names, are those of its successors
+//!
+//! Decision: F of programs in inches counts tenths of an inch/min on all models but the TNC 360 (inch/min);
+//! `--inch-feed` overrides, a program whose feeds are all far off is warned of (also `program/src/inch_feed.rs`)
 
 mod models;
 

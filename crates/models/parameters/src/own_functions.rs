@@ -1,5 +1,9 @@
 //! M functions that a machine builder synchronises otherwise than the table of the model: the types of the TF5200
 //! [004:54-90].
+//!
+//! Decision: When M, S and T functions go out, to whom, and where the path waits for them is one table for all
+//! models; a machine builder gives his own free M functions any type of the TF5200 but those of measuring events
+//! (also `parameters/data/technology-functions.tsv`)
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -2,6 +2,9 @@
 //!
 //! What counts in every column of the track is the lowest point of the tool while the tool is over the column. For a
 //! flat end and a cone this has a closed form; `round` reckons the tools with a corner radius.
+//!
+//! Decision: Ball and corner radius are cut in the widest registers of the processor; nothing is summed across
+//! columns and no product and sum are made one, so the bits are the same on all
 
 use std::ops::Range;
 

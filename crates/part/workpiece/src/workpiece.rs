@@ -1,4 +1,6 @@
 //! The workpiece while it is machined.
+//!
+//! Decision: While the tool leans the height map is left as it is: PGM SECTION CANNOT BE SHOWN
 
 use std::collections::HashMap;
 

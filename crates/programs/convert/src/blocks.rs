@@ -1,4 +1,7 @@
 //! A program block by block in the other language.
+//!
+//! Decision: A block that the other language cannot say becomes an ERROR block, as a control stores what it could not
+//! read, unless the whole program can be unrolled to its path (also `convert/src/unroll.rs`)
 
 use bahn_parameters::MessageId;
 use bahn_path::Plane;

@@ -2,6 +2,9 @@
 //!
 //! What a subprogram leaves in force is found once, relative to what is in force at its call: a subprogram that says nothing
 //! of G90 leaves it to each of its calls as it was there.
+//!
+//! Decision: Behind a call of a DIN/ISO program any G function may be in force; a subprogram leaves behind what it
+//! says itself, and else what was in force at its call
 
 use std::collections::{BTreeMap, BTreeSet};
 

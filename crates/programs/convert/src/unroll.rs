@@ -3,6 +3,10 @@
 //! It is for programs with blocks that DIN/ISO cannot say: what those do to the path is in it. What a block says beyond the path
 //! must be sayable in a block again. A tap becomes a cycle from where the tool stands; arcs in corners (M112), swivel axes and what
 //! a probe finds are not said.
+//!
+//! Decision: What is unrolled has no arcs between skew lines (M112), since they lie in no main plane and no arc
+//! becomes lines, and no swivel axes, since its path would be that of a plane which its text does not tilt. Its run
+//! may warn of less than the source does, of nothing else (also `convert/src/floating_tap.rs`)
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;

@@ -1,5 +1,8 @@
 //! The table of blocks: which key opens which dialogue, and what it asks in which order. What cycles ask comes from the
 //! table of cycles.
+//!
+//! Decision: In the dialogue ENT alone answers TOOL RADIUS COMP. with R0, ROTATION CLOCKWISE with DR-, F MAX with
+//! rapid traverse; NO ENT writes no word. RL and RR wait for ENT
 
 use bahn_program::Sign;
 

@@ -1,4 +1,7 @@
 //! What cycles and probe functions ask: derived from the table of cycles.
+//!
+//! Decision: Contour data are asked three in a block, as the cycles of the machine builder; those of a machine that
+//! lacks the cycle are text
 
 use bahn_program::{
     Cycle, CycleBlock, CycleFunction, CycleParameter, CycleWord, Quantity, Sign, assigned_parameters, cycle,

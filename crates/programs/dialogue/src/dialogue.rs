@@ -1,4 +1,7 @@
 //! The open dialogue: questions one after the other, block by block.
+//!
+//! Decision: N after L opens LN; LBL SET and NO ENT open a dialogue block in programs 99999968 to 99999999 only; a
+//! soft key makes a block optional
 
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 use bahn_program::CycleFunction;

@@ -1,4 +1,7 @@
 //! A word of a block of the program, highlighted: to overwrite it, delete it or find it elsewhere.
+//!
+//! Decision: The key of an address adds its word to a highlighted block, or goes to it; a word without a value goes;
+//! R is R0
 
 use bahn_parameters::MessageId::{self, KeyNonFunctional};
 

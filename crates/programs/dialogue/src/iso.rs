@@ -2,6 +2,13 @@
 //!
 //! Whatever is said of words, labels and limits while a block is entered, is said with the messages of the control; a
 //! word that no block can have is refused as soon as the next one begins.
+//!
+//! Decision: Blocks of DIN/ISO are entered as text and stand in the program as listings show them; keys of contour,
+//! tools and labels write the G function that does the same, soft keys the letters; a word that no block can have is
+//! refused when the next one begins, the rest at END, ENT or `*`
+//!
+//! Decision: New blocks of DIN/ISO get numbers in steps of MP7220, closer between two blocks that leave less room;
+//! without room all get new ones; RENUMBER N does it at any time
 
 use std::sync::Arc;
 

@@ -1,5 +1,8 @@
 //! The keys of the control: keyboard with contour, tool, cycle and mode keys, alpha keyboard, soft keys
 //! [003:9-206].
+//!
+//! Decision: The keyboard of a TNC 360 is that of its cover, and HELP and soft keys, which are ours there; a key that
+//! a model does not have is refused with a word
 
 use std::fmt;
 

@@ -1,4 +1,10 @@
 //! What is done with blocks that stand in the program: highlighted words, deleting, sections, finding.
+//!
+//! Decision: After the last word of a block RIGHT asks for its comment on controls with an alpha keyboard; `;` asks
+//! for it while a block is open, and is a block of its own while nothing is
+//!
+//! Decision: END in a cycle writes the blocks so far; DEL on a block of a cycle that is not its last is KEY
+//! NON-FUNCTIONAL
 
 use std::ops::Range;
 

@@ -1,4 +1,9 @@
 //! What keys do with the words of a field.
+//!
+//! Decision: The corners of BLK FORM are entered like those of RANGE: numbers without axis keys are for X, Y and Z
+//!
+//! Decision: I stands before the axis key; after a value it is for the next axis, or for this one if none follows. A
+//! sign before new digits is theirs
 
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 

@@ -1,4 +1,13 @@
 //! Executes programs, block by block.
+//!
+//! Decision: `L name` in a `.nc` program is a subroutine of the same file, else the file of this name, with `.nc` or
+//! with `.sub` beside the program; `LL name` one of the same file
+//!
+//! Decision: Before a V.E. variable is read the block is handed on as a flush that waits, then again with what it
+//! orders; every V.E. variable counts as synchronous
+//!
+//! Decision: A search for a block looks in the program itself, not in its subroutines; what is written into variables
+//! before it counts, what is moved and switched does not happen
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,7 @@
 //! A line of the text: its characters with their columns, without comments and with macros replaced.
+//!
+//! Decision: Names of synchronisation types are macros that need no definition, as in the listings of Fig. 23 and 24;
+//! macros and P parameters end with their program
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,11 @@
 //! Which functions of a program are executed here, as the registry of the control models says it
 //! ([`bahn_parameters::conformance`]): nothing is passed over in silence.
+//!
+//! Decision: M103, M105 and M106 that MP7440 does not enable are refused as functions that the control does not have
+//!
+//! Decision: A function without effect is said once at its first block; one without which the control would move
+//! differently is refused (`--skip-unknown` passes over it); a row that acts names its test (also
+//! `parameters/src/conformance.rs`)
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;

@@ -1,4 +1,9 @@
 //! States of a run to go back to.
+//!
+//! Decision: States to go back to are kept of blocks whose elements are on their way and of no others
+//!
+//! Decision: A Q parameter that is recorded is that of the block that is executed, from the states kept for going
+//! back
 
 use std::collections::VecDeque;
 

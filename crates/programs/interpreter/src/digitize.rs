@@ -1,4 +1,7 @@
 //! TCH PROBE 5, 6 and 7: a surface is digitized into a program [003:6532-6882].
+//!
+//! Decision: Digitizing goes on in a shifted datum, for which the control has no message: range and points count from
+//! there; numbers of blocks begin again with 0 after 65535 (also `program/src/digitized.rs`)
 
 use bahn_parameters::MessageId;
 use bahn_path::{

@@ -3,6 +3,10 @@
 //!
 //! Text waits here until the next preparation, which gives the interpreter a longer version of the program and takes from
 //! it what nobody needs any more. How much waits is what a peripheral is held back by.
+//!
+//! Decision: The memory of a transferred program holds the text from the first block on to which the run may go back;
+//! MP7228 counts kByte, MP7228.1 = 0 takes all of the model's program memory, 22 bytes for a block. What waits for
+//! something that finds no room is PROGRAM MEMORY OVERFLOW (also `parameters/src/settings/interfaces.rs`)
 
 use std::sync::Arc;
 

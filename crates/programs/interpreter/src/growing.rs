@@ -1,4 +1,10 @@
 //! Main programs that are still being transferred while they run [003:1640-1690].
+//!
+//! Decision: A block of a program that is still being transferred is executed when the next one has begun; a label
+//! ahead is waited for, a contour cycle waits for the whole program
+//!
+//! Decision: In a program that is transferred while it runs labels stand ahead only, on all models; what the manual
+//! of the TNC 360 forbids beside that is forbidden there only (also `parameters/src/limits.rs`)
 
 use std::sync::Arc;
 

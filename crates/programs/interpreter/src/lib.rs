@@ -31,6 +31,12 @@
 //! contour stages and queue, `tools`, `flow`, what is `reported`. A block gets those it may touch as a `context`; only
 //! `execute` sees the whole.
 //! Nothing here knows of time or of the machine's axes.
+//!
+//! Decision: After an internal stop the block begins anew from where the axes stand; its incremental coordinates
+//! count from where it began
+//!
+//! Decision: On a machine a digitized program replaces none: ENTRY VALUE INCORRECT at its block; it is written in one
+//! step when the range is scanned, and a scan that is broken off leaves nothing (also `host/src/digitizing.rs`)
 
 mod absent;
 mod arc;

@@ -9,6 +9,9 @@
 //! with the normal `n`, the direction `h` of its part in the working plane and the tool axis `z`: the centre of the
 //! corner goes away from the surface, the axis of a toroid or flat end beside it (inferred). With MP7680 bit 6 the
 //! length of the tool contains DR2, and the last term falls away [000:9179-9192]. DL is in the length already.
+//!
+//! Decision: LN displaces the tip so that the tool in the spindle touches the same point as the one that was computed
+//! with; its normal is stretched and turned with the surface
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Position};

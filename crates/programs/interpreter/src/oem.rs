@@ -4,6 +4,12 @@
 //! The dialogue block of the program says when it runs: after its definition (DLG-DEF), or at the cycle call
 //! (DLG-CALL). The definition assigns its parameters to Q1, Q2, ..., those of DLG-DEF cycles MP7250 higher. What the
 //! cycle makes of Q parameters below Q[100 - MP7251] is gone after its end [000:17763-17800].
+//!
+//! Decision: A cycle of the machine builder gives back the local Q parameters, the cycle for the call and M89 of who
+//! called it; one in the EPROM is a program in the folder `eprom` beside the programs (also `host/src/files.rs`)
+//!
+//! Decision: M00 must not stand in a cycle of the machine builder, as STOP must not; M01 may, since the control does
+//! not stop for it
 
 use bahn_parameters::MessageId;
 use bahn_program::{MFunctions, Operation};

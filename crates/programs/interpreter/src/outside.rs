@@ -1,4 +1,6 @@
 //! What a control tells a run from outside, while it goes on.
+//!
+//! Decision: Tool data that the PLC or the tool probe change count for every TOOL CALL that is read from then on
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

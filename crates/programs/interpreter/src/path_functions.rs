@@ -1,4 +1,10 @@
 //! Poles, arcs and polar coordinates: the end point and the curve of a path function.
+//!
+//! Decision: An arc of the TNC 415/425 takes one more axis, rotary or linear, but none parallel to its plane; a
+//! linear one only where both axes of the plane are named
+//!
+//! Decision: After GOTO a tangential arc and a CC without coordinates are PROGRAM-START UNDEFINED until something
+//! moves
 
 use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, AxisSet, Curve, Plane, Point2, Position};

@@ -1,4 +1,9 @@
 //! The pen: what the block being executed draws, on its way through the contour stages into the queue.
+//!
+//! Decision: On a machine the next block is read after the acknowledgement of functions at which the path stands
+//! anyway; Q100-Q107 count from the strobe after the one in which the PLC wrote them (also `tnc/src/q_transfer.rs`)
+//!
+//! Decision: A loop that waits for the PLC or dwells takes time on a machine and is no endless one
 
 use std::sync::Arc;
 

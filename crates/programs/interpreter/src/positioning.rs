@@ -1,4 +1,12 @@
 //! Positioning blocks: from words to a movement in workpiece coordinates.
+//!
+//! Decision: Without `--datum` and MP960 nobody knows where M91 leads: the axes leave the workpiece and have no
+//! position until they are programmed
+//!
+//! Decision: Axes that a block does not program keep their position when a transformation changes
+//!
+//! Decision: R+ and R- in a block of the tool axis or a rotary axis, and a call with the 5th axis as tool axis, are
+//! WRONG AXIS PROGRAMMED (also `interpreter/src/tools.rs`)
 
 use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Frame, Position};

@@ -1,4 +1,6 @@
 //! Q parameters: the table, calculations and formulas.
+//!
+//! Decision: Values within 1e-9 count as equal in FN9-FN12
 
 use bahn_parameters::MessageId;
 use bahn_program::{BinaryOperator, Calculation, Condition, Expression, UnaryFunction, Value};

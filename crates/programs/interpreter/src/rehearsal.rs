@@ -3,6 +3,9 @@
 //! A fault leaves things in doubt: without the TOOL CALL that could not be read there is no tool either. What
 //! is only such a consequence is not reported, so that one mistake is one error. The same holds for what a
 //! Q parameter decides that the program itself never set.
+//!
+//! Decision: `check` executes programs without geometry and goes on after errors; what an earlier error or a Q
+//! parameter that the program never set leaves in doubt is no error of its own
 
 use std::collections::HashSet;
 use std::sync::Arc;

@@ -1,4 +1,6 @@
 //! What a run is set up with: control model, machine parameters, tools, options.
+//!
+//! Decision: A machine parameter of digitizing that is 0 has the value with which optimizing begins
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,7 @@
 //! M116: the feed of rotary axes is that of the tool over the workpiece, mm/min [000:6559-6561].
+//!
+//! Decision: M116 counts the radius in the middle of a block; half a turn under M126 goes in positive direction (also
+//! `interpreter/src/tilting.rs`)
 
 use bahn_path::{Axis, Curve, FeedRate, Position};
 

@@ -1,5 +1,13 @@
 //! Swivel axes: the tilted working plane of cycle 19 [000:4250-4276], M114 to M117 [000:4439-4447] [000:6559-6561], M126 and
 //! M127 [000:836].
+//!
+//! Decision: In the plane of cycle 19 nothing moves, works or probes while a swivel axis stands more than 0.01°
+//! beside its angle, or while it moves with others: PLANE WRONGLY DEFINED; swivel axes alone go anywhere. A shift of
+//! cycle 7 that was begun before the plane does not end in it
+//!
+//! Decision: Cycle 19 takes machine angles; axes that it does not name stand at 0, without an axis it ends. Rotation,
+//! mirror image and scaling begin after it; what was begun in the plane ends first: else PLANE WRONGLY DEFINED, as
+//! for M91, M92 and M114 in it
 
 use std::sync::Arc;
 

@@ -1,4 +1,11 @@
 //! Tools: their definitions and their calls.
+//!
+//! Decision: The tip of another tool stands elsewhere without a movement: at TOOL CALL on a machine the position in
+//! the tool axis changes by the difference of the lengths; in a test run the tool is lifted out; M91 positions the
+//! spindle nose
+//!
+//! Decision: A tool that is nowhere defined counts as L0 R0 with a warning; with a tool table or strict checking it
+//! is an error
 
 use std::collections::BTreeMap;
 

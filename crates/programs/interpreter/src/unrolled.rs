@@ -1,4 +1,9 @@
 //! The contour of cycle 27, as it lies on the unrolled surface of its cylinder [000:6759-6763].
+//!
+//! Decision: Cycle 27 (syntax and way of later manuals) machines outside and from the positive side of the tool axis,
+//! the rotary axis is one of a table and lies along a main axis; the tool goes up to the setup clearance and over the
+//! centre by itself; only datum shifts may be in force. The path is the unrolled surface, whose placement turns the
+//! rotary axis; axes are shown, not the surface (also `interpreter/src/cycles/cylinder.rs`, `path/src/cylinder.rs`)
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Cylinder, PerAxis, Position};

@@ -1,4 +1,10 @@
 //! M functions and speeds of a block, as the control hands them to PLC and spindle.
+//!
+//! Decision: On a TNC an M function of a `.nc` program goes out where the table of the model or the machine builder
+//! has it: the PLC of the machine is written for that, and a channel list says nothing of a TNC
+//!
+//! Decision: What a TNC cannot do is refused at its block: a function that is passed over would spoil the part (also
+//! `nc/src/reader.rs`)
 
 use bahn_din::{Command, Kind, Target, Unit};
 use bahn_parameters::MessageId;

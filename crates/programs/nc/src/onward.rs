@@ -1,5 +1,9 @@
 //! An arc that does not begin where the block before it has ended: the axes were moved meanwhile, or the run was stopped
 //! inside it.
+//!
+//! Decision: A run that goes on inside a block keeps the end of that block; an arc is gone on with where the axes
+//! stand on it within 0.01 mm, as far as its end may lie beside it. At its start all of it is left, also of a full
+//! circle, which ends there, too: it is rather cut twice than not at all
 
 use bahn_path::{Arc, Curve, Point2, Position, sweep_deg};
 

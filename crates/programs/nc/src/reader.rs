@@ -1,4 +1,13 @@
 //! A DIN 66025 program that is read block by block.
+//!
+//! Decision: A run begins with no block of a subroutine (`%L`), where no caller is to go back to: WRONG PROGRAM DATA.
+//! A number is looked for in subroutines only where no program of the file has it (also `program/src/program.rs`)
+//!
+//! Decision: The programs of a file run one after the other, as on the channel; M17 and M29 end subroutines and go to
+//! no PLC
+//!
+//! Decision: G41 and G42 are refused on a machine: the tool in its spindle has a radius, which these programs do not
+//! know
 
 use std::any::Any;
 use std::collections::VecDeque;

@@ -1,4 +1,8 @@
 //! The programs of a run as text: where a block stands in them.
+//!
+//! Decision: A block of a `.nc` program is called by its number N, the first one of a program where several have it,
+//! one without by its place among the lines that are not empty: that is what stands in the file and on the screen.
+//! Subroutines number their blocks themselves (also `program/src/din.rs`)
 
 use std::sync::Arc;
 

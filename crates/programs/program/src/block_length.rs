@@ -1,5 +1,7 @@
 //! Blocks that are longer than the control takes: 150 characters in DIN/ISO [000:615], 64 on the TNC 151/155
 //! [001:1174-1183].
+//!
+//! Decision: A block of DIN/ISO that is longer than the control takes cannot be read, in a run as in a check
 
 use bahn_parameters::{Limits, MessageId};
 

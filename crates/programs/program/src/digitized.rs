@@ -1,4 +1,7 @@
 //! The program that digitizing writes: straight lines from point to point [003:6832-6857].
+//!
+//! Decision: Digitized points are those of the tip: a ball cutter like the stylus makes the surface again. In a test
+//! run the probe is the tool that was called (also `interpreter/src/digitize.rs`)
 
 use std::fmt::Write as _;
 

@@ -1,5 +1,8 @@
 //! DIN 66025 (`.nc`), as far as its text goes: where its blocks stand and how they are numbered. What they do another
 //! room executes; here, as a part of a program of the control, each is refused.
+//!
+//! Decision: CALL PGM, the dialogue and blockwise transfer refuse a `.nc` program that does not begin with BEGIN PGM
+//! as FUNCTION NOT YET SUPPORTED: its words mean other things in plain language (also `program/src/grow.rs`)
 
 use bahn_parameters::{Limits, MessageId};
 

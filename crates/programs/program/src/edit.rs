@@ -1,4 +1,7 @@
 //! Editing: a new version of a program, which shares with the old one all text but that around the edit.
+//!
+//! Decision: An edit changes the text of a program only around its place; blocks around it stay what they are, but
+//! for the `~` of a comment that would join the new text. BEGIN and END are the control's
 
 use std::ops::Range;
 use std::sync::Arc;

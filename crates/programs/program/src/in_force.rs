@@ -1,4 +1,9 @@
 //! The functions in force of languages with G functions: what their blocks leave open is filled in here.
+//!
+//! Decision: A run in DIN/ISO begins with G01 and G90; F in a block of rapid traverse counts from the next one on
+//! that is not; G17 to G19 without a tool call choose the tool axis; a block without words of its path function moves
+//! on a line; one that says an arc, G07 or a polar function needs its end point there; G20 is refused (also
+//! `program/src/iso/read.rs`)
 
 use crate::{Direction, Distance, Modality, Motion, MotionKind, Operation, PathFunction};
 

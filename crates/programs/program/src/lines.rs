@@ -1,4 +1,7 @@
 //! Lines of a text, and the places of blocks in it.
+//!
+//! Decision: A comment goes on after one `~`, unless the next line has a block number or frames the program; several
+//! `~` are a rule
 
 use crate::text::{is_blank, to_text, trim};
 

@@ -3,6 +3,9 @@
 //! The manuals give the input resolutions [003:7825] [000:6419-6424] and not what becomes of a program from elsewhere
 //! that is finer: its numbers are rounded, half steps away from zero *(inferred)*. Q parameters are calculated with
 //! and keep what they have.
+//!
+//! Decision: Numbers finer than the input step of the control are rounded, half steps away from zero, and said once
+//! for each program; F has the step of lengths; Q parameters keep what they have
 
 use bahn_parameters::ControlModel;
 use bahn_path::Axis;

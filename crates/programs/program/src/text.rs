@@ -1,4 +1,6 @@
 //! Characters of part-program files: blanks, line ends, words.
+//!
+//! Decision: A CR alone is a blank in a file that has more LF
 
 use bahn_text::{MARK_BYTES, utf8_or_latin};
 

@@ -1,4 +1,7 @@
 //! What a computation may cost.
+//!
+//! Decision: A contour that crosses itself 300,000 times is refused: its crossings would take gigabytes (also
+//! `interpreter/src/cycles/contour_pocket.rs`)
 
 use std::convert::Infallible;
 

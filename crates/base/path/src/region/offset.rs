@@ -5,6 +5,9 @@
 //! Most of them, where elements are shorter than the radius, lie nearer to some other element. They
 //! are covered: what is covered goes before anything is cut with anything ([`Covering::uncovered`]), which
 //! leaves little more than the result. The rest is cut where it meets, and every edge is asked once more.
+//!
+//! Decision: An offset is what of the moved elements nothing covers: covered parts go before anything is cut, so that
+//! short elements cost no more than long ones
 
 use super::arrangement::TOLERANCES_MM;
 use super::edges::{Edge, edges};

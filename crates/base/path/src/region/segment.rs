@@ -1,4 +1,7 @@
 //! Lines and circular arcs of the plane.
+//!
+//! Decision: An arc that ends beside the circle of its start (MP7431) gets a centre that fits both ends, or a short
+//! line where that would move nearly a full circle
 
 use super::RESOLUTION_MM;
 use super::vector::*;

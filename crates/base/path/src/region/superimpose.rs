@@ -1,4 +1,6 @@
 //! Superposition of the subcontours of cycle 14 CONTOUR GEOMETRY.
+//!
+//! Decision: Subcontours superimpose by their start points
 
 use super::effort::{Effort, Unlimited};
 use super::index::{Bounds, Index};

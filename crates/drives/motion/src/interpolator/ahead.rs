@@ -1,4 +1,6 @@
 //! Functions that go out ahead of their element, while the path before it is executed [004:81-90].
+//!
+//! Decision: A function that goes out ahead by a time counts it as if the path stopped where it waits
 
 use std::collections::VecDeque;
 

@@ -4,6 +4,12 @@
 //! ([`Lead`]). The axes do not take that position but the one that belongs to the angle where the spindle
 //! really is ([`Master`]), also beyond the ends of the element. So whatever the spindle does, from lagging to
 //! running out without power, the axes keep to the thread.
+//!
+//! Decision: In a thread (cycle 17) the path leads the spindle in its loop, and the tool axis goes where the
+//! spindle's angle says; after EMERGENCY STOP both are coupled anew as they stand; an axis that stood without feed
+//! enable or loop while its spindle came to where it is led keeps to its thread and goes after it on its ramp, with
+//! no NC start, as from where it ran on without feed enable; MANUAL OPERATION with the axis key leads the tool out;
+//! INTERNAL STOP is refused until then (also `kernel/src/thread.rs`)
 
 use bahn_path::{Position, Thread};
 

@@ -2,6 +2,12 @@
 //!
 //! P.P.INT is the greatest distance of two points [003:6668], on walls, too: a stylus that is nine tenths of it along goes
 //! straight to the surface, as far as TRAVEL and what is left of P.P.INT let it, and so turns by enough to find a wall again.
+//!
+//! Decision: The stylus of a digitizing leaves the surface for two fifths of an oscillation and goes no farther from
+//! a point than nine tenths of P.P.INT along and 0.43 of it across, so that points lie nearer than P.P.INT on walls,
+//! too; while it is deflected it goes along four times as fast as across at most; MP6240 counts after the last point,
+//! and ends at the edge of the RANGE, where the stylus has not been; TIME counts seconds (also
+//! `interpreter/src/digitize.rs`)
 
 use bahn_path::{ScanJob, ScanPoint};
 

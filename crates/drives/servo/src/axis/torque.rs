@@ -1,4 +1,10 @@
 //! What an axis with digital speed controller does otherwise: its loop gives torque.
+//!
+//! Decision: A drive whose motor's encoder is not read closes its speed loop itself: MP1900 does nothing then
+//!
+//! Decision: A digital axis without feed enable stops with MP1060 and is held, since 0 V would let it run down; in an
+//! EMERGENCY STOP its torque ends after MP1980, at once where its speed controller itself has a fault (MP1910,
+//! MP1970)
 
 use crate::fault::GrossFault;
 use crate::plant::Encoder;

@@ -1,4 +1,7 @@
 //! The spindle led to an angle in every contour cycle: rigid tapping.
+//!
+//! Decision: In cycles 17 and 18 the loop of the spindle is open while its nominal angle moves; when it stands, the
+//! loop brings it to its angle and holds it, fading in and out
 
 use super::settings::SpindleSettings;
 

@@ -5,6 +5,11 @@
 //! lags nobody knows; but a drive without overshoot turns no faster than the fastest that it was told lately, and no slower
 //! than the slowest. One whose ramp is steeper than its drive can follow does, and that is what commissioning looks at
 //! [000:6128]: while it goes on towards the speed that it is told, it is not at fault.
+//!
+//! Decision: A spindle that is led along a thread is monitored as an axis is by MP1140, for the tool axis goes
+//! wherever it turns: GROSS POSITIONING ERROR C of S when it has turned by MP1110 of the tool axis beside what a
+//! drive does with a time constant of 0.1 s on the ramp MP3410.3, half as fast again or half as slow; not in an
+//! EMERGENCY STOP, and not where the PLC suppresses the monitoring of the tool axis (also `kernel/src/thread.rs`)
 
 use crate::monitor::{MOVEMENT_TOLERANCE, MOVEMENT_WINDOW_S};
 use crate::timing::Timing;

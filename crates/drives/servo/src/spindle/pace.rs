@@ -1,4 +1,9 @@
 //! The speed of a spindle whose angle is counted in whole steps.
+//!
+//! Decision: The speed of the spindle is taken over the longest of the last 16 contour cycles whose counts, 4096
+//! steps of a turn, are those of a steady speed; trembling about the edge of a step is standstill. The encoder input
+//! of the spindle is for square-wave signals on a TNC 360, too, whose manual does not say (also
+//! `servo/src/spindle/encoder.rs`)
 
 use crate::plant::Encoder;
 

@@ -1,5 +1,8 @@
 //! The data interfaces of the operating panel: each on a thread of its own, where a transfer begins when the operator wants
 //! it, and the PLC has the line at other times.
+//!
+//! Decision: At a panel the interfaces rest between transfers: what a device begins there is not heard, but for the
+//! PLC that has the line
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

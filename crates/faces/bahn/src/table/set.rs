@@ -1,4 +1,7 @@
 //! `bahn table set`: changes a line of a table.
+//!
+//! Decision: `bahn table set` changes one line, checks the whole and replaces the file in one step; a machine reads
+//! its tables at power-on
 
 use std::io::Write;
 use std::path::Path;

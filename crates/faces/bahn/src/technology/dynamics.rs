@@ -1,4 +1,7 @@
 //! From a list of machine parameters, which may hold changes only, to the limits of motion.
+//!
+//! Decision: `bahn technology` moves by the reference list of a TNC 415 B with MP1010 10 m/min, MP1060 and MP1070 1
+//! m/s² for all axes, and the lines of `--parameters` over it
 
 use std::path::Path;
 

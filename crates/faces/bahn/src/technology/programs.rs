@@ -1,4 +1,6 @@
 //! Programs and subroutines from files.
+//!
+//! Decision: Subroutines of `.nc` programs lie in the folder of a program of the run; names lead nowhere else
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

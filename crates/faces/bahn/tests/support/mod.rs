@@ -158,19 +158,21 @@ pub fn machines() -> PathBuf {
 
 /// Holds a document of the repository to what a command prints; with `BAHN_WRITE_DOCS` it is written anew first.
 pub fn holds_document(document: &str, command: &str, written_by: &str) {
+    let run = Folder::new().bahn(command);
+    assert_eq!(run.code(), 0, "{}", run.err());
+    holds_text(document, &run.out(), written_by);
+}
+
+/// A document of the project is this text; with BAHN_WRITE_DOCS=1 it becomes so.
+pub fn holds_text(document: &str, text: &str, written_by: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../..")
         .join(document);
-    let run = Folder::new().bahn(command);
-    assert_eq!(run.code(), 0, "{}", run.err());
     if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
-        std::fs::write(&path, run.out()).unwrap();
+        std::fs::write(&path, text).unwrap();
     }
     let written = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        written == run.out(),
-        "{document} is not what `bahn {command}` prints: {written_by}"
-    );
+    assert!(written == text, "{document} is made anew by `{written_by}`");
 }
 
 /// Blocks with BEGIN and END.

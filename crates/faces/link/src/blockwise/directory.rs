@@ -1,4 +1,7 @@
 //! The directory of an FE [000:17460-17474].
+//!
+//! Decision: A sector of the directory has 512 bytes, 1580 are free on an empty disk (790 kByte); more may be stored,
+//! as the folder has room
 
 use std::collections::VecDeque;
 use std::time::Duration;

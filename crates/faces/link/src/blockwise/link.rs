@@ -1,4 +1,8 @@
 //! One end of a line with check characters: what comes in pieces, what goes out, and how long it has been quiet.
+//!
+//! Decision: Blocks have no numbers, so one is repeated for NAK only: a lost answer ends the transfer (E, M, N as
+//! printed), a damaged frame, or one that stops halfway, is NAK after half the patience; answers that come before a
+//! block is sent are those of a line that doubles
 
 use std::collections::VecDeque;
 use std::time::Duration;

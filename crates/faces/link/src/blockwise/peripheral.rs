@@ -1,4 +1,11 @@
 //! The device: a floppy disk unit, a personal computer, and a control that obeys what arrives.
+//!
+//! Decision: A device waits for the acknowledgement of a control without limit, since the control stops it by keeping
+//! it back; a control waits as long as `timeout` says. ENQ after that time ends such a transfer with message N and
+//! begins LSV/2
+//!
+//! Decision: READ-IN ALL asks for one type of files, plain-language programs if nothing else is said; a device gives
+//! those of the code letter that carry their name, by name
 
 use std::collections::VecDeque;
 use std::time::Duration;

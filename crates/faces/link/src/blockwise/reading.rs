@@ -1,4 +1,7 @@
 //! The control reads files in [000:17484-17512] [001:2092-2140].
+//!
+//! Decision: After END PGM and its ACK silence ends a file as ETX does, since everything is there and acknowledged;
+//! after ETX without END PGM a moment is waited for more text, as ETX may have been a damaged STX
 
 use std::collections::VecDeque;
 use std::time::Duration;

@@ -1,4 +1,8 @@
 //! The control's side of the drip feed.
+//!
+//! Decision: After a broken line START asks again from the beginning, and the control passes over what it has by
+//! count, and looks whether it is the same; a run that nobody goes on with is executed to its last block and has not
+//! ended (also `interpreter/src/drip_feed.rs`)
 
 use std::time::Duration;
 

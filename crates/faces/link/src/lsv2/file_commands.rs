@@ -1,4 +1,8 @@
 //! Telegrams about files and folders.
+//!
+//! Decision: A file that a host uploads replaces one of its name in one step, with `T_FD`; whatever breaks the upload
+//! off leaves the old one. Files of a machine have names of 40 characters without blanks, compared without regard to
+//! case (also `store/src/`)
 
 use std::time::UNIX_EPOCH;
 

@@ -1,4 +1,6 @@
 //! Telegrams about the control and its run.
+//!
+//! Decision: A message of a host to the PLC is a doubleword when it has four bytes, else a string
 
 use std::io::Write;
 use std::time::{SystemTime, UNIX_EPOCH};

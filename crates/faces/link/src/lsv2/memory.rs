@@ -1,4 +1,7 @@
 //! Memory of the PLC by its addresses, and the system parameters that say where it is.
+//!
+//! Decision: By LSV/2 a word of the PLC has its low byte first, as clients expect it; a block of two or four bytes is
+//! one operand, a longer one words
 
 use super::session::{Answer, Session};
 use super::{Area, Device, ErrorNumber, Telegram, tcp};

@@ -2,6 +2,9 @@
 //!
 //! `ENQ` is answered `DLE 0`, `DLE STX` telegram `DLE ETX` BCC is answered `DLE 1` or, to have it again, `NAK`; `EOT` ends.
 //! A `DLE` of the telegram is doubled. The machine knows no line and no clock: it is given bytes and times.
+//!
+//! Decision: A serial line of LSV/2 yields as the control when both ends begin; a telegram that was confirmed counts
+//! without its EOT; everything is tried three times
 
 use std::collections::VecDeque;
 use std::time::Duration;

@@ -1,4 +1,6 @@
 //! What one connection may do and does: a telegram in, at most one out.
+//!
+//! Decision: The key lock of LSV/2 is among hosts, and ends with the connection; the operator's keys are not locked
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};

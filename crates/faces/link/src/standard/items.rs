@@ -1,4 +1,6 @@
 //! What comes in the standard protocol: lines, control characters, errors of the device.
+//!
+//! Decision: Which of DATA CARRIER and DATA MEDIUM: as the table of the error sequences prints it
 
 use bahn_parameters::MessageId;
 

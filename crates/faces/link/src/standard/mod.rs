@@ -2,6 +2,12 @@
 //!
 //! Text goes as it is, with CR LF after each line and nothing to check it by. `items`: what comes; `reading` and `writing`:
 //! the control; `peripheral`: the device, and a control that obeys.
+//!
+//! Decision: A standard device that has sent its text answers the next DC1 with ETX alone until EOT; a control that
+//! reads all ends when a device stays silent after ETX, where the operator would press END
+//!
+//! Decision: After DC3 Bahn sends 12 characters at most; what comes to it after its own DC3 is kept, however much it
+//! is
 
 mod items;
 mod peripheral;

@@ -1,6 +1,11 @@
 //! BACKUP DATA and RESTORE DATA: everything of the machine as one file over the data interface [000:463-467].
 //!
 //! While it is on its way the file lies in the program memory, which the data interfaces read and write.
+//!
+//! Decision: Between BACKUP DATA or RESTORE DATA and the interface the backup is the file $BACKUP.A of the program
+//! memory, which goes when the transfer ends. RESTORE DATA asks before, needs a machine that runs no program, and
+//! switches the machine on anew. What was is backed up before, and comes back where no machine can be switched on
+//! with what is restored; files that only the restored backup had stay then
 
 use std::fs::File;
 use std::io::BufReader;

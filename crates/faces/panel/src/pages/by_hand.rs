@@ -1,4 +1,7 @@
 //! MANUAL OPERATION, ELECTRONIC HANDWHEEL, and the reference run before them [003:1031-1145].
+//!
+//! Decision: DATUM SET stands in a second row of soft keys; INCREMENT in ELECTRONIC HANDWHEEL alone (also
+//! `panel/src/pages/datum.rs`)
 
 use bahn_dialogue::Key;
 use bahn_exchange::signal;

@@ -2,6 +2,12 @@
 //! [000:17231-17349]. The menu is that of the TNC 360 on all controls; READ-OUT PROGRAM OFFERED is the output with
 //! acknowledgement of later ones. Lists of machine parameters and files of the PLC go the same way, from their editors
 //! [000:10011] [000:11386-11390].
+//!
+//! Decision: EXT in the editor of lists and in PLC PROGRAMMING has the menu of programs; there .S means .CMA and .V
+//! means .COM, a name without type a .MP or .PLC
+//!
+//! Decision: EXT has the menu of the TNC 360 on all controls; one transfer at a time; ERASE/OVERREAD of a program
+//! that runs is answered with NO ENT (also `panel/src/station/transfers.rs`)
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;

@@ -1,5 +1,13 @@
 //! Program management: the directory, in which a file is chosen, made, copied, renamed, erased and protected
 //! [003:981-1023].
+//!
+//! Decision: How long names and how many files may be holds for what is made at the panel; what is there already is
+//! shown and runs
+//!
+//! Decision: What MP7224.0 disables is hidden on the panel and not erased
+//!
+//! Decision: A name without a type is the program that is there, else one in the language of PROGRAM INPUT; the
+//! control knows a program in DIN/ISO by its name with type
 
 use bahn_dialogue::Key;
 use bahn_machine::MachineFolder;

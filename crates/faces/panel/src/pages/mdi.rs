@@ -1,5 +1,8 @@
 //! POSITIONING WITH MANUAL DATA INPUT: a block is entered by dialogue and executed by NC start; it is not stored
 //! [003:3564-3617].
+//!
+//! Decision: MDI of a TNC 360 refuses positioning blocks of several axes when they are complete; other blocks are
+//! taken
 
 use std::sync::Arc;
 

@@ -1,5 +1,9 @@
 //! 3D ROT: the tilted working plane, for program run and for manual operation each for itself, and the positions of the swivel
 //! axes in it [000:4256].
+//!
+//! Decision: In the menu of 3D ROT another position of an axis is that of each plane that is on, whose other axes
+//! keep theirs; with none on it switches manual operation on, and a plane that is switched on has the positions that
+//! are shown
 
 use bahn_tnc::{Command, PlaneCommand};
 

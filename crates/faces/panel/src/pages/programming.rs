@@ -1,5 +1,10 @@
 //! PROGRAMMING AND EDITING [003:1692-1790]: a program is written by dialogue. Every block is on the medium when it is
 //! complete, and what is still open of one is kept, too.
+//!
+//! Decision: In PROGRAMMING AND EDITING GRAPHICS switches AUTO DRAW, START draws the whole program; a cycle is drawn
+//! while its words are asked for, with HELP where the screen has one column; what is drawn is the contour as it is
+//! programmed up to the block at the cursor, the path of the tool where a block has no RL or RR and in cycles, called
+//! programs and subprograms after it in the colour of MP7363.2 (also `graphics/src/contour.rs`)
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! PROGRAM RUN, FULL SEQUENCE and SINGLE BLOCK [003:1537-1690].
+//!
+//! Decision: Graphics in program run: a TNC 415 and 425 draw what runs, a TNC 407 has them in TEST RUN only; a TNC
+//! 360 and before draw what runs, and START simulates the program while nothing runs
 
 use std::sync::Arc;
 

@@ -1,6 +1,13 @@
 //! Commissioning: a list of machine parameters that is empty or has faults is presented when the control is switched on,
 //! and it goes on when the list is whole [000:10011] [000:10050-10066]. And another machine in the place of this one, when
 //! its files are those of a backup.
+//!
+//! Decision: A list that is empty, missing or faulty is presented while the supply of the control is off; what can be
+//! read of it, else the reference list, says the rest of the machine meanwhile, and what the control kept is neither
+//! read nor written. It is whole when no line has a fault: what it does not name has its value of the reference list,
+//! as in every list of a folder. A list that is there and cannot be read is a fault of the folder. No lesson begins,
+//! and nobody goes to another moment, while it is entered; where the editor could not be presented, switching the
+//! supply on tries again. Lists of further channels are no part of it (also `host/src/machine_folder/load.rs`)
 
 use std::sync::Arc;
 

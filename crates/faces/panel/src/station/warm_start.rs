@@ -1,4 +1,6 @@
 //! The warm start: a flashing message goes when the key END is held for several seconds [003:7946].
+//!
+//! Decision: END is held for 3 s for the warm start, which is power-off and power-on, on all controls
 
 use bahn_dialogue::Key;
 use bahn_tnc::Control;

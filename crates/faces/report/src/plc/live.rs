@@ -1,4 +1,7 @@
 //! A PLC program in the control of a machine, scan by scan.
+//!
+//! Decision: The views of the PLC see a running machine from a host of their own, in whole scans; lines are stepped
+//! on the bench only, since the control does not stop within a scan (also `report/src/plc/subject.rs`)
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -2,6 +2,9 @@
 //!
 //! The kinds and limits below are *(inferred)*; the manual names the effects: corners and lag [000:4721-4726],
 //! equal kv factors [000:4880-4900], spikes at reversal [000:3655-3690].
+//!
+//! Decision: Why the axes left the contour is read from the nominal path and the lags of that moment: corner, curve,
+//! reversal, acceleration along the path, unequal kv, in this order
 
 use std::fmt;
 

@@ -3,6 +3,9 @@
 //! A tool that is changed, a spindle that ramps, a gear that shifts, a door that opens, a PLC program that goes from step to step: all
 //! of these bring machine and PLC into states in which they have not been since an axis moved last. A run that hangs has no new state;
 //! a lamp that blinks and a pump that runs every minute come back to states that were there. A timer of the PLC is given its time.
+//!
+//! Decision: A run without movement comes on while control, PLC and plant reach states in which they were not since
+//! an axis moved last, 4096 at most; a timer of the PLC that runs is given its longest time
 
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hasher as _};

@@ -1,4 +1,8 @@
 //! What lies on the table of the machine while the touch probe probes or digitizes.
+//!
+//! Decision: While the touch probe probes, by program or by hand, or digitizes, the part as it is then lies on the
+//! table, at the datum of the program that machined it: a datum that is set later moves no part; a solid from a mesh
+//! lies at the datum of machine.toml. Boxes and rings of the plant stay beside it: what is touched first counts
 
 use std::sync::Arc;
 

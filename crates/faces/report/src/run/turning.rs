@@ -1,4 +1,7 @@
 //! How the spindle of the machine turned on each element of the path.
+//!
+//! Decision: Spindle faults of a cut on a machine file are those of its spindle at the end of each element, not of M
+//! and S
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,6 @@
 //! All programs on all cores. A program that does not end stops neither the others nor the table.
+//!
+//! Decision: A run of a shelf that does not end when told so is left alone in its thread; the others go on
 
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -2,6 +2,8 @@
 //!
 //! - `crew`: runs them side by side; `row`: what is said of one, `totals` of all;
 //! - `table`, `csv`, `html`: how it is written; `against`: what changes from another run.
+//!
+//! Decision: A program of a shelf that fails alone, but is called by one that runs, is no error
 
 mod against;
 mod crew;

@@ -1,4 +1,7 @@
 //! From blocks to the path: where each function is output, and where the path waits for it.
+//!
+//! Decision: A block with G04 and no motion is one without a motion: its functions are output and waited for before
+//! the dwell
 
 use bahn_din::{Command, Unit};
 use bahn_kernel::gates::{Action, Driving, Held, JointFeed, Leg, VectorLimit};

@@ -1,4 +1,6 @@
 //! Programs one after the other.
+//!
+//! Decision: What was decoded before a faulty block is executed, then the run ends
 
 use bahn_din::{Place, Unit};
 use bahn_kernel::gates::Action;

@@ -2,6 +2,9 @@
 //!
 //! Its last state is listed (inferred): of each range the last of each function, of functions
 //! that replace one another the last of all.
+//!
+//! Decision: A block search looks in the program itself, then in its subroutines, then in the next programs of the
+//! file; what it passes over is neither output nor commanded nor waited for, only listed
 
 use bahn_din::{Command, Unit};
 use bahn_path::Position;

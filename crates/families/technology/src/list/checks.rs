@@ -1,4 +1,7 @@
 //! What does not go together in a list, each with the line that is to be changed.
+//!
+//! Decision: With gear stages M40 to M45 that a list writes otherwise than MVS_SVS are errors; those that it does not
+//! write are P-ERR-20157 when they are programmed
 
 use std::collections::BTreeSet;
 use std::fmt;

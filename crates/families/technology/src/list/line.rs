@@ -1,4 +1,6 @@
 //! One line of a list: a name with its indices, and what stands after it.
+//!
+//! Decision: Start-up lists are read for the first channel; lines of the axis list count after `spindel[i].` only
 
 use super::Place;
 use super::table::{Definition, canonical, pattern};

@@ -3,6 +3,9 @@
 //! Reading never fails: what cannot be read is an error with line and column, and does nothing. `table` is what a list
 //! may have, as data; `line` and `value` read a line, `field` puts the value in its place, `checks` finds what does
 //! not go together, `write` writes lists.
+//!
+//! Decision: Of two lines of a channel parameter list for the same parameter the later one counts; a remark that says
+//! another type than its value is warned of, and the value counts
 
 mod checks;
 mod cure;

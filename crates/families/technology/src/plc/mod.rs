@@ -1,5 +1,8 @@
 //! The PLC at the other side of the ranges: a script says what it does, it does all in its process time, or a real one reads
 //! and answers in a window of bytes.
+//!
+//! Decision: A function that path and PLC meet within a cycle is seen at its end; fetch and acknowledgement come one
+//! cycle later at the earliest, the path goes in that cycle
 
 mod output;
 mod said;

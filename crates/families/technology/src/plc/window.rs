@@ -13,6 +13,10 @@
 //! | 6, 7 | counts the functions of the run | channel |
 //! | 8 to 11 | additive value, speed in 0.001 rpm | channel |
 //! | 12 to 15 | process time, or the time since the path was at the place, µs | channel |
+//!
+//! Decision: The PLC of a machine folder sees the functions of all ranges in eight slots of 16 free bytes, B128 to
+//! B255 or where `--window` says, and answers in each; it is given up after 60 s without an answer while the path
+//! stands (also `bahn/src/technology/machine.rs`)
 
 use std::collections::VecDeque;
 

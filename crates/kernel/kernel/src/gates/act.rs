@@ -1,4 +1,7 @@
 //! What is done where the path is, and where it has to stop.
+//!
+//! Decision: What the PLC has not fetched in its cycle blocks the next output to its range; an output that can no
+//! more be stopped before waits after its place, and the path stops as soon as it can
 
 use super::functions::{Functions, Moment, Way};
 use super::places::Action;

@@ -1,4 +1,9 @@
 //! What is done ahead of its place: output by distance or by time, with the time that the path will take as planned.
+//!
+//! Decision: `MET_*` goes out in the first cycle in which the path as it is planned takes no longer than the lead: a
+//! copy of the interpolator is run ahead, with the standstills and dwells that are known. M functions as `MET_MOS`
+//! keep their lead, since their path does not stop for them; where an end velocity of 0 forbids a lead it is said,
+//! whatever the type (also `kernel/src/gates/kept.rs`)
 
 use bahn_motion::{Drive, State};
 use bahn_path::Ahead;

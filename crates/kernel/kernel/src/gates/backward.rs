@@ -3,6 +3,9 @@
 //! In backward motion functions are output as MOS, those that wait on the way back as MVS_SVS; forward again they have their own
 //! types [004:54] (public: backward motion). What is output ahead is output at the place it belongs to in backward motion, and
 //! forward again ahead of it; where the path turns after that, at once, as what does not come early enough (inferred).
+//!
+//! Decision: The way back reaches over 10,000 elements, within the program; what is output ahead goes out at its own
+//! place on the way back, and ahead again forward, at once where the path turns after the place of output
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 

@@ -1,4 +1,7 @@
 //! A cycle of the path.
+//!
+//! Decision: The path stops at a gate by the planner's stop before an element; what is closed when it must brake
+//! stops it, what opens meanwhile lets it go on
 
 use std::sync::Arc;
 

@@ -2,6 +2,10 @@
 //!
 //! The manual is silent; the control that it describes stops in the interpolator, so decoding, look-ahead and what is output
 //! ahead go on (public: single-step mode, P-CHAN-00015 = -1).
+//!
+//! Decision: In single block the path stops at the end of each programmed block with a motion, and what stands in the
+//! blocks after it goes out with the start of the next; acknowledgements, late functions and what is output ahead go
+//! on
 
 use bahn_motion::{Drive, Interpolator, State};
 

@@ -1,4 +1,9 @@
 //! Micro Joints: functions that are output at a place within a block, which is split for it [004:111-147].
+//!
+//! Decision: The entry velocity of a Micro Joint is the feed of a piece of 10 nm; DEC and ACC of `#VECTOR LIMIT` are
+//! one, the lesser
+//!
+//! Decision: Blocks without a motion do not count in the window of Micro Joints
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,6 @@
 //! Modules 9120 to 9124: PLC axes [000:15907-16035][000:4092-4240].
+//!
+//! Decision: Bit 1 of module 9122 is of every axis, the others of PLC axes, which modules 9120 to 9123 move alone
 
 use bahn_parameters::PLC_AXES;
 

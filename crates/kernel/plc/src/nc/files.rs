@@ -1,4 +1,7 @@
 //! Files that modules read and select.
+//!
+//! Decision: Ten dependencies and 640 points of compensation are those of the active line; at power-on it must keep
+//! to them
 
 /// Why a value of the edited machine parameter list cannot be read [000:14874-14879].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

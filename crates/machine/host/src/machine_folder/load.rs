@@ -1,4 +1,12 @@
 //! Everything that belongs to a machine, from its folder; all faults of all files at once.
+//!
+//! Decision: A folder may describe no simulated machine; then it is switched on only with a plant that is given. Keys
+//! and axes that `machine.toml` names are checked against the simulated machine alone, since of another plant nobody
+//! knows them when the files are read
+//!
+//! Decision: Of several tool tables of a folder the one of machine.toml is in use; `bahn run --tools` takes another
+//! one for a run that keeps nothing, since what the control remembers belongs to the one in use. No manual here reads
+//! point tables: `bahn table` shows and checks them
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};

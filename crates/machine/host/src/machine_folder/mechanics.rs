@@ -4,6 +4,10 @@
 //! crash. So this file is written first, in one step, with the memory of the PLC and what the control remembers in it, and then
 //! the files of these. Who finds one of them as it was before finishes what was begun: whenever the process ends, everything is as
 //! it was at one moment. Whatever else is found there was changed from outside, and is said.
+//!
+//! Decision: Mechanics, PLC and control are kept as they were at one moment: `mechanics.toml` holds all of it and is
+//! written first, in one step; who finds the other files as they were before finishes them. Where they are otherwise
+//! each counts for its own, and that is said with the tools that are elsewhere (also `host/src/power_on.rs`)
 
 use bahn_machine::Mechanics;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,13 @@
 //! The NC memory: the files in the folder of part programs, its pallet file and its datum tables. The manuals tell
 //! what these tables hold [000:15332-15340] [000:15414-15420], not how they look as text: they are written as tool
 //! tables are (inferred).
+//!
+//! Decision: A table of the folder of programs that is faulty or missing keeps no machine off: it is listed at
+//! power-on, `bahn machine check` has it as an error, and cycle 7 or module 9090 refuses it, also the one that
+//! machine.toml names (also `tnc/src/plc_link.rs`)
+//!
+//! Decision: Pallet files and datum tables are text as tool tables are, in the folder of the part programs; a column
+//! that nobody reads is refused
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,7 @@
 //! What the control remembers, as a file: text that people can read, with a check sum in its last line.
+//!
+//! Decision: What the control remembered and cannot be read starts no machine; the damaged file is kept, and who
+//! mends it says so in its last line
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,4 +1,7 @@
 //! What survives power-off: the journal of the PLC's memory, what the control remembers, and where the mechanics stand.
+//!
+//! Decision: What the first channel remembers stands in control.toml with what concerns the machine, that of the
+//! second in control-2.toml; a change is on the medium of all before its strobe falls
 
 use std::fs::{self, File};
 use std::io::Write as _;

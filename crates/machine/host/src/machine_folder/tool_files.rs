@@ -1,4 +1,10 @@
 //! Tool table and pocket table of a machine, and whether they fit its parameters.
+//!
+//! Decision: With MP7260 = 0 the tool table of machine.toml is not used, which is a warning: tools come from TOOL
+//! DEF; the panel shows neither tool nor pocket table then (also `panel/src/pages/table/place.rs`)
+//!
+//! Decision: Tables that do not fit MP7226, MP7260, MP7261 or MP7264 are faults of the machine's folder, with line
+//! and column
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,7 @@
 //! Non-linear axis errors: the correction tables of code number 105 296, older than .COM and .CMA [000:3875-3887].
+//!
+//! Decision: Correction tables of code number 105 296 are one file in the form of .COM: 64 points for each axis, over
+//! one axis; a .CMA, even without an active line, puts them out of force
 
 use bahn_servo::ErrorTable;
 

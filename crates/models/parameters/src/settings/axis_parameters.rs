@@ -1,4 +1,7 @@
 //! Everything that servo, reference run and monitoring need of one axis.
+//!
+//! Decision: MP7470 = 0 of a TNC 360 lets a rotary axis count to 359.999 degrees on both sides of 0, with its sign,
+//! as its manual says; that of the controls before MP810, from 0 to 359.9999, is none of the models here
 
 use bahn_path::Axis;
 use bahn_servo::settings::{

@@ -1,4 +1,8 @@
 //! What the PLC gets from the list: presets and numbers of the machine builder.
+//!
+//! Decision: Five markers choose one of MP4210.0 to .31 for a position of the TNC 355, MP4220 is its feed, MP4210.32
+//! to .46 are datum corrections of five axes for three traverse ranges; on TNC 151/155 the codes 1 to 31 are MP126 to
+//! MP156
 
 use crate::ParameterList;
 

@@ -1,4 +1,8 @@
 //! The colours of a sheet.
+//!
+//! Decision: The 3D view in the colours of MP7360 knows no lamp: a slope has part of the colour of each face, the
+//! front is the face that is nearer to the eye; the plan view has the colours that it has among the three planes,
+//! darker with the depth; MP7362.1 to .3 are those of the line above a part (also `graphics/src/graphics.rs`)
 
 use bahn_picture::{Colour, mix};
 

@@ -3,6 +3,12 @@
 //! LinuxCNC's machine may leave for its tool changer at M6 and stay there (TOOL_CHANGE_POSITION, G28 or G30), and whoever goes
 //! on after a stop or a function M100 to M199 may have moved it. What the control's path leaves out there, since the axis
 //! stands still, the text has to say.
+//!
+//! Decision: A tool that is called before its M06 does not move a machine of LinuxCNC; where the run lifts its tip
+//! out of the blank the text goes there before the next movement
+//!
+//! Decision: In G-code every axis is brought back after a tool change and a stop, where the machine may have left:
+//! the tool axis last, or first where it is retracted
 
 use bahn_path::{Axis, AxisSet, Curve, FeedRate, Position};
 

@@ -1,4 +1,7 @@
 //! What of a run a program for LinuxCNC can say, in its order.
+//!
+//! Decision: In G-code a tool is changed at M06 where one follows its call, else at the call, with G43; M functions
+//! of the machine become stops, what depends on a probe ends the program
 
 use std::collections::VecDeque;
 use std::sync::Arc;

@@ -1,4 +1,6 @@
 //! Radius compensation: the path of the tool centre beside the contour.
+//!
+//! Decision: RND after the first RL/RR block is an arc tangent at the compensated contour point
 
 use bahn_parameters::MessageId;
 use bahn_path::{Arc, Curve, FeedRate, PathElement, Plane, Point2};

@@ -1,5 +1,10 @@
 //! M112: rounding arcs at the corners of straight, uncompensated blocks [000:5128-5158]; M124: points that are left out for
 //! them.
+//!
+//! Decision: M112 rounds corners of lines of X, Y and Z, between skew ones by an arc in their own plane (`CornerArc`
+//! of `path`), and of lines of any axes that lie in one main plane; beside other axes a corner stays sharp; a of r3
+//! counts the axes that move; M124 without T leaves no point out, nor one with a function or before something that is
+//! no straight line
 
 mod radius;
 

@@ -1,4 +1,7 @@
 //! Roundings and chamfers between two contour elements.
+//!
+//! Decision: RND, CT and chamfer after a block that moves the tool axis beside the plane take its direction in the
+//! plane, at the depth at which it ends; one of the tool axis alone has none (also `interpreter/tests/readings.rs`)
 
 use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, BlockRef, CornerArc, Curve, FeedRate, PathElement, Plane, Point2, Position};

@@ -1,6 +1,9 @@
 //! Cycles with contour data: 20 names what 21 to 24 have in common, 25 and 27 bring their own. Their parameters are the Q
 //! parameters Q1 to Q18 themselves, which the definition assigns and the call reads (later controls; the manuals here
 //! name the cycles only [000:847] [000:652]).
+//!
+//! Decision: The parameters of cycles 20 to 25 are the Q parameters that the definition assigns; they have the values
+//! of the call (later controls)
 
 use bahn_parameters::MessageId;
 use bahn_path::Position;

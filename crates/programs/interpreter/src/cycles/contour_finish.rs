@@ -1,5 +1,9 @@
 //! Cycles 21 to 24: pilot drilling, rough-out, floor and side finishing of the contours of cycle 14 with the data of
 //! cycle 20 (later controls). Areas, passes and MP7420 are those of cycles 6, 15 and 16.
+//!
+//! Decision: Cycles 22 and 23 clear as cycle 6 does, the first axis along, and reach the depth straight down; Q19 has
+//! no effect. Cycle 24 touches the middle of the longest element on quarter circles of the tool's radius, or less
+//! where there is no room
 
 use bahn_parameters::MessageId;
 use bahn_path::Point2;

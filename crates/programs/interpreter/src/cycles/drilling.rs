@@ -1,4 +1,7 @@
 //! Cycles 1, 2, 17 and 18: pecking, tapping, rigid tapping, thread cutting.
+//!
+//! Decision: The spindle is stopped and oriented before cycle 18 as before cycle 17, so that cuts follow each other
+//! in one groove
 
 use bahn_parameters::MessageId;
 use bahn_path::{OverrideLaw, SpindleOrder, Thread};

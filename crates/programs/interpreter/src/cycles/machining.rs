@@ -1,4 +1,7 @@
 //! What the machining cycles share: working direction, infeeds, and tracing of movements.
+//!
+//! Decision: Working direction of a cycle is the sign of DEPTH; other signs of SETUP and PECKG warn, strict checking
+//! refuses them
 
 use bahn_parameters::MessageId;
 use bahn_path::{

@@ -2,6 +2,11 @@
 //!
 //! Definitions are collected block by block. Cycles 7-11, 13, 14, 19, 20 and 26 act when they are defined, the
 //! others when they are called [003:4849-4857].
+//!
+//! Decision: The definition of a cycle that is called ends M89; one that acts at once, as a datum shift, leaves it.
+//! The list of the TNC 360 says "a new cycle definition" [003:4877-4881] after the two kinds of cycles that it has
+//! just told apart [003:4846-4860]; the TNC 415 names none at all and calls the last-programmed machining cycle
+//! [000:7274], which a datum shift is not
 
 mod contour_cycle;
 mod contour_data;

@@ -2,6 +2,8 @@
 //!
 //! The path patterns of the manual are lost figures (8.4 to 8.10); these patterns machine the same
 //! contour with the stepover that the manual gives (inferred).
+//!
+//! Decision: Path patterns of the pocket cycles (the manual's figures are lost)
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Plane, Point2};

@@ -1,4 +1,9 @@
 //! Cycles that act when they are defined: transformations, dwell, spindle orientation, contour labels.
+//!
+//! Decision: Cycle 26 keeps a factor until its axis is named again, and cycle 11 multiplies it; radii and chamfers
+//! need one factor for both axes of the plane
+//!
+//! Decision: `CYCL DEF 7.1 #n` without its table or line is ENTRY VALUE INCORRECT
 
 use bahn_parameters::{MessageId, technology};
 use bahn_path::{Axis, AxisScaling, AxisSet, Curve, FeedRate, Function, Position};

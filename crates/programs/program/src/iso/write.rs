@@ -1,4 +1,7 @@
 //! ISO blocks in listings: always with `*`, numbers by MP7220 [000:6885].
+//!
+//! Decision: A listing in DIN/ISO ends with N99999, or N99999999 where the numbers reach that; a block without N is
+//! called by its place (also `program/src/program.rs`)
 
 use bahn_path::AxisSet;
 

@@ -1,6 +1,12 @@
 //! The files of non-linear axis errors: compensation tables (.COM), their assignment (.CMA), and the correction tables of
 //! code number 105 296 [000:3768-3896]. What is entered is checked, on the medium at once, and acts at once as far as the
 //! file is in use.
+//!
+//! Decision: What is entered into .COM, .CMA and correction tables in use acts at once, and SET ACTIV LINE makes its
+//! file the one in use; what cannot be read as a file of its type, or what the machine could not be switched on with,
+//! is refused, and such a file is not opened; a column goes when it has no values. INSERT LINE of an assignment makes
+//! a line at the cursor, and the active one stays active. Code number 105 296 makes CORRECTION.TAB where there is
+//! none
 
 mod assignment;
 mod corrections;

@@ -1,4 +1,9 @@
 //! The file of a list that is edited: which lists there are, and how one is read, written and put into effect.
+//!
+//! Decision: The lists of PGM NAME are the usual one and NAME.MP in the folder of the machine, as module 9033 knows
+//! them; another list than the one in force, and one that was written meanwhile, goes into effect as a whole, with a
+//! reset. A list with entries that PGM NAME leaves is checked and written as by END: one in force acts, another one
+//! does not. Nothing is written while any channel runs a program
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -3,6 +3,12 @@
 //! What is entered is checked against the list; END writes the file with its comments and lets the control take over what has
 //! changed, with the reset or the reference run that it needs. A list that is empty or has faults is presented when the
 //! control is switched on, and END goes on when it is whole [000:10011] [000:10050-10066].
+//!
+//! Decision: The machine parameter editor writes the list, then gives the control what has changed: what acts at
+//! once, then what needs the reference marks, then what needs a reset; DEL leaves it without
+//!
+//! Decision: A line of a list that names no parameter stands before the others, and DEL takes it away; one with an
+//! incorrect entry is the line of its parameter
 
 mod file;
 mod lists;

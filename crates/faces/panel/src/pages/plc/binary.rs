@@ -1,4 +1,7 @@
 //! OUTPUT BINARY CODE: the list of what an EPROM is to have; EXT writes it as records for a programmer [000:11388-11412].
+//!
+//! Decision: EXT on the list of OUTPUT BINARY CODE writes the records beside it, as `bahn oem export` does; SELECT
+//! .DI1/.ER1 names the file in `machine.toml`, whose texts stand there at once (also `panel/src/pages/plc/texts.rs`)
 
 use bahn_host::eprom::{self, LoadList};
 

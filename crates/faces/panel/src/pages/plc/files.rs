@@ -1,5 +1,9 @@
 //! The files of the PLC: in one window or two, of the memory or of an EPROM, with what is done with them
 //! [000:11273-11368].
+//!
+//! Decision: A protected file of the PLC is one that may not be written; TNC/EPROM shows what the binary files of the
+//! folder hold, and TRANSFER takes it into the memory, where nothing is overwritten; UNFORM. makes single blanks of
+//! what sets words in columns (also `panel/src/pages/plc/convert.rs`)
 
 use std::collections::{BTreeSet, VecDeque};
 

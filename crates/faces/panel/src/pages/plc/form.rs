@@ -1,4 +1,7 @@
 //! How a line of a PLC program is set: in columns, as its editor does it, and without.
+//!
+//! Decision: A line of a PLC program that is left without an error has its operand in column 8 and its comment in
+//! column 19 after its own blanks
 
 /// Columns of operand and comment after the instruction [000:4155-4199].
 const OPERAND: usize = 7;

@@ -1,4 +1,9 @@
 //! The PLC mode after code number 807 667: EDIT, TABLE, TRACE, COMPILE [000:11187-11480].
+//!
+//! Decision: The PLC mode (807 667) is of TNC 407, 415 and 425; elsewhere its number is an incorrect entry. What
+//! COMPILE made runs from the next power-on or reset, not at once: the machine stands then. COMPILE of any file
+//! without errors gives it the status M: machine.toml names it as the main file from then on. Whoever goes back finds
+//! the program of then (also `host/src/host.rs`)
 
 mod binary;
 mod code;

@@ -1,4 +1,7 @@
 //! The PLC's source files beside the main file, as text: read and written whole or not at all.
+//!
+//! Decision: The editor of PLC files keeps their letters (UTF-8, or the control's Latin ones) and ends of lines, and
+//! reads a file again that somebody else has written meanwhile
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,7 @@
 //! MOD: supplementary functions, of PROGRAMMING and TEST RUN and of the machine operating modes [003:6980-7160].
+//!
+//! Decision: CODE NUMBER stands in both MOD menus; 531 210 asks before it erases; machine times are kept in whole
+//! minutes
 
 mod axis_limit;
 mod code;

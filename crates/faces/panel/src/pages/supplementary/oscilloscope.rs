@@ -1,5 +1,9 @@
 //! Code number 688 379: the oscilloscope [000:18671-18790]. The main display says what is recorded; OSZI shows the curves, in
 //! the window of the graphics.
+//!
+//! Decision: The record of the oscilloscope and the part of the graphics have memories of their own: neither deletes
+//! the other; the optimal scale is the finest of 1, 2, 5 with which a curve fits; soft keys whose pictures are lost
+//! have words (also `graphics/src/scope/curves.rs`)
 
 use bahn_dialogue::Key;
 use bahn_graphics::Subject;

@@ -1,4 +1,7 @@
 //! A tool table for a machine that should have one, but has no file of it.
+//!
+//! Decision: Where MP7260 is not 0 and machine.toml names no tool table, TOOL TABLE makes TOOL.T with the tools 0 to
+//! MP7260 without sizes; it counts from the next power-on
 
 use bahn_host::files;
 

@@ -1,5 +1,8 @@
 //! Table editor: tools, pockets, datums, pallets, points, cell by cell. What is entered is checked, on the medium at once,
 //! and counts in the control at once as far as the table is in use [000:8994-9192].
+//!
+//! Decision: Tables open with EDIT ON; RESET POCKET TABLE asks, and leaves what the pockets are. The file that a
+//! figure calls TOOL.P is TOOL_P.TCH: .P are pallet tables
 
 mod cells;
 mod editor;
