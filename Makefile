@@ -53,7 +53,7 @@ check: tools
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	$(CARGO) test -p bahn --locked --quiet --test tidy --test documents
-	@for room in $$(git status --porcelain -- crates | cut -c4- | cut -d/ -f2 | sort -u | grep -v '^bahn$$'); do \
+	@for room in $$(git status --porcelain -- crates | cut -c4- | cut -d/ -f3 | sort -u | grep -v '^bahn$$'); do \
 		$(CARGO) test -p bahn-$$room --locked --quiet || exit 1; \
 	done
 

@@ -188,17 +188,17 @@ fn row_of(name: &str) -> Vec<&str> {
 const UNSAID: &[&str] = &[
     // Ranges: the test takes some of them, or all in a loop.
     "bahn::retained_memory_survives",
-    "control::changed_parameters_take_effect",
-    "control::edges_of_inputs",
+    "tnc::changed_parameters_take_effect",
+    "tnc::edges_of_inputs",
     "exchange::a_quiet_scan_brings_the_images_together",
     "plc::m9001_copies_bytes",
     // Names that the test puts together: axes, keys, functions, messages with an axis.
-    "control::analogue_inputs_of_the_extensions",
-    "control::encoder_signals",
-    "control::jog_increment",
-    "control::one_mark_from_the_cam",
-    "control::positioning_error_in_a_program",
-    "control::software_limits",
+    "tnc::analogue_inputs_of_the_extensions",
+    "tnc::encoder_signals",
+    "tnc::jog_increment",
+    "tnc::one_mark_from_the_cam",
+    "tnc::positioning_error_in_a_program",
+    "tnc::software_limits",
     "interpreter::functions_calculate",
     "interpreter::functions_jump",
     // The function is reached by its own interface, or goes by another name: a chamfer is an L block.

@@ -42,7 +42,7 @@ fn said(output: &Output) -> String {
 #[test]
 fn the_plants_can_be_built() {
     for (path, folder) in machines() {
-        let text = fs::read_to_string(path.join(&folder.plant.unwrap())).unwrap();
+        let text = fs::read_to_string(path.join(folder.plant.unwrap())).unwrap();
         let machine = Machine::from_toml(&text).unwrap();
         assert!(folder.datum.iter().all(|(axis, _)| machine.axis(*axis).is_some()));
     }

@@ -292,6 +292,18 @@ fn soft_key(screen: &str, word: &str, width: usize) -> Option<usize> {
     Some(column / (width / 8))
 }
 
+/// NC start of an interrupted program until it goes on: the last axis may be on its way back yet.
+fn go_on(desk: &Desk) {
+    let waits = |screen: &str| screen.contains("NC start goes on");
+    desk.until("back at the contour", waits);
+    let end = Instant::now() + PATIENCE;
+    while waits(&desk.screen()) {
+        assert!(Instant::now() < end, "{}", desk.screen());
+        desk.machine_key("NC_START");
+        std::thread::sleep(Duration::from_millis(500));
+    }
+}
+
 #[test]
 fn a_day_at_the_mill() {
     let Some(desk) = Desk::start((100, 40), "", "--record session.jsonl") else {
@@ -365,15 +377,7 @@ fn a_day_at_the_mill() {
     desk.machine_key("NC_START");
     desk.command("speed 20");
     desk.until("return", |screen| (position(screen, "Z") - stood).abs() < 0.01);
-    // The last axis may be on its way yet: NC start until the program goes on.
-    let waits = |screen: &str| screen.contains("NC start goes on");
-    desk.until("back at the contour", waits);
-    let end = Instant::now() + PATIENCE;
-    while waits(&desk.screen()) {
-        assert!(Instant::now() < end, "{}", desk.screen());
-        desk.machine_key("NC_START");
-        std::thread::sleep(Duration::from_millis(500));
-    }
+    go_on(&desk);
     desk.until("end of the pocket", |screen| {
         current(screen).contains("CYCL DEF") || !star(screen)
     });

@@ -1,4 +1,9 @@
 //! A plant that is no simulated machine, at the operator's panel: docs/plant.md, "With the panel".
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "what fails in a helper fails the test"
+)]
 
 mod cross_table;
 

@@ -30,7 +30,8 @@ pub fn rooms() -> Vec<PathBuf> {
 pub fn layer(room: &Path) -> usize {
     let folder = name(room.parent().unwrap());
     let place = LAYERS.iter().position(|layer| *layer == folder);
-    place.unwrap_or_else(|| panic!("{folder} is no layer: {}", room.display()))
+    assert!(place.is_some(), "{folder} is no layer: {}", room.display());
+    place.unwrap()
 }
 
 fn manifests_below(folder: &Path, found: &mut Vec<PathBuf>) {

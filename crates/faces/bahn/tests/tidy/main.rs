@@ -124,19 +124,15 @@ fn arrows_point_down() {
 #[test]
 fn layers_stand_in_order() {
     let rooms = house::rooms();
+    let mut upward = Vec::new();
     for room in &rooms {
         let used = dependencies(room);
-        let used = rooms
-            .iter()
-            .filter(|other| used.contains(&format!("bahn-{}", house::name(other))));
-        for other in used.filter(|other| house::layer(other) > house::layer(room)) {
-            panic!(
-                "{} stands above {}, which uses it",
-                other.display(),
-                room.display()
-            );
-        }
+        let is_used = |other: &&PathBuf| used.contains(&format!("bahn-{}", house::name(other)));
+        let above = rooms.iter().filter(is_used);
+        let above = above.filter(|other| house::layer(other) > house::layer(room));
+        upward.extend(above.map(|other| format!("{} uses {}", room.display(), other.display())));
     }
+    assert!(upward.is_empty(), "{}", upward.join("\n"));
 }
 
 /// What is wrong with the order of rooms: one that uses a room which does not stand before it, or a name that stands twice.

@@ -1,5 +1,10 @@
 //! A plant that is no simulated machine: two ideal axes with a few keys, as `docs/plant.md` tells how one is written; and
 //! the folder of its control, which describes no simulated machine.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "what fails in a helper fails the test"
+)]
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use std::path::{Path, PathBuf};
