@@ -416,7 +416,9 @@ fn in_real_time() {
     let characters: usize = text.lines().map(|line| line.len() + 5).sum();
     // Slow enough that a busy computer does not make a fast line look as slow.
     let line = characters as f64 * 10.0 / 9_600.0;
-    assert!(slow > line && slow < line * 2.0, "{slow} s, the line {line} s");
+    // The first blocks come before the machine starts.
+    let started = line * 0.9;
+    assert!(slow > started && slow < line * 2.0, "{slow} s, the line {line} s");
     // 60 mm with F6000 and the ramps.
     assert!(fast > 0.6 && fast < line, "{fast} s, the line {line} s");
 }
