@@ -126,7 +126,6 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "why",
         &[
-            "text",
             "tnc",
             "exchange",
             "host",

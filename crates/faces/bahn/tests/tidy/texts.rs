@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::root;
+use crate::house;
 use crate::source::{code_of, source_files};
 
 /// Byte order marks: who knows them decodes files by itself.
@@ -31,17 +31,19 @@ const OWN_PLACES: &[(&str, &str)] = &[
     ("program/src/error.rs: BlockError", "a place within a block"),
 ];
 
-/// The source files of all rooms but `text`, with their names below `crates`.
+/// The source files of all rooms but `text`, with their names from the room on.
 fn others() -> impl Iterator<Item = (String, PathBuf)> {
-    let crates = root().join("crates");
-    let files = source_files(&crates).into_iter();
-    let named = files.map(move |file| {
-        let name = file.strip_prefix(&crates).unwrap().to_string_lossy().into_owned();
-        (name, file)
+    let rooms = house::rooms()
+        .into_iter()
+        .filter(|room| house::name(room) != "text");
+    let named = rooms.flat_map(|room| {
+        let files = source_files(&room.join("src")).into_iter();
+        files.map(move |file| {
+            let name = file.strip_prefix(room.parent().unwrap()).unwrap();
+            (name.to_string_lossy().into_owned(), file)
+        })
     });
-    named.filter(|(name, _)| {
-        name.contains("/src/") && !name.starts_with("text/") && !name.ends_with("/tests.rs")
-    })
+    named.filter(|(name, _)| !name.ends_with("/tests.rs"))
 }
 
 #[test]
