@@ -109,11 +109,13 @@ fn sources() -> String {
         }
     }
     let mut all = String::new();
-    let rooms = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    for room in fs::read_dir(rooms).unwrap() {
-        let room = room.unwrap().path();
-        if !room.ends_with("parameters") {
-            take(&room.join("src"), &mut all);
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for layer in fs::read_dir(crates).unwrap() {
+        for room in fs::read_dir(layer.unwrap().path()).into_iter().flatten() {
+            let room = room.unwrap().path();
+            if !room.ends_with("parameters") {
+                take(&room.join("src"), &mut all);
+            }
         }
     }
     all
