@@ -34,15 +34,15 @@ fn a_key_of_the_page_moves_any_plant() {
     panel.until(|screen| screen["messages"][0]["text"] == "POWER INTERRUPTED");
     panel.press("CE");
     panel.until(|screen| screen["mode"] == "PASS OVER REFERENCE MARKS" && screen["messages"] == json!([]));
-    std::thread::sleep(std::time::Duration::from_secs(1));
+    panel.wait(1.0);
     assert_eq!(panel.give(&json!({ "key": "NC_START" })), 200);
     panel.until(|screen| screen["mode"] == "MANUAL OPERATION");
 
     let before = actual(&panel, "X");
     assert_eq!(panel.give(&json!({ "key": "X+", "down": true })), 200);
-    panel.until(|screen| screen["machine"]["held"] == json!(["X+"]));
+    panel.until(|screen| screen["machine"]["held"] == json!(["X+"]) && actual(&panel, "X") > before + 1.0);
     assert_eq!(panel.give(&json!({ "key": "X+", "down": false })), 200);
-    std::thread::sleep(std::time::Duration::from_secs(1));
+    panel.wait(1.0);
     let truth = panel.at_the_machine(|station| station.host().plant().true_axis('X').unwrap().position);
     let after = actual(&panel, "X");
     assert!(after > before, "{before} {after}");
