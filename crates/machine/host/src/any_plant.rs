@@ -18,7 +18,7 @@ use crate::operable::{Operable, StopChain, TrueAxis, Wired};
 /// let before = plant.copied();
 /// assert_eq!(plant.operate(&Event::EmergencyStop(true)), Ok(()));
 /// assert!(plant.stop_chain().pressed && before.is_some_and(|before| !before.stop_chain().pressed));
-/// # Ok::<(), bahn_machine::PlantError>(())
+/// # Ok::<(), bahn_text::Diagnostic>(())
 /// ```
 pub struct AnyPlant(Box<dyn Copying + Send + Sync>);
 

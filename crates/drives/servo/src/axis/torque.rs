@@ -85,6 +85,7 @@ impl Torque {
     }
 
     /// The speed loop of a servo step.
+    #[inline]
     pub fn control(&mut self, wanted: &Wanted) -> Given {
         let Some(speed_loop) = &mut self.0 else {
             return Given::Rests;
@@ -126,6 +127,7 @@ impl Torque {
         Some(ended)
     }
 
+    #[inline]
     pub fn step_mm_min(&self) -> Option<f64> {
         self.0.as_ref().and_then(SpeedLoop::step_mm_min)
     }

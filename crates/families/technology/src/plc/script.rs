@@ -31,7 +31,7 @@ const COMMANDS: [&str; 10] = [
 /// use bahn_technology::Script;
 /// let script: Script = "M25 ack 0.5   # after half a second\nX[M7] nofetch\nhold 2.0..2.5\n".parse()?;
 /// let wrong = "M25 ack soon".parse::<Script>().unwrap_err();
-/// assert_eq!((wrong.line, wrong.column), (1, 9));
+/// assert_eq!((wrong.span.line, wrong.span.column), (1, 9));
 /// # let _ = script;
 /// # Ok::<(), bahn_text::Diagnostic>(())
 /// ```
