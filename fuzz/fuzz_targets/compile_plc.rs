@@ -23,7 +23,7 @@ fuzz_target!(|bytes: &[u8]| {
         let compilation = Compilation::compile(&files, "MAIN.PLC", options);
         assert_eq!(compilation.program.is_some(), compilation.errors.is_empty());
         for report in compilation.errors.iter().chain(&compilation.warnings) {
-            assert!(report.line >= 1 && report.column >= 1, "{report:?}");
+            assert!(report.span.line >= 1 && report.span.column >= 1, "{report:?}");
         }
         if let Some(program) = compilation.program {
             assert!(
