@@ -9,9 +9,10 @@
 
 use std::sync::Arc;
 
-use bahn_din::{Decoder, FunctionLetter, Program, Shelf, Step, Variable, Variables, words};
+use bahn_din::{Decoder, FunctionLetter, Program, Step, Variable, Variables, words};
 use bahn_fuzz as _;
 use bahn_path::Position;
+use bahn_text::{Files, NamedFile};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -33,10 +34,10 @@ fn all_of(bytes: &[u8]) -> (usize, usize, Vec<Step>) {
     for line in 1..=program.line_count() {
         let _ = words(program.line(line));
     }
-    let shelf: Arc<dyn Shelf> = Arc::new(Itself(bytes.to_vec()));
+    let files: Arc<dyn Files> = Arc::new(Itself(bytes.to_vec()));
     let mut steps = Vec::new();
     for main in program.mains().take(8) {
-        let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, Arc::clone(&shelf));
+        let mut decoder = Decoder::new(Arc::clone(&program), main, Position::ZERO, Arc::clone(&files));
         for _ in 0..500 {
             let mut step = decoder.next(&mut Numbers);
             // Words have other columns in the listing.
@@ -58,9 +59,12 @@ fn all_of(bytes: &[u8]) -> (usize, usize, Vec<Step>) {
 /// Every file is the program itself.
 struct Itself(Vec<u8>);
 
-impl Shelf for Itself {
-    fn text(&self, name: &str) -> Option<(String, Vec<u8>)> {
-        (name.len() < 4).then(|| (name.to_owned(), self.0.clone()))
+impl Files for Itself {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        (name.len() < 4).then(|| NamedFile {
+            name: name.to_owned(),
+            bytes: self.0.clone(),
+        })
     }
 }
 
