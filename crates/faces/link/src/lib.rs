@@ -44,8 +44,10 @@ mod shared_port;
 pub mod standard;
 mod text;
 
+/// What is connected to a port.
+pub use bahn_parameters::interfaces::Mode;
 pub use bahn_store::FileType;
-pub use channel::{BAUD_RATES, Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
+pub use channel::{Channel, ChannelError, Faults, Happened, Line, Spec, SpecError};
 pub use characters::{AFTER_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use files::{Files, Listed, Memory, NewFile, OfKinds};
@@ -56,5 +58,5 @@ pub use plc_line::PlcLine;
 pub use print_out::PrintOut;
 pub use protocol::{Event, Protocol, Question, Shown};
 pub use resting::Resting;
-pub use settings::{Mode, PATIENCE, Settings};
+pub use settings::{PATIENCE, Settings};
 pub use shared_port::{PlcHold, SharedPort};

@@ -1,10 +1,8 @@
 //! How a port transfers: mode, and what the machine parameters say for it.
 
-use std::fmt;
-use std::str::FromStr;
 use std::time::Duration;
 
-use bahn_parameters::interfaces::{ControlCharacters, TransferFormat};
+use bahn_parameters::interfaces::{ControlCharacters, Mode, TransferFormat};
 use bahn_parameters::{ControlModel, ParameterList};
 
 use crate::Characters;
@@ -12,50 +10,6 @@ use crate::Characters;
 /// Time of error N, and after which a device that is silent in a transfer is dead. The manual gives none [000:17599]; this
 /// is that of later controls *(inferred)*.
 pub const PATIENCE: Duration = Duration::from_secs(3);
-
-/// What is connected to a port [000:17220-17230].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Mode {
-    /// Magnetic tape unit: standard protocol, never EOT.
-    Me,
-    /// Floppy disk unit or its like, which is asked for its directory by an escape sequence. So a port is set up at first
-    /// [000:10011].
-    #[default]
-    Fe1,
-    /// The same without that sequence.
-    Fe2,
-    /// Freely configurable, index 0 of its machine parameters.
-    Ext1,
-    /// Freely configurable, index 1.
-    Ext2,
-}
-
-impl Mode {
-    /// All modes with how they are written.
-    pub const ALL: [(&str, Mode); 5] = [
-        ("me", Mode::Me),
-        ("fe1", Mode::Fe1),
-        ("fe2", Mode::Fe2),
-        ("ext1", Mode::Ext1),
-        ("ext2", Mode::Ext2),
-    ];
-}
-
-impl fmt::Display for Mode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = Mode::ALL.iter().find(|(_, mode)| mode == self);
-        f.pad(name.map_or("", |(name, _)| name))
-    }
-}
-
-impl FromStr for Mode {
-    type Err = ();
-
-    fn from_str(text: &str) -> Result<Mode, ()> {
-        let found = Mode::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
-        found.map(|(_, mode)| *mode).ok_or(())
-    }
-}
 
 /// Everything that a protocol knows of its port.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::Path;
 
 use bahn_host::files::{self, NewFile};
+use bahn_parameters::interfaces::Mode;
 use bahn_screen::texts::{self, Language};
 use serde::{Deserialize, Serialize};
 
@@ -78,6 +79,18 @@ impl InterfaceMode {
         }
     }
 
+    /// What transfers files there; `None` where nothing does as the control leads.
+    pub fn device(self) -> Option<Mode> {
+        match self {
+            InterfaceMode::Fe1 => Some(Mode::Fe1),
+            InterfaceMode::Fe2 => Some(Mode::Fe2),
+            InterfaceMode::Me => Some(Mode::Me),
+            InterfaceMode::Ext1 => Some(Mode::Ext1),
+            InterfaceMode::Ext2 => Some(Mode::Ext2),
+            InterfaceMode::Lsv2 | InterfaceMode::None => None,
+        }
+    }
+
     /// As it stands on the screen; a control with a single interface has one FE and one EXT.
     pub fn name(self, single: bool) -> &'static str {
         match self {
@@ -93,9 +106,6 @@ impl InterfaceMode {
         }
     }
 }
-
-/// Baud rates of the data interfaces [003:7043].
-pub(crate) const BAUD_RATES: [u32; 10] = [110, 150, 300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400];
 
 /// How a data interface is set up; at first FE1 [000:10011] with 9600 baud (inferred).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use std::sync::mpsc::Sender;
 
 use bahn_parameters::MessageId;
+use bahn_parameters::interfaces::Mode;
 
 /// Lines of what has happened that are kept at most.
 const REPORTED_MAX: usize = 1000;
@@ -15,8 +16,8 @@ const REPORTED_MAX: usize = 1000;
 pub struct TransferOrder {
     /// RS-232-C/V.24 is 0, RS-422/V.11 is 1.
     pub port: usize,
-    /// The device that MOD says is connected: `fe1`, `fe2`, `me`, `ext1` or `ext2`.
-    pub mode: &'static str,
+    /// The device that MOD says is connected.
+    pub mode: Mode,
     /// Data transfer rate of the interface, baud.
     pub baud: u32,
     /// Which programs are read in where no name says it, by their ending: `H` or `I`, as PROGRAM INPUT says.
@@ -318,7 +319,7 @@ mod tests {
         transfers.connect(sender);
         let order = |port| TransferOrder {
             port,
-            mode: "fe1",
+            mode: Mode::Fe1,
             baud: 9600,
             kind: "H",
             files: TransferFiles::Programs,

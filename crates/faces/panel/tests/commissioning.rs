@@ -295,7 +295,7 @@ fn lists_are_transferred() {
     assert_eq!(order.action, TransferAction::Read("NEW.MP".to_owned()));
     assert_eq!(
         (order.files, order.mode, order.kind),
-        (TransferFiles::Lists, "fe1", "MP")
+        (TransferFiles::Lists, bahn_parameters::interfaces::Mode::Fe1, "MP")
     );
     news(&mut trainee, "ended complete");
     trainee.press("END DOWN ENT");

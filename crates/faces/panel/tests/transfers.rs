@@ -7,6 +7,7 @@ mod support;
 use std::sync::mpsc::Receiver;
 
 use bahn_panel::{Star, TransferAction, TransferOrder};
+use bahn_parameters::interfaces::Mode;
 use support::Trainee;
 
 /// A trainee with RS-232-C connected, at the menu of EXT.
@@ -95,7 +96,7 @@ fn the_interface_is_the_one_that_mod_says() {
     trainee.down_to("ASSIGNMENT: FILES");
     trainee.press("RIGHT END END EXT ENT");
     let order = orders.try_recv().unwrap();
-    assert_eq!((order.port, order.mode, order.baud), (1, "fe2", 9600));
+    assert_eq!((order.port, order.mode, order.baud), (1, Mode::Fe2, 9600));
 }
 
 #[test]

@@ -12,6 +12,7 @@ use bahn_link::lsv2::{Device, SerialServer, ServerOptions, Site};
 use bahn_link::{
     Attendant, Channel, Line, Passive, PlcHold, Protocol, Settings, SharedPort, Spec, drive, peripheral,
 };
+use bahn_parameters::interfaces::rates_exclude_each_other;
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 
 use crate::open::{self, Refused};
@@ -24,8 +25,6 @@ const PORTS: [(&str, &str, &str); 2] = [
     ("--rs232", "RS-232-C", "RS-232: "),
     ("--rs422", "RS-422", "RS-422: "),
 ];
-/// Baud rates that the two interfaces cannot have together [000:17552-17554].
-const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
 
 /// The ports that are named.
 pub fn specs(named: [Option<&String>; 2]) -> Result<Vec<(usize, Spec)>, Refused> {
@@ -63,8 +62,10 @@ pub fn of_plc(ports: &[Port]) -> [Option<PlcPort>; 2] {
 
 /// Opens them all, or none.
 pub fn open(specs: &[(usize, Spec)], list: &ParameterList, tell: &Tell) -> Result<Vec<Port>, Refused> {
-    let bauds: Vec<Option<u32>> = specs.iter().map(|(_, spec)| spec.baud).collect();
-    if NOT_TOGETHER.iter().all(|baud| bauds.contains(&Some(*baud))) {
+    let bauds: Vec<u32> = specs.iter().filter_map(|(_, spec)| spec.baud).collect();
+    if let [one, other] = *bauds
+        && rates_exclude_each_other(one, other)
+    {
         return Err(Refused {
             message: Some(MessageId::BaudRateNotPossible.text(list.model())),
             why: None,

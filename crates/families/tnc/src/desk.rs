@@ -10,6 +10,7 @@
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_kernel::reference::ReferenceRun;
 use bahn_kernel::{Chain, Leaning, Mover, Now, OwnAxes, Progress, RunState};
+use bahn_parameters::code_numbers::{ERASE_MEMORY, OFFSET_ADJUSTMENT};
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{ControlModel, ParameterList, PerPlcAxis};
@@ -31,9 +32,6 @@ use crate::probing::{Guarded, Probe, Stylus};
 use crate::reach::Reach;
 use crate::status::{self, ByHand};
 
-/// Code numbers that the operator enters [000:6928-6947].
-const ERASE_MEMORY: u32 = 531_210;
-const OFFSET_ADJUSTMENT: u32 = 75_368;
 const CODE_84159: u32 = 84_159;
 
 /// The operator's side of a channel.

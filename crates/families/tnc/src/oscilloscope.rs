@@ -2,9 +2,7 @@
 //! [000:18660-18701] [000:18776-18778].
 
 use bahn_parameters::ControlModel;
-
-/// The code number of the oscilloscope [000:18672].
-const CODE: u32 = 688_379;
+use bahn_parameters::code_numbers::OSCILLOSCOPE;
 
 /// What was pressed of the oscilloscope since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,7 +18,7 @@ pub struct OscilloscopeKeys {
 impl OscilloscopeKeys {
     /// A code number that is entered.
     pub(crate) fn enter_code(&mut self, code: u32, model: ControlModel) -> bool {
-        self.open |= code == CODE && model.has_oscilloscope();
+        self.open |= code == OSCILLOSCOPE && model.has_oscilloscope();
         true
     }
 
@@ -45,9 +43,9 @@ mod tests {
         let mut keys = OscilloscopeKeys::default();
         assert!(!keys.press(true));
         keys.enter_code(688_378, ControlModel::Tnc425);
-        keys.enter_code(CODE, ControlModel::Tnc360);
+        keys.enter_code(OSCILLOSCOPE, ControlModel::Tnc360);
         assert!(!keys.press(true) && !keys.open);
-        keys.enter_code(CODE, ControlModel::Tnc425);
+        keys.enter_code(OSCILLOSCOPE, ControlModel::Tnc425);
         assert!(!keys.press(false), "nothing is recorded that could be stopped");
         assert!(keys.press(true) && !keys.press(true) && keys.press(false) && keys.press(true));
         assert_eq!((keys.records, keys.starts), (true, 2));

@@ -42,9 +42,11 @@
 mod adjustment;
 mod advice;
 mod citation;
+pub mod code_numbers;
 pub mod compensation;
 pub mod conformance;
 mod consistency;
+mod data_interface;
 mod definition;
 mod diagnostic;
 mod error;
@@ -102,8 +104,10 @@ pub mod operation {
     };
 }
 
-/// Of the data interfaces: [`ParameterList::interface_parameters`](crate::ParameterList::interface_parameters).
+/// Of the data interfaces: what they can be set to, and
+/// [`ParameterList::interface_parameters`](crate::ParameterList::interface_parameters).
 pub mod interfaces {
+    pub use crate::data_interface::{BAUD_RATES, Mode, rates_exclude_each_other};
     pub use crate::settings::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};
 }
 /// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).

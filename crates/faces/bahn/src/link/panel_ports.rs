@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use bahn_link::blockwise::{self, DirectoryRequest, Want};
 use bahn_link::{
-    Attendant, Channel, Event, FileType, Files, Line, Mode, OfKinds, Protocol, Question, Resting, Settings,
+    Attendant, Channel, Event, FileType, Files, Line, OfKinds, Protocol, Question, Resting, Settings,
     SharedPort, Spec, drive, standard,
 };
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
@@ -294,8 +294,7 @@ impl Worker {
 
 /// What the list says for the device that the operator has set up.
 fn settings(order: &TransferOrder, spec: &Spec, list: &ParameterList) -> Settings {
-    let mode = order.mode.parse().unwrap_or(Mode::default());
-    Settings::of(list, mode).on(spec.baud, spec.timeout)
+    Settings::of(list, order.mode).on(spec.baud, spec.timeout)
 }
 
 /// Nobody attends a line that rests: an order wakes it.
@@ -364,6 +363,8 @@ impl Attendant for Carrier<'_> {
 
 #[cfg(test)]
 mod tests {
+    use bahn_link::Mode;
+
     use super::*;
 
     fn order(action: TransferAction) -> TransferOrder {
@@ -371,7 +372,7 @@ mod tests {
             port: 0,
             action,
             files: TransferFiles::Programs,
-            mode: "fe1",
+            mode: Mode::Fe1,
             baud: 9600,
             kind: "H",
         }

@@ -261,6 +261,35 @@ fn nothing_outside_a_crate_is_compiled_into_it() {
     }
 }
 
+/// Code numbers that the operator enters are a table of the room `parameters`: nobody else spells one.
+#[test]
+fn code_numbers_stand_in_one_room() {
+    let table = fs::read_to_string(house::file("parameters/src/code_numbers.rs")).unwrap();
+    let numbers: Vec<&str> = table
+        .lines()
+        .filter_map(|line| {
+            line.strip_prefix("pub const ")?
+                .split_once("= ")?
+                .1
+                .strip_suffix(';')
+        })
+        .filter(|number| number.contains('_'))
+        .collect();
+    assert!(numbers.len() >= 8, "{numbers:?}");
+    let mut faults = Vec::new();
+    for room in house::rooms()
+        .iter()
+        .filter(|room| house::name(room) != "parameters")
+    {
+        for file in source_files(&room.join("src")) {
+            let code = code_of(&file);
+            let spelled = numbers.iter().filter(|number| has_word(&code, number));
+            faults.extend(spelled.map(|number| format!("{} has {number}", file.display())));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
 /// The differences of the control models are data of the room `parameters`: nobody else asks which model it is.
 #[test]
 fn models_are_compared_in_one_room() {

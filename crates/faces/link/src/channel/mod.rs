@@ -17,7 +17,7 @@ use std::io;
 use std::time::{Duration, Instant};
 
 pub use fault::Faults;
-pub use spec::{BAUD_RATES, Line, Spec, SpecError};
+pub use spec::{Line, Spec, SpecError};
 
 use crate::Characters;
 use pace::Pace;

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-use crate::settings::{Mode, PATIENCE};
+use bahn_parameters::interfaces::{self, Mode};
 
-/// Baud rates of the controls [000:17560-17566], and those that later ones have.
-pub const BAUD_RATES: [u32; 12] = [
-    110, 150, 300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400, 57_600, 115_200,
-];
+use crate::settings::PATIENCE;
+
+/// Baud rates that later controls have beside those of [`interfaces::BAUD_RATES`].
+const LATER_BAUD_RATES: [u32; 2] = [57_600, 115_200];
 /// Patience at most, one day.
 const PATIENCE_MAX: f64 = 86_400.0;
 
@@ -161,10 +161,14 @@ impl Spec {
                     .map_err(|()| "a mode is me, fe1, fe2, ext1 or ext2".to_owned())?;
             }
             "baud" => {
-                let known = value.parse().ok().filter(|baud| BAUD_RATES.contains(baud));
+                let rates = || interfaces::BAUD_RATES.into_iter().chain(LATER_BAUD_RATES);
+                let known = value
+                    .parse()
+                    .ok()
+                    .filter(|baud| rates().any(|rate| rate == *baud));
                 self.baud = Some(known.ok_or_else(|| {
-                    let known = BAUD_RATES.map(|baud| baud.to_string()).join(", ");
-                    format!("a baud rate is one of {known}")
+                    let known: Vec<String> = rates().map(|baud| baud.to_string()).collect();
+                    format!("a baud rate is one of {}", known.join(", "))
                 })?);
             }
             "timeout" => {

@@ -1,9 +1,11 @@
 //! Logins, and what they are good for.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 use bahn_access::is_secret;
+use bahn_parameters::code_numbers::PLC_MODE;
 
 /// What a login is for. It holds for one connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -37,9 +39,6 @@ const NAMES: &[(Level, &str)] = &[
     (Level::PlcDebug, "PLCDEBUG"),
     (Level::Data, "DATA"),
 ];
-
-/// The code number that PLC files need [000:16915] is the password of their level, unless another one is set.
-const PLC_FILES: &str = "807667";
 
 /// Characters of a password at most (public).
 const PASSWORD_MAX: usize = 16;
@@ -111,15 +110,16 @@ impl Passwords {
         Ok(())
     }
 
-    fn of(&self, level: Level) -> Option<&str> {
+    /// The code number that PLC files need [000:16915] is the password of their level, unless another one is set.
+    fn of(&self, level: Level) -> Option<Cow<'_, str>> {
         let set = self.set.iter().find(|(known, _)| *known == level);
-        let default = (level == Level::FilePlc).then_some(PLC_FILES);
-        set.map(|(_, text)| text.as_str()).or(default)
+        let default = || (level == Level::FilePlc).then(|| PLC_MODE.to_string().into());
+        set.map(|(_, text)| text.into()).or_else(default)
     }
 
     /// Whether a login with this password is admitted.
     pub fn admit(&self, level: Level, password: &str) -> bool {
-        self.of(level).is_none_or(|text| is_secret(password, text))
+        self.of(level).is_none_or(|text| is_secret(password, &text))
     }
 
     /// Levels that nobody has set a password for; at an address that others reach there may be none.

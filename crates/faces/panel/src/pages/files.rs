@@ -12,6 +12,7 @@
 use bahn_dialogue::Key;
 use bahn_machine::MachineFolder;
 use bahn_parameters::MessageId;
+use bahn_parameters::code_numbers::CANCEL_PROTECTION;
 use bahn_screen::frames;
 use bahn_screen::programs::{Denial, Entry, NAME_MAX, is_executed, is_program};
 use bahn_screen::{Dialogue, Line, WindowKind};
@@ -40,9 +41,6 @@ pub(crate) enum Purpose {
     /// Its protection is to be taken away: code number 86 357 [003:7028].
     Unprotect,
 }
-
-/// Code number that takes the protection away [000:6940] [003:7028].
-const UNPROTECT: u32 = 86_357;
 
 /// The directory of the program memory.
 pub(crate) struct Directory {
@@ -185,7 +183,7 @@ impl Directory {
         };
         let prompt = site.words("CODE NUMBER =");
         Turn::Open(Name::ask(prompt, NAME_MAX, move |code, site| {
-            if code.parse() != Ok(UNPROTECT) {
+            if code.parse() != Ok(CANCEL_PROTECTION) {
                 return Turn::Say(site.message(MessageId::EntryValueIncorrect));
             }
             done(site.programs.protect(&name, false), site)

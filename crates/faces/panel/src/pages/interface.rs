@@ -5,13 +5,14 @@
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
+use bahn_parameters::interfaces::{BAUD_RATES, rates_exclude_each_other};
 
 use crate::page::{Page, Turn};
 use crate::pages::backup;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::pages::number::Number;
 use crate::pages::order::{baud, is_inhibited};
-use crate::settings::{BAUD_RATES, Interface, InterfaceMode, TransferOf};
+use crate::settings::{Interface, InterfaceMode, TransferOf};
 use crate::site::Site;
 
 /// Soft keys of the machine parameter editor.
@@ -19,8 +20,6 @@ const BACKUP: &str = "BACKUP DATA";
 const RESTORE: &str = "RESTORE DATA";
 /// Names of the interfaces.
 const PORTS: [&str; 2] = ["RS-232", "RS-422"];
-/// Baud rates that the two interfaces cannot have together [000:17552-17554].
-const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
 /// A line of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Row {
@@ -224,9 +223,7 @@ fn take(port: usize, wanted: Interface, site: &mut Site) -> Turn {
 
 /// Whether the interfaces cannot have the baud rates that they have.
 fn excludes(site: &Site) -> bool {
-    let both = [baud(0, site), baud(1, site)];
-    let apart = both.iter().all(|own| NOT_TOGETHER.contains(own)) && both[0] != both[1];
-    apart && site.control().model().has_rs_422()
+    rates_exclude_each_other(baud(0, site), baud(1, site)) && site.control().model().has_rs_422()
 }
 
 /// The next one of all, or the one before; after the last comes the first.

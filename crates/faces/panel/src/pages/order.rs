@@ -21,14 +21,7 @@ pub(crate) fn order(
     let [second, _] = site.settings.second_interface;
     let port = usize::from(second && site.control().model().has_rs_422());
     let interface = site.settings.interfaces.get(port).copied().unwrap_or_default();
-    let mode = match interface.mode {
-        InterfaceMode::Fe1 => "fe1",
-        InterfaceMode::Fe2 => "fe2",
-        InterfaceMode::Me => "me",
-        InterfaceMode::Ext1 => "ext1",
-        InterfaceMode::Ext2 => "ext2",
-        InterfaceMode::Lsv2 | InterfaceMode::None => return Err(MessageId::ExtInOutputNotReady),
-    };
+    let mode = interface.mode.device().ok_or(MessageId::ExtInOutputNotReady)?;
     if is_inhibited(port, site) {
         return Err(MessageId::ExtInOutputNotReady);
     }

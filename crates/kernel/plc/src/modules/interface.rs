@@ -1,6 +1,7 @@
 //! Modules 9100 to 9107: the data interfaces [000:15587-15833].
 
 use bahn_exchange::STRING_LENGTH;
+use bahn_parameters::interfaces::{BAUD_RATES, rates_exclude_each_other};
 
 use super::numbers::{binary, hexadecimal};
 use super::{Call, Outcome};
@@ -26,7 +27,7 @@ pub(super) fn assign(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
         _ => None,
     };
     let other = call.nc.data_interface(1 - number).baud;
-    let Some(baud) = baud.filter(|baud| !EXCLUSIVE.contains(&(*baud, other))) else {
+    let Some(baud) = baud.filter(|baud| !rates_exclude_each_other(*baud, other)) else {
         return Ok(Outcome::Failed);
     };
     let interface = call.nc.data_interface(number);
@@ -36,11 +37,6 @@ pub(super) fn assign(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     interface.assign_to_plc(baud, parameters == 1);
     Ok(Outcome::Done)
 }
-
-/// Baud rates by the values of MP5040.
-const BAUD_RATES: [u32; 10] = [110, 150, 300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400];
-/// Rates that both interfaces cannot have at once [000:15617].
-const EXCLUSIVE: [(u32, u32); 2] = [(19_200, 38_400), (38_400, 19_200)];
 
 /// 9101: gives an interface back to the NC.
 pub(super) fn release(call: &mut Call<'_>) -> Result<Outcome, PlcError> {

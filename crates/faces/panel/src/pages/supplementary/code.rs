@@ -1,6 +1,10 @@
 //! CODE NUMBER [000:6928-6947] [003:7023-7031].
 
 use bahn_parameters::MessageId;
+use bahn_parameters::code_numbers::{
+    CANCEL_PROTECTION, CORRECTION_TABLES, ERASE_MEMORY, MACHINE_PARAMETERS, OFFSET_ADJUSTMENT, OSCILLOSCOPE,
+    PLC_MODE, TIMERS, USER_PARAMETERS,
+};
 use bahn_tnc::{Command, RunState};
 
 use super::{offsets, oscilloscope, timers};
@@ -10,16 +14,6 @@ use crate::pages::axis_errors;
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::{parameters, plc};
 use crate::site::Site;
-
-const USER_PARAMETERS: u32 = 123;
-const MACHINE_PARAMETERS: u32 = 95_148;
-const CORRECTION_TABLES: u32 = 105_296;
-const CANCEL_PROTECTION: u32 = 86_357;
-const OFFSET_ADJUSTMENT: u32 = 75_368;
-const ERASE_MEMORY: u32 = 531_210;
-const OSCILLOSCOPE: u32 = 688_379;
-const PLC_MODE: u32 = 807_667;
-const TIMERS: u32 = 857_282;
 
 /// Digits of a code number at most.
 const DIGITS: usize = 9;
