@@ -115,6 +115,20 @@ fn a_protected_program_stays() {
     assert_eq!(trainee.file("programs/CIRCLE.H").len(), bytes);
 }
 
+/// A subprogram that a run has called is its program as the main program is: nobody edits it meanwhile.
+#[test]
+fn a_called_program_is_not_edited_while_it_runs() {
+    let mut trainee = Trainee::at("mill");
+    trainee.write("programs/8.H", "BEGIN PGM 8 MM\nCALL PGM 9\nEND PGM 8 MM\n");
+    trainee.write("programs/9.H", "BEGIN PGM 9 MM\nSTOP\nEND PGM 9 MM\n");
+    trainee.ready();
+    trainee.press("FULL PGM_NR 8 ENT NC_START");
+    trainee.until(5.0, |screen| screen.status.star == Star::Blinking);
+    trainee.press("PROGRAM PGM_NR 9 ENT STOP");
+    assert_eq!(trainee.messages(), ["BACKGROUND PROGRAMMING NOT POSSIBLE"]);
+    assert!(trainee.file("programs/9.H").contains("\nSTOP\nEND"));
+}
+
 #[test]
 fn the_program_that_runs_cannot_be_erased() {
     let mut trainee = Trainee::at("mill");

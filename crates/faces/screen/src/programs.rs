@@ -1,7 +1,7 @@
 //! The program memory: the part programs of the machine's folder, listed, read, written and protected.
 
 use std::fs;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -28,9 +28,6 @@ pub struct Entry {
     /// `P`: a program that is protected against erasing and editing [003:1015-1023].
     pub protected: bool,
 }
-
-/// Bytes of a program in which its first block stands.
-const HEAD: u64 = 1024;
 
 /// The program memory, which the control reads and the panel writes.
 pub struct ProgramMemory {
@@ -68,7 +65,7 @@ impl ProgramMemory {
         let entry = |entry: fs::DirEntry| {
             let size = entry.metadata().ok().filter(fs::Metadata::is_file)?.len();
             let name = entry.file_name().into_string().ok()?;
-            let protected = is_program(&name) && is_protected(&self.folder.join(&name));
+            let protected = is_program(&name) && files::is_protected_program(&self.folder.join(&name));
             (!name.starts_with('.')).then_some(Entry {
                 name,
                 size,
@@ -139,7 +136,7 @@ impl ProgramMemory {
     /// When it is protected, or the medium does not do it.
     pub fn erase(&self, name: &str) -> Result<(), Denial> {
         let path = self.own(name)?;
-        if is_program(name) && is_protected(&path) {
+        if is_program(name) && files::is_protected_program(&path) {
             return Err(Denial::Message(MessageId::ProtectedPgm));
         }
         fs::remove_file(&path).map_err(|error| Denial::Words(format!("{name}: {error}")))?;
@@ -169,7 +166,7 @@ impl ProgramMemory {
     /// When it is protected, there is a file of the new name, or the medium does not do it.
     pub fn rename(&self, old: &str, new: &str) -> Result<(), Denial> {
         let from = self.own(old)?;
-        if is_program(old) && is_protected(&from) {
+        if is_program(old) && files::is_protected_program(&from) {
             return Err(Denial::Message(MessageId::ProtectedPgm));
         }
         self.copy(old, new)?;
@@ -233,14 +230,6 @@ pub fn is_program(name: &str) -> bool {
 pub fn is_executed(name: &str) -> bool {
     let ending = name.rsplit_once('.').map(|(_, ending)| ending);
     is_program(name) || ending.is_some_and(|ending| ending.eq_ignore_ascii_case("nc"))
-}
-
-/// The first block of a program says that it is protected.
-fn is_protected(path: &Path) -> bool {
-    let mut head = Vec::new();
-    let read = fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read.is_ok() && Program::from_bytes(&*name, head).is_protected()
 }
 
 /// A file name of the memory: letters, digits and what serial interfaces know, one point, nothing hidden.

@@ -29,6 +29,9 @@ const MAX_TABLE_BYTES: u64 = 16 << 20;
 /// Largest description of a machine, 1 MiB: the tree that is made of it takes many times as much.
 const MAX_DESCRIPTION_BYTES: u64 = 1 << 20;
 
+/// The first block of a program ends within so much of its file.
+const FIRST_BLOCK_BYTES: u64 = 1024;
+
 /// What became of reading a program.
 pub enum Loaded {
     /// A program with at least one block.
@@ -84,6 +87,15 @@ pub fn read_program(path: &Path) -> Result<Option<Vec<u8>>, HostError> {
 /// When it cannot be read, or is too large.
 pub fn read_table(path: &Path) -> Result<Vec<u8>, HostError> {
     read_up_to(path, MAX_TABLE_BYTES)
+}
+
+/// Whether the first block of a program says that it is protected [003:1015-1023]; of a file that is no program, or cannot
+/// be read, nothing does.
+pub fn is_protected_program(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(FIRST_BLOCK_BYTES).read_to_end(&mut head));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    read.is_ok() && Program::from_bytes(&*name, head).is_protected()
 }
 
 /// Reads the description of a machine.

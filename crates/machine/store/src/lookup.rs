@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use bahn_host::files;
+
 use super::medium::Medium;
 use super::place::is_name;
 use super::{Attributes, Change, Entry, Place, StoreError};
@@ -12,8 +14,6 @@ use crate::FileType;
 
 /// Folders in each other that are swept.
 const DEPTH_MAX: usize = 12;
-/// Bytes of a program in which its first block stands.
-const HEAD: u64 = 1024;
 
 /// Kinds of things in a folder; what is neither is not there.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -225,13 +225,7 @@ fn is_protected_program(path: &Path) -> bool {
         let mut kinds = bahn_program::FILE_TYPES.iter();
         kinds.any(|kind| kind.extension.eq_ignore_ascii_case(&extension))
     });
-    if !is_program {
-        return false;
-    }
-    let mut head = Vec::new();
-    let read = fs::File::open(path)
-        .and_then(|file| io::Read::read_to_end(&mut io::Read::take(file, HEAD), &mut head));
-    read.is_ok() && bahn_program::Program::from_bytes(&*name, head).is_protected()
+    is_program && files::is_protected_program(path)
 }
 
 /// Takes write permission away, or gives it to the owner.

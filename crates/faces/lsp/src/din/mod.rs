@@ -272,7 +272,7 @@ impl Analysis for DinProgram {
 
     fn elsewhere(&self, thing: &Thing, world: &World) -> Option<Elsewhere> {
         let Thing::File(name) = thing else { return None };
-        let path = self.path.parent()?.join(name.replace('\\', "/"));
+        let path = self.path.parent()?.join(path_below(name)?);
         world.read(&path).map(|_| Elsewhere::front(path))
     }
 

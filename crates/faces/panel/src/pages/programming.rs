@@ -15,11 +15,10 @@ use bahn_parameters::MessageId;
 use bahn_program::Program;
 use bahn_screen::SoftKeys;
 use bahn_screen::texts;
-use bahn_tnc::RunState;
 use serde_json::Value;
 
 use crate::page::{Page, Turn, View};
-use crate::pages::files::{Directory, Purpose, is_same};
+use crate::pages::files::{Directory, Purpose, runs};
 use crate::pages::row_after::RowAfter;
 use crate::pages::{editing, table};
 use crate::site::Site;
@@ -177,7 +176,7 @@ impl Programming {
         let Some(open) = &mut self.open else {
             return Turn::Refused;
         };
-        if open.runs(site) {
+        if runs(&open.name, site.control()) {
             return Turn::Say(site.words("BACKGROUND PROGRAMMING NOT POSSIBLE"));
         }
         let (turn, changed) = what(&mut open.editor, site);
@@ -211,13 +210,6 @@ impl Open {
         let version = std::mem::replace(&mut self.version, site.programs.version());
         let own = || Some(self.editor.program().to_bytes());
         version != self.version && site.programs.read(&self.name).map(|program| program.to_bytes()) != own()
-    }
-
-    /// The machine runs this program.
-    fn runs(&self, site: &Site) -> bool {
-        let control = site.control();
-        let selected = control.selected_program();
-        control.run_state() != RunState::Idle && selected.is_some_and(|own| is_same(own, &self.name))
     }
 }
 
