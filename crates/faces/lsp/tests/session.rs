@@ -104,6 +104,29 @@ fn a_program_in_plain_language_may_be_named_nc() {
     client.end().ended().unwrap();
 }
 
+/// A subroutine that is a file is gone to where a run finds it: below the folder of the program, nowhere else.
+#[test]
+fn files_of_subroutines_lie_below_the_program() {
+    let (mut client, folder) = session();
+    let parts = folder.path().join("parts");
+    std::fs::create_dir_all(&parts).unwrap();
+    for file in [folder.path().join("outside.sub"), parts.join("inside.sub")] {
+        std::fs::write(file, "N10 G90\nN20 M17\n").unwrap();
+    }
+    let text = "N10 L inside.sub\nN20 L ../outside.sub\nN30 M30\n";
+    let document = client.open_text(&parts.join("main.nc"), "din-66025", text);
+    let inside = client.at(&document, "textDocument/definition", "inside.sub", 3);
+    assert!(
+        inside["uri"]
+            .as_str()
+            .is_some_and(|uri| uri.ends_with("parts/inside.sub")),
+        "{inside}"
+    );
+    let outside = client.at(&document, "textDocument/definition", "outside.sub", 3);
+    assert!(outside["uri"].is_null(), "{outside}");
+    client.end().ended().unwrap();
+}
+
 /// P02 of G83 is the depth of cycle 1, in the order in which the dialogue asks; P01 of D68 is Q1 of the cycle
 /// [000:17966-17984].
 #[test]
