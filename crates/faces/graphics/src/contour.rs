@@ -7,12 +7,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use bahn_host::LoadedMachine;
-use bahn_interpreter::{Interpreter, Library, Rules, Settings};
+use bahn_interpreter::{Interpreter, Rules, Settings};
 use bahn_path::{
     Barrier, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Plane, Point2, Step, Touch,
 };
 use bahn_program::{Edit, Program};
-use bahn_tnc::{Control, Programs, Tool};
+use bahn_tnc::{CalledPrograms, Control, Programs, Tool};
 
 /// Elements of one contour cycle in simulation time (inferred).
 const BUDGET: u32 = 500;
@@ -87,19 +87,6 @@ pub(crate) fn settings(control: &Control, machine: &LoadedMachine) -> Settings {
         tools: machine.tools.as_ref().map(shapes),
         skip_unknown: true,
         ..Settings::default()
-    }
-}
-
-/// Programs that are called.
-struct Shelf(Arc<dyn Programs>);
-
-impl Library for Shelf {
-    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.0.open(name, caller)
-    }
-
-    fn find_in_eprom(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.0.open_in_eprom(name, caller)
     }
 }
 
@@ -192,8 +179,11 @@ impl Run {
     /// Goes on by so many elements; whether there is more.
     fn advance(&mut self, elements: u32) -> bool {
         if let Some((program, settings, programs)) = self.start.take() {
-            let mut interpreter =
-                Interpreter::new(self.cut_off(program), settings, Box::new(Shelf(programs)));
+            let mut interpreter = Interpreter::new(
+                self.cut_off(program),
+                settings,
+                Box::new(CalledPrograms(programs)),
+            );
             interpreter.set_interrupt(Arc::clone(&self.stop));
             self.interpreter = Some(interpreter);
         }

@@ -68,6 +68,30 @@ fn the_tool_table_opens_in_program_run() {
     assert!(line.current && line.text.contains("100"), "{line:?}");
 }
 
+/// A table in Latin-1, the alphabet of the control's own files, stays one: only what is entered is another.
+#[test]
+fn a_table_keeps_its_alphabet() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let path = folder.join("tools.tsv");
+        let mut bytes = std::fs::read(&path).unwrap();
+        bytes.extend_from_slice(b"; Fr\xe4ser\n");
+        std::fs::write(path, bytes).unwrap();
+    });
+    trainee.ready();
+    trainee
+        .press("FULL SK5 RIGHT")
+        .number("100")
+        .press("ENT END")
+        .wait(0.2);
+    let bytes = std::fs::read(trainee.folder().join("tools.tsv")).unwrap();
+    let has = |wanted: &[u8]| bytes.windows(wanted.len()).any(|own| own == wanted);
+    assert!(
+        has(b"; Fr\xe4ser\n") && has(b"100"),
+        "{}",
+        String::from_utf8_lossy(&bytes)
+    );
+}
+
 /// The mill with another number of tools in the tool table, and without the files of tools and pockets.
 fn without_tools(most: u32) -> Trainee {
     Trainee::with("mill", |folder| {

@@ -157,7 +157,7 @@ pub use oscilloscope::OscilloscopeKeys;
 pub use plane_command::PlaneCommand;
 pub use plc_link::{NcFiles, Pocket, WrittenElement, datum_shifts};
 pub use probe_command::{ProbeCommand, ProbeFunction};
-pub use programs::Programs;
+pub use programs::{CalledPrograms, Programs};
 pub use renewal::{CompensationFiles, Renewed};
 pub use scanning::{Digitized, DigitizedNews};
 pub use screen_command::ScreenCommand;

@@ -71,10 +71,10 @@ impl Opened {
     }
 }
 
-/// Programs as a library for the interpreter.
-pub(crate) struct Shelf(pub Arc<dyn Programs>);
+/// Programs as the interpreter asks for those that are called.
+pub struct CalledPrograms(pub Arc<dyn Programs>);
 
-impl Library for Shelf {
+impl Library for CalledPrograms {
     fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         self.0.open(name, caller)
     }

@@ -28,7 +28,7 @@ use crate::language::{self, OwnLanguage};
 use crate::manual_probing::ManualProbing;
 use crate::message::Message;
 use crate::plc_link::PlcLink;
-use crate::programs::{Opened, Programs, Selection, Shelf};
+use crate::programs::{CalledPrograms, Opened, Programs, Selection};
 use crate::setup::Checking;
 use crate::site::Site;
 
@@ -555,8 +555,8 @@ impl Source {
             functions: self.reading.functions.clone(),
             ..Settings::default()
         };
-        let shelf = Box::new(Shelf(Arc::clone(&self.reading.programs)));
-        let mut interpreter = Interpreter::new(program, settings, shelf);
+        let called = Box::new(CalledPrograms(Arc::clone(&self.reading.programs)));
+        let mut interpreter = Interpreter::new(program, settings, called);
         if self.defers {
             interpreter.defer_work();
         }

@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_interpreter::Library;
 use bahn_program::Program;
+use bahn_text::Encoding;
 
 use crate::{HostError, called};
 
@@ -465,6 +466,17 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), HostError> {
     file.write_all(bytes)
         .map_err(|error| cannot("write", path, &error))?;
     file.finish()
+}
+
+/// Writes a text anew as its file is written: in its alphabet, with its byte order mark; a new file in UTF-8.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_text(path: &Path, text: &str) -> Result<(), HostError> {
+    match fs::read(path) {
+        Ok(before) => write_whole(path, &Encoding::read(&before).1.write(text)),
+        Err(_) => write_whole(path, text.as_bytes()),
+    }
 }
 
 /// The new name is safe when its folder is; where a folder cannot be synchronised nothing can be done.

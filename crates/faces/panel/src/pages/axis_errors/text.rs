@@ -91,7 +91,7 @@ impl ErrorFile {
             return Err(format!("{incorrect}: {}", error.what));
         }
         let before = files::read_table(&self.path).map_err(|error| error.to_string())?;
-        files::write_whole(&self.path, text.as_bytes()).map_err(|error| error.to_string())?;
+        files::write_text(&self.path, text).map_err(|error| error.to_string())?;
         match load(site) {
             Ok(machine) => {
                 act(machine, site);

@@ -31,7 +31,7 @@ pub(super) fn store(
     if let Err(why) = fits {
         return Err(format!("{}: {why}", site.message(MessageId::EntryValueIncorrect)));
     }
-    files::write_whole(path, text.as_bytes()).map_err(|error| error.to_string())?;
+    files::write_text(path, text).map_err(|error| error.to_string())?;
     site.programs.was_written();
     Ok(())
 }
