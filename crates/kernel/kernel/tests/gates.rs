@@ -173,8 +173,8 @@ impl Bench {
             driving,
             block: Arc::from("N10"),
             unit: 1,
-            length: 10.0,
-            from: self.gates.window.distance(),
+            length_mm: 10.0,
+            from_mm: self.gates.window.distance(),
         };
         self.gates.push(leg, split, 50);
     }
@@ -270,7 +270,7 @@ fn a_line_is_split_for_a_joint() {
     bench
         .gates
         .window
-        .insert(planned.real, vec![Action::Output(0)], None);
+        .insert(planned.real_mm, vec![Action::Output(0)], None);
     let run = bench.run(0..0);
     near(run.outputs[0].1, 20.0 - 12.5, 1e-9);
     near(run.cycle as f64 * T, 20.0 / V + V / A, 5.0 * T);

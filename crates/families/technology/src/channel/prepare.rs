@@ -265,14 +265,14 @@ impl Taking<'_> {
             },
             block: unit.place.block.clone(),
             unit: self.decoding.units,
-            length: motion.curve.length(&motion.start, &motion.end),
-            from: self.gates.window.distance(),
+            length_mm: motion.curve.length(&motion.start, &motion.end),
+            from_mm: self.gates.window.distance(),
         };
         if let (Some(edge), Some(script)) = (&mut self.decoding.edge, self.script)
             && edge.probed.is_none()
         {
             let mut crossings = script.probes.iter().filter_map(|probe| crossing(&leg, *probe));
-            edge.probed = crossings.next().map(|along| leg.from + along);
+            edge.probed = crossings.next().map(|along| leg.from_mm + along);
         }
         let most = if settings.micro_joint.enabled {
             settings.micro_joint.blocks as usize
@@ -315,10 +315,10 @@ impl Taking<'_> {
         };
         let planned = self.gates.window.plan(lead, farthest);
         let tolerance = f64::from(settings.tolerance) / PER_MM;
-        if settings.tolerance > 0 && planned.deviation > tolerance {
+        if settings.tolerance > 0 && planned.deviation_mm > tolerance {
             let message = format!(
                 "{label} is output {:.4} mm after its planned place, more than {tolerance} mm",
-                planned.deviation
+                planned.deviation_mm
             );
             return Err(numbered(&unit.place, 120_815, message));
         }
@@ -326,7 +326,7 @@ impl Taking<'_> {
             self.warnings.push(Warning {
                 message: format!(
                     "{label} is output {:.4} mm after its planned place: the look-ahead ends there",
-                    planned.deviation
+                    planned.deviation_mm
                 ),
                 program: unit.place.program.to_string(),
                 block: unit.place.block.to_string(),
@@ -343,7 +343,7 @@ impl Taking<'_> {
                 None
             }
         };
-        self.gates.window.insert(planned.real, actions, after);
+        self.gates.window.insert(planned.real_mm, actions, after);
         self.gates.window.bar();
         self.gates.release();
         Ok(())
@@ -410,7 +410,7 @@ fn crossing(leg: &Leg, (axis, place): (Axis, f64)) -> Option<f64> {
     const HALVINGS: u32 = 60;
     let value = |along: f64| leg.place(along)[axis] - place;
     let parts = if leg.curve == Curve::Line { 1 } else { PARTS };
-    let step = leg.length / f64::from(parts);
+    let step = leg.length_mm / f64::from(parts);
     for part in 0..parts {
         let (mut a, mut b) = (step * f64::from(part), step * f64::from(part + 1));
         let (at_a, at_b) = (value(a), value(b));

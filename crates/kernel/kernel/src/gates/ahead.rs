@@ -37,8 +37,8 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             if !matches!(ahead.lead, Ahead::Time(_)) {
                 // What could not go out at its place, for that was not known or another came before, does so where the path is.
                 let in_cycle =
-                    |place: &f64| (self.motion.distance_before - SAME_MM..=distance).contains(place);
-                let places = [ahead.place(), self.leads.floor];
+                    |place: &f64| (self.motion.distance_before_mm - SAME_MM..=distance).contains(place);
+                let places = [ahead.place(), self.leads.floor_mm];
                 let place = places.into_iter().find(in_cycle).unwrap_or(distance);
                 self.leads.output_at(ahead.id, place);
                 at = Moment {
@@ -95,13 +95,13 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         let Ahead::Time(lead_s) = ahead.lead else {
             return true;
         };
-        if distance + SAME_MM >= ahead.point {
+        if distance + SAME_MM >= ahead.point_mm {
             return true;
         }
-        let fastest = self.fastest(ahead.point, drive);
-        ahead.point - distance <= fastest * lead_s
+        let fastest = self.fastest(ahead.point_mm, drive);
+        ahead.point_mm - distance <= fastest * lead_s
             && self
-                .time_to(ahead.point, lead_s, drive, family)
+                .time_to(ahead.point_mm, lead_s, drive, family)
                 .is_some_and(|time| time <= lead_s + ROUNDING_S)
     }
 
@@ -109,7 +109,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     fn fastest(&self, point: f64, drive: &Drive) -> f64 {
         let mut fastest = 0.0f64;
         let mut number = self.motion.reached;
-        while let Some(leg) = self.places.leg(number).filter(|leg| leg.from < point) {
+        while let Some(leg) = self.places.leg(number).filter(|leg| leg.from_mm < point) {
             if leg.driving.rapid {
                 return f64::INFINITY;
             }
@@ -201,9 +201,9 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         family: &F,
     ) -> f64 {
         match ahead.lead {
-            Ahead::Time(lead_s) if self.distance() + SAME_MM < ahead.point => {
-                self.time_to(ahead.point, lead_s, drive, family).unwrap_or(lead_s)
-            }
+            Ahead::Time(lead_s) if self.distance() + SAME_MM < ahead.point_mm => self
+                .time_to(ahead.point_mm, lead_s, drive, family)
+                .unwrap_or(lead_s),
             _ => 0.0,
         }
     }
@@ -223,7 +223,9 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         } else {
             ahead.place()
         };
-        let time = self.time_to(ahead.point, LONGEST_S, drive, family).unwrap_or(0.0);
-        Some((ahead.point - distance, time))
+        let time = self
+            .time_to(ahead.point_mm, LONGEST_S, drive, family)
+            .unwrap_or(0.0);
+        Some((ahead.point_mm - distance, time))
     }
 }

@@ -12,7 +12,7 @@ pub struct Back<T> {
     /// The element on which it turned.
     pub from: u64,
     /// How much of that was executed, mm.
-    pub along: f64,
+    pub along_mm: f64,
     /// Number of the backward motion that the interpolator is given next: the first is 1.
     pub fed: u64,
     /// The place to which the path has come back.
@@ -47,9 +47,9 @@ impl<T: Copy, O> ElementSource for FeedBack<'_, T, O> {
             });
         };
         let along = if self.back.fed == 1 {
-            self.back.along
+            self.back.along_mm
         } else {
-            leg.length
+            leg.length_mm
         };
         let element = leg.rest(along, true).element(self.back.fed);
         self.back.fed += 1;

@@ -21,9 +21,9 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     fn whereabouts(&self) -> (u64, f64) {
         let number = self.motion.reached;
         let leg = self.places.leg(number);
-        let along = leg.map_or(0.0, |leg| self.distance() - leg.from);
+        let along = leg.map_or(0.0, |leg| self.distance() - leg.from_mm);
         match number.checked_sub(1).and_then(|before| self.places.leg(before)) {
-            Some(before) if along <= 0.0 => (number - 1, before.length),
+            Some(before) if along <= 0.0 => (number - 1, before.length_mm),
             _ => (number, along),
         }
     }
@@ -36,7 +36,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         self.motion.turn(position);
         self.back = Some(Back {
             from,
-            along,
+            along_mm: along,
             fed: 1,
             reached: from + 1,
             seen: from + 1,
@@ -52,10 +52,10 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         let number = path.element().and_then(|element| back.element(element.sequence));
         let leg = number.and_then(|number| self.places.leg(number));
         Some(match leg {
-            Some(leg) => leg.from + path.rest_mm(),
+            Some(leg) => leg.from_mm + path.rest_mm(),
             None => self.places.leg(back.from).map_or_else(
                 || self.places.distance(self.places.first()),
-                |leg| leg.from + back.along,
+                |leg| leg.from_mm + back.along_mm,
             ),
         })
     }
@@ -199,11 +199,11 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         };
         let number = back.reached.saturating_sub(1).max(self.places.first());
         let (mut number, mut along) = match self.places.leg(number) {
-            Some(leg) => (number, (distance - leg.from).max(0.0)),
+            Some(leg) => (number, (distance - leg.from_mm).max(0.0)),
             // There is nothing to go back: it is still at the place where it turned.
             None => (number, 0.0),
         };
-        if self.places.leg(number).is_some_and(|leg| along >= leg.length) {
+        if self.places.leg(number).is_some_and(|leg| along >= leg.length_mm) {
             (number, along) = (number + 1, 0.0);
         }
         let position = self.motion.path.position();
@@ -212,7 +212,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         let turned = self
             .places
             .leg(back.from)
-            .map_or(distance, |leg| leg.from + back.along);
+            .map_or(distance, |leg| leg.from_mm + back.along_mm);
         let ahead = self.leads.repeat(turned, distance);
         self.renew(first, &ahead, family);
         let done = if along > 0.0 {

@@ -80,7 +80,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         family: &mut F,
     ) -> bool {
         let (before, distance) = (self.now(family), self.distance());
-        self.motion.distance_before = distance;
+        self.motion.distance_before_mm = distance;
         let cycle = self.motion.path.cycle(drive);
         let (rest, speed) = (self.motion.path.rest_mm(), self.motion.speed());
         // A distance to go within rounding counts as reached in this cycle, not in the next one.

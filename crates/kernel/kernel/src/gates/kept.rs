@@ -28,13 +28,13 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             planned_s,
         };
         match ahead.lead {
-            Ahead::Time(_) if self.distance() + SAME_MM < ahead.point => {
+            Ahead::Time(_) if self.distance() + SAME_MM < ahead.point_mm => {
                 self.leads.promises.push_back(promise);
             }
             Ahead::Time(lead_s) => self.tell_lead(promise, 0.0, lead_s, family),
             Ahead::Distance(lead) => {
-                let placed = self.leads.placed(ahead.id).unwrap_or(ahead.point);
-                let distance = ahead.point - placed;
+                let placed = self.leads.placed(ahead.id).unwrap_or(ahead.point_mm);
+                let distance = ahead.point_mm - placed;
                 if distance + 2.0 * SAME_MM < lead {
                     self.tell_lead(promise, distance, lead, family);
                 }
@@ -46,7 +46,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     pub(super) fn passed_leads<F: Functions<Ticket = T, Own = O>>(&mut self, now_s: f64, family: &mut F) {
         let distance = self.distance();
         while let Some(promise) = self.leads.promises.front().copied()
-            && promise.ahead.point <= distance + SAME_MM
+            && promise.ahead.point_mm <= distance + SAME_MM
         {
             self.leads.promises.pop_front();
             let Ahead::Time(lead_s) = promise.ahead.lead else {
@@ -54,7 +54,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             };
             let mut passed = self.motion.path.passed().iter();
             let at =
-                passed.find(|end| self.places.distance(end.sequence + 1) >= promise.ahead.point - SAME_MM);
+                passed.find(|end| self.places.distance(end.sequence + 1) >= promise.ahead.point_mm - SAME_MM);
             let was_s = now_s - at.map_or(0.0, |end| end.left_s) - promise.output_s;
             if was_s + self.cycle_s + ROUNDING_S < lead_s {
                 self.tell_lead(promise, was_s, lead_s, family);
@@ -92,9 +92,9 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         if !short {
             return Why::Sooner;
         }
-        let placed = self.leads.placed(ahead.id).unwrap_or(ahead.point);
+        let placed = self.leads.placed(ahead.id).unwrap_or(ahead.point_mm);
         match ahead.held {
-            _ if placed > ahead.earliest + self.motion.path.speed_mm_s() * self.cycle_s + SAME_MM => {
+            _ if placed > ahead.earliest_mm + self.motion.path.speed_mm_s() * self.cycle_s + SAME_MM => {
                 Why::Another
             }
             Held::LookAhead => Why::LookAhead,

@@ -16,21 +16,21 @@ pub struct Pending<T> {
     /// How far ahead it goes out.
     pub lead: Ahead,
     /// Distance along the path to the place where it is synchronised, mm.
-    pub point: f64,
+    pub point_mm: f64,
     /// It is not output before this, mm: the look-ahead reaches no farther back.
-    pub earliest: f64,
+    pub earliest_mm: f64,
     /// Why not before that.
     pub held: Held,
     /// Where it was output last, mm.
-    output: f64,
+    output_mm: f64,
 }
 
 impl<T> Pending<T> {
     /// Distance along the path to where it is output, mm, for a lead along the path.
     pub fn place(&self) -> f64 {
         match self.lead {
-            Ahead::Distance(distance) => (self.point - distance).max(self.earliest),
-            Ahead::Time(_) => self.earliest,
+            Ahead::Distance(distance) => (self.point_mm - distance).max(self.earliest_mm),
+            Ahead::Time(_) => self.earliest_mm,
         }
     }
 }
@@ -59,9 +59,9 @@ pub struct Leads<T> {
     /// Distances to the starts of the last blocks, as many as the look-ahead takes.
     blocks: VecDeque<f64>,
     /// Nothing is output before this, mm: the path was to come to rest here.
-    barrier: f64,
+    barrier_mm: f64,
     /// Where the last one was output, or had to be passed for the next one, mm.
-    pub floor: f64,
+    pub floor_mm: f64,
     /// The place that was turned to last, and its functions (P-CHAN-00212).
     active: Option<(f64, Vec<T>)>,
 }
@@ -75,8 +75,8 @@ impl<T: Copy + Ord> Leads<T> {
             promises: VecDeque::new(),
             taken: VecDeque::new(),
             blocks: VecDeque::new(),
-            barrier: 0.0,
-            floor: 0.0,
+            barrier_mm: 0.0,
+            floor_mm: 0.0,
             active: None,
         }
     }
@@ -96,14 +96,14 @@ impl<T: Copy + Ord> Leads<T> {
 
     /// Nothing is output across this place, mm.
     pub fn bar(&mut self, distance: f64) {
-        self.barrier = distance;
+        self.barrier_mm = distance;
         self.blocks.clear();
     }
 
     /// A function of a block is to be output a lead ahead of a place, mm along the path.
     pub fn push(&mut self, id: T, unit: u64, lead: Ahead, point: f64) {
         let first = self.blocks.front().copied().unwrap_or(point);
-        let held = if first > self.barrier + SAME_MM {
+        let held = if first > self.barrier_mm + SAME_MM {
             Held::LookAhead
         } else {
             Held::Barrier
@@ -112,10 +112,10 @@ impl<T: Copy + Ord> Leads<T> {
             id,
             unit,
             lead,
-            point,
-            earliest: first.max(self.barrier).min(point),
+            point_mm: point,
+            earliest_mm: first.max(self.barrier_mm).min(point),
             held,
-            output: point,
+            output_mm: point,
         });
     }
 
@@ -125,7 +125,7 @@ impl<T: Copy + Ord> Leads<T> {
         let first = self.queue.front();
         let held = self.one_by_one
             && match (first, &self.active) {
-                (Some(first), Some((point, ids))) => first.point > point + SAME_MM && !passed(*point, ids),
+                (Some(first), Some((point, ids))) => first.point_mm > point + SAME_MM && !passed(*point, ids),
                 _ => false,
             };
         let unit = first.map(|ahead| ahead.unit);
@@ -140,42 +140,50 @@ impl<T: Copy + Ord> Leads<T> {
         let Some(ahead) = self.queue.remove(index) else {
             return;
         };
-        let at = self.taken.partition_point(|other| other.point <= ahead.point);
-        self.taken.insert(at, Pending { output, ..ahead });
+        let at = self
+            .taken
+            .partition_point(|other| other.point_mm <= ahead.point_mm);
+        self.taken.insert(
+            at,
+            Pending {
+                output_mm: output,
+                ..ahead
+            },
+        );
         if let Some((point, _)) = self.active.as_ref().filter(|_| self.one_by_one)
-            && ahead.point > point + SAME_MM
+            && ahead.point_mm > point + SAME_MM
         {
-            self.floor = self.floor.max(*point);
+            self.floor_mm = self.floor_mm.max(*point);
         }
         match &mut self.active {
-            Some((point, ids)) if (*point - ahead.point).abs() <= SAME_MM => ids.push(ahead.id),
-            active => *active = Some((ahead.point, vec![ahead.id])),
+            Some((point, ids)) if (*point - ahead.point_mm).abs() <= SAME_MM => ids.push(ahead.id),
+            active => *active = Some((ahead.point_mm, vec![ahead.id])),
         }
     }
 
     /// One that is output does so at this place of the path, mm.
     pub fn output_at(&mut self, id: T, distance: f64) {
-        self.floor = distance;
+        self.floor_mm = distance;
         if let Some(ahead) = self.taken.iter_mut().rev().find(|ahead| ahead.id == id) {
-            ahead.output = distance;
+            ahead.output_mm = distance;
         }
     }
 
     /// Where one that is output was so, mm.
     pub fn placed(&self, id: T) -> Option<f64> {
         let taken = self.taken.iter().rev().find(|ahead| ahead.id == id);
-        taken.map(|ahead| ahead.output)
+        taken.map(|ahead| ahead.output_mm)
     }
 
     /// The functions that were output and belong to a place, mm.
     pub fn of_place(&self, distance: f64) -> impl Iterator<Item = T> {
         let first = self
             .taken
-            .partition_point(|ahead| ahead.point < distance - SAME_MM);
+            .partition_point(|ahead| ahead.point_mm < distance - SAME_MM);
         let here = self
             .taken
             .range(first..)
-            .take_while(move |ahead| ahead.point <= distance + SAME_MM);
+            .take_while(move |ahead| ahead.point_mm <= distance + SAME_MM);
         here.map(|ahead| ahead.id)
     }
 
@@ -183,14 +191,14 @@ impl<T: Copy + Ord> Leads<T> {
     /// the place of a function, or where it was output. They are handed on.
     pub fn repeat(&mut self, turned: f64, from: f64) -> Vec<T> {
         let (again, over): (Vec<Pending<T>>, Vec<Pending<T>>) = self.taken.drain(..).partition(|ahead| {
-            let of_point = ahead.point <= turned + SAME_MM && ahead.point >= from - SAME_MM;
-            of_point || ahead.output >= from - SAME_MM
+            let of_point = ahead.point_mm <= turned + SAME_MM && ahead.point_mm >= from - SAME_MM;
+            of_point || ahead.output_mm >= from - SAME_MM
         });
         self.taken = over.into();
         if !again.is_empty() {
             self.active = None;
         }
-        self.floor = self.floor.min(from);
+        self.floor_mm = self.floor_mm.min(from);
         let ids = again.iter().map(|ahead| ahead.id).collect();
         self.queue = again.into_iter().chain(self.queue.drain(..)).collect();
         self.queue
@@ -206,15 +214,15 @@ impl<T: Copy + Ord> Leads<T> {
 
     /// Nobody goes back to what lies before this distance along the path, mm; the first function that may still be asked for.
     pub fn forget_before(&mut self, distance: f64) -> Option<T> {
-        self.taken.retain(|ahead| ahead.point >= distance);
+        self.taken.retain(|ahead| ahead.point_mm >= distance);
         self.taken.iter().map(|ahead| ahead.id).min()
     }
 
     /// The path begins anew.
     pub fn begin(&mut self, distance: f64) {
         *self = Leads {
-            barrier: distance,
-            floor: distance,
+            barrier_mm: distance,
+            floor_mm: distance,
             ..Leads::new(self.one_by_one)
         };
     }

@@ -48,21 +48,21 @@ pub struct Leg {
     /// Count of executed blocks.
     pub unit: u64,
     /// Length along the path, mm.
-    pub length: f64,
+    pub length_mm: f64,
     /// Distance along the path to its start, mm.
-    pub from: f64,
+    pub from_mm: f64,
 }
 
 impl Leg {
     /// Distance along the path to its end, mm.
     pub fn to(&self) -> f64 {
-        self.from + self.length
+        self.from_mm + self.length_mm
     }
 
     /// The place so far along it, mm.
     pub fn place(&self, along: f64) -> Position {
-        let part = if self.length > 0.0 {
-            along / self.length
+        let part = if self.length_mm > 0.0 {
+            along / self.length_mm
         } else {
             1.0
         };
@@ -71,29 +71,29 @@ impl Leg {
 
     /// Its parts before and after a place so far along it, mm.
     pub fn split(&self, along: f64) -> (Leg, Leg) {
-        let at = along / self.length;
+        let at = along / self.length_mm;
         let part = |from: f64, to: f64| {
             let (curve, start, end) = self.curve.part(&self.start, &self.end, from, to);
             Leg {
                 curve,
                 start,
                 end,
-                length: self.length * (to - from),
-                from: self.from + self.length * from,
+                length_mm: self.length_mm * (to - from),
+                from_mm: self.from_mm + self.length_mm * from,
                 ..self.clone()
             }
         };
         let (mut first, mut second) = (part(0.0, at), part(at, 1.0));
-        (first.length, second.length) = (along, self.length - along);
-        (second.from, second.end) = (self.from + along, self.end);
+        (first.length_mm, second.length_mm) = (along, self.length_mm - along);
+        (second.from_mm, second.end) = (self.from_mm + along, self.end);
         first.end = second.start;
         (first, second)
     }
 
     /// What is left of it after a place so far along it, or, backward, what lies from there to its start.
     pub fn rest(&self, along: f64, backward: bool) -> Leg {
-        let at = if self.length > 0.0 {
-            along / self.length
+        let at = if self.length_mm > 0.0 {
+            along / self.length_mm
         } else {
             1.0
         };
@@ -112,7 +112,7 @@ impl Leg {
             curve,
             start: end,
             end: start,
-            length: along,
+            length_mm: along,
             ..self.clone()
         }
     }

@@ -107,7 +107,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
 
     /// An element comes; so many may still be split, and a function that goes out ahead looks back over so many blocks.
     pub fn push(&mut self, leg: Leg, split: usize, blocks: usize) {
-        self.leads.block(leg.from, blocks);
+        self.leads.block(leg.from_mm, blocks);
         self.window.leg(leg, split, &mut self.places);
     }
 

@@ -20,13 +20,13 @@ pub struct Motion {
     /// Number of the element that the interpolator is given next.
     fed: u64,
     /// So much of it is executed already, mm.
-    part: Option<f64>,
+    part_mm: Option<f64>,
     /// Greatest path acceleration that it was given last, mm/s².
-    acceleration: f64,
+    acceleration_mm_s2: f64,
     /// The place that the path has come to or stands at.
     pub reached: u64,
     /// Distance along the path before the last cycle, mm.
-    pub distance_before: f64,
+    pub distance_before_mm: f64,
     /// The path stood still in the last cycle.
     pub still: bool,
     /// The standstill was reported.
@@ -40,9 +40,9 @@ struct Feed<'a, T, O> {
     track: &'a Places<T, O>,
     fed: &'a mut u64,
     /// So much of the next element is executed already, mm.
-    part: &'a mut Option<f64>,
+    part_mm: &'a mut Option<f64>,
     /// Elements with another path acceleration wait until the limits are others.
-    acceleration: f64,
+    acceleration_mm_s2: f64,
     /// Nothing comes after those that are known before the path has come to their end.
     closed: bool,
 }
@@ -52,13 +52,13 @@ impl<T: Copy, O> ElementSource for Feed<'_, T, O> {
 
     fn next(&mut self) -> Step<()> {
         match self.track.leg(*self.fed) {
-            Some(leg) if self.part.is_some() => {
-                let along = self.part.take().unwrap_or(0.0);
+            Some(leg) if self.part_mm.is_some() => {
+                let along = self.part_mm.take().unwrap_or(0.0);
                 let element = leg.rest(along, false).element(*self.fed);
                 *self.fed += 1;
                 Step::Element(element)
             }
-            Some(leg) if leg.driving.limit.acceleration_mm_s2 == self.acceleration => {
+            Some(leg) if leg.driving.limit.acceleration_mm_s2 == self.acceleration_mm_s2 => {
                 let element: PathElement = leg.element(*self.fed);
                 *self.fed += 1;
                 Step::Element(element)
@@ -83,10 +83,10 @@ impl Motion {
             limits: limits.clone(),
             path,
             fed: 1,
-            part: None,
-            acceleration: f64::INFINITY,
+            part_mm: None,
+            acceleration_mm_s2: f64::INFINITY,
             reached: 1,
-            distance_before: 0.0,
+            distance_before_mm: 0.0,
             still: true,
             stands: true,
             held: false,
@@ -96,7 +96,7 @@ impl Motion {
     /// The path goes on from somewhere, with an element of which so much is executed already, mm.
     pub fn begin_on(&mut self, position: Position, number: u64, part: Option<f64>) {
         self.turn(position);
-        (self.fed, self.reached, self.part) = (number, number, part);
+        (self.fed, self.reached, self.part_mm) = (number, number, part);
     }
 
     /// The path turns where it is.
@@ -111,8 +111,8 @@ impl Motion {
             let mut feed = Feed {
                 track,
                 fed: &mut self.fed,
-                part: &mut self.part,
-                acceleration: self.acceleration,
+                part_mm: &mut self.part_mm,
+                acceleration_mm_s2: self.acceleration_mm_s2,
                 closed,
             };
             if self.path.stop().is_some() && feed.track.leg(*feed.fed).is_some() {
@@ -122,8 +122,9 @@ impl Motion {
             let next = track.leg(self.fed).map(|leg| leg.driving.limit);
             match next {
                 Some(limit) if prepared == Prepared::Starved => {
-                    self.acceleration = limit.acceleration_mm_s2;
-                    self.path.set_limits(&within(&self.limits, self.acceleration));
+                    self.acceleration_mm_s2 = limit.acceleration_mm_s2;
+                    self.path
+                        .set_limits(&within(&self.limits, self.acceleration_mm_s2));
                 }
                 _ => return,
             }

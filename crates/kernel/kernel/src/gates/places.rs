@@ -45,7 +45,7 @@ pub struct Places<T, O> {
     stretches: VecDeque<Stretch<T, O>>,
     /// What is to be done where it ends.
     tail: Vec<Action<T, O>>,
-    distance: f64,
+    distance_mm: f64,
     end: Position,
     block: Arc<str>,
 }
@@ -57,7 +57,7 @@ impl<T: Copy, O> Places<T, O> {
             first,
             stretches: VecDeque::new(),
             tail: Vec::new(),
-            distance,
+            distance_mm: distance,
             end: start,
             block: "".into(),
         }
@@ -112,7 +112,7 @@ impl<T: Copy, O> Places<T, O> {
 
     /// The distance along the path to a place, mm.
     pub fn distance(&self, place: u64) -> f64 {
-        self.leg(place).map_or(self.distance, |leg| leg.from)
+        self.leg(place).map_or(self.distance_mm, |leg| leg.from_mm)
     }
 
     /// The block that leads to a place.
@@ -125,16 +125,16 @@ impl<T: Copy, O> Places<T, O> {
     pub fn position_at(&self, distance: f64, from: u64) -> Position {
         let mut number = from.min(self.last());
         while let Some(leg) = number.checked_sub(1).and_then(|before| self.leg(before)) {
-            if self.leg(number).is_some_and(|leg| leg.from <= distance) {
+            if self.leg(number).is_some_and(|leg| leg.from_mm <= distance) {
                 break;
             }
             number -= 1;
-            if leg.from <= distance {
+            if leg.from_mm <= distance {
                 break;
             }
         }
         self.leg(number)
-            .map_or(self.end, |leg| leg.place(distance - leg.from))
+            .map_or(self.end, |leg| leg.place(distance - leg.from_mm))
     }
 
     /// It ends elsewhere, for axes moved on their own.
@@ -154,8 +154,8 @@ impl<T: Copy, O> Places<T, O> {
 
     /// Appends an element at the end of the path.
     pub fn push_leg(&mut self, mut leg: Leg) {
-        leg.from = self.distance;
-        self.distance += leg.length;
+        leg.from_mm = self.distance_mm;
+        self.distance_mm += leg.length_mm;
         self.end = leg.end;
         self.block = leg.block.clone();
         self.stretches.push_back(Stretch {

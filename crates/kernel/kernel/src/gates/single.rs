@@ -17,9 +17,9 @@ pub struct SingleBlock {
     on: bool,
     /// Distance along the path, mm, at which it can first come to a standstill: block ends before it are passed. Unknown as
     /// long as nobody has looked.
-    first: Option<f64>,
+    first_mm: Option<f64>,
     /// The operator starts in this cycle, at this time, s.
-    start: Option<f64>,
+    start_s: Option<f64>,
 }
 
 /// Cycles of braking that are looked at: the slowest axis stands long before.
@@ -44,24 +44,24 @@ impl SingleBlock {
     pub fn switch(&mut self, on: bool) -> bool {
         let changed = on != self.on;
         if changed {
-            (self.on, self.first) = (on, None);
+            (self.on, self.first_mm) = (on, None);
         }
         changed
     }
 
     /// Whether the path has to be looked at: where it can first come to a standstill.
     pub fn is_unseen(&self) -> bool {
-        self.on && self.first.is_none()
+        self.on && self.first_mm.is_none()
     }
 
     /// It can first come to a standstill at this distance along it, mm.
     pub fn see(&mut self, distance: f64) {
-        self.first = Some(distance);
+        self.first_mm = Some(distance);
     }
 
     /// The operator starts in this cycle, at this time, s. Two in a cycle are one.
     pub fn start(&mut self, at_s: f64) {
-        self.start = Some(at_s);
+        self.start_s = Some(at_s);
     }
 
     /// In single block the path stops at this end of a block, mm along it, if it still can.
@@ -73,7 +73,7 @@ impl SingleBlock {
                 distance >= first - SAME_MM
             }
         };
-        self.on && self.first.is_none_or(can)
+        self.on && self.first_mm.is_none_or(can)
     }
 
     /// Whether the path stands at this end of a block, mm along it, until the next start. It may still move or have run
@@ -83,19 +83,19 @@ impl SingleBlock {
             return false;
         }
         if moves {
-            self.first = None;
+            self.first_mm = None;
             return false;
         }
-        self.start.take().is_none()
+        self.start_s.take().is_none()
     }
 
     /// A start that nothing has taken, s.
     pub fn take_start(&mut self) -> Option<f64> {
-        self.start.take()
+        self.start_s.take()
     }
 
     /// The path turns, or begins anew: all ends of blocks count again.
     pub fn all_block_ends(&mut self) {
-        self.first = None;
+        self.first_mm = None;
     }
 }

@@ -23,9 +23,9 @@ pub struct Window<T, O> {
     pieces: VecDeque<Piece<T, O>>,
     legs: usize,
     /// Distance along the path to its end, mm.
-    distance: f64,
+    distance_mm: f64,
     /// Nothing is output before this, mm.
-    barrier: f64,
+    barrier_mm: f64,
     /// How the next joint is driven.
     pub next: Option<JointFeed>,
 }
@@ -55,9 +55,9 @@ pub struct JointFeed {
 #[derive(Clone, Copy, Debug)]
 pub struct Planned {
     /// Distance along the path, mm.
-    pub real: f64,
+    pub real_mm: f64,
     /// How far that is after where it was planned, mm.
-    pub deviation: f64,
+    pub deviation_mm: f64,
     /// What kept it from going out where it was planned.
     pub held: Held,
 }
@@ -67,8 +67,8 @@ impl<T, O> Default for Window<T, O> {
         Window {
             pieces: VecDeque::new(),
             legs: 0,
-            distance: 0.0,
-            barrier: 0.0,
+            distance_mm: 0.0,
+            barrier_mm: 0.0,
             next: None,
         }
     }
@@ -78,15 +78,15 @@ impl<T: Copy, O> Window<T, O> {
     /// What is known of the path begins here.
     pub fn begin(&mut self, distance: f64) {
         *self = Window {
-            distance,
-            barrier: distance,
+            distance_mm: distance,
+            barrier_mm: distance,
             ..Window::default()
         };
     }
 
     /// Distance along the path to its end, mm.
     pub fn distance(&self) -> f64 {
-        self.distance
+        self.distance_mm
     }
 
     /// What is done at its end.
@@ -96,8 +96,8 @@ impl<T: Copy, O> Window<T, O> {
 
     /// An element comes; more than so many are not kept.
     pub fn leg(&mut self, mut leg: Leg, most: usize, track: &mut Places<T, O>) {
-        leg.from = self.distance;
-        self.distance += leg.length;
+        leg.from_mm = self.distance_mm;
+        self.distance_mm += leg.length_mm;
         self.pieces.push_back(Piece::Leg(leg));
         self.legs += 1;
         while self.legs > most {
@@ -112,7 +112,7 @@ impl<T: Copy, O> Window<T, O> {
 
     /// Nothing is output before its end as it is now.
     pub fn bar(&mut self) {
-        self.barrier = self.distance;
+        self.barrier_mm = self.distance_mm;
     }
 
     fn release_one(&mut self, track: &mut Places<T, O>) {
@@ -137,24 +137,24 @@ impl<T: Copy, O> Window<T, O> {
     /// it may be, mm.
     pub fn plan(&self, lead: f64, farthest: f64) -> Planned {
         let first = self.pieces.iter().find_map(|piece| match piece {
-            Piece::Leg(leg) => Some(leg.from),
+            Piece::Leg(leg) => Some(leg.from_mm),
             Piece::Action(_) => None,
         });
-        let window = first.unwrap_or(self.distance).max(self.distance - farthest);
-        let planned = self.distance - lead;
-        let floor = window.max(self.barrier);
+        let window = first.unwrap_or(self.distance_mm).max(self.distance_mm - farthest);
+        let planned = self.distance_mm - lead;
+        let floor = window.max(self.barrier_mm);
         let real = planned.max(floor);
         let held = if real <= planned + SAME_MM {
             Held::No
-        } else if window > self.barrier + SAME_MM {
+        } else if window > self.barrier_mm + SAME_MM {
             Held::LookAhead
         } else {
             Held::Barrier
         };
         let real = if held == Held::No { planned } else { real };
         Planned {
-            real,
-            deviation: real - planned,
+            real_mm: real,
+            deviation_mm: real - planned,
             held,
         }
     }
@@ -174,9 +174,9 @@ impl<T: Copy, O> Window<T, O> {
         };
         let mut after = after;
         if let Some(Piece::Leg(leg)) = self.pieces.get(at)
-            && leg.from < real - SAME_MM
+            && leg.from_mm < real - SAME_MM
         {
-            let (unit, (first, second)) = (leg.unit, leg.split(real - leg.from));
+            let (unit, (first, second)) = (leg.unit, leg.split(real - leg.from_mm));
             self.pieces[at] = Piece::Leg(first);
             at += 1;
             self.pieces.insert(at, Piece::Leg(second));
@@ -208,7 +208,7 @@ impl<T: Copy, O> Window<T, O> {
             }
         }
         if let (Some(entry), Some(Piece::Leg(leg))) = (joint.entry_mm_min, self.pieces.get(at))
-            && leg.length > 2.0 * ENTRY
+            && leg.length_mm > 2.0 * ENTRY
         {
             let (mut first, second) = leg.split(ENTRY);
             first.driving.rapid = false;
@@ -232,8 +232,8 @@ impl<T: Copy, O> Window<T, O> {
             self.pieces.extend(actions.into_iter().map(Piece::Action));
             return;
         }
-        if place > leg.from + SAME_MM {
-            let (first, second) = leg.split(place - leg.from);
+        if place > leg.from_mm + SAME_MM {
+            let (first, second) = leg.split(place - leg.from_mm);
             self.pieces[at] = Piece::Leg(first);
             at += 1;
             self.pieces.insert(at, Piece::Leg(second));
