@@ -115,7 +115,7 @@ impl MachineService {
         })
     }
 
-    /// The same machine for somebody who may do that; nobody may more than whom he has it from.
+    /// The same machine with another role, which never allows more than this handle does.
     #[must_use]
     pub fn with_role(&self, role: Role) -> MachineService {
         MachineService {
@@ -124,7 +124,7 @@ impl MachineService {
         }
     }
 
-    /// What one may do by this handle.
+    /// What this handle allows.
     pub fn role(&self) -> Role {
         self.role
     }
