@@ -15,42 +15,144 @@ const CYCLES: usize = 16;
 /// A step of the encoder in a contour cycle is 2.4 rpm in 6 ms and 4.9 rpm in 3 ms. So the speed is taken over the longest of the
 /// last cycles whose counts are those of a steady speed (adaptive windowing, inferred). At a steady speed and at standstill a
 /// step is divided among all of them; on a ramp the last cycle alone counts, as if there were no others.
-#[derive(Clone, Debug, Default)]
+///
+/// A pair of counts says between which two speeds a steady one lies. The pairs of a window are those of the window of the
+/// cycle before that ended a cycle earlier, and those with the newest count: so each cycle looks at 16 pairs, not at 136.
+#[derive(Clone, Debug)]
 pub(super) struct Pace {
     counts: [i64; CYCLES + 1],
+    /// What the pairs of the last 1, 2, .. 16 cycles say, counts in a cycle.
+    windows: [Bounds; CYCLES],
+}
+
+/// Between which two speeds a steady one lies, counts in a cycle.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    least: f64,
+    greatest: f64,
+}
+
+impl Bounds {
+    /// Nothing is known.
+    const NONE: Bounds = Bounds {
+        least: f64::NEG_INFINITY,
+        greatest: f64::INFINITY,
+    };
+
+    /// What both say.
+    fn and(self, other: Bounds) -> Bounds {
+        Bounds {
+            least: self.least.max(other.least),
+            greatest: self.greatest.min(other.greatest),
+        }
+    }
+
+    /// What two counts say: within a step of each other they fit to any steady speed between these.
+    fn of(way: i64, cycles: usize) -> Bounds {
+        const STEP: f64 = Encoder::SQUARE_WAVE_STEPS as f64;
+        let (way, cycles) = (way as f64, cycles as f64);
+        Bounds {
+            least: (way - STEP) / cycles,
+            greatest: (way + STEP) / cycles,
+        }
+    }
+}
+
+impl Default for Pace {
+    fn default() -> Pace {
+        Pace::at(0)
+    }
 }
 
 impl Pace {
     /// It stands at a count.
     pub(super) fn at(count: i64) -> Pace {
-        Pace {
+        let mut pace = Pace {
             counts: [count; CYCLES + 1],
+            windows: [Bounds::NONE; CYCLES],
+        };
+        for _ in 0..CYCLES {
+            pace.look();
         }
+        pace
     }
 
     /// The count at the end of a contour cycle; the speed, counts in a cycle.
     pub(super) fn next(&mut self, count: i64) -> f64 {
-        const STEP: f64 = Encoder::SQUARE_WAVE_STEPS as f64;
         // A spindle that trembles about the edge of a step stands: what is counted has a play of a step.
         let [last, ..] = self.counts;
         let count = last.clamp(count.saturating_sub(Encoder::SQUARE_WAVE_STEPS), count);
         self.counts.copy_within(..CYCLES, 1);
         let [newest, ..] = &mut self.counts;
         *newest = count;
-        // Within a step of each other two counts fit to any steady speed between these.
-        let (mut least, mut greatest) = (f64::NEG_INFINITY, f64::INFINITY);
-        let mut speed = 0.0;
-        for (first, from) in self.counts.iter().enumerate().skip(1) {
-            for (last, to) in self.counts.iter().enumerate().take(first) {
-                let (way, cycles) = (to.wrapping_sub(*from) as f64, (first - last) as f64);
-                least = f64::max(least, (way - STEP) / cycles);
-                greatest = f64::min(greatest, (way + STEP) / cycles);
+        self.look();
+        let steady = self
+            .windows
+            .iter()
+            .take_while(|window| window.least < window.greatest);
+        steady
+            .last()
+            .map_or(0.0, |window| 0.5 * (window.least + window.greatest))
+    }
+
+    /// The windows of the cycle before, and the pairs with the newest count.
+    fn look(&mut self) {
+        let [newest, before @ ..] = &self.counts;
+        let (mut pairs, mut earlier) = (Bounds::NONE, Bounds::NONE);
+        for ((cycles, from), window) in (1..).zip(before).zip(&mut self.windows) {
+            pairs = pairs.and(Bounds::of(newest.wrapping_sub(*from), cycles));
+            earlier = std::mem::replace(window, pairs.and(earlier));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The speed by all pairs of counts, as it is defined.
+    fn by_all_pairs(counts: &[i64]) -> f64 {
+        let (mut bounds, mut speed) = (Bounds::NONE, 0.0);
+        for first in 1..counts.len() {
+            for last in 0..first {
+                bounds = bounds.and(Bounds::of(counts[last] - counts[first], first - last));
             }
-            if least >= greatest {
+            if bounds.least >= bounds.greatest {
                 break;
             }
-            speed = 0.5 * (least + greatest);
+            speed = 0.5 * (bounds.least + bounds.greatest);
         }
         speed
+    }
+
+    #[test]
+    fn the_windows_say_what_all_pairs_say() {
+        let mut pace = Pace::at(7);
+        let (mut count, mut speed, mut dice) = (7, 0, 12345_u64);
+        for cycle in 0..20_000 {
+            dice = dice
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let random = (dice >> 33) as i64;
+            // Standstill that trembles, steady speeds and ramps of both senses.
+            match cycle / 50 % 4 {
+                0 => count += random % 3 - 1,
+                1 => count += speed + random % 2,
+                2 => {
+                    speed += random % 7;
+                    count += speed;
+                }
+                _ => {
+                    speed -= random % 9;
+                    count += speed;
+                }
+            }
+            let said = pace.next(count);
+            assert_eq!(
+                said.to_bits(),
+                by_all_pairs(&pace.counts).to_bits(),
+                "cycle {cycle}"
+            );
+        }
     }
 }
