@@ -4,6 +4,7 @@
 //! Decision: MDI of a TNC 360 refuses positioning blocks of several axes when they are complete; other blocks are
 //! taken
 
+use bahn_path::Switch;
 use std::sync::Arc;
 
 use bahn_dialogue::{Editor, Key, Setting};
@@ -65,7 +66,7 @@ impl Mdi {
     fn key_after(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
         let (editor, on) = (self.editor.as_ref()?, self.pnt?);
         match self.keys.place(key, editor) {
-            Some(0) if site.command(Command::Pnt(!on)) => Some(Turn::Done),
+            Some(0) if site.command(Command::Pnt(Switch::from(!on))) => Some(Turn::Done),
             Some(_) => Some(Turn::Refused),
             None => self.keys.turn(key, editor),
         }

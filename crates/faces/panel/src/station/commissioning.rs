@@ -9,6 +9,7 @@
 //! and nobody goes to another moment, while it is entered; where the editor could not be presented, switching the
 //! supply on tries again. Lists of further channels are no part of it (also `host/src/machine_folder/load.rs`)
 
+use bahn_path::Switch;
 use std::sync::Arc;
 
 use bahn_host::backup::Restore;
@@ -31,7 +32,7 @@ impl Station {
         if self.commissioning.is_none() {
             return;
         }
-        let off = Action::Command(0, Command::Power(false));
+        let off = Action::Command(0, Command::Power(Switch::Off));
         let _ = self.host.act(Source::Client("panel".to_owned()), off);
         self.supply.is_on = false;
         let (console, site) = self.parts();
