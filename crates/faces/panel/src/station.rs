@@ -10,7 +10,6 @@ mod teaching;
 mod transfers;
 mod warm_start;
 
-use bahn_path::Switch;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -22,6 +21,7 @@ use bahn_graphics::{BeingCut, Graphics, Picture};
 use bahn_host::{Action, Answer, AnyPlant, Clock, Host, HostError, LoadedMachine, Operable, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
+use bahn_path::Switch;
 use bahn_plc::PlcWindow;
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen, colours, texts};

@@ -2,9 +2,9 @@
 //!
 //! What is on the wire (characters, protocol, baud rate) is the business of whoever has the wire; here texts are whole.
 
-use bahn_path::Switch;
 use std::fmt;
 
+use bahn_path::Switch;
 use bahn_plc::{DataInterface, HostLink, HostMessage, InterfaceUser};
 
 use crate::escapes;

@@ -4,11 +4,11 @@
 //! Decision: MDI of a TNC 360 refuses positioning blocks of several axes when they are complete; other blocks are
 //! taken
 
-use bahn_path::Switch;
 use std::sync::Arc;
 
 use bahn_dialogue::{Editor, Key, Setting};
 use bahn_parameters::MessageId;
+use bahn_path::Switch;
 use bahn_program::{Block, Edit, MotionKind, Operation, Program};
 use bahn_screen::SoftKeys;
 use bahn_screen::texts;

@@ -9,11 +9,11 @@
 //! and nobody goes to another moment, while it is entered; where the editor could not be presented, switching the
 //! supply on tries again. Lists of further channels are no part of it (also `host/src/machine_folder/load.rs`)
 
-use bahn_path::Switch;
 use std::sync::Arc;
 
 use bahn_host::backup::Restore;
 use bahn_host::{Action, PowerOn, Source};
+use bahn_path::Switch;
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::texts;
 use bahn_teaching::timeline::Past;
