@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use bahn_path::Point2;
 use bahn_path::region::{Contour, HatchPattern, Kind, Merge, Region, SubContour, Superposition, Unlimited};
+use bahn_path::{Point2, Sense};
 use divan::{Bencher, black_box};
 
 fn main() {
@@ -91,7 +91,11 @@ fn scallops(count: usize) -> Contour {
     let joint = |k: usize| polar(50.0, k as f64 / count as f64);
     (0..count).fold(Contour::start_at(joint(0)), |contour, k| {
         let (from, to) = (joint(k), joint((k + 1) % count));
-        contour.arc_to([0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])], to, true)
+        contour.arc_to(
+            [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])],
+            to,
+            Sense::CounterClockwise,
+        )
     })
 }
 
@@ -107,7 +111,11 @@ fn islands(count: usize) -> Vec<SubContour> {
             if k % 2 == 0 {
                 contour.line_to(to)
             } else {
-                contour.arc_to([0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])], to, true)
+                contour.arc_to(
+                    [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])],
+                    to,
+                    Sense::CounterClockwise,
+                )
             }
         })
     };

@@ -1,6 +1,6 @@
 //! Lines, arcs, helices and corner arcs between two positions.
 
-use crate::{Axis, CornerArc, PerAxis, Plane, Point2, Position};
+use crate::{Axis, CornerArc, PerAxis, Plane, Point2, Position, Sense};
 
 /// The shape of a path element between its start and end position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -251,7 +251,7 @@ pub fn angle_deg(vector: Point2) -> f64 {
 
 /// Signed sweep from the angle of `start` to the angle of `end` about `centre` in the given sense.
 /// Equal points give a full circle of 360 degrees [003:2803].
-pub fn sweep_deg(centre: Point2, start: Point2, end: Point2, counter_clockwise: bool) -> f64 {
+pub fn sweep_deg(centre: Point2, start: Point2, end: Point2, sense: Sense) -> f64 {
     let a = [start[0] - centre[0], start[1] - centre[1]];
     let b = [end[0] - centre[0], end[1] - centre[1]];
     let cross = a[0] * b[1] - a[1] * b[0];
@@ -260,15 +260,13 @@ pub fn sweep_deg(centre: Point2, start: Point2, end: Point2, counter_clockwise: 
     // Points nearer together than the control's input resolution count as one point: a full circle.
     const SAME_POINT_MM: f64 = 1e-7;
     if (end[0] - start[0]).hypot(end[1] - start[1]) < SAME_POINT_MM {
-        return if counter_clockwise { 360.0 } else { -360.0 };
+        return 360.0 * sense.sign();
     }
     // An end in the very direction of the start is a full turn in either sense.
-    if counter_clockwise {
-        if signed > 0.0 { signed } else { signed + 360.0 }
-    } else if signed < 0.0 {
-        signed
-    } else {
-        signed - 360.0
+    match sense {
+        Sense::CounterClockwise if signed <= 0.0 => signed + 360.0,
+        Sense::Clockwise if signed >= 0.0 => signed - 360.0,
+        _ => signed,
     }
 }
 
@@ -280,10 +278,13 @@ mod tests {
     fn end_in_the_direction_of_the_start_is_a_full_turn_both_ways() {
         // The end lies 0.01 mm farther out, as rounded coordinates give it (MP7431).
         let (centre, start, end) = ([50.0, 50.0], [60.0, 50.0], [60.01, 50.0]);
-        assert_eq!(sweep_deg(centre, start, end, true), 360.0);
-        assert_eq!(sweep_deg(centre, start, end, false), -360.0);
-        assert_eq!(sweep_deg(centre, start, [50.0, 60.0], true), 90.0);
-        assert_eq!(sweep_deg(centre, start, [50.0, 60.0], false), -270.0);
+        assert_eq!(sweep_deg(centre, start, end, Sense::CounterClockwise), 360.0);
+        assert_eq!(sweep_deg(centre, start, end, Sense::Clockwise), -360.0);
+        assert_eq!(
+            sweep_deg(centre, start, [50.0, 60.0], Sense::CounterClockwise),
+            90.0
+        );
+        assert_eq!(sweep_deg(centre, start, [50.0, 60.0], Sense::Clockwise), -270.0);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Axis, Characteristic, Curve, Placement, Plane, Position, Synchronisation};
+use crate::{Axis, Characteristic, Curve, Placement, Plane, Position, Sense, Switch, Synchronisation};
 
 /// Where in the programs a movement comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -59,8 +59,8 @@ pub enum OverrideLaw {
 pub struct Thread {
     /// Distance along the path for a turn of the spindle, mm; positive.
     pub pitch_mm: f64,
-    /// Along the path the spindle turns as with M03.
-    pub clockwise: bool,
+    /// How the spindle turns along the path: clockwise as with M03.
+    pub spindle: Sense,
     /// The spindle is oriented to this angle, degrees, before the path begins; otherwise it goes on from
     /// where it is: from the thread before, if there is one.
     pub orientation_deg: Option<f64>,
@@ -207,15 +207,25 @@ pub enum SpindleOrder {
     StopWithRun,
 }
 
+impl SpindleOrder {
+    /// Turns the spindle in this sense.
+    pub fn turn(sense: Sense) -> SpindleOrder {
+        match sense {
+            Sense::Clockwise => SpindleOrder::Clockwise,
+            Sense::CounterClockwise => SpindleOrder::CounterClockwise,
+        }
+    }
+}
+
 /// What acts in the control when the path comes to it, and never reaches the PLC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ControlFunction {
     /// M105 chooses the second set of kv and reversal peaks, M106 the first [000:7251-7305].
-    SecondServoSet(bool),
+    SecondServoSet(Switch),
     /// M101: a tool whose life is over is replaced while it works; M102: no longer [000:9175].
-    ReplaceWornTools(bool),
+    ReplaceWornTools(Switch),
     /// M107: also by a larger one; M108: no longer [000:9177].
-    TakeLargerTools(bool),
+    TakeLargerTools(Switch),
 }
 
 /// Place of a function on its element.

@@ -2,6 +2,7 @@
 //!
 //! The face of this room is small:
 //! - [`Axis`], [`AxisSet`], [`PerAxis`], [`Position`]: the nine programmable axes, something of each, and a point of them;
+//! - [`Direction`], [`Sense`]: which way along an axis, and round; [`Switch`]: on or off;
 //! - [`Plane`]: a working plane, which is two axes and the tool axis that stands on it;
 //! - [`Curve`], [`Arc`], [`CornerArc`]: line, circular arc, helix and corner arc with length, tangent and splitting;
 //! - [`Frame`]: datum shift, mirror image, rotation and scaling as one transformation;
@@ -28,6 +29,7 @@ mod characteristic;
 mod corner_arc;
 mod curve;
 mod cylinder;
+mod direction;
 mod element;
 mod frame;
 mod placement;
@@ -35,6 +37,7 @@ mod plane;
 pub mod region;
 mod scan;
 mod source;
+mod switch;
 mod swivel;
 mod synchronisation;
 
@@ -43,6 +46,7 @@ pub use characteristic::Characteristic;
 pub use corner_arc::{Circle, CornerArc};
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use cylinder::Cylinder;
+pub use direction::{Direction, Sense};
 pub use element::{
     Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, Oversize, PathElement,
     SpindleOrder, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
@@ -55,5 +59,6 @@ pub use scan::{
     deflection_along_axes,
 };
 pub use source::{Barrier, ElementSource, LiveData, MeasuredPart, Step, ToolMeasuring, Touch};
+pub use switch::Switch;
 pub use swivel::{Link, Swivels};
 pub use synchronisation::{OutputPlace, Synchronisation, WaitPlace};

@@ -2,6 +2,7 @@
 
 mod common;
 
+use bahn_path::Sense;
 use bahn_path::region::{Contour, Location, Merge, Region, Segment, SubContour, superimpose};
 use common::{jittered, region, shape, turned};
 use proptest::prelude::*;
@@ -13,7 +14,7 @@ fn assert_near(actual: f64, expected: f64) {
 }
 
 fn disc(x: f64, y: f64, r: f64) -> Region {
-    Region::from_contour(&Contour::circle([x, y], r, 0.0, true))
+    Region::from_contour(&Contour::circle([x, y], r, 0.0, Sense::CounterClockwise))
 }
 
 fn rectangle(min: [f64; 2], max: [f64; 2]) -> Region {
@@ -123,7 +124,7 @@ fn contour_that_crosses_itself_counts_all_it_goes_around() {
 
 #[test]
 fn contour_facts() {
-    let circle = Contour::circle([10.0, 0.0], 5.0, 90.0, false);
+    let circle = Contour::circle([10.0, 0.0], 5.0, 90.0, Sense::Clockwise);
     assert!(circle.is_closed() && !circle.is_counter_clockwise());
     assert_near(circle.area(), PI * 25.0);
     assert_near(circle.length(), PI * 10.0);
@@ -160,7 +161,7 @@ fn degenerate_input_holds_no_area() {
         Contour::polygon(&[]),
         Contour::polygon(&[[0.0, 0.0], [10.0, 0.0]]),
         Contour::polygon(&[[0.0, 0.0], [10.0, 0.0], [5.0, 0.0]]),
-        Contour::circle([0.0, 0.0], 0.0, 0.0, true),
+        Contour::circle([0.0, 0.0], 0.0, 0.0, Sense::CounterClockwise),
         Contour::polygon(&[[f64::NAN, 0.0], [10.0, f64::INFINITY], [5.0, f64::NAN]]),
     ];
     for contour in &nothing {
@@ -182,7 +183,15 @@ fn points_on_chords_are_where_the_arc_leaves_them() {
     for (up, inside) in [(true, Location::Inside), (false, Location::Outside)] {
         // From (-1, 0) over (0, +-1) to (1, 0), and around by (1, -4) and (-1, -4).
         let contour = Contour::start_at([-1.0, 0.0])
-            .arc_to([0.0, 0.0], [1.0, 0.0], !up)
+            .arc_to(
+                [0.0, 0.0],
+                [1.0, 0.0],
+                if up {
+                    Sense::Clockwise
+                } else {
+                    Sense::CounterClockwise
+                },
+            )
             .line_to([1.0, -4.0])
             .line_to([-1.0, -4.0])
             .line_to([-1.0, 0.0]);
@@ -282,7 +291,7 @@ proptest! {
     ) {
         let chain = |points: &[(f64, f64, bool)]| {
             points.iter().fold(Contour::start_at([0.0, 0.0]), |c, (x, y, line)| {
-                if *line { c.line_to([*x, *y]) } else { c.arc_to([y * 0.5, *x], [*x, *y], x > y) }
+                if *line { c.line_to([*x, *y]) } else { c.arc_to([y * 0.5, *x], [*x, *y], Sense::of_sweep(x - y)) }
             })
         };
         let list: Vec<SubContour> =
@@ -301,9 +310,9 @@ proptest! {
 fn chains_are_closed_to_the_last_bit() {
     let slot = Contour::start_at([3.0, -2.0])
         .line_to([4.0, -2.0])
-        .arc_to([4.0, 0.0], [4.0, 2.0], true)
+        .arc_to([4.0, 0.0], [4.0, 2.0], Sense::CounterClockwise)
         .line_to([3.0, 2.0])
-        .arc_to([3.0, 0.0], [3.0, -2.0], true);
+        .arc_to([3.0, 0.0], [3.0, -2.0], Sense::CounterClockwise);
     let area = Region::from_contour(&slot)
         .union(&disc(0.0, 3.0, 3.0))
         .offset(-0.5);
@@ -335,8 +344,8 @@ fn arcs_that_cross_just_before_their_corner_leave_no_loop_in_the_lens() {
         let (right, left) = ([aside, half_chord], [-aside, half_chord]);
         let top = half_chord + R;
         let through = |tip: [f64; 2]| {
-            let arc = Contour::start_at([aside, top]).arc_to(right, tip, true);
-            below(arc.arc_to(left, [-aside, top], true), top)
+            let arc = Contour::start_at([aside, top]).arc_to(right, tip, Sense::CounterClockwise);
+            below(arc.arc_to(left, [-aside, top], Sense::CounterClockwise), top)
         };
         let (to_crossing, to_corner) = (through([0.0, 2.0 * half_chord]), through([0.0, 0.0]));
         // What the tool's centre may sweep is that of the contour without the lens.

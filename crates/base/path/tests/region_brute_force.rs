@@ -1,7 +1,7 @@
 //! Random areas of lines and arcs against what is counted and measured along their elements, one by one.
 
-use bahn_path::Point2;
 use bahn_path::region::{Contour, Kind, Merge, Region, Segment, SubContour, superimpose};
+use bahn_path::{Point2, Sense};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
@@ -153,7 +153,7 @@ fn chain(corners: &[Corner], grid: f64) -> Contour {
                 v
             }
         };
-        contour = contour.arc_to(centre.map(round), to, *bulge > 0.0);
+        contour = contour.arc_to(centre.map(round), to, Sense::of_sweep(*bulge));
     }
     contour
 }

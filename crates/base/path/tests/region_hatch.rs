@@ -2,8 +2,8 @@
 
 mod common;
 
-use bahn_path::Point2;
 use bahn_path::region::{Contour, HatchPattern, Pass, Region, Segment};
+use bahn_path::{Point2, Sense};
 use common::region;
 use proptest::prelude::*;
 
@@ -44,7 +44,7 @@ fn rectangle_is_cleared_in_one_zigzag() {
 #[test]
 fn spans_end_on_arcs() {
     // A disc R10 and lines at Y -10 + 4 k: half chords sqrt(100 - y²).
-    let disc = Region::from_contour(&Contour::circle([0.0, 0.0], 10.0, 0.0, true));
+    let disc = Region::from_contour(&Contour::circle([0.0, 0.0], 10.0, 0.0, Sense::CounterClockwise));
     let passes = disc.hatch(0.0, 4.0, HatchPattern::OneWay);
     let expected: Vec<f64> = [-6.0f64, -2.0, 2.0, 6.0]
         .iter()

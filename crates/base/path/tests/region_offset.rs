@@ -2,6 +2,7 @@
 
 mod common;
 
+use bahn_path::Sense;
 use bahn_path::region::{Contour, Location, Region, Segment};
 use common::{jittered, region, shape, turned};
 use proptest::prelude::*;
@@ -21,13 +22,13 @@ fn area_of(contour: &Contour, distance: f64) -> f64 {
 fn convex_areas_grow_by_steiners_formula() {
     let slot = Contour::start_at([10.0, 0.0])
         .line_to([30.0, 0.0])
-        .arc_to([30.0, 10.0], [30.0, 20.0], true)
+        .arc_to([30.0, 10.0], [30.0, 20.0], Sense::CounterClockwise)
         .line_to([10.0, 20.0])
-        .arc_to([10.0, 10.0], [10.0, 0.0], true);
+        .arc_to([10.0, 10.0], [10.0, 0.0], Sense::CounterClockwise);
     let shapes = [
         Contour::rectangle([1.0, 2.0], [31.0, 14.0]),
         Contour::polygon(&[[0.0, 0.0], [40.0, 7.0], [13.0, 29.0]]),
-        Contour::circle([3.0, 4.0], 12.5, 77.0, false),
+        Contour::circle([3.0, 4.0], 12.5, 77.0, Sense::Clockwise),
         slot,
     ];
     for contour in &shapes {
@@ -95,7 +96,7 @@ fn shrinking_splits_and_vanishes() {
 
 #[test]
 fn arcs_stay_arcs_down_to_their_centre_and_beyond() {
-    let disc = Contour::circle([5.0, 5.0], 10.0, 30.0, true);
+    let disc = Contour::circle([5.0, 5.0], 10.0, 30.0, Sense::CounterClockwise);
     assert_near(area_of(&disc, -4.0), PI * 36.0);
     assert_eq!(area_of(&disc, -10.0), 0.0);
     let circle = &Region::from_contour(&disc).offset(-4.0).contours()[0].clone();
@@ -110,9 +111,10 @@ fn arcs_stay_arcs_down_to_their_centre_and_beyond() {
 
 #[test]
 fn holes_grow_when_the_region_shrinks() {
-    let ring = Region::from_contour(&Contour::circle([0.0, 0.0], 20.0, 0.0, true)).difference(
-        &Region::from_contour(&Contour::circle([0.0, 0.0], 8.0, 0.0, true)),
-    );
+    let ring =
+        Region::from_contour(&Contour::circle([0.0, 0.0], 20.0, 0.0, Sense::CounterClockwise)).difference(
+            &Region::from_contour(&Contour::circle([0.0, 0.0], 8.0, 0.0, Sense::CounterClockwise)),
+        );
     assert_near(ring.offset(-5.0).area(), PI * (225.0 - 169.0));
     assert_near(ring.offset(5.0).area(), PI * (625.0 - 9.0));
     // A hole smaller than the radius closes, also if its centre is far from everything.
@@ -132,7 +134,7 @@ fn opening_leaves_the_corners() {
     );
     assert_near(reached.difference(&rectangle).area(), 0.0);
     // An area without corners is reached whole.
-    let disc = Region::from_contour(&Contour::circle([0.0, 0.0], 10.0, 0.0, true));
+    let disc = Region::from_contour(&Contour::circle([0.0, 0.0], 10.0, 0.0, Sense::CounterClockwise));
     assert_near(disc.opening(9.0).area(), PI * 100.0);
 }
 
@@ -165,7 +167,7 @@ fn rounded(contour: &Contour, digits: i32) -> Contour {
                 from,
                 to,
                 centre,
-                sweep_deg: bahn_path::sweep_deg(centre, from, to, sweep_deg > 0.0),
+                sweep_deg: bahn_path::sweep_deg(centre, from, to, Sense::of_sweep(sweep_deg)),
             }
         }
     });
@@ -182,7 +184,11 @@ fn arcs_of_rounded_coordinates_are_moved() {
     };
     let exact = (0..100).fold(Contour::start_at(joint(0)), |contour, k| {
         let (from, to) = (joint(k), joint(k + 1));
-        contour.arc_to([0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])], to, true)
+        contour.arc_to(
+            [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])],
+            to,
+            Sense::CounterClockwise,
+        )
     });
     for (digits, error) in [(2, 1.5e-2), (3, 1.5e-3), (4, 1.5e-4)] {
         let rounded = rounded(&exact, digits);

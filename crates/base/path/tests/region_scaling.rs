@@ -1,5 +1,6 @@
 //! Work grows with the size of contours, not with its square.
 
+use bahn_path::Sense;
 use bahn_path::region::{
     Contour, Effort, HatchPattern, Kind, Merge, Region, Segment, SubContour, Superposition,
 };
@@ -66,7 +67,9 @@ fn scallops(count: usize) -> Contour {
             let turn = |part: f64| (k as f64 + part) / half as f64;
             let (joint, end) = (polar(50.0, turn(0.5)), polar(50.0, turn(1.0)));
             let centre = [0.5 * (joint[0] + end[0]), 0.5 * (joint[1] + end[1])];
-            contour.line_to(joint).arc_to(centre, end, true)
+            contour
+                .line_to(joint)
+                .arc_to(centre, end, Sense::CounterClockwise)
         })
         .closed()
 }

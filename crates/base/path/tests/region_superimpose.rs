@@ -1,10 +1,10 @@
 //! SL contours in the manual's sense: the six cases of overlapping contours and programs with several.
 
-use bahn_path::Point2;
 use bahn_path::region::{
     Contour, Kind, Location, Merge, PocketArea, Region, Segment, SubContour, Superposition, Unlimited,
     superimpose,
 };
+use bahn_path::{Point2, Sense};
 use std::f64::consts::PI;
 
 const BOTH: [Merge; 2] = [Merge::CentrePaths, Merge::ProgrammedContours];
@@ -21,7 +21,7 @@ fn lens(r: f64, d: f64) -> f64 {
 fn circle(centre_x: f64, start_x: f64, tool_left: bool) -> SubContour {
     let start = [start_x, 50.0];
     SubContour::programmed(
-        Contour::start_at(start).arc_to([centre_x, 50.0], start, true),
+        Contour::start_at(start).arc_to([centre_x, 50.0], start, Sense::CounterClockwise),
         tool_left,
     )
 }
@@ -177,13 +177,13 @@ fn island_that_starts_inside_an_island_intersects() {
 fn island_in_an_auxiliary_pocket() {
     let island = Contour::start_at([40.0, 60.0])
         .line_to([27.0, 60.0])
-        .arc_to([27.0, 48.0], [15.0, 48.0], true)
+        .arc_to([27.0, 48.0], [15.0, 48.0], Sense::CounterClockwise)
         .line_to([15.0, 32.0])
-        .arc_to([27.0, 32.0], [27.0, 20.0], true)
+        .arc_to([27.0, 32.0], [27.0, 20.0], Sense::CounterClockwise)
         .line_to([58.0, 20.0])
-        .arc_to([58.0, 32.0], [70.0, 32.0], true)
+        .arc_to([58.0, 32.0], [70.0, 32.0], Sense::CounterClockwise)
         .line_to([70.0, 48.0])
-        .arc_to([58.0, 48.0], [58.0, 60.0], true)
+        .arc_to([58.0, 48.0], [58.0, 60.0], Sense::CounterClockwise)
         .line_to([40.0, 60.0]);
     let list = [
         SubContour::programmed(Contour::rectangle([-5.0, -5.0], [105.0, 105.0]), true),
@@ -323,7 +323,7 @@ fn twelve_separate_pockets_are_twelve_areas_in_order() {
     let list: Vec<SubContour> = (0..12)
         .map(|i| {
             let x = f64::from(i) * 10.0;
-            SubContour::programmed(Contour::circle([x, 0.0], 4.0, 0.0, true), true)
+            SubContour::programmed(Contour::circle([x, 0.0], 4.0, 0.0, Sense::CounterClockwise), true)
         })
         .collect();
     let areas = superimpose(&list, 1.0, Merge::CentrePaths);

@@ -3,7 +3,7 @@
 mod common;
 
 use bahn_motion::Limits;
-use bahn_path::{Arc, Axis, Curve, FeedRate, OverrideLaw, PerAxis, Plane, Position};
+use bahn_path::{Arc, Axis, Curve, FeedRate, OverrideLaw, PerAxis, Plane, Position, Sense};
 use common::{Path, limits, plan, time_s};
 
 const X: Axis = Axis::X;
@@ -87,7 +87,8 @@ fn programmed_feed_keeps_the_axis_limits() {
 #[test]
 fn radial_acceleration_limits_the_feed_on_circles() {
     let mut path = Path::new(10_000.0);
-    path.line(&[(X, 10.0)]).arc([0.0, 0.0], [10.0, 0.0], true);
+    path.line(&[(X, 10.0)])
+        .arc([0.0, 0.0], [10.0, 0.0], Sense::CounterClockwise);
     let planned = plan(&path.elements, &limits());
     close(planned[1].profile.peak_mm_s, 5000f64.sqrt());
     assert_eq!((planned[1].profile.peak_mm_s * 60.0).round(), 4243.0);

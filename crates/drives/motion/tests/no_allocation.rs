@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use bahn_motion::{Drive, Interpolator, Master, State};
 use bahn_path::{
     Ahead, At, Axis, AxisSet, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement,
-    Position, Step, Synchronisation, TechnologyFunction, Thread,
+    Position, Sense, Step, Synchronisation, TechnologyFunction, Thread,
 };
 use common::{Path, limits, list};
 
@@ -110,7 +110,7 @@ fn many_feeds() -> VecDeque<PathElement> {
             path.by(&[(Axis::Z, -2.0)]);
             path.last().override_law = OverrideLaw::Spindle(Thread {
                 pitch_mm: 1.0,
-                clockwise: true,
+                spindle: Sense::Clockwise,
                 orientation_deg: None,
                 retracts: true,
             });

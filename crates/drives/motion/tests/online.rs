@@ -5,7 +5,8 @@ mod common;
 
 use bahn_motion::{Drive, Gate, Interpolator, Limits, Place, Prepared, State, Stop};
 use bahn_path::{
-    At, Axis, Barrier, Function, LiveData, PathElement, Position, Step, Synchronisation, TechnologyFunction,
+    At, Axis, Barrier, Function, LiveData, PathElement, Position, Sense, Step, Synchronisation,
+    TechnologyFunction,
 };
 use common::{List, Path, limits, list, plan, time_s};
 
@@ -347,7 +348,7 @@ fn unknown_starts_are_where_the_axes_are() {
 #[test]
 fn an_arc_is_approached() {
     let mut path = Path::new(6000.0);
-    path.arc([10.0, 0.0], [20.0, 0.0], true);
+    path.arc([10.0, 0.0], [20.0, 0.0], Sense::CounterClockwise);
     let mut bench = Bench::new(&path.elements, &limits());
     let mut actual = Position::ZERO;
     actual[Axis::Y] = 5.0;

@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_motion::{Cycle, Drive, Gate, Interpolator, Limits, Master, SpindleGear, State};
-use bahn_path::{At, Axis, Curve, Function, OverrideLaw, Position, Step, Synchronisation, Thread};
+use bahn_path::{At, Axis, Curve, Function, OverrideLaw, Position, Sense, Step, Synchronisation, Thread};
 use common::{List, Path, function, list, plan, time_s};
 
 const PITCH: f64 = 1.5;
@@ -28,10 +28,10 @@ fn limits() -> Limits {
     }
 }
 
-fn law(clockwise: bool, orientation_deg: Option<f64>) -> OverrideLaw {
+fn law(spindle: Sense, orientation_deg: Option<f64>) -> OverrideLaw {
     OverrideLaw::Spindle(Thread {
         pitch_mm: PITCH,
-        clockwise,
+        spindle,
         orientation_deg,
         retracts: true,
     })
@@ -40,8 +40,8 @@ fn law(clockwise: bool, orientation_deg: Option<f64>) -> OverrideLaw {
 /// In and out of a hole of 30 mm, right-hand, and on at the clearance.
 fn thread() -> Path {
     let mut path = Path::new(FEED);
-    path.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(true, Some(0.0));
-    path.line(&[(Axis::Z, 0.0)]).last().override_law = law(false, None);
+    path.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(Sense::Clockwise, Some(0.0));
+    path.line(&[(Axis::Z, 0.0)]).last().override_law = law(Sense::CounterClockwise, None);
     path.line(&[(Axis::X, 10.0)]);
     path
 }
@@ -130,7 +130,7 @@ fn the_ramp_of_the_spindle_takes_its_time() {
     }
     // A faster spindle is in gear 2: 8000 rpm/s.
     let mut fast = Path::new(2000.0 * PITCH);
-    fast.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(true, None);
+    fast.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(Sense::Clockwise, None);
     let expected = DEPTH / 50.0 + 50.0 / 200.0;
     assert!((time_s(&plan(&fast.elements, &limits())) - expected).abs() < 1e-9);
 }
@@ -388,9 +388,15 @@ fn between_its_passes_a_thread_begins_where_it_stands() {
 fn a_thread_that_was_not_reached_is_driven_to_its_end() {
     for synchronisation in [Synchronisation::Mos, Synchronisation::MnsSns] {
         let mut path = Path::new(FEED);
-        path.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(true, Some(0.0));
+        path.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(Sense::Clockwise, Some(0.0));
         path.line(&[(Axis::Z, 0.0)]);
-        with_m(&mut path, 9, At::End, synchronisation, law(false, None));
+        with_m(
+            &mut path,
+            9,
+            At::End,
+            synchronisation,
+            law(Sense::CounterClockwise, None),
+        );
         path.line(&[(Axis::X, 10.0)]);
         let mut bench = Bench::new(&path, 40);
         let waits = match synchronisation {

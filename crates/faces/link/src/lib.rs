@@ -56,7 +56,7 @@ pub use monitor::Monitor;
 pub use passive::{Passive, peripheral};
 pub use plc_line::PlcLine;
 pub use print_out::PrintOut;
-pub use protocol::{Event, Protocol, Question, Shown};
+pub use protocol::{Ended, Event, Protocol, Question, Shown};
 pub use resting::Resting;
 pub use settings::{PATIENCE, Settings};
 pub use shared_port::{PlcHold, SharedPort};

@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use crate::protocol::{Event, Protocol};
+use crate::protocol::{Ended, Event, Protocol};
 use crate::{DC1, DC3};
 
 /// What is printed. It obeys DC3 and DC1, and is over when the last byte is sent.
 ///
 /// ```
 /// use std::time::Duration;
-/// use bahn_link::{Event, PrintOut, Protocol};
+/// use bahn_link::{Ended, Event, PrintOut, Protocol};
 ///
 /// let now = Duration::ZERO;
 /// let mut print = PrintOut::new(b"ABC".to_vec());
@@ -19,15 +19,15 @@ use crate::{DC1, DC3};
 /// assert!(!print.has_output());
 /// print.receive(0x11, now);
 /// print.send(2, now, &mut sent);
-/// assert_eq!((sent.as_slice(), print.event()), (&b"ABC"[..], Some(Event::Ended(true))));
+/// assert_eq!((sent.as_slice(), print.event()), (&b"ABC"[..], Some(Event::Ended(Ended::Complete))));
 /// ```
 #[derive(Clone, Debug)]
 pub struct PrintOut {
     bytes: Vec<u8>,
     at: usize,
     stopped: bool,
-    /// The end is reported to it, and whether all was sent.
-    ended: Option<bool>,
+    /// The end that is still to be reported.
+    ended: Option<Ended>,
     over: bool,
 }
 
@@ -36,17 +36,17 @@ impl PrintOut {
     pub fn new(bytes: Vec<u8>) -> PrintOut {
         PrintOut {
             over: bytes.is_empty(),
-            ended: bytes.is_empty().then_some(true),
+            ended: bytes.is_empty().then_some(Ended::Complete),
             bytes,
             at: 0,
             stopped: false,
         }
     }
 
-    fn finish(&mut self, complete: bool) {
+    fn finish(&mut self, ended: Ended) {
         if !self.over {
             self.over = true;
-            self.ended = Some(complete);
+            self.ended = Some(ended);
         }
     }
 }
@@ -79,12 +79,12 @@ impl Protocol for PrintOut {
         into.extend_from_slice(rest.get(..count).unwrap_or_default());
         self.at += count;
         if self.at == self.bytes.len() {
-            self.finish(true);
+            self.finish(Ended::Complete);
         }
     }
 
     fn unplugged(&mut self, _now: Duration) {
-        self.finish(false);
+        self.finish(Ended::Incomplete);
     }
 
     fn event(&mut self) -> Option<Event> {
@@ -94,7 +94,7 @@ impl Protocol for PrintOut {
     fn answer(&mut self, _yes: bool, _now: Duration) {}
 
     fn end(&mut self, _now: Duration) {
-        self.finish(false);
+        self.finish(Ended::Incomplete);
     }
 
     fn is_idle(&self) -> bool {

@@ -79,8 +79,28 @@ pub enum Event {
     Message(Shown),
     /// The other side wants to speak LSV/2.
     Enquiry,
-    /// The transfer is over; `true` when it is complete.
-    Ended(bool),
+    /// The transfer is over.
+    Ended(Ended),
+}
+
+/// How a transfer has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// All of it has arrived.
+    Complete,
+    /// Something is missing.
+    Incomplete,
+}
+
+impl Ended {
+    /// Complete, unless something has failed.
+    pub(crate) fn unless(failed: bool) -> Ended {
+        if failed {
+            Ended::Incomplete
+        } else {
+            Ended::Complete
+        }
+    }
 }
 
 /// A protocol on one side of a line. It knows no clock and no channel: whoever drives it gives it what comes and what time

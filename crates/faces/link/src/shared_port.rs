@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use bahn_tnc::LineEvent;
+use bahn_tnc::{LineEvent, Switch};
 
 use crate::plc_line::PlcLine;
 use crate::protocol::{Event, Protocol};
@@ -130,7 +130,7 @@ impl SharedPort {
         let taken = !self.was_assigned && !self.other.is_idle();
         if taken != self.taken {
             self.taken = taken;
-            self.hold.tell(LineEvent::Taken(taken));
+            self.hold.tell(LineEvent::Taken(Switch::from(taken)));
         }
     }
 }
@@ -189,12 +189,12 @@ impl Protocol for SharedPort {
     }
 
     fn plugged(&mut self, now: Duration) {
-        self.hold.tell(LineEvent::Ready(true));
+        self.hold.tell(LineEvent::Ready(Switch::On));
         self.other.plugged(now);
     }
 
     fn unplugged(&mut self, now: Duration) {
-        self.hold.tell(LineEvent::Ready(false));
+        self.hold.tell(LineEvent::Ready(Switch::Off));
         self.stopped = false;
         if self.was_assigned {
             self.hold.held().line.unplugged();
@@ -263,13 +263,13 @@ mod tests {
         port.clock(NOW);
         assert_eq!(
             hold.take_events(),
-            [LineEvent::Ready(true), LineEvent::Taken(true)]
+            [LineEvent::Ready(Switch::On), LineEvent::Taken(Switch::On)]
         );
         let mut first = Vec::new();
         port.send(3, NOW, &mut first);
         assert_eq!(first, b"ABC");
         port.clock(NOW);
-        assert_eq!(hold.take_events(), [LineEvent::Taken(false)]);
+        assert_eq!(hold.take_events(), [LineEvent::Taken(Switch::Off)]);
 
         let list = ParameterList::reference(ControlModel::Tnc425);
         hold.assign(Some(Settings::of_plc(&list)));
@@ -284,6 +284,6 @@ mod tests {
         let long = "X".repeat(PRINT_MAX);
         assert!(!hold.print(&long));
         port.unplugged(NOW);
-        assert_eq!(hold.take_events(), [LineEvent::Ready(false)]);
+        assert_eq!(hold.take_events(), [LineEvent::Ready(Switch::Off)]);
     }
 }

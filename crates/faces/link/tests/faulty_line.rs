@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use bahn_link::blockwise::{self, DirectoryRequest, Rights, Want};
-use bahn_link::{Event, Faults, FileType, Memory, Mode, Protocol, Settings, standard};
+use bahn_link::{Ended, Event, Faults, FileType, Memory, Mode, Protocol, Settings, standard};
 use bahn_parameters::ControlModel;
 use proptest::prelude::*;
 use support::{ext, settings};
@@ -71,8 +71,8 @@ struct Outcome {
 /// How a transfer has ended, on one side: all of it must be complete.
 fn follow(protocol: &mut dyn Protocol, end: &mut Option<bool>) {
     while let Some(event) = protocol.event() {
-        if let Event::Ended(complete) = event {
-            *end = Some(end.unwrap_or(true) && complete);
+        if let Event::Ended(ended) = event {
+            *end = Some(end.unwrap_or(true) && ended == Ended::Complete);
         }
     }
 }

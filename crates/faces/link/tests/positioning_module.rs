@@ -15,7 +15,7 @@ use bahn_host::{
 };
 use bahn_link::{PlcLine, Settings};
 use bahn_program::Program;
-use bahn_tnc::{Command, DataLineEvent, DataLineOrder, LineEvent, Programs};
+use bahn_tnc::{Command, DataLineEvent, DataLineOrder, LineEvent, Programs, Switch};
 use copy::copy;
 
 const RS_422: usize = 1;
@@ -190,7 +190,7 @@ fn a_second_control_moves_the_pallets() {
     );
     let (mut master, mut module) = (Side::on(master), Side::on(module));
     for side in [&mut master, &mut module] {
-        side.tell(LineEvent::Ready(true));
+        side.tell(LineEvent::Ready(Switch::On));
     }
     // The module has its reference before anything is ordered: before, no positioning is possible.
     until(&mut master, &mut module, 60.0, |_, module| {
@@ -221,7 +221,7 @@ fn a_second_control_moves_the_pallets() {
     // The cable is pulled while an order is in transit: it is not answered, and comes through when it is plugged in.
     for side in [&mut master, &mut module] {
         side.line.unplugged();
-        side.tell(LineEvent::Ready(false));
+        side.tell(LineEvent::Ready(Switch::Off));
     }
     order(&mut master, &mut module, 1);
     for _ in 0..2000 {
@@ -229,7 +229,7 @@ fn a_second_control_moves_the_pallets() {
     }
     assert!(!master.bit("M971") && master.bit("M970"));
     for side in [&mut master, &mut module] {
-        side.tell(LineEvent::Ready(true));
+        side.tell(LineEvent::Ready(Switch::On));
     }
     until(&mut master, &mut module, 30.0, |master, _| master.bit("M971"));
     assert_eq!(master.number("B610"), 1);

@@ -1,7 +1,8 @@
 //! What an operator does at the station, and how it is written: `{"key":"ENT"}`, `{"feed_override":80}`.
 
 use bahn_dialogue::Key;
-use bahn_machine::KeyAction;
+use bahn_machine::{Button, KeyAction};
+use bahn_path::Switch;
 use serde::{Deserialize, Serialize};
 
 use crate::transfer::TransferNews;
@@ -15,7 +16,7 @@ pub enum Input {
     /// A key of the keyboard.
     Key(Key),
     /// A key of the keyboard goes down and stays down, or comes up.
-    Held(Key, bool),
+    Held(Key, Button),
     /// A key of the machine operating panel, or `EMERGENCY_STOP`.
     Machine(String, KeyAction),
     /// A line of text at once: what was pasted, or typed on a real keyboard.
@@ -29,11 +30,11 @@ pub enum Input {
     /// Axis and factor 0 to 10 of the handwheel.
     HandwheelAxis(char, u8),
     /// The supply of the control.
-    Power(bool),
+    Power(Switch),
     /// So many times as fast as real time, 0.1 to 100.
     Speed(f64),
-    /// Time stands, or goes on.
-    Pause(bool),
+    /// Time stands (on), or goes on (off).
+    Pause(Switch),
     /// So many contour cycles pass, also while time stands; 10,000 wait at most.
     Cycles(u32),
     /// To a moment since power-on, s, of this way or of a branch; time stands there.
@@ -133,9 +134,9 @@ impl TryFrom<InputText> for Input {
             text.spindle_override.map(Input::SpindleOverride),
             text.handwheel.map(Input::Handwheel),
             text.handwheel_axis.map(|axis| Input::HandwheelAxis(axis, factor)),
-            text.power.map(Input::Power),
+            text.power.map(|on| Input::Power(on.into())),
             text.speed.map(Input::Speed),
-            text.pause.map(Input::Pause),
+            text.pause.map(|on| Input::Pause(on.into())),
             text.cycles.map(Input::Cycles),
             text.go_to.map(|time_s| Input::GoTo(time_s, text.branch)),
             text.lesson
@@ -158,7 +159,8 @@ impl TryFrom<InputText> for Input {
 fn key(name: String, down: Option<bool>) -> Input {
     match (Key::from_name(&name), down) {
         (Some(key), None) => Input::Key(key),
-        (Some(key), Some(down)) => Input::Held(key, down),
+        (Some(key), Some(true)) => Input::Held(key, Button::Pressed),
+        (Some(key), Some(false)) => Input::Held(key, Button::Released),
         (None, Some(true)) => Input::Machine(name, KeyAction::Press),
         (None, Some(false)) => Input::Machine(name, KeyAction::Release),
         (None, None) => Input::Machine(name, KeyAction::Tap),
@@ -170,9 +172,9 @@ impl From<&Input> for InputText {
         let mut text = InputText::default();
         match input {
             Input::Key(key) => text.key = Some(key.name().to_owned()),
-            Input::Held(key, down) => {
+            Input::Held(key, button) => {
                 text.key = Some(key.name().to_owned());
-                text.down = Some(*down);
+                text.down = Some(button.is_pressed());
             }
             Input::Machine(name, action) => {
                 text.key = Some(name.clone());
@@ -190,9 +192,9 @@ impl From<&Input> for InputText {
                 text.handwheel_axis = Some(*axis);
                 text.factor = Some(*factor);
             }
-            Input::Power(on) => text.power = Some(*on),
+            Input::Power(switch) => text.power = Some(switch.is_on()),
             Input::Speed(factor) => text.speed = Some(*factor),
-            Input::Pause(paused) => text.pause = Some(*paused),
+            Input::Pause(switch) => text.pause = Some(switch.is_on()),
             Input::Cycles(cycles) => text.cycles = Some(*cycles),
             Input::GoTo(time_s, branch) => {
                 text.go_to = Some(*time_s);

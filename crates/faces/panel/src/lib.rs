@@ -57,7 +57,8 @@ mod transfer;
 
 pub use bahn_dialogue::{Key, KeyGroup};
 pub use bahn_graphics::{BeingCut, Picture, PictureError};
-pub use bahn_machine::KeyAction;
+pub use bahn_machine::{Button, KeyAction};
+pub use bahn_path::Switch;
 pub use bahn_screen::texts::{Language, around, filled, language_code, language_of_code, texts_around};
 pub use bahn_screen::{
     AxisLine, BranchLine, CheckLine, Dialogue, GraphicsLine, GraphicsView, Heading, Layout, LessonLine,

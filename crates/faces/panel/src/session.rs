@@ -211,7 +211,7 @@ mod tests {
         };
         let mut recorder = Recorder::create(&path, &head).unwrap();
         assert!(recorder.is_safe());
-        recorder.note(1000, &Input::Power(true)).unwrap();
+        recorder.note(1000, &Input::Power(bahn_path::Switch::On)).unwrap();
         recorder.keep().unwrap();
         assert!(!recorder.is_safe(), "not every key waits for the medium");
         std::thread::sleep(SAFE_AFTER);

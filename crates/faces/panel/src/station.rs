@@ -21,6 +21,7 @@ use bahn_graphics::{BeingCut, Graphics, Picture};
 use bahn_host::{Action, Answer, AnyPlant, Clock, Host, HostError, LoadedMachine, Operable, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
+use bahn_path::Switch;
 use bahn_plc::PlcWindow;
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen, colours, texts};
@@ -202,11 +203,11 @@ impl Station {
     fn take(&mut self, input: &Input) -> Result<(), Refusal> {
         match input {
             Input::Key(key) => self.key(*key)?,
-            Input::Held(key, down) => {
+            Input::Held(key, button) => {
                 self.supply
                     .warm_start
-                    .hold(*key, *down, self.host.control().time_us());
-                if *down {
+                    .hold(*key, *button, self.host.control().time_us());
+                if button.is_pressed() {
                     self.key(*key)?;
                 }
             }
@@ -221,9 +222,9 @@ impl Station {
             Input::HandwheelAxis(axis, factor) => {
                 self.action(&format!("handwheel {axis} {factor}"))?;
             }
-            Input::Power(on) => self.power(*on),
+            Input::Power(supply) => self.power(*supply),
             Input::Speed(factor) => self.set_speed(*factor)?,
-            Input::Pause(paused) => self.pause(*paused),
+            Input::Pause(switch) => self.pause(switch.is_on()),
             Input::Cycles(cycles) => {
                 self.ask_for_steps(*cycles);
             }
@@ -250,10 +251,10 @@ impl Station {
         self.passing.steps.pass();
         // The control begins as after power-on.
         if self.supply.warm_start.is_due(self.host.control()) {
-            self.power(false);
+            self.power(Switch::Off);
             self.console.power_off();
             self.instruments.plc.power_off();
-            self.power(true);
+            self.power(Switch::On);
         }
         let keys = self.host.control().oscilloscope();
         let sampler = self.instruments.graphics.scope.sampler(keys);
@@ -653,12 +654,12 @@ impl Station {
         Ok(())
     }
 
-    fn power(&mut self, on: bool) {
-        if on && self.try_again() {
+    fn power(&mut self, supply: Switch) {
+        if supply.is_on() && self.try_again() {
             return;
         }
         // A control that is on stays on.
-        let _ = self.act(Action::Command(0, Command::Power(on)));
+        let _ = self.act(Action::Command(0, Command::Power(supply)));
     }
 
     fn action(&mut self, text: &str) -> Result<(), Refusal> {

@@ -109,8 +109,10 @@ pub enum TransferNews {
     Protected(String),
     /// A message, as the control shows it.
     Message(String),
-    /// It is over; `true` when it is complete.
-    Ended(bool),
+    /// It is over, and all of it has arrived.
+    Complete,
+    /// It is over, and something is missing.
+    Incomplete,
 }
 
 impl fmt::Display for TransferNews {
@@ -127,11 +129,8 @@ impl fmt::Display for TransferNews {
             TransferNews::Output(name) => write!(f, "output {name}"),
             TransferNews::Protected(name) => write!(f, "protected {name}"),
             TransferNews::Message(text) => write!(f, "message {text}"),
-            TransferNews::Ended(complete) => f.write_str(if *complete {
-                "ended complete"
-            } else {
-                "ended incomplete"
-            }),
+            TransferNews::Complete => f.write_str("ended complete"),
+            TransferNews::Incomplete => f.write_str("ended incomplete"),
         }
     }
 }
@@ -162,8 +161,8 @@ impl FromStr for TransferNews {
             "output" => named.map(TransferNews::Output),
             "protected" => named.map(TransferNews::Protected),
             "message" => named.map(TransferNews::Message),
-            "ended" if rest == "complete" => Some(TransferNews::Ended(true)),
-            "ended" if rest == "incomplete" => Some(TransferNews::Ended(false)),
+            "ended" if rest == "complete" => Some(TransferNews::Complete),
+            "ended" if rest == "incomplete" => Some(TransferNews::Incomplete),
             _ => None,
         };
         news.ok_or_else(|| format!("`{text}` is nothing that happens at an interface"))
@@ -265,7 +264,7 @@ impl Transfers {
                 }
                 return;
             }
-            TransferNews::Ended(_) => {
+            TransferNews::Complete | TransferNews::Incomplete => {
                 self.running = None;
                 self.question = None;
             }
@@ -336,7 +335,7 @@ mod tests {
         );
         transfers.news(TransferNews::Overread("1.H".to_owned()));
         assert!(transfers.answer(false) && !transfers.answer(false) && transfers.end());
-        transfers.news(TransferNews::Ended(false));
+        transfers.news(TransferNews::Incomplete);
         assert!(!transfers.is_running());
         let actions: Vec<_> = orders.try_iter().map(|order| order.action).collect();
         let ordered = [

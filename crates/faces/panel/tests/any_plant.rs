@@ -180,7 +180,7 @@ fn the_time_line_goes_back() {
     assert_eq!(truth(&mut station, 'X'), then);
     assert_eq!(station.screen().machine.held, ["X+"]);
     key(&mut station, "X+", KeyAction::Release);
-    station.input(&Input::Pause(false)).unwrap();
+    station.input(&Input::Pause(bahn_panel::Switch::Off)).unwrap();
     wait(&mut station, 1.0);
     assert!(truth(&mut station, 'X') < then + 10.0);
     assert_eq!(station.screen().timeline.branches.len(), 1);

@@ -178,7 +178,9 @@ fn what_cannot_be_presented_is_tried_again_with_the_supply() {
         station.cycle().unwrap();
     }
     assert_ne!(title(&mut station), "MACHINE PARAMETERS");
-    station.input(&bahn_panel::Input::Power(true)).unwrap();
+    station
+        .input(&bahn_panel::Input::Power(bahn_panel::Switch::On))
+        .unwrap();
     station.cycle().unwrap();
     assert_eq!(title(&mut station), "MACHINE PARAMETERS");
     drop(station);

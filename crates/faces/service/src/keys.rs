@@ -1,6 +1,6 @@
 //! Keys, knobs and other inputs of the operator.
 
-use bahn_panel::{Input, Key, Stepped};
+use bahn_panel::{Button, Input, Key, Stepped};
 
 use crate::error::ServiceError;
 use crate::log::EventKind;
@@ -14,7 +14,7 @@ impl MachineService {
     /// Why it is refused: a key that the PLC program has locked says so in the words of the control.
     pub fn input(&self, input: Input) -> Result<(), ServiceError> {
         self.operates()?;
-        if let Input::Key(key) | Input::Held(key, true) = &input {
+        if let Input::Key(key) | Input::Held(key, Button::Pressed) = &input {
             let log = &self.shared.log;
             log.follow(&self.shared.link);
             log.note(EventKind::Key, key.name().to_owned());

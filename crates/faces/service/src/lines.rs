@@ -75,8 +75,12 @@ impl MachineService {
 
     /// Whether a host is there that takes messages of the PLC (modules 9110 and 9111).
     pub fn host_is_there(&self, is_there: bool) {
+        let event = match is_there {
+            true => HostEvent::Connected,
+            false => HostEvent::Disconnected,
+        };
         // A machine that has ended has no host.
-        let _ = self.happen(DataLineEvent::Host(HostEvent::Connected(is_there)));
+        let _ = self.happen(DataLineEvent::Host(event));
     }
 
     /// A message of a host to the PLC.

@@ -1,6 +1,6 @@
 //! The command line: what is typed after `:`.
 
-use bahn_panel::{EMERGENCY_STOP, Input, InputText, Key, Language, around, filled};
+use bahn_panel::{Button, EMERGENCY_STOP, Input, InputText, Key, Language, around, filled};
 
 use crate::machine::Machine;
 
@@ -25,7 +25,7 @@ enum Takes {
     /// Names of keys and numbers, one after the other.
     Keys,
     /// A key of the machine that stays down, or comes up.
-    Hold(bool),
+    Hold(Button),
     /// The command stands alone.
     Nothing(fn() -> Order),
     /// A number for a field.
@@ -72,9 +72,9 @@ pub(crate) const COMMANDS: &[Command] = &[
         "hold",
         "NAME",
         "a key stays down: hold X+, hold END",
-        Takes::Hold(true),
+        Takes::Hold(Button::Pressed),
     ),
-    command("release", "NAME", "it comes up", Takes::Hold(false)),
+    command("release", "NAME", "it comes up", Takes::Hold(Button::Released)),
     command(
         "feed",
         "PERCENT",
@@ -211,17 +211,17 @@ pub(crate) fn read(line: &str, machine: &Machine, language: Language) -> Result<
     };
     match command.takes {
         Takes::Keys => keys(rest, machine, language),
-        Takes::Hold(holds) => {
+        Takes::Hold(button) => {
             // The key of the keyboard that is held: END, for the warm start.
             if rest.eq_ignore_ascii_case(Key::End.name()) {
-                return Ok(vec![Order::Give(Input::Held(Key::End, holds))]);
+                return Ok(vec![Order::Give(Input::Held(Key::End, button))]);
             }
             let name = machine
                 .key(rest)
                 .ok_or_else(|| filled(around(language, "the machine has no key {1}"), &[rest]))?;
-            Ok(vec![match holds {
-                true => Order::Hold(name),
-                false => Order::Release(name),
+            Ok(vec![match button {
+                Button::Pressed => Order::Hold(name),
+                Button::Released => Order::Release(name),
             }])
         }
         Takes::Nothing(order) => Ok(vec![order()]),
@@ -312,7 +312,7 @@ pub(crate) fn completions(line: &str, machine: &Machine) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bahn_panel::KeyAction;
+    use bahn_panel::{KeyAction, Switch};
 
     fn machine() -> Machine {
         Machine::of_keys(&["X-", "X+", "NC_START", "RAPID"])
@@ -339,10 +339,10 @@ mod tests {
             [Order::Give(Input::Key(Key::Ce))]
         );
         assert_eq!(super::read("X+", &machine(), Language::English).unwrap().len(), 1);
-        for (typed, down) in [("hold end", true), ("release END", false)] {
+        for (typed, button) in [("hold end", Button::Pressed), ("release END", Button::Released)] {
             assert_eq!(
                 super::read(typed, &machine(), Language::English).unwrap(),
-                [Order::Give(Input::Held(Key::End, down))]
+                [Order::Give(Input::Held(Key::End, button))]
             );
         }
         for wrong in ["key", "nonsense", "key L 1z", "hold Q"] {
@@ -361,8 +361,8 @@ mod tests {
             ("handwheel -250", Input::Handwheel(-250)),
             ("handwheel y 5", Input::HandwheelAxis('Y', 5)),
             ("cycles 25", Input::Cycles(25)),
-            ("power off", Input::Power(false)),
-            ("pause", Input::Pause(true)),
+            ("power off", Input::Power(Switch::Off)),
+            ("pause", Input::Pause(Switch::On)),
             ("speed 0.5", Input::Speed(0.5)),
             ("text L X+10 R0", Input::Text("L X+10 R0".to_owned())),
             ("lesson", Input::Lesson(None)),

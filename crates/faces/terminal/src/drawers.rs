@@ -114,7 +114,7 @@ fn standing(live: &Live) -> MachineService {
             .iter()
             .any(|line| line.text.contains("CIRCLE"))
     });
-    machine.input(Input::Pause(true)).unwrap();
+    machine.input(Input::Pause(bahn_panel::Switch::On)).unwrap();
     machine
 }
 

@@ -4,7 +4,7 @@ use bahn_exchange::signal::{self, SignalOperand};
 use bahn_exchange::{Bit, BitArea};
 use bahn_host::{LoadedMachine, Operable, Wired};
 use bahn_parameters::MessageId;
-use bahn_path::BlockRef;
+use bahn_path::{BlockRef, Direction};
 use bahn_screen::texts::{self, Language, filled as fill};
 use bahn_servo::Rotation;
 use bahn_tnc::{AxisState, Control, Message, Mode, RunState, Shown, Snapshot, Waiting};
@@ -70,7 +70,7 @@ impl Situation<'_> {
                     let text = self.words("The handwheel does not answer: plug it in (MP7640), then CE");
                     found.push(with_parameter(reason(Urgency::Stands, text), "MP7640"));
                 }
-                Message::Limit { axis, plus } => found.extend(self.limit(snapshot, *axis, *plus)),
+                Message::Limit { axis, end } => found.extend(self.limit(snapshot, *axis, *end)),
                 _ if shown.flashing => found.push(self.flashing(shown)),
                 Message::Program(_) => {
                     let text = self.words("The program stands at block {1}: {2}. Correct it, then CE");
@@ -89,18 +89,28 @@ impl Situation<'_> {
         reason(Urgency::Stands, fill(&text, &[&self.control.shown_text(shown)]))
     }
 
-    fn limit(&self, snapshot: &Snapshot, index: u8, plus: bool) -> Option<Reason> {
+    fn limit(&self, snapshot: &Snapshot, index: u8, end: Direction) -> Option<Reason> {
         let axis = snapshot
             .axes
             .iter()
             .find(|axis| axis.index == usize::from(index))?;
-        let (sign, other) = if plus { ("+", "-") } else { ("-", "+") };
-        let end = if plus { "_PLUS" } else { "_MINUS" };
-        let marker = axis_signal("LIMIT_REACHED_", axis.index, end)?;
+        let (name, parameter) = match end {
+            Direction::Plus => ("_PLUS", "MP910"),
+            Direction::Minus => ("_MINUS", "MP920"),
+        };
+        let marker = axis_signal("LIMIT_REACHED_", axis.index, name)?;
         let text = self.words("{1} stands at its software limit {1}{2}, {3} is 1: drive it off with {1}{4}");
         let letter = axis.letter.to_string();
-        let text = fill(&text, &[&letter, sign, &marker.to_string(), other]);
-        let parameter = format!("{}.{index}", if plus { "MP910" } else { "MP920" });
+        let text = fill(
+            &text,
+            &[
+                &letter,
+                &end.to_string(),
+                &marker.to_string(),
+                &end.opposite().to_string(),
+            ],
+        );
+        let parameter = format!("{parameter}.{index}");
         let reported = Reason {
             marker: Some(marker.to_string()),
             ..reason(Urgency::Stands, text)

@@ -523,9 +523,10 @@ impl Channel {
                 .desk
                 .manual
                 .set_step(feed, &machine.core.axes.of(self.number)),
-            Command::Pnt(on) => {
+            Command::Pnt(switch) => {
                 let probe = self.list(machine).measuring_probe();
-                self.desk.switch_pnt(on, probe.filter(|_| !self.run.is_active()))
+                self.desk
+                    .switch_pnt(switch.is_on(), probe.filter(|_| !self.run.is_active()))
             }
             Command::WorkingPlane(plane) if !plane.run => {
                 self.touch.leave();

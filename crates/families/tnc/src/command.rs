@@ -9,7 +9,7 @@ use std::str::FromStr;
 use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
-use bahn_path::Axis;
+use bahn_path::{Axis, Switch};
 use bahn_plc::TableKind;
 
 use crate::data_line::DataLineEvent;
@@ -132,7 +132,7 @@ pub enum Command {
     Output(Option<f64>),
     /// `oscilloscope start`, `oscilloscope stop`: the soft keys START and STOP after code number 688 379
     /// [000:18776-18778].
-    Oscilloscope(bool),
+    Oscilloscope(Switch),
     /// `3d-rot on`, `3d-rot on B+30`, `3d-rot off`: by hand the axes move, are shown and get their datum in the plane of the
     /// swivel axes; `3d-rot run ..`: programs begin in it [000:4256].
     WorkingPlane(PlaneCommand),
@@ -142,7 +142,7 @@ pub enum Command {
     Handwheel(Axis, u8),
     /// `pnt on`, `pnt off`: in POSITIONING WITH MDI the axes follow the stylus of a measuring probe, or do so no more
     /// [000:7907].
-    Pnt(bool),
+    Pnt(Switch),
     /// `axis-key AXIS`: an axis key of the keyboard: the axis is highlighted (M2096 ff.), and with MP7640 = 2 it is that of
     /// the handwheel, too [000:6425] [000:8139-8151].
     AxisKey(Axis),
@@ -164,7 +164,7 @@ pub enum Command {
     /// `end-test`: breaks the test run off.
     EndTest,
     /// `offset adjust`, `offset off`: answers to code number 75 368 [000:5014-5020].
-    OffsetAdjustment(bool),
+    OffsetAdjustment(Switch),
     /// `M100=1`, `W6=$10`, `S0="TEXT"`: an operand in the table of the PLC menu [000:11436-11460]; what the PLC program
     /// or the control writes later counts. `MP4110.2=4`: a machine parameter, while no program runs unless the list says
     /// that it may change then; what needs a reset makes the control begin anew, what needs the reference marks lets
@@ -174,7 +174,7 @@ pub enum Command {
     /// [000:15587-15905].
     DataLine(DataLineEvent),
     /// `power off`, `power on`: the supply of the control.
-    Power(bool),
+    Power(Switch),
 }
 
 /// Where CUR.TIME of a tool ends, minutes (inferred).
@@ -355,7 +355,8 @@ fn axis_key(name: &str, rest: &str) -> Result<Command, CommandError> {
 /// `start`, `stop`: begins or ends a recording of the oscilloscope.
 fn oscilloscope(rest: &str) -> Result<Command, CommandError> {
     match rest {
-        "start" | "stop" => Ok(Command::Oscilloscope(rest == "start")),
+        "start" => Ok(Command::Oscilloscope(Switch::On)),
+        "stop" => Ok(Command::Oscilloscope(Switch::Off)),
         _ => Err(CommandError::Wrong(
             "`oscilloscope` takes `start` or `stop`".into(),
         )),
@@ -363,10 +364,10 @@ fn oscilloscope(rest: &str) -> Result<Command, CommandError> {
 }
 
 /// What a word switches on, or `off`.
-fn switch(name: &str, rest: &str, on: &str) -> Result<bool, CommandError> {
+fn switch(name: &str, rest: &str, on: &str) -> Result<Switch, CommandError> {
     match rest {
-        "off" => Ok(false),
-        _ if rest == on => Ok(true),
+        "off" => Ok(Switch::Off),
+        _ if rest == on => Ok(Switch::On),
         _ => Err(CommandError::Wrong(format!("`{name}` takes `{on}` or `off`"))),
     }
 }
@@ -517,14 +518,14 @@ impl fmt::Display for Command {
                 write!(f, "table {letter} {line} {column} {value}")
             }
             Command::JogIncrement(mm) => write!(f, "jog {mm}"),
-            Command::Oscilloscope(true) => write!(f, "oscilloscope start"),
-            Command::Oscilloscope(false) => write!(f, "oscilloscope stop"),
+            Command::Oscilloscope(Switch::On) => write!(f, "oscilloscope start"),
+            Command::Oscilloscope(Switch::Off) => write!(f, "oscilloscope stop"),
             Command::Output(Some(feed)) => write!(f, "output step {feed}"),
             Command::Output(None) => write!(f, "output ramp"),
             Command::WorkingPlane(plane) => write!(f, "3d-rot {plane}"),
             Command::Screen(screen) => write!(f, "screen {screen}"),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
-            Command::Pnt(on) => write!(f, "pnt {}", if *on { "on" } else { "off" }),
+            Command::Pnt(switch) => write!(f, "pnt {switch}"),
             Command::AxisKey(axis) => write!(f, "axis-key {axis}"),
             Command::Dnc(dnc) => write!(f, "dnc {dnc}"),
             Command::ManualOperation => write!(f, "manual-operation"),
@@ -535,12 +536,11 @@ impl fmt::Display for Command {
             Command::Test(name) => write!(f, "test {name}"),
             Command::TestRun(command) => write!(f, "test-run {command}"),
             Command::EndTest => write!(f, "end-test"),
-            Command::OffsetAdjustment(adjust) => {
-                write!(f, "offset {}", if *adjust { "adjust" } else { "off" })
-            }
+            Command::OffsetAdjustment(Switch::On) => write!(f, "offset adjust"),
+            Command::OffsetAdjustment(Switch::Off) => write!(f, "offset off"),
             Command::Set(assignment) => assignment.fmt(f),
             Command::DataLine(event) => event.fmt(f),
-            Command::Power(on) => write!(f, "power {}", if *on { "on" } else { "off" }),
+            Command::Power(switch) => write!(f, "power {switch}"),
         }
     }
 }

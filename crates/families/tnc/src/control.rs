@@ -10,7 +10,7 @@ use bahn_interpreter::{Done, Interpreter, Work};
 use bahn_kernel::{AxisUnit, Feeder, RunState, ServoSampler, ServoView, path_limits};
 use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
-use bahn_path::PathElement;
+use bahn_path::{PathElement, Switch};
 use bahn_plc::{HostMessage, Tracer};
 use bahn_reader::{Reader, Warning};
 use bahn_servo::Plant;
@@ -105,11 +105,11 @@ impl Control {
 
     /// Switches the supply off or on. What survives is what [`Control::remember`] and the retained memory of the PLC
     /// hold; the list of machine parameters is that of the editor. Time goes on counting.
-    fn switch(&mut self, on: bool) -> bool {
-        if on != self.supply.off {
+    fn switch(&mut self, supply: Switch) -> bool {
+        if supply.is_on() != self.supply.off {
             return false;
         }
-        if on {
+        if supply.is_on() {
             self.supply.off = false;
             self.supply.starts += 1;
             self.tnc.show_power_interrupted();
@@ -207,7 +207,7 @@ impl Control {
 
     fn give(&mut self, channel: usize, command: Command) -> bool {
         let done = match (command, self.supply.off) {
-            (Command::Power(on), _) => return self.switch(on),
+            (Command::Power(supply), _) => return self.switch(supply),
             // Nobody is there to say that it is not possible.
             (_, true) => return false,
             (Command::Set(assignment), _) => match alteration::set(&mut self.tnc, channel, &assignment) {

@@ -4,6 +4,7 @@
 
 use std::fmt;
 
+use bahn_path::Switch;
 use bahn_plc::{DataInterface, HostLink, HostMessage, InterfaceUser};
 
 use crate::escapes;
@@ -35,11 +36,11 @@ pub enum DataLineEvent {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LineEvent {
     /// `ready on`, `ready off`: the other side is there and wants characters.
-    Ready(bool),
+    Ready(Switch),
     /// `baud 9600`: the rate of the operating mode that the operator chose.
     ModeBaud(u32),
     /// `taken on`, `taken off`: the operator's input and output has the line. Not possible while the PLC has it.
-    Taken(bool),
+    Taken(Switch),
     /// `sent`: the text of the PLC is on its way to the last character.
     Sent,
     /// `not-sent`: it was not possible to send it.
@@ -55,8 +56,10 @@ pub enum LineEvent {
 /// Something happens at the connection with a host by LSV/2.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HostEvent {
-    /// `connected`, `disconnected`: the connection was made, or has ended.
-    Connected(bool),
+    /// `connected`: the connection was made.
+    Connected,
+    /// `disconnected`: it has ended.
+    Disconnected,
     /// `message 42`, `message "TEXT"`: a message to the PLC. Not possible when too many wait to be read.
     Message(HostMessage),
     /// `taken`: the host has the first message of the PLC.
@@ -172,8 +175,8 @@ impl HostEvent {
     fn parse(text: &str) -> Option<HostEvent> {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         match (word, rest.trim()) {
-            ("connected", "") => Some(HostEvent::Connected(true)),
-            ("disconnected", "") => Some(HostEvent::Connected(false)),
+            ("connected", "") => Some(HostEvent::Connected),
+            ("disconnected", "") => Some(HostEvent::Disconnected),
             ("taken", "") => Some(HostEvent::Taken),
             ("message", value) => {
                 let number = value.parse().ok().map(HostMessage::Double);
@@ -185,10 +188,10 @@ impl HostEvent {
     }
 }
 
-fn on_off(text: &str) -> Option<bool> {
+fn on_off(text: &str) -> Option<Switch> {
     match text {
-        "on" => Some(true),
-        "off" => Some(false),
+        "on" => Some(Switch::On),
+        "off" => Some(Switch::Off),
         _ => None,
     }
 }
@@ -204,13 +207,12 @@ impl fmt::Display for Quoted<'_> {
 
 impl fmt::Display for DataLineEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let switch = |on: &bool| if *on { "on" } else { "off" };
         match self {
             DataLineEvent::Line(line, event) => {
                 let name = NAMES.get(*line).copied().unwrap_or("?");
                 match event {
-                    LineEvent::Ready(on) => write!(f, "{name} ready {}", switch(on)),
-                    LineEvent::Taken(on) => write!(f, "{name} taken {}", switch(on)),
+                    LineEvent::Ready(switch) => write!(f, "{name} ready {switch}"),
+                    LineEvent::Taken(switch) => write!(f, "{name} taken {switch}"),
                     LineEvent::ModeBaud(baud) => write!(f, "{name} baud {baud}"),
                     LineEvent::Sent => write!(f, "{name} sent"),
                     LineEvent::NotSent => write!(f, "{name} not-sent"),
@@ -219,8 +221,8 @@ impl fmt::Display for DataLineEvent {
                     LineEvent::EndOfText => write!(f, "{name} etx"),
                 }
             }
-            DataLineEvent::Host(HostEvent::Connected(true)) => write!(f, "lsv2 connected"),
-            DataLineEvent::Host(HostEvent::Connected(false)) => write!(f, "lsv2 disconnected"),
+            DataLineEvent::Host(HostEvent::Connected) => write!(f, "lsv2 connected"),
+            DataLineEvent::Host(HostEvent::Disconnected) => write!(f, "lsv2 disconnected"),
             DataLineEvent::Host(HostEvent::Taken) => write!(f, "lsv2 taken"),
             DataLineEvent::Host(HostEvent::Message(HostMessage::Double(value))) => {
                 write!(f, "lsv2 message {value}")
@@ -253,9 +255,12 @@ impl DataLines {
 
     fn at_host(&mut self, event: HostEvent) -> bool {
         match (event, &mut self.host) {
-            (HostEvent::Connected(true), Some(_)) => true,
-            (HostEvent::Connected(connected), _) => {
-                self.host = connected.then(HostLink::default);
+            (HostEvent::Connected, host) => {
+                host.get_or_insert_default();
+                true
+            }
+            (HostEvent::Disconnected, host) => {
+                *host = None;
                 true
             }
             (_, None) => false,
@@ -284,12 +289,12 @@ impl DataLines {
 fn at_line(interface: &mut DataInterface, event: LineEvent) -> bool {
     let receives = interface.user == Some(InterfaceUser::Plc) && interface.receiving;
     match event {
-        LineEvent::Ready(ready) => interface.ready = ready,
+        LineEvent::Ready(switch) => interface.ready = switch.is_on(),
         LineEvent::ModeBaud(baud) => interface.mode_baud = baud,
-        LineEvent::Taken(true) if interface.user == Some(InterfaceUser::Plc) => return false,
-        LineEvent::Taken(true) => interface.assign_to_nc(),
-        LineEvent::Taken(false) if interface.user == Some(InterfaceUser::Nc) => interface.release(),
-        LineEvent::Taken(false) => {}
+        LineEvent::Taken(Switch::On) if interface.user == Some(InterfaceUser::Plc) => return false,
+        LineEvent::Taken(Switch::On) => interface.assign_to_nc(),
+        LineEvent::Taken(Switch::Off) if interface.user == Some(InterfaceUser::Nc) => interface.release(),
+        LineEvent::Taken(Switch::Off) => {}
         LineEvent::Sent => interface.transmit.clear(),
         LineEvent::NotSent => {
             interface.transmit.clear();
@@ -336,7 +341,7 @@ mod tests {
             receiving: true,
             ..DataInterface::default()
         };
-        assert!(!at_line(&mut interface, LineEvent::Taken(true)));
+        assert!(!at_line(&mut interface, LineEvent::Taken(Switch::On)));
         assert!(at_line(&mut interface, LineEvent::Received(b"1".to_vec())));
         // The second one comes before the first is taken.
         assert!(at_line(&mut interface, LineEvent::Received(b"2".to_vec())));
@@ -348,7 +353,7 @@ mod tests {
         assert!(!at_line(&mut interface, LineEvent::Received(b"3".to_vec())));
         // The operator transfers at the rate of his operating mode, which counts for the other interface, too [000:15617].
         assert!(at_line(&mut interface, LineEvent::ModeBaud(38_400)));
-        assert!(at_line(&mut interface, LineEvent::Taken(true)));
+        assert!(at_line(&mut interface, LineEvent::Taken(Switch::On)));
         assert_eq!(
             (interface.user, interface.baud),
             (Some(InterfaceUser::Nc), 38_400)

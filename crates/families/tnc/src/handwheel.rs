@@ -4,9 +4,10 @@
 //! at the PLC has its axis keys where places are left
 
 use bahn_exchange::{Image, signal};
-use bahn_kernel::{Direction, OwnAxes, within};
+use bahn_kernel::{OwnAxes, within};
 use bahn_parameters::operation::{Handwheel as Kind, HandwheelParameters};
 use bahn_parameters::{MessageId, PerPlcAxis};
+use bahn_path::Direction;
 use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
 
 use crate::command::Mode;
@@ -326,8 +327,7 @@ impl Wheel {
 /// How far counting steps lead, mm.
 fn travel_mm(steps: i64, factor: u8, rules: &HandwheelParameters) -> f64 {
     let travel = TRAVEL_MM / f64::from(1u32 << factor.min(FACTOR_MAX));
-    let sign = if rules.positive { 1.0 } else { -1.0 };
-    sign * steps as f64 / HANDWHEEL_STEPS * travel
+    rules.direction.sign() * steps as f64 / HANDWHEEL_STEPS * travel
 }
 
 /// The axis that a wheel leads: the first and second at an HRA 110 X and Y, the third the one of MP7645 or of

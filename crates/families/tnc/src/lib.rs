@@ -142,6 +142,7 @@ pub use bahn_kernel::{ServoSampler, ServoSignal, ServoView};
 pub use bahn_parameters::compensation::{
     CompensationAssignment, CompensationError, CompensationTable, CorrectionTables,
 };
+pub use bahn_path::Switch;
 pub use beside::ReadAhead;
 pub use command::{Command, CommandError, Mode};
 pub use control::Control;

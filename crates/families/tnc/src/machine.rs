@@ -150,8 +150,8 @@ impl MachineSide {
             Command::ToolLife(tool, minutes) => self.set_tool_life(*tool, *minutes),
             Command::Table(kind, line, element, value) => self.take_element(*kind, *line, *element, *value),
             Command::Screen(screen) => self.link.show(*screen),
-            Command::Oscilloscope(start) => self.oscilloscope.press(*start),
-            Command::OffsetAdjustment(adjust) => self.adjust_offsets(*adjust),
+            Command::Oscilloscope(switch) => self.oscilloscope.press(switch.is_on()),
+            Command::OffsetAdjustment(switch) => self.adjust_offsets(switch.is_on()),
             _ => return None,
         })
     }

@@ -9,14 +9,14 @@
 
 use bahn_exchange::signal;
 use bahn_kernel::{
-    AtLimit, AxisUnit, Direction, HandMove, Leaning, MAIN, Mover, Now, OwnAxes, Wish, look_at_limit,
-    move_by_hand, within,
+    AtLimit, AxisUnit, HandMove, Leaning, MAIN, Mover, Now, OwnAxes, Wish, look_at_limit, move_by_hand,
+    within,
 };
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::HandwheelParameters;
 use bahn_parameters::technology::Technology;
 use bahn_parameters::{ControlModel, PerPlcAxis};
-use bahn_path::BlockRef;
+use bahn_path::{BlockRef, Direction};
 use bahn_plc::JogLimit;
 use bahn_servo::{HandwheelInputs, Probe as Touch};
 

@@ -20,13 +20,13 @@ use bahn_kernel::touched::{self, Contact};
 use bahn_kernel::{Offsets, OwnAxes};
 use bahn_parameters::machining::{ProbeSettings, ProbeTurn};
 use bahn_parameters::{MessageId, ParameterList};
-use bahn_path::{Axis, PerAxis, Plane, Position};
+use bahn_path::{Axis, Direction, PerAxis, Plane, Position};
 use bahn_servo::Measured;
 
 use crate::datums::NewDatum;
 use crate::handshake::Transfer;
 use crate::message::Message;
-use crate::probe_command::{ProbeCommand, ProbeFunction, sign};
+use crate::probe_command::{ProbeCommand, ProbeFunction};
 use crate::probing::{Probe, Probed};
 use crate::setup::{Calibration, ProbeMemory};
 use crate::site::Site;
@@ -68,7 +68,7 @@ struct Job {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Aim {
     None,
-    One(Axis, bool),
+    One(Axis, Direction),
     All,
 }
 
@@ -154,7 +154,7 @@ impl ManualProbing {
         };
         match command {
             ProbeCommand::Choose(_) => Answer::Refused,
-            ProbeCommand::Direction(axis, plus) => {
+            ProbeCommand::Direction(axis, direction) => {
                 let linear = !axis.is_rotary() && site.axes.at(axis).is_some();
                 let fits = match job.function {
                     ProbeFunction::Surface => linear,
@@ -162,7 +162,7 @@ impl ManualProbing {
                     _ => linear && axis != tool_axis && plane_of(tool_axis).contains(axis),
                 };
                 if fits {
-                    job.aim = Aim::One(axis, plus);
+                    job.aim = Aim::One(axis, direction);
                 }
                 if fits { Answer::Done } else { Answer::Refused }
             }
@@ -194,7 +194,7 @@ impl ManualProbing {
 
     fn choose(&mut self, function: ProbeFunction, tool_axis: Axis) -> Answer {
         let aim = match function {
-            ProbeFunction::Length(_) => Aim::One(tool_axis, false),
+            ProbeFunction::Length(_) => Aim::One(tool_axis, Direction::Minus),
             ProbeFunction::Radius(_) | ProbeFunction::Circle => Aim::All,
             _ => Aim::None,
         };
@@ -442,15 +442,15 @@ impl Job {
     }
 
     /// What is probed next: with all four directions those of the plane one after another.
-    fn direction(&self, tool_axis: Axis) -> Option<(Axis, bool)> {
+    fn direction(&self, tool_axis: Axis) -> Option<(Axis, Direction)> {
         match self.aim {
             Aim::None => None,
-            Aim::One(axis, plus) => Some((axis, plus)),
+            Aim::One(axis, direction) => Some((axis, direction)),
             Aim::All => {
                 let plane = plane_of(tool_axis);
-                let (a, b) = (plane.first, plane.second);
-                [(a, true), (a, false), (b, true), (b, false)]
+                [plane.first, plane.second]
                     .into_iter()
+                    .flat_map(|axis| Direction::BOTH.map(|direction| (axis, direction)))
                     .nth(4 - self.left.clamp(1, 4))
             }
         }
@@ -480,19 +480,19 @@ impl Job {
     }
 
     fn probe_next(&mut self, probe: &mut Probe, settings: &ProbeSettings, site: &mut Site) -> bool {
-        let Some((axis, plus)) = self.direction(site.chain.offsets.tool_axis) else {
+        let Some((axis, direction)) = self.direction(site.chain.offsets.tool_axis) else {
             self.left = 0;
             return false;
         };
         let mut to = self.home;
-        to[axis] += sign(plus) * settings.range_mm;
+        to[axis] += direction.sign() * settings.range_mm;
         probe.begin_by_hand([self.home, to], settings, site);
         true
     }
 
     /// Keeps a touch: where the ball stood, from machine zero.
     fn note(&mut self, touch: &Position, calibration: &Calibration, offsets: &Offsets) {
-        let Some((axis, plus)) = self.direction(offsets.tool_axis) else {
+        let Some((axis, direction)) = self.direction(offsets.tool_axis) else {
             return;
         };
         let plane = plane_of(offsets.tool_axis);
@@ -504,13 +504,13 @@ impl Job {
         plane.set(&mut tip, centre);
         let in_plane = axis != offsets.tool_axis;
         let beside = if in_plane {
-            sign(plus) * calibration.radius_mm
+            direction.sign() * calibration.radius_mm
         } else {
             0.0
         };
         self.surface = Some((axis, tip[axis] + beside));
         let mut towards = Position::ZERO;
-        towards[axis] = sign(plus);
+        towards[axis] = direction.sign();
         self.add(Contact {
             centre,
             towards: plane.point(&towards),

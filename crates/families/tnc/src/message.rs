@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 use bahn_exchange::{Exchange, signal};
 use bahn_interpreter::ProgramError;
-use bahn_kernel::{AxisId, Direction};
+use bahn_kernel::AxisId;
 use bahn_parameters::fault::{Clearing, FaultId, Reaction};
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_path::BlockRef;
+use bahn_path::{BlockRef, Direction};
 
 /// An axis cannot go to another channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -50,8 +50,8 @@ pub enum Message {
     Limit {
         /// Number of the axis ([`AxisId`]).
         axis: u8,
-        /// It stands at the positive limit, otherwise at the negative one.
-        plus: bool,
+        /// At which end of its traverse range it stands.
+        end: Direction,
     },
     /// `ERROR IN PLC-PROGRAM` with the code of the markers that contradict each other.
     PlcMarkers([u8; 2]),
@@ -78,10 +78,10 @@ pub enum Message {
 }
 
 impl Message {
-    pub(crate) fn limit(axis: AxisId, direction: Direction) -> Message {
+    pub(crate) fn limit(axis: AxisId, end: Direction) -> Message {
         Message::Limit {
             axis: axis.number(),
-            plus: direction == Direction::Plus,
+            end,
         }
     }
 
@@ -110,13 +110,7 @@ impl Message {
                 Some(letter) => format!("{} {letter}", with_axis(*id, *axis)),
                 None => with_axis(*id, *axis),
             },
-            Message::Limit { axis, plus } => {
-                format!(
-                    "{}{}",
-                    with_axis(MessageId::LimitSwitch, *axis),
-                    if *plus { '+' } else { '-' }
-                )
-            }
+            Message::Limit { axis, end } => format!("{}{end}", with_axis(MessageId::LimitSwitch, *axis)),
             Message::PlcMarkers(code) => format!(
                 "{} {}",
                 MessageId::ErrorInPlcProgram.text(model),

@@ -4,9 +4,9 @@
 //! program or of a key: `ERROR IN PLC-PROGRAM` with the code of the command [000:7543-7585].
 
 use bahn_exchange::{Bit, Image, signal};
+use bahn_path::Direction;
 
 use crate::markers::AXES;
-use bahn_kernel::Direction;
 use bahn_parameters::PerPlcAxis;
 
 /// The letters after `ERROR IN PLC-PROGRAM`.

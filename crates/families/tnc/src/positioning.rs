@@ -4,6 +4,7 @@ use bahn_exchange::{Exchange, Image, signal};
 use bahn_kernel::{AxisOrder, AxisUnit, Goal, Now, OwnAxes, Positioning};
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::plc::PlcParameters;
+use bahn_path::Direction;
 use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
 
 use crate::markers::{AXES, POSITIONING_FEED, TRANSFER};
@@ -66,7 +67,10 @@ fn order_of(command: PlcAxisCommand) -> AxisOrder {
             feed,
         },
         PlcAxisCommand::Stop => AxisOrder::Stop,
-        PlcAxisCommand::TraverseReferenceMarks { feed, negative } => AxisOrder::FindMark { feed, negative },
+        PlcAxisCommand::TraverseReferenceMarks { feed, negative } => AxisOrder::FindMark {
+            feed,
+            direction: Direction::minus_if(negative),
+        },
     }
 }
 

@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use bahn_kernel::Direction;
-use bahn_path::Axis;
+use bahn_path::{Axis, Direction};
 
 /// An input of the TOUCH PROBE menu [003:1226-1405]; in commands it stands after `probe`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,7 +10,7 @@ pub enum ProbeCommand {
     /// A function of the menu is chosen: `length`, `radius`, `rotation`, `surface`, `corner`, `circle`.
     Choose(ProbeFunction),
     /// `direction X+`: what the next NC start probes.
-    Direction(Axis, bool),
+    Direction(Axis, Direction),
     /// `direction all`: the next NC start probes in all four directions of the plane, from within.
     AllDirections,
     /// `turn`: the probe is turned by 180° for the centre offset [000:7654].
@@ -81,7 +80,7 @@ impl ProbeCommand {
             "circle" => choose(ProbeFunction::Circle),
             "direction" if rest == "all" => Ok(ProbeCommand::AllDirections),
             "direction" => direction(rest)
-                .map(|(axis, plus)| ProbeCommand::Direction(axis, plus))
+                .map(|(axis, direction)| ProbeCommand::Direction(axis, direction))
                 .ok_or_else(|| format!("`probe direction` takes X+, Y-, .. or all, not `{rest}`")),
             "turn" if rest.is_empty() => Ok(ProbeCommand::Turn),
             "end" if rest.is_empty() => Ok(ProbeCommand::End),
@@ -105,20 +104,19 @@ fn axis(letter: &str) -> Option<Axis> {
     Axis::from_letter(letter.to_ascii_uppercase())
 }
 
-/// Axis, and whether it is in positive direction, of `X+` or `X-`.
-fn direction(text: &str) -> Option<(Axis, bool)> {
-    let plus = text.ends_with('+');
-    let letter = text.strip_suffix(['+', '-'])?;
-    Some((axis(letter)?, plus))
+/// Axis and direction of `X+` or `X-`.
+fn direction(text: &str) -> Option<(Axis, Direction)> {
+    Direction::BOTH.into_iter().find_map(|direction| {
+        let letter = text.strip_suffix(direction.symbol())?;
+        Some((axis(letter)?, direction))
+    })
 }
 
 impl fmt::Display for ProbeCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ProbeCommand::Choose(function) => function.fmt(f),
-            ProbeCommand::Direction(axis, plus) => {
-                write!(f, "direction {axis}{}", if *plus { '+' } else { '-' })
-            }
+            ProbeCommand::Direction(axis, direction) => write!(f, "direction {axis}{direction}"),
             ProbeCommand::AllDirections => f.write_str("direction all"),
             ProbeCommand::Turn => f.write_str("turn"),
             ProbeCommand::Datum(axis, value) => write!(f, "datum {axis} {value}"),
@@ -140,11 +138,6 @@ impl fmt::Display for ProbeFunction {
             ProbeFunction::Circle => f.write_str("circle"),
         }
     }
-}
-
-/// The sign of a direction key.
-pub(crate) fn sign(plus: bool) -> f64 {
-    if plus { Direction::Plus } else { Direction::Minus }.sign()
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_kernel::{Acting, AxisId, Chain, Direction, Now, Outputs, OwnAxes, RunFamily};
+use bahn_kernel::{Acting, AxisId, Chain, Now, Outputs, OwnAxes, RunFamily};
 use bahn_parameters::technology::{ControlAction, Output, Technology};
-use bahn_path::{Axis, ControlFunction, Function, LiveData, Position, ToolCall, Voltage};
+use bahn_path::{Axis, ControlFunction, Direction, Function, LiveData, Position, ToolCall, Voltage};
 
 use crate::command::Mode;
 use crate::handshake::{Handshakes, Transfer};
@@ -94,11 +94,11 @@ impl<'a> Site<'a> {
         match function {
             ControlFunction::SecondServoSet(second) => {
                 for unit in self.axes.iter_mut() {
-                    unit.servo.set_second_set(second);
+                    unit.servo.set_second_set(second.is_on());
                 }
             }
-            ControlFunction::ReplaceWornTools(replaces) => self.tools.replaces_worn = replaces,
-            ControlFunction::TakeLargerTools(takes) => self.tools.takes_larger = takes,
+            ControlFunction::ReplaceWornTools(replaces) => self.tools.replaces_worn = replaces.is_on(),
+            ControlFunction::TakeLargerTools(takes) => self.tools.takes_larger = takes.is_on(),
         }
     }
 

@@ -18,7 +18,7 @@ use bahn_interpreter::{DripFeed, Interpreter, Rules, Settings, Status};
 use bahn_kernel::{Chain, Feeder, OwnAxes};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
-use bahn_path::{AxisSet, BlockRef, Frame, PerAxis, Plane, Position};
+use bahn_path::{AxisSet, BlockRef, Frame, PerAxis, Plane, Position, Sense};
 use bahn_program::Program;
 use bahn_reader::{Reader, Start};
 use bahn_servo::Rotation;
@@ -499,12 +499,12 @@ impl Source {
             status.cancel_tool();
         }
         let spindle = site.spindle.state();
-        let clockwise = match spindle.rotation {
-            Rotation::M3 => Some(true),
-            Rotation::M4 => Some(false),
+        let sense = match spindle.rotation {
+            Rotation::M3 => Some(Sense::Clockwise),
+            Rotation::M4 => Some(Sense::CounterClockwise),
             Rotation::M5 => None,
         };
-        status.take_spindle(clockwise, spindle.programmed_rpm);
+        status.take_spindle(sense, spindle.programmed_rpm);
         let mut feeder = self.feeder_from(opened, status, site, basis);
         if block > 0 {
             feeder.reader_mut().goto(block);

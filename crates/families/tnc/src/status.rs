@@ -4,10 +4,10 @@
 //! is turned or mirrored around it
 
 use bahn_exchange::{Exchange, signal};
-use bahn_kernel::{AxisUnit, Chain, Direction, Mover, OwnAxes, RunState, path_positions};
+use bahn_kernel::{AxisUnit, Chain, Mover, OwnAxes, RunState, path_positions};
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::machining::MeasuringProbe;
-use bahn_path::{Position, deflection_along_axes};
+use bahn_path::{Direction, Position, deflection_along_axes};
 use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 

@@ -9,7 +9,7 @@
 //! cycle 13
 
 use bahn_parameters::machining::ToolProbeParameters;
-use bahn_path::{Axis, MeasuredPart, Plane, Position, ToolMeasuring};
+use bahn_path::{Axis, Direction, MeasuredPart, Plane, Position, ToolMeasuring};
 
 use crate::tool::{Edges, Tool, in_table_steps};
 
@@ -113,9 +113,10 @@ impl Contacts {
                     true => (self.plane.second, 90.0),
                     false => (self.plane.first, 0.0),
                 };
-                let (direction, turn) = match parameters.negative {
-                    true => (-1.0, turn + HALF_TURN_DEG),
-                    false => (1.0, turn),
+                let direction = parameters.direction.sign();
+                let turn = match parameters.direction {
+                    Direction::Minus => turn + HALF_TURN_DEG,
+                    Direction::Plus => turn,
                 };
                 let depth = parameters.depth_mm + self.edges.length_offset;
                 self.side(axis, direction, depth, self.tooth(at, turn))

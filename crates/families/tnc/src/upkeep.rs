@@ -5,8 +5,9 @@
 //! memory is kept
 
 use bahn_exchange::Exchange;
-use bahn_kernel::{Axes, AxisUnit, Direction, OwnAxes};
+use bahn_kernel::{Axes, AxisUnit, OwnAxes};
 use bahn_parameters::{MessageId, PerPlcAxis};
+use bahn_path::Direction;
 use bahn_servo::OffsetInterval;
 
 use crate::markers::LUBRICATION_PULSE;

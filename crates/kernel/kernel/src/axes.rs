@@ -13,7 +13,7 @@ use bahn_parameters::{PLC_AXES, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, AxisSet, PerAxis, Position};
 use bahn_servo::{Commands, Measured, Timing};
 
-use crate::axis::{AxisId, AxisUnit, Mover};
+use crate::axis::{AxisId, AxisUnit, Mover, Operation};
 use crate::gantry;
 use crate::kinematics::{Box2, Chain};
 
@@ -326,10 +326,10 @@ impl OwnAxes<'_> {
     }
 
     /// Chooses lag or feed pre-control for a kind of operation; whether all have it.
-    pub fn choose_methods(&mut self, automatic: bool, rigid: bool) -> bool {
+    pub fn choose_methods(&mut self, operation: Operation) -> bool {
         let mut ready = true;
         for unit in self.iter_mut() {
-            ready &= unit.choose_method(automatic, rigid);
+            ready &= unit.choose_method(operation);
         }
         ready
     }

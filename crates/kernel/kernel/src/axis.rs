@@ -16,7 +16,7 @@
 
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::axis::AxisParameters;
-use bahn_path::Axis;
+use bahn_path::{Axis, Direction};
 use bahn_servo::{Axis as Servo, Gantry, Mark, Method, Timing};
 
 use crate::way_back::WayBack;
@@ -45,32 +45,15 @@ impl AxisId {
     }
 }
 
-/// A direction of traverse.
+/// A kind of operation, on which the method of positioning depends [000:4721-4733].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// The position grows.
-    Plus,
-    /// The position becomes less.
-    Minus,
-}
-
-impl Direction {
-    /// The direction of a value's sign; `None` for 0.
-    pub fn of(value: f64) -> Option<Direction> {
-        match value {
-            value if value > 0.0 => Some(Direction::Plus),
-            value if value < 0.0 => Some(Direction::Minus),
-            _ => None,
-        }
-    }
-
-    /// +1 for plus, -1 for minus: the factor of a distance or feed.
-    pub fn sign(self) -> f64 {
-        match self {
-            Direction::Plus => 1.0,
-            Direction::Minus => -1.0,
-        }
-    }
+pub enum Operation {
+    /// By hand, and the reference run.
+    Manual,
+    /// A program runs, or may.
+    Automatic,
+    /// The tool axis follows the spindle, in whatever operating mode.
+    RigidTapping,
 }
 
 /// What moves an axis.
@@ -354,12 +337,13 @@ impl AxisUnit {
 
     /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag, all others
     /// with pre-control in rigid tapping [000:6122].
-    fn wanted_method(&self, automatic: bool, rigid: bool) -> Method {
-        let wanted = match automatic {
-            true => self.parameters.precontrol_in_automatic,
-            false => self.parameters.precontrol_in_manual,
+    fn wanted_method(&self, operation: Operation) -> Method {
+        let wanted = match operation {
+            Operation::Manual => self.parameters.precontrol_in_manual,
+            Operation::Automatic => self.parameters.precontrol_in_automatic,
+            Operation::RigidTapping => true,
         };
-        if (wanted || rigid) && !self.is_plc_axis() {
+        if wanted && !self.is_plc_axis() {
             Method::Precontrol
         } else {
             Method::Lag
@@ -368,11 +352,11 @@ impl AxisUnit {
 
     /// Chooses lag or feed pre-control for a kind of operation; an axis that moves changes when it has come
     /// to a standstill (inferred). Whether it has the method.
-    pub fn choose_method(&mut self, automatic: bool, rigid: bool) -> bool {
-        if self.has_method(automatic, rigid) {
+    pub fn choose_method(&mut self, operation: Operation) -> bool {
+        if self.has_method(operation) {
             return true;
         }
-        let wanted = self.wanted_method(automatic, rigid);
+        let wanted = self.wanted_method(operation);
         let rests = self.is_at_rest();
         if rests {
             self.servo.set_method(wanted);
@@ -381,8 +365,8 @@ impl AxisUnit {
     }
 
     /// Whether it has the method for a kind of operation.
-    pub fn has_method(&self, automatic: bool, rigid: bool) -> bool {
-        self.servo.method() == self.wanted_method(automatic, rigid)
+    pub fn has_method(&self, operation: Operation) -> bool {
+        self.servo.method() == self.wanted_method(operation)
     }
 
     /// Says at which machine position a count is; nominal and actual position shift alike, by the value

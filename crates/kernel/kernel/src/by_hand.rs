@@ -1,8 +1,9 @@
 //! Single axes by hand: keys, increments and wheels lead them, as far as their software limits.
 
 use bahn_motion::Aim;
+use bahn_path::Direction;
 
-use crate::axis::{AxisId, AxisUnit, Direction, Mover};
+use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::now::Now;
 
 /// What is wanted of an axis in a cycle.

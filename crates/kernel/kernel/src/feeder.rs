@@ -13,12 +13,11 @@ use std::collections::VecDeque;
 
 use bahn_parameters::MessageId;
 use bahn_path::{
-    Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, PerAxis,
-    Position, Step,
+    Axis, AxisSet, Barrier, BlockRef, Curve, Direction, ElementSource, Function, LiveData, PathElement,
+    PerAxis, Position, Step,
 };
 use bahn_reader::{Cause, Message, ProgramError, Reader};
 
-use crate::axis::Direction;
 use crate::kinematics::{Box2, Chain};
 
 /// Work of the reader in one preparation at most, as [`Reader::allow`] counts it: some ms.

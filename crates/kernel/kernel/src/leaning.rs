@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::axis::AxisParameters;
-use bahn_path::{Axis, Placement, Position, Swivels};
+use bahn_path::{Axis, Direction, Placement, Position, Swivels};
 
 use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Direction, Mover};
+use crate::axis::{AxisUnit, Mover};
 use crate::by_hand::AtLimit;
 use crate::kinematics::{Chain, Offsets};
 use crate::now::Now;

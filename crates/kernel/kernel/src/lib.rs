@@ -66,7 +66,7 @@ mod voltage;
 mod way_back;
 
 pub use axes::{Axes, OwnAxes, first_ids, machine_position, path_positions, units};
-pub use axis::{AxisId, AxisUnit, Coupling, Direction, Mover};
+pub use axis::{AxisId, AxisUnit, Coupling, Mover, Operation};
 pub use block_time::BlockTime;
 pub use by_hand::{AtLimit, HandMove, look_at_limit, move_by_hand, within};
 pub use clock::{CircuitOrder, Clock, Core, Family};

@@ -1,8 +1,8 @@
 //! What holds for all that moves axes in a contour cycle.
 
 use bahn_parameters::PerPlcAxis;
+use bahn_path::Direction;
 
-use crate::axis::Direction;
 use crate::superimposing::Wheels;
 
 /// What holds for all that is done in a contour cycle.

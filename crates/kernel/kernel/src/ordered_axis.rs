@@ -4,6 +4,7 @@
 //! module 9123 cancels the error, its message stays until CE
 
 use bahn_motion::Aim;
+use bahn_path::Direction;
 
 use crate::axis::{AxisUnit, Mover};
 use crate::now::Now;
@@ -26,8 +27,8 @@ pub enum AxisOrder {
     FindMark {
         /// The feed, mm/min or degrees/min; no override acts on it.
         feed: f64,
-        /// It seeks in negative direction.
-        negative: bool,
+        /// Where it seeks.
+        direction: Direction,
     },
 }
 
@@ -82,7 +83,7 @@ impl OrderedAxis {
                     self.order = None;
                 }
             }
-            Some(AxisOrder::FindMark { feed, negative }) if !stop => {
+            Some(AxisOrder::FindMark { feed, direction }) if !stop => {
                 if self.target.replace(0.0).is_none() {
                     unit.servo.forget_marks();
                     unit.referenced = false;
@@ -94,8 +95,7 @@ impl OrderedAxis {
                     self.order = Some(AxisOrder::Stop);
                 }
                 let feed = feed.max(0.0);
-                let sign = if negative { -1.0 } else { 1.0 };
-                unit.drive(now.time_s, Aim::Feed(sign * feed), feed);
+                unit.drive(now.time_s, Aim::Feed(direction.sign() * feed), feed);
             }
             _ => stop = true,
         }

@@ -1,10 +1,10 @@
 //! A probing movement on a straight line: on until a stylus is deflected, back to where it was, and home.
 
 use bahn_motion::Aim;
-use bahn_path::{Axis, PerAxis, Position};
+use bahn_path::{Axis, Direction, PerAxis, Position};
 
 use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Direction};
+use crate::axis::AxisUnit;
 use crate::kinematics::Chain;
 use crate::now::Now;
 use crate::straight::Straight;

@@ -162,7 +162,7 @@ fn run_axis(
     }
     unit.mover = Mover::Reference;
     let reference = unit.parameters.reference;
-    let forwards = if reference.negative { -1.0 } else { 1.0 };
+    let forwards = reference.direction.sign();
     if stop && step != Step::Stop {
         unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
         if !unit.stands() {

@@ -5,10 +5,10 @@
 
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::operation::RestartParameters;
-use bahn_path::{Barrier, LiveData, PathElement, Position};
+use bahn_path::{Barrier, Direction, LiveData, PathElement, Position};
 
 use crate::axes::OwnAxes;
-use crate::axis::{Direction, Mover};
+use crate::axis::Mover;
 use crate::block_time::BlockTime;
 use crate::feeder::{Feeder, RunFault};
 use crate::progress::{Progress, RunState};

@@ -20,7 +20,7 @@ use bahn_motion::{Lead, Master};
 use bahn_path::{At, Axis, AxisSet, OverrideLaw, PathElement, Position, Thread};
 
 use crate::axes::OwnAxes;
-use crate::axis::Mover;
+use crate::axis::{Mover, Operation};
 use crate::kinematics::Chain;
 use crate::now::Now;
 use crate::spindle::SpindleLoop;
@@ -162,7 +162,10 @@ impl Tapping {
             return Preparation::Waits;
         }
         let oriented = thread.orientation_deg.is_none() || at.spindle.is_oriented();
-        let methods = at.axes.iter().all(|unit| unit.has_method(true, true));
+        let methods = at
+            .axes
+            .iter()
+            .all(|unit| unit.has_method(Operation::RigidTapping));
         let stands = at.spindle.actual_rpm().abs() < STANDS_RPM;
         self.ready = oriented && stands && methods;
         Preparation::Waits

@@ -9,14 +9,14 @@ use crate::operable::{Operable, StopChain, TrueAxis, Wired};
 ///
 /// ```
 /// use bahn_host::{AnyPlant, Event, Operable};
-/// use bahn_machine::Machine;
+/// use bahn_machine::{Button, Machine};
 /// let text = "[emergency_stop]\nacknowledgement = \"I3\"\n[axis.X]\noutput = \"1\"\nspeed = 15000\nvolts = 9\n\
 ///             encoder = { input = \"X1\", period_um = 20 }";
 /// let machine = Machine::from_toml(text).map_err(|faults| faults[0].clone())?;
 /// let mut plant = AnyPlant::new(machine);
 /// assert_eq!((plant.axis_letters(), plant.keys().len()), (vec!['X'], 0));
 /// let before = plant.copied();
-/// assert_eq!(plant.operate(&Event::EmergencyStop(true)), Ok(()));
+/// assert_eq!(plant.operate(&Event::EmergencyStop(Button::Pressed)), Ok(()));
 /// assert!(plant.stop_chain().pressed && before.is_some_and(|before| !before.stop_chain().pressed));
 /// # Ok::<(), bahn_text::Diagnostic>(())
 /// ```

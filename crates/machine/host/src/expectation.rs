@@ -1,6 +1,7 @@
 //! What a script expects of control and machine.
 
 use bahn_exchange::{Content, Image, Operand, parts};
+use bahn_path::Switch;
 use bahn_tnc::{ChannelView, Control, Mode, RunState, Signal, TestState, split_channel};
 
 use crate::observable::Observable;
@@ -18,7 +19,7 @@ pub enum Expectation {
     /// `S0="TEXT"`: a string of the PLC.
     Text(usize, String),
     /// `message "TEXT"`, `no message "TEXT"`: a message that is shown contains the text; any without text.
-    Message(String, bool),
+    Message(String, Presence),
     /// `mode full`: the operating mode.
     Mode(Mode),
     /// `run stopped`: the state of the run.
@@ -28,9 +29,25 @@ pub enum Expectation {
     /// `test finished`: the test run beside.
     Test(Tested),
     /// `lamp NC_START=1`: whether a lamp of the operating panel is lit.
-    Lamp(String, bool),
+    Lamp(String, Switch),
     /// `2:X.actual=100`, `2: run ended`: of a channel, from 0; signal, message, mode, run or tool.
     Of(usize, Box<Expectation>),
+}
+
+/// Whether something is to be there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// It is there.
+    There,
+    /// It is not there.
+    Absent,
+}
+
+impl Presence {
+    /// Whether what was looked for is as expected.
+    pub fn agrees(self, is_there: bool) -> bool {
+        is_there == (self == Presence::There)
+    }
 }
 
 /// How a value compares.
@@ -189,7 +206,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         let expectation = match word {
-            "message" => Expectation::Message(quoted(rest)?, true),
+            "message" => Expectation::Message(quoted(rest)?, Presence::There),
             "no" => {
                 let rest = rest.strip_prefix("message");
                 let rest = rest.ok_or("`expect no` takes `message`")?.trim();
@@ -198,7 +215,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                 } else {
                     quoted(rest)?
                 };
-                Expectation::Message(text, false)
+                Expectation::Message(text, Presence::Absent)
             }
             "mode" => Expectation::Mode(named(rest, "mode", &Mode::ALL.map(|mode| (mode.name(), mode)))?),
             "run" => Expectation::Run(named(rest, "state", &RUNS)?),
@@ -211,7 +228,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                     let known = known.join(", ");
                     return Err(format!("the machine has no lamp `{name}`; there are {known}"));
                 }
-                Expectation::Lamp(name.to_owned(), bit(value)?)
+                Expectation::Lamp(name.to_owned(), Switch::from(bit(value)?))
             }
             _ => return Ok(None),
         };
@@ -285,7 +302,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                     .map(|shown| control.shown_text(shown))
                     .collect();
                 let is_shown = shown.iter().any(|message| message.contains(text.as_str()));
-                (is_shown != *wanted).then(|| match shown.as_slice() {
+                (!wanted.agrees(is_shown)).then(|| match shown.as_slice() {
                     [] => "no message is shown".to_owned(),
                     shown => format!("shown is {}", shown.join(", ")),
                 })
@@ -312,9 +329,9 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                     None => "there is no test run".to_owned(),
                 })
             }
-            Expectation::Lamp(name, on) => {
+            Expectation::Lamp(name, light) => {
                 let actual = machine.lamps().contains(&(name.as_str(), true));
-                (actual != *on).then(|| format!("lamp {name} is {}", u8::from(actual)))
+                (actual != light.is_on()).then(|| format!("lamp {name} is {}", u8::from(actual)))
             }
         }
     }

@@ -101,7 +101,7 @@ pub use columns::{Cell, TextRow, TextTable, canonical};
 pub use edges::Edges;
 pub use error::HostError;
 pub use executed_path::{ElementId, ExecutedPath};
-pub use expectation::{Expectation, Relation, Run, Tested, run_name};
+pub use expectation::{Expectation, Presence, Relation, Run, Tested, run_name};
 pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};

@@ -40,7 +40,7 @@ use bahn_servo::Plant;
 /// }
 /// let mut bench = Bench(IdealAxes::default());
 /// assert_eq!(bench.operate(&Event::Key("START".to_owned(), KeyAction::Press)), Ok(()));
-/// assert!(bench.0.inputs[10] && bench.operate(&Event::EmergencyStop(true)).is_err());
+/// assert!(bench.0.inputs[10] && bench.operate(&Event::EmergencyStop(bahn_machine::Button::Pressed)).is_err());
 /// ```
 pub trait Operable: Plant {
     /// Lets something happen to it.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::action::{Action, Answer, Source};
 use crate::error::HostError;
-use crate::expectation::Expectation;
+use crate::expectation::{Expectation, Presence};
 use crate::host::Host;
 use crate::operable::Operable;
 use crate::script::{Base, Line, Script, ScriptAction};
@@ -207,7 +207,7 @@ impl Play {
 
     /// Something is as expected.
     pub fn expect(&mut self, expectation: &Expectation) {
-        if let Expectation::Message(text, true) = expectation
+        if let Expectation::Message(text, Presence::There) = expectation
             && !text.is_empty()
         {
             self.expected.push(text.clone());

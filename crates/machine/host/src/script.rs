@@ -11,7 +11,7 @@ use bahn_tnc::{Command, split_channel};
 
 use crate::action::{Action, ActionError};
 use crate::any_plant::AnyPlant;
-use crate::expectation::Expectation;
+use crate::expectation::{Expectation, Presence};
 use crate::operable::Operable;
 use bahn_text::{Diagnostic, Span, decode};
 
@@ -270,7 +270,7 @@ impl Reader<'_> {
                 let text = text.map(|text| text.trim_matches('"'));
                 let text = text.filter(|text| !text.is_empty());
                 let text = text.ok_or("it is written `after message TEXT`")?;
-                Ok(vec![Expectation::Message(text.to_owned(), true)])
+                Ok(vec![Expectation::Message(text.to_owned(), Presence::There)])
             }
             _ => Ok(Vec::new()),
         }
@@ -511,7 +511,7 @@ mod tests {
                 (PowerOn, 3_000, false),
             ]
         );
-        let message = |text: &str| vec![Expectation::Message(text.to_owned(), true)];
+        let message = |text: &str| vec![Expectation::Message(text.to_owned(), Presence::There)];
         assert_eq!(script.lines[3].condition, message("LIMIT SWITCH"));
         assert_eq!(script.lines[5].condition, message("A: B"));
         let faults = read("when X.heat > 5: ce\nafter rain: ce\n+2.5 cycles: ce\n1e7: ce").unwrap_err();

@@ -3,7 +3,7 @@
 use crate::axis::Axis;
 use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
-use crate::event::{Event, EventError, Fault, KeyAction, input_number};
+use crate::event::{Event, EventError, Fault, KeyAction, Put, input_number};
 use crate::machine::{Machine, set};
 use crate::magazine::Magazine;
 use crate::probe::Probe;
@@ -38,10 +38,10 @@ impl Machine {
             Event::HandwheelSwitch(switch, position) => {
                 set(&mut self.panel.operator.handwheel.switches, *switch, *position);
             }
-            Event::HandwheelPlug(plugged) => self.panel.operator.handwheel.connected = *plugged,
+            Event::HandwheelPlug(put) => self.panel.operator.handwheel.connected = *put == Put::In,
             Event::Switch(name, state) => self.switch(name, state)?,
-            Event::EmergencyStop(pressed) => self.chain.button = *pressed,
-            Event::Voltage(on) => self.chain.supply = *on,
+            Event::EmergencyStop(button) => self.chain.button = button.is_pressed(),
+            Event::Voltage(supply) => self.chain.supply = supply.is_on(),
             Event::Tool(tool) => {
                 if self.tool_probe.is_none() {
                     self.magazine_mut()?;
@@ -51,9 +51,9 @@ impl Machine {
                     magazine.insert(*tool);
                 }
             }
-            Event::Probe(inserted) => {
+            Event::Probe(put) => {
                 let angle = self.mechanism.spindle_deg();
-                self.probe()?.insert(*inserted, angle);
+                self.probe()?.insert(*put == Put::In, angle);
             }
             Event::Stylus(letter, force) => self.probe()?.push(*letter, *force),
             Event::Analogue(input, volts) => set(&mut self.plc.volts, *input, *volts),

@@ -1,5 +1,6 @@
 //! What an operator, a script or a test does to the machine, as text.
 
+use bahn_path::Switch;
 use bahn_servo::ANALOGUE_INPUTS;
 use bahn_servo::{HandwheelKey, INPUTS, WHEELS};
 
@@ -24,15 +25,15 @@ pub enum Event {
     /// A step switch at the handwheel adapter, 1 or 2, is turned to a position, from 1.
     HandwheelSwitch(usize, u8),
     /// The handwheel is plugged in, or out.
-    HandwheelPlug(bool),
+    HandwheelPlug(Put),
     /// A thing is moved by hand to one of its states.
     Switch(String, String),
     /// The EMERGENCY STOP button is pressed or released.
-    EmergencyStop(bool),
+    EmergencyStop(Button),
     /// The supply of the control voltage comes or goes.
-    Voltage(bool),
+    Voltage(Switch),
     /// The touch probe is put into the spindle or taken out.
-    Probe(bool),
+    Probe(Put),
     /// A hand pushes the stylus of the touch probe along an axis X, Y or Z of the machine with a force, N, until the next such
     /// event.
     Stylus(char, f64),
@@ -48,6 +49,31 @@ pub enum Event {
     Fault(Fault),
     /// Something is repaired: an axis letter, `S`, the name of a thing, an input, `relay`, `battery`, or `all`.
     Repair(String),
+}
+
+/// Where a thing is put that can be in its place or out of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Put {
+    /// Into its place.
+    In,
+    /// Out of it.
+    Out,
+}
+
+/// How a button or key stands that stays where it is put.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Button {
+    /// It is down.
+    Pressed,
+    /// It is up.
+    Released,
+}
+
+impl Button {
+    /// Whether it is down.
+    pub fn is_pressed(self) -> bool {
+        self == Button::Pressed
+    }
 }
 
 /// What is done with a key.
@@ -207,10 +233,16 @@ repair AXIS|S|THING|gear|magazine|I12|relay|probe|battery|all
                 [name, state] => Ok(Event::Switch((*name).to_owned(), (*state).to_owned())),
                 _ => Err(EventError::Form("switch THING STATE")),
             },
-            "emergency" => {
-                either(rest, "press", "release", "emergency press|release").map(Event::EmergencyStop)
-            }
-            "voltage" => either(rest, "on", "off", "voltage on|off").map(Event::Voltage),
+            "emergency" => match rest {
+                ["press"] => Ok(Event::EmergencyStop(Button::Pressed)),
+                ["release"] => Ok(Event::EmergencyStop(Button::Released)),
+                _ => Err(EventError::Form("emergency press|release")),
+            },
+            "voltage" => match rest {
+                ["on"] => Ok(Event::Voltage(Switch::On)),
+                ["off"] => Ok(Event::Voltage(Switch::Off)),
+                _ => Err(EventError::Form("voltage on|off")),
+            },
             "probe" => probe(rest),
             "tool" => match rest {
                 [tool] => Ok(Event::Tool(number(tool, 0, 32_767)? as u32)),
@@ -256,8 +288,8 @@ fn key(rest: &[&str]) -> Result<Event, EventError> {
 fn probe(rest: &[&str]) -> Result<Event, EventError> {
     const FORM: &str = "probe insert|remove | push X|Y|Z NEWTON";
     match rest {
-        ["insert"] => Ok(Event::Probe(true)),
-        ["remove"] => Ok(Event::Probe(false)),
+        ["insert"] => Ok(Event::Probe(Put::In)),
+        ["remove"] => Ok(Event::Probe(Put::Out)),
         ["push", axis @ ("X" | "Y" | "Z"), newton] => {
             Ok(Event::Stylus(letter(axis, FORM)?, number(newton, -20, 20)?))
         }
@@ -278,8 +310,8 @@ fn handwheel(rest: &[&str]) -> Result<Event, EventError> {
     const FORM: &str = "handwheel [1|2|3] STEPS | key NAME press|release|tap | S1|S2 POSITION | plug|unplug";
     let steps = |text| Ok(number(text, -1_000_000, 1_000_000)? as i64);
     match rest {
-        ["plug"] => Ok(Event::HandwheelPlug(true)),
-        ["unplug"] => Ok(Event::HandwheelPlug(false)),
+        ["plug"] => Ok(Event::HandwheelPlug(Put::In)),
+        ["unplug"] => Ok(Event::HandwheelPlug(Put::Out)),
         [one] => Ok(Event::Handwheel(0, steps(one)?)),
         ["S1", position] => Ok(Event::HandwheelSwitch(0, number(position, 1, 8)? as u8)),
         ["S2", position] => Ok(Event::HandwheelSwitch(1, number(position, 1, 8)? as u8)),
@@ -375,14 +407,6 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
         _ => Err(EventError::Form(
             "fault encoder|drive|motor|brake|clamp|offset|input|device|magazine|relay|probe|battery ..",
         )),
-    }
-}
-
-fn either(rest: &[&str], yes: &str, no: &str, form: &'static str) -> Result<bool, EventError> {
-    match rest {
-        [word] if *word == yes => Ok(true),
-        [word] if *word == no => Ok(false),
-        _ => Err(EventError::Form(form)),
     }
 }
 

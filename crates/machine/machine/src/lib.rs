@@ -63,7 +63,7 @@ pub use axis::{AxisState, DriveFault};
 pub use chain::{ContactFault, RelayFault};
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
-pub use event::{Event, EventError, Fault, KeyAction};
+pub use event::{Button, Event, EventError, Fault, KeyAction, Put};
 pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, OperatorKeys};
 pub use machine::Machine;
 pub use magazine::MagazineState;

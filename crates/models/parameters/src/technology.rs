@@ -16,7 +16,7 @@
 
 use std::sync::LazyLock;
 
-use bahn_path::{At, ControlFunction, SpindleOrder, Synchronisation};
+use bahn_path::{At, ControlFunction, SpindleOrder, Switch, Synchronisation};
 
 use crate::ControlModel;
 use crate::conformance::{bit, models};
@@ -76,7 +76,7 @@ pub enum ControlAction {
     /// M19: the spindle is to be oriented.
     SpindleOrientation,
     /// Coolant, on or off, as Q111 has it.
-    Coolant(bool),
+    Coolant(Switch),
     /// M89: calls the cycle in every block, where MP7440 bit 1 is set; it is not output then.
     ModalCycleCall,
     /// M99: calls the cycle once.
@@ -114,11 +114,11 @@ pub enum ControlAction {
     /// M200 to M204: output S gives a voltage.
     Voltage,
     /// M114, M115: the offsets of swivel axes are compensated, or no more.
-    CompensateSwivels(bool),
+    CompensateSwivels(Switch),
     /// M116, M117: feeds of rotary axes are those of the tool, or of the axes.
-    SurfaceFeed(bool),
+    SurfaceFeed(Switch),
     /// M126, M127: rotary axes take the shortest way, or the one that does not cross 0.
-    ShortestWay(bool),
+    ShortestWay(Switch),
     /// It acts in the kernel.
     Control(ControlFunction),
 }
@@ -143,8 +143,8 @@ impl ControlAction {
             ControlAction::Spindle(SpindleOrder::StopWithRun),
         ),
         ("spindle-orientation", ControlAction::SpindleOrientation),
-        ("coolant-on", ControlAction::Coolant(true)),
-        ("coolant-off", ControlAction::Coolant(false)),
+        ("coolant-on", ControlAction::Coolant(Switch::On)),
+        ("coolant-off", ControlAction::Coolant(Switch::Off)),
         ("modal-cycle-call", ControlAction::ModalCycleCall),
         ("cycle-call", ControlAction::CycleCall),
         ("constant-speed", ControlAction::ConstantSpeed),
@@ -158,12 +158,12 @@ impl ControlAction {
         ("feed-at-edge", ControlAction::FeedAtEdge),
         ("feed-at-edge-reduced", ControlAction::FeedAtEdgeReduced),
         ("feed-at-centre", ControlAction::FeedAtCentre),
-        ("compensate-swivels", ControlAction::CompensateSwivels(true)),
-        ("leave-swivels", ControlAction::CompensateSwivels(false)),
-        ("surface-feed", ControlAction::SurfaceFeed(true)),
-        ("axis-feed", ControlAction::SurfaceFeed(false)),
-        ("shortest-way", ControlAction::ShortestWay(true)),
-        ("way-beside-0", ControlAction::ShortestWay(false)),
+        ("compensate-swivels", ControlAction::CompensateSwivels(Switch::On)),
+        ("leave-swivels", ControlAction::CompensateSwivels(Switch::Off)),
+        ("surface-feed", ControlAction::SurfaceFeed(Switch::On)),
+        ("axis-feed", ControlAction::SurfaceFeed(Switch::Off)),
+        ("shortest-way", ControlAction::ShortestWay(Switch::On)),
+        ("way-beside-0", ControlAction::ShortestWay(Switch::Off)),
         ("corner-arcs", ControlAction::CornerArcs),
         ("sharp-corners", ControlAction::SharpCorners),
         ("leave-out-points", ControlAction::LeaveOutPoints),
@@ -171,27 +171,27 @@ impl ControlAction {
         ("superimpose", ControlAction::Superimpose),
         (
             "replace-worn-tools",
-            ControlAction::Control(ControlFunction::ReplaceWornTools(true)),
+            ControlAction::Control(ControlFunction::ReplaceWornTools(Switch::On)),
         ),
         (
             "keep-worn-tools",
-            ControlAction::Control(ControlFunction::ReplaceWornTools(false)),
+            ControlAction::Control(ControlFunction::ReplaceWornTools(Switch::Off)),
         ),
         (
             "first-servo-set",
-            ControlAction::Control(ControlFunction::SecondServoSet(false)),
+            ControlAction::Control(ControlFunction::SecondServoSet(Switch::Off)),
         ),
         (
             "second-servo-set",
-            ControlAction::Control(ControlFunction::SecondServoSet(true)),
+            ControlAction::Control(ControlFunction::SecondServoSet(Switch::On)),
         ),
         (
             "take-larger-tools",
-            ControlAction::Control(ControlFunction::TakeLargerTools(true)),
+            ControlAction::Control(ControlFunction::TakeLargerTools(Switch::On)),
         ),
         (
             "refuse-larger-tools",
-            ControlAction::Control(ControlFunction::TakeLargerTools(false)),
+            ControlAction::Control(ControlFunction::TakeLargerTools(Switch::Off)),
         ),
     ];
 }

@@ -4,7 +4,7 @@
 
 use bahn_parameters::spindle::{GearSignal, SpindleOutput};
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_path::Axis;
+use bahn_path::{Axis, Direction};
 use bahn_servo::settings::MarkKind;
 
 /// The reference list of a model with other values.
@@ -73,7 +73,7 @@ fn bits_belong_to_their_axis() {
         [0, 1, 2].map(|i| axis(i).output.polarity_negative),
         [false, true, false]
     );
-    assert_eq!([0, 4].map(|i| axis(i).reference.negative), [false, true]);
+    assert_eq!([0, 4].map(|i| axis(i).reference.direction), Direction::BOTH);
     assert_eq!([0, 1].map(|i| axis(i).precontrol_in_manual), [true, false]);
 }
 
@@ -97,7 +97,10 @@ fn the_old_list_answers_under_its_own_numbers() {
         ),
         (9000.0, 1500.0, 0.8)
     );
-    assert_eq!((y.reference.feed_mm_min, y.reference.negative), (900.0, true));
+    assert_eq!(
+        (y.reference.feed_mm_min, y.reference.direction),
+        (900.0, Direction::Minus)
+    );
     assert_eq!(
         (y.reference.kind, y.reference.mark_spacing_mm),
         (MarkKind::DistanceCodedOld, 10.0)

@@ -161,7 +161,7 @@ Rapid traverse * | axis.*.motion.rapid_mm_min
 Manual (jog) feed * | axis.*.motion.manual_mm_min
 Speed for reference point approach * | axis.*.reference.feed_mm_min
 Encoder signal evaluation * | axis.*.encoder.signal_period_um
-Traverse direction for reference approach * | axis.*.reference.negative
+Traverse direction for reference approach * | axis.*.reference.direction
 Counting direction * | axis.*.encoder.counts_negative
 Polarity of nominal value voltage * | axis.*.output.polarity_negative
 Integral factor * | axis.*.output.integral_factor

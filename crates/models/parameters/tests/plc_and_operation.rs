@@ -5,6 +5,7 @@
 use bahn_parameters::operation::{Handwheel, OverrideSteps, Station, ToolOutput, ToolOutputKind};
 use bahn_parameters::plc::MonitoringInput;
 use bahn_parameters::{ControlModel, ParameterList};
+use bahn_path::Direction;
 
 /// The reference list of a model with other values.
 fn with(model: ControlModel, assignments: &[&str]) -> ParameterList {
@@ -166,8 +167,8 @@ fn handwheels() {
         &["7640=6", "7650=1", "7660=4", "7670.2=3", "7671.0=25"],
     );
     assert_eq!(
-        (hr410.kind, hr410.positive, hr410.threshold),
-        (Handwheel::Hr410, true, 4)
+        (hr410.kind, hr410.direction, hr410.threshold),
+        (Handwheel::Hr410, Direction::Plus, 4)
     );
     assert_eq!((hr410.factor_min, hr410.jog_percent[0]), ([0, 0, 3], 25.0));
     assert_eq!(

@@ -3,7 +3,7 @@
 use bahn_parameters::ControlModel;
 use bahn_parameters::conformance::{self, Effect, Kind};
 use bahn_parameters::technology::{AxisHalts, ControlAction, Output, Technology};
-use bahn_path::{At, SpindleOrder, Synchronisation};
+use bahn_path::{At, SpindleOrder, Switch, Synchronisation};
 
 /// M0 to M99, ten in a line: S takes effect at the start, E at the end of its block, B at either. TNC 151/155
 /// [001:568-670] and TNC 407/415/425 [000:7081-7184] have the same list, but for M89.
@@ -88,8 +88,8 @@ fn spindle_and_coolant() {
             with(ControlAction::Spindle(SpindleOrder::StopWithRun)),
             [0, 2, 6, 30]
         );
-        assert_eq!(with(ControlAction::Coolant(true)), [8, 13, 14]);
-        assert_eq!(with(ControlAction::Coolant(false)), [0, 2, 9, 30]);
+        assert_eq!(with(ControlAction::Coolant(Switch::On)), [8, 13, 14]);
+        assert_eq!(with(ControlAction::Coolant(Switch::Off)), [0, 2, 9, 30]);
         assert_eq!(with(ControlAction::ProgramEnd), [2, 30]);
     }
 }

@@ -8,6 +8,7 @@ use std::io::{self, BufWriter, Write};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use bahn_path::Direction;
 use thiserror::Error;
 
 use crate::part::Part;
@@ -52,7 +53,7 @@ struct Corner {
     z: f32,
 }
 
-/// A merged rectangle. The normal points along +axis where `positive`, else along -axis.
+/// A merged rectangle. Its normal points along the axis that stands on it, out of the material.
 #[derive(Clone, Debug)]
 enum Face {
     /// Floor or lower face.
@@ -60,21 +61,21 @@ enum Face {
         i: Range<usize>,
         j: Range<usize>,
         z: f32,
-        positive: bool,
+        normal: Direction,
     },
     /// Wall across the first axis at the lattice line `i`.
     First {
         i: usize,
         j: Range<usize>,
         z: [f32; 2],
-        positive: bool,
+        normal: Direction,
     },
     /// Wall across the second axis at the lattice line `j`.
     Second {
         j: usize,
         i: Range<usize>,
         z: [f32; 2],
-        positive: bool,
+        normal: Direction,
     },
 }
 
@@ -159,11 +160,11 @@ impl<'a> Mesh<'a> {
     fn new(part: &'a Part, go_on: GoOn) -> Result<Mesh<'a>, MeshError> {
         let mut faces = Vec::new();
         let height = |i: usize, j: usize| part.height(i, j);
-        merge_level(part, height, true, &mut faces, go_on)?;
+        merge_level(part, height, Direction::Plus, &mut faces, go_on)?;
         merge_level(
             part,
             |i, j| if part.height(i, j) > 0.0 { 1.0 } else { 0.0 },
-            false,
+            Direction::Minus,
             &mut faces,
             go_on,
         )?;
@@ -349,21 +350,21 @@ fn strip(side: &[[f32; 3]], opposite: &[[f32; 3]], add: &mut impl FnMut(Triangle
 /// The four corners of a face, counter-clockwise as seen from outside.
 fn rectangle(face: &Face) -> [Corner; 4] {
     let corner = |i, j, z| Corner { i, j, z };
-    let (corners, positive) = match face {
-        Face::Level { i, j, z, positive } => (
+    let (corners, normal) = match face {
+        Face::Level { i, j, z, normal } => (
             [
                 corner(i.start, j.start, *z),
                 corner(i.end, j.start, *z),
                 corner(i.end, j.end, *z),
                 corner(i.start, j.end, *z),
             ],
-            *positive,
+            *normal,
         ),
         Face::First {
             i,
             j,
             z: [low, high],
-            positive,
+            normal,
         } => (
             [
                 corner(*i, j.start, *low),
@@ -371,13 +372,13 @@ fn rectangle(face: &Face) -> [Corner; 4] {
                 corner(*i, j.end, *high),
                 corner(*i, j.start, *high),
             ],
-            *positive,
+            *normal,
         ),
         Face::Second {
             j,
             i,
             z: [low, high],
-            positive,
+            normal,
         } => (
             [
                 corner(i.end, *j, *low),
@@ -385,18 +386,21 @@ fn rectangle(face: &Face) -> [Corner; 4] {
                 corner(i.start, *j, *high),
                 corner(i.end, *j, *high),
             ],
-            *positive,
+            *normal,
         ),
     };
     let [a, b, c, d] = corners;
-    if positive { corners } else { [d, c, b, a] }
+    match normal {
+        Direction::Plus => corners,
+        Direction::Minus => [d, c, b, a],
+    }
 }
 
 /// Rectangles of columns with one height: each grows along the row first, then over rows.
 fn merge_level(
     part: &Part,
     height: impl Fn(usize, usize) -> f32,
-    positive: bool,
+    normal: Direction,
     faces: &mut Vec<Face>,
     go_on: GoOn,
 ) -> Result<(), MeshError> {
@@ -423,12 +427,15 @@ fn merge_level(
                     cells.fill(true);
                 }
             }
-            let z = if positive { z } else { 0.0 };
+            let z = match normal {
+                Direction::Plus => z,
+                Direction::Minus => 0.0,
+            };
             faces.push(Face::Level {
                 i: i..right,
                 j: j..bottom,
                 z,
-                positive,
+                normal,
             });
             i = right;
         }
@@ -449,20 +456,21 @@ fn merge_walls(part: &Part, faces: &mut Vec<Face>, go_on: GoOn) -> Result<(), Me
                 .find(|k| pair(*k) != [before, after])
                 .unwrap_or(count);
             if before != after {
-                let (z, positive) = ([before.min(after), before.max(after)], before > after);
+                let z = [before.min(after), before.max(after)];
+                let normal = Direction::minus_if(before < after);
                 faces.push(if across == 0 {
                     Face::First {
                         i: line,
                         j: start..end,
                         z,
-                        positive,
+                        normal,
                     }
                 } else {
                     Face::Second {
                         j: line,
                         i: start..end,
                         z,
-                        positive,
+                        normal,
                     }
                 });
             }

@@ -8,10 +8,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use bahn_path::Axis;
-use bahn_program::{
-    CycleWord, Direction, Distance, InForce, Modality, Motion, Operation, PathFunction, Program,
-};
+use bahn_path::{Axis, Sense};
+use bahn_program::{CycleWord, Distance, InForce, Modality, Motion, Operation, PathFunction, Program};
 
 use crate::lower::{State, bare};
 
@@ -26,11 +24,7 @@ const DIRECTION: usize = 2;
 const PLANE: usize = 3;
 
 const DISTANCES: [Distance; 2] = [Distance::Absolute, Distance::Incremental];
-const DIRECTIONS: [Option<Direction>; 3] = [
-    None,
-    Some(Direction::Clockwise),
-    Some(Direction::CounterClockwise),
-];
+const DIRECTIONS: [Option<Sense>; 3] = [None, Some(Sense::Clockwise), Some(Sense::CounterClockwise)];
 const PLANES: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 
 /// All that may be in force: a set for the path function, G90 or G91, the direction of arcs and the tool axis.

@@ -15,13 +15,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use bahn_interpreter::Interpreter;
 use bahn_parameters::ControlModel;
 use bahn_path::{
-    Arc as PathArc, At, Axis, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Position,
+    Arc as PathArc, At, Axis, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Position, Sense,
     ToolCall,
 };
 use bahn_program::{
-    Block, Compensation, Coordinates, CycleBlock, CycleFunction, CycleWord, Direction, Feed, FormatOptions,
-    Header, MFunctions, Motion, MotionKind, Operation, Quantity, Unit, Value, Word, cycle_parameters,
-    format_block,
+    Block, Compensation, Coordinates, CycleBlock, CycleFunction, CycleWord, Feed, FormatOptions, Header,
+    MFunctions, Motion, MotionKind, Operation, Quantity, Unit, Value, Word, cycle_parameters, format_block,
 };
 
 use crate::floating_tap::{FloatingTaps, Part, Tap};
@@ -388,10 +387,7 @@ impl Writer {
             centre.set(arc.plane.first, word(arc.centre[0]));
             centre.set(arc.plane.second, word(arc.centre[1]));
             self.block(Operation::CircleCentre(centre));
-            motion.direction = Some(match arc.sweep_deg < 0.0 {
-                true => Direction::Clockwise,
-                false => Direction::CounterClockwise,
-            });
+            motion.direction = Some(Sense::of_sweep(arc.sweep_deg));
             let helix = motion
                 .coordinates
                 .axes()
@@ -445,7 +441,9 @@ impl Writer {
             (false, _) => element.clone(),
         };
         let travel = along_one_axis(&plunge)?;
-        let clockwise = plunge.thread().is_some_and(|thread| thread.clockwise);
+        let clockwise = plunge
+            .thread()
+            .is_some_and(|thread| thread.spindle == Sense::Clockwise);
         if thread.retracts {
             let pitch = if clockwise {
                 thread.pitch_mm

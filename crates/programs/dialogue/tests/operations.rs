@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use bahn_dialogue::Reaction;
 use bahn_parameters::ControlModel;
-use bahn_path::Axis;
+use bahn_path::{Axis, Sense};
 use bahn_program::{
-    Block, Compensation, Coordinates, CycleBlock, CycleWord, Direction, Feed, MFunctions, Motion, MotionKind,
+    Block, Compensation, Coordinates, CycleBlock, CycleWord, Feed, MFunctions, Motion, MotionKind,
     NumberedBlock, Operation, Program, Value, Word,
 };
 use desk::Desk;
@@ -73,11 +73,11 @@ fn compensation() -> impl Strategy<Value = (&'static str, Option<Compensation>)>
     ])
 }
 
-fn turn() -> impl Strategy<Value = (&'static str, Option<Direction>)> {
+fn turn() -> impl Strategy<Value = (&'static str, Option<Sense>)> {
     select(vec![
-        ("ENT", Some(Direction::Clockwise)),
-        ("SK1 ENT", Some(Direction::CounterClockwise)),
-        ("SIGN SIGN ENT", Some(Direction::Clockwise)),
+        ("ENT", Some(Sense::Clockwise)),
+        ("SK1 ENT", Some(Sense::CounterClockwise)),
+        ("SIGN SIGN ENT", Some(Sense::Clockwise)),
     ])
 }
 
@@ -274,7 +274,7 @@ proptest! {
         let wanted = [
             vec![], vec![number(depths[0])], vec![number(depths[1])], vec![number(depths[2]), feed(feeds[0])],
             vec![side(Axis::X, sides[0].1)], vec![side(Axis::Y, sides[1].1)],
-            vec![feed(feeds[1]), CycleWord::Direction(Direction::Clockwise), number(f64::from(radius))],
+            vec![feed(feeds[1]), CycleWord::Sense(Sense::Clockwise), number(f64::from(radius))],
         ];
         for (sub, wanted) in (0..).zip(wanted) {
             let Operation::Cycle(block) = operation(&desk, u32::from(sub) + 1) else { panic!("{keys}") };

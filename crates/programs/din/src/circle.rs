@@ -1,6 +1,6 @@
 //! G02 and G03: the arc between two positions.
 
-use bahn_path::{Arc, Curve, Plane, Point2, Position, sweep_deg};
+use bahn_path::{Arc, Curve, Plane, Point2, Position, Sense, sweep_deg};
 
 /// How the centre is said.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub(crate) fn arc(
     start: &Position,
     end: &Position,
     centre: Centre,
-    counter_clockwise: bool,
+    sense: Sense,
 ) -> Result<Curve, String> {
     let (s, e) = (plane.point(start), plane.point(end));
     let centre = match centre {
@@ -29,9 +29,9 @@ pub(crate) fn arc(
             let along = |axis| ijk.get(bahn_path::Axis::index(axis)).copied().unwrap_or_default();
             [s[0] + along(plane.first), s[1] + along(plane.second)]
         }
-        Centre::Radius(radius) => about(s, e, radius, counter_clockwise)?,
+        Centre::Radius(radius) => about(s, e, radius, sense)?,
     };
-    let sweep_deg = sweep_deg(centre, s, e, counter_clockwise);
+    let sweep_deg = sweep_deg(centre, s, e, sense);
     let arc = Arc {
         plane,
         centre,
@@ -51,7 +51,7 @@ pub(crate) fn arc(
 }
 
 /// The centre of a circle of a radius through two points.
-fn about(s: Point2, e: Point2, radius: f64, counter_clockwise: bool) -> Result<Point2, String> {
+fn about(s: Point2, e: Point2, radius: f64, sense: Sense) -> Result<Point2, String> {
     let (dx, dy) = (e[0] - s[0], e[1] - s[1]);
     let chord = dx.hypot(dy);
     if chord == 0.0 {
@@ -63,11 +63,7 @@ fn about(s: Point2, e: Point2, radius: f64, counter_clockwise: bool) -> Result<P
     }
     let height = (radius * radius - half * half).max(0.0).sqrt();
     // Of the shorter arc the centre lies on the side to which it turns.
-    let side = if (radius > 0.0) == counter_clockwise {
-        height
-    } else {
-        -height
-    };
+    let side = sense.sign() * if radius > 0.0 { height } else { -height };
     Ok([
         s[0] + dx / 2.0 - dy / chord * side,
         s[1] + dy / 2.0 + dx / chord * side,

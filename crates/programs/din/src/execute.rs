@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_path::{Axis, Curve, PerAxis, Plane, Position};
+use bahn_path::{Axis, Curve, PerAxis, Plane, Position, Sense, Switch};
 
 use crate::block::{Block, Word, WordKind};
 use crate::circle::{self, Centre};
@@ -75,7 +75,7 @@ impl Default for Modal {
 enum Path {
     Rapid,
     Line,
-    Circle { counter_clockwise: bool },
+    Circle(Sense),
 }
 
 /// What a block does beside its unit.
@@ -164,9 +164,11 @@ fn g_function(g: u16, word: &Word, state: &mut State, unit: &mut Unit, draft: &m
         0 => modal.path = Path::Rapid,
         1 => modal.path = Path::Line,
         2 | 3 => {
-            modal.path = Path::Circle {
-                counter_clockwise: g == 3,
-            }
+            modal.path = Path::Circle(if g == 3 {
+                Sense::CounterClockwise
+            } else {
+                Sense::Clockwise
+            })
         }
         4 => {
             let (column, length) = (word.column, word.length);
@@ -179,9 +181,11 @@ fn g_function(g: u16, word: &Word, state: &mut State, unit: &mut Unit, draft: &m
         17 => modal.plane = Plane::XY,
         18 => modal.plane = Plane::ZX,
         19 => modal.plane = Plane::YZ,
-        40..=42 => unit.commands.push(Command::RadiusCompensation(g != 40)),
+        40..=42 => unit
+            .commands
+            .push(Command::RadiusCompensation(Switch::from(g != 40))),
         90 | 91 => modal.is_incremental = g == 91,
-        107 | 108 => unit.commands.push(Command::EdgeBanding(g == 108)),
+        107 | 108 => unit.commands.push(Command::EdgeBanding(Switch::from(g == 108))),
         _ => {}
     }
 }
@@ -446,7 +450,7 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
         Err(fault_at(column, length, message))
     };
     let centre_word = of(&|kind| matches!(kind, WordKind::Centre(..) | WordKind::Radius(_)));
-    let is_circle = matches!(modal.path, Path::Circle { .. });
+    let is_circle = matches!(modal.path, Path::Circle(_));
     if !is_circle && let Some(word) = centre_word {
         return wrong(Some(word), "I, J, K and R belong to G02 and G03".into());
     }
@@ -474,7 +478,7 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
     }
     let curve = match modal.path {
         Path::Rapid | Path::Line => Curve::Line,
-        Path::Circle { counter_clockwise } => {
+        Path::Circle(sense) => {
             for axis in [modal.plane.first, modal.plane.second] {
                 start[axis] = known(&start, axis);
                 begin[axis] = known(&begin, axis);
@@ -488,7 +492,7 @@ fn motion(state: &mut State, draft: &Draft, block: &Block) -> Result<Option<Moti
                 (Some(_), Some(_)) => return wrong(centre_word, "R beside I, J, K".into()),
                 (None, None) => return wrong(first, "G02 and G03 need I, J, K or R".into()),
             };
-            let curve = circle::arc(modal.plane, &begin, &end, centre, counter_clockwise);
+            let curve = circle::arc(modal.plane, &begin, &end, centre, sense);
             match curve {
                 Ok(curve) => curve,
                 Err(message) => return wrong(centre_word, message),

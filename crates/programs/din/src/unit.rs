@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use bahn_path::{Axis, Curve, FeedRate, Position};
+use bahn_path::{Axis, Curve, FeedRate, Position, Switch};
 
 /// One executed block. What stands in it happens in this order: commands, functions before the motion, motion,
 /// functions after it, the end of the program; which functions come before and which after says their type in the
@@ -124,10 +124,10 @@ pub enum Command {
         /// Greatest deceleration along the path, mm/s².
         deceleration_mm_s2: Option<f64>,
     },
-    /// G108 (`true`) begins, G107 ends the measurement of edge banding [004:69].
-    EdgeBanding(bool),
-    /// Tool radius compensation is on from here on (`true`: G41, G42) or off (G40).
-    RadiusCompensation(bool),
+    /// G108 begins (on), G107 ends (off) the measurement of edge banding [004:69].
+    EdgeBanding(Switch),
+    /// Tool radius compensation is on from here on (G41, G42) or off (G40).
+    RadiusCompensation(Switch),
     /// An axis moves on its own (`X[INDP ..]`) [004:108].
     Independent(Independent),
     /// A spindle order without M function, e.g. `S2[POS=90]` beside M19.

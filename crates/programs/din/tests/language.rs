@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 
 use bahn_din::{Command, LandmarkKind, Program, Step};
-use bahn_path::{Axis, Curve, Plane, Position};
+use bahn_path::{Axis, Curve, Plane, Position, Switch};
 use bahn_text::{MemoryFiles, Span};
 use support::{Bench, decoder_with, refused, reported, reported_all, run, run_with, variable};
 
@@ -371,8 +371,8 @@ fn comments_over_several_lines() {
 #[test]
 fn g40_to_g42_are_reported_and_change_no_path() {
     let units = run("G41 G01 X10 F100\nG40 X20");
-    assert_eq!(units[0].commands, [Command::RadiusCompensation(true)]);
-    assert_eq!(units[1].commands, [Command::RadiusCompensation(false)]);
+    assert_eq!(units[0].commands, [Command::RadiusCompensation(Switch::On)]);
+    assert_eq!(units[1].commands, [Command::RadiusCompensation(Switch::Off)]);
     assert_eq!(reported(&units[1]), "#2 to X20 Y0 F100");
 }
 

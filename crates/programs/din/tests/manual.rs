@@ -3,7 +3,7 @@
 mod support;
 
 use bahn_din::{Command, Independent, SpindleOrder};
-use bahn_path::Axis;
+use bahn_path::{Axis, Switch};
 use bahn_text::MemoryFiles;
 use support::{Bench, reported, reported_all, run, run_with, variable};
 
@@ -31,8 +31,8 @@ fn edge_banding_begins_and_ends() {
     // [004:69]
     let units =
         run("N05 X0 Y0\nN10 G108 (start)\nN20 G01 X90 Y90 F20\nN30 G01 X150 Y150 M33 F8\nN40 G107\nM30");
-    assert_eq!(units[1].commands, [Command::EdgeBanding(true)]);
-    assert_eq!(units[4].commands, [Command::EdgeBanding(false)]);
+    assert_eq!(units[1].commands, [Command::EdgeBanding(Switch::On)]);
+    assert_eq!(units[4].commands, [Command::EdgeBanding(Switch::Off)]);
     assert_eq!(reported(&units[3]), "N30 M33 to X150 Y150 F8");
     assert_eq!(units[0].motion, None, "the path stands there already");
 }

@@ -1,7 +1,7 @@
 //! The geometry of arcs from what a block gives.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, Curve, Plane, Point2};
+use bahn_path::{Arc, Curve, Plane, Point2, Sense};
 
 use crate::error::Fault;
 
@@ -33,7 +33,7 @@ pub(crate) fn with_radius(
     start: Point2,
     end: Point2,
     radius: f64,
-    counter_clockwise: bool,
+    sense: Sense,
 ) -> Result<Arc, Fault> {
     let chord = [end[0] - start[0], end[1] - start[1]];
     let d = chord[0].hypot(chord[1]);
@@ -57,11 +57,7 @@ pub(crate) fn with_radius(
         return Err(Fault::new(MessageId::CircleEndPosIncorrect, detail));
     }
     let height = (radius * radius - d * d / 4.0).max(0.0).sqrt();
-    let sign = if counter_clockwise == (radius > 0.0) {
-        1.0
-    } else {
-        -1.0
-    };
+    let sign = sense.sign() * if radius > 0.0 { 1.0 } else { -1.0 };
     let normal = [-chord[1] / d, chord[0] / d];
     let middle = [0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])];
     let centre = [
@@ -71,7 +67,7 @@ pub(crate) fn with_radius(
     Ok(Arc {
         plane,
         centre,
-        sweep_deg: bahn_path::sweep_deg(centre, start, end, counter_clockwise),
+        sweep_deg: bahn_path::sweep_deg(centre, start, end, sense),
     })
 }
 
@@ -103,7 +99,7 @@ pub(crate) fn tangential(plane: Plane, start: Point2, tangent: Point2, end: Poin
     }
     let radius = square / (2.0 * cross);
     let centre = [start[0] - radius * t[1], start[1] + radius * t[0]];
-    let sweep_deg = bahn_path::sweep_deg(centre, start, end, radius > 0.0);
+    let sweep_deg = bahn_path::sweep_deg(centre, start, end, Sense::of_sweep(radius));
     Ok(Curve::Arc(Arc {
         plane,
         centre,
@@ -112,20 +108,15 @@ pub(crate) fn tangential(plane: Plane, start: Point2, tangent: Point2, end: Poin
 }
 
 /// Sweep from an angle to another in the given sense; equal angles are a full circle [003:3210].
-pub(crate) fn sweep_to_angle(from_deg: f64, to_deg: f64, counter_clockwise: bool) -> f64 {
+pub(crate) fn sweep_to_angle(from_deg: f64, to_deg: f64, sense: Sense) -> f64 {
     const SAME_ANGLE_DEG: f64 = 1e-7;
-    let difference = if counter_clockwise {
-        to_deg - from_deg
-    } else {
-        from_deg - to_deg
-    };
-    let turn = difference.rem_euclid(360.0);
+    let turn = (sense.sign() * (to_deg - from_deg)).rem_euclid(360.0);
     let sweep = if !(SAME_ANGLE_DEG..=360.0 - SAME_ANGLE_DEG).contains(&turn) {
         360.0
     } else {
         turn
     };
-    if counter_clockwise { sweep } else { -sweep }
+    sense.sign() * sweep
 }
 
 #[cfg(test)]
@@ -144,31 +135,31 @@ mod tests {
         // From (40,40) to (60,40) with R 20: height sqrt(400 - 100) above or below the chord.
         let height = 300f64.sqrt();
         let cases = [
-            (20.0, true, height),
-            (20.0, false, -height),
-            (-20.0, true, -height),
-            (-20.0, false, height),
+            (20.0, Sense::CounterClockwise, height),
+            (20.0, Sense::Clockwise, -height),
+            (-20.0, Sense::CounterClockwise, -height),
+            (-20.0, Sense::Clockwise, height),
         ];
-        for (radius, counter_clockwise, above) in cases {
-            let arc = with_radius(Plane::XY, [40.0, 40.0], [60.0, 40.0], radius, counter_clockwise).unwrap();
+        for (radius, sense, above) in cases {
+            let arc = with_radius(Plane::XY, [40.0, 40.0], [60.0, 40.0], radius, sense).unwrap();
             assert!((arc.centre[0] - 50.0).abs() < 1e-12 && (arc.centre[1] - 40.0 - above).abs() < 1e-12);
             // R > 0: central angle below 180 degrees, 2 asin(10/20) = 60; R < 0: the rest of the turn.
             let angle = if radius > 0.0 { 60.0 } else { 300.0 };
             assert!((arc.sweep_deg.abs() - angle).abs() < 1e-9);
-            assert_eq!(arc.sweep_deg > 0.0, counter_clockwise);
+            assert_eq!(Sense::of_sweep(arc.sweep_deg), sense);
         }
     }
 
     #[test]
     fn half_circle_has_its_centre_on_the_chord() {
-        let arc = with_radius(Plane::XY, [0.0, 0.0], [100.0, 0.0], 50.0, false).unwrap();
+        let arc = with_radius(Plane::XY, [0.0, 0.0], [100.0, 0.0], 50.0, Sense::Clockwise).unwrap();
         assert_eq!(arc.centre, [50.0, 0.0]);
         assert!((arc.sweep_deg + 180.0).abs() < 1e-9);
     }
 
     #[test]
     fn ends_too_far_apart_are_no_arc() {
-        let fault = with_radius(Plane::XY, [0.0, 0.0], [100.0, 0.0], 49.0, false).unwrap_err();
+        let fault = with_radius(Plane::XY, [0.0, 0.0], [100.0, 0.0], 49.0, Sense::Clockwise).unwrap_err();
         assert_eq!(
             fault,
             Fault {
@@ -201,9 +192,9 @@ mod tests {
 
     #[test]
     fn sweep_to_an_equal_angle_is_a_full_circle() {
-        assert_eq!(sweep_to_angle(270.0, -90.0, false), -360.0);
-        assert_eq!(sweep_to_angle(10.0, 370.0 + 1e-9, true), 360.0);
-        assert_eq!(sweep_to_angle(350.0, 10.0, true), 20.0);
-        assert_eq!(sweep_to_angle(350.0, 10.0, false), -340.0);
+        assert_eq!(sweep_to_angle(270.0, -90.0, Sense::Clockwise), -360.0);
+        assert_eq!(sweep_to_angle(10.0, 370.0 + 1e-9, Sense::CounterClockwise), 360.0);
+        assert_eq!(sweep_to_angle(350.0, 10.0, Sense::CounterClockwise), 20.0);
+        assert_eq!(sweep_to_angle(350.0, 10.0, Sense::Clockwise), -340.0);
     }
 }

@@ -1,10 +1,8 @@
 //! Cycle definitions as they are read, block by block.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, BlockRef, ScanJob};
-use bahn_program::{
-    CycleBlock, CycleFunction, CycleWord, Direction, Feed, Quantity, Value, cycle_parameters,
-};
+use bahn_path::{Axis, BlockRef, Direction, ScanJob, Sense};
+use bahn_program::{CycleBlock, CycleFunction, CycleWord, Feed, Quantity, Value, cycle_parameters};
 
 use crate::error::Fault;
 use crate::numbers::Numbers;
@@ -142,7 +140,7 @@ pub(crate) enum Resolved {
     AxisDirection(Axis, Direction),
     /// mm/min; `None` for FMAX.
     Feed(Option<f64>),
-    Direction(Direction),
+    Sense(Sense),
     Labels(Box<[u16]>),
     Target(u16),
     Assignment(u16, f64),
@@ -243,10 +241,13 @@ impl Definition {
     }
 
     /// DR of a block; counter-clockwise (climb with M3 in pockets) when it is not given (inferred).
-    pub fn counter_clockwise(&self, sub: u16) -> bool {
-        !self
-            .block(sub)
-            .contains(&Resolved::Direction(Direction::Clockwise))
+    pub fn sense(&self, sub: u16) -> Sense {
+        let of_word = |word: &Resolved| match word {
+            Resolved::Sense(sense) => Some(*sense),
+            _ => None,
+        };
+        let given = self.block(sub).iter().find_map(of_word);
+        given.unwrap_or(Sense::CounterClockwise)
     }
 }
 
@@ -273,7 +274,7 @@ pub(crate) fn resolve(
             CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
             CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
             CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(numbers.feed(*feed, settings)?)),
-            CycleWord::Direction(direction) => Resolved::Direction(*direction),
+            CycleWord::Sense(sense) => Resolved::Sense(*sense),
             CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
             CycleWord::Target(number) => Resolved::Target(*number),
             CycleWord::Assignment(number, assigned) => Resolved::Assignment(*number, value(*assigned)?),

@@ -8,7 +8,7 @@ use bahn_path::{
     Axis, Barrier, Curve, FeedRate, Plane, Position, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint,
     Scanned,
 };
-use bahn_program::{CycleBlock, Direction};
+use bahn_program::CycleBlock;
 
 use crate::context::Context;
 use crate::definition::{Definition, Resolved, resolve};
@@ -243,8 +243,7 @@ fn contour_lines(
 
 fn direction(word: &Resolved) -> Option<(Axis, f64)> {
     match word {
-        Resolved::AxisDirection(axis, Direction::Clockwise) => Some((*axis, -1.0)),
-        Resolved::AxisDirection(axis, _) => Some((*axis, 1.0)),
+        Resolved::AxisDirection(axis, direction) => Some((*axis, direction.sign())),
         _ => None,
     }
 }

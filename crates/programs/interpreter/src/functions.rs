@@ -1,7 +1,7 @@
 //! Miscellaneous functions: when they act and what they do in the control.
 
 use bahn_parameters::technology::{ControlAction, Output, Technology};
-use bahn_path::{Axis, ControlFunction, Function, SpindleOrder};
+use bahn_path::{Axis, ControlFunction, Function, SpindleOrder, Switch};
 use bahn_program::{Compensation, MFunctions};
 
 use crate::availability::Feature;
@@ -85,7 +85,9 @@ fn idle(c: &Context<'_>, action: ControlAction) -> Option<&'static str> {
         {
             Some("without radius compensation")
         }
-        ControlAction::Control(ControlFunction::ReplaceWornTools(true)) if c.settings.tools.is_none() => {
+        ControlAction::Control(ControlFunction::ReplaceWornTools(Switch::On))
+            if c.settings.tools.is_none() =>
+        {
             Some("without a tool table: tool lives and replacement tools stand there")
         }
         _ => None,
@@ -109,7 +111,9 @@ fn act(c: &mut Context<'_>, action: ControlAction, block: &mut BlockFunctions) {
             c.modal.set_spindle(Spindle::CounterClockwise, q)
         }
         ControlAction::Spindle(SpindleOrder::Stop | SpindleOrder::StopWithRun) => c.modal.stop_spindle(q),
-        ControlAction::Coolant(on) => q.preassign(preassigned::COOLANT, if on { 1.0 } else { 0.0 }),
+        ControlAction::Coolant(switch) => {
+            q.preassign(preassigned::COOLANT, f64::from(u8::from(switch.is_on())))
+        }
         _ => {}
     }
 }
@@ -124,7 +128,9 @@ fn act_on_block(modal: &mut Modal, action: ControlAction, block: &mut BlockFunct
         ControlAction::ReduceRotaryAxes => reduce_rotary_axes(modal),
         ControlAction::Intersection => block.corner = Corner::Intersection,
         ControlAction::OpenContour => block.corner = Corner::Open,
-        ControlAction::Control(ControlFunction::TakeLargerTools(takes)) => modal.takes_larger_tools = takes,
+        ControlAction::Control(ControlFunction::TakeLargerTools(takes)) => {
+            modal.takes_larger_tools = takes.is_on()
+        }
         ControlAction::CycleCall => {
             modal.cycle_after_each_block = false;
             block.cycle_call = true;

@@ -7,8 +7,8 @@
 //! moves
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, Axis, AxisSet, Curve, Plane, Point2, Position};
-use bahn_program::{Coordinates, Direction, Motion, MotionKind, Value, Word};
+use bahn_path::{Arc, Axis, AxisSet, Curve, Plane, Point2, Position, Sense};
+use bahn_program::{Coordinates, Motion, MotionKind, Value, Word};
 
 use crate::arc;
 use crate::error::{Cause, Fault};
@@ -197,11 +197,11 @@ fn circle(modal: &Modal, settings: &Settings, motion: &Motion, p: &mut Programme
         return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
     }
     check_beside(plane, p.axes, settings)?;
-    let counter_clockwise = direction(motion)?;
+    let sense = sense(motion)?;
     p.axes = p.axes.with(plane.first).with(plane.second);
     let (start, end) = (plane.point(&p.from), plane.point(&p.to));
     arc::check_radii(centre, start, end, settings.rules.arc_tolerance_mm)?;
-    let sweep_deg = bahn_path::sweep_deg(centre, start, end, counter_clockwise);
+    let sweep_deg = bahn_path::sweep_deg(centre, start, end, sense);
     p.curve = Curve::Arc(Arc {
         plane,
         centre,
@@ -220,7 +220,7 @@ fn circle_radius(
 ) -> Result<(), Fault> {
     let plane = plane_of(modal, &motion.coordinates)?;
     check_beside(plane, p.axes, settings)?;
-    let counter_clockwise = direction(motion)?;
+    let sense = sense(motion)?;
     let Some(radius) = motion.radius else {
         let detail = "the arc has no radius R";
         return Err(Fault::new(MessageId::AngleReferenceMissing, detail).because(Cause::NoRadius));
@@ -234,7 +234,7 @@ fn circle_radius(
     }
     p.axes = p.axes.with(plane.first).with(plane.second);
     let (start, end) = (plane.point(&p.from), plane.point(&p.to));
-    p.curve = Curve::Arc(arc::with_radius(plane, start, end, radius, counter_clockwise)?);
+    p.curve = Curve::Arc(arc::with_radius(plane, start, end, radius, sense)?);
     Ok(())
 }
 
@@ -317,7 +317,7 @@ fn circle_polar(
         ));
     }
     check_helix(plane, p.axes, settings)?;
-    let counter_clockwise = direction(motion)?;
+    let sense = sense(motion)?;
     let Some(word) = motion.polar_angle else {
         return Err(no_angle());
     };
@@ -336,7 +336,7 @@ fn circle_polar(
     }
     let start_angle = bahn_path::angle_deg(offset);
     let sweep_deg = if word.incremental {
-        if angle != 0.0 && (angle > 0.0) != counter_clockwise {
+        if angle != 0.0 && Sense::of_sweep(angle) != sense {
             // Incremental PA and DR must have the same sign [003:3173-3183].
             return Err(Fault::new(
                 MessageId::AngleReferenceMissing,
@@ -345,7 +345,7 @@ fn circle_polar(
         }
         angle
     } else {
-        arc::sweep_to_angle(start_angle, angle, counter_clockwise)
+        arc::sweep_to_angle(start_angle, angle, sense)
     };
     let end_angle = if word.incremental {
         start_angle + sweep_deg
@@ -361,9 +361,9 @@ fn circle_polar(
     Ok(())
 }
 
-fn direction(motion: &Motion) -> Result<bool, Fault> {
+fn sense(motion: &Motion) -> Result<Sense, Fault> {
     match motion.direction {
-        Some(direction) => Ok(direction == Direction::CounterClockwise),
+        Some(sense) => Ok(sense),
         None => Err(
             Fault::new(MessageId::AngleReferenceMissing, "the arc has no DR+ or DR-")
                 .because(Cause::NoDirection),

@@ -2,7 +2,7 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, Curve, FeedRate, LiveData, Position};
-use bahn_program::{CycleBlock, Direction};
+use bahn_program::CycleBlock;
 
 use crate::availability::Feature;
 use crate::context::Context;
@@ -53,8 +53,7 @@ fn reference_plane(modal: &mut Modal, q: &QTable, words: &[Resolved]) -> Result<
         _ => None,
     });
     let direction = words.iter().find_map(|word| match word {
-        Resolved::AxisDirection(axis, Direction::Clockwise) => Some((*axis, -1.0)),
-        Resolved::AxisDirection(axis, _) => Some((*axis, 1.0)),
+        Resolved::AxisDirection(axis, direction) => Some((*axis, direction.sign())),
         _ => None,
     });
     let (Some(target), Some((axis, direction))) = (target, direction) else {

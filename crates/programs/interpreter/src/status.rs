@@ -1,7 +1,7 @@
 //! Tool and spindle, and what of a run stays in force after its end.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Frame, Plane, Position, ToolShape};
+use bahn_path::{Axis, Frame, Plane, Position, Sense, ToolShape};
 
 use crate::working_plane::{self, WorkingPlane};
 
@@ -54,6 +54,14 @@ impl Spindle {
             Spindle::CounterClockwise => 1.0,
             Spindle::StoppedAfterClockwise => 2.0,
             Spindle::StoppedAfterCounterClockwise => 3.0,
+        }
+    }
+
+    /// The sense of a way that is given for a spindle that turns clockwise: with M04 the other one mills alike.
+    pub fn milled(self, sense: Sense) -> Sense {
+        match self {
+            Spindle::CounterClockwise => sense.opposite(),
+            _ => sense,
         }
     }
 
@@ -135,10 +143,10 @@ impl Status {
 
     /// The spindle turns already, clockwise as with M3 or the other way, for the operator or the PLC has switched it
     /// on; or it stands. Its speed as it was programmed last, rpm.
-    pub fn take_spindle(&mut self, clockwise: Option<bool>, speed_rpm: f64) {
-        let spindle = match clockwise {
-            Some(true) => Spindle::Clockwise,
-            Some(false) => Spindle::CounterClockwise,
+    pub fn take_spindle(&mut self, sense: Option<Sense>, speed_rpm: f64) {
+        let spindle = match sense {
+            Some(Sense::Clockwise) => Spindle::Clockwise,
+            Some(Sense::CounterClockwise) => Spindle::CounterClockwise,
             None => Spindle::Undefined,
         };
         self.spindle = Some((spindle, speed_rpm));

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use bahn_parameters::MessageId;
 use bahn_parameters::technology::ControlAction;
-use bahn_path::{Axis, AxisSet, Placement, Position, Swivels};
+use bahn_path::{Axis, AxisSet, Placement, Position, Switch, Swivels};
 use bahn_program::Coordinates;
 
 use crate::context::Context;
@@ -174,12 +174,12 @@ fn pass_over(c: &mut Context<'_>, what: String) -> Result<(), Fault> {
 /// What M functions do with swivel axes.
 pub(crate) fn act(c: &mut Context<'_>, action: ControlAction) -> Result<(), Fault> {
     match action {
-        ControlAction::CompensateSwivels(on) => compensate(c, on)?,
-        ControlAction::SurfaceFeed(on) => {
-            c.modal.tilting.surface_feed = on && geometry(c, "M116")?.is_some();
+        ControlAction::CompensateSwivels(switch) => compensate(c, switch.is_on())?,
+        ControlAction::SurfaceFeed(switch) => {
+            c.modal.tilting.surface_feed = switch.is_on() && geometry(c, "M116")?.is_some();
         }
-        ControlAction::ShortestWay(true) => c.modal.tilting.way = Way::Shortest,
-        ControlAction::ShortestWay(false) if c.modal.tilting.way == Way::Shortest => {
+        ControlAction::ShortestWay(Switch::On) => c.modal.tilting.way = Way::Shortest,
+        ControlAction::ShortestWay(Switch::Off) if c.modal.tilting.way == Way::Shortest => {
             c.modal.tilting.way = Way::WithinTurn;
         }
         _ => {}

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use bahn_interpreter::{Rules, Settings};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_path::{At, Axis, Curve, FeedRate, Function, OverrideLaw, PathElement, Thread};
+use bahn_path::{At, Axis, Curve, FeedRate, Function, OverrideLaw, PathElement, Sense, Thread};
 use support::*;
 
 /// Feed and end height of movements in the tool axis.
@@ -140,7 +140,11 @@ fn tapping_by_the_list() {
 /// no effect. The spindle stops, and is oriented unless MP7160 says no [003:4845] [003:5071-5106] [000:6122-6141].
 #[test]
 fn rigid_tapping() {
-    for (pitch, right_hand, orients) in [(0.75, true, true), (-1.5, false, true), (0.75, true, false)] {
+    for (pitch, turns, orients) in [
+        (0.75, Sense::Clockwise, true),
+        (-1.5, Sense::CounterClockwise, true),
+        (0.75, Sense::Clockwise, false),
+    ] {
         let mut settings = Settings::default();
         settings.rules.tapping.orients = orients;
         let run = run_with(
@@ -161,17 +165,17 @@ fn rigid_tapping() {
         let moves = run.of_block(8);
         assert_eq!(heights(&moves), [(feed(f), -30.0), (feed(f), 2.0)]);
         assert!(run.functions().contains(&(8, &Function::M(5))));
-        let thread = |clockwise, orientation_deg| {
+        let thread = |spindle, orientation_deg| {
             OverrideLaw::Spindle(Thread {
                 pitch_mm: f64::abs(pitch),
-                clockwise,
+                spindle,
                 orientation_deg,
                 retracts: true,
             })
         };
         let laws: Vec<_> = moves.iter().map(|e| e.override_law).collect();
         let angle = orients.then_some(0.0);
-        assert_eq!(laws, [thread(right_hand, angle), thread(!right_hand, None)]);
+        assert_eq!(laws, [thread(turns, angle), thread(turns.opposite(), None)]);
         // The spindle stands from then on.
         assert_eq!(heights(&run.of_block(9)), [(feed(f), -30.0), (feed(f), 2.0)]);
     }
@@ -181,7 +185,11 @@ fn rigid_tapping() {
 /// thread turns clockwise downwards, the other way upwards.
 #[test]
 fn thread_cutting() {
-    for (depth, pitch, clockwise) in [(-20.0, 1.5, true), (-20.0, -1.5, false), (20.0, 1.5, false)] {
+    for (depth, pitch, spindle) in [
+        (-20.0, 1.5, Sense::Clockwise),
+        (-20.0, -1.5, Sense::CounterClockwise),
+        (20.0, 1.5, Sense::CounterClockwise),
+    ] {
         let run = run(&format!(
             "TOOL CALL 1 Z S400
              CYCL DEF 18.0 THREAD CUTTING
@@ -196,7 +204,7 @@ fn thread_cutting() {
         assert_eq!(heights(&moves), [(feed(600.0), 2.0 + depth)]);
         let law = OverrideLaw::Spindle(Thread {
             pitch_mm: 1.5,
-            clockwise,
+            spindle,
             orientation_deg: Some(0.0),
             retracts: false,
         });
@@ -538,7 +546,7 @@ fn tapping_with_the_spindle_that_turns_already() {
     let blocks = "TOOL DEF 1 L+0 R+4\nTOOL CALL 1 Z\nCYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -3\n\
         CYCL DEF 17.2 DEPTH -20\nCYCL DEF 17.3 PITCH -1.5\nL X+0 Y+0 Z+3 R0 FMAX\nCYCL CALL";
     let run = Job::new(program(blocks))
-        .with(|settings| settings.status.take_spindle(Some(false), 500.0))
+        .with(|settings| settings.status.take_spindle(Some(Sense::CounterClockwise), 500.0))
         .run();
     run.assert_completed();
     let thread = run.moves().find(|element| element.thread().is_some()).unwrap();

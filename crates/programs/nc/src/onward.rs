@@ -5,7 +5,7 @@
 //! stand on it within 0.01 mm, as far as its end may lie beside it. At its start all of it is left, also of a full
 //! circle, which ends there, too: it is rather cut twice than not at all
 
-use bahn_path::{Arc, Curve, Point2, Position, sweep_deg};
+use bahn_path::{Arc, Curve, Point2, Position, Sense, sweep_deg};
 
 /// The axes stand on the circle, at its start or at its end, when they are no farther from there than the end of an arc may
 /// lie beside it, mm (inferred).
@@ -30,7 +30,7 @@ pub(crate) fn rest(
     }
     let from = arc.plane.point(start);
     let turn = 360.0_f64.copysign(arc.sweep_deg);
-    let mut passed = sweep_deg(arc.centre, from, at, turn > 0.0);
+    let mut passed = sweep_deg(arc.centre, from, at, Sense::of_sweep(turn));
     // Before the start, not nearly a turn after it.
     if distance(at, from) <= ON_CIRCLE_MM && 2.0 * passed.abs() > 360.0 {
         passed -= turn;

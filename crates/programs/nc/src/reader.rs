@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use bahn_din::{BlockFault, Command, Decoder, Motion, Unit};
 use bahn_parameters::MessageId;
 use bahn_path::{
-    Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step,
+    Axis, Barrier, BlockRef, Curve, ElementSource, FeedRate, LiveData, PathElement, Position, Step, Switch,
 };
 use bahn_program::Program;
 use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning, synchronisation_point};
@@ -244,7 +244,7 @@ impl NcReader {
                     acceleration_mm_s2: None,
                     deceleration_mm_s2: None,
                 } => self.run.limit_mm_min = velocity_mm_min.unwrap_or(f64::INFINITY),
-                Command::RadiusCompensation(false) | Command::Spindle(_) => {}
+                Command::RadiusCompensation(Switch::Off) | Command::Spindle(_) => {}
                 other => return Err(Refusal::of_channel(named(other))),
             }
         }

@@ -5,7 +5,8 @@
 //! on a line; one that says an arc, G07 or a polar function needs its end point there; G20 is refused (also
 //! `program/src/iso/read.rs`)
 
-use crate::{Direction, Distance, Modality, Motion, MotionKind, Operation, PathFunction};
+use crate::{Distance, Modality, Motion, MotionKind, Operation, PathFunction};
+use bahn_path::Sense;
 
 /// The G functions in force. A run begins with G01 and G90 (inferred).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub struct InForce {
     /// Whether words that do not say it count from the datum.
     pub distance: Distance,
     /// Of the last G02, G03, G12 or G13.
-    pub direction: Option<Direction>,
+    pub direction: Option<Sense>,
 }
 
 impl Default for InForce {
@@ -37,10 +38,10 @@ impl InForce {
         self.function = function;
         match function {
             PathFunction::Clockwise | PathFunction::PolarClockwise => {
-                self.direction = Some(Direction::Clockwise);
+                self.direction = Some(Sense::Clockwise);
             }
             PathFunction::CounterClockwise | PathFunction::PolarCounterClockwise => {
-                self.direction = Some(Direction::CounterClockwise);
+                self.direction = Some(Sense::CounterClockwise);
             }
             _ => {}
         }

@@ -1,7 +1,7 @@
 //! The canonical operations that every part-program language lowers to.
 
 use bahn_parameters::InchFeed;
-use bahn_path::{Axis, AxisSet, PerAxis};
+use bahn_path::{Axis, AxisSet, Direction, PerAxis, Sense};
 
 use crate::{BlockError, Modality};
 
@@ -371,7 +371,7 @@ pub struct Motion {
     /// `R` of CR with its sign [003:2861-2869].
     pub radius: Option<Value>,
     /// `DR+` or `DR-`, where the block has an arc that says it.
-    pub direction: Option<Direction>,
+    pub direction: Option<Sense>,
     /// `RL`, `RR`, `R0`, `R+` or `R-`; absent keeps what is in force.
     pub compensation: Option<Compensation>,
     /// `F` or `FMAX`; absent keeps the feed in force.
@@ -428,15 +428,6 @@ impl MotionKind {
             MotionKind::Paraxial => "",
         }
     }
-}
-
-/// Sense of rotation: DR+ counter-clockwise, DR- clockwise [003:2715-2720].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// `DR+`.
-    CounterClockwise,
-    /// `DR-`.
-    Clockwise,
 }
 
 /// What the word of the radius compensation says.
@@ -653,13 +644,12 @@ pub enum CycleWord {
     Centre(Axis, Value),
     /// An axis letter alone (mirror image, probe axis).
     Axis(Axis),
-    /// An axis letter with a direction `X-` (probing); `+` is [`Direction::CounterClockwise`], `-` is
-    /// [`Direction::Clockwise`].
+    /// An axis letter with a direction `X-` (probing).
     AxisDirection(Axis, Direction),
     /// `F value` or `FMAX`.
     Feed(Feed),
     /// `DR+` or `DR-`: sense of rotation.
-    Direction(Direction),
+    Sense(Sense),
     /// Label list `1/2/3` (cycle 14).
     Labels(Box<[u16]>),
     /// `Qn` alone: the parameter that takes a result (probing).

@@ -14,9 +14,10 @@ use crate::Point2;
 /// same output, bit for bit.
 ///
 /// ```
+/// use bahn_path::Sense;
 /// use bahn_path::region::{Contour, Region};
 /// let plate = Region::from_contour(&Contour::rectangle([0.0, 0.0], [100.0, 60.0]));
-/// let bore = Region::from_contour(&Contour::circle([50.0, 30.0], 20.0, 0.0, true));
+/// let bore = Region::from_contour(&Contour::circle([50.0, 30.0], 20.0, 0.0, Sense::CounterClockwise));
 /// let ring = plate.difference(&bore);
 /// assert_eq!(ring.contours().len(), 2);
 /// assert!((ring.area() - (6000.0 - std::f64::consts::PI * 400.0)).abs() < 1e-9);

@@ -2,7 +2,7 @@
 
 use super::vector::*;
 use super::{RESOLUTION_MM, Segment};
-use crate::Point2;
+use crate::{Point2, Sense};
 
 /// Where a point lies relative to a closed contour or a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,13 +18,14 @@ pub enum Location {
 /// A chain of lines and arcs, closed when its end is its start. A full circle is one segment.
 ///
 /// ```
+/// use bahn_path::Sense;
 /// use bahn_path::region::{Contour, Location};
 /// // A slot of 40 x 20: two lines and two half circles, counter-clockwise from (10, 0).
 /// let slot = Contour::start_at([10.0, 0.0])
 ///     .line_to([30.0, 0.0])
-///     .arc_to([30.0, 10.0], [30.0, 20.0], true)
+///     .arc_to([30.0, 10.0], [30.0, 20.0], Sense::CounterClockwise)
 ///     .line_to([10.0, 20.0])
-///     .arc_to([10.0, 10.0], [10.0, 0.0], true);
+///     .arc_to([10.0, 10.0], [10.0, 0.0], Sense::CounterClockwise);
 /// assert!(slot.is_closed());
 /// let area = 20.0 * 20.0 + std::f64::consts::PI * 10.0 * 10.0;
 /// assert!((slot.signed_area() - area).abs() < 1e-9);
@@ -55,8 +56,8 @@ impl Contour {
 
     /// Adds an arc about `centre`; to the end point itself it is a full circle [003:2803].
     #[must_use]
-    pub fn arc_to(mut self, centre: Point2, to: Point2, counter_clockwise: bool) -> Contour {
-        self.push(Segment::arc(self.end(), to, centre, counter_clockwise));
+    pub fn arc_to(mut self, centre: Point2, to: Point2, sense: Sense) -> Contour {
+        self.push(Segment::arc(self.end(), to, centre, sense));
         self
     }
 
@@ -106,9 +107,9 @@ impl Contour {
     }
 
     /// A full circle from the point at an angle to the first axis.
-    pub fn circle(centre: Point2, radius: f64, start_angle_deg: f64, counter_clockwise: bool) -> Contour {
+    pub fn circle(centre: Point2, radius: f64, start_angle_deg: f64, sense: Sense) -> Contour {
         let start = add(centre, turned([radius, 0.0], start_angle_deg.to_radians()));
-        Contour::start_at(start).arc_to(centre, start, counter_clockwise)
+        Contour::start_at(start).arc_to(centre, start, sense)
     }
 
     /// A closed polygon through the points.

@@ -9,10 +9,11 @@
 //! An SL contour from subprograms to tool movements:
 //!
 //! ```
+//! use bahn_path::Sense;
 //! use bahn_path::region::{Contour, HatchPattern, Merge, SubContour, superimpose};
 //! // LBL 1: X0 Y0 RL, X60, Y40, X0, Y0. LBL 2: a full circle about X30 Y20 with RR, counter-clockwise.
 //! let pocket = SubContour::programmed(Contour::rectangle([0.0, 0.0], [60.0, 40.0]), true);
-//! let island = SubContour::programmed(Contour::circle([30.0, 20.0], 8.0, 0.0, true), false);
+//! let island = SubContour::programmed(Contour::circle([30.0, 20.0], 8.0, 0.0, Sense::CounterClockwise), false);
 //! let (tool_radius, allowance) = (3.0, 0.5);
 //! let areas = superimpose(&[pocket, island], tool_radius + allowance, Merge::CentrePaths);
 //! for area in &areas {

@@ -5,7 +5,7 @@
 
 use super::RESOLUTION_MM;
 use super::vector::*;
-use crate::{Point2, sweep_deg};
+use crate::{Point2, Sense, sweep_deg};
 
 /// Consecutive segments are one when centres or the point between them are no farther off than this, mm ...
 const JOIN_MM: f64 = 1e-7;
@@ -46,12 +46,12 @@ impl Segment {
     /// An arc about `centre` in the given sense; equal points give a full circle [003:2803]. When the
     /// two radii differ a little, the centre is moved along the chord until they agree, unless that
     /// moves the arc by more than twice the difference: nearly a full circle.
-    pub fn arc(from: Point2, to: Point2, centre: Point2, counter_clockwise: bool) -> Segment {
+    pub fn arc(from: Point2, to: Point2, centre: Point2, sense: Sense) -> Segment {
         let about = |centre: Point2| Segment::Arc {
             from,
             to,
             centre,
-            sweep_deg: sweep_deg(centre, from, to, counter_clockwise),
+            sweep_deg: sweep_deg(centre, from, to, sense),
         };
         let given = about(centre);
         let chord = unit(sub(to, from));
@@ -81,7 +81,7 @@ impl Segment {
         if self.radii_differ() <= RESOLUTION_MM {
             return [Some(*self), None];
         }
-        let mended = Segment::arc(from, to, centre, sweep_deg > 0.0);
+        let mended = Segment::arc(from, to, centre, Sense::of_sweep(sweep_deg));
         if mended.radii_differ() <= RESOLUTION_MM {
             return [Some(mended), None];
         }

@@ -110,9 +110,10 @@ impl Outline {
 ///    programmed contours also when compensated ones are merged.
 ///
 /// ```
+/// use bahn_path::Sense;
 /// use bahn_path::region::{Contour, Merge, SubContour, superimpose};
-/// let a = SubContour::programmed(Contour::circle([35.0, 50.0], 25.0, 180.0, true), true);
-/// let b = SubContour::programmed(Contour::circle([65.0, 50.0], 25.0, 0.0, true), true);
+/// let a = SubContour::programmed(Contour::circle([35.0, 50.0], 25.0, 180.0, Sense::CounterClockwise), true);
+/// let b = SubContour::programmed(Contour::circle([65.0, 50.0], 25.0, 0.0, Sense::CounterClockwise), true);
 /// let areas = superimpose(&[a, b], 3.0, Merge::ProgrammedContours);
 /// assert_eq!(areas.len(), 1);
 /// let infeed = areas[0].outlines[0].infeed();

@@ -2,6 +2,7 @@
 //! drawings do.
 #![allow(dead_code, reason = "every test binary uses a part")]
 
+use bahn_path::Sense;
 use bahn_path::region::{Contour, Region, Segment};
 use proptest::prelude::*;
 
@@ -12,12 +13,12 @@ pub fn shape() -> impl Strategy<Value = Contour> {
         let (w, h, r) = (f64::from(w), f64::from(h), f64::from(r));
         let contour = match kind {
             0 => Contour::rectangle([x, y], [x + w, y + h]),
-            1 => Contour::circle([x, y], r, 90.0, true),
+            1 => Contour::circle([x, y], r, 90.0, Sense::CounterClockwise),
             2 => Contour::start_at([x, y - r])
                 .line_to([x + w, y - r])
-                .arc_to([x + w, y], [x + w, y + r], true)
+                .arc_to([x + w, y], [x + w, y + r], Sense::CounterClockwise)
                 .line_to([x, y + r])
-                .arc_to([x, y], [x, y - r], true),
+                .arc_to([x, y], [x, y - r], Sense::CounterClockwise),
             3 => Contour::polygon(&[
                 [x, y],
                 [x + w + 1.0, y],
@@ -30,14 +31,14 @@ pub fn shape() -> impl Strategy<Value = Contour> {
             4 => Contour::start_at([x, y])
                 .line_to([x + w + r, y])
                 .line_to([x + w + r, y + h])
-                .arc_to([x + w, y + h], [x + w, y + h + r], true)
+                .arc_to([x + w, y + h], [x + w, y + h + r], Sense::CounterClockwise)
                 .line_to([x, y + h + r])
                 .line_to([x, y]),
             // A plate with a concave quarter circle cut out of a corner.
             5 => Contour::start_at([x, y])
                 .line_to([x + w + r, y])
                 .line_to([x + w + r, y + h])
-                .arc_to([x + w + r, y + h + r], [x + w, y + h + r], false)
+                .arc_to([x + w + r, y + h + r], [x + w, y + h + r], Sense::Clockwise)
                 .line_to([x, y + h + r])
                 .line_to([x, y]),
             _ => Contour::polygon(&[[x, y], [x + w, y + 1.0], [x + 1.0, y + h + 1.0]]),
@@ -115,7 +116,7 @@ pub fn jittered(contour: &Contour, by: f64, seed: u64) -> Contour {
                 Segment::Line { .. } => Segment::line(from, to),
                 Segment::Arc {
                     centre, sweep_deg, ..
-                } => Segment::arc(from, to, centre, sweep_deg > 0.0),
+                } => Segment::arc(from, to, centre, Sense::of_sweep(sweep_deg)),
             }
         })
         .collect();

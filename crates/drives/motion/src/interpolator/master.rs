@@ -31,7 +31,8 @@ pub(super) struct Coupling {
 
 impl Coupling {
     pub(super) fn new(thread: &Thread, origin_deg: f64) -> Coupling {
-        let sign = if thread.clockwise { 1.0 } else { -1.0 };
+        // The angle of the spindle grows with M03.
+        let sign = -thread.spindle.sign();
         Coupling {
             origin_deg,
             deg_per_mm: sign * 360.0 / thread.pitch_mm,

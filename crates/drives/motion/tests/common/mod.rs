@@ -6,7 +6,7 @@ pub mod random;
 use bahn_motion::{AuxiliaryTimes, Limits, Planned, PlannedStep, Planner};
 use bahn_path::{
     Arc, At, Axis, BlockRef, CornerArc, Curve, ElementSource, FeedRate, Function, LiveData, OverrideLaw,
-    PathElement, PerAxis, Plane, Position, SpindleOrder, Step, Synchronisation, TechnologyFunction,
+    PathElement, PerAxis, Plane, Position, Sense, SpindleOrder, Step, Synchronisation, TechnologyFunction,
     sweep_deg,
 };
 
@@ -112,10 +112,10 @@ impl Path {
         self.line(&to)
     }
 
-    /// An arc in XY about a centre to an end point (DR+ is `true`).
-    pub fn arc(&mut self, centre: [f64; 2], to: [f64; 2], counter_clockwise: bool) -> &mut Path {
+    /// An arc in XY about a centre to an end point in a sense.
+    pub fn arc(&mut self, centre: [f64; 2], to: [f64; 2], sense: Sense) -> &mut Path {
         let start = [self.at[Axis::X], self.at[Axis::Y]];
-        let sweep_deg = sweep_deg(centre, start, to, counter_clockwise);
+        let sweep_deg = sweep_deg(centre, start, to, sense);
         let mut end = self.at;
         (end[Axis::X], end[Axis::Y]) = (to[0], to[1]);
         self.to(

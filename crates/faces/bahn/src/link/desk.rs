@@ -4,7 +4,7 @@ use std::io::BufRead as _;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-use bahn_link::{Attendant, Event, Question};
+use bahn_link::{Attendant, Ended, Event, Question};
 use bahn_parameters::ControlModel;
 use clap::ValueEnum;
 use serde::Serialize;
@@ -180,8 +180,8 @@ impl Attendant for Desk {
                 self.report.message = Some(text);
             }
             Event::Enquiry => {}
-            Event::Ended(complete) => {
-                self.failed |= !complete;
+            Event::Ended(ended) => {
+                self.failed |= ended == Ended::Incomplete;
                 self.ended = true;
                 self.ended_at = None;
                 if self.until == Until::Stopped {

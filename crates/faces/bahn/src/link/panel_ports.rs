@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use bahn_link::blockwise::{self, DirectoryRequest, Want};
 use bahn_link::{
-    Attendant, Channel, Event, FileType, Files, Line, OfKinds, Protocol, Question, Resting, Settings,
+    Attendant, Channel, Ended, Event, FileType, Files, Line, OfKinds, Protocol, Question, Resting, Settings,
     SharedPort, Spec, drive, standard,
 };
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
@@ -325,7 +325,7 @@ impl Carrier<'_> {
     /// The panel hears of an end in any case.
     fn finish(self) {
         if !self.ended {
-            self.tell(TransferNews::Ended(false));
+            self.tell(TransferNews::Incomplete);
         }
     }
 }
@@ -343,9 +343,12 @@ impl Attendant for Carrier<'_> {
             Event::Question(Question::Protected(name)) => TransferNews::Protected(name),
             Event::Message(shown) => TransferNews::Message(shown.text(self.model)),
             Event::Enquiry => return None,
-            Event::Ended(complete) => {
+            Event::Ended(ended) => {
                 self.ended = true;
-                TransferNews::Ended(complete)
+                match ended {
+                    Ended::Complete => TransferNews::Complete,
+                    Ended::Incomplete => TransferNews::Incomplete,
+                }
             }
         };
         self.tell(news);

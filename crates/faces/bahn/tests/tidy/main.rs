@@ -6,6 +6,7 @@ mod house;
 mod names;
 mod rooms;
 mod source;
+mod switches;
 mod texts;
 mod uses;
 mod wholes;

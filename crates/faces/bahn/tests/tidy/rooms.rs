@@ -42,7 +42,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "convert",
         ],
     ),
-    ("machine", &["text", "servo"]),
+    ("machine", &["text", "path", "servo"]),
     (
         "tnc",
         &[

@@ -2,6 +2,7 @@
 //! cursors and what they say.
 
 use bahn_host::oscilloscope::{CHANNELS, SAMPLES};
+use bahn_path::Direction;
 use bahn_picture::{Anchor, Colour, Image};
 use bahn_tnc::ServoSignal;
 
@@ -97,14 +98,14 @@ impl Sight {
     }
 
     /// Moves the cursor, without one the window, by a share of the window.
-    pub fn go(&mut self, forward: bool) {
+    pub fn go(&mut self, direction: Direction) {
         let cursor = match &mut self.cursors {
             [_, Some(second)] => Some(second),
             [first, None] => first.as_mut(),
         };
-        let step = |by: usize, from: usize, last: usize| match forward {
-            true => (from + by).min(last),
-            false => from.saturating_sub(by),
+        let step = |by: usize, from: usize, last: usize| match direction {
+            Direction::Plus => (from + by).min(last),
+            Direction::Minus => from.saturating_sub(by),
         };
         match cursor {
             Some(cursor) => {
@@ -365,18 +366,18 @@ mod tests {
         }
         assert_eq!(sight.count, FEWEST);
         for _ in 0..10_000 {
-            sight.go(true);
+            sight.go(Direction::Plus);
         }
         assert_eq!(sight.from, SAMPLES - FEWEST);
         sight.cursor();
         for _ in 0..10_000 {
-            sight.go(false);
+            sight.go(Direction::Minus);
             let at = sight.cursors[0].unwrap();
             assert!((sight.from..sight.from + sight.count).contains(&at));
         }
         assert_eq!((sight.cursors, sight.from), ([Some(0), None], 0));
         sight.second_cursor();
-        sight.go(true);
+        sight.go(Direction::Plus);
         assert_eq!(sight.cursors, [Some(0), Some(1)]);
         for _ in 0..10 {
             sight.stretch(false);

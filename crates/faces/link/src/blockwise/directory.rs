@@ -10,7 +10,7 @@ use bahn_parameters::MessageId;
 
 use super::{SECTOR, SECTORS};
 use crate::files::Listed;
-use crate::protocol::{Event, Protocol, Shown};
+use crate::protocol::{Ended, Event, Protocol, Shown};
 use crate::settings::Settings;
 use crate::text::LINE_MAX;
 use crate::{DC1, DC3, FileType};
@@ -115,9 +115,9 @@ impl DirectoryRequest {
     fn finish(&mut self, shown: Option<Shown>) {
         if !self.over {
             self.over = true;
-            let complete = shown.is_none();
+            let ended = Ended::unless(shown.is_some());
             self.events.extend(shown.map(Event::Message));
-            self.events.push_back(Event::Ended(complete));
+            self.events.push_back(Event::Ended(ended));
         }
     }
 }

@@ -18,7 +18,7 @@ use super::terms::{Rights, candidates, code};
 use crate::FileType;
 use crate::files::{Files, Listed};
 use crate::frame::{Kind, Piece};
-use crate::protocol::{Event, Protocol, Question, Shown};
+use crate::protocol::{Ended, Event, Protocol, Question, Shown};
 use crate::settings::Settings;
 use crate::text::{Source, Taking, Unstored, beginning, is_name};
 
@@ -168,9 +168,9 @@ impl Peripheral {
     }
 
     /// Reports the end of what was begun, once.
-    fn ended(&mut self, complete: bool) {
-        if std::mem::take(&mut self.open) || !complete {
-            self.events.push_back(Event::Ended(complete));
+    fn ended(&mut self, ended: Ended) {
+        if std::mem::take(&mut self.open) || ended == Ended::Incomplete {
+            self.events.push_back(Event::Ended(ended));
         }
     }
 
@@ -186,7 +186,7 @@ impl Peripheral {
             }
             _ => {}
         }
-        self.ended(true);
+        self.ended(Ended::Complete);
     }
 
     fn repeat(&mut self) {
@@ -372,7 +372,7 @@ impl Peripheral {
                 match taking.commit() {
                     Ok(()) => {
                         self.events.push_back(Event::Received(name));
-                        self.ended(true);
+                        self.ended(Ended::Complete);
                     }
                     Err(error) => self.unstored(&error),
                 }
@@ -401,7 +401,7 @@ impl Peripheral {
     /// Reports why what was begun has failed.
     fn tell(&mut self, shown: Shown) {
         self.events.push_back(Event::Message(shown));
-        self.ended(false);
+        self.ended(Ended::Incomplete);
     }
 
     /// The answer is overdue: somebody else may begin. Until somebody does, a control may keep it back as long as it wants.
@@ -480,7 +480,7 @@ impl Peripheral {
             Step::Sent => {
                 self.step = Step::Idle;
                 self.events.push_back(Event::Sent(std::mem::take(&mut self.name)));
-                self.ended(true);
+                self.ended(Ended::Complete);
             }
             Step::Refused => self.step = Step::Idle,
             Step::Idle | Step::Question(_) | Step::Sending(_) => {}
@@ -537,7 +537,7 @@ impl Protocol for Peripheral {
             }
             Step::Sent => {
                 self.events.push_back(Event::Sent(std::mem::take(&mut self.name)));
-                self.ended(true);
+                self.ended(Ended::Complete);
             }
             Step::Sending(_) | Step::Question(_) => self.incomplete(),
             Step::Idle | Step::Refused => {}

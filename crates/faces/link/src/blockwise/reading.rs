@@ -12,7 +12,7 @@ use super::link::Link;
 use crate::FileType;
 use crate::files::Files;
 use crate::frame::{Kind, Piece};
-use crate::protocol::{Event, Protocol, Question, Shown};
+use crate::protocol::{Ended, Event, Protocol, Question, Shown};
 use crate::settings::Settings;
 use crate::text::{Taking, Unstored, beginning};
 
@@ -292,7 +292,7 @@ impl Reading {
         self.taking = None;
         self.owes = 0;
         self.step = Step::Over;
-        self.events.push_back(Event::Ended(!self.failed));
+        self.events.push_back(Event::Ended(Ended::unless(self.failed)));
     }
 
     /// How long it may be quiet now.

@@ -9,7 +9,7 @@ use super::link::Link;
 use crate::FileType;
 use crate::files::Files;
 use crate::frame::{Kind, Piece};
-use crate::protocol::{Event, Protocol, Question, Shown};
+use crate::protocol::{Ended, Event, Protocol, Question, Shown};
 use crate::settings::Settings;
 use crate::text::{Source, is_name};
 use bahn_store::StoreError;
@@ -152,7 +152,7 @@ impl Writing {
     /// The end, with everything sent.
     fn complete(&mut self) {
         self.step = Step::Over;
-        self.events.push_back(Event::Ended(true));
+        self.events.push_back(Event::Ended(Ended::Complete));
     }
 
     /// The end, by an error: EOT tells the device [000:17424].
@@ -166,7 +166,7 @@ impl Writing {
         self.step = Step::Over;
         self.stopped = false;
         self.events.push_back(Event::Message(shown));
-        self.events.push_back(Event::Ended(false));
+        self.events.push_back(Event::Ended(Ended::Incomplete));
     }
 }
 

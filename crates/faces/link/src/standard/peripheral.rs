@@ -9,7 +9,7 @@ use super::items::{Item, Items};
 use super::{HELD_MAX, Outgoing};
 use crate::blockwise::Rights;
 use crate::files::Files;
-use crate::protocol::{Event, Protocol, Question, Shown};
+use crate::protocol::{Ended, Event, Protocol, Question, Shown};
 use crate::settings::Settings;
 use crate::text::{Source, Taking, Unstored, beginning};
 use crate::{DC1, DC3, FileType};
@@ -116,7 +116,7 @@ impl Peripheral {
         }
         self.outgoing.bytes.push_back(self.settings.control.etx);
         self.sent = !self.settings.never_eot;
-        self.events.push_back(Event::Ended(true));
+        self.events.push_back(Event::Ended(Ended::Complete));
     }
 
     fn refill(&mut self) {
@@ -202,7 +202,7 @@ impl Peripheral {
         self.close_file();
         if std::mem::take(&mut self.text) {
             self.events
-                .push_back(Event::Ended(!std::mem::take(&mut self.failed)));
+                .push_back(Event::Ended(Ended::unless(std::mem::take(&mut self.failed))));
             if !self.settings.never_eot {
                 self.etx = Some(self.now + self.settings.moment());
             }
@@ -237,7 +237,7 @@ impl Peripheral {
         self.failed = false;
         self.events
             .push_back(Event::Message(Shown::Control(MessageId::ProgramIncomplete, None)));
-        self.events.push_back(Event::Ended(false));
+        self.events.push_back(Event::Ended(Ended::Incomplete));
     }
 
     /// What is wrong with one program; others of the text are stored all the same.

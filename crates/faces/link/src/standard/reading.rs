@@ -9,7 +9,7 @@ use super::HELD_MAX;
 use super::items::{Item, Items};
 use crate::blockwise::Want;
 use crate::files::Files;
-use crate::protocol::{Event, Protocol, Question, Shown};
+use crate::protocol::{Ended, Event, Protocol, Question, Shown};
 use crate::settings::Settings;
 use crate::text::{Beginning, Taking, Unstored, beginning, is_end};
 use crate::{DC1, DC3, FileType};
@@ -263,7 +263,7 @@ impl Reading {
             self.outgoing.push_back(self.settings.control.eot);
         }
         self.over = true;
-        self.events.push_back(Event::Ended(!self.failed));
+        self.events.push_back(Event::Ended(Ended::unless(self.failed)));
     }
 
     fn take(&mut self, byte: u8) {
@@ -365,7 +365,7 @@ impl Protocol for Reading {
         if !self.answered && !self.had_text && !self.over {
             self.outgoing = super::end_of_output(&self.settings).into();
             self.over = true;
-            self.events.push_back(Event::Ended(true));
+            self.events.push_back(Event::Ended(Ended::Complete));
         } else if matches!(self.text, Text::Search) {
             self.finish();
         } else {

@@ -8,7 +8,7 @@ use bahn_parameters::MessageId;
 use super::items::{Item, Items};
 use super::{Outgoing, end_of_output};
 use crate::files::Files;
-use crate::protocol::{Event, Protocol, Question, Shown};
+use crate::protocol::{Ended, Event, Protocol, Question, Shown};
 use crate::settings::Settings;
 use crate::text::Source;
 
@@ -95,7 +95,7 @@ impl Writing {
             self.outgoing.clear();
             self.step = Step::Over;
             self.events.push_back(Event::Message(shown));
-            self.events.push_back(Event::Ended(false));
+            self.events.push_back(Event::Ended(Ended::Incomplete));
         }
     }
 }
@@ -127,7 +127,7 @@ impl Protocol for Writing {
         }
         if self.step == Step::End && self.outgoing.bytes.is_empty() {
             self.step = Step::Over;
-            self.events.push_back(Event::Ended(true));
+            self.events.push_back(Event::Ended(Ended::Complete));
         }
     }
 

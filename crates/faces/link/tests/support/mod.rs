@@ -13,7 +13,7 @@
 
 use std::time::Duration;
 
-use bahn_link::{Event, Mode, Protocol, Question, Settings};
+use bahn_link::{Ended, Event, Mode, Protocol, Question, Settings};
 use bahn_parameters::{ControlModel, ParameterList};
 
 /// Which side of a conversation is tested; the other one is played.
@@ -119,8 +119,8 @@ pub fn described(event: &Event, model: ControlModel) -> String {
         Event::Question(Question::Protected(name)) => format!("protected {name}?"),
         Event::Message(shown) => shown.text(model),
         Event::Enquiry => "enquiry".into(),
-        Event::Ended(true) => "complete".into(),
-        Event::Ended(false) => "broken off".into(),
+        Event::Ended(Ended::Complete) => "complete".into(),
+        Event::Ended(Ended::Incomplete) => "broken off".into(),
     }
 }
 

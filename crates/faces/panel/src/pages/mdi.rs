@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use bahn_dialogue::{Editor, Key, Setting};
 use bahn_parameters::MessageId;
+use bahn_path::Switch;
 use bahn_program::{Block, Edit, MotionKind, Operation, Program};
 use bahn_screen::SoftKeys;
 use bahn_screen::texts;
@@ -65,7 +66,7 @@ impl Mdi {
     fn key_after(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
         let (editor, on) = (self.editor.as_ref()?, self.pnt?);
         match self.keys.place(key, editor) {
-            Some(0) if site.command(Command::Pnt(!on)) => Some(Turn::Done),
+            Some(0) if site.command(Command::Pnt(Switch::from(!on))) => Some(Turn::Done),
             Some(_) => Some(Turn::Refused),
             None => self.keys.turn(key, editor),
         }

@@ -2,7 +2,7 @@
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
-use bahn_path::Axis;
+use bahn_path::{Axis, Direction};
 use bahn_screen::{Dialogue, Line, Mark, Window, WindowKind};
 use bahn_tnc::{Command, ProbeCommand, ProbeFunction, Signal};
 
@@ -80,14 +80,14 @@ fn begin(function: ProbeFunction, site: &mut Site) -> Turn {
 /// A direction that the next start probes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    One(Axis, bool),
+    One(Axis, Direction),
     All,
 }
 
 impl Way {
     fn name(self, site: &Site) -> String {
         match self {
-            Way::One(axis, plus) => format!("{}{}", axis.letter(), if plus { '+' } else { '-' }),
+            Way::One(axis, direction) => format!("{}{direction}", axis.letter()),
             Way::All => site.words("ALL"),
         }
     }
@@ -120,7 +120,7 @@ impl Probing {
         let axes = [Axis::X, Axis::Y, Axis::Z].into_iter().filter(fits);
         let all = matches!(function, ProbeFunction::Radius(_) | ProbeFunction::Circle);
         let mut ways: Vec<Way> = axes
-            .flat_map(|axis| [Way::One(axis, true), Way::One(axis, false)])
+            .flat_map(|axis| Direction::BOTH.map(|direction| Way::One(axis, direction)))
             .collect();
         let mut way = None;
         if all {
@@ -128,7 +128,9 @@ impl Probing {
             way = Some(ways.len() - 1);
         }
         if matches!(function, ProbeFunction::Length(_)) {
-            way = ways.iter().position(|way| *way == Way::One(tool_axis, false));
+            way = ways
+                .iter()
+                .position(|way| *way == Way::One(tool_axis, Direction::Minus));
         }
         Probing {
             function,
@@ -155,7 +157,7 @@ impl Probing {
 
     fn aim(&mut self, place: usize, site: &mut Site) -> Turn {
         let command = match self.ways.get(place) {
-            Some(Way::One(axis, plus)) => ProbeCommand::Direction(*axis, *plus),
+            Some(Way::One(axis, direction)) => ProbeCommand::Direction(*axis, *direction),
             Some(Way::All) => ProbeCommand::AllDirections,
             None => return Turn::Refused,
         };
@@ -172,7 +174,11 @@ impl Probing {
             return Turn::Refused;
         };
         let chosen = self.way.and_then(|way| self.ways.get(way)).copied();
-        let wanted = Way::One(axis, chosen != Some(Way::One(axis, true)));
+        let wanted = match chosen {
+            Some(Way::One(of, Direction::Plus)) if of == axis => Direction::Minus,
+            _ => Direction::Plus,
+        };
+        let wanted = Way::One(axis, wanted);
         let place = self.ways.iter().position(|way| *way == wanted);
         place.map_or(Turn::Refused, |place| self.aim(place, site))
     }

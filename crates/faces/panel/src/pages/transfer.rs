@@ -144,7 +144,7 @@ fn text_of(news: &TransferNews, site: &Site) -> String {
         TransferNews::Output(name) => asked("READ-OUT", name, "YES = ENT / NO = NO ENT"),
         TransferNews::Protected(name) => asked("PROTECTED PGM", name, "CONTINUE = ENT / END = NO ENT"),
         TransferNews::Message(text) => bahn_screen::texts::translate(site.language(), text),
-        TransferNews::Ended(true) => site.words("COMPLETE"),
-        TransferNews::Ended(false) => site.words("NOT COMPLETE"),
+        TransferNews::Complete => site.words("COMPLETE"),
+        TransferNews::Incomplete => site.words("NOT COMPLETE"),
     }
 }

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use bahn_host::backup::Restore;
 use bahn_host::{Action, PowerOn, Source};
+use bahn_path::Switch;
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::texts;
 use bahn_teaching::timeline::Past;
@@ -31,7 +32,7 @@ impl Station {
         if self.commissioning.is_none() {
             return;
         }
-        let off = Action::Command(0, Command::Power(false));
+        let off = Action::Command(0, Command::Power(Switch::Off));
         let _ = self.host.act(Source::Client("panel".to_owned()), off);
         self.supply.is_on = false;
         let (console, site) = self.parts();

@@ -22,8 +22,8 @@ pub(super) fn take(
     match news {
         TransferNews::Message(text) => console.say(texts::translate(language, text)),
         TransferNews::Received(_) => site.programs.was_written(),
-        TransferNews::Ended(complete) if backup => {
-            let restored = (*complete && reads).then(|| pages::restored(site));
+        TransferNews::Complete | TransferNews::Incomplete if backup => {
+            let restored = (*news == TransferNews::Complete && reads).then(|| pages::restored(site));
             pages::backup_ended(site);
             return restored?.map_err(|why| console.say(why)).ok();
         }

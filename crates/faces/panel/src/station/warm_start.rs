@@ -3,6 +3,7 @@
 //! Decision: END is held for 3 s for the warm start, which is power-off and power-on, on all controls
 
 use bahn_dialogue::Key;
+use bahn_machine::Button;
 use bahn_tnc::Control;
 
 /// How long END is held, µs (inferred: several seconds).
@@ -14,9 +15,9 @@ pub(super) struct WarmStart(Option<u64>);
 
 impl WarmStart {
     /// A key of the keyboard goes down or comes up, at a time, µs.
-    pub(super) fn hold(&mut self, key: Key, down: bool, now_us: u64) {
+    pub(super) fn hold(&mut self, key: Key, button: Button, now_us: u64) {
         if key == Key::End {
-            self.0 = down.then_some(now_us);
+            self.0 = button.is_pressed().then_some(now_us);
         }
     }
 

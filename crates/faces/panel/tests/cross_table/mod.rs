@@ -78,7 +78,7 @@ impl Operable for CrossTable {
                     KeyAction::Tap => Some(TAP_US),
                 };
             }
-            Event::EmergencyStop(pressed) => self.pressed = *pressed,
+            Event::EmergencyStop(button) => self.pressed = button.is_pressed(),
             Event::FeedOverride(percent) => self.axes.operator.feed_override_percent = *percent,
             other => return Err(format!("the cross table has nothing for {other:?}")),
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use bahn_exchange::parts;
-use bahn_host::{Action, Expectation, Operable, Script, ScriptAction, Stage};
+use bahn_host::{Action, Expectation, Operable, Presence, Script, ScriptAction, Stage};
 use bahn_parameters::ParameterList;
 use bahn_screen::texts::Language;
 use bahn_text::{Diagnostic, Span, decode};
@@ -70,9 +70,9 @@ pub(crate) enum Condition {
     /// As scripts expect it.
     Machine(Expectation),
     /// This text stands on the screen, or does not.
-    Screen(String, bool),
+    Screen(String, Presence),
     /// The trainee has done this since the task began, or has not.
-    Did(Action, bool),
+    Did(Action, Presence),
 }
 
 /// Conditions with the words for them.
@@ -290,8 +290,8 @@ impl Reader<'_> {
 
     fn conditions(&self, text: &str) -> Result<Vec<Condition>, String> {
         let (there, rest) = match text.strip_prefix("no ") {
-            Some(rest) => (false, rest.trim_start()),
-            None => (true, text),
+            Some(rest) => (Presence::Absent, rest.trim_start()),
+            None => (Presence::There, text),
         };
         if let Some(wanted) = rest.strip_prefix("screen ") {
             let wanted = wanted.trim();

@@ -286,9 +286,9 @@ impl Look {
             Condition::Machine(expected) => expected.check(host.control(), host.plant()).is_none(),
             Condition::Screen(wanted, there) => {
                 let text = self.text.as_ref();
-                text.is_some_and(|text| text.contains(wanted.as_str()) == *there)
+                text.is_some_and(|text| there.agrees(text.contains(wanted.as_str())))
             }
-            Condition::Did(wanted, there) => self.did(wanted, host) == *there,
+            Condition::Did(wanted, there) => there.agrees(self.did(wanted, host)),
         }
     }
 

@@ -5,7 +5,7 @@
 
 use bahn_din::{Command, Unit};
 use bahn_kernel::gates::{Action, Driving, Held, JointFeed, Leg, VectorLimit};
-use bahn_path::{Ahead, Axis, Curve, OutputPlace, Synchronisation, WaitPlace};
+use bahn_path::{Ahead, Axis, Curve, OutputPlace, Switch, Synchronisation, WaitPlace};
 
 use super::decoding::Edge;
 use super::fault::{named, numbered};
@@ -101,7 +101,7 @@ impl Taking<'_> {
         let Some(order) = flushing.next() else {
             return Ok(false);
         };
-        let turns_on = |command: &Command| matches!(command, Command::RadiusCompensation(true));
+        let turns_on = |command: &Command| matches!(command, Command::RadiusCompensation(Switch::On));
         if self.decoding.radius_compensation || unit.commands.iter().any(turns_on) {
             let message = format!(
                 "{} with FAW_SYNCH, while tool radius compensation is on",
@@ -142,8 +142,8 @@ impl Taking<'_> {
                         acceleration_mm_s2: or_none(acceleration_mm_s2).min(or_none(deceleration_mm_s2)),
                     });
                 }
-                Command::EdgeBanding(on) => self.decoding.edge = on.then(Edge::default),
-                Command::RadiusCompensation(on) => self.decoding.radius_compensation = *on,
+                Command::EdgeBanding(switch) => self.decoding.edge = switch.is_on().then(Edge::default),
+                Command::RadiusCompensation(switch) => self.decoding.radius_compensation = switch.is_on(),
                 Command::Independent(independent) => {
                     self.gates
                         .window

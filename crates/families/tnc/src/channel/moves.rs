@@ -1,6 +1,6 @@
 //! What moves the axes of a channel in a contour cycle: what its operating mode says, then the PLC.
 
-use bahn_kernel::{Now, reference};
+use bahn_kernel::{Now, Operation, reference};
 use bahn_servo::{HandwheelInputs, Measured};
 
 use super::Channel;
@@ -20,8 +20,12 @@ pub fn move_axes(channel: &mut Channel, machine: &mut MachineSide, measured: &Me
         .count_handwheel(superimposes, &measured.operator.handwheel, &axes, exchange);
     channel.desk.follow_stop(&now, channel.touch.is_chosen());
     let automatic = channel.desk.mode().is_automatic();
-    let rigid = channel.run.core.taps_rigidly();
-    let ready = axes.choose_methods(automatic && !channel.desk.runs_reference(), rigid);
+    let operation = match channel.run.core.taps_rigidly() {
+        true => Operation::RigidTapping,
+        false if automatic && !channel.desk.runs_reference() => Operation::Automatic,
+        false => Operation::Manual,
+    };
+    let ready = axes.choose_methods(operation);
     // What the mode before moved comes to a standstill first.
     let waits = automatic && !ready && !channel.run.is_active();
     if !waits {

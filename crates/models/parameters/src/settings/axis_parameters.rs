@@ -3,7 +3,7 @@
 //! Decision: MP7470 = 0 of a TNC 360 lets a rotary axis count to 359.999 degrees on both sides of 0, with its sign,
 //! as its manual says; that of the controls before MP810, from 0 to 359.9999, is none of the models here
 
-use bahn_path::Axis;
+use bahn_path::{Axis, Direction};
 use bahn_servo::settings::{
     AxisSettings, CompensationSettings, CouplingSettings, EncoderSettings, LagSettings, MarkKind,
     MarkSettings, MonitoringSettings, MotionSettings, OutputSettings, PrecontrolSettings, SpeedLoopSettings,
@@ -95,8 +95,8 @@ pub struct MotionParameters {
 /// Reference run of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceParameters {
-    /// The marks are looked for in negative direction: MP1320 (old MP16+) [000:4631-4636].
-    pub negative: bool,
+    /// Where the marks are looked for: MP1320 (old MP16+) [000:4631-4636].
+    pub direction: Direction,
     /// Feed, mm/min: MP1330, 80 to 300 000 (old MP8+) [000:4637-4642].
     pub feed_mm_min: f64,
     /// Feed for leaving the cam, [`MarkKind::RotaryEncoder`] only, mm/min: MP1331, 80 to 500; old: the
@@ -381,7 +381,7 @@ fn reference(axis: &AxisReader) -> ReferenceParameters {
         _ => MarkKind::DistanceCoded,
     };
     ReferenceParameters {
-        negative: axis.flag(1320, 16),
+        direction: Direction::minus_if(axis.flag(1320, 16)),
         feed_mm_min,
         leaving_mm_min: axis.new_or(1331, || feed_mm_min.min(500.0)),
         place: axis

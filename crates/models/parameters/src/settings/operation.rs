@@ -1,5 +1,7 @@
 //! Settings of the operating modes: switch-on, overrides, handwheel, tools, restart, display.
 
+use bahn_path::Direction;
+
 use super::{ToolProbeParameters, bit_of};
 use crate::{ControlModel, ParameterId, ParameterList, PerPlcAxis};
 
@@ -179,8 +181,8 @@ pub struct HandwheelParameters {
     pub factor_from_plc: bool,
     /// Initialization: MP7645.0 to .7; their meaning depends on the handwheel [000:8112-8351].
     pub initialization: [u8; 8],
-    /// Turning right moves positive: MP7650 = 1; old: yes [000:8117].
-    pub positive: bool,
+    /// Where turning right moves: MP7650 = 1 plus; old: plus [000:8117].
+    pub direction: Direction,
     /// Increments below which a movement is a vibration: MP7660 (old MP247) [000:8122].
     pub threshold: u16,
     /// Least interpolation factor, 0 to 10; slow, medium, fast with the HR 410: MP7670
@@ -362,7 +364,7 @@ impl ParameterList {
             kind,
             factor_from_plc: value(7641, 0) == 1.0,
             initialization: [0, 1, 2, 3, 4, 5, 6, 7].map(|index| value(7645, index) as u8),
-            positive: old || value(7650, 0) == 1.0,
+            direction: Direction::minus_if(!old && value(7650, 0) != 1.0),
             threshold: self.value((7660, 0), (247, 0)) as u16,
             factor_min: [0, 1, 2].map(|index| value(7670, index) as u8),
             jog_percent: [0, 1, 2].map(|index| value(7671, index)),

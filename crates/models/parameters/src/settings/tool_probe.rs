@@ -1,5 +1,7 @@
 //! Settings of the tool probe TT 110 [000:7960-8058].
 
+use bahn_path::Direction;
+
 use crate::ParameterList;
 
 /// How the TT 110 is approached, and what it measures.
@@ -9,8 +11,8 @@ pub struct ToolProbeParameters {
     pub enabled: bool,
     /// Radii are probed in the 90° axis, not in the angle reference axis: MP6505 = 1 or 3.
     pub across: bool,
-    /// Radii are probed in negative direction: MP6505 = 2 or 3.
-    pub negative: bool,
+    /// Where radii are probed: MP6505, minus with 2 or 3.
+    pub direction: Direction,
     /// How the probing feed follows from the radius: MP6507.
     pub tolerance: ToolProbeTolerance,
     /// Greatest measuring error with a rotating tool, mm: MP6510.
@@ -63,7 +65,7 @@ impl ParameterList {
         ToolProbeParameters {
             enabled: value(6500, 0) == 1.0,
             across: direction & 1 == 1,
-            negative: direction >= 2,
+            direction: Direction::minus_if(direction >= 2),
             tolerance: match value(6507, 0) as u8 {
                 0 => ToolProbeTolerance::Constant,
                 1 => ToolProbeTolerance::Stepped,

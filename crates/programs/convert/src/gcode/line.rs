@@ -1,6 +1,6 @@
 //! What a line for LinuxCNC can say.
 
-use bahn_path::{Curve, FeedRate, Position, SpindleOrder};
+use bahn_path::{Curve, FeedRate, Position, SpindleOrder, Switch};
 
 /// One thing that a line says.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,10 +26,10 @@ pub(super) enum Said {
     Change,
     Speed(f64),
     Spindle(SpindleOrder),
-    Coolant(bool),
+    Coolant(Switch),
     Orient(f64),
     /// Whether the overrides act.
-    Overrides(bool),
+    Overrides(Switch),
     Stop {
         optional: bool,
     },

@@ -1,6 +1,6 @@
 //! Reads what [`super::write`] writes: as much of RS-274/NGC as that, for the proof.
 
-use bahn_path::{Arc, Axis, Curve, FeedRate, Plane, Position, SpindleOrder};
+use bahn_path::{Arc, Axis, Curve, FeedRate, Plane, Position, SpindleOrder, Switch};
 
 use super::back::elsewhere;
 use super::line::Said;
@@ -220,11 +220,11 @@ fn read_word(
         "M4" => said(Said::Spindle(SpindleOrder::CounterClockwise)),
         "M5" => said(Said::Spindle(SpindleOrder::Stop)),
         "M6" => said(Said::Change),
-        "M8" => said(Said::Coolant(true)),
-        "M9" => said(Said::Coolant(false)),
+        "M8" => said(Said::Coolant(Switch::On)),
+        "M9" => said(Said::Coolant(Switch::Off)),
         "M19" => said(Said::Orient(0.0)),
-        "M48" => said(Said::Overrides(true)),
-        "M49" => said(Said::Overrides(false)),
+        "M48" => said(Said::Overrides(Switch::On)),
+        "M49" => said(Said::Overrides(Switch::Off)),
         _ => None,
     };
     if let Some(said) = function {

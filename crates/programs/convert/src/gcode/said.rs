@@ -12,7 +12,7 @@ use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 use bahn_path::{
     At, Axis, BlockRef, ControlFunction, Curve, FeedRate, Function, OverrideLaw, PathElement, Plane,
-    Position, SpindleOrder, TechnologyFunction, Thread,
+    Position, SpindleOrder, Switch, TechnologyFunction, Thread,
 };
 
 use super::back::Stand;
@@ -217,7 +217,7 @@ impl Sayer {
         }
         if overrides != self.overrides {
             self.overrides = overrides;
-            self.say(block, Said::Overrides(overrides));
+            self.say(block, Said::Overrides(Switch::from(overrides)));
         }
         if element.constant_speed {
             self.leave_out(block, "M90: G61 holds the corners, whatever the speed");
@@ -279,10 +279,7 @@ impl Sayer {
     /// Plunge and retraction of a tap are one line; the spindle turns by the cycle alone.
     fn thread(&mut self, element: &PathElement, thread: Thread) {
         let (start, end) = (self.rounded(&element.start), self.rounded(&element.end));
-        let order = match thread.clockwise {
-            true => SpindleOrder::Clockwise,
-            false => SpindleOrder::CounterClockwise,
-        };
+        let order = SpindleOrder::turn(thread.spindle);
         let mut said = Said::Thread {
             start,
             end,
@@ -298,10 +295,7 @@ impl Sayer {
             if from != end || bottom != start {
                 return self.ends(element.block, "the retraction from a thread is not its plunge");
             }
-            order = match plunge.clockwise {
-                true => SpindleOrder::Clockwise,
-                false => SpindleOrder::CounterClockwise,
-            };
+            order = SpindleOrder::turn(plunge.spindle);
             said = Said::Thread {
                 start: from,
                 end: bottom,
@@ -380,15 +374,15 @@ impl Sayer {
             _ => None,
         };
         let coolant = match code {
-            8 | 13 | 14 => Some(true),
-            0 | 9 => Some(false),
+            8 | 13 | 14 => Some(Switch::On),
+            0 | 9 => Some(Switch::Off),
             _ => None,
         };
         if let Some(order) = spindle {
             self.say(block, Said::Spindle(order));
         }
-        if let Some(on) = coolant {
-            self.say(block, Said::Coolant(on));
+        if let Some(switch) = coolant {
+            self.say(block, Said::Coolant(switch));
         }
         match code {
             6 => self.say(block, Said::Change),

@@ -120,12 +120,12 @@ impl Writer {
                 SpindleOrder::CounterClockwise => "M4",
                 SpindleOrder::Stop | SpindleOrder::StopWithRun => "M5",
             }),
-            Said::Coolant(on) => text.push_str(if *on { "M8" } else { "M9" }),
+            Said::Coolant(switch) => text.push_str(if switch.is_on() { "M8" } else { "M9" }),
             Said::Orient(angle) => {
                 text.push_str("M19");
                 push_word(&mut text, "R", *angle);
             }
-            Said::Overrides(act) => text.push_str(if *act { "M48" } else { "M49" }),
+            Said::Overrides(switch) => text.push_str(if switch.is_on() { "M48" } else { "M49" }),
             Said::Stop { optional } => text.push_str(if *optional { "M1" } else { "M0" }),
             Said::Print(line) => {
                 let _ = write!(text, "(PRINT,{line})");

@@ -3,7 +3,7 @@
 //! Decision: RND after the first RL/RR block is an arc tangent at the compensated contour point
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, Curve, FeedRate, PathElement, Plane, Point2};
+use bahn_path::{Arc, Curve, FeedRate, PathElement, Plane, Point2, Sense};
 
 use super::corner::{Ending, bare, corner, transition};
 use super::flat::{self, Flat, SAME_POINT_MM};
@@ -367,10 +367,10 @@ impl CompensationStage {
         // The arc touches the compensated contour at `target`, its centre on the tool's side
         // (inferred, spec 8.6); the line runs tangentially into it.
         let centre = flat::along(target, normal, smooth.radius);
-        let counter_clockwise = first.side == Side::Left;
-        let touch = tangent_point(start, centre, smooth.radius, counter_clockwise)
+        let sense = first.side.sense();
+        let touch = tangent_point(start, centre, smooth.radius, sense)
             .ok_or_else(|| Fault::from(MessageId::RoundingRadiusTooLarge).at(smooth.block))?;
-        let sweep_deg = bahn_path::sweep_deg(centre, touch, target, counter_clockwise);
+        let sweep_deg = bahn_path::sweep_deg(centre, touch, target, sense);
         let mut arc = bare(
             &first.element,
             Curve::Arc(Arc {
@@ -433,10 +433,10 @@ fn depart(mut item: ContourMove, smooth: Smooth, left: Leaving, out: &mut Output
     let start = plane.point(&item.element.start);
     let end = plane.point(&item.element.end);
     let centre = flat::along(start, left.normal, smooth.radius);
-    let counter_clockwise = left.side == Side::Left;
-    let touch = tangent_point(end, centre, smooth.radius, !counter_clockwise)
+    let sense = left.side.sense();
+    let touch = tangent_point(end, centre, smooth.radius, sense.opposite())
         .ok_or_else(|| Fault::from(MessageId::RoundingRadiusTooLarge).at(smooth.block))?;
-    let sweep_deg = bahn_path::sweep_deg(centre, start, touch, counter_clockwise);
+    let sweep_deg = bahn_path::sweep_deg(centre, start, touch, sense);
     let mut arc = bare(
         &item.element,
         Curve::Arc(Arc {
@@ -459,14 +459,14 @@ fn depart(mut item: ContourMove, smooth: Smooth, left: Leaving, out: &mut Output
 
 /// Where the tangent from `point` touches the circle when the tool runs from the point to the circle and
 /// on around it; `None` when the point lies inside.
-fn tangent_point(point: Point2, centre: Point2, radius: f64, counter_clockwise: bool) -> Option<Point2> {
+fn tangent_point(point: Point2, centre: Point2, radius: f64, sense: Sense) -> Option<Point2> {
     let away = flat::sub(point, centre);
     let distance = away[0].hypot(away[1]);
     if distance < radius || radius <= 0.0 {
         return None;
     }
     let opening = (radius / distance).acos();
-    let angle = away[1].atan2(away[0]) + if counter_clockwise { opening } else { -opening };
+    let angle = away[1].atan2(away[0]) + sense.sign() * opening;
     Some([centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()])
 }
 

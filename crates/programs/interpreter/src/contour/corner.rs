@@ -4,7 +4,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Arc, BlockRef, Curve, PathElement, Point2};
 
 use super::flat::{self, Flat, SAME_POINT_MM};
-use super::{ContourMove, Corner, Side};
+use super::{ContourMove, Corner};
 use crate::error::Fault;
 
 /// Change of direction up to which two elements count as tangential: programs give arc ends rounded to
@@ -62,7 +62,7 @@ pub(crate) fn corner(before: &ContourMove, a: &Flat, item: &ContourMove, b: &Fla
         _ if straight => Ok(perpendicular(Some(Curve::Line))),
         Corner::Open => Ok(perpendicular(Some(Curve::Line))),
         Corner::Normal if outside => {
-            let sweep_deg = bahn_path::sweep_deg(point, a.end(), b.start(), item.side == Side::Right);
+            let sweep_deg = bahn_path::sweep_deg(point, a.end(), b.start(), item.side.sense().opposite());
             let arc = Arc {
                 plane: item.plane,
                 centre: point,

@@ -1,6 +1,6 @@
 //! What passes the contour stages: a movement, with what is to become of its end.
 
-use bahn_path::{Barrier, PathElement, Plane};
+use bahn_path::{Barrier, PathElement, Plane, Sense};
 
 use super::corner_arc::CornerArcs;
 
@@ -46,6 +46,11 @@ impl Side {
             Side::Left => 1.0,
             Side::Right => -1.0,
         }
+    }
+
+    /// The sense of an arc about a point on this side.
+    pub fn sense(self) -> Sense {
+        Sense::of_sweep(self.sign())
     }
 
     /// The side in a mirrored system.

@@ -4,7 +4,9 @@
 //! plane, at the depth at which it ends; one of the tool axis alone has none (also `interpreter/tests/readings.rs`)
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, Axis, BlockRef, CornerArc, Curve, FeedRate, PathElement, Plane, Point2, Position};
+use bahn_path::{
+    Arc, Axis, BlockRef, CornerArc, Curve, FeedRate, PathElement, Plane, Point2, Position, Sense,
+};
 
 use super::compensation::CompensationStage;
 use super::corner_arc::{self, Lies};
@@ -301,7 +303,7 @@ fn round(
         .ok_or_else(too_large)?;
     let from = nearest_on(&a, centre);
     let to = nearest_on(&b, centre);
-    let sweep = bahn_path::sweep_deg(centre, from, to, side > 0.0);
+    let sweep = bahn_path::sweep_deg(centre, from, to, Sense::of_sweep(side));
     let mut joint = joint_element(held, join, from, to);
     joint.element.curve = Curve::Arc(Arc {
         plane: held.plane,

@@ -8,7 +8,7 @@ use bahn_path::region::{
     Contour as PlaneContour, Effort, HatchPattern, Merge, Outline, Pass, PocketArea, Segment, SubContour,
     Superposition,
 };
-use bahn_path::{Arc, Axis, AxisSet, Curve, Cylinder, FeedRate, Plane, Point2};
+use bahn_path::{Arc, Axis, AxisSet, Curve, Cylinder, FeedRate, Plane, Point2, Sense};
 
 use super::machining::{Heights, Machining, Tracer, infeeds, plane_direction};
 use crate::contour::flat::Flat;
@@ -17,7 +17,6 @@ use crate::definition::Definition;
 use crate::error::Fault;
 use crate::modal::Modal;
 use crate::q_parameters::{cos_deg, sin_deg};
-use crate::status::Spindle;
 
 /// What an SL cycle is asked to do: the subcontours that its labels describe.
 #[derive(Clone, Debug)]
@@ -302,14 +301,14 @@ pub(super) fn contour_milling(
     let pecking = d.length(2, 0)?;
     let plunge_feed = d.feed(2, 0)?;
     let feed = d.feed(2, 1)?;
-    let climb = d.counter_clockwise(2) != (m.modal.spindle == Spindle::CounterClockwise);
+    let sense = m.modal.spindle.milled(d.sense(2));
     let (heights, pecks) = contour_heights(m, d, pecking)?;
     let areas = own_areas(m, job, 0.0, watch)?;
     let mill = Milling {
         heights,
         plunge_feed,
         feed,
-        reversed: !climb,
+        reversed: sense == Sense::Clockwise,
     };
     let stays = m.settings.rules.contour_pocket.stay_at_clearance;
     let mut trace = m.tracer();

@@ -4,7 +4,7 @@
 //! in one groove
 
 use bahn_parameters::MessageId;
-use bahn_path::{OverrideLaw, SpindleOrder, Thread};
+use bahn_path::{OverrideLaw, Sense, SpindleOrder, Thread};
 
 use super::machining::{Heights, Machining, Tracer, infeeds};
 use crate::definition::Definition;
@@ -102,6 +102,15 @@ pub(super) fn tapping(m: &mut Machining<'_>, definition: &Definition) -> Result<
     trace.finish()
 }
 
+/// How the spindle turns into the workpiece: a right-hand thread has a positive pitch.
+fn into_workpiece(pitch: f64) -> Sense {
+    if pitch > 0.0 {
+        Sense::Clockwise
+    } else {
+        Sense::CounterClockwise
+    }
+}
+
 /// Cycle 17 RIGID TAPPING: the tool axis follows the spindle down and up, F = S · pitch. The spindle stops
 /// (M05, inferred: it turns by the cycle alone) and is oriented first, so that a thread can be cut again
 /// (MP7160). It stands after the cycle, until M03 or M04 (inferred) [003:5071-5106] [000:6118-6141].
@@ -111,10 +120,10 @@ pub(super) fn rigid_tapping(m: &mut Machining<'_>, definition: &Definition) -> R
     let pitch = definition.length(3, 0)?;
     let heights = m.heights(definition, [setup, depth], None)?;
     let feed = thread_feed(m, pitch)?;
-    let right_hand = pitch > 0.0;
+    let spindle = into_workpiece(pitch);
     let thread = Thread {
         pitch_mm: pitch.abs(),
-        clockwise: right_hand,
+        spindle,
         orientation_deg: orientation_deg(m.settings),
         retracts: true,
     };
@@ -122,7 +131,7 @@ pub(super) fn rigid_tapping(m: &mut Machining<'_>, definition: &Definition) -> R
     trace.set_override_law(OverrideLaw::Spindle(thread));
     trace.feed_height(heights.at_depth(heights.depth), feed);
     trace.set_override_law(OverrideLaw::Spindle(Thread {
-        clockwise: !right_hand,
+        spindle: spindle.opposite(),
         orientation_deg: None,
         ..thread
     }));
@@ -138,10 +147,15 @@ pub(super) fn thread_cutting(m: &mut Machining<'_>, definition: &Definition) -> 
     let pitch = definition.length(2, 0)?;
     let heights = m.heights(definition, [0.0, depth], None)?;
     let feed = thread_feed(m, pitch)?;
+    let into = into_workpiece(pitch);
     let thread = Thread {
         pitch_mm: pitch.abs(),
         // M03 into the workpiece cuts a right-hand thread, and M04 away from it (later controls).
-        clockwise: (pitch > 0.0) == (heights.direction < 0.0),
+        spindle: if heights.direction < 0.0 {
+            into
+        } else {
+            into.opposite()
+        },
         orientation_deg: orientation_deg(m.settings),
         retracts: false,
     };

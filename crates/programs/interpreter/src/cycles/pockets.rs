@@ -6,7 +6,7 @@
 //! Decision: Path patterns of the pocket cycles (the manual's figures are lost)
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Plane, Point2};
+use bahn_path::{Axis, Plane, Point2, Sense};
 
 use super::machining::{Heights, Machining, Tracer, infeeds};
 use crate::definition::Definition;
@@ -97,13 +97,13 @@ pub(super) fn pocket_milling(m: &mut Machining<'_>, definition: &Definition) -> 
             "the tool does not fit into the pocket",
         ));
     }
-    let counter_clockwise = definition.counter_clockwise(6) != (m.modal.spindle == Spindle::CounterClockwise);
+    let sense = m.modal.spindle.milled(definition.sense(6));
     let rings = Rectangles {
         half: [half[0].max(0.0), half[1].max(0.0)],
         step: stepover(m.modal, m.settings)?,
         tool_radius: radius,
         corner: (corner - radius).max(0.0),
-        counter_clockwise,
+        sense,
     };
     let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
     let plane = plane_with(m.modal.plane, [first_axis, second_axis]);
@@ -128,12 +128,12 @@ pub(super) fn circular_pocket(m: &mut Machining<'_>, definition: &Definition) ->
         ));
     }
     let step = stepover(m.modal, m.settings)?;
-    let counter_clockwise = definition.counter_clockwise(5) != (m.modal.spindle == Spindle::CounterClockwise);
+    let sense = m.modal.spindle.milled(definition.sense(5));
     let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
     let feeds = [plunge_feed, feed];
     let plane = m.modal.contour_plane;
     mill_layers(m, plane, &heights, &pecks, feeds, |trace| {
-        spiral(trace, radius.max(0.0), step, counter_clockwise, feed);
+        spiral(trace, radius.max(0.0), step, sense, feed);
     })
 }
 
@@ -256,7 +256,7 @@ struct Rectangles {
     tool_radius: f64,
     /// Corner radius of the last rectangle.
     corner: f64,
-    counter_clockwise: bool,
+    sense: Sense,
 }
 
 impl Rectangles {
@@ -270,11 +270,7 @@ impl Rectangles {
         };
         let core = long - short;
         // Swapping the axes turns the sense of rotation around.
-        let turn = if self.counter_clockwise == long_first {
-            1.0
-        } else {
-            -1.0
-        };
+        let turn = self.sense.sign() * if long_first { 1.0 } else { -1.0 };
         let map = |x: f64, y: f64| if long_first { [x, y] } else { [y, x] };
         let mut side = 1.0;
         if core > SAME_MM {
@@ -307,7 +303,7 @@ impl Rectangles {
         at: impl Fn(f64, f64) -> Point2,
         feed: f64,
     ) {
-        let sweep = if self.counter_clockwise { 90.0 } else { -90.0 };
+        let sweep = 90.0 * self.sense.sign();
         trace.line(at(x, 0.0), feed);
         let mut rounded = |before: Point2, corner_point: Point2, after: Point2| {
             trace.line(at(before[0], before[1]), feed);
@@ -329,8 +325,8 @@ impl Rectangles {
 }
 
 /// Half circles whose diameter grows by the stepover each turn, then the full circle.
-fn spiral(trace: &mut Tracer<'_>, radius: f64, step: f64, counter_clockwise: bool, feed: f64) {
-    let turn = if counter_clockwise { 1.0 } else { -1.0 };
+fn spiral(trace: &mut Tracer<'_>, radius: f64, step: f64, sense: Sense, feed: f64) {
+    let turn = sense.sign();
     let mut x = 0.0f64;
     let mut side = 1.0;
     while x < radius - SAME_MM && !trace.is_full() {

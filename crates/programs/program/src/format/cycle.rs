@@ -1,11 +1,9 @@
 //! Cycle and probe blocks in listings.
 
 use super::Output;
-use super::path::direction_text;
+use super::path::sense_text;
 use crate::cycles::FIRST_PARAMETER_CYCLE;
-use crate::{
-    CycleBlock, CycleFunction, CycleParameter, CycleWord, Direction, Quantity, Value, cycle_parameters,
-};
+use crate::{CycleBlock, CycleFunction, CycleParameter, CycleWord, Quantity, Value, cycle_parameters};
 
 /// Whether its numbers are printed without `+` [003:4978] [003:5381] [003:6434].
 fn is_unsigned(parameters: &[CycleParameter]) -> bool {
@@ -93,14 +91,10 @@ impl Output {
                         self.word("");
                     }
                     self.text.push(axis.letter());
-                    self.text.push(if *direction == Direction::Clockwise {
-                        '-'
-                    } else {
-                        '+'
-                    });
+                    self.text.push(direction.symbol());
                 }
                 CycleWord::Feed(feed) => self.feed_word(*feed),
-                CycleWord::Direction(direction) => self.word(direction_text(*direction)),
+                CycleWord::Sense(sense) => self.word(sense_text(*sense)),
                 CycleWord::Labels(labels) => {
                     for (i, label) in labels.iter().enumerate() {
                         self.text.push(if i == 0 { ' ' } else { '/' });

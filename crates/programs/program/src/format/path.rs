@@ -1,7 +1,8 @@
 //! Positioning blocks in listings.
 
 use super::Output;
-use crate::{Compensation, Direction, Motion, MotionKind, Word};
+use crate::{Compensation, Motion, MotionKind, Word};
+use bahn_path::Sense;
 
 impl Output {
     pub(super) fn motion(&mut self, motion: &Motion) {
@@ -17,7 +18,7 @@ impl Output {
         }
         self.signed_word("R", motion.radius);
         if let Some(direction) = motion.direction {
-            self.word(direction_text(direction));
+            self.word(sense_text(direction));
         }
         if let Some(compensation) = motion.compensation {
             self.word(match compensation {
@@ -48,9 +49,9 @@ impl Output {
 }
 
 /// The word of a sense of rotation: `DR+` or `DR-`.
-pub(super) fn direction_text(direction: Direction) -> &'static str {
-    match direction {
-        Direction::CounterClockwise => "DR+",
-        Direction::Clockwise => "DR-",
+pub(super) fn sense_text(sense: Sense) -> &'static str {
+    match sense {
+        Sense::CounterClockwise => "DR+",
+        Sense::Clockwise => "DR-",
     }
 }

@@ -3,7 +3,8 @@
 //! dialogue asks for them.
 
 use crate::CycleFunction::{self, Definition, Probe};
-use crate::{CycleBlock, CycleParameter, CycleWord, Direction, Feed, Quantity, Value, cycle};
+use crate::{CycleBlock, CycleParameter, CycleWord, Feed, Quantity, Value, cycle};
+use bahn_path::Sense;
 
 /// How the words of a cycle are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +40,7 @@ pub(super) struct IsoCycle {
     pub(super) function: CycleFunction,
     pub(super) number: u16,
     /// The direction that the function itself says.
-    pub(super) turn: Option<Direction>,
+    pub(super) turn: Option<Sense>,
     pub(super) form: Form,
 }
 
@@ -53,7 +54,7 @@ const fn row(code: u16, number: u16, form: Form) -> IsoCycle {
     }
 }
 
-const fn turning(code: u16, number: u16, turn: Direction) -> IsoCycle {
+const fn turning(code: u16, number: u16, turn: Sense) -> IsoCycle {
     IsoCycle {
         turn: Some(turn),
         ..row(code, number, Form::Parameters)
@@ -74,15 +75,15 @@ const TABLE: &[IsoCycle] = &[
     IsoCycle { function: Probe, ..row(55, 0, Form::Probing) },
     row(56, 15, Form::Parameters),
     row(57, 6, Form::Parameters),
-    turning(58, 16, Direction::Clockwise),
-    turning(59, 16, Direction::CounterClockwise),
+    turning(58, 16, Sense::Clockwise),
+    turning(59, 16, Sense::CounterClockwise),
     row(72, 11, Form::Letter(b'F')),
     row(73, 10, Form::Letter(b'H')),
     row(74, 3, Form::Parameters),
-    turning(75, 4, Direction::Clockwise),
-    turning(76, 4, Direction::CounterClockwise),
-    turning(77, 5, Direction::Clockwise),
-    turning(78, 5, Direction::CounterClockwise),
+    turning(75, 4, Sense::Clockwise),
+    turning(76, 4, Sense::CounterClockwise),
+    turning(77, 5, Sense::Clockwise),
+    turning(78, 5, Sense::CounterClockwise),
     row(80, 19, Form::Positions),
     row(83, 1, Form::Parameters),
     row(84, 2, Form::Parameters),
@@ -110,7 +111,7 @@ pub(super) fn of_blocks(function: CycleFunction, blocks: &[&CycleBlock]) -> Opti
     let first = blocks.first()?;
     let words = || blocks.iter().flat_map(|block| &block.words);
     let direction = words().find_map(|word| match word {
-        CycleWord::Direction(direction) => Some(*direction),
+        CycleWord::Sense(sense) => Some(*sense),
         _ => None,
     });
     let line = words().any(|word| matches!(word, CycleWord::Number(_)));
@@ -159,7 +160,7 @@ impl IsoCycle {
                 .map(|(_, word)| word.clone());
             for parameter in *parameters {
                 match (parameter.quantity, self.turn) {
-                    (Quantity::Turn, Some(turn)) => block.words.push(CycleWord::Direction(turn)),
+                    (Quantity::Turn, Some(turn)) => block.words.push(CycleWord::Sense(turn)),
                     (Quantity::Turn, None) => {}
                     _ => block.words.extend(own.next()),
                 }

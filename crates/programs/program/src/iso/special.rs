@@ -1,7 +1,7 @@
 //! G functions whose words are their own: blank, tools, labels, roundings, and all cycles.
 
 use bahn_parameters::MessageId::{CyclIncomplete, EntryValueIncorrect, UnexpectedText};
-use bahn_path::Axis;
+use bahn_path::{Axis, Direction};
 
 use super::code::{coordinate, distance, end, g_code, missing, once, plane};
 use super::cycle::{Form, IsoCycle, of_code, word_of};
@@ -11,8 +11,8 @@ use crate::parse::cursor::{Cursor, Parsed};
 use crate::parse::m_function;
 use crate::text::to_words;
 use crate::{
-    Coordinates, CycleBlock, CycleFunction, CycleWord, Direction, Distance, Feed, MFunctions, ModalBlock,
-    Modality, Operation, Quantity, Value, Word,
+    Coordinates, CycleBlock, CycleFunction, CycleWord, Distance, Feed, MFunctions, ModalBlock, Modality,
+    Operation, Quantity, Value, Word,
 };
 
 /// G functions that are no cycles and stand with words of their own.
@@ -256,8 +256,8 @@ fn p_word(c: &mut Cursor, name: bool, words: &mut Words) -> Parsed<()> {
                 P::Direction(
                     axis,
                     match sign {
-                        b'-' => Direction::Clockwise,
-                        _ => Direction::CounterClockwise,
+                        b'-' => Direction::Minus,
+                        _ => Direction::Plus,
                     },
                 )
             }

@@ -3,15 +3,15 @@
 //! Decision: A listing in DIN/ISO ends with N99999, or N99999999 where the numbers reach that; a block without N is
 //! called by its place (also `program/src/program.rs`)
 
-use bahn_path::AxisSet;
+use bahn_path::{AxisSet, Sense};
 
 use super::function::{CALCULATIONS, CONDITIONS};
 use crate::format::number::{push_integer, push_signed, push_unsigned};
 use crate::format::{FormatOptions, formula_text};
 use crate::parse::rest_of_word;
 use crate::{
-    Block, Calculation, Compensation, Coordinates, CycleBlock, CycleFunction, Direction, Distance, Feed,
-    Header, MFunctions, ModalBlock, Modality, Motion, MotionKind, Operation, PathFunction, Unit, Value, Word,
+    Block, Calculation, Compensation, Coordinates, CycleBlock, CycleFunction, Distance, Feed, Header,
+    MFunctions, ModalBlock, Modality, Motion, MotionKind, Operation, PathFunction, Unit, Value, Word,
 };
 
 /// Number of the last block, as long as those before it are smaller; else the greatest that a control takes.
@@ -531,7 +531,7 @@ fn group_of(word: Word, open: bool) -> Option<Distance> {
 
 /// What a block of a language without functions in force says of them.
 fn said(motion: &Motion) -> Modality {
-    let clockwise = motion.direction == Some(Direction::Clockwise);
+    let clockwise = motion.direction == Some(Sense::Clockwise);
     let rapid = motion.feed == Some(Feed::Max);
     let function = match motion.kind {
         MotionKind::Line | MotionKind::LineNormal if rapid => PathFunction::Rapid,

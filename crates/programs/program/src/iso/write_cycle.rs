@@ -4,7 +4,7 @@ use super::cycle::{Form, IsoCycle, of_blocks};
 use super::special::feed_value;
 use super::write::{Distances, Output};
 use crate::format::number::push_integer;
-use crate::{Coordinates, CycleBlock, CycleFunction, CycleWord, Direction, Modality, Quantity, Value};
+use crate::{Coordinates, CycleBlock, CycleFunction, CycleWord, Modality, Quantity, Value};
 
 impl Output {
     /// The one block of a cycle from its blocks.
@@ -76,7 +76,7 @@ impl Output {
                 .filter(|block| block.sub == sub)
                 .flat_map(|block| &block.words);
             let values: Vec<&CycleWord> = own
-                .filter(|word| !matches!(word, CycleWord::Direction(_) | CycleWord::Text(_)))
+                .filter(|word| !matches!(word, CycleWord::Sense(_) | CycleWord::Text(_)))
                 .collect();
             let before = taken.iter().filter(|of| **of == sub).count();
             taken.push(sub);
@@ -129,11 +129,7 @@ impl Output {
                 CycleWord::AxisDirection(axis, direction) => {
                     self.p_index(2);
                     self.text.push(axis.letter());
-                    self.text.push(if *direction == Direction::Clockwise {
-                        '-'
-                    } else {
-                        '+'
-                    });
+                    self.text.push(direction.symbol());
                     number = 3;
                 }
                 CycleWord::Coordinate(axis, word) => {

@@ -2,16 +2,16 @@
 //! control, so that only numbers and addresses decide [003:3713-3714] [003:4979].
 
 use bahn_parameters::MessageId::{AxisDoubleProgrammed, CyclIncomplete, EntryValueIncorrect};
-use bahn_path::{Axis, AxisSet};
+use bahn_path::{Axis, AxisSet, Direction};
 
 use super::cursor::{Cursor, Parsed, WRITE_A_NUMBER, with_help};
 use super::decoration::{begins_value, decoration, ends_word, is_broken_number, is_separator, number_begins};
 use super::m_function::m_functions;
-use super::path::{direction, feed_word};
+use super::path::{feed_word, sense};
 use crate::check::ANY_LABEL_MAX;
 use crate::cycles::{cycle_parameters, takes_assignments};
 use crate::text::to_words;
-use crate::{CycleBlock, CycleFunction, CycleWord, Direction, Operation, Quantity, Word};
+use crate::{CycleBlock, CycleFunction, CycleWord, Operation, Quantity, Word};
 
 /// `CYCL DEF n.m ...` (also `CYCLE DEF`) and `CYCL CALL`.
 pub(super) fn cycle(c: &mut Cursor) -> Parsed<Option<Operation>> {
@@ -210,7 +210,7 @@ fn address(c: &mut Cursor, scope: Scope) -> Parsed<Option<Option<CycleWord>>> {
         }
         (b'D', b'R') if matches!(c.peek_at(2), b'+' | b'-' | b'0'..=b'9') || ends_word(c, 2) => {
             c.advance(2);
-            Some(CycleWord::Direction(direction(c, start)?))
+            Some(CycleWord::Sense(sense(c, start)?))
         }
         (b'I', _) => match Axis::from_letter(second) {
             Some(axis) if begins_value(c, 2) => {
@@ -275,8 +275,8 @@ fn axis_word(c: &mut Cursor, start: usize, axis: Axis, scope: Scope) -> Parsed<O
         return Ok(None);
     }
     let direction = match c.peek_at(1) {
-        b'+' => Direction::CounterClockwise,
-        b'-' => Direction::Clockwise,
+        b'+' => Direction::Plus,
+        b'-' => Direction::Minus,
         _ if letters > 1 || ends_word(c, 1) => {
             c.advance(1);
             return Ok(Some(Some(CycleWord::Axis(axis))));
@@ -316,6 +316,8 @@ fn parameter_word(c: &mut Cursor, scope: Scope) -> Parsed<Option<CycleWord>> {
 
 #[cfg(test)]
 mod tests {
+    use bahn_path::Sense;
+
     use super::super::test::{fault, m, operation, q};
     use super::*;
     use crate::Feed;
@@ -418,7 +420,7 @@ mod tests {
         assert_eq!(words_of("CYCL DEF 3.4 X-50"), [at(Axis::X, -50.0)]);
         let end = [
             feed(100.0),
-            CycleWord::Direction(Direction::CounterClockwise),
+            CycleWord::Sense(Sense::CounterClockwise),
             text("RADIUS"),
             Number(N(0.0)),
         ];
@@ -463,7 +465,7 @@ mod tests {
                 text("PECKG"),
                 Number(N(-5.0)),
                 feed(100.0),
-                CycleWord::Direction(Direction::Clockwise),
+                CycleWord::Sense(Sense::Clockwise),
                 feed(500.0)
             ]
         );

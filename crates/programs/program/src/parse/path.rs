@@ -1,14 +1,12 @@
 //! Path functions: L, C, CR, CT, LP, CP, CTP, single-axis blocks, CC, RND and chamfers.
 
 use bahn_parameters::MessageId::{AxisDoubleProgrammed, BlockNotKnown, EntryValueIncorrect, UnexpectedText};
-use bahn_path::Axis;
+use bahn_path::{Axis, Sense};
 
 use super::cursor::{Cursor, Parsed};
 use super::m_function::m_function;
 use crate::text::is_blank;
-use crate::{
-    Compensation, Coordinates, Direction, Feed, MFunctions, Motion, MotionKind, Operation, Value, Word,
-};
+use crate::{Compensation, Coordinates, Feed, MFunctions, Motion, MotionKind, Operation, Value, Word};
 
 /// Reads what opens a positioning block; `None`, with nothing read, if it is another block.
 #[inline]
@@ -404,16 +402,16 @@ fn direction_word(c: &mut Cursor, start: usize, motion: &mut Motion) -> Parsed<(
         c.go_to(start);
         return c.unexpected();
     }
-    let direction = direction(c, start)?;
+    let direction = sense(c, start)?;
     set_once(c, start, Some(direction), &mut motion.direction)
 }
 
 /// The sign after `DR`.
-pub(super) fn direction(c: &mut Cursor, start: usize) -> Parsed<Direction> {
+pub(super) fn sense(c: &mut Cursor, start: usize) -> Parsed<Sense> {
     if c.accept(b'+') {
-        Ok(Direction::CounterClockwise)
+        Ok(Sense::CounterClockwise)
     } else if c.accept(b'-') {
-        Ok(Direction::Clockwise)
+        Ok(Sense::Clockwise)
     } else if c.peek().is_ascii_alphanumeric() && c.position() == start + 2 {
         c.go_to(start);
         c.fault_at_word(BlockNotKnown, "no control here knows this word")
@@ -517,7 +515,7 @@ mod tests {
         let c = motion("C IX+5 Y-5 DR-");
         assert_eq!(
             (c.kind, c.direction),
-            (MotionKind::Circle, Some(Direction::Clockwise))
+            (MotionKind::Circle, Some(Sense::Clockwise))
         );
         assert_eq!(c.coordinates, words("IX5 Y-5"));
         let cr = motion("CR X+10 Y+2 R-5 DR- RL");
@@ -580,7 +578,7 @@ mod tests {
         let cp = motion("CP PA+10 DR-");
         assert_eq!(
             (cp.kind, cp.direction),
-            (MotionKind::CirclePolar, Some(Direction::Clockwise))
+            (MotionKind::CirclePolar, Some(Sense::Clockwise))
         );
         let ctp = motion("CTP PR+10 PA+80");
         assert_eq!(ctp.kind, MotionKind::CircleTangentialPolar);

@@ -57,9 +57,9 @@ mod tests {
     use super::super::test::{fault, operation, q};
     use super::*;
     use crate::Value::Number as N;
-    use crate::{Direction, Word};
+    use crate::Word;
     use CycleWord::{AxisDirection, Coordinate, Number, Target};
-    use bahn_path::Axis;
+    use bahn_path::{Axis, Direction};
 
     fn probe(text: &str) -> (u16, u16, Vec<CycleWord>) {
         match operation(text) {
@@ -90,7 +90,7 @@ mod tests {
             vec![
                 text("REF. PLANE"),
                 Target(5),
-                AxisDirection(Axis::X, Direction::Clockwise),
+                AxisDirection(Axis::X, Direction::Minus),
             ],
         );
         assert_eq!(probe("TCH PROBE 0.0 REF. PLANE Q5 X-"), first);
@@ -156,8 +156,8 @@ mod tests {
             probe("TCH PROBE 7.2 ORDER Y-/X+").2,
             [
                 text("ORDER"),
-                AxisDirection(Axis::Y, Direction::Clockwise),
-                AxisDirection(Axis::X, Direction::CounterClockwise)
+                AxisDirection(Axis::Y, Direction::Minus),
+                AxisDirection(Axis::X, Direction::Plus)
             ]
         );
     }

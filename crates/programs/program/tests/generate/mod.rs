@@ -1,6 +1,6 @@
 //! Random blocks of every kind, and random damage to their text.
 
-use bahn_path::Axis;
+use bahn_path::{Axis, Direction, Sense};
 use bahn_program::*;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -132,13 +132,7 @@ fn motion() -> impl Strategy<Value = Motion> {
                     polar_radius: pr.filter(|_| polar),
                     polar_angle: pa.filter(|_| polar),
                     radius: radius.filter(|_| kind == CircleRadius),
-                    direction: direction.filter(|_| arc).map(|plus| {
-                        if plus {
-                            Direction::CounterClockwise
-                        } else {
-                            Direction::Clockwise
-                        }
-                    }),
+                    direction: direction.filter(|_| arc).map(sense),
                     compensation: compensation.map(|i| compensations[i]),
                     feed,
                     normal: (kind == LineNormal).then(|| Box::new(normal)),
@@ -197,17 +191,16 @@ fn decoration() -> impl Strategy<Value = Box<str>> {
     .prop_map(Into::into)
 }
 
+fn sense(plus: bool) -> Sense {
+    if plus {
+        Sense::CounterClockwise
+    } else {
+        Sense::Clockwise
+    }
+}
+
 /// The words of one block: texts never stand side by side, and no axis has two values.
 fn cycle_words(probe: bool) -> impl Strategy<Value = Vec<CycleWord>> {
-    let direction = any::<bool>()
-        .prop_map(|plus| {
-            if plus {
-                Direction::CounterClockwise
-            } else {
-                Direction::Clockwise
-            }
-        })
-        .boxed();
     let unsigned_is_target = move |value| match value {
         Value::Q {
             negative: false,
@@ -220,12 +213,12 @@ fn cycle_words(probe: bool) -> impl Strategy<Value = Vec<CycleWord>> {
         value().prop_map(unsigned_is_target),
         (axis(), word()).prop_map(|(axis, word)| CycleWord::Coordinate(axis, word)),
         axis().prop_map(CycleWord::Axis),
-        (axis(), direction.clone()).prop_map(move |(axis, direction)| match probe {
+        (axis(), select(&Direction::BOTH[..])).prop_map(move |(axis, direction)| match probe {
             true => CycleWord::AxisDirection(axis, direction),
             false => CycleWord::Axis(axis),
         }),
         feed().prop_map(CycleWord::Feed),
-        direction.prop_map(CycleWord::Direction),
+        any::<bool>().prop_map(|plus| CycleWord::Sense(sense(plus))),
         (0..=1999_u16, value()).prop_map(|(number, value)| CycleWord::Assignment(number, value)),
         (0..=99_u16).prop_map(CycleWord::M),
     ];

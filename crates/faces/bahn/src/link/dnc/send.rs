@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use bahn_link::blockwise::{self, Rights};
 use bahn_link::dnc::{Spool, Spooled};
-use bahn_link::{Attendant, Event, Files, Protocol, drive, standard};
+use bahn_link::{Attendant, Ended, Event, Files, Protocol, drive, standard};
 use bahn_parameters::ControlModel;
 use serde::Serialize;
 
@@ -216,7 +216,7 @@ impl Attendant for Sender {
                 self.missing
                     .retain(|missing| !missing.eq_ignore_ascii_case(&name));
             }
-            Event::Ended(false) => {
+            Event::Ended(Ended::Incomplete) => {
                 self.teller.spooled.broken_off();
                 self.teller.tell("broken");
             }

@@ -1,6 +1,7 @@
 //! Code number 75 368: the offsets of the axes are shown, and adjusted [000:5014-5020].
 
 use bahn_dialogue::Key;
+use bahn_path::Switch;
 use bahn_screen::{Line, Window, WindowKind};
 use bahn_tnc::Command;
 
@@ -19,7 +20,7 @@ pub(super) fn open(site: &Site) -> Turn {
 struct Offsets;
 
 impl Offsets {
-    fn answer(adjust: bool, site: &mut Site) -> Turn {
+    fn answer(adjust: Switch, site: &mut Site) -> Turn {
         match site.command(Command::OffsetAdjustment(adjust)) {
             true => Turn::Close,
             false => Turn::Refused,
@@ -30,8 +31,8 @@ impl Offsets {
 impl Page for Offsets {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
-            Key::Ent => Offsets::answer(true, site),
-            Key::NoEnt => Offsets::answer(false, site),
+            Key::Ent => Offsets::answer(Switch::On, site),
+            Key::NoEnt => Offsets::answer(Switch::Off, site),
             Key::End | Key::Del => Turn::Close,
             _ => Turn::Refused,
         }
@@ -47,8 +48,8 @@ impl Page for Offsets {
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
         match place {
-            0 => Offsets::answer(true, site),
-            1 => Offsets::answer(false, site),
+            0 => Offsets::answer(Switch::On, site),
+            1 => Offsets::answer(Switch::Off, site),
             _ => Turn::Close,
         }
     }

@@ -9,6 +9,7 @@ use bahn_dialogue::Key;
 use bahn_graphics::Subject;
 use bahn_graphics::scope::{Content, Scope, TriggerOn, signal_name};
 use bahn_host::oscilloscope::SAMPLE_TIME_US;
+use bahn_path::{Direction, Switch};
 use bahn_screen::{Line, Window, WindowKind};
 use bahn_tnc::{Command, Mode, ServoSignal};
 
@@ -82,9 +83,9 @@ impl MainDisplay {
         number.map_or(Turn::Refused, |number| Turn::Open(number.beginning(key)))
     }
 
-    fn go(&mut self, forward: bool) -> Turn {
+    fn go(&mut self, direction: Direction) -> Turn {
         let count = ITEMS.len();
-        self.current = (self.current + if forward { 1 } else { count - 1 }) % count;
+        self.current = beside(self.current, direction, count);
         Turn::Done
     }
 }
@@ -100,7 +101,7 @@ impl Item {
     }
 
     /// ENT goes to the next value, NO ENT to the one before; numbers are asked for.
-    fn change(self, forward: bool, site: &mut Site) -> Turn {
+    fn change(self, direction: Direction, site: &mut Site) -> Turn {
         let setup = &mut site.graphics.scope.setup;
         match self {
             Output => return set_output(!setup.step, setup.feed_mm_min, site),
@@ -109,7 +110,7 @@ impl Item {
             SampleTime => {
                 let times = sample_times(site);
                 let setup = &mut site.graphics.scope.setup;
-                setup.sample_us = next(&times, setup.sample_us, forward);
+                setup.sample_us = next(&times, setup.sample_us, direction);
             }
             Axis(number) => {
                 let axes: Vec<char> = site.control().axis_letters().collect();
@@ -117,7 +118,7 @@ impl Item {
                 let Some(channel) = setup.channels.get_mut(number) else {
                     return Turn::Refused;
                 };
-                channel.axis = next(&axes, channel.axis, forward);
+                channel.axis = next(&axes, channel.axis, direction);
                 channel.content = Content::Off;
                 channel.curve = None;
             }
@@ -134,7 +135,7 @@ impl Item {
                 }
                 let setup = &mut site.graphics.scope.setup;
                 if let Some(own) = setup.channels.get_mut(number) {
-                    own.content = next(&contents, own.content, forward);
+                    own.content = next(&contents, own.content, direction);
                 }
             }
             Trigger => {
@@ -144,10 +145,12 @@ impl Item {
                     channel.is_some_and(|channel| matches!(channel.content, Content::Signal(_)))
                 };
                 triggers.extend((0..setup.channels.len()).filter(recorded).map(TriggerOn::Channel));
-                setup.trigger = next(&triggers, setup.trigger, forward);
+                setup.trigger = next(&triggers, setup.trigger, direction);
             }
             Slope => setup.rising = !setup.rising,
-            PreTrigger => setup.pre_trigger_percent = next(&PRE_TRIGGERS, setup.pre_trigger_percent, forward),
+            PreTrigger => {
+                setup.pre_trigger_percent = next(&PRE_TRIGGERS, setup.pre_trigger_percent, direction)
+            }
         }
         Turn::Done
     }
@@ -208,16 +211,19 @@ fn threshold_unit(site: &Site) -> String {
     }
 }
 
+/// The place after another one of so many, or before it, round.
+fn beside(place: usize, direction: Direction, count: usize) -> usize {
+    match direction {
+        Direction::Plus => (place + 1) % count,
+        Direction::Minus => (place + count - 1) % count,
+    }
+}
+
 /// The value after another one, or before it, round.
-fn next<T: Copy + PartialEq>(values: &[T], value: T, forward: bool) -> T {
+fn next<T: Copy + PartialEq>(values: &[T], value: T, direction: Direction) -> T {
     let at = values.iter().position(|own| *own == value);
-    let count = values.len();
-    let place = match (at, forward) {
-        (None, _) => 0,
-        (Some(at), true) => at + 1,
-        (Some(at), false) => at + count - 1,
-    };
-    values.get(place % count.max(1)).copied().unwrap_or(value)
+    let place = at.map_or(0, |at| beside(at, direction, values.len()));
+    values.get(place).copied().unwrap_or(value)
 }
 
 /// 0.6 to 6 ms in servo steps of the control [000:18748].
@@ -269,10 +275,10 @@ fn ask_threshold(site: &Site) -> Box<Number> {
 impl Page for MainDisplay {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
-            Key::Up => self.go(false),
-            Key::Down => self.go(true),
-            Key::Ent | Key::Right => self.item().change(true, site),
-            Key::NoEnt | Key::Left => self.item().change(false, site),
+            Key::Up => self.go(Direction::Minus),
+            Key::Down => self.go(Direction::Plus),
+            Key::Ent | Key::Right => self.item().change(Direction::Plus, site),
+            Key::NoEnt | Key::Left => self.item().change(Direction::Minus, site),
             Key::Start => Display::open(site),
             Key::End | Key::Del => Turn::Close,
             Key::Sign | Key::Point => self.begin_number(key, site),
@@ -328,8 +334,10 @@ enum Act {
     SetUp,
     /// START, and STOP while it records.
     Record,
-    Stretch(bool),
-    Go(bool),
+    /// Half the time is seen, or twice as much.
+    Closer,
+    Wider,
+    Go(Direction),
     Invert,
     /// Vertical zoom: a coarser scale, or a finer one.
     Scale(i32),
@@ -351,10 +359,10 @@ const ROWS: [[(&str, Act); 8]; 3] = [
         ("END", Act::End),
     ],
     [
-        ("TIME -", Act::Stretch(true)),
-        ("TIME +", Act::Stretch(false)),
-        ("<-", Act::Go(false)),
-        ("->", Act::Go(true)),
+        ("TIME -", Act::Closer),
+        ("TIME +", Act::Wider),
+        ("<-", Act::Go(Direction::Minus)),
+        ("->", Act::Go(Direction::Plus)),
         ("", Act::None),
         ("", Act::None),
         ("", Act::None),
@@ -378,9 +386,9 @@ impl Display {
         Turn::Open(Box::new(Display))
     }
 
-    fn record(start: bool, site: &mut Site) -> Turn {
-        let possible = !start || site.graphics.scope.can_record();
-        match possible && site.command(Command::Oscilloscope(start)) {
+    fn record(record: Switch, site: &mut Site) -> Turn {
+        let possible = record == Switch::Off || site.graphics.scope.can_record();
+        match possible && site.command(Command::Oscilloscope(record)) {
             true => Turn::Done,
             false => Turn::Refused,
         }
@@ -394,13 +402,14 @@ impl Act {
         let selected = scope.sight.selected;
         match self {
             Act::None => return Turn::Refused,
-            Act::Record => return Display::record(!records, site),
+            Act::Record => return Display::record(Switch::from(!records), site),
             // While it records only STOP is possible [000:18770-18774].
             _ if records => return Turn::Refused,
             Act::End | Act::SetUp => return Turn::Close,
             Act::Select(channel) => scope.sight.selected = channel,
-            Act::Stretch(closer) => scope.sight.stretch(closer),
-            Act::Go(forward) => scope.sight.go(forward),
+            Act::Closer => scope.sight.stretch(true),
+            Act::Wider => scope.sight.stretch(false),
+            Act::Go(direction) => scope.sight.go(direction),
             Act::Invert => scope.sight.inverted[selected] ^= true,
             Act::Scale(by) => {
                 let curves = scope.curves();
@@ -423,14 +432,14 @@ impl Act {
 impl Page for Display {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         let act = match key {
-            Key::Left => Act::Go(false),
-            Key::Right => Act::Go(true),
+            Key::Left => Act::Go(Direction::Minus),
+            Key::Right => Act::Go(Direction::Plus),
             Key::Up => Act::Scale(-1),
             Key::Down => Act::Scale(1),
             // The original deflection [000:18783-18784].
             Key::NoEnt => Act::Centre,
-            Key::Start => return Display::record(true, site),
-            Key::Stop => return Display::record(false, site),
+            Key::Start => return Display::record(Switch::On, site),
+            Key::Stop => return Display::record(Switch::Off, site),
             Key::End | Key::Del => Act::End,
             _ => return Turn::Refused,
         };
@@ -490,7 +499,7 @@ impl Page for Display {
     fn tick(&mut self, site: &mut Site) -> Turn {
         // The memory is full: it stops by itself.
         if site.graphics.scope.records() && site.graphics.scope.is_complete() {
-            site.command(Command::Oscilloscope(false));
+            site.command(Command::Oscilloscope(Switch::Off));
         }
         Turn::Done
     }
