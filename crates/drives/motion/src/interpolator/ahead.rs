@@ -7,15 +7,18 @@ use std::collections::VecDeque;
 use bahn_path::{self as path, At, PathElement};
 
 use super::outputs::Outputs;
+use crate::clone_within::clone_within;
 use crate::drive::Place;
 use crate::item::Item;
 use crate::ring::Ring;
 
 /// Those of the known path that are still to go out.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Ahead {
     queue: VecDeque<Entry>,
 }
+
+clone_within!(Ahead { queue });
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
