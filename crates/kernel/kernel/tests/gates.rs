@@ -189,23 +189,28 @@ impl Bench {
         self.gates.window.action(action);
     }
 
-    /// Runs to the end, the last action, backward in these cycles. No cycle allocates.
-    fn run(mut self, backward: std::ops::Range<u64>) -> Valves {
+    /// Runs to the end, the last action, backward in these cycles.
+    fn run(self, backward: std::ops::Range<u64>) -> Valves {
+        self.run_so(|cycle, _| (Drive::default(), backward.contains(&cycle)))
+    }
+
+    /// Runs to the end, the last action, driven and backward in each cycle as is said. No cycle allocates.
+    fn run_so(mut self, mut so: impl FnMut(u64, &mut Gates<usize, ()>) -> (Drive, bool)) -> Valves {
         self.at_end(Action::Own(()));
         self.gates.release();
         self.gates.closed = true;
-        let drive = Drive::default();
-        let mut missing = 0;
         while !self.valves.ended {
             let Bench { gates, valves, .. } = &mut self;
-            assert!(valves.cycle < 20_000, "it comes to its end");
-            let back = backward.contains(&valves.cycle);
+            assert!(valves.cycle < 60_000, "it comes to its end");
             let allocated = allocation_counter::measure(|| {
+                let (drive, back) = so(valves.cycle, gates);
                 match gates.is_backward() {
                     true => while gates.act_backward(valves) {},
                     false => while gates.output_ahead(&drive, valves) | gates.act(valves) {},
                 }
-                missing += gates.missing(&drive, valves).into_iter().count();
+                for valve in gates.missing(&drive, valves) {
+                    assert!(!valves.is_done(valve), "{valve} is not missing");
+                }
                 gates.cycle(drive, back, valves);
             });
             assert_eq!(allocated.count_total, 0, "cycle {}", valves.cycle);
@@ -304,4 +309,46 @@ fn on_the_way_back_functions_go_out_again() {
     let valves: Vec<usize> = run.outputs.iter().map(|(valve, ..)| *valve).collect();
     assert_eq!(valves[0], 0);
     assert!(valves[1] > 1 && valves[2] > valves[1], "{valves:?}");
+}
+
+/// Whatever happens on the way, no cycle allocates: functions at places and ahead of them, dwells, single block with its starts,
+/// holds, overrides and turns. All functions go out, some of them on the way back and forward again.
+#[test]
+fn no_cycle_allocates() {
+    const LINES: usize = 40;
+    let mut bench = Bench::new(30);
+    bench.valves.list.resize(4 * LINES, Valve::default());
+    for line in 0..LINES {
+        let (valve, unit) = (4 * line, line as u64 + 1);
+        let point = 10.0 * line as f64;
+        if line > 0 {
+            bench.gates.leads.push(valve, unit, Ahead::Distance(4.0), point);
+            bench.gates.leads.push(valve + 1, unit, Ahead::Time(0.3), point);
+            bench.at_end(Action::Gate([valve, valve + 1].into()));
+        }
+        bench.at_end(Action::Output(valve + 2));
+        bench.line(1);
+        bench.at_end(Action::Output(valve + 3));
+        bench.at_end(Action::Gate([valve + 2, valve + 3].into()));
+        if line % 8 == 0 {
+            bench.at_end(Action::Dwell(0.05));
+        }
+        bench.at_end(Action::BlockEnd);
+    }
+    let run = bench.run_so(|cycle, gates| {
+        gates.single_block(cycle % 5000 > 3500);
+        if cycle % 300 == 0 {
+            gates.start(cycle as f64 * T);
+        }
+        let drive = Drive {
+            hold: cycle % 700 > 640,
+            feed_override_percent: 60.0 + (cycle / 500 % 10) as f64 * 10.0,
+            ..Drive::default()
+        };
+        (drive, cycle % 4000 > 3000 && cycle < 30_000)
+    });
+    let forward = |back: bool| run.outputs.iter().filter(move |(.., of)| *of == back).count();
+    assert!(forward(false) > 4 * LINES - 2, "{}", forward(false));
+    assert!(forward(true) > 20, "{}", forward(true));
+    near(run.outputs.last().unwrap().1, 10.0 * LINES as f64, 1e-9);
 }
