@@ -46,7 +46,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
                     ..at
                 };
             }
-            let to_go = self.to_go(&ahead, drive, family);
+            let to_go = self.left_to_go(&ahead, drive, family);
             let planned_s = self.planned_s(&ahead, drive, family);
             family.output(ahead.id, at, Way::Ahead(to_go));
             self.watch(&ahead, at.t, planned_s, family);
@@ -221,7 +221,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     }
 
     /// What is left to the place where a function is synchronised that is output now: the distance, mm, and the time, s.
-    fn to_go<F: Functions<Ticket = T, Own = O>>(
+    fn left_to_go<F: Functions<Ticket = T, Own = O>>(
         &mut self,
         ahead: &Pending<T>,
         drive: &Drive,
