@@ -169,7 +169,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             false => &[],
         };
         let (gate, blocker): (&[T], Option<T>) = match actions.get(index) {
-            _ if backward => (&self.waiting.gate, self.waiting.blocker(family)),
+            _ if backward => (&self.again.gate, self.again.blocker(family)),
             Some(Action::Gate(tickets)) => (tickets, None),
             Some(Action::Output(ticket)) => (&[], family.blocker(*ticket)),
             _ => (&[], None),

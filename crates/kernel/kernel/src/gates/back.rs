@@ -24,21 +24,24 @@ pub struct Back {
     pub at_limit: bool,
 }
 
-/// The functions of the place that was looked at last.
+/// The functions that go out again, on the way back and after it.
 #[derive(Debug)]
-pub struct Waiting<T> {
-    /// Those that are to be output there.
+pub struct Again<T> {
+    /// Those that are to be output at the place that was looked at last.
     pub queue: VecDeque<T>,
     /// Those that are waited for there.
     pub gate: Vec<T>,
+    /// Those that the path comes over when it has turned forward, with their new tickets.
+    pub renewed: Vec<(T, T)>,
 }
 
-impl<T: Copy> Waiting<T> {
+impl<T: Copy> Again<T> {
     /// There are none.
-    pub fn new() -> Waiting<T> {
-        Waiting {
+    pub fn new() -> Again<T> {
+        Again {
             queue: VecDeque::new(),
             gate: Vec::new(),
+            renewed: Vec::new(),
         }
     }
 
@@ -46,16 +49,17 @@ impl<T: Copy> Waiting<T> {
     pub fn make_room(&mut self, count: usize) {
         self.queue.reserve(count.saturating_sub(self.queue.len()));
         self.gate.reserve(count.saturating_sub(self.gate.len()));
+        self.renewed.reserve(count.saturating_sub(self.renewed.len()));
     }
 
-    /// There are none any more.
+    /// The way back begins.
     pub fn clear(&mut self) {
         self.queue.clear();
         self.gate.clear();
     }
 
-    /// Whether there are any.
-    pub fn is_any(&self) -> bool {
+    /// Whether the path stands for one on its way back.
+    pub fn is_waited_for(&self) -> bool {
         !self.queue.is_empty() || !self.gate.is_empty()
     }
 

@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 use bahn_motion::Drive;
 
 use super::Gates;
-use super::back::{Back, FeedBack, Waiting};
+use super::back::{Again, Back, FeedBack};
 use super::functions::{Functions, Moment, Way};
 use super::places::Action;
 
@@ -34,7 +34,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         self.single.all_block_ends();
         self.leads.promises.clear();
         self.motion.turn(position);
-        self.waiting.clear();
+        self.again.clear();
         self.back = Some(Back {
             from,
             along_mm: along,
@@ -73,7 +73,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         };
         self.motion.path.prepare(&mut feed, usize::MAX);
         let (from, seen, reached) = (back.from, back.seen, back.reached);
-        let waits = self.waiting.is_any() || back.at_limit;
+        let waits = self.again.is_waited_for() || back.at_limit;
         // The next place with a function that is waited for in backward motion.
         let first = self.places.first();
         let known = (from + 2).saturating_sub(back.fed).max(first);
@@ -158,38 +158,38 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         let Some(mut back) = self.back.take() else {
             return false;
         };
-        let mut waiting = std::mem::replace(&mut self.waiting, Waiting::new());
+        let mut again = std::mem::replace(&mut self.again, Again::new());
         let mut any = false;
         loop {
-            while let Some(ticket) = waiting.queue.front().copied() {
+            while let Some(ticket) = again.queue.front().copied() {
                 if family.blocker(ticket).is_some() {
                     break;
                 }
-                waiting.queue.pop_front();
+                again.queue.pop_front();
                 any = true;
                 let at = Moment {
                     position: self.places.position(back.seen),
                     ..self.now(family)
                 };
                 family.output(ticket, at, Way::Back);
-                waiting.gate.push(ticket);
+                again.gate.push(ticket);
             }
-            waiting.gate.retain(|ticket| !family.is_done(*ticket));
-            if back.at_limit && !waiting.is_any() {
+            again.gate.retain(|ticket| !family.is_done(*ticket));
+            if back.at_limit && !again.is_waited_for() {
                 let moves = !self.motion.still || back.reached < back.seen;
                 let distance = self.places.distance(back.seen);
                 back.at_limit = self.single.stands_at_end(distance, true, moves);
                 any |= !back.at_limit;
             }
-            if waiting.is_any() || back.at_limit || back.seen <= back.reached {
+            if again.is_waited_for() || back.at_limit || back.seen <= back.reached {
                 break;
             }
             back.seen -= 1;
             any = true;
-            self.queue_place(back.seen, &mut waiting.queue, family);
+            self.queue_place(back.seen, &mut again.queue, family);
             back.at_limit = self.ends_block(back.seen);
         }
-        (self.back, self.waiting) = (Some(back), waiting);
+        (self.back, self.again) = (Some(back), again);
         any
     }
 
@@ -235,7 +235,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         family: &mut F,
     ) {
         let Gates {
-            renewed,
+            again: Again { renewed, .. },
             leads,
             places,
             ..

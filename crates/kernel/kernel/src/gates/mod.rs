@@ -30,7 +30,7 @@ pub use leg::{Driving, Leg, VectorLimit};
 pub use places::{Action, Places};
 pub use window::{JointFeed, Planned, Window};
 
-use back::{Back, Waiting};
+use back::{Again, Back};
 use motion::Motion;
 use single::SingleBlock;
 
@@ -58,9 +58,7 @@ pub struct Gates<T, O> {
     single: SingleBlock,
     /// The path goes back.
     back: Option<Back>,
-    waiting: Waiting<T>,
-    /// Functions that go out again when it turns, with their new tickets.
-    renewed: Vec<(T, T)>,
+    again: Again<T>,
     /// The place at which actions are done next, and which of them.
     cursor: (u64, usize),
     /// Places before this one do not stop the path.
@@ -84,8 +82,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             motion: Motion::new(limits, start),
             single: SingleBlock::default(),
             back: None,
-            waiting: Waiting::new(),
-            renewed: Vec::new(),
+            again: Again::new(),
             cursor: (1, 0),
             open_to: 1,
             dwell: None,
@@ -113,9 +110,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
 
     /// Room for all functions that are known, so that no cycle allocates.
     fn make_room(&mut self) {
-        let count = self.places.count() + self.leads.count();
-        self.waiting.make_room(count);
-        self.renewed.reserve(count.saturating_sub(self.renewed.len()));
+        self.again.make_room(self.places.count() + self.leads.count());
     }
 
     /// An element comes; so many may still be split, and a function that goes out ahead looks back over so many blocks.
