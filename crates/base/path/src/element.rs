@@ -252,6 +252,26 @@ pub enum Ahead {
     Time(f64),
 }
 
+impl Ahead {
+    /// Whether a function goes out now whose place is so far ahead on the path, mm. `time_to` says how long the path takes to
+    /// it, s, when that is not longer than asked for.
+    ///
+    /// ```
+    /// use bahn_path::Ahead;
+    /// assert!(Ahead::Distance(5.0).is_due(4.9, |_| None));
+    /// // 4 mm at 10 mm/s.
+    /// assert!(Ahead::Time(0.5).is_due(4.0, |_| Some(4.0 / 10.0)));
+    /// assert!(!Ahead::Time(0.3).is_due(4.0, |_| Some(4.0 / 10.0)));
+    /// ```
+    pub fn is_due(self, to_go_mm: f64, time_to: impl FnOnce(f64) -> Option<f64>) -> bool {
+        match self {
+            _ if to_go_mm <= 0.0 => true,
+            Ahead::Distance(lead_mm) => to_go_mm <= lead_mm,
+            Ahead::Time(lead_s) => time_to(lead_s).is_some_and(|time_s| time_s <= lead_s),
+        }
+    }
+}
+
 /// The functions that a program can output.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Function {

@@ -179,6 +179,15 @@ impl Synchronisation {
         matches!(self.wait(), WaitPlace::Feed | WaitPlace::Point)
     }
 
+    /// Whether it goes out before the motion of its block and is waited for after it: the motion passes meanwhile [004:63].
+    #[inline]
+    pub fn spans_motion(self) -> bool {
+        matches!(
+            (self.output(), self.wait()),
+            (OutputPlace::Before, WaitPlace::After)
+        )
+    }
+
     /// Whether the path waits for its acknowledgement anywhere; what is not waited for must be fetched all the same.
     pub fn is_waited_for(self) -> bool {
         self.wait() != WaitPlace::Nowhere
@@ -231,6 +240,8 @@ mod tests {
             assert_eq!(Synchronisation::named(row.name), Some(*kind));
         }
         assert!(ROWS.is_sorted_by(|(_, a), (_, b)| a.bits < b.bits));
+        let spans = Synchronisation::all().filter(|kind| kind.spans_motion());
+        assert!(spans.eq([Synchronisation::MvsSns]));
     }
 
     /// The parts of a name say what the type does [004:54-57]: M function V(before), N(after) the S(block), at the E(vent), by a

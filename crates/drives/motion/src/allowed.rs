@@ -1,15 +1,18 @@
 //! The envelope of what machine and path allow: rapid traverse of the axes, radial acceleration, corners, stops.
 
 use crate::braking::{Braking, ROUNDING};
+use crate::clone_within::clone_within;
 use crate::segments::Segments;
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Allowed {
     /// The stop is where what is known ends.
     braking: Braking,
     /// Joints below this number are noted.
     seen: u64,
 }
+
+clone_within!(Allowed { braking, seen });
 
 impl Allowed {
     /// For so many elements.

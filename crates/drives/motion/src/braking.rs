@@ -9,12 +9,13 @@
 
 use std::collections::VecDeque;
 
+use crate::clone_within::clone_within;
 use crate::segments::Segments;
 
 /// What part of the level may be rounding when two joints are compared: that of the sums over some thousand elements.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Braking {
     lows: VecDeque<Low>,
     /// A joint that is a stop whatever else it is.
@@ -23,6 +24,13 @@ pub(crate) struct Braking {
     from: u64,
     squared: VecDeque<f64>,
 }
+
+clone_within!(Braking {
+    lows,
+    stop,
+    from,
+    squared
+});
 
 /// A joint that limits the ones before it: its number, and squared speed plus level.
 #[derive(Clone, Copy, Debug)]

@@ -10,13 +10,14 @@
 //! below what the geometry allows
 
 use crate::allowed::Allowed;
+use crate::clone_within::clone_within;
 use crate::joints::Caps;
 use crate::limits::Dynamics;
 use crate::segments::Segments;
 use crate::stretch::Wish;
 use crate::wanted::Wanted;
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Envelope {
     segments: Segments,
     /// Number of the segment that is executed.
@@ -29,6 +30,15 @@ pub(crate) struct Envelope {
     /// The greatest squared speed at the end of the current segment, once asked for.
     exit: Option<f64>,
 }
+
+clone_within!(Envelope {
+    segments,
+    current,
+    held,
+    allowed,
+    wanted,
+    exit
+});
 
 impl Caps for Envelope {
     fn join(&mut self, speed: f64) {

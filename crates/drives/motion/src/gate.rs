@@ -53,7 +53,7 @@ pub(crate) fn wait(function: &TechnologyFunction, element: &PathElement) -> Opti
         // In the movement that would wait for it, it is a function at its start [004:72].
         WaitPlace::Feed if is_feed(element) => Some(Gate::Start),
         WaitPlace::Nowhere | WaitPlace::Feed | WaitPlace::Point => None,
-        WaitPlace::After if synchronisation.output() == OutputPlace::Before => None,
+        WaitPlace::After if synchronisation.spans_motion() => None,
         WaitPlace::Before | WaitPlace::After | WaitPlace::Output => place(function),
     }
 }

@@ -21,6 +21,7 @@ use std::sync::Arc;
 
 use bahn_path::{ElementSource, LiveData, PathElement, Placement, Position, Step, TechnologyFunction};
 
+use crate::clone_within::clone_within;
 use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
 use crate::gate::Gate;
 use crate::item::Output;
@@ -41,7 +42,7 @@ use stops::{Acknowledged, Stops};
 /// cycle of time and never does. Both are called in turn, `prepare` as often as there is time for it:
 /// where it falls behind, the path comes to a stop at the end of what is known and goes on when more
 /// is. At an override that does not change the path runs as a [`Planner`](crate::Planner) plans it.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Interpolator<E> {
     ring: Ring,
     cycle_s: f64,
@@ -58,6 +59,21 @@ pub struct Interpolator<E> {
     /// How far the first element was executed that is taken back and still to be given again.
     recalled: Option<Executed>,
 }
+
+clone_within!(Interpolator<E> {
+    ring,
+    cycle_s,
+    after,
+    overrides,
+    phase,
+    at,
+    stops,
+    gates,
+    outputs,
+    ahead,
+    led,
+    recalled,
+});
 
 /// How fast the path may be, as it was said last.
 #[derive(Clone, Copy, Debug)]
@@ -106,7 +122,7 @@ impl<E> Interpolator<E> {
             at: Standing::default(),
             stops: Stops::default(),
             gates: Gates::default(),
-            outputs: Outputs::default(),
+            outputs: Outputs::with_capacity(capacity),
             ahead: Ahead::default(),
             led: Led::default(),
             recalled: None,

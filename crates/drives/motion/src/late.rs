@@ -3,7 +3,7 @@
 //! Decision: The path plans a stop where a function may still have to be acknowledged, and takes it back when it is:
 //! an acknowledgement in time costs nothing
 
-use bahn_path::{At, Function, OutputPlace, PathElement, Synchronisation, WaitPlace};
+use bahn_path::{At, Function, PathElement, Synchronisation, WaitPlace};
 
 use crate::gate::is_feed;
 
@@ -45,7 +45,7 @@ impl Late {
         let point = self.point.take_if(|_| wanted);
         for function in functions {
             match function.synchronisation.wait() {
-                WaitPlace::After if function.synchronisation.output() == OutputPlace::Before => {
+                WaitPlace::After if function.synchronisation.spans_motion() => {
                     self.block = Some((number + 1, element.sequence));
                 }
                 WaitPlace::Feed if !is_feed(element) => self.feed = Some(number + 1),

@@ -67,6 +67,7 @@
 
 mod allowed;
 mod braking;
+mod clone_within;
 mod connect;
 mod corner;
 mod drive;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use bahn_path::{PathElement, Placement, Position};
 
+use crate::clone_within::clone_within;
 use crate::connect::connect;
 use crate::envelope::Envelope;
 use crate::gate::Gates;
@@ -18,7 +19,7 @@ use crate::stretch::Wish;
 /// The element that is executed, the next one and a line to its start.
 const LEAST_CAPACITY: usize = 3;
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Ring {
     dynamics: Dynamics,
     items: VecDeque<Item>,
@@ -43,6 +44,23 @@ pub(crate) struct Ring {
     /// The placement in which that is.
     placement: Option<Arc<Placement>>,
 }
+
+clone_within!(Ring {
+    dynamics,
+    items,
+    aside,
+    executed_aside,
+    envelope,
+    joints,
+    capacity,
+    first,
+    current,
+    outputs,
+    late,
+    awaiting,
+    end,
+    placement,
+});
 
 impl Ring {
     /// Room for `capacity` elements, or the least that it works with.
@@ -130,6 +148,24 @@ impl Ring {
     /// Items from the current one on.
     pub(crate) fn ahead(&self) -> impl ExactSizeIterator<Item = &Item> {
         self.items.range(self.current.min(self.items.len())..)
+    }
+
+    /// The first item at whose end the path can stand when it brakes from a squared speed with so much of the current one to
+    /// go, mm, and the distance that it takes, mm; the number after the last one when it cannot within what is known.
+    pub(crate) fn standstill(&self, squared: f64, rest: f64) -> (u64, f64) {
+        let (mut possible, mut distance, mut length) = (0.0, 0.0, rest);
+        let mut following = self.ahead().skip(1);
+        for (number, item) in (self.number()..).zip(self.ahead()) {
+            let before = possible;
+            possible += 2.0 * item.acceleration * length;
+            if squared <= possible {
+                let braking = (squared - before).max(0.0) / (2.0 * item.acceleration);
+                return (number, distance + braking);
+            }
+            distance += length;
+            length = following.next().map_or(0.0, |next| next.length);
+        }
+        (self.number() + self.ahead().len() as u64, distance)
     }
 
     /// Puts aside the item that is executed and those after it; nothing allocates.

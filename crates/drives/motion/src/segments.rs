@@ -2,13 +2,17 @@
 
 use std::collections::VecDeque;
 
+use crate::clone_within::clone_within;
+
 /// Segments by their number.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Segments {
     queue: VecDeque<Segment>,
     /// Number of the first one, and of the joint at its end.
     first: u64,
 }
+
+clone_within!(Segments { queue, first });
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {

@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 
 use bahn_path::{FeedRate, OverrideLaw, PathElement};
 
+use crate::clone_within::clone_within;
 use crate::limits::{Dynamics, Slowest};
 
 /// How fast an element is to run, beside what machine and path allow.
@@ -48,14 +49,24 @@ struct Stretch {
 }
 
 /// The stretches from the element on that is executed. Before the first of them nothing moves.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Stretches {
     queue: VecDeque<Stretch>,
     /// Number of the first stretch.
     gone: u64,
 }
 
+clone_within!(Stretches { queue, gone });
+
 impl Stretches {
+    /// For so many elements, each of which may be a stretch of its own.
+    pub(crate) fn with_capacity(capacity: usize) -> Stretches {
+        Stretches {
+            queue: VecDeque::with_capacity(capacity),
+            gone: 0,
+        }
+    }
+
     pub(crate) fn clear(&mut self) {
         self.gone += self.queue.len() as u64;
         self.queue.clear();

@@ -5,11 +5,12 @@
 //! the feed changes within the braking distance, and the distance to the place for which it does brake.
 
 use crate::braking::{Braking, ROUNDING};
+use crate::clone_within::clone_within;
 use crate::limits::Dynamics;
 use crate::segments::Segments;
 use crate::stretch::{Stretches, Wish};
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Wanted {
     stretches: Stretches,
     /// The stop is that of single block.
@@ -20,11 +21,18 @@ pub(crate) struct Wanted {
     seen: u64,
 }
 
+clone_within!(Wanted {
+    stretches,
+    braking,
+    own,
+    seen
+});
+
 impl Wanted {
     /// For so many elements.
     pub(crate) fn with_capacity(capacity: usize) -> Wanted {
         Wanted {
-            stretches: Stretches::default(),
+            stretches: Stretches::with_capacity(capacity),
             braking: Braking::with_capacity(capacity),
             own: None,
             seen: 0,

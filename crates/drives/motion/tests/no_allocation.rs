@@ -215,3 +215,36 @@ fn what_is_recalled_waits_to_be_taken() {
     path.prepare(&mut source, 10);
     assert_eq!(path.element().map(|element| element.start[Axis::Y]), Some(5.0));
 }
+
+/// A copy of the path takes the memory that it has: elements without functions are run ahead in each cycle so. It goes on as
+/// the path does.
+#[test]
+fn a_copy_in_place_allocates_nothing() {
+    let mut path = Path::new(6000.0);
+    for i in 0..300 {
+        path.feed(FeedRate::Programmed(1000.0 + f64::from(i * 37 % 5000)));
+        path.by(&[(Axis::X, 0.3), (Axis::Y, 0.01 * f64::from(7 * i % 10))]);
+    }
+    let mut source = list(path.elements.into_iter().map(Step::Element).collect());
+    let mut path: Interpolator<&str> = Interpolator::new(&limits(), 100);
+    path.set_position(Position::ZERO);
+    let mut ahead = Interpolator::new(&limits(), 100);
+    let mut cycles = 0;
+    let drive = Drive::default();
+    loop {
+        let allocated = allocation_counter::measure(|| {
+            path.prepare(&mut source, usize::MAX);
+            ahead.clone_from(&path);
+            ahead.cycle(&drive);
+        });
+        assert_eq!(allocated.count_total, 0, "cycle {cycles}");
+        let state = path.cycle(&drive).state;
+        assert_eq!(ahead.position(), path.position());
+        assert_eq!(ahead.speed_mm_s(), path.speed_mm_s());
+        if state == State::Stopped {
+            break;
+        }
+        cycles += 1;
+    }
+    assert!(cycles > 300, "{cycles}");
+}

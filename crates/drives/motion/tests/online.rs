@@ -422,3 +422,24 @@ fn an_internal_stop_at_a_gate_forgets_it() {
     bench.path.release();
     assert_eq!(bench.run(State::Moving).1, State::Stopped);
 }
+
+/// From v on the way over v²/2a, within a block or over its end: with 1 m/s² 20 mm/s take 0.2 mm, as the path that is held
+/// then shows.
+#[test]
+fn the_braking_distance_is_known() {
+    let mut path = Path::new(1200.0);
+    for _ in 0..100 {
+        path.by(&[(Axis::X, 0.05)]);
+    }
+    let mut bench = Bench::new(&path.elements, &limits());
+    assert_eq!(bench.path.braking_mm(), 0.0);
+    bench.cycles(50);
+    let v = bench.path.speed_mm_s();
+    assert!((v - 20.0).abs() < 1e-9);
+    let (from, distance) = (bench.x(), bench.path.braking_mm());
+    assert!((distance - v * v / 2000.0).abs() < 1e-9, "{distance}");
+    bench.drive.hold = true;
+    bench.run(State::Moving);
+    assert!((bench.x() - from - distance).abs() < 1e-9, "{}", bench.x() - from);
+    assert_eq!(bench.path.braking_mm(), 0.0);
+}

@@ -92,6 +92,22 @@ fn blocks_of_subroutines_are_found() {
     assert_eq!(own.order(), [""; 0]);
 }
 
+/// It passes over no more blocks than a run may have: N10 to N70 are seven.
+#[test]
+fn a_search_has_its_bounds() {
+    let blocks = (1..=7).map(|number| format!("N{number}0 G01 X{number} F6000\n"));
+    let program = format!("%T\n{}N80 X10\nM30\n", blocks.collect::<String>());
+    let mut bench = Bench::new(&program, LIST).from("N80");
+    bench.bounds.blocks = 7;
+    assert!(bench.run().completed);
+    bench.bounds.blocks = 6;
+    let error = bench.run().error.unwrap();
+    assert_eq!(
+        (error.code.as_str(), error.message.as_str()),
+        ("endless", "more than 6 blocks")
+    );
+}
+
 /// A file with several programs is searched from the first to the last; then the ones after it run.
 #[test]
 fn other_programs_of_the_file() {

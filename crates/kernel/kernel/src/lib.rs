@@ -10,6 +10,7 @@
 //! - [`Run`] is the run of a program on its track: start, stop, single block, end, [return](Restoration) to the contour. A
 //!   [`RunFamily`] says where it acts and takes its functions; its [`Demands`] come as data.
 //! - [`probing`] and [`ScanMove`] lead a stylus; [`move_by_hand`], [`Leaning`], [`reference`] and [`Positioning`] single axes.
+//! - [`block_search`] passes over what stands before the block with which a run begins.
 //! - [`gates`] are the places of a path where functions go out and where it waits for them.
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
 //!   [`Superimposed`] by hand.
@@ -33,6 +34,7 @@
 
 mod axes;
 mod axis;
+pub mod block_search;
 mod block_time;
 mod by_hand;
 mod clock;

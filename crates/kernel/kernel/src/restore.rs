@@ -20,12 +20,13 @@ use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, T
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
+use crate::block_search::{PassOver, Passed, Search, search};
 use crate::feeder::{Feeder, RunFault};
 use crate::kinematics::Offsets;
 use crate::run_family::{Acting, RunFamily};
 use crate::track::Track;
 
-/// Elements that one call of prepare passes at most.
+/// Steps of a search in one call of prepare at most.
 const BUDGET: usize = 1000;
 
 /// Where a return is.
@@ -121,79 +122,18 @@ impl Restoration {
         track: &mut Track,
         family: &mut impl RunFamily<'b>,
     ) -> Option<ScanEnd> {
-        for _ in 0..BUDGET {
-            let Some(Restore::Scan {
-                block,
-                functions,
-                dwell_until_us,
-            }) = &mut self.0
-            else {
-                return None;
-            };
-            let transferred = family.has_transferred();
-            let now = family.acting().now;
-            if !transferred || now.stop_pressed || now.us < *dwell_until_us {
-                return None;
-            }
-            let block = *block;
-            if let Some(function) = functions.pop_front() {
-                family.begin();
-                family.output(&function.function);
-                continue;
-            }
-            match feeder.next() {
-                Step::Element(element) => {
-                    // Nobody goes back after what the scan has passed.
-                    feeder.forget_before(element.sequence);
-                    self.pass(element, block, feeder, rules, track, &mut family.acting());
-                }
-                Step::Barrier(Barrier::Stop { .. }) if !rules.passes_stops => {
-                    self.0 = Some(Restore::Stopped { block });
-                }
-                Step::Barrier(_) => feeder.resume(family.answer()),
-                Step::Starved => return None,
-                Step::End => return Some(ScanEnd::NotAddressed),
-                Step::Error(fault) => return Some(ScanEnd::Fault(fault)),
-            }
+        let mut scan = Scan {
+            state: &mut self.0,
+            feeder,
+            rules,
+            track,
+            family,
+        };
+        match search(&mut scan, BUDGET) {
+            Ok(Search::Found | Search::Open) => None,
+            Ok(Search::Missing) => Some(ScanEnd::NotAddressed),
+            Err(fault) => Some(ScanEnd::Fault(fault)),
         }
-        None
-    }
-
-    /// Passes an element of the scan, or has found the block.
-    fn pass(
-        &mut self,
-        element: PathElement,
-        block: u32,
-        feeder: &mut Feeder,
-        rules: &RestartParameters,
-        track: &mut Track,
-        at: &mut Acting,
-    ) {
-        if element.block.program == 0 && element.block.block >= block {
-            at.chain.place(element.placement.as_ref());
-            let mut target = at.chain.to_axes(&element.start);
-            for unit in at.axes.iter() {
-                if target[unit.axis].is_nan() {
-                    target[unit.axis] = unit.nominal;
-                }
-            }
-            track.begin_at(element.start, at.chain);
-            feeder.put_back(std::iter::once(element));
-            self.0 = Some(Restore::Ready { target });
-            return;
-        }
-        if let Some(Restore::Scan {
-            functions,
-            dwell_until_us,
-            ..
-        }) = &mut self.0
-        {
-            if !rules.ignores_dwell {
-                *dwell_until_us = at.now.us + (element.dwell_s * 1e6) as u64;
-            }
-            functions.extend(element.functions().iter().cloned());
-        }
-        pass_tool_change(&element, feeder, rules, at);
     }
 
     /// Moves the axes to the contour: those of the working plane first, the tool axis last, unless it has
@@ -239,6 +179,98 @@ impl Restoration {
             self.0 = Some(Restore::Armed { target });
         }
         over
+    }
+}
+
+/// A scan with what it reads: the functions of each block go out, one after the other.
+struct Scan<'s, 'b> {
+    state: &'s mut Option<Restore>,
+    feeder: &'s mut Feeder,
+    rules: &'s RestartParameters,
+    track: &'s mut Track,
+    family: &'s mut (dyn RunFamily<'b> + 's),
+}
+
+impl PassOver for Scan<'_, '_> {
+    type Fault = RunFault;
+
+    fn pass(&mut self) -> Result<Passed, RunFault> {
+        let Some(Restore::Scan {
+            block,
+            functions,
+            dwell_until_us,
+        }) = &mut self.state
+        else {
+            return Ok(Passed::Waits);
+        };
+        let transferred = self.family.has_transferred();
+        let now = self.family.acting().now;
+        if !transferred || now.stop_pressed || now.us < *dwell_until_us {
+            return Ok(Passed::Waits);
+        }
+        let block = *block;
+        if let Some(function) = functions.pop_front() {
+            self.family.begin();
+            self.family.output(&function.function);
+            return Ok(Passed::Block);
+        }
+        match self.feeder.next() {
+            Step::Element(element) => {
+                // Nobody goes back after what the scan has passed.
+                self.feeder.forget_before(element.sequence);
+                if element.block.program == 0 && element.block.block >= block {
+                    self.find(element);
+                    return Ok(Passed::Found);
+                }
+                self.pass_element(&element);
+            }
+            Step::Barrier(Barrier::Stop { .. }) if !self.rules.passes_stops => {
+                *self.state = Some(Restore::Stopped { block });
+            }
+            Step::Barrier(_) => self.feeder.resume(self.family.answer()),
+            Step::Starved => return Ok(Passed::Waits),
+            Step::End => return Ok(Passed::End),
+            Step::Error(fault) => return Err(fault),
+        }
+        Ok(Passed::Block)
+    }
+
+    /// The programs of a file are one for the reader.
+    fn begin_next(&mut self) -> Result<bool, RunFault> {
+        Ok(false)
+    }
+}
+
+impl Scan<'_, '_> {
+    /// The run is to begin with an element: the axes have to be brought to its start.
+    fn find(&mut self, element: PathElement) {
+        let at = self.family.acting();
+        at.chain.place(element.placement.as_ref());
+        let mut target = at.chain.to_axes(&element.start);
+        for unit in at.axes.iter() {
+            if target[unit.axis].is_nan() {
+                target[unit.axis] = unit.nominal;
+            }
+        }
+        self.track.begin_at(element.start, at.chain);
+        self.feeder.put_back(std::iter::once(element));
+        *self.state = Some(Restore::Ready { target });
+    }
+
+    fn pass_element(&mut self, element: &PathElement) {
+        let at = self.family.acting();
+        if let Some(Restore::Scan {
+            functions,
+            dwell_until_us,
+            ..
+        }) = &mut self.state
+        {
+            if !self.rules.ignores_dwell {
+                *dwell_until_us = at.now.us + (element.dwell_s * 1e6) as u64;
+            }
+            functions.extend(element.functions().iter().cloned());
+        }
+        pass_tool_change(element, self.feeder, self.rules, &at);
     }
 }
 

@@ -119,6 +119,12 @@ impl Functions for Valves {
     fn tell_short_lead(&mut self, _: usize, _: Short) {}
 }
 
+/// Room for all that is noted in a test.
+fn with_room<T>(mut list: Vec<T>) -> Vec<T> {
+    list.reserve(20_000);
+    list
+}
+
 struct Bench {
     gates: Gates<usize, ()>,
     valves: Valves,
@@ -147,9 +153,9 @@ impl Bench {
             valves: Valves {
                 cycle: 0,
                 takes,
-                list: vec![Valve::default(); 2],
-                outputs: Vec::new(),
-                reported: Vec::new(),
+                list: with_room(vec![Valve::default(); 2]),
+                outputs: with_room(Vec::new()),
+                reported: with_room(Vec::new()),
                 ended: false,
             },
             x: 0.0,
@@ -184,20 +190,30 @@ impl Bench {
     }
 
     /// Runs to the end, the last action, backward in these cycles.
-    fn run(mut self, backward: std::ops::Range<u64>) -> Valves {
+    fn run(self, backward: std::ops::Range<u64>) -> Valves {
+        self.run_so(|cycle, _| (Drive::default(), backward.contains(&cycle)))
+    }
+
+    /// Runs to the end, the last action, driven and backward in each cycle as is said. No cycle allocates.
+    fn run_so(mut self, mut so: impl FnMut(u64, &mut Gates<usize, ()>) -> (Drive, bool)) -> Valves {
         self.at_end(Action::Own(()));
         self.gates.release();
         self.gates.closed = true;
-        let drive = Drive::default();
         while !self.valves.ended {
-            let valves = &mut self.valves;
-            assert!(valves.cycle < 20_000, "it comes to its end");
-            let back = backward.contains(&valves.cycle);
-            match self.gates.is_backward() {
-                true => while self.gates.act_backward(valves) {},
-                false => while self.gates.output_ahead(&drive, valves) | self.gates.act(valves) {},
-            }
-            self.gates.cycle(drive, back, valves);
+            let Bench { gates, valves, .. } = &mut self;
+            assert!(valves.cycle < 60_000, "it comes to its end");
+            let allocated = allocation_counter::measure(|| {
+                let (drive, back) = so(valves.cycle, gates);
+                match gates.is_backward() {
+                    true => while gates.act_backward(valves) {},
+                    false => while gates.output_ahead(&drive, valves) | gates.act(valves) {},
+                }
+                for valve in gates.missing(&drive, valves) {
+                    assert!(!valves.is_done(valve), "{valve} is not missing");
+                }
+                gates.cycle(drive, back, valves);
+            });
+            assert_eq!(allocated.count_total, 0, "cycle {}", valves.cycle);
             valves.cycle += 1;
         }
         self.valves
@@ -293,4 +309,46 @@ fn on_the_way_back_functions_go_out_again() {
     let valves: Vec<usize> = run.outputs.iter().map(|(valve, ..)| *valve).collect();
     assert_eq!(valves[0], 0);
     assert!(valves[1] > 1 && valves[2] > valves[1], "{valves:?}");
+}
+
+/// Whatever happens on the way, no cycle allocates: functions at places and ahead of them, dwells, single block with its starts,
+/// holds, overrides and turns. All functions go out, some of them on the way back and forward again.
+#[test]
+fn no_cycle_allocates() {
+    const LINES: usize = 40;
+    let mut bench = Bench::new(30);
+    bench.valves.list.resize(4 * LINES, Valve::default());
+    for line in 0..LINES {
+        let (valve, unit) = (4 * line, line as u64 + 1);
+        let point = 10.0 * line as f64;
+        if line > 0 {
+            bench.gates.leads.push(valve, unit, Ahead::Distance(4.0), point);
+            bench.gates.leads.push(valve + 1, unit, Ahead::Time(0.3), point);
+            bench.at_end(Action::Gate([valve, valve + 1].into()));
+        }
+        bench.at_end(Action::Output(valve + 2));
+        bench.line(1);
+        bench.at_end(Action::Output(valve + 3));
+        bench.at_end(Action::Gate([valve + 2, valve + 3].into()));
+        if line % 8 == 0 {
+            bench.at_end(Action::Dwell(0.05));
+        }
+        bench.at_end(Action::BlockEnd);
+    }
+    let run = bench.run_so(|cycle, gates| {
+        gates.single_block(cycle % 5000 > 3500);
+        if cycle % 300 == 0 {
+            gates.start(cycle as f64 * T);
+        }
+        let drive = Drive {
+            hold: cycle % 700 > 640,
+            feed_override_percent: 60.0 + (cycle / 500 % 10) as f64 * 10.0,
+            ..Drive::default()
+        };
+        (drive, cycle % 4000 > 3000 && cycle < 30_000)
+    });
+    let forward = |back: bool| run.outputs.iter().filter(move |(.., of)| *of == back).count();
+    assert!(forward(false) > 4 * LINES - 2, "{}", forward(false));
+    assert!(forward(true) > 20, "{}", forward(true));
+    near(run.outputs.last().unwrap().1, 10.0 * LINES as f64, 1e-9);
 }

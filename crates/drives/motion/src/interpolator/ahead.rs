@@ -7,15 +7,18 @@ use std::collections::VecDeque;
 use bahn_path::{self as path, At, PathElement};
 
 use super::outputs::Outputs;
+use crate::clone_within::clone_within;
 use crate::drive::Place;
 use crate::item::Item;
 use crate::ring::Ring;
 
 /// Those of the known path that are still to go out.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Ahead {
     queue: VecDeque<Entry>,
 }
+
+clone_within!(Ahead { queue });
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
@@ -88,17 +91,13 @@ impl Entry {
     /// path stopped there, when it waits there [004:87]: over the distance d with the deceleration a it takes
     /// d/v + v/2a.
     fn is_due(&self, item: &Item, distance: f64, speed: f64) -> bool {
-        match self.lead {
-            _ if distance <= 0.0 => true,
-            path::Ahead::Distance(lead) => distance <= lead,
-            path::Ahead::Time(lead_s) => {
-                let braking = if item.awaits.ahead {
-                    0.5 * speed / item.acceleration
-                } else {
-                    0.0
-                };
-                speed > 0.0 && distance / speed + braking <= lead_s
-            }
-        }
+        self.lead.is_due(distance, |_| {
+            let braking = if item.awaits.ahead {
+                0.5 * speed / item.acceleration
+            } else {
+                0.0
+            };
+            (speed > 0.0).then(|| distance / speed + braking)
+        })
     }
 }

@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 
 use bahn_path::{At, TechnologyFunction};
 
+use crate::clone_within::clone_within;
 use crate::drive::{FunctionOutput, Passed, Place};
 use crate::gate::{Gate, place};
 use crate::item::Item;
 
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Outputs {
     queue: VecDeque<FunctionOutput>,
     /// Functions along the current element up to this length are output, mm.
@@ -17,11 +18,22 @@ pub(super) struct Outputs {
     passed: Vec<Passed>,
 }
 
+clone_within!(Outputs { queue, to, passed });
+
 impl Outputs {
+    /// For so many elements without functions: within them nothing allocates.
+    pub(super) fn with_capacity(capacity: usize) -> Outputs {
+        Outputs {
+            passed: Vec::with_capacity(capacity),
+            ..Outputs::default()
+        }
+    }
+
     /// Room for so many more, and for the ends of so many elements: within it nothing allocates.
     pub(super) fn reserve(&mut self, count: usize, ends: usize) {
         self.queue.reserve(count);
-        self.passed.reserve(ends);
+        // Those that are there are of the cycle before.
+        self.passed.reserve(ends.saturating_sub(self.passed.len()));
     }
 
     /// Forgets which elements were passed in the cycle before.

@@ -93,17 +93,8 @@ impl Stops {
         if !self.stops_after(ring, first) {
             return None;
         }
-        let squared = speed * speed * (1.0 - 1e-9);
-        let mut possible = 0.0;
-        let mut length = rest;
-        for (number, item) in (ring.number()..).zip(ring.ahead()) {
-            possible += 2.0 * item.acceleration * length;
-            if squared <= possible && (number < first || self.stops_after(ring, number)) {
-                return Some(number.max(first));
-            }
-            length = ring.get(number + 1).map_or(0.0, |next| next.length);
-        }
-        None
+        let (possible, _) = ring.standstill(speed * speed * (1.0 - 1e-9), rest);
+        (possible.max(first)..=last).find(|number| self.stops_after(ring, *number))
     }
 
     /// Whether the path is to stop at the end of an element. What is not so stays so, but for the last element: it

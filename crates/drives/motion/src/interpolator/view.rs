@@ -51,6 +51,13 @@ impl<E> Interpolator<E> {
         self.at.rest
     }
 
+    /// The distance over which the path comes to a standstill when it brakes now, mm.
+    pub fn braking_mm(&self) -> f64 {
+        self.ring
+            .standstill(self.at.speed * self.at.speed, self.at.rest)
+            .1
+    }
+
     /// How much of that element is covered, 0 to 1, also where the axis stands beyond its ends.
     pub fn part(&self) -> f64 {
         self.at.part_of(self.ring.current())

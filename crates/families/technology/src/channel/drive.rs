@@ -82,11 +82,15 @@ impl Channel<'_> {
             self.side.record.stands_for_nothing(at.t);
             return;
         }
-        let missing = self.gates.missing(&self.drive_now(), &self.side);
+        let drive = self.drive_now();
+        let missing = &mut self.progress.missing;
+        missing.clear();
+        missing.extend(self.gates.missing(&drive, &self.side));
         let orders = &self.side.orders;
         let orders = missing.iter().filter_map(|id| Some((*id, orders.get(*id)?)));
         self.side.record.stands_for(orders, at);
-        let waits = self.gates.is_waiting(&self.side) || self.gates.is_held() || !missing.is_empty();
+        let waits =
+            self.gates.is_waiting(&self.side) || self.gates.is_held() || !self.progress.missing.is_empty();
         if !self.gates.stands() && waits {
             self.gates.stop(at, &mut self.side);
         }

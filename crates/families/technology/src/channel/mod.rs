@@ -52,6 +52,8 @@ struct Progress {
     starts: usize,
     /// What was passed over before the block with which the run began.
     skipped: Option<Vec<Skipped>>,
+    /// Functions for which the path stands.
+    missing: Vec<OrderId>,
     /// How far the run goes at most.
     bounds: Bounds,
 }

@@ -5,7 +5,7 @@
 
 use bahn_din::{Command, Unit};
 use bahn_kernel::gates::{Action, Driving, Held, JointFeed, Leg, VectorLimit};
-use bahn_path::{Ahead, Axis, Curve, OutputPlace, Switch, Synchronisation, WaitPlace};
+use bahn_path::{Ahead, Axis, Curve, OutputPlace, Switch, WaitPlace};
 
 use super::decoding::Edge;
 use super::fault::{named, numbered};
@@ -66,7 +66,7 @@ impl Taking<'_> {
             // Nothing is output ahead across the place where such a function is waited for [004:135].
             let waits_after = |id: &&OrderId| {
                 let order = self.orders.get(**id);
-                moves && order.is_some_and(|order| is_passed(order.synch.kind))
+                moves && order.is_some_and(|order| order.synch.kind.spans_motion())
             };
             if sorted.gate_after.iter().any(|id| waits_after(&id)) {
                 self.gates.window.bar();
@@ -335,7 +335,7 @@ impl Taking<'_> {
         let gate = || Action::Gate(Box::new([id]));
         let mut actions = vec![Action::Output(id)];
         let after = match kind {
-            kind if waits && is_passed(kind) => Some(gate()),
+            kind if waits && kind.spans_motion() => Some(gate()),
             _ => {
                 if waits {
                     actions.push(gate());
@@ -390,11 +390,6 @@ impl Taking<'_> {
             self.gate(late.concat());
         }
     }
-}
-
-/// Whether a function goes out before a motion that passes it, and waits after that.
-fn is_passed(kind: Synchronisation) -> bool {
-    (kind.output(), kind.wait()) == (OutputPlace::Before, WaitPlace::After)
 }
 
 /// Whether the axes move.

@@ -7,6 +7,7 @@
 //! file; what it passes over is neither output nor commanded nor waited for, only listed
 
 use bahn_din::{Command, Unit};
+use bahn_kernel::block_search::{Latest, PassOver, Passed, Search, search};
 use bahn_path::Position;
 
 use super::in_force::InForce;
@@ -34,123 +35,171 @@ pub(super) struct Begun<'a> {
     pub(super) commands: Vec<Command>,
 }
 
+/// The programs of the first file, one after the other, of which one has the block.
+struct Passing<'p, 'a, 'r> {
+    plan: &'p mut Plan<'a>,
+    ranges: &'p mut Ranges,
+    cycle_s: f64,
+    run: &'r Run<'r>,
+    block: &'r str,
+    /// Number of the program, with its blocks once it has begun.
+    index: usize,
+    blocks: Option<Box<dyn Blocks + 'r>>,
+    position: Position,
+    skipped: Latest<Skipped>,
+    commands: Latest<Command>,
+    /// The first program has no such block.
+    missing: Option<Fault>,
+}
+
 impl Plan<'_> {
     /// Looks for a block in the programs of the first file, one after the other.
     pub(super) fn search<'r>(
         &mut self,
-        run: &'r Run<'_>,
-        block: &str,
+        run: &'r Run<'r>,
+        block: &'r str,
         start: Position,
         ranges: &mut Ranges,
         cycle_s: f64,
     ) -> Result<Begun<'r>, Fault> {
-        let mut position = start;
-        let mut list = Vec::new();
-        let mut missing = None;
-        let first = run.programs.name(0);
-        let same_file = |index: &usize| run.programs.name(*index) == first;
-        for index in (0..run.programs.count()).take_while(same_file) {
-            self.in_force = InForce::new(self.settings);
-            let mut blocks = run.programs.open(index, &position)?;
-            let mut commands = Vec::new();
-            let found = self.skip_to(
-                blocks.as_mut(),
-                (block, cycle_s),
-                ranges,
-                &mut list,
-                &mut commands,
-            );
-            if found.map_err(|fault| self.coded(fault))? {
-                return Ok(Begun {
-                    skipped: list,
-                    index,
-                    position: blocks.position(),
-                    blocks,
-                    commands,
-                });
-            }
-            position = blocks.position();
-            missing.get_or_insert_with(|| blocks.not_found(block));
-        }
-        Err(missing.unwrap_or(Fault {
-            code: "syntax".to_owned(),
-            message: "there is no program".to_owned(),
-            program: first,
-            block: block.to_owned(),
-            line: 0,
-        }))
-    }
-
-    /// Passes over what stands before a block of a program. Whether there is such a block.
-    fn skip_to(
-        &mut self,
-        blocks: &mut dyn Blocks,
-        (block, cycle_s): (&str, f64),
-        ranges: &mut Ranges,
-        list: &mut Vec<Skipped>,
-        commands: &mut Vec<Command>,
-    ) -> Result<bool, Fault> {
-        while !blocks.next_is(block) {
-            let Some(unit) = blocks.next(&mut self.in_force)? else {
-                return Ok(false);
-            };
-            self.skip(&unit, cycle_s, ranges, list);
-            if unit.ends {
-                return Ok(false);
-            }
-            remember(commands, unit);
-        }
-        Ok(true)
-    }
-
-    /// Notes the functions of a block that is passed over. What the channel does not know is nobody's state.
-    fn skip(&mut self, unit: &Unit, cycle_s: f64, ranges: &mut Ranges, list: &mut Vec<Skipped>) {
-        let mut resolve = Resolve {
-            settings: &self.in_force.settings,
+        let mut passing = Passing {
+            plan: self,
             ranges,
-            orders: &mut Default::default(),
             cycle_s,
+            run,
+            block,
+            index: 0,
+            blocks: None,
+            position: start,
+            skipped: Latest::default(),
+            commands: Latest::default(),
+            missing: None,
         };
-        for (function, value, target) in resolve.skipped(unit) {
-            let free = self.in_force.settings.spindle_m_free;
-            let group = GROUPS
-                .iter()
-                .filter(|_| !free)
-                .find(|group| group.contains(&function.as_str()));
-            list.retain(|other| {
-                let replaced = other.function == function
-                    || group.is_some_and(|group| group.contains(&other.function.as_str()));
-                other.target != target || !replaced
-            });
-            list.push(Skipped {
-                function,
-                value,
-                target,
-                program: unit.place.program.to_string(),
-                block: unit.place.block.to_string(),
-            });
+        // No more blocks than a run may have; beside them each program begins, and the block is found.
+        let most = run.bounds.blocks.saturating_add(run.programs.count() as u64 + 1);
+        let found = search(&mut passing, usize::try_from(most).unwrap_or(usize::MAX))?;
+        passing.begun(found)
+    }
+}
+
+impl<'r> Passing<'_, '_, 'r> {
+    /// Where the run begins with what the search has come to.
+    fn begun(self, found: Search) -> Result<Begun<'r>, Fault> {
+        let fault = |code: &str, message: String| Fault {
+            code: code.to_owned(),
+            message,
+            program: self.run.programs.name(self.index),
+            block: self.block.to_owned(),
+            line: 0,
+        };
+        match (found, self.blocks) {
+            (Search::Found, Some(blocks)) => Ok(Begun {
+                skipped: self.skipped.into_vec(),
+                index: self.index,
+                position: blocks.position(),
+                blocks,
+                commands: self.commands.into_vec(),
+            }),
+            (Search::Open, _) => Err(fault(
+                "endless",
+                format!("more than {} blocks", self.run.bounds.blocks),
+            )),
+            _ => Err(self
+                .missing
+                .unwrap_or_else(|| fault("syntax", "there is no program".to_owned()))),
         }
     }
 }
 
-/// Keeps the last command of each kind that stays in force. The Micro Joint that a command shapes is that of the next
-/// function, so it is over after one.
-fn remember(commands: &mut Vec<Command>, unit: Unit) {
-    if !unit.functions.is_empty() {
-        commands.retain(|command| !matches!(command, Command::MicroJoint { .. }));
+impl PassOver for Passing<'_, '_, '_> {
+    type Fault = Fault;
+
+    fn pass(&mut self) -> Result<Passed, Fault> {
+        let Some(blocks) = &mut self.blocks else {
+            return Ok(Passed::End);
+        };
+        if blocks.next_is(self.block) {
+            return Ok(Passed::Found);
+        }
+        let next = blocks.next(&mut self.plan.in_force);
+        let Some(unit) = next.map_err(|fault| self.plan.coded(fault))? else {
+            return Ok(Passed::End);
+        };
+        self.skip(&unit);
+        if unit.ends {
+            return Ok(Passed::End);
+        }
+        self.remember(unit);
+        Ok(Passed::Block)
     }
-    for command in unit.commands {
-        let stays = matches!(
-            command,
-            Command::MicroJoint { .. }
-                | Command::VectorLimit { .. }
-                | Command::EdgeBanding(_)
-                | Command::RadiusCompensation(_)
-        );
-        if stays {
-            let kind = std::mem::discriminant(&command);
-            commands.retain(|other| std::mem::discriminant(other) != kind);
-            commands.push(command);
+
+    fn begin_next(&mut self) -> Result<bool, Fault> {
+        let (programs, before) = (self.run.programs, self.blocks.take());
+        if let Some(before) = before {
+            self.index += 1;
+            self.position = before.position();
+            self.missing.get_or_insert_with(|| before.not_found(self.block));
+        }
+        if self.index >= programs.count() || programs.name(self.index) != programs.name(0) {
+            return Ok(false);
+        }
+        self.plan.in_force = InForce::new(self.plan.settings);
+        self.commands = Latest::default();
+        self.blocks = Some(programs.open(self.index, &self.position)?);
+        Ok(true)
+    }
+}
+
+impl Passing<'_, '_, '_> {
+    /// Notes the functions of a block that is passed over. What the channel does not know is nobody's state.
+    fn skip(&mut self, unit: &Unit) {
+        let settings = &self.plan.in_force.settings;
+        let mut resolve = Resolve {
+            settings,
+            ranges: self.ranges,
+            orders: &mut Default::default(),
+            cycle_s: self.cycle_s,
+        };
+        for (function, value, target) in resolve.skipped(unit) {
+            let group = GROUPS
+                .iter()
+                .filter(|_| !settings.spindle_m_free)
+                .find(|group| group.contains(&function.as_str()));
+            let one = Skipped {
+                function: function.clone(),
+                value,
+                target: target.clone(),
+                program: unit.place.program.to_string(),
+                block: unit.place.block.to_string(),
+            };
+            self.skipped.put(one, |other| {
+                let replaced = other.function == function
+                    || group.is_some_and(|group| group.contains(&other.function.as_str()));
+                other.target == target && replaced
+            });
+        }
+    }
+
+    /// Keeps the last command of each kind that stays in force. The Micro Joint that a command shapes is that of the next
+    /// function, so it is over after one.
+    fn remember(&mut self, unit: Unit) {
+        if !unit.functions.is_empty() {
+            self.commands
+                .end(|command| matches!(command, Command::MicroJoint { .. }));
+        }
+        for command in unit.commands {
+            let stays = matches!(
+                command,
+                Command::MicroJoint { .. }
+                    | Command::VectorLimit { .. }
+                    | Command::EdgeBanding(_)
+                    | Command::RadiusCompensation(_)
+            );
+            if stays {
+                let kind = std::mem::discriminant(&command);
+                self.commands
+                    .put(command, |other| std::mem::discriminant(other) == kind);
+            }
         }
     }
 }

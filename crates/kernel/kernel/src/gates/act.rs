@@ -153,27 +153,31 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     }
 
     /// The functions for which the path cannot go on where it is; driven so.
-    pub fn missing<F: Functions<Ticket = T, Own = O>>(
-        &self,
+    pub fn missing<'a, F: Functions<Ticket = T, Own = O>>(
+        &'a mut self,
         drive: &bahn_motion::Drive,
-        family: &F,
-    ) -> Vec<T> {
-        if self.back.is_some() {
-            return self.missing_backward(family);
-        }
+        family: &'a F,
+    ) -> impl Iterator<Item = T> + 'a {
+        let backward = self.is_backward();
+        let lead = match backward {
+            true => None,
+            false => self.blocked_lead(drive, family),
+        };
         let (place, index) = self.cursor;
-        let mut missing = Vec::new();
-        if place <= self.motion.reached {
-            match self.places.actions(place).get(index) {
-                Some(Action::Gate(tickets)) => {
-                    missing.extend(tickets.iter().copied().filter(|ticket| !family.is_open(*ticket)));
-                }
-                Some(Action::Output(ticket)) => missing.extend(family.blocker(*ticket)),
-                _ => {}
-            }
-        }
-        missing.extend(self.blocked_lead(drive, family));
-        missing
+        let actions = match place <= self.motion.reached {
+            true => self.places.actions(place),
+            false => &[],
+        };
+        let (gate, blocker): (&[T], Option<T>) = match actions.get(index) {
+            _ if backward => (&self.again.gate, self.again.blocker(family)),
+            Some(Action::Gate(tickets)) => (tickets, None),
+            Some(Action::Output(ticket)) => (&[], family.blocker(*ticket)),
+            _ => (&[], None),
+        };
+        let shut = gate.iter().copied();
+        shut.filter(move |ticket| backward || !family.is_open(*ticket))
+            .chain(blocker)
+            .chain(lead)
     }
 
     /// Whether something is to be done where the path is that is not done yet.

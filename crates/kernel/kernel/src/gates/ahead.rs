@@ -5,7 +5,7 @@
 //! keep their lead, since their path does not stop for them; where an end velocity of 0 forbids a lead it is said,
 //! whatever the type (also `kernel/src/gates/kept.rs`)
 
-use bahn_motion::{Drive, State};
+use bahn_motion::{Drive, Interpolator, State};
 use bahn_path::Ahead;
 
 use super::functions::{Functions, Moment, Way};
@@ -46,7 +46,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
                     ..at
                 };
             }
-            let to_go = self.to_go(&ahead, drive, family);
+            let to_go = self.left_to_go(&ahead, drive, family);
             let planned_s = self.planned_s(&ahead, drive, family);
             family.output(ahead.id, at, Way::Ahead(to_go));
             self.watch(&ahead, at.t, planned_s, family);
@@ -56,7 +56,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
 
     /// The next function that is due.
     fn next_ahead<F: Functions<Ticket = T, Own = O>>(
-        &self,
+        &mut self,
         drive: &Drive,
         family: &F,
     ) -> Option<(usize, Pending<T>)> {
@@ -64,14 +64,16 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         let passed = |point: f64, tickets: &[T]| {
             distance > point - SAME_MM && tickets.iter().all(|ticket| family.is_done(*ticket))
         };
-        let mut candidates = self.leads.next(passed);
-        let due = candidates.find(|(_, ahead)| self.is_due(ahead, distance, drive, family));
-        due.map(|(index, ahead)| (index, *ahead))
+        (0..self.leads.ready(passed)).find_map(|index| {
+            let ahead = self.leads.get(index)?;
+            self.is_due(&ahead, distance, drive, family)
+                .then_some((index, ahead))
+        })
     }
 
     /// The function for which the next one that is due cannot be output.
     pub(super) fn blocked_lead<F: Functions<Ticket = T, Own = O>>(
-        &self,
+        &mut self,
         drive: &Drive,
         family: &F,
     ) -> Option<T> {
@@ -83,26 +85,22 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     }
 
     fn is_due<F: Functions<Ticket = T, Own = O>>(
-        &self,
+        &mut self,
         ahead: &Pending<T>,
         distance: f64,
         drive: &Drive,
         family: &F,
     ) -> bool {
-        if distance + SAME_MM < ahead.place() {
-            return false;
-        }
-        let Ahead::Time(lead_s) = ahead.lead else {
-            return true;
+        let time_to = |lead_s: f64| {
+            let farthest = self.fastest(ahead.point_mm, drive) * lead_s;
+            if ahead.point_mm - distance > farthest {
+                return None;
+            }
+            let time = self.time_to(ahead.point_mm, lead_s, drive, family);
+            time.map(|time| time - ROUNDING_S)
         };
-        if distance + SAME_MM >= ahead.point_mm {
-            return true;
-        }
-        let fastest = self.fastest(ahead.point_mm, drive);
-        ahead.point_mm - distance <= fastest * lead_s
-            && self
-                .time_to(ahead.point_mm, lead_s, drive, family)
-                .is_some_and(|time| time <= lead_s + ROUNDING_S)
+        distance + SAME_MM >= ahead.earliest_mm
+            && ahead.lead.is_due(ahead.point_mm - distance - SAME_MM, time_to)
     }
 
     /// The greatest speed up to a place, mm/s, at most.
@@ -124,9 +122,24 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     /// the place of a function that it waits for, whose gate is closed [004:87], and passes that of any other.
     /// `None` when that is longer than asked for.
     fn time_to<F: Functions<Ticket = T, Own = O>>(
-        &self,
+        &mut self,
         point: f64,
         most_s: f64,
+        drive: &Drive,
+        family: &F,
+    ) -> Option<f64> {
+        let mut preview = self.motion.preview.take()?;
+        preview.as_mut().clone_from(&self.motion.path);
+        let time = self.run_ahead(&mut preview, (point, most_s), drive, family);
+        self.motion.preview = Some(preview);
+        time
+    }
+
+    /// Runs a copy of the path ahead to a place, mm, up to a time, s.
+    fn run_ahead<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        path: &mut Interpolator<()>,
+        (point, most_s): (f64, f64),
         drive: &Drive,
         family: &F,
     ) -> Option<f64> {
@@ -140,7 +153,6 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         }
         let mut stops = (self.open_to.max(self.motion.reached + 1)..=last)
             .filter(|place| self.is_closed(*place, 0, family));
-        let mut path = self.motion.path.clone();
         let mut drive = Drive {
             hold: false,
             stop_before: stops.next(),
@@ -195,7 +207,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
 
     /// How long the path takes to the place of a function that is output a time ahead of it now, s, up to that time.
     fn planned_s<F: Functions<Ticket = T, Own = O>>(
-        &self,
+        &mut self,
         ahead: &Pending<T>,
         drive: &Drive,
         family: &F,
@@ -209,8 +221,8 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     }
 
     /// What is left to the place where a function is synchronised that is output now: the distance, mm, and the time, s.
-    fn to_go<F: Functions<Ticket = T, Own = O>>(
-        &self,
+    fn left_to_go<F: Functions<Ticket = T, Own = O>>(
+        &mut self,
         ahead: &Pending<T>,
         drive: &Drive,
         family: &F,

@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 
 use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step};
 
+use super::functions::Functions;
 use super::places::Places;
 
 /// The path goes back.
 #[derive(Debug)]
-pub struct Back<T> {
+pub struct Back {
     /// The element on which it turned.
     pub from: u64,
     /// How much of that was executed, mm.
@@ -19,12 +20,57 @@ pub struct Back<T> {
     pub reached: u64,
     /// The place whose functions were looked at last.
     pub seen: u64,
-    /// Functions that are to be output at that place.
+    /// In single block it stands there.
+    pub at_limit: bool,
+}
+
+/// The functions that go out again, on the way back and after it.
+#[derive(Debug)]
+pub struct Again<T> {
+    /// Those that are to be output at the place that was looked at last.
     pub queue: VecDeque<T>,
     /// Those that are waited for there.
     pub gate: Vec<T>,
-    /// In single block it stands there.
-    pub at_limit: bool,
+    /// Those that the path comes over when it has turned forward, with their new tickets.
+    pub renewed: Vec<(T, T)>,
+}
+
+impl<T: Copy> Again<T> {
+    /// There are none.
+    pub fn new() -> Again<T> {
+        Again {
+            queue: VecDeque::new(),
+            gate: Vec::new(),
+            renewed: Vec::new(),
+        }
+    }
+
+    /// Room for so many.
+    pub fn make_room(&mut self, count: usize) {
+        self.queue.reserve(count.saturating_sub(self.queue.len()));
+        self.gate.reserve(count.saturating_sub(self.gate.len()));
+        self.renewed.reserve(count.saturating_sub(self.renewed.len()));
+    }
+
+    /// The way back begins.
+    pub fn clear(&mut self) {
+        self.queue.clear();
+        self.gate.clear();
+    }
+
+    /// Whether the path stands for one on its way back.
+    pub fn is_waited_for(&self) -> bool {
+        !self.queue.is_empty() || !self.gate.is_empty()
+    }
+
+    /// The function for which the next one cannot be output now.
+    pub fn blocker<F: Functions<Ticket = T>>(&self, family: &F) -> Option<T>
+    where
+        T: Ord,
+    {
+        let next = self.queue.front();
+        next.and_then(|ticket| family.blocker(*ticket))
+    }
 }
 
 /// Gives the interpolator the elements of the track from one on back.
@@ -32,7 +78,7 @@ pub struct FeedBack<'a, T, O> {
     /// The path that is driven backwards.
     pub track: &'a Places<T, O>,
     /// Where it is on it.
-    pub back: &'a mut Back<T>,
+    pub back: &'a mut Back,
 }
 
 impl<T: Copy, O> ElementSource for FeedBack<'_, T, O> {
@@ -59,14 +105,9 @@ impl<T: Copy, O> ElementSource for FeedBack<'_, T, O> {
     fn resume(&mut self, _: LiveData) {}
 }
 
-impl<T> Back<T> {
+impl Back {
     /// The element that is so many back.
     pub fn element(&self, back: u64) -> Option<u64> {
         (self.from + 1).checked_sub(back)
-    }
-
-    /// It cannot go on where it is.
-    pub fn waits(&self) -> bool {
-        !self.queue.is_empty() || !self.gate.is_empty() || self.at_limit
     }
 }

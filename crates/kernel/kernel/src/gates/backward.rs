@@ -7,12 +7,12 @@
 //! Decision: The way back reaches over 10,000 elements, within the program; what is output ahead goes out at its own
 //! place on the way back, and ahead again forward, at once where the path turns after the place of output
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::VecDeque;
 
-use bahn_motion::{Drive, Interpolator};
+use bahn_motion::Drive;
 
 use super::Gates;
-use super::back::{Back, FeedBack};
+use super::back::{Again, Back, FeedBack};
 use super::functions::{Functions, Moment, Way};
 use super::places::Action;
 
@@ -34,21 +34,20 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         self.single.all_block_ends();
         self.leads.promises.clear();
         self.motion.turn(position);
+        self.again.clear();
         self.back = Some(Back {
             from,
             along_mm: along,
             fed: 1,
             reached: from + 1,
             seen: from + 1,
-            queue: VecDeque::new(),
-            gate: Vec::new(),
             at_limit: false,
         });
     }
 
     /// The distance along the path, mm, while it is run back.
-    pub(super) fn backward_distance(&self, path: &Interpolator<()>) -> Option<f64> {
-        let back = self.back.as_ref()?;
+    pub(super) fn backward_distance(&self) -> Option<f64> {
+        let (back, path) = (self.back.as_ref()?, &self.motion.path);
         let number = path.element().and_then(|element| back.element(element.sequence));
         let leg = number.and_then(|number| self.places.leg(number));
         Some(match leg {
@@ -74,7 +73,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         };
         self.motion.path.prepare(&mut feed, usize::MAX);
         let (from, seen, reached) = (back.from, back.seen, back.reached);
-        let waits = back.waits();
+        let waits = self.again.is_waited_for() || back.at_limit;
         // The next place with a function that is waited for in backward motion.
         let first = self.places.first();
         let known = (from + 2).saturating_sub(back.fed).max(first);
@@ -119,14 +118,27 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         actions.iter().any(|action| matches!(action, Action::BlockEnd))
     }
 
-    /// The functions of a place that are output in backward motion, in program order.
-    fn of_place(&self, place: u64) -> Vec<T> {
-        let mut tickets: Vec<T> = self.outputs(place).collect();
+    /// Puts the functions of a place that are output in backward motion into a queue that is empty, the last one in program
+    /// order first.
+    fn queue_place<F: Functions<Ticket = T, Own = O>>(
+        &self,
+        place: u64,
+        queue: &mut VecDeque<T>,
+        family: &mut F,
+    ) {
+        queue.extend(self.outputs(place));
         for ticket in self.leads.of_place(self.places.distance(place)) {
-            let after = tickets.iter().position(|other| *other > ticket);
-            tickets.insert(after.unwrap_or(tickets.len()), ticket);
+            let after = queue.iter().position(|other| *other > ticket);
+            queue.insert(after.unwrap_or(queue.len()), ticket);
         }
-        tickets
+        queue.make_contiguous().reverse();
+        queue.retain_mut(|ticket| match family.again(*ticket, true) {
+            Some(again) => {
+                *ticket = again;
+                true
+            }
+            None => false,
+        });
     }
 
     /// The path has come to the end of an element.
@@ -146,49 +158,39 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         let Some(mut back) = self.back.take() else {
             return false;
         };
+        let mut again = std::mem::replace(&mut self.again, Again::new());
         let mut any = false;
         loop {
-            while let Some(ticket) = back.queue.front().copied() {
+            while let Some(ticket) = again.queue.front().copied() {
                 if family.blocker(ticket).is_some() {
                     break;
                 }
-                back.queue.pop_front();
+                again.queue.pop_front();
                 any = true;
                 let at = Moment {
                     position: self.places.position(back.seen),
                     ..self.now(family)
                 };
                 family.output(ticket, at, Way::Back);
-                back.gate.push(ticket);
+                again.gate.push(ticket);
             }
-            back.gate.retain(|ticket| !family.is_done(*ticket));
-            if back.at_limit && back.queue.is_empty() && back.gate.is_empty() {
+            again.gate.retain(|ticket| !family.is_done(*ticket));
+            if back.at_limit && !again.is_waited_for() {
                 let moves = !self.motion.still || back.reached < back.seen;
                 let distance = self.places.distance(back.seen);
                 back.at_limit = self.single.stands_at_end(distance, true, moves);
                 any |= !back.at_limit;
             }
-            if back.waits() || back.seen <= back.reached {
+            if again.is_waited_for() || back.at_limit || back.seen <= back.reached {
                 break;
             }
             back.seen -= 1;
             any = true;
-            // The last one of the place first.
-            let tickets = self.of_place(back.seen).into_iter().rev();
-            back.queue = tickets.filter_map(|ticket| family.again(ticket, true)).collect();
+            self.queue_place(back.seen, &mut again.queue, family);
             back.at_limit = self.ends_block(back.seen);
         }
-        self.back = Some(back);
+        (self.back, self.again) = (Some(back), again);
         any
-    }
-
-    /// The functions for which the path cannot go on back.
-    pub(super) fn missing_backward<F: Functions<Ticket = T, Own = O>>(&self, family: &F) -> Vec<T> {
-        let Some(back) = &self.back else {
-            return Vec::new();
-        };
-        let blocked = back.queue.front().and_then(|ticket| family.blocker(*ticket));
-        back.gate.iter().copied().chain(blocked).collect()
     }
 
     /// Goes forward again from where the path stands: what it comes over is output anew.
@@ -213,8 +215,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             .places
             .leg(back.from)
             .map_or(distance, |leg| leg.from_mm + back.along_mm);
-        let ahead = self.leads.repeat(turned, distance);
-        self.renew(first, &ahead, family);
+        self.renew(first, (turned, distance), family);
         let done = if along > 0.0 {
             self.places.actions(number).len()
         } else {
@@ -225,23 +226,39 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         (self.cursor, self.open_to, self.dwell) = ((number, done), number, None);
     }
 
-    /// The functions from a place up to where actions are done next, and these that are output ahead, are new ones.
-    fn renew<F: Functions<Ticket = T, Own = O>>(&mut self, first: u64, ahead: &[T], family: &mut F) {
-        let mut old: BTreeSet<T> = ahead.iter().copied().collect();
-        for place in first..=self.cursor.0 {
-            for action in self.places.actions(place) {
-                if let Action::Output(ticket) | Action::Command(ticket) = action {
-                    old.insert(*ticket);
-                }
+    /// The functions from a place up to where actions are done next, and those ahead that the path comes over, which turned at
+    /// a distance and goes on from another, mm, are new ones.
+    fn renew<F: Functions<Ticket = T, Own = O>>(
+        &mut self,
+        first: u64,
+        (turned, from): (f64, f64),
+        family: &mut F,
+    ) {
+        let Gates {
+            again: Again { renewed, .. },
+            leads,
+            places,
+            ..
+        } = self;
+        renewed.clear();
+        leads.repeat(turned, from, |ticket| renewed.push((ticket, ticket)));
+        for action in (first..=self.cursor.0).flat_map(|place| places.actions(place)) {
+            if let Action::Output(ticket) | Action::Command(ticket) = action {
+                renewed.push((*ticket, *ticket));
             }
         }
-        let renewed: BTreeMap<T, T> = old
-            .into_iter()
-            .filter_map(|ticket| Some((ticket, family.again(ticket, false)?)))
-            .collect();
-        let new = |ticket: &mut T| *ticket = renewed.get(ticket).copied().unwrap_or(*ticket);
-        for place in first..=self.places.last() {
-            for action in self.places.actions_mut(place) {
+        renewed.sort_unstable();
+        renewed.dedup();
+        for (old, new) in renewed.iter_mut() {
+            *new = family.again(*old, false).unwrap_or(*old);
+        }
+        let new = |ticket: &mut T| {
+            if let Ok(at) = renewed.binary_search_by_key(ticket, |(old, _)| *old) {
+                *ticket = renewed[at].1;
+            }
+        };
+        for place in first..=places.last() {
+            for action in places.actions_mut(place) {
                 match action {
                     Action::Output(ticket) | Action::Command(ticket) | Action::Stand(ticket) => new(ticket),
                     Action::Gate(tickets) => tickets.iter_mut().for_each(new),
@@ -250,6 +267,6 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             }
         }
         family.renamed(&new);
-        self.leads.rename(new);
+        leads.rename(new);
     }
 }

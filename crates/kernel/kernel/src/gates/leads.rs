@@ -62,8 +62,9 @@ pub struct Leads<T> {
     barrier_mm: f64,
     /// Where the last one was output, or had to be passed for the next one, mm.
     pub floor_mm: f64,
-    /// The place that was turned to last, and its functions (P-CHAN-00212).
-    active: Option<(f64, Vec<T>)>,
+    /// The place that was turned to last, mm, and its functions (P-CHAN-00212).
+    active_mm: Option<f64>,
+    active: Vec<T>,
 }
 
 impl<T: Copy + Ord> Leads<T> {
@@ -77,7 +78,8 @@ impl<T: Copy + Ord> Leads<T> {
             blocks: VecDeque::new(),
             barrier_mm: 0.0,
             floor_mm: 0.0,
-            active: None,
+            active_mm: None,
+            active: Vec::new(),
         }
     }
 
@@ -117,22 +119,36 @@ impl<T: Copy + Ord> Leads<T> {
             held,
             output_mm: point,
         });
+        // Wherever one goes from here, it needs no memory then.
+        let count = self.count();
+        self.queue.reserve(count - self.queue.len());
+        self.taken.reserve(count - self.taken.len());
+        self.promises.reserve(count.saturating_sub(self.promises.len()));
+        self.active.reserve(count.saturating_sub(self.active.len()));
     }
 
-    /// The functions that may be output now: those of the first block that has any. One by one not before the
-    /// place before is passed: `passed` says so of it and its functions.
-    pub fn next(&self, passed: impl Fn(f64, &[T]) -> bool) -> impl Iterator<Item = (usize, &Pending<T>)> {
-        let first = self.queue.front();
-        let held = self.one_by_one
-            && match (first, &self.active) {
-                (Some(first), Some((point, ids))) => first.point_mm > point + SAME_MM && !passed(*point, ids),
-                _ => false,
-            };
-        let unit = first.map(|ahead| ahead.unit);
-        self.queue
-            .iter()
-            .enumerate()
-            .take_while(move |(_, ahead)| Some(ahead.unit) == unit && !held)
+    /// How many there are, whether they were output or not.
+    pub fn count(&self) -> usize {
+        self.queue.len() + self.taken.len()
+    }
+
+    /// How many of them, from the first one on, may be output now: those of the first block that has any. One by one not
+    /// before the place before is passed: `passed` says so of it and its functions.
+    pub fn ready(&self, passed: impl Fn(f64, &[T]) -> bool) -> usize {
+        let Some(first) = self.queue.front() else {
+            return 0;
+        };
+        let is_ahead = |point: f64| first.point_mm > point + SAME_MM && !passed(point, &self.active);
+        if self.one_by_one && self.active_mm.is_some_and(is_ahead) {
+            return 0;
+        }
+        let of_block = self.queue.iter().take_while(|ahead| ahead.unit == first.unit);
+        of_block.count()
+    }
+
+    /// One that is still to be output.
+    pub fn get(&self, index: usize) -> Option<Pending<T>> {
+        self.queue.get(index).copied()
     }
 
     /// One of them is output, at a distance along the path, mm.
@@ -150,15 +166,17 @@ impl<T: Copy + Ord> Leads<T> {
                 ..ahead
             },
         );
-        if let Some((point, _)) = self.active.as_ref().filter(|_| self.one_by_one)
+        if let Some(point) = self.active_mm.filter(|_| self.one_by_one)
             && ahead.point_mm > point + SAME_MM
         {
-            self.floor_mm = self.floor_mm.max(*point);
+            self.floor_mm = self.floor_mm.max(point);
         }
-        match &mut self.active {
-            Some((point, ids)) if (*point - ahead.point_mm).abs() <= SAME_MM => ids.push(ahead.id),
-            active => *active = Some((ahead.point_mm, vec![ahead.id])),
+        let is_same = |point: f64| (point - ahead.point_mm).abs() <= SAME_MM;
+        if !self.active_mm.is_some_and(is_same) {
+            self.active_mm = Some(ahead.point_mm);
+            self.active.clear();
         }
+        self.active.push(ahead.id);
     }
 
     /// One that is output does so at this place of the path, mm.
@@ -188,23 +206,25 @@ impl<T: Copy + Ord> Leads<T> {
     }
 
     /// The path has turned at a distance along the path, mm, and goes forward again from another one. What it comes over is still to be output:
-    /// the place of a function, or where it was output. They are handed on.
-    pub fn repeat(&mut self, turned: f64, from: f64) -> Vec<T> {
-        let (again, over): (Vec<Pending<T>>, Vec<Pending<T>>) = self.taken.drain(..).partition(|ahead| {
+    /// the place of a function, or where it was output. They are handed `on`.
+    pub fn repeat(&mut self, turned: f64, from: f64, mut on: impl FnMut(T)) {
+        for _ in 0..self.taken.len() {
+            let Some(ahead) = self.taken.pop_front() else {
+                break;
+            };
             let of_point = ahead.point_mm <= turned + SAME_MM && ahead.point_mm >= from - SAME_MM;
-            of_point || ahead.output_mm >= from - SAME_MM
-        });
-        self.taken = over.into();
-        if !again.is_empty() {
-            self.active = None;
+            if !of_point && ahead.output_mm < from - SAME_MM {
+                self.taken.push_back(ahead);
+                continue;
+            }
+            on(ahead.id);
+            self.queue.push_back(ahead);
+            self.active_mm = None;
         }
         self.floor_mm = self.floor_mm.min(from);
-        let ids = again.iter().map(|ahead| ahead.id).collect();
-        self.queue = again.into_iter().chain(self.queue.drain(..)).collect();
         self.queue
             .make_contiguous()
-            .sort_by_key(|ahead| (ahead.unit, ahead.id));
-        ids
+            .sort_unstable_by_key(|ahead| (ahead.unit, ahead.id));
     }
 
     /// Their tickets are others now.

@@ -20,7 +20,7 @@ mod places;
 mod single;
 mod window;
 
-use bahn_motion::{Interpolator, Limits};
+use bahn_motion::Limits;
 use bahn_path::Position;
 
 pub use functions::{Functions, Moment, Short, Way, Why};
@@ -30,9 +30,9 @@ pub use leg::{Driving, Leg, VectorLimit};
 pub use places::{Action, Places};
 pub use window::{JointFeed, Planned, Window};
 
-use back::Back;
+use back::{Again, Back};
 use motion::Motion;
-use single::{SingleBlock, braked};
+use single::SingleBlock;
 
 /// What part of a cycle may be rounding.
 const ROUNDING: f64 = 1e-6;
@@ -57,7 +57,8 @@ pub struct Gates<T, O> {
     motion: Motion,
     single: SingleBlock,
     /// The path goes back.
-    back: Option<Back<T>>,
+    back: Option<Back>,
+    again: Again<T>,
     /// The place at which actions are done next, and which of them.
     cursor: (u64, usize),
     /// Places before this one do not stop the path.
@@ -81,6 +82,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             motion: Motion::new(limits, start),
             single: SingleBlock::default(),
             back: None,
+            again: Again::new(),
             cursor: (1, 0),
             open_to: 1,
             dwell: None,
@@ -103,12 +105,19 @@ impl<T: Copy + Ord, O> Gates<T, O> {
     /// What was kept for a joint goes on.
     pub fn release(&mut self) {
         self.window.release(&mut self.places);
+        self.make_room();
+    }
+
+    /// Room for all functions that are known, so that no cycle allocates.
+    fn make_room(&mut self) {
+        self.again.make_room(self.places.count() + self.leads.count());
     }
 
     /// An element comes; so many may still be split, and a function that goes out ahead looks back over so many blocks.
     pub fn push(&mut self, leg: Leg, split: usize, blocks: usize) {
         self.leads.block(leg.from_mm, blocks);
         self.window.leg(leg, split, &mut self.places);
+        self.make_room();
     }
 
     /// Nothing is output ahead across the end of what is known.
@@ -163,8 +172,12 @@ impl<T: Copy + Ord, O> Gates<T, O> {
             self.look_anew();
         }
         if self.single.is_unseen() {
-            let distance = self.distance_of(&braked(self.motion.path.clone()));
-            self.single.see(distance);
+            let (distance, braking) = (self.distance(), self.motion.path.braking_mm());
+            let first = match self.is_backward() {
+                true => distance - braking,
+                false => distance + braking,
+            };
+            self.single.see(first);
         }
     }
 
@@ -210,14 +223,10 @@ impl<T: Copy + Ord, O> Gates<T, O> {
 
     /// Distance along the path, mm.
     pub fn distance(&self) -> f64 {
-        self.distance_of(&self.motion.path)
-    }
-
-    /// Distance along the path of an interpolator on it, mm.
-    fn distance_of(&self, path: &Interpolator<()>) -> f64 {
-        if let Some(distance) = self.backward_distance(path) {
+        if let Some(distance) = self.backward_distance() {
             return distance;
         }
+        let path = &self.motion.path;
         let Some(element) = path.element() else {
             return self.places.distance(self.motion.reached);
         };

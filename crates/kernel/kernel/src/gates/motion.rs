@@ -17,6 +17,8 @@ pub struct Motion {
     limits: Limits,
     /// It, sampled in each cycle.
     pub path: Interpolator<()>,
+    /// It once more, to be run ahead; taken while that is done.
+    pub preview: Option<Box<Interpolator<()>>>,
     /// Number of the element that the interpolator is given next.
     fed: u64,
     /// So much of it is executed already, mm.
@@ -82,6 +84,7 @@ impl Motion {
         Motion {
             limits: limits.clone(),
             path,
+            preview: Some(Box::new(Interpolator::new(limits, LOOK_AHEAD))),
             fed: 1,
             part_mm: None,
             acceleration_mm_s2: f64::INFINITY,

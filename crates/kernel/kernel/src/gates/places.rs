@@ -48,6 +48,8 @@ pub struct Places<T, O> {
     distance_mm: f64,
     end: Position,
     block: Arc<str>,
+    /// Actions that are kept.
+    count: usize,
 }
 
 impl<T: Copy, O> Places<T, O> {
@@ -60,6 +62,7 @@ impl<T: Copy, O> Places<T, O> {
             distance_mm: distance,
             end: start,
             block: "".into(),
+            count: 0,
         }
     }
 
@@ -98,6 +101,11 @@ impl<T: Copy, O> Places<T, O> {
             None if place == last => &mut self.tail,
             None => &mut [],
         }
+    }
+
+    /// How much is done at all places that are kept.
+    pub fn count(&self) -> usize {
+        self.count
     }
 
     /// The first element that is kept.
@@ -144,12 +152,13 @@ impl<T: Copy, O> Places<T, O> {
 
     /// More is to be done where it ends.
     pub fn push_action(&mut self, action: Action<T, O>) {
+        self.count += 1;
         self.tail.push(action);
     }
 
     /// So many actions where the path ends are done: blocks without a movement may go on for ever.
     pub fn forget_done(&mut self, count: usize) {
-        self.tail.drain(..count.min(self.tail.len()));
+        self.count -= self.tail.drain(..count.min(self.tail.len())).len();
     }
 
     /// Appends an element at the end of the path.
@@ -166,8 +175,11 @@ impl<T: Copy, O> Places<T, O> {
 
     /// Forgets what lies so far behind a place that nobody goes back to it; the first function that may still be asked for.
     pub fn forget_before(&mut self, place: u64) -> Option<T> {
-        while self.first + HISTORY < place && self.stretches.pop_front().is_some() {
+        while self.first + HISTORY < place
+            && let Some(stretch) = self.stretches.pop_front()
+        {
             self.first += 1;
+            self.count -= stretch.actions.len();
         }
         let first = self.stretches.iter().map(|stretch| &stretch.actions);
         first

@@ -7,8 +7,6 @@
 //! blocks after it goes out with the start of the next; acknowledgements, late functions and what is output ahead go
 //! on
 
-use bahn_motion::{Drive, Interpolator, State};
-
 use super::held::SAME_MM;
 
 /// What is in force of single block.
@@ -20,23 +18,6 @@ pub struct SingleBlock {
     first_mm: Option<f64>,
     /// The operator starts in this cycle, at this time, s.
     start_s: Option<f64>,
-}
-
-/// Cycles of braking that are looked at: the slowest axis stands long before.
-const BRAKING: usize = 1_000_000;
-
-/// Where the path would stand if it braked now.
-pub fn braked(mut path: Interpolator<()>) -> Interpolator<()> {
-    let drive = Drive {
-        hold: true,
-        ..Drive::default()
-    };
-    for _ in 0..BRAKING {
-        if path.speed_mm_s() <= 0.0 || path.cycle(&drive).state == State::Held {
-            break;
-        }
-    }
-    path
 }
 
 impl SingleBlock {
