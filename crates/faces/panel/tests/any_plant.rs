@@ -193,10 +193,10 @@ fn a_script_drives_it() {
     let parameters = station.machine().parameters.clone();
     let read = |station: &mut Station, text: &str| {
         let stage = Stage::machine(station.host().plant(), &parameters);
-        Script::of(Path::new("S"), text.as_bytes(), &stage)
+        stage.script(Path::new("S"), text.as_bytes())
     };
     let faults = read(&mut station, "1: key Y+ press\n2: expect lamp DOOR=1").unwrap_err();
-    let labels: Vec<String> = faults.iter().map(bahn_text::Diagnostic::label).collect();
+    let labels: Vec<String> = faults.iter().map(bahn_text::Diagnostic::words).collect();
     assert_eq!(
         labels,
         [

@@ -163,7 +163,7 @@ fn load_script(
         ));
     }
     let stage = Stage::machine(machine.simulated()?, &machine.parameters);
-    Ok(Script::of(path, &bytes, &stage))
+    Ok(stage.script(path, &bytes))
 }
 
 /// What the control finds.

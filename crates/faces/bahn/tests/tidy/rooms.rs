@@ -25,6 +25,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("viewer", &["path", "workpiece"]),
     ("exchange", &[]),
     ("plc", &["text", "exchange", "parameters"]),
+    ("script", &["text"]),
     ("convert", &["path", "parameters", "program", "interpreter"]),
     (
         "lsp",

@@ -52,17 +52,7 @@ impl Channel<'_> {
     /// The next cycle in which the script changes how the path is driven.
     pub(super) fn next_change(&self) -> Option<u64> {
         let script = self.side.plc.script()?;
-        let ranges = script
-            .holds
-            .iter()
-            .chain(&script.backward)
-            .chain(&script.simulated)
-            .chain(&script.singles);
-        let times = ranges.flat_map(|range| [range.start, range.end]);
-        let overrides = script.overrides.iter().map(|(from, _)| *from);
-        let times = times.chain(overrides).chain(script.resets.iter().copied());
-        let times = times.chain(script.starts.iter().copied());
-        let cycles = times.map(|time| cycle_at(time, self.side.cycle_s));
+        let cycles = script.changes().map(|time| cycle_at(time, self.side.cycle_s));
         cycles.filter(|cycle| *cycle > self.side.cycle).min()
     }
 

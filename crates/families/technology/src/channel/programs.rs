@@ -31,7 +31,7 @@ enum Ended {
     Completed,
     Reset,
     Faulty,
-    /// Nothing can move any more.
+    /// Nothing can move any more, or the script has ended the run.
     Stuck,
 }
 
@@ -217,6 +217,9 @@ impl Channel<'_> {
                 self.side.record.stands_for_nothing(t);
                 return Ended::Completed;
             }
+            if self.is_over() {
+                return Ended::Stuck;
+            }
             if self.resets() && self.gates.is_still() {
                 self.reset();
                 return Ended::Reset;
@@ -340,6 +343,12 @@ impl Channel<'_> {
             .script()
             .and_then(|script| script.resets.get(self.progress.reset_count));
         next.is_some_and(|reset| cycle_at(*reset, self.side.cycle_s) <= self.side.cycle)
+    }
+
+    /// Whether the script has ended the run, whatever is still to come.
+    fn is_over(&self) -> bool {
+        let end = self.side.plc.script().and_then(|script| script.end);
+        end.is_some_and(|end| cycle_at(end, self.side.cycle_s) <= self.side.cycle)
     }
 
     /// Drops all that is open: the path stands [004:48] (inferred).
