@@ -58,16 +58,18 @@ pub(crate) enum Opened {
 }
 
 impl Opened {
-    /// The program of a name, in whatever language; `Ok(None)` when there is none.
-    pub fn of(
-        name: &str,
-        programs: &dyn Programs,
-        start: impl FnOnce() -> Start,
-    ) -> Result<Option<Opened>, String> {
-        if let Some(reader) = programs.reader(name, &start())? {
-            return Ok(Some(Opened::Reader(reader)));
-        }
-        Ok(programs.open(name, "")?.map(Opened::Program))
+    /// The program of a name, in whatever language.
+    ///
+    /// # Errors
+    /// PROGRAM NOT FOUND, when there is none that can be read.
+    pub fn of(name: &str, programs: &dyn Programs, start: impl FnOnce() -> Start) -> Result<Opened, Message> {
+        let reader = programs.reader(name, &start());
+        let opened = reader.and_then(|reader| match reader {
+            Some(reader) => Ok(Some(Opened::Reader(reader))),
+            None => Ok(programs.open(name, "")?.map(Opened::Program)),
+        });
+        let found = opened.ok().flatten();
+        found.ok_or(Message::Plain(MessageId::ProgramNotFound))
     }
 }
 
@@ -112,11 +114,8 @@ impl Selection {
             let program = Program::from_bytes("$MDI", text.into_bytes());
             return Ok(Opened::Program(Arc::new(program)));
         }
-        let not_found = Message::Plain(MessageId::ProgramNotFound);
-        let name = self.program.as_ref().ok_or(not_found.clone())?;
-        match Opened::of(name, programs, start) {
-            Ok(Some(opened)) => Ok(opened),
-            Ok(None) | Err(_) => Err(not_found),
-        }
+        let name = self.program.as_ref();
+        let name = name.ok_or(Message::Plain(MessageId::ProgramNotFound))?;
+        Opened::of(name, programs, start)
     }
 }

@@ -481,12 +481,21 @@ impl Source {
 
     /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
     /// The axes are those of the machine: nobody hands one over meanwhile.
-    pub fn feeder_for_test(&self, name: &str, axes: AxisSet, site: &Site, basis: &Basis) -> Option<Feeder> {
+    ///
+    /// # Errors
+    /// The message why there is none.
+    pub fn feeder_for_test(
+        &self,
+        name: &str,
+        axes: AxisSet,
+        site: &Site,
+        basis: &Basis,
+    ) -> Result<Feeder, Message> {
         let reading = &self.reading;
-        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis)).ok()??;
+        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis))?;
         let mut feeder = self.feeder_from(opened, Status::default(), site, basis);
         feeder.expect_axes(axes);
-        Some(feeder)
+        Ok(feeder)
     }
 
     /// A feeder of a program that is to run, from a block on, with what the last run left in force.

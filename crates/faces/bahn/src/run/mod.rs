@@ -172,9 +172,7 @@ fn power_on(options: &RunMachineOptions, machine: &LoadedMachine) -> Result<Powe
         true => PowerOn::fresh(machine),
         false => PowerOn::kept(machine)?,
     };
-    for warning in &power_on.warnings {
-        diagnostics::print_line(&format!("warning: {warning}"));
-    }
+    diagnostics::print_warnings(&power_on.warnings);
     power_on.checking = Checking {
         strict: options.run.strict,
         skip_unknown: options.run.skip_unknown,
