@@ -22,7 +22,7 @@ mod span;
 
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use encoding::{Encoding, MARK, MARK_BYTES, as_utf8, decode, utf8_or_latin, without_mark};
-pub use files::{Files, MemoryFiles, NamedFile, names_in_folder, path_below};
+pub use files::{Files, MemoryFiles, NamedFile, meant, name_alone, path_below};
 pub use lines::LineIndex;
 pub use nearest::nearest;
 pub use printable::{printable, printable_lines};

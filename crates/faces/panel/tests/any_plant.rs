@@ -11,7 +11,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use bahn_host::{
-    Action, Answer, Attendance, FolderPrograms, HostError, Operable, Operator, Phase, Play, PowerOn, Source, Stage,
+    Action, Answer, Attendance, FolderPrograms, HostError, Operable, Operator, Phase, Play, PowerOn, Source,
+    Stage,
 };
 use bahn_panel::{Input, InputText, KeyAction, Station};
 use cross_table::{CrossTable, Folder, folder, load};
@@ -240,11 +241,14 @@ fn what_was_lost_is_said() {
     let folder = folder("lost");
     let machine = load(&folder.0);
     let mut power_on = PowerOn::fresh(&machine);
-    power_on.warnings.push("the pockets of the tool table have changed".to_owned());
+    power_on
+        .warnings
+        .push("the pockets of the tool table have changed".to_owned());
     let mut station = Station::with_plant(machine, CrossTable::new(), power_on).unwrap();
     let said = &station.screen().messages;
     assert!(
-        said.iter().any(|line| line.text == "the pockets of the tool table have changed"),
+        said.iter()
+            .any(|line| line.text == "the pockets of the tool table have changed"),
         "{said:?}"
     );
 }

@@ -1,53 +1,12 @@
-//! Where programs come from, and which of them a channel has selected.
+//! Which program a channel has selected.
 
 use std::sync::Arc;
 
-use bahn_interpreter::Library;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
-use bahn_reader::{Reader, Start};
+use bahn_reader::{Programs, Reader, Start};
 
 use crate::message::Message;
-
-/// Where programs come from. The control asks by name, as written in CALL PGM and chosen by the operator.
-pub trait Programs: Send + Sync {
-    /// The program of a name; `Ok(None)` when there is none.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
-
-    /// A program in a language that the control does not read itself, ready to run from its first block; `Ok(None)` when
-    /// it is none of those: then it is [opened](Programs::open). There are none by default.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    fn reader(&self, _name: &str, _start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
-        Ok(None)
-    }
-
-    /// A cycle of the machine builder in the EPROM of the PLC; there is none by default.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    fn open_in_eprom(&self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
-        Ok(None)
-    }
-
-    /// What a program is opened by that is not here, but counts as if it lay here: those that it calls do.
-    fn name_here(&self, name: &str) -> String {
-        name.to_owned()
-    }
-
-    /// Keeps a program that was digitized, whole or not at all; the control itself calls this never, whoever drives it
-    /// does.
-    ///
-    /// # Errors
-    /// Why it cannot be kept.
-    fn store(&self, name: &str, _pieces: &[Arc<[u8]>]) -> Result<(), String> {
-        Err(format!("{name}: these programs cannot be added to"))
-    }
-}
 
 /// A program that is to run.
 pub(crate) enum Opened {
@@ -70,19 +29,6 @@ impl Opened {
         });
         let found = opened.ok().flatten();
         found.ok_or(Message::Plain(MessageId::ProgramNotFound))
-    }
-}
-
-/// Programs as the interpreter asks for those that are called.
-pub struct CalledPrograms(pub Arc<dyn Programs>);
-
-impl Library for CalledPrograms {
-    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.0.open(name, caller)
-    }
-
-    fn find_in_eprom(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.0.open_in_eprom(name, caller)
     }
 }
 

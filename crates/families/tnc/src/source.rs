@@ -20,7 +20,7 @@ use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
 use bahn_path::{AxisSet, BlockRef, Frame, PerAxis, Plane, Position};
 use bahn_program::Program;
-use bahn_reader::{Reader, Start};
+use bahn_reader::{Programs, Reader, Start};
 use bahn_servo::Rotation;
 
 use crate::beside::Loan;
@@ -28,7 +28,7 @@ use crate::language::{self, OwnLanguage};
 use crate::manual_probing::ManualProbing;
 use crate::message::Message;
 use crate::plc_link::PlcLink;
-use crate::programs::{CalledPrograms, Opened, Programs, Selection};
+use crate::programs::{Opened, Selection};
 use crate::setup::Checking;
 use crate::site::Site;
 
@@ -564,7 +564,7 @@ impl Source {
             functions: self.reading.functions.clone(),
             ..Settings::default()
         };
-        let called = Box::new(CalledPrograms(Arc::clone(&self.reading.programs)));
+        let called = Arc::clone(&self.reading.programs);
         let mut interpreter = Interpreter::new(program, settings, called);
         if self.defers {
             interpreter.defer_work();

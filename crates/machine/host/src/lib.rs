@@ -98,7 +98,6 @@ pub use any_plant::AnyPlant;
 pub use bahn_machine::{DeviceState, Event, KeyAction, MagazineState, Mechanics};
 /// What the times of a script count from.
 pub use bahn_script::Base;
-pub use called::called_program;
 pub use columns::{Cell, TextRow, TextTable, canonical};
 pub use edges::Edges;
 pub use error::HostError;
