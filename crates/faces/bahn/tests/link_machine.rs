@@ -104,7 +104,7 @@ fn what_is_lost_at_power_on_is_said() {
     std::fs::create_dir_all(folder.path("mill/state")).unwrap();
     let commands = [
         format!("link serve --machine mill --rs232 tcp:{}", free_address()),
-        format!("link serve --machine mill --lsv2 tcp:{}", free_address()),
+        format!("link serve --machine mill --lsv2 {}", free_address()),
         "panel --machine mill --listen 127.0.0.1:0".to_owned(),
         format!("link dnc run 1 --machine mill --port tcp:{}", free_address()),
     ];

@@ -241,7 +241,7 @@ fn names_of_subroutines_mean_the_same_to_all() {
     let (_, report) = run(&folder, "");
     assert_eq!(report["path_end"]["X"], 30.0);
     // One that is written so goes first.
-    folder.write("Sub.NC", "N100 X20 M99\nM17\n");
+    folder.write("Sub.NC", "N100 #NONSENSE\nM17\n");
     for command in ["technology a.nc --channel a.lis", "test a.nc", "check a.nc"] {
         assert_ne!(folder.bahn(command).code(), 0, "{command}");
     }

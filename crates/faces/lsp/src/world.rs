@@ -10,9 +10,11 @@ use bahn_program::Program;
 use bahn_reader::{Folders, called};
 use bahn_text::{Files, meant, path_below};
 
-use crate::language::BYTES_MAX;
 use crate::settings::Settings;
 use crate::text::Text;
+
+/// Largest text that is looked at, 16 MiB: a program with half a million blocks.
+pub(crate) const BYTES_MAX: usize = 16 << 20;
 
 /// Files on the disk, as the command line reads them: they are read by their paths; what is too large is not.
 pub trait Disk: Files {

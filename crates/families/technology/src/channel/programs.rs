@@ -299,17 +299,22 @@ impl Channel<'_> {
     fn follow_script(&mut self) {
         let t = self.side.t() + 0.5 * self.side.cycle_s;
         let script = self.side.plc.script();
-        let simulated = script.is_some_and(|script| script.simulated.iter().any(|range| range.contains(&t)));
+        let simulated =
+            script.is_some_and(|script| script.driving.simulated.iter().any(|range| range.contains(&t)));
         if simulated != self.side.simulated {
             self.side.simulated = simulated;
             self.gates.look_anew();
         }
         if let Some(script) = script {
             self.gates
-                .single_block(script.singles.iter().any(|range| range.contains(&t)));
+                .single_block(script.driving.singles.iter().any(|range| range.contains(&t)));
             let cycle = self.side.cycle;
             let over = |start: &f64| cycle_at(*start, self.side.cycle_s) <= cycle;
-            let starts = script.starts.get(self.progress.starts..).unwrap_or_default();
+            let starts = script
+                .driving
+                .starts
+                .get(self.progress.starts..)
+                .unwrap_or_default();
             for start in starts.iter().take_while(|start| over(start)) {
                 self.progress.starts += 1;
                 self.gates.start(*start);
@@ -341,13 +346,13 @@ impl Channel<'_> {
             .side
             .plc
             .script()
-            .and_then(|script| script.resets.get(self.progress.reset_count));
+            .and_then(|script| script.driving.resets.get(self.progress.reset_count));
         next.is_some_and(|reset| cycle_at(*reset, self.side.cycle_s) <= self.side.cycle)
     }
 
     /// Whether the script has ended the run, whatever is still to come.
     fn is_over(&self) -> bool {
-        let end = self.side.plc.script().and_then(|script| script.end);
+        let end = self.side.plc.script().and_then(|script| script.driving.end);
         end.is_some_and(|end| cycle_at(end, self.side.cycle_s) <= self.side.cycle)
     }
 

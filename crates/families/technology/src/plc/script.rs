@@ -22,23 +22,37 @@ use crate::settings::ChannelSettings;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Script {
+    pub(super) rules: Rules,
+    pub(crate) driving: Driving,
+    /// Where functions and spindles are named.
+    pub(super) said: Vec<Said>,
+}
+
+/// What a PLC does that is not there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Rules {
     /// By range, empty for all of them, and function.
     pub(super) replies: HashMap<(String, String), Reply>,
     pub(super) default: Reply,
     /// By the name of the spindle.
     pub(super) spindles: HashMap<String, After>,
+}
+
+/// What happens to the path, by its time, s.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Driving {
+    /// Places of a measuring event.
     pub(crate) probes: Vec<(Axis, f64)>,
     pub(crate) holds: Vec<Range<f64>>,
+    pub(crate) backward: Vec<Range<f64>>,
+    pub(crate) simulated: Vec<Range<f64>>,
+    /// Single block.
+    pub(crate) singles: Vec<Range<f64>>,
+    /// The starts of the operator in their order.
+    pub(crate) starts: Vec<f64>,
     pub(crate) resets: Vec<f64>,
     /// Time and override, %, in the order of time.
     pub(crate) overrides: Vec<(f64, f64)>,
-    pub(crate) backward: Vec<Range<f64>>,
-    pub(crate) simulated: Vec<Range<f64>>,
-    /// Where functions and spindles are named.
-    pub(super) said: Vec<Said>,
-    /// Single block, and the starts of the operator.
-    pub(crate) singles: Vec<Range<f64>>,
-    pub(crate) starts: Vec<f64>,
     /// When the run ends, whatever is still to come.
     pub(crate) end: Option<f64>,
 }
@@ -70,7 +84,7 @@ pub(crate) enum After {
 impl Script {
     /// Whether it says what the PLC does with functions, and not only what happens to path and spindles.
     pub fn answers_functions(&self) -> bool {
-        !self.replies.is_empty() || self.default != Reply::default()
+        !self.rules.replies.is_empty() || self.rules.default != Reply::default()
     }
 
     /// Functions, ranges and spindles that a channel with these settings does not have; the programs may give functions their
@@ -83,18 +97,28 @@ impl Script {
     /// What happens to a function in a range, by any of its names: what is said of it in this range goes before what is
     /// said of it in all.
     pub(crate) fn reply(&self, names: &[String], function: &str) -> Reply {
-        let said = |range: &str| self.replies.get(&(range.to_owned(), function.to_owned()));
-        if self.replies.is_empty() {
-            return self.default;
+        let Rules { replies, default, .. } = &self.rules;
+        let said = |range: &str| replies.get(&(range.to_owned(), function.to_owned()));
+        if replies.is_empty() {
+            return *default;
         }
         let own = names.iter().find_map(|name| said(name));
-        own.or_else(|| said("")).copied().unwrap_or(self.default)
+        own.or_else(|| said("")).copied().unwrap_or(*default)
     }
 
     /// How long a spindle takes to confirm.
     pub(crate) fn ready(&self, names: &[String]) -> After {
-        let said = names.iter().find_map(|name| self.spindles.get(name));
+        let said = names.iter().find_map(|name| self.rules.spindles.get(name));
         said.copied().unwrap_or(After::Seconds(0.0))
+    }
+}
+
+impl Driving {
+    /// What is said in any order is put in that of time.
+    pub(super) fn order(&mut self) {
+        self.overrides.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.resets.sort_by(f64::total_cmp);
+        self.starts.sort_by(f64::total_cmp);
     }
 
     /// The times at which it changes how the path is driven, s.

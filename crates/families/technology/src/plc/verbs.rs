@@ -12,21 +12,21 @@ use bahn_script::{Fault, Line, Times, Verbs, Words};
 use bahn_text::{Diagnostic, Span};
 
 use super::said::{Named, Said};
-use super::script::{After, Reply, Script};
+use super::script::{After, Driving, Reply, Script};
 use crate::list::CYCLE_S;
 
 /// What lasts for a span of time.
 const LASTING: [(&str, Lasting); 4] = [
-    ("hold", |script| &mut script.holds),
-    ("backward", |script| &mut script.backward),
-    ("simulated", |script| &mut script.simulated),
-    ("single", |script| &mut script.singles),
+    ("hold", |driving| &mut driving.holds),
+    ("backward", |driving| &mut driving.backward),
+    ("simulated", |driving| &mut driving.simulated),
+    ("single", |driving| &mut driving.singles),
 ];
 
 /// What happens in a moment.
 const SUDDEN: [(&str, Sudden); 2] = [
-    ("start", |script| &mut script.starts),
-    ("reset", |script| &mut script.resets),
+    ("start", |driving| &mut driving.starts),
+    ("reset", |driving| &mut driving.resets),
 ];
 
 /// What a script of a machine says, too.
@@ -36,10 +36,10 @@ const OF_ALL: [&str; 5] = ["key", "override", "mode", "stop", "end"];
 const RULES: [&str; 4] = ["default", "spindle", "probe", "override"];
 
 /// The times from which on and up to which it is so, s.
-type Lasting = fn(&mut Script) -> &mut Vec<Range<f64>>;
+type Lasting = fn(&mut Driving) -> &mut Vec<Range<f64>>;
 
 /// The times at which it happens, s.
-type Sudden = fn(&mut Script) -> &mut Vec<f64>;
+type Sudden = fn(&mut Driving) -> &mut Vec<f64>;
 
 /// What a line does at its time.
 #[derive(Clone, Copy, Debug)]
@@ -69,15 +69,13 @@ impl Script {
         let mut known = Known::default();
         let (read, mut errors) = bahn_script::Script::read(Path::new(""), text, times, &mut known);
         let Known(mut script) = known;
-        let failed = happen(&mut script, &read.lines);
+        let failed = happen(&mut script.driving, &read.lines);
         errors.extend(failed.map(|number| {
             let message = "`stop` ends a run that is interrupted: `key NC_STOP tap` comes before it";
             Diagnostic::error(Span::line(number as usize), message)
         }));
         errors.sort();
-        script.overrides.sort_by(|a, b| a.0.total_cmp(&b.0));
-        script.resets.sort_by(f64::total_cmp);
-        script.starts.sort_by(f64::total_cmp);
+        script.driving.order();
         (script, errors)
     }
 }
@@ -98,13 +96,13 @@ fn seconds(us: u64) -> f64 {
 }
 
 /// Puts together what happens at each time. Numbers the line that stops a run which is not interrupted.
-fn happen(script: &mut Script, lines: &[Line<Change, Infallible>]) -> Option<u32> {
+fn happen(driving: &mut Driving, lines: &[Line<Change, Infallible>]) -> Option<u32> {
     let of = |line: &Line<Change, Infallible>| seconds(line.offset_us);
     for (at, line) in lines.iter().enumerate() {
         if let Change::Begins(lasting) = line.action {
             // The other end of its span of time is the next line; without one it lasts for the rest of the run.
             let end = lines.get(at + 1).filter(|end| matches!(end.action, Change::Ends));
-            lasting(script).push(of(line)..end.map_or(f64::INFINITY, of));
+            lasting(driving).push(of(line)..end.map_or(f64::INFINITY, of));
         }
     }
     let mut ordered: Vec<&Line<Change, Infallible>> = lines.iter().collect();
@@ -114,29 +112,29 @@ fn happen(script: &mut Script, lines: &[Line<Change, Infallible>]) -> Option<u32
         let now = of(line);
         match line.action {
             Change::Begins(_) | Change::Ends | Change::Nothing => {}
-            Change::Happens(sudden) => sudden(script).push(now),
-            Change::Override(percent) => script.overrides.push((now, percent)),
+            Change::Happens(sudden) => sudden(driving).push(now),
+            Change::Override(percent) => driving.overrides.push((now, percent)),
             Change::NcStop => stopped = stopped.or(Some(now)),
             Change::NcStart => match stopped.take() {
-                Some(from) => script.holds.push(from..now),
-                None => script.starts.push(now),
+                Some(from) => driving.holds.push(from..now),
+                None => driving.starts.push(now),
             },
             Change::SingleBlock(true) => single = single.or(Some(now)),
             Change::SingleBlock(false) => {
-                script.singles.extend(single.take().map(|from| from..now));
+                driving.singles.extend(single.take().map(|from| from..now));
             }
             Change::InternalStop => match stopped.take() {
                 Some(from) => {
-                    script.holds.push(from..now);
-                    script.resets.push(now);
+                    driving.holds.push(from..now);
+                    driving.resets.push(now);
                 }
                 None => return Some(line.number),
             },
-            Change::End => script.end = Some(script.end.map_or(now, |end: f64| end.min(now))),
+            Change::End => driving.end = Some(driving.end.map_or(now, |end: f64| end.min(now))),
         }
     }
-    script.holds.extend(stopped.map(|from| from..f64::INFINITY));
-    script.singles.extend(single.map(|from| from..f64::INFINITY));
+    driving.holds.extend(stopped.map(|from| from..f64::INFINITY));
+    driving.singles.extend(single.map(|from| from..f64::INFINITY));
     None
 }
 
@@ -194,25 +192,25 @@ impl Verbs for Known {
 
     fn rule<'a>(&mut self, _: &'a str, words: &mut Words<'a>, times: &Times) -> Result<(), Fault<'a>> {
         let first = words.some("a rule")?;
-        let script = &mut self.0;
+        let Script { rules, driving, .. } = &mut self.0;
         if let Some((_, lasting)) = LASTING.iter().find(|(name, _)| *name == first) {
             let (from_us, to_us) = times.span_of(words)?;
-            lasting(script).push(seconds(from_us)..seconds(to_us));
+            lasting(driving).push(seconds(from_us)..seconds(to_us));
             return Ok(());
         }
         if let Some((_, sudden)) = SUDDEN.iter().find(|(name, _)| *name == first) {
-            sudden(script).push(seconds(times.duration_of(words, "a time, s")?));
+            sudden(driving).push(seconds(times.duration_of(words, "a time, s")?));
             return Ok(());
         }
         match first {
-            "default" => script.default = reply(words, times)?,
+            "default" => rules.default = reply(words, times)?,
             "spindle" => {
                 let word = words.some("the name of a spindle")?;
                 words.one_of(&["ready"])?;
                 let after = after(words, times)?;
                 let name = word.to_uppercase();
                 self.said(words.span(word), Named::Spindle(name.clone()));
-                self.0.spindles.insert(name, after);
+                self.0.rules.spindles.insert(name, after);
             }
             "probe" => {
                 let word = words.some("a place as X45")?;
@@ -220,13 +218,13 @@ impl Verbs for Known {
                 let value = word.get(1..).and_then(|number| number.parse().ok());
                 let place = axis.zip(value.filter(|value: &f64| value.is_finite()));
                 let wrong = || Fault::new(word, format!("`{word}` is no place as X45"));
-                script.probes.push(place.ok_or_else(wrong)?);
+                driving.probes.push(place.ok_or_else(wrong)?);
             }
             "override" => {
                 let percent = words.number("an override, %")?;
                 words.one_of(&["at"])?;
                 let time = seconds(times.duration_of(words, "a time, s")?);
-                script.overrides.push((time, percent));
+                driving.overrides.push((time, percent));
             }
             name => {
                 let key = function(name).ok_or_else(|| {
@@ -235,7 +233,7 @@ impl Verbs for Known {
                 })?;
                 let reply = reply(words, times)?;
                 self.said(words.span(first), Named::Function(key.0.clone(), key.1.clone()));
-                self.0.replies.insert(key, reply);
+                self.0.rules.replies.insert(key, reply);
             }
         }
         Ok(())
@@ -315,4 +313,23 @@ fn after<'a>(words: &mut Words<'a>, times: &Times) -> Result<After, Fault<'a>> {
     }
     let us = times.duration_of(words, "a time, s, or `never`")?;
     Ok(After::Seconds(seconds(us)))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// A time is the number nearest to what is written, to the bit.
+        #[test]
+        fn times_are_what_is_written(whole in 0_u32..1_000_000, millionths in 0_u32..1_000_000) {
+            let text = format!("{whole}.{millionths:06}");
+            let us = Times::of_cycle(3000).duration(&text);
+            prop_assert_eq!(us.map(seconds).ok(), text.parse().ok());
+        }
+    }
 }
