@@ -204,7 +204,9 @@ fn the_plant_stays_when_the_machine_is_replaced() {
     let mut machine = load(&folder.0);
     machine.parameters.assign("1020.0=1500").unwrap();
     let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
-    let operator = Operator::new(Attendance::Full, machine.folder.operator.clone(), None);
+    let mut keys = machine.folder.operator.clone();
+    keys.start = "NC_START".to_owned();
+    let operator = Operator::new(Attendance::Full, keys, None);
     station
         .host()
         .replace(&machine, PowerOn::fresh(&machine), programs, operator)
