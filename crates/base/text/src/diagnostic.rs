@@ -162,12 +162,17 @@ impl Diagnostic {
         }
     }
 
-    /// Line and what exactly is wrong; without a line what is wrong with the file as a whole.
-    pub fn at_line(&self) -> String {
-        let exactly = match self.detail.as_str() {
+    /// What exactly is wrong: the detail, or the message that has none.
+    pub fn exactly(&self) -> &str {
+        match self.detail.as_str() {
             "" => &self.message,
             detail => detail,
-        };
+        }
+    }
+
+    /// Line and what exactly is wrong; without a line what is wrong with the file as a whole.
+    pub fn at_line(&self) -> String {
+        let exactly = self.exactly();
         match self.span.line {
             0 => exactly.to_owned(),
             line => format!("line {line}: {exactly}"),

@@ -1,7 +1,7 @@
 //! Files by their names, wherever they lie.
 //!
 //! Decision: Files that a text names are `Files`, whatever the language; what finds them knows folders, the language
-//! knows spellings and endings. The RAM and the EPROM of the PLC are two of them. The files of a data interface are
+//! knows spellings and endings. Which name of a folder is meant says one rule, `meant`. The RAM and the EPROM of the PLC are two of them. The files of a data interface are
 //! others: they are listed, written and streamed (also `plc/src/source.rs`, `link/src/files.rs`)
 
 use std::collections::BTreeMap;
@@ -78,18 +78,50 @@ pub fn path_below(name: &str) -> Option<String> {
     is_below.then_some(path)
 }
 
-/// The spellings under which a name without its folders lies in a folder: as it is written, then in small letters; none
-/// if no file can be meant.
+/// The one of the names of a folder that is meant: the first wanted that is there as it is written; else the first that is
+/// there in another case, of several such the first in the order of their names. `has` tells whether there is a file,
+/// `there` what lies in the folder.
 ///
 /// ```
-/// use bahn_text::names_in_folder;
+/// use bahn_text::meant;
 ///
-/// assert!(names_in_folder("PLC:\\OLD\\PART.PLC").eq(["PART.PLC", "part.plc"]));
-/// assert_eq!(names_in_folder("OLD/..").count(), 0);
+/// let there = ["SUB.NC", "sub.nc", "7.h"].map(str::to_owned);
+/// let find = |name: &str| {
+///     let wanted = [name.to_owned(), format!("{name}.H")];
+///     meant(&wanted, |name| there.contains(&name.to_owned()), || there.to_vec())
+/// };
+/// assert_eq!(find("sub.nc").as_deref(), Some("sub.nc"));
+/// assert_eq!(find("Sub.nc").as_deref(), Some("SUB.NC"));
+/// assert_eq!(find("7").as_deref(), Some("7.h"));
+/// assert_eq!(find("8"), None);
 /// ```
-pub fn names_in_folder(name: &str) -> impl Iterator<Item = String> {
+pub fn meant(
+    wanted: &[String],
+    has: impl Fn(&str) -> bool,
+    there: impl FnOnce() -> Vec<String>,
+) -> Option<String> {
+    if let Some(exact) = wanted.iter().find(|name| has(name)) {
+        return Some(exact.clone());
+    }
+    let mut there = there();
+    // The same one every time, whatever order the folder has.
+    there.sort_unstable();
+    wanted.iter().find_map(|name| {
+        let lower = name.to_lowercase();
+        let mut same = there.iter().filter(|other| other.to_lowercase() == lower);
+        same.find(|other| has(other)).cloned()
+    })
+}
+
+/// A name without its folders; `None` if no file can be meant.
+///
+/// ```
+/// use bahn_text::name_alone;
+///
+/// assert_eq!(name_alone("PLC:\\OLD\\PART.PLC"), Some("PART.PLC"));
+/// assert_eq!(name_alone("OLD/.."), None);
+/// ```
+pub fn name_alone(name: &str) -> Option<&str> {
     let name = name.rsplit(['\\', '/', ':']).next().unwrap_or_default();
-    let is_file = !matches!(name, "" | "." | "..");
-    let spellings = is_file.then(|| [name.to_owned(), name.to_ascii_lowercase()]);
-    spellings.into_iter().flatten()
+    (!matches!(name, "" | "." | "..")).then_some(name)
 }

@@ -15,14 +15,16 @@ mod diagnostic;
 mod encoding;
 mod files;
 mod lines;
+mod nearest;
 mod printable;
 mod render;
 mod span;
 
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use encoding::{Encoding, MARK, MARK_BYTES, as_utf8, decode, utf8_or_latin, without_mark};
-pub use files::{Files, MemoryFiles, NamedFile, names_in_folder, path_below};
+pub use files::{Files, MemoryFiles, NamedFile, meant, name_alone, path_below};
 pub use lines::LineIndex;
+pub use nearest::nearest;
 pub use printable::{printable, printable_lines};
 pub use render::render;
 pub use span::Span;

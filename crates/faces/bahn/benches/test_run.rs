@@ -4,7 +4,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_path::{LiveData, PerAxis};
 use bahn_program::Program;
@@ -49,7 +49,7 @@ fn run(bytes: &[u8]) -> f64 {
         feed_override_percent: 100.0,
         rapid_override_percent: 100.0,
     };
-    let source = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+    let source = Interpreter::new(program, Settings::default(), Arc::new(NoPrograms));
     let mut planner = Planner::new(source, &limits, &AuxiliaryTimes::default());
     let mut time_s = 0.0;
     loop {

@@ -14,7 +14,7 @@ use bahn_program::{Fault, Program, Uncounted};
 use bahn_text::{Diagnostic, Severity, Span};
 
 use crate::diagnostics;
-use crate::files::{self, FileLibrary, Loaded};
+use crate::files::{self, Loaded};
 use crate::interrupt::Interrupt;
 use crate::options::{CheckOptions, Format};
 use crate::reports::Reports;
@@ -107,7 +107,7 @@ pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<C
 
 /// Reads every block and rehearses the program.
 fn examined(program: Arc<Program>, settings: &Settings, interrupt: &Interrupt) -> Examination {
-    let library = Box::new(FileLibrary::with_main(&program));
+    let library = Arc::new(files::beside(&program));
     examine(program, settings.clone(), library, &interrupt.flag())
 }
 

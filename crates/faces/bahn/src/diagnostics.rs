@@ -79,6 +79,13 @@ pub(crate) fn print_text(text: &str) {
     print_line(&printable(text));
 }
 
+/// Prints what was lost at power-on, or is otherwise than it seems.
+pub(crate) fn print_warnings(texts: &[String]) {
+    for text in texts {
+        print_line(&format!("warning: {text}"));
+    }
+}
+
 /// Prints lines to standard error, with nothing in them that would steer the terminal.
 pub(crate) fn print_line(text: &str) {
     if text.starts_with("error: ") {

@@ -1,10 +1,9 @@
 //! `bahn lsp`: the language server over standard input and output.
 
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
-use bahn_host::called_program;
 use bahn_lsp::{Disk, Settings, Streams, serve};
 use bahn_machine::MachineFolder;
 use bahn_parameters::ControlModel;
@@ -76,8 +75,8 @@ impl Files for Folders {
 }
 
 impl Disk for Folders {
-    fn called(&self, name: &str, caller: &Path) -> Option<PathBuf> {
-        called_program(name, caller)
+    fn has(&self, path: &Path) -> bool {
+        path.is_file()
     }
 
     /// A machine's folder holds its list and PLC program; part programs and sources lie one folder deeper.

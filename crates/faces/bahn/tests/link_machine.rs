@@ -97,6 +97,40 @@ impl Drop for Served {
     }
 }
 
+/// What is lost at power-on is said by whoever switches a machine on, as `bahn run` says it.
+#[test]
+fn what_is_lost_at_power_on_is_said() {
+    let folder = mill();
+    std::fs::create_dir_all(folder.path("mill/state")).unwrap();
+    let commands = [
+        format!("link serve --machine mill --rs232 tcp:{}", free_address()),
+        format!("link serve --machine mill --lsv2 {}", free_address()),
+        "panel --machine mill --listen 127.0.0.1:0".to_owned(),
+        format!("link dnc run 1 --machine mill --port tcp:{}", free_address()),
+    ];
+    for command in commands {
+        // A damaged file is put aside, and said once.
+        folder.write("mill/state/mechanics.toml", "this is not where it stands\n");
+        let mut child = Command::new(env!("CARGO_BIN_EXE_bahn"))
+            .args(command.split(' '))
+            .current_dir(folder.path("."))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stderr.take().unwrap())
+            .read_line(&mut line)
+            .unwrap();
+        let _ = child.kill();
+        let _ = child.wait();
+        assert!(
+            line.starts_with("warning: ") && line.contains("mechanics.toml"),
+            "{command}: {line}"
+        );
+    }
+}
+
 /// Modules 9100, 9103 and 9104 on a real port: the PLC of a machine that is served answers a device.
 #[test]
 fn the_plc_answers_over_its_line() {

@@ -226,6 +226,27 @@ fn a_run_may_begin_at_a_block() {
     assert_eq!(folder.bahn("technology a.nc --channel a.lis --from M5").code(), 2);
 }
 
+/// A name means one file, whoever reads the program: beside it or in a folder below, written so or in another case.
+#[test]
+fn names_of_subroutines_mean_the_same_to_all() {
+    let program = "%P\nN10 G01 F1000 X10\nN20 L Sub.NC\nN30 L folder\\PART.nc\nM30\n";
+    let folder = folder(program, "", "");
+    folder.write("sub.nc", "N100 X20\nM17\n");
+    std::fs::create_dir(folder.path("folder")).unwrap();
+    folder.write("folder/part.nc", "N200 X30\nM17\n");
+    for command in ["technology a.nc --channel a.lis", "test a.nc", "check a.nc"] {
+        let run = folder.bahn(command);
+        assert_eq!(run.code(), 0, "{command}: {}{}", run.err(), run.out());
+    }
+    let (_, report) = run(&folder, "");
+    assert_eq!(report["path_end"]["X"], 30.0);
+    // One that is written so goes first.
+    folder.write("Sub.NC", "N100 #NONSENSE\nM17\n");
+    for command in ["technology a.nc --channel a.lis", "test a.nc", "check a.nc"] {
+        assert_ne!(folder.bahn(command).code(), 0, "{command}");
+    }
+}
+
 /// Also in a subroutine beside the program; what was passed over is listed with its last state.
 #[test]
 fn a_run_may_begin_in_a_subroutine() {

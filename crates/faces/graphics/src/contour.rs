@@ -12,7 +12,7 @@ use bahn_path::{
     Barrier, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Plane, Point2, Step, Touch,
 };
 use bahn_program::{Edit, Program};
-use bahn_tnc::{CalledPrograms, Control, Programs, Tool};
+use bahn_tnc::{Control, Programs, Tool};
 
 /// Elements of one contour cycle in simulation time (inferred).
 const BUDGET: u32 = 500;
@@ -179,11 +179,7 @@ impl Run {
     /// Goes on by so many elements; whether there is more.
     fn advance(&mut self, elements: u32) -> bool {
         if let Some((program, settings, programs)) = self.start.take() {
-            let mut interpreter = Interpreter::new(
-                self.cut_off(program),
-                settings,
-                Box::new(CalledPrograms(programs)),
-            );
+            let mut interpreter = Interpreter::new(self.cut_off(program), settings, programs);
             interpreter.set_interrupt(Arc::clone(&self.stop));
             self.interpreter = Some(interpreter);
         }

@@ -8,12 +8,12 @@ use lsp_types::Uri;
 
 use crate::channel::ChannelText;
 use crate::din::DinProgram;
-use crate::language::{Analysis, BYTES_MAX, Examined, Kind};
+use crate::language::{Analysis, Examined, Kind};
 use crate::list::ParameterText;
 use crate::part::PartProgram;
 use crate::plc::PlcSource;
 use crate::text::Text;
-use crate::world::World;
+use crate::world::{BYTES_MAX, World};
 
 /// A document that is open in the editor.
 pub(crate) struct Document {

@@ -6,7 +6,7 @@
 //! - [`Settings`]: how documents are read, unless the editor says otherwise.
 //!
 //! ```
-//! use std::path::{Path, PathBuf};
+//! use std::path::Path;
 //! use std::sync::Arc;
 //! use bahn_lsp::{Connection, Disk, Settings, serve};
 //! use bahn_text::{Files, NamedFile};
@@ -16,7 +16,7 @@
 //!     fn read(&self, _: &str) -> Option<NamedFile> { None }
 //! }
 //! impl Disk for NoFiles {
-//!     fn called(&self, _: &str, _: &Path) -> Option<PathBuf> { None }
+//!     fn has(&self, _: &Path) -> bool { false }
 //!     fn model_of(&self, _: &Path) -> Option<bahn_parameters::ControlModel> { None }
 //!     fn names(&self, _: &Path) -> Vec<String> { Vec::new() }
 //! }

@@ -120,6 +120,7 @@ impl Station {
         mut power_on: PowerOn,
     ) -> Result<Station, HostError> {
         let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
+        let lost = std::mem::take(&mut power_on.warnings);
         let commissioning = Commissioning::of(&machine, &mut power_on);
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
         let plant = AnyPlant::new(plant);
@@ -152,6 +153,7 @@ impl Station {
             chosen: Chosen::default(),
         };
         station.read_settings();
+        station.say_lost(lost);
         station.commission();
         Ok(station)
     }

@@ -8,8 +8,12 @@
 mod cross_table;
 
 use std::path::Path;
+use std::sync::Arc;
 
-use bahn_host::{HostError, Operable, Play, PowerOn, Script, Stage};
+use bahn_host::{
+    Action, Answer, Attendance, FolderPrograms, HostError, Operable, Operator, Phase, Play, PowerOn, Source,
+    Stage,
+};
 use bahn_panel::{Input, InputText, KeyAction, Station};
 use cross_table::{CrossTable, Folder, folder, load};
 
@@ -186,6 +190,71 @@ fn the_time_line_goes_back() {
     assert_eq!(station.screen().timeline.branches.len(), 1);
 }
 
+/// Another machine takes the place of this one, as its files are by now: the control begins anew, a plant of one's own stays
+/// what and where it is. MP1020 is 1500 mm/min now: a key that is held for a second moves the axis by 25 mm.
+#[test]
+fn the_plant_stays_when_the_machine_is_replaced() {
+    let (folder, mut station) = ready("replaced");
+    key(&mut station, "X+", KeyAction::Press);
+    wait(&mut station, 1.0);
+    key(&mut station, "X+", KeyAction::Release);
+    wait(&mut station, 1.0);
+    let stands = truth(&mut station, 'X');
+    let now_us = station.control().time_us();
+    let mut machine = load(&folder.0);
+    machine.parameters.assign("1020.0=1500").unwrap();
+    let programs = Arc::new(FolderPrograms::of_folder(&machine.programs(0)));
+    let mut keys = machine.folder.operator.clone();
+    keys.start = "NC_START".to_owned();
+    let operator = Operator::new(Attendance::Full, keys, None);
+    station
+        .host()
+        .replace(&machine, PowerOn::fresh(&machine), programs, operator)
+        .unwrap();
+    assert_eq!(station.control().time_us(), now_us);
+    assert_eq!(truth(&mut station, 'X'), stands);
+    // The operator who stands by clears POWER INTERRUPTED and passes over the reference marks.
+    for _ in 0..60_000 {
+        if station.host().operator().phase() == Phase::Ready {
+            break;
+        }
+        station.host().step().unwrap();
+    }
+    assert_eq!(station.host().operator().phase(), Phase::Ready);
+    let from = truth(&mut station, 'X');
+    let press = |action: &str| Action::parse(&format!("key X+ {action}")).unwrap();
+    for action in ["press", "release"] {
+        assert_eq!(
+            station.host().act(Source::Operator, press(action)).unwrap(),
+            Answer::Done
+        );
+        let end = station.control().time_us() + 1_000_000;
+        while station.control().time_us() < end {
+            station.host().step().unwrap();
+        }
+    }
+    let moved = truth(&mut station, 'X') - from;
+    assert!((moved - 25.0).abs() < 1.0, "{moved} mm");
+}
+
+/// What was lost at power-on is said to the operator.
+#[test]
+fn what_was_lost_is_said() {
+    let folder = folder("lost");
+    let machine = load(&folder.0);
+    let mut power_on = PowerOn::fresh(&machine);
+    power_on
+        .warnings
+        .push("the pockets of the tool table have changed".to_owned());
+    let mut station = Station::with_plant(machine, CrossTable::new(), power_on).unwrap();
+    let said = &station.screen().messages;
+    assert!(
+        said.iter()
+            .any(|line| line.text == "the pockets of the tool table have changed"),
+        "{said:?}"
+    );
+}
+
 /// A script presses keys and expects; what the plant does not have is found when the script is read.
 #[test]
 fn a_script_drives_it() {
@@ -193,10 +262,10 @@ fn a_script_drives_it() {
     let parameters = station.machine().parameters.clone();
     let read = |station: &mut Station, text: &str| {
         let stage = Stage::machine(station.host().plant(), &parameters);
-        Script::of(Path::new("S"), text.as_bytes(), &stage)
+        stage.script(Path::new("S"), text.as_bytes())
     };
     let faults = read(&mut station, "1: key Y+ press\n2: expect lamp DOOR=1").unwrap_err();
-    let labels: Vec<String> = faults.iter().map(bahn_text::Diagnostic::label).collect();
+    let labels: Vec<String> = faults.iter().map(bahn_text::Diagnostic::words).collect();
     assert_eq!(
         labels,
         [

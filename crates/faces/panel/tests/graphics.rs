@@ -6,7 +6,7 @@ mod support;
 
 use std::collections::BTreeSet;
 
-use bahn_interpreter::{Interpreter, NoLibrary, Rules, Settings};
+use bahn_interpreter::{Interpreter, NoPrograms, Rules, Settings};
 use bahn_panel::{GraphicsView, Star};
 use bahn_parameters::ParameterList;
 use bahn_path::{BlockRef, ElementSource, LiveData, Step};
@@ -196,7 +196,7 @@ fn removed_without_a_panel(trainee: &Trainee, name: &str) -> f64 {
         tools: Some(tools.map(|(number, tool)| (*number, tool.shape)).collect()),
         ..Settings::default()
     };
-    let mut run = Interpreter::new(program, settings, Box::new(NoLibrary));
+    let mut run = Interpreter::new(program, settings, std::sync::Arc::new(NoPrograms));
     let mut cutting = Cutting::new(Columns::BySize, Memory::default(), BTreeSet::new());
     loop {
         match run.next() {

@@ -257,6 +257,84 @@ fn there_is_no_way_back_before_the_first_motion() {
     at(report.path_end.0[Axis::X], 10.0);
 }
 
+/// What a script of a machine says at a time a script of a channel says with the same words: each pair of texts is one run.
+#[test]
+fn what_happens_at_a_time_has_the_words_of_every_script() {
+    let program = "%T\nN10 G01 X50 F6000\nN20 X100 M7\nN30 X150\nM30\n";
+    let run = |script: &str| Bench::new(program, "m_synch[7] MVS_SVS").script(script).run();
+    for (own, of_all) in [
+        // The potentiometer.
+        (
+            "override 50 at 0.5\noverride 100 at 0.9",
+            "0.5: override feed 50\n+0.4: override feed 100",
+        ),
+        // NC stop and NC start.
+        (
+            "hold 0.5..0.9",
+            "0.5: key NC_STOP tap     ; stands from here\n0.9: key NC_START press\n+0.2: key NC_START release",
+        ),
+        // The words of the channel take times in front, too.
+        ("hold 0.5..0.9", "start+0.5..+0.4: hold"),
+        ("backward 0.6..0.8", "0.6..0.8: backward"),
+        ("simulated 0.1..9", "0.1..9: simulated"),
+        // A cycle takes 3 ms: cycle 101 begins after 100 of them.
+        ("hold 0.3..0.6", "cycle 101..200 cycles: hold"),
+        // Operating modes, and the starts in single block.
+        (
+            "single 0..3\nstart 1\nstart 2",
+            "0: mode single\n1: key NC_START tap\n2: key NC_START tap\n3: mode full",
+        ),
+        ("reset 0.4", "0.4: reset"),
+        // An internal stop ends the run that was interrupted.
+        ("hold 0.3..0.7\nreset 0.7", "0.3: key NC_STOP tap\n0.7: stop"),
+        // Replies are ruled; times in cycles are times of all scripts.
+        (
+            "M7 ack 0.06\nhold 0.3..0.6",
+            "0.3..0.6: hold\nM7 ack 20 cycles # 60 ms",
+        ),
+    ] {
+        let (own, of_all) = (run(own), run(of_all));
+        let text = |report: &Report| serde_json::to_string(report).unwrap();
+        assert_eq!(text(&own), text(&of_all));
+    }
+    // The run ends, whatever is still to come: incomplete, and no error.
+    let ended = run("0.3: end\n");
+    assert!(!ended.completed && ended.error.is_none());
+    when(ended.time_s, 0.3);
+    let all = run("");
+    assert!(all.completed && all.time_s > 1.0);
+}
+
+/// What a channel alone does not have is refused at its place, with what is meant.
+#[test]
+fn what_a_channel_does_not_have_is_refused() {
+    for (text, line, column, said) in [
+        ("1: key DOOR tap", 1, 8, "`NC_STOP` or `NC_START`"),
+        ("1: override spindle 50", 1, 13, "`feed`"),
+        ("1: override feed 151", 1, 18, "150"),
+        ("1: mode manual", 1, 9, "`single` or `full`"),
+        ("1: expect tool=3", 1, 4, "machine"),
+        ("when run ended: end", 1, 6, "times only"),
+        ("after message A: end", 1, 1, "times only"),
+        ("\n1: M25 ack 1", 2, 4, "without a time"),
+        ("1..2: reset", 1, 7, "no span of time"),
+        ("2..1: hold", 1, 1, "before it begins"),
+        ("1: stop", 1, 0, "interrupted"),
+        ("x: hold", 1, 1, "no time"),
+        ("1: hodl", 1, 4, "no verb"),
+    ] {
+        let (_, errors) = Script::from_text(text);
+        let [error] = errors.as_slice() else {
+            panic!("{text}: {errors:?}");
+        };
+        let place = (error.span.line, error.span.column);
+        assert_eq!(place, (line, column), "{text}: {error}");
+        assert!(error.message.contains(said), "{text}: {error}");
+    }
+    let (_, errors) = Script::from_text("1: hodl");
+    assert_eq!(errors[0].help.as_deref(), Some("did you mean `hold`?"));
+}
+
 #[test]
 fn scripts_say_what_is_wrong() {
     let (_, errors) = Script::from_text("M25 akc 1\nM26 ack 1\nhold 1\novreride 50 at 1\n");

@@ -553,10 +553,16 @@ impl Channel {
             Command::Test(name) => {
                 let axes = machine.core.axes.iter().map(|unit| unit.axis).collect();
                 let (run, site, basis) = self.parts(machine);
-                let feeder = run.source.feeder_for_test(&name, axes, &site, &basis);
-                feeder
-                    .map(|feeder| self.test = Some(TestRun::new(&name, feeder)))
-                    .is_some()
+                match run.source.feeder_for_test(&name, axes, &site, &basis) {
+                    Ok(feeder) => {
+                        self.test = Some(TestRun::new(&name, feeder));
+                        true
+                    }
+                    Err(message) => {
+                        site.messages.show(message, None);
+                        false
+                    }
+                }
             }
             Command::TestRun(command) => self.test.as_mut().is_some_and(|test| test.execute(command)),
             Command::EndTest => {

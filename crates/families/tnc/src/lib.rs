@@ -143,6 +143,8 @@ pub use bahn_parameters::compensation::{
     CompensationAssignment, CompensationError, CompensationTable, CorrectionTables,
 };
 pub use bahn_path::Switch;
+/// Where the programs of a control come from.
+pub use bahn_reader::Programs;
 pub use beside::ReadAhead;
 pub use command::{Command, CommandError, Mode};
 pub use control::Control;
@@ -158,7 +160,6 @@ pub use oscilloscope::OscilloscopeKeys;
 pub use plane_command::PlaneCommand;
 pub use plc_link::{NcFiles, Pocket, WrittenElement, datum_shifts};
 pub use probe_command::{ProbeCommand, ProbeFunction};
-pub use programs::{CalledPrograms, Programs};
 pub use renewal::{CompensationFiles, Renewed};
 pub use scanning::{Digitized, DigitizedNews};
 pub use screen_command::ScreenCommand;

@@ -1,53 +1,12 @@
-//! Where programs come from, and which of them a channel has selected.
+//! Which program a channel has selected.
 
 use std::sync::Arc;
 
-use bahn_interpreter::Library;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
-use bahn_reader::{Reader, Start};
+use bahn_reader::{Programs, Reader, Start};
 
 use crate::message::Message;
-
-/// Where programs come from. The control asks by name, as written in CALL PGM and chosen by the operator.
-pub trait Programs: Send + Sync {
-    /// The program of a name; `Ok(None)` when there is none.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
-
-    /// A program in a language that the control does not read itself, ready to run from its first block; `Ok(None)` when
-    /// it is none of those: then it is [opened](Programs::open). There are none by default.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    fn reader(&self, _name: &str, _start: &Start) -> Result<Option<Box<dyn Reader>>, String> {
-        Ok(None)
-    }
-
-    /// A cycle of the machine builder in the EPROM of the PLC; there is none by default.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    fn open_in_eprom(&self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
-        Ok(None)
-    }
-
-    /// What a program is opened by that is not here, but counts as if it lay here: those that it calls do.
-    fn name_here(&self, name: &str) -> String {
-        name.to_owned()
-    }
-
-    /// Keeps a program that was digitized, whole or not at all; the control itself calls this never, whoever drives it
-    /// does.
-    ///
-    /// # Errors
-    /// Why it cannot be kept.
-    fn store(&self, name: &str, _pieces: &[Arc<[u8]>]) -> Result<(), String> {
-        Err(format!("{name}: these programs cannot be added to"))
-    }
-}
 
 /// A program that is to run.
 pub(crate) enum Opened {
@@ -58,29 +17,18 @@ pub(crate) enum Opened {
 }
 
 impl Opened {
-    /// The program of a name, in whatever language; `Ok(None)` when there is none.
-    pub fn of(
-        name: &str,
-        programs: &dyn Programs,
-        start: impl FnOnce() -> Start,
-    ) -> Result<Option<Opened>, String> {
-        if let Some(reader) = programs.reader(name, &start())? {
-            return Ok(Some(Opened::Reader(reader)));
-        }
-        Ok(programs.open(name, "")?.map(Opened::Program))
-    }
-}
-
-/// Programs as the interpreter asks for those that are called.
-pub struct CalledPrograms(pub Arc<dyn Programs>);
-
-impl Library for CalledPrograms {
-    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.0.open(name, caller)
-    }
-
-    fn find_in_eprom(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.0.open_in_eprom(name, caller)
+    /// The program of a name, in whatever language.
+    ///
+    /// # Errors
+    /// PROGRAM NOT FOUND, when there is none that can be read.
+    pub fn of(name: &str, programs: &dyn Programs, start: impl FnOnce() -> Start) -> Result<Opened, Message> {
+        let reader = programs.reader(name, &start());
+        let opened = reader.and_then(|reader| match reader {
+            Some(reader) => Ok(Some(Opened::Reader(reader))),
+            None => Ok(programs.open(name, "")?.map(Opened::Program)),
+        });
+        let found = opened.ok().flatten();
+        found.ok_or(Message::Plain(MessageId::ProgramNotFound))
     }
 }
 
@@ -112,11 +60,8 @@ impl Selection {
             let program = Program::from_bytes("$MDI", text.into_bytes());
             return Ok(Opened::Program(Arc::new(program)));
         }
-        let not_found = Message::Plain(MessageId::ProgramNotFound);
-        let name = self.program.as_ref().ok_or(not_found.clone())?;
-        match Opened::of(name, programs, start) {
-            Ok(Some(opened)) => Ok(opened),
-            Ok(None) | Err(_) => Err(not_found),
-        }
+        let name = self.program.as_ref();
+        let name = name.ok_or(Message::Plain(MessageId::ProgramNotFound))?;
+        Opened::of(name, programs, start)
     }
 }

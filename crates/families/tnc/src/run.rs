@@ -261,7 +261,7 @@ impl ProgramRun {
         self.core.set_off(&site.acting());
     }
 
-    /// RESTORE AT N: scans to a block.
+    /// RESTORE AT N: scans to a block. A program that cannot begin is said as at NC start.
     pub fn restore_at(
         &mut self,
         block: u32,
@@ -273,14 +273,15 @@ impl ProgramRun {
             return false;
         }
         let mdi = site.mode == Mode::Mdi;
-        let ready = self.source.may_begin(mdi);
-        let Some(opened) = self
-            .source
-            .open(mdi, &self.selection, site, basis)
-            .ok()
-            .filter(|_| ready)
-        else {
+        if !self.source.may_begin(mdi) {
             return false;
+        }
+        let opened = match self.source.open(mdi, &self.selection, site, basis) {
+            Ok(opened) => opened,
+            Err(message) => {
+                self.show(message, site);
+                return true;
+            }
         };
         // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.
         if rules.from_start {

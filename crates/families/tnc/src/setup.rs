@@ -11,10 +11,10 @@ use bahn_path::{Axis, Position};
 use bahn_plc::PlcProgram;
 
 use crate::plc_link::{NcFiles, WrittenElement};
-use crate::programs::Programs;
 use crate::tool::{MovedTool, Tool};
 use crate::window::Window;
 use bahn_kernel::SpindleWiring;
+use bahn_reader::Programs;
 
 /// How programs are taken that use what is not executed here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -20,7 +20,7 @@ use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
 use bahn_path::{AxisSet, BlockRef, Frame, PerAxis, Plane, Position, Sense};
 use bahn_program::Program;
-use bahn_reader::{Reader, Start};
+use bahn_reader::{Programs, Reader, Start};
 use bahn_servo::Rotation;
 
 use crate::beside::Loan;
@@ -28,7 +28,7 @@ use crate::language::{self, OwnLanguage};
 use crate::manual_probing::ManualProbing;
 use crate::message::Message;
 use crate::plc_link::PlcLink;
-use crate::programs::{CalledPrograms, Opened, Programs, Selection};
+use crate::programs::{Opened, Selection};
 use crate::setup::Checking;
 use crate::site::Site;
 
@@ -481,12 +481,21 @@ impl Source {
 
     /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
     /// The axes are those of the machine: nobody hands one over meanwhile.
-    pub fn feeder_for_test(&self, name: &str, axes: AxisSet, site: &Site, basis: &Basis) -> Option<Feeder> {
+    ///
+    /// # Errors
+    /// The message why there is none.
+    pub fn feeder_for_test(
+        &self,
+        name: &str,
+        axes: AxisSet,
+        site: &Site,
+        basis: &Basis,
+    ) -> Result<Feeder, Message> {
         let reading = &self.reading;
-        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis)).ok()??;
+        let opened = Opened::of(name, &*reading.programs, || reading.begin(site, basis))?;
         let mut feeder = self.feeder_from(opened, Status::default(), site, basis);
         feeder.expect_axes(axes);
-        Some(feeder)
+        Ok(feeder)
     }
 
     /// A feeder of a program that is to run, from a block on, with what the last run left in force.
@@ -555,7 +564,7 @@ impl Source {
             functions: self.reading.functions.clone(),
             ..Settings::default()
         };
-        let called = Box::new(CalledPrograms(Arc::clone(&self.reading.programs)));
+        let called = Arc::clone(&self.reading.programs);
         let mut interpreter = Interpreter::new(program, settings, called);
         if self.defers {
             interpreter.defer_work();

@@ -94,6 +94,22 @@ fn without_the_functions() {
     assert!(!rig.control.command("manual-operation".parse().unwrap()));
 }
 
+/// A program that does not open is not scanned: the control says why, as it does at NC start.
+#[test]
+fn a_program_that_is_not_there_is_said() {
+    let mut rig = restore_rig(SCAN, PROGRAM);
+    rig.command("select 2.H");
+    rig.command("restore-at 2");
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), ["PROGRAM NOT FOUND"]);
+    assert!(!rig.bit("M2059"), "no block scan");
+    rig.command("ce");
+    rig.command("select 1.H");
+    rig.command("restore-at 6");
+    rig.seconds(0.1);
+    assert!(rig.bit("M2059") && rig.messages().is_empty());
+}
+
 const PROGRAM: &str =
     "TOOL CALL 2 Z S1000\nFN 0: Q1 = +30\nL X+80 Y+60 R0 F3000 M3\nL X+90 M8\nL X+Q1\nL Y+20";
 

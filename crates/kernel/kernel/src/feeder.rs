@@ -489,7 +489,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
     use std::sync::Arc;
 
-    use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+    use bahn_interpreter::{Interpreter, NoPrograms, Settings};
     use bahn_program::Program;
 
     use super::*;
@@ -514,7 +514,7 @@ mod tests {
         };
         let chain = Chain::new(Arc::new(Cartesian), offsets);
         let axes = Axis::ALL.into_iter().collect();
-        let interpreter = Interpreter::new(program, settings, Box::new(NoLibrary));
+        let interpreter = Interpreter::new(program, settings, Arc::new(NoPrograms));
         Feeder::new(Box::new(interpreter), chain, (limits, axes))
     }
 

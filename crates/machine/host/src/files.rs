@@ -3,20 +3,20 @@
 mod nc;
 mod neighbours;
 
-use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bahn_interpreter::Library;
 use bahn_program::Program;
+use bahn_reader::{Folders, Shelf};
 use bahn_text::Encoding;
 
 use crate::{HostError, called};
 
-pub use crate::called::named;
+pub use crate::called::{below, named};
+pub use bahn_reader::EPROM;
 
 pub use nc::{NcFolder, is_din, nc_reader};
 
@@ -154,78 +154,40 @@ fn read(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= limit).then_some(bytes))
 }
 
-/// Called programs, beside the calling one.
-#[derive(Debug, Default)]
-pub struct FileLibrary {
-    /// By path, so that one file is one program whatever its name was written like.
-    programs: HashMap<PathBuf, Arc<Program>>,
-    /// What a name beside a caller led to.
-    found: HashMap<(String, String), Arc<Program>>,
+/// The files of the disk.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OnDisk;
+
+/// The programs of folders on the disk.
+pub type FileLibrary = Shelf<OnDisk>;
+
+/// The programs beside a main program that was read, which is one of them.
+pub fn beside(main: &Arc<Program>) -> FileLibrary {
+    Shelf::with_main(OnDisk, main)
 }
 
-impl FileLibrary {
-    /// A library that knows the main program.
-    pub fn with_main(main: &Arc<Program>) -> FileLibrary {
-        let mut library = FileLibrary::default();
-        library.programs.insert(PathBuf::from(main.name()), main.clone());
-        library
+/// The file that a call of a program means, beside the calling one.
+pub fn called_program(name: &str, caller: &Path) -> Option<PathBuf> {
+    let folder = caller.parent().unwrap_or(Path::new(""));
+    bahn_reader::called(&OnDisk, folder, name, caller)
+}
+
+impl Folders for OnDisk {
+    fn names(&self, folder: &Path) -> Vec<String> {
+        called::names_in(folder)
     }
 
-    fn open(&mut self, path: PathBuf) -> Result<Arc<Program>, String> {
-        if let Some(program) = self.programs.get(&path) {
-            return Ok(program.clone());
-        }
-        match load_program(&path) {
-            Ok(Loaded::Program(program)) => {
-                self.programs.insert(path, program.clone());
-                Ok(program)
-            }
+    fn has(&self, path: &Path) -> bool {
+        path.is_file()
+    }
+
+    fn load(&self, path: &Path) -> Result<Arc<Program>, String> {
+        match load_program(path) {
+            Ok(Loaded::Program(program)) => Ok(program),
             Ok(Loaded::Empty(_)) => Err(EMPTY.to_owned()),
             Ok(Loaded::TooLarge) => Err(TOO_LARGE.to_owned()),
             Err(error) => Err(error.to_string()),
         }
-    }
-}
-
-/// The folder beside the programs with what is in the EPROM of the PLC.
-pub const EPROM: &str = "eprom";
-
-impl Library for FileLibrary {
-    /// Looks for the name beside the calling program; see `called::find`.
-    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.find_in(memory_of(caller), name, caller)
-    }
-
-    /// Looks for the name in the folder `eprom` beside the calling program.
-    fn find_in_eprom(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.find_in(&memory_of(caller).join(EPROM), name, caller)
-    }
-}
-
-/// The folder of the programs beside a caller, which may itself be in the EPROM.
-fn memory_of(caller: &str) -> &Path {
-    let folder = Path::new(caller).parent().unwrap_or(Path::new(""));
-    match folder.file_name().is_some_and(|name| name == EPROM) {
-        true => folder.parent().unwrap_or(Path::new("")),
-        false => folder,
-    }
-}
-
-impl FileLibrary {
-    fn find_in(&mut self, folder: &Path, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        let key = (
-            folder.join(name).to_string_lossy().into_owned(),
-            caller.to_owned(),
-        );
-        if let Some(program) = self.found.get(&key) {
-            return Ok(Some(program.clone()));
-        }
-        let Some(path) = called::find(folder, name, Path::new(caller)) else {
-            return Ok(None);
-        };
-        let program = self.open(path)?;
-        self.found.insert(key, program.clone());
-        Ok(Some(program))
     }
 }
 

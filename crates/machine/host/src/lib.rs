@@ -96,7 +96,8 @@ pub use action::{Action, ActionError, Answer, Source};
 pub use any_plant::AnyPlant;
 /// What a plant takes and answers, for whoever writes one.
 pub use bahn_machine::{DeviceState, Event, KeyAction, MagazineState, Mechanics};
-pub use called::called_program;
+/// What the times of a script count from.
+pub use bahn_script::Base;
 pub use columns::{Cell, TextRow, TextTable, canonical};
 pub use edges::Edges;
 pub use error::HostError;
@@ -125,7 +126,8 @@ pub fn check_script(
     [Stage::machine(machine, parameters), Stage::bench(parameters)].map(|stage| {
         let faults =
             |faults: Vec<bahn_text::Diagnostic>| faults.iter().map(|fault| fault.span.line).collect();
-        Script::of(std::path::Path::new("SCRIPT"), bytes, &stage)
+        stage
+            .script(std::path::Path::new("SCRIPT"), bytes)
             .map(drop)
             .map_err(faults)
     })
@@ -145,6 +147,6 @@ pub use plc_source::PlcSource;
 pub use power_on::{ChannelPowerOn, PowerOn};
 pub use retained::Retained;
 pub use saved::{Course, Saved, Timeline};
-pub use script::{Base, Line, Script, ScriptAction, Stage};
+pub use script::{Line, Script, ScriptAction, Stage};
 pub use table_edit::{LineChange, delete_line, set_line, with_column};
 pub use table_kind::{Content as CellContent, KnownColumn, PlainTable, TableForm};

@@ -10,7 +10,8 @@ use crate::error::HostError;
 use crate::expectation::{Expectation, Presence};
 use crate::host::Host;
 use crate::operable::Operable;
-use crate::script::{Base, Line, Script, ScriptAction};
+use crate::script::{Line, Script, ScriptAction};
+use bahn_script::Base;
 use bahn_text::Diagnostic;
 
 /// An expectation that did not hold.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bahn_plc::{Compilation, Memories, Options, ProgramMemory};
-use bahn_text::{Diagnostic, Files, NamedFile, names_in_folder};
+use bahn_text::{Diagnostic, Files, NamedFile, name_alone};
 
 use crate::files;
 
@@ -84,8 +84,6 @@ impl Files for Folder<'_> {
 }
 
 fn read_in(folder: &Path, name: &str) -> Option<Vec<u8>> {
-    names_in_folder(name)
-        .map(|name| folder.join(name))
-        .find(|path| path.is_file())
-        .and_then(|path| files::read_table(&path).ok())
+    let path = files::named(folder, name_alone(name)?)?;
+    files::read_table(&path).ok()
 }

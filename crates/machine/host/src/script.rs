@@ -1,29 +1,55 @@
-//! Scripts: what happens at which time, and what is expected. A log of a run has the same form.
+//! Scripts for a machine and for the bench of the PLC: what can be done there, expected and waited for. A log of a run has the same
+//! form.
 //!
 //! Decision: On the bench of the PLC what a script does in cycle n comes before its scan, what it expects after it
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bahn_exchange::Assignment;
 use bahn_machine::Event;
 use bahn_parameters::ParameterList;
+use bahn_script::{Fault, Times, Verbs};
 use bahn_tnc::{Command, split_channel};
 
 use crate::action::{Action, ActionError};
 use crate::any_plant::AnyPlant;
 use crate::expectation::{Expectation, Presence};
 use crate::operable::Operable;
-use bahn_text::{Diagnostic, Span, decode};
+use bahn_text::{Diagnostic, decode};
 
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;
 
-/// The last cycle that a script may speak of: on the bench more than two days. A slip of the keyboard is not to run for
-/// years.
-const CYCLES_MAX: u64 = 10_000_000;
+/// What begins with the one word ends with the other: a span of time does both.
+const ENDS: [(&str, &str); 8] = [
+    ("press", "release"),
+    ("release", "press"),
+    ("off", "on"),
+    ("on", "off"),
+    ("insert", "remove"),
+    ("remove", "insert"),
+    ("plug", "unplug"),
+    ("unplug", "plug"),
+];
 
-/// Faulty lines that are named; after them reading ends.
-const FAULTS_MAX: usize = 1000;
+/// A script for a machine or for the bench of the PLC.
+pub type Script = bahn_script::Script<ScriptAction, Expectation>;
+
+/// A line of such a script.
+pub type Line = bahn_script::Line<ScriptAction, Expectation>;
+
+/// What a line of a script does at its time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScriptAction {
+    /// Something is done to a machine.
+    Do(Action),
+    /// Operands of the PLC and machine parameters get these values.
+    Set(Vec<Assignment>),
+    /// Nothing; all of this must be so.
+    Expect(Vec<Expectation>),
+    /// The run ends, whatever is still to come.
+    End,
+}
 
 /// What a script is played on.
 pub struct Stage<'a> {
@@ -58,310 +84,111 @@ impl<'a> Stage<'a> {
             cycle_us: parameters.model().limits().plc_cycle_us,
         }
     }
-}
 
-/// What a time counts from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Base {
-    /// Power-on of the machine.
-    PowerOn,
-    /// The start of the program.
-    Start,
-    /// The moment in which a condition came true; conditions are numbered in the order of the file.
-    Condition(usize),
-}
-
-/// What a line of a script does at its time.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ScriptAction {
-    /// Something is done to a machine.
-    Do(Action),
-    /// Operands of the PLC and machine parameters get these values.
-    Set(Vec<Assignment>),
-    /// Nothing; all of this must be so.
-    Expect(Vec<Expectation>),
-    /// The run ends, whatever is still to come.
-    End,
-}
-
-/// A line of a script.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Line {
-    /// In the file, from 1.
-    pub number: u32,
-    /// What its time counts from.
-    pub base: Base,
-    /// Time of the line after its base, µs.
-    pub offset_us: u64,
-    /// It comes before everything else of this time: it looks at the cycle that has ended then.
-    pub after: bool,
-    /// It waits from then on until all of this is so.
-    pub condition: Vec<Expectation>,
-    /// What happens at that time.
-    pub action: ScriptAction,
-}
-
-/// A script: its lines in the order of the file.
-#[derive(Clone, Debug, Default)]
-pub struct Script {
-    path: PathBuf,
-    text: Vec<String>,
-    /// What it does, a line each, in the order of the file.
-    pub lines: Vec<Line>,
-}
-
-/// What is wrong in a line: first character and number of characters, and in words.
-struct Wrong {
-    column: usize,
-    length: usize,
-    message: String,
-}
-
-impl Script {
     /// Reads a script; what it does to a machine is tried on a copy of it.
     ///
     /// # Errors
     /// All faults of the script.
-    pub fn of(path: &Path, bytes: &[u8], stage: &Stage) -> Result<Script, Vec<Diagnostic>> {
-        Script::read(path, &decode(bytes), stage)
-    }
-
-    fn read(path: &Path, text: &str, stage: &Stage) -> Result<Script, Vec<Diagnostic>> {
-        let mut script = Script {
-            path: path.to_owned(),
-            text: text.lines().map(str::to_owned).collect(),
-            lines: Vec::new(),
+    pub fn script(&self, path: &Path, bytes: &[u8]) -> Result<Script, Vec<Diagnostic>> {
+        let mut known = Known {
+            plant: self.plant,
+            tried: self.copy.as_ref().and_then(AnyPlant::copied),
+            parameters: self.parameters.clone(),
         };
-        let mut faults = Vec::new();
-        let mut reader = Reader {
-            plant: stage.plant,
-            tried: stage.copy.as_ref().and_then(AnyPlant::copied),
-            parameters: stage.parameters.clone(),
-            cycle_us: stage.cycle_us,
-            last: (Base::PowerOn, 0),
-            conditions: 0,
-        };
-        for (number, line) in (1..).zip(text.lines()) {
-            let content = without_comment(line);
-            if content.trim().is_empty() {
-                continue;
-            }
-            if faults.len() == FAULTS_MAX {
-                let message = "too many faults: what follows is not read";
-                faults.push(script.fault_at(number, &wrong(line, line, message)));
-                break;
-            }
-            match reader.line(number, content) {
-                Ok(line) => script.lines.push(line),
-                Err(wrong) => faults.push(script.fault_at(number, &wrong)),
-            }
-        }
+        let times = Times::of_cycle(self.cycle_us).up_to(SECONDS_MAX);
+        let (script, faults) = Script::read(path, &decode(bytes), times, &mut known);
         if faults.is_empty() {
             Ok(script)
         } else {
             Err(faults)
         }
     }
-
-    fn fault_at(&self, number: u32, wrong: &Wrong) -> Diagnostic {
-        let span = Span::new(number as usize, wrong.column.max(1), wrong.length.max(1));
-        self.at(span, "the script is wrong", wrong.message.clone())
-    }
-
-    fn at(&self, span: Span, title: &str, label: String) -> Diagnostic {
-        Diagnostic::error(span, title)
-            .with_detail(label)
-            .at(self.path.clone(), self.line_text(span.line))
-    }
-
-    /// A line of the file that was not as expected when its time came.
-    pub fn failure(&self, number: u32, title: &str, label: String) -> Diagnostic {
-        self.at(Span::line(number as usize), title, label)
-    }
-
-    /// As [`Script::failure`], at the place of an operand in the line.
-    pub fn failure_of(&self, number: u32, operand: &str, title: &str, label: String) -> Diagnostic {
-        let text = self.line_text(number);
-        // The name as it is written, in a script of the same letters mostly.
-        let at = text.to_ascii_uppercase().rfind(operand);
-        let span = at.map_or(Span::line(number as usize), |at| {
-            let before = text.get(..at).unwrap_or_default().chars().count();
-            let item = text.get(at..).unwrap_or_default();
-            let item = item.split([',', ';', '#']).next().unwrap_or_default().trim_end();
-            Span::new(number as usize, before + 1, item.chars().count())
-        });
-        self.at(span, title, label)
-    }
-
-    /// Where a line stands, as `mill.txt:3`.
-    pub fn place(&self, number: u32) -> String {
-        format!("{}:{number}", self.path.display())
-    }
-
-    /// The text of a line, from 1.
-    pub fn line_text(&self, number: u32) -> String {
-        let index = (number as usize).saturating_sub(1);
-        self.text.get(index).cloned().unwrap_or_default()
-    }
 }
 
-/// Reads line after line.
-struct Reader<'a> {
+/// What is known on a stage.
+struct Known<'a> {
     /// The bench has none.
     plant: Option<&'a dyn Operable>,
     /// What the script does to the machine is tried on a copy of it; where there is none, it shows when it is done.
     tried: Option<AnyPlant>,
     /// What it does to machine parameters is tried on them.
     parameters: ParameterList,
-    cycle_us: u32,
-    /// From what, and how far after it, the next line counts.
-    last: (Base, u64),
-    conditions: usize,
 }
 
-impl Reader<'_> {
-    fn line(&mut self, number: u32, line: &str) -> Result<Line, Wrong> {
-        let Some((time, rest)) = split_time(line) else {
-            return Err(wrong(
-                line,
-                line.trim(),
-                "a line is `TIME: WHAT` or `TIME: expect ..`",
-            ));
-        };
-        let (time, rest) = (time.trim(), rest.trim());
-        let wrong = |part: &str, message: String| wrong(line, part, &message);
-        let condition = self.condition(time).map_err(|message| wrong(time, message))?;
-        let cycle = self.cycle(time).map_err(|message| wrong(time, message))?;
-        let (base, mut offset_us) = match (condition.is_empty(), cycle) {
-            (false, _) => self.last,
-            (true, Some(begin_us)) => (Base::PowerOn, begin_us),
-            (true, None) => self.time(time).map_err(|message| wrong(time, message))?,
-        };
-        let action = self.action(rest).map_err(|message| wrong(rest, message))?;
-        // What is done in a cycle is done before it; what is looked at is so after it.
-        let after = cycle.is_some() && matches!(action, ScriptAction::Expect(_) | ScriptAction::End);
-        if after {
-            offset_us += u64::from(self.cycle_us);
-        }
-        self.last = (base, offset_us);
-        if !condition.is_empty() {
-            self.last = (Base::Condition(self.conditions), 0);
-            self.conditions += 1;
-        }
-        Ok(Line {
-            number,
-            base,
-            offset_us,
-            after,
-            condition,
-            action,
-        })
-    }
+impl Verbs for Known<'_> {
+    type Action = ScriptAction;
+    type Condition = Expectation;
 
-    /// `when X.actual > 50`, `when message "TEXT"`, `after message TEXT`: what `expect` takes.
-    fn condition(&self, text: &str) -> Result<Vec<Expectation>, String> {
-        let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-        let rest = rest.trim();
-        match word {
-            "when" => Expectation::parse_all(rest, self.plant),
-            "after" if self.plant.is_none() => Err(NO_CONTROL.to_owned()),
-            "after" => {
-                let text = rest.strip_prefix("message").map(str::trim);
-                let text = text.map(|text| text.trim_matches('"'));
-                let text = text.filter(|text| !text.is_empty());
-                let text = text.ok_or("it is written `after message TEXT`")?;
-                Ok(vec![Expectation::Message(text.to_owned(), Presence::There)])
-            }
-            _ => Ok(Vec::new()),
-        }
-    }
-
-    /// When the cycle begins that `cycle 5` names, µs since power-on.
-    fn cycle(&self, text: &str) -> Result<Option<u64>, String> {
-        let Some(number) = text.strip_prefix("cycle ") else {
-            return Ok(None);
-        };
-        let number = number.trim().parse().ok();
-        let number = number.filter(|number| (1..=CYCLES_MAX).contains(number));
-        let before = number.map(|number| (number - 1) * u64::from(self.cycle_us));
-        let before = before.ok_or_else(|| format!("`{text}` is no cycle from 1 to {CYCLES_MAX}"));
-        before.map(Some)
-    }
-
-    /// `12.5` since power-on, `+2` since the line before, `start` or `start+2` since the program was started; in
-    /// seconds or, as `+20 cycles`, in cycles.
-    fn time(&self, text: &str) -> Result<(Base, u64), String> {
-        let (base, before_us) = self.last;
-        if let Some(rest) = text.strip_prefix('+') {
-            return Ok((base, before_us + self.duration(rest)?));
-        }
-        if let Some(rest) = text.strip_prefix("start") {
-            if self.plant.is_none() {
-                return Err("on the bench of the PLC no program is started".to_owned());
-            }
-            let rest = rest.trim();
-            if rest.is_empty() {
-                return Ok((Base::Start, 0));
-            }
-            let rest = rest
-                .strip_prefix('+')
-                .ok_or("after `start` stands + and a time")?;
-            return Ok((Base::Start, self.duration(rest)?));
-        }
-        Ok((Base::PowerOn, self.duration(text)?))
-    }
-
-    /// A time, or a count of control cycles, in µs.
-    fn duration(&self, text: &str) -> Result<u64, String> {
-        let cycles = ["cycles", "cycle"];
-        let cycles = cycles.iter().find_map(|unit| text.trim().strip_suffix(unit));
-        let us = match cycles {
-            Some(count) => {
-                let count = count.trim().parse::<u32>().ok();
-                count.map(|count| u64::from(count) * u64::from(self.cycle_us))
-            }
-            None => {
-                let seconds = text.trim().parse::<f64>().ok();
-                let seconds = seconds.filter(|seconds| (0.0..=SECONDS_MAX).contains(seconds));
-                seconds.map(|seconds| (seconds * 1e6).round() as u64)
-            }
-        };
-        us.filter(|us| *us as f64 <= SECONDS_MAX * 1e6).ok_or_else(|| {
-            format!(
-                "`{text}` is no time: 12.5 (s since power-on), +2 (since the line before), start+3, +20 cycles, cycle 5, \
-                 or a condition: when X.actual > 50, after message TEXT"
-            )
-        })
-    }
-
-    fn action(&mut self, text: &str) -> Result<ScriptAction, String> {
-        let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    fn action<'a>(&mut self, what: &'a str) -> Result<ScriptAction, Fault<'a>> {
+        let wrong = |message| Fault::new(what, message);
+        let (word, rest) = what.split_once(char::is_whitespace).unwrap_or((what, ""));
         match word {
             "expect" => {
-                return Expectation::parse_all(rest, self.plant).map(ScriptAction::Expect);
+                let all = Expectation::parse_all(rest, self.plant);
+                return all.map(ScriptAction::Expect).map_err(wrong);
             }
             "end" if rest.trim().is_empty() => return Ok(ScriptAction::End),
             _ => {}
         }
-        if split_channel(text).0.is_none() && Assignment::is_meant(text) {
-            return self.assignments(text).map(ScriptAction::Set);
+        if split_channel(what).0.is_none() && Assignment::is_meant(what) {
+            return self.assignments(what).map(ScriptAction::Set).map_err(wrong);
         }
         if self.plant.is_none() {
-            return Err(NO_CONTROL.to_owned());
+            return Err(wrong(NO_CONTROL.to_owned()));
         }
-        let action = Action::parse(text).map_err(|error| match error {
-            ActionError::Unknown(word) => format!(
-                "`{word}` is no event and no command; events are {}, expect, end; commands those of the control",
-                Event::WORDS.join(", ")
-            ),
-            ActionError::Wrong(what) => what,
+        let action = Action::parse(what).map_err(|error| match error {
+            ActionError::Unknown(word) => {
+                let events = Event::WORDS.join(", ");
+                let message = format!(
+                    "`{word}` is no event and no command; events are {events}, expect, end; commands those of the control"
+                );
+                wrong(message).meant(&word, Event::WORDS.iter().copied().chain(["expect", "end"]))
+            }
+            ActionError::Wrong(message) => wrong(message),
         })?;
         if let (Action::Event(event, _), Some(tried)) = (&action, &mut self.tried) {
-            tried.operate(event)?;
+            tried.operate(event).map_err(wrong)?;
         }
         Ok(ScriptAction::Do(action))
     }
 
+    fn end<'a>(&mut self, what: &'a str) -> Result<ScriptAction, Fault<'a>> {
+        let (before, last) = what.rsplit_once(char::is_whitespace).unwrap_or(("", what));
+        let end = ENDS.iter().find(|(begins, _)| *begins == last);
+        let (_, ends) = end.ok_or_else(|| {
+            let words: Vec<&str> = ENDS.iter().map(|(begins, _)| *begins).collect();
+            let message = format!("a span of time takes what ends, as {}", words.join(", "));
+            Fault::new(what, message)
+        })?;
+        let end = format!("{before} {ends}");
+        self.action(&end)
+            .map_err(|fault| Fault::new(what, fault.message()))
+    }
+
+    fn looks(&self, action: &ScriptAction) -> bool {
+        matches!(action, ScriptAction::Expect(_) | ScriptAction::End)
+    }
+
+    fn started(&self) -> Result<(), String> {
+        match self.plant {
+            Some(_) => Ok(()),
+            None => Err("on the bench of the PLC no program is started".to_owned()),
+        }
+    }
+
+    fn condition<'a>(&mut self, text: &'a str) -> Result<Vec<Expectation>, Fault<'a>> {
+        Expectation::parse_all(text, self.plant).map_err(|message| Fault::new(text, message))
+    }
+
+    fn message(&mut self, text: &str) -> Result<Vec<Expectation>, String> {
+        match self.plant {
+            Some(_) => Ok(vec![Expectation::Message(text.to_owned(), Presence::There)]),
+            None => Err(NO_CONTROL.to_owned()),
+        }
+    }
+}
+
+impl Known<'_> {
     /// Values of operands and parameters: `I4=1, W6=100, MP4110.2=4`.
     fn assignments(&mut self, text: &str) -> Result<Vec<Assignment>, String> {
         let all = Assignment::parse_all(text)?;
@@ -387,46 +214,6 @@ impl Reader<'_> {
 const NO_CONTROL: &str = "on the bench the PLC is alone: operands and machine parameters, as I4=1 or MP4110.2=4, \
      `expect O2=1`, `end`";
 
-/// What stands before and after the first colon outside quotes.
-/// A channel after `when` belongs to the condition: `when 2:X.actual > 50: ce`.
-fn split_time(line: &str) -> Option<(&str, &str)> {
-    let condition = line.trim_start().strip_prefix("when ").map(str::trim_start);
-    let before = condition.map_or(0, |condition| match split_channel(condition) {
-        (Some(_), _) => line.len() - condition.len() + 2,
-        (None, _) => 0,
-    });
-    let mut quoted = false;
-    let at = line.get(before..)?.find(|character: char| {
-        quoted ^= character == '"';
-        character == ':' && !quoted
-    })?;
-    let at = before + at;
-    Some((line.get(..at)?, line.get(at + 1..)?))
-}
-
-/// A fault in a part of a line.
-fn wrong(line: &str, part: &str, message: &str) -> Wrong {
-    // The part is a slice of the line.
-    let at = (part.as_ptr() as usize).saturating_sub(line.as_ptr() as usize);
-    let before = line.get(..at).unwrap_or_default();
-    Wrong {
-        column: before.chars().count() + 1,
-        length: part.chars().count(),
-        message: message.to_owned(),
-    }
-}
-
-/// A line without what stands after ; or # outside quotes and words.
-fn without_comment(line: &str) -> &str {
-    let (mut quoted, mut before) = (false, ' ');
-    let end = line.find(|character: char| {
-        quoted ^= character == '"';
-        let begins = std::mem::replace(&mut before, character).is_whitespace();
-        matches!(character, ';' | '#') && begins && !quoted
-    });
-    line.split_at(end.unwrap_or(line.len())).0
-}
-
 #[cfg(test)]
 mod tests {
     use bahn_parameters::ControlModel;
@@ -434,6 +221,7 @@ mod tests {
 
     use super::*;
     use bahn_machine::Machine;
+    use bahn_script::Base;
 
     fn machine() -> Machine {
         Machine::from_toml(
@@ -446,12 +234,12 @@ mod tests {
     fn read(text: &str) -> Result<Script, Vec<Diagnostic>> {
         // The contour cycle of the TNC 415 is 3 ms, its PLC cycle 20 ms [000:3685] [000:239].
         let parameters = ParameterList::reference(ControlModel::Tnc415b);
-        Script::read(Path::new("s.txt"), text, &Stage::machine(&machine(), &parameters))
+        Stage::machine(&machine(), &parameters).script(Path::new("s.txt"), text.as_bytes())
     }
 
     fn read_for_bench(text: &str) -> Result<Script, Vec<Diagnostic>> {
         let parameters = ParameterList::reference(ControlModel::Tnc415b);
-        Script::read(Path::new("s.txt"), text, &Stage::bench(&parameters))
+        Stage::bench(&parameters).script(Path::new("s.txt"), text.as_bytes())
     }
 
     #[test]
@@ -589,16 +377,16 @@ mod tests {
                     when mode full: M5=1\n";
         let faults = read_for_bench(text).unwrap_err();
         assert!(
-            faults.iter().all(|fault| fault.detail.contains("bench")),
+            faults.iter().all(|fault| fault.message.contains("bench")),
             "{faults:?}"
         );
         assert_eq!(lines(faults), [1, 2, 3, 4, 5, 6]);
         assert!(read_for_bench("1: I4=1").is_ok());
         let faults = read("1: M5=1, I4=1").unwrap_err();
         assert!(
-            faults[0].detail.contains("fault input I4 1"),
+            faults[0].message.contains("fault input I4 1"),
             "{}",
-            faults[0].detail
+            faults[0].message
         );
     }
 
@@ -616,7 +404,48 @@ mod tests {
             ]
         );
         let faults = read("1: handwheel X 11").unwrap_err();
-        assert!(faults[0].detail.contains("from 0 to 10"), "{}", faults[0].detail);
+        assert!(
+            faults[0].message.contains("from 0 to 10"),
+            "{}",
+            faults[0].message
+        );
+    }
+
+    /// A span of time does the one thing at its beginning and the other at its end; what follows counts from the end.
+    #[test]
+    fn spans_of_time_begin_and_end() {
+        let script = read("1..1.5: key NC_START press\n+1: ce\nstart+1..+20 cycles: voltage off\n").unwrap();
+        let lines = script.lines.iter().map(|line| match &line.action {
+            ScriptAction::Do(action) => (line.number, line.base, line.offset_us, action.to_string()),
+            other => panic!("{other:?}"),
+        });
+        use Base::*;
+        let expected = [
+            (1, PowerOn, 1_000_000, "key NC_START press"),
+            (1, PowerOn, 1_500_000, "key NC_START release"),
+            (2, PowerOn, 2_500_000, "ce"),
+            (3, Start, 1_000_000, "voltage off"),
+            // 20 cycles of 3 ms.
+            (3, Start, 1_060_000, "voltage on"),
+        ];
+        assert!(
+            lines.eq(expected.map(|(number, base, us, text)| (number, base, us, text.to_owned()))),
+            "{script:?}"
+        );
+        let faults = read("2..1: voltage off\n1..start: voltage off\n1..2: ce\n1..2: expect M5=1\n1..x: ce")
+            .unwrap_err();
+        let places: Vec<_> = faults
+            .iter()
+            .map(|fault| (fault.span.line, fault.span.column))
+            .collect();
+        assert_eq!(places, [(1, 1), (2, 1), (3, 7), (4, 7), (5, 4)]);
+    }
+
+    /// A slip of the keyboard is told from its neighbour, as in every script.
+    #[test]
+    fn what_is_meant_is_said() {
+        let faults = read("1: overide feed 50\n").unwrap_err();
+        assert_eq!(faults[0].help.as_deref(), Some("did you mean `override`?"));
     }
 
     #[test]
@@ -631,9 +460,9 @@ mod tests {
             .collect();
         assert_eq!(places, [(2, 1), (3, 4), (4, 6), (5, 1), (6, 4), (7, 4)]);
         assert!(
-            faults[2].detail.contains("no key `NC_STOP`; there are NC_START"),
+            faults[2].message.contains("no key `NC_STOP`; there are NC_START"),
             "{}",
-            faults[2].detail
+            faults[2].message
         );
     }
 

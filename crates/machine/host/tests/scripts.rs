@@ -5,7 +5,7 @@ mod support;
 
 use std::path::Path;
 
-use bahn_host::{Host, Next, Notice, Play, Script, Stage, Verdict};
+use bahn_host::{Host, Next, Notice, Play, Stage, Verdict};
 use bahn_tnc::{Command, Signal};
 use support::*;
 
@@ -16,7 +16,7 @@ const PATIENCE_S: f64 = 400.0;
 fn play(blocks: &str, script: &str) -> (Host, Vec<Notice>) {
     let machine = machine("mill");
     let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
-    let script = Script::of(Path::new("s.txt"), script.as_bytes(), &stage).unwrap();
+    let script = stage.script(Path::new("s.txt"), script.as_bytes()).unwrap();
     let mut play = Play::new(script);
     let mut host = mill(blocks);
     let mut notices = host.notices();
@@ -132,11 +132,11 @@ fn what_fails_inside_is_found() {
 fn inputs_belong_to_the_machine() {
     let machine = machine("mill");
     let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
-    let faults = Script::of(Path::new("s.txt"), b"20: I4=1\n", &stage).unwrap_err();
+    let faults = stage.script(Path::new("s.txt"), b"20: I4=1\n").unwrap_err();
     assert!(
-        faults[0].detail.contains("`fault input I4 1`"),
+        faults[0].message.contains("`fault input I4 1`"),
         "{}",
-        faults[0].detail
+        faults[0].message
     );
 }
 

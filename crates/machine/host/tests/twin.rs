@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use bahn_host::{
     Action, Answer, Attendance, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Observed,
-    Operator, PowerOn, Script, Sink, Source, Stage, Timeline,
+    Operator, PowerOn, Sink, Source, Stage, Timeline,
 };
 use bahn_tnc::{AxisId, ChannelError, ChannelView, RunState, Shown};
 use support::*;
@@ -403,7 +403,7 @@ fn a_log_repeats_both_channels() {
     }
     let machine = machine("twin");
     let stage = Stage::machine(machine.simulated().unwrap(), &machine.parameters);
-    let script = Script::of("log".as_ref(), log.as_bytes(), &stage).unwrap();
+    let script = stage.script("log".as_ref(), log.as_bytes()).unwrap();
     let mut again = switched_on(&machine, PowerOn::fresh(&machine), Attendance::Absent);
     let mut play = bahn_host::Play::new(script);
     for (cycle, expected) in trail.iter().enumerate() {

@@ -5,8 +5,8 @@ use std::path::Path;
 use bahn_text::Diagnostic;
 
 use crate::command;
-use crate::nearest::nearest;
 use crate::program::{Fault, Program};
+use bahn_text::nearest;
 
 impl Fault {
     /// As people and programs get it; `program` is the one it is in, `file` where that lies.

@@ -57,14 +57,12 @@ mod execute;
 mod expression;
 mod line;
 mod listing;
-mod nearest;
 mod program;
 mod unit;
 mod words;
 
 pub use decoder::{BlockFault, Decoder, Step};
 pub use examine::{Examination, Found, examine};
-pub use nearest::nearest;
 pub use program::{Fault, Landmark, LandmarkKind, MAX_FAULTS, Program, Section};
 pub use unit::{
     Command, Function, FunctionLetter, Independent, Kind, Motion, Place, SpindleOrder, Target, Unit,

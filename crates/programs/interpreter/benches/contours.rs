@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 use bahn_path::{ElementSource, Step};
 use bahn_program::Program;
 use divan::Bencher;
@@ -56,7 +56,7 @@ fn bench(bencher: Bencher, shape: &str, cycle: &str) {
     text.push_str("END PGM SL MM\n");
     bencher.bench(|| {
         let program = Arc::new(Program::from_bytes("SL.H", text.clone().into_bytes()));
-        let mut run = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+        let mut run = Interpreter::new(program, Settings::default(), Arc::new(NoPrograms));
         let mut elements = 0;
         loop {
             match run.next() {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 use bahn_path::{ElementSource, LiveData, Step};
 use bahn_program::Program;
 use divan::Bencher;
@@ -39,7 +39,7 @@ fn run(program: &Arc<Program>) -> u64 {
         max_blocks_without_motion: u64::MAX,
         ..Settings::default()
     };
-    let mut run = Interpreter::new(program.clone(), settings, Box::new(NoLibrary));
+    let mut run = Interpreter::new(program.clone(), settings, Arc::new(NoPrograms));
     loop {
         match run.next() {
             Step::Element(element) => {

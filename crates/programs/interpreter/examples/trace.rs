@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 use bahn_path::{Curve, ElementSource, LiveData, Step};
 use bahn_program::Program;
 
 fn main() -> std::io::Result<()> {
     let name = std::env::args().nth(1).unwrap_or_default();
     let program = Arc::new(Program::from_bytes(name.as_str(), std::fs::read(&name)?));
-    let mut run = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+    let mut run = Interpreter::new(program, Settings::default(), Arc::new(NoPrograms));
     let mut length = 0.0;
     loop {
         match run.next() {

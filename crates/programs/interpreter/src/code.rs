@@ -5,29 +5,7 @@ use std::sync::Arc;
 
 use bahn_parameters::ControlModel;
 use bahn_program::{Block, Chunk, InputSteps, Program};
-
-/// Where called programs come from.
-pub trait Library {
-    /// Finds a program by the name written in CALL PGM or cycle 12, beside the calling program.
-    /// `Ok(None)` when there is none; `Err` says why it cannot be read.
-    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
-
-    /// Finds a cycle of the machine builder in the EPROM of the PLC, as [`Library::find`] does in the program memory.
-    /// There is none by default.
-    fn find_in_eprom(&mut self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
-        Ok(None)
-    }
-}
-
-/// A library without programs.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct NoLibrary;
-
-impl Library for NoLibrary {
-    fn find(&mut self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
-        Ok(None)
-    }
-}
+use bahn_reader::Programs;
 
 /// Chunks of decoded blocks kept at once over all programs: programs up to this size run from memory,
 /// larger ones are decoded again where loops come back. Bounds the memory of a run.
@@ -114,19 +92,14 @@ impl Code {
     }
 
     /// The index of a called program; loads it when it is called for the first time.
-    pub fn open(
-        &mut self,
-        name: &str,
-        caller: u16,
-        library: &mut dyn Library,
-    ) -> Result<Option<u16>, String> {
+    pub fn open(&mut self, name: &str, caller: u16, programs: &dyn Programs) -> Result<Option<u16>, String> {
         if let Some(index) = self.programs.iter().position(|p| p.program.name() == name) {
             return Ok(Some(index as u16));
         }
         if self.programs.len() > usize::from(u16::MAX) {
             return Err("too many programs".into());
         }
-        let found = library.find(name, &self.name_of(caller))?;
+        let found = programs.open(name, &self.name_of(caller))?;
         Ok(found.map(|program| self.index_of(program)))
     }
 
@@ -135,9 +108,9 @@ impl Code {
         &mut self,
         name: &str,
         caller: u16,
-        library: &mut dyn Library,
+        programs: &dyn Programs,
     ) -> Result<Option<u16>, String> {
-        let found = library.find_in_eprom(name, &self.name_of(caller))?;
+        let found = programs.open_in_eprom(name, &self.name_of(caller))?;
         Ok(found.map(|program| self.index_of(program)))
     }
 

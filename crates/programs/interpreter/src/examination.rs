@@ -8,9 +8,9 @@ use std::sync::atomic::AtomicBool;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
 use bahn_program::{Fault, MAX_DIAGNOSTICS, Program, Reading, Uncounted};
+use bahn_reader::Programs;
 use bahn_text::{Diagnostic, Severity};
 
-use crate::code::Library;
 use crate::error::{Cause, Message, ProgramError, Warning};
 use crate::rehearsal::{Rehearsal, rehearse};
 use crate::settings::Settings;
@@ -82,19 +82,19 @@ impl From<Fault> for Found {
 /// ```
 /// use std::sync::Arc;
 /// use std::sync::atomic::AtomicBool;
-/// use bahn_interpreter::{Complete, NoLibrary, Settings, examine};
+/// use bahn_interpreter::{Complete, NoPrograms, Settings, examine};
 /// use bahn_program::Program;
 ///
 /// let text = "BEGIN PGM 1 MM\nFN 0: Q5 = +2\nFN 3: Q5 = +Q5 * +4\nL X+5 Y+9 R0 FMAX Q\nEND PGM 1 MM\n";
 /// let program = Arc::new(Program::from_bytes("1.H", text.into()));
-/// let found = examine(program, Settings::default(), Box::new(NoLibrary), &AtomicBool::new(false));
+/// let found = examine(program, Settings::default(), Arc::new(NoPrograms), &AtomicBool::new(false));
 /// assert_eq!((found.complete, found.found[0].fault.span.line), (Complete::Yes, 4));
 /// assert_eq!(found.q_values[5], Some(8.0));
 /// ```
 pub fn examine(
     program: Arc<Program>,
     settings: Settings,
-    library: Box<dyn Library + Send>,
+    programs: Arc<dyn Programs>,
     interrupt: &AtomicBool,
 ) -> Examination {
     let (faults, more) = program.counted_diagnostics(Some(Reading {
@@ -112,7 +112,7 @@ pub fn examine(
         };
     }
     let model = settings.model;
-    let rehearsal = rehearse(program, settings, library, interrupt);
+    let rehearsal = rehearse(program, settings, programs, interrupt);
     let found = merged(faults, &rehearsal, model);
     Examination {
         programs: rehearsal.programs,

@@ -4,18 +4,18 @@
 //! - [`Interpreter`]: an [`ElementSource`] over a main program and the programs it calls;
 //! - [`Settings`]: control model, machine parameters, tools and options of a run;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
-//! - [`Library`]: where called programs come from;
+//! - [`Programs`]: where called programs come from;
 //! - [`rehearse`]: all faults of a program, found without moving anything; [`examine`]: with those that reading finds;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
 //! ```
 //! use std::sync::Arc;
-//! use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+//! use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 //! use bahn_path::{Axis, ElementSource, Step};
 //! use bahn_program::Program;
 //! let text = "BEGIN PGM 1 MM\nLBL 1\nL IX+10 R0 F500\nCALL LBL 1 REP 2\nEND PGM 1 MM\n";
 //! let program = Arc::new(Program::from_bytes("1.H", text.into()));
-//! let mut run = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+//! let mut run = Interpreter::new(program, Settings::default(), Arc::new(NoPrograms));
 //! let mut ends = Vec::new();
 //! while let Step::Element(element) = run.next() {
 //!     ends.push(element.end[Axis::X]);
@@ -90,16 +90,17 @@ mod work;
 mod working_plane;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, ScanJob, Step};
 use bahn_program::{Block, InForce, Operation, Program};
 
 pub use absent::AbsentAxes;
+/// Where called programs come from.
+pub use bahn_reader::{NoPrograms, Programs};
 pub use checkpoints::Checkpoint;
-pub use code::{Library, NoLibrary};
 pub use drip_feed::{DripFeed, DripFeedLine, DripFeedState, Refused};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use examination::{Complete, Examination, Found, examine};
@@ -127,13 +128,13 @@ use crate::work::{Effort, Pending};
 ///
 /// ```
 /// use std::sync::Arc;
-/// use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+/// use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 /// use bahn_path::{Axis, ElementSource, Step};
 /// use bahn_program::Program;
 ///
 /// let text = "0 BEGIN PGM 1 MM\n1 L X+10 Y+5 R0 F100\n2 L IX+20\n3 END PGM 1 MM\n";
 /// let program = Arc::new(Program::from_bytes("1.H", text.into()));
-/// let mut run = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+/// let mut run = Interpreter::new(program, Settings::default(), Arc::new(NoPrograms));
 /// let mut ends = Vec::new();
 /// while let Step::Element(element) = run.next() {
 ///     ends.push(element.end[Axis::X]);
@@ -143,8 +144,8 @@ use crate::work::{Effort, Pending};
 #[derive(Clone)]
 pub struct Interpreter {
     settings: Settings,
-    /// Shared with all copies.
-    library: Arc<Mutex<Box<dyn Library + Send>>>,
+    /// Where called programs come from.
+    programs: Arc<dyn Programs>,
     code: Code,
     run: Run,
     ended: Option<Ended>,
@@ -169,12 +170,12 @@ pub const STATE_COST: u32 = 16;
 
 impl Interpreter {
     /// Prepares the run of a main program.
-    pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
+    pub fn new(main: Arc<Program>, settings: Settings, programs: Arc<dyn Programs>) -> Interpreter {
         let run = Run::new(&settings, main.unit());
         let (position, model) = (settings.start, settings.model);
         let mut interpreter = Interpreter {
             settings,
-            library: Arc::new(Mutex::new(library)),
+            programs,
             code: Code::new(main, model),
             run,
             ended: None,
@@ -532,9 +533,7 @@ impl Interpreter {
 
     fn call_program(&mut self, name: &str) -> Result<(), Fault> {
         let caller = self.run.at.program;
-        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = self.code.open(name, caller, library.as_mut());
-        drop(library);
+        let found = self.code.open(name, caller, &*self.programs);
         let found = found.map_err(|reason| Fault::new(MessageId::ProgramNotFound, reason))?;
         let Some(index) = found else {
             return Err(Fault::new(
@@ -556,8 +555,7 @@ impl Interpreter {
                 job.program.as_str(),
                 self.code.name_of(self.run.pen.block.program),
             );
-            let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
-            if !matches!(library.find(name, &caller), Ok(None)) {
+            if !matches!(self.programs.open(name, &caller), Ok(None)) {
                 let detail = format!("PGM NAME: there is a program {name} already");
                 return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
             }

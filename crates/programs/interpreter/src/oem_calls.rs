@@ -1,7 +1,5 @@
 //! Definitions and calls of cycles of the machine builder in a run [000:17691-17984].
 
-use std::sync::PoisonError;
-
 use bahn_parameters::MessageId;
 use bahn_program::Operation;
 
@@ -136,10 +134,9 @@ impl Interpreter {
 
     fn open_oem_cycle(&mut self, name: &str, in_eprom: bool) -> Result<Option<u16>, Fault> {
         let caller = self.run.at.program;
-        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
         let found = match in_eprom {
-            true => self.code.open_eprom(name, caller, library.as_mut()),
-            false => self.code.open(name, caller, library.as_mut()),
+            true => self.code.open_eprom(name, caller, &*self.programs),
+            false => self.code.open(name, caller, &*self.programs),
         };
         found.map_err(|reason| Fault::new(MessageId::ProgramNotFound, reason))
     }

@@ -14,8 +14,8 @@ use std::sync::atomic::AtomicBool;
 use bahn_parameters::MessageId;
 use bahn_path::{BlockRef, LiveData, Touch};
 use bahn_program::{Compensation, Feed, MotionKind, Operation, Program, Value, each_parameter};
+use bahn_reader::Programs;
 
-use crate::code::Library;
 use crate::contour::Contour;
 use crate::error::{Cause, Fault, Message, ProgramError, Warning, WarningKind};
 use crate::output::{Item, Output};
@@ -53,12 +53,12 @@ pub struct Rehearsal {
 /// ```
 /// use std::sync::Arc;
 /// use std::sync::atomic::AtomicBool;
-/// use bahn_interpreter::{NoLibrary, Settings, rehearse};
+/// use bahn_interpreter::{NoPrograms, Settings, rehearse};
 /// use bahn_program::Program;
 ///
 /// let text = "BEGIN PGM 1 MM\nL X+5 Y+0 RL F100\nL X+9\nC X+5 Y+5 DR+\nEND PGM 1 MM\n";
 /// let program = Arc::new(Program::from_bytes("1.H", text.into()));
-/// let found = rehearse(program, Settings::default(), Box::new(NoLibrary), &AtomicBool::new(false));
+/// let found = rehearse(program, Settings::default(), Arc::new(NoPrograms), &AtomicBool::new(false));
 /// // No tool is called before RL; no CC is programmed before C.
 /// let blocks: Vec<u32> = found.errors.iter().map(|error| error.block.block).collect();
 /// assert_eq!(blocks, [1, 3]);
@@ -66,7 +66,7 @@ pub struct Rehearsal {
 pub fn rehearse(
     main: Arc<Program>,
     settings: Settings,
-    library: Box<dyn Library + Send>,
+    programs: Arc<dyn Programs>,
     interrupt: &AtomicBool,
 ) -> Rehearsal {
     let settings = Settings {
@@ -76,7 +76,7 @@ pub fn rehearse(
         ..settings
     };
     let blocks_max = BLOCKS_MAX.saturating_add(u64::from(main.block_count()));
-    let mut rehearser = Rehearser::new(Interpreter::new(main, settings, library));
+    let mut rehearser = Rehearser::new(Interpreter::new(main, settings, programs));
     for count in 0..blocks_max {
         if rehearser.found.errors.len() >= FOUND_MAX {
             // It is no program at all.

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, Message, NoLibrary, STATE_COST, Settings};
+use bahn_interpreter::{Interpreter, Message, NoPrograms, STATE_COST, Settings};
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, ElementSource, LiveData, Position, Step};
 use bahn_program::Program;
@@ -21,7 +21,7 @@ fn run(blocks: &str) -> Interpreter {
         ..Settings::default()
     };
     let program = Arc::new(Program::from_bytes("1.H", text.into()));
-    let mut run = Interpreter::new(program, settings, Box::new(NoLibrary));
+    let mut run = Interpreter::new(program, settings, Arc::new(NoPrograms));
     run.keep_checkpoints();
     run
 }

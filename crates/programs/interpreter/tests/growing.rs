@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 use bahn_path::{ElementSource, LiveData, Step};
 use bahn_program::Program;
 
@@ -26,7 +26,7 @@ fn steps(run: &mut Interpreter, found: &mut Vec<String>) -> bool {
 }
 
 fn interpreter(program: Program) -> Interpreter {
-    Interpreter::new(Arc::new(program), Settings::default(), Box::new(NoLibrary))
+    Interpreter::new(Arc::new(program), Settings::default(), Arc::new(NoPrograms))
 }
 
 fn whole(text: &[u8]) -> Vec<String> {

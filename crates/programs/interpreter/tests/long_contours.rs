@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use bahn_interpreter::{Interpreter, Message, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, Message, NoPrograms, Settings};
 use bahn_parameters::MessageId;
 use bahn_path::{ElementSource, PerAxis, Step};
 use bahn_program::Program;
@@ -30,7 +30,7 @@ fn rough_out(subprogram: &str) -> Interpreter {
         ..Settings::default()
     };
     let program = Arc::new(Program::from_bytes("LONG.H", text.into_bytes()));
-    Interpreter::new(program, settings, Box::new(NoLibrary))
+    Interpreter::new(program, settings, Arc::new(NoPrograms))
 }
 
 /// A star whose sides each lead past `past` of its corners.

@@ -4,7 +4,7 @@
 mod contour;
 mod support;
 
-use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 use bahn_path::{Axis, Curve, ElementSource, Frame, LiveData, PathElement, PerAxis, Plane, Position, Step};
 use bahn_program::Program;
 use contour::{Contour, Spelling, contours, convex_contours};
@@ -300,7 +300,7 @@ proptest! {
             contour.blocks(Spelling::Absolute)
         );
         let program = Arc::new(Program::from_bytes("1", text.into_bytes()));
-        let mut run = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+        let mut run = Interpreter::new(program, Settings::default(), Arc::new(NoPrograms));
         let mut steps = 0;
         let mut checkpoint = run.checkpoint();
         let mut first = Vec::new();
@@ -389,7 +389,7 @@ fn run_bounded(text: &str) -> Result<Option<u32>, TestCaseError> {
         max_blocks_without_motion: 2_000,
         ..Settings::default()
     };
-    let mut run = Interpreter::new(program, settings, Box::new(NoLibrary));
+    let mut run = Interpreter::new(program, settings, Arc::new(NoPrograms));
     for _ in 0..5_000 {
         match run.next() {
             Step::Element(element) => {

@@ -265,7 +265,7 @@ proptest::proptest! {
         bahn_interpreter::rehearse(
             program,
             bahn_interpreter::Settings::default(),
-            Box::new(bahn_interpreter::NoLibrary),
+            std::sync::Arc::new(bahn_interpreter::NoPrograms),
             &std::sync::atomic::AtomicBool::new(false),
         );
     }

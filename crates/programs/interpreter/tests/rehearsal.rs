@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_interpreter::{NoLibrary, Rehearsal, Settings, rehearse};
+use bahn_interpreter::{NoPrograms, Rehearsal, Settings, rehearse};
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_program::Program;
 use support::*;
@@ -15,7 +15,7 @@ fn rehearsed(text: String) -> Rehearsal {
     rehearse(
         program,
         Settings::default(),
-        Box::new(NoLibrary),
+        Arc::new(NoPrograms),
         &AtomicBool::new(false),
     )
 }

@@ -6,6 +6,7 @@
 //! - [`Mark`]: a state before a block to which it can go back;
 //! - [`Start`]: what a program finds on a machine when it begins; [`MachineRules`]: what machine parameters rule there,
 //!   and with them where functions go out;
+//! - [`Programs`]: where programs come from, by their names; [`Shelf`] finds them in [`Folders`];
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it.
 //!
 //! What only some languages have (Q parameters, a tool table, cycles of the machine builder) is not asked here: whoever
@@ -30,9 +31,13 @@
 //! ```
 
 mod error;
+mod programs;
 mod reader;
+mod shelf;
 mod start;
 
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
+pub use programs::{NoPrograms, Programs};
 pub use reader::{Mark, Reader};
+pub use shelf::{EPROM, Folders, Shelf, called};
 pub use start::{MachineRules, Start, synchronisation_point};

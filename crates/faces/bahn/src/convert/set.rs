@@ -3,13 +3,13 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use bahn_interpreter::Library;
 use bahn_program::{CycleWord, Operation, Program};
+use bahn_reader::Programs;
 
 use bahn_report::convert::{Job, Target, is_iso};
 
 use super::options::{ConvertOptions, TargetOption};
-use crate::files::{self, FileLibrary, Loaded};
+use crate::files::{self, Loaded};
 use crate::{UsageError, shelf};
 
 /// The programs of the command line, each once, those in the target language left out.
@@ -109,9 +109,9 @@ fn add_called(options: &ConvertOptions, jobs: &mut Vec<Job>) -> Result<(), Usage
         next += 1;
         let caller = job.program.clone();
         let beside = job.source.clone();
-        let mut library = FileLibrary::with_main(&caller);
+        let library = files::beside(&caller);
         for name in called_names(&caller) {
-            let Ok(Some(found)) = library.find(&name, caller.name()) else {
+            let Ok(Some(found)) = library.open(&name, caller.name()) else {
                 continue;
             };
             if known.insert(found.name().to_owned()) {
@@ -147,9 +147,9 @@ pub(super) fn called_names(program: &Program) -> Vec<String> {
 fn mark_called(jobs: &mut [Job]) {
     let mut called = HashSet::new();
     for job in jobs.iter().filter(|job| job.is_iso()) {
-        let mut library = FileLibrary::with_main(&job.program);
+        let library = files::beside(&job.program);
         for name in called_names(&job.program) {
-            if let Ok(Some(found)) = library.find(&name, job.program.name()) {
+            if let Ok(Some(found)) = library.open(&name, job.program.name()) {
                 called.insert(found.name().to_owned());
             }
         }

@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::sync::Arc;
 use std::time::Duration;
 
-use bahn_host::HostError;
+use bahn_host::{HostError, PowerOn};
 use bahn_link::lsv2::{OpenPort, Passwords, ServerOptions, Site};
 use bahn_ports::serial_ports::{Attendance, Port, Serving};
 use bahn_ports::{MachineDevice, PlcLines};
@@ -44,10 +44,12 @@ pub(super) fn command(options: &ServeOptions) -> Result<Outcome, UsageError> {
             return Ok(Outcome::ProgramError);
         }
     };
-    let station = Station::power_on(machine).map_err(|error| match error {
+    let power_on = PowerOn::kept(&machine).map_err(|error| match error {
         HostError::SwitchedOn(_) => UsageError::new(format!("{error}; end what runs it")),
         other => other.into(),
     })?;
+    diagnostics::print_warnings(&power_on.warnings);
+    let station = Station::with(machine, power_on)?;
     let interrupt = Interrupt::on_ctrl_c();
     let live = Live::start(station);
     let opened = Opened {

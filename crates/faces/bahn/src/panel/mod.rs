@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use bahn_host::files::NewFile;
-use bahn_host::{HostError, LoadedMachine};
+use bahn_host::{HostError, LoadedMachine, PowerOn};
 use bahn_panel::{Input, Live, Replay, Station};
 use bahn_server::{Server, ServerOptions, Tokens};
 use bahn_service::MachineService;
@@ -65,7 +65,9 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     let Some(ports) = PanelPorts::open(named, &machine.parameters) else {
         return Ok(Outcome::ProgramError);
     };
-    let mut station = Station::power_on(machine).map_err(in_use)?;
+    let power_on = PowerOn::kept(&machine).map_err(in_use)?;
+    diagnostics::print_warnings(&power_on.warnings);
+    let mut station = Station::with(machine, power_on)?;
     station
         .input(&Input::Speed(options.speed))
         .map_err(|refusal| UsageError::new(refusal.to_string()))?;

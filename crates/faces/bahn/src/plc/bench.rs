@@ -30,7 +30,7 @@ pub(super) fn bench(
 /// Reads a script for the bench.
 fn load(path: &Path, parameters: &ParameterList) -> Result<Script, UsageError> {
     let bytes = files::read_table(path)?;
-    Script::of(path, &bytes, &Stage::bench(parameters)).map_err(|faults| {
+    Stage::bench(parameters).script(path, &bytes).map_err(|faults| {
         diagnostics::print_faults(&faults);
         UsageError::new(format!("{}: the script is wrong", path.display()))
     })

@@ -57,7 +57,7 @@ fn load_script(options: &BenchOptions, machine: &LoadedMachine) -> Result<Option
     };
     let bytes = files::read_table(path)?;
     let stage = Stage::machine(machine.simulated()?, &machine.parameters);
-    match Script::of(path, &bytes, &stage) {
+    match stage.script(path, &bytes) {
         Ok(script) => Ok(Some(script)),
         Err(faults) => {
             diagnostics::print_faults(&faults);

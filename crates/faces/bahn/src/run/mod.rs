@@ -163,7 +163,7 @@ fn load_script(
         ));
     }
     let stage = Stage::machine(machine.simulated()?, &machine.parameters);
-    Ok(Script::of(path, &bytes, &stage))
+    Ok(stage.script(path, &bytes))
 }
 
 /// What the control finds.
@@ -172,9 +172,7 @@ fn power_on(options: &RunMachineOptions, machine: &LoadedMachine) -> Result<Powe
         true => PowerOn::fresh(machine),
         false => PowerOn::kept(machine)?,
     };
-    for warning in &power_on.warnings {
-        diagnostics::print_line(&format!("warning: {warning}"));
-    }
+    diagnostics::print_warnings(&power_on.warnings);
     power_on.checking = Checking {
         strict: options.run.strict,
         skip_unknown: options.run.skip_unknown,

@@ -22,11 +22,11 @@ pub(super) struct Answering {
 }
 
 impl Answering {
-    /// Reads the script and switches on the machine. `None` when the files of the machine are faulty: that was said.
+    /// Reads the script for contour cycles that take so long, s, and switches on the machine. `None` when the files of the machine are faulty: that was said.
     ///
     /// # Errors
     /// When there are two of a kind, both say what becomes of the functions, or one is not there.
-    pub fn new(options: &TechnologyOptions) -> Result<Option<Answering>, UsageError> {
+    pub fn new(options: &TechnologyOptions, cycle_s: f64) -> Result<Option<Answering>, UsageError> {
         let (folders, scripts): (Vec<_>, Vec<_>) = options.plc.iter().partition(|path| path.is_dir());
         if folders.len() > 1 || scripts.len() > 1 {
             return Err(UsageError::new(
@@ -40,7 +40,7 @@ impl Answering {
             }
             None => None,
         };
-        let read = source.as_ref().map(|(_, text)| Script::from_text(text));
+        let read = source.as_ref().map(|(_, text)| Script::for_cycle(text, cycle_s));
         let (script, errors) = match read {
             Some((script, errors)) => (Some(script), errors),
             None => (None, Vec::new()),

@@ -37,10 +37,10 @@ pub(crate) fn command(options: &TechnologyOptions) -> Result<Outcome, UsageError
         files::keep_inputs(&inputs, &[("--image", picture.path())])?;
     }
     let sources = programs::read(&options.programs)?;
-    let Some(mut answering) = Answering::new(options)? else {
+    let limits = dynamics::limits(options.parameters.as_deref())?;
+    let Some(mut answering) = Answering::new(options, limits.cycle_s)? else {
         return Ok(Outcome::ProgramError);
     };
-    let limits = dynamics::limits(options.parameters.as_deref())?;
     let start = start(options, &sources.programs)?;
     let list = ChannelList::for_cycle(&files::read_table(&options.channel)?, limits.cycle_s);
     let mut faults = faults::of_texts(&list, &options.channel, &sources);

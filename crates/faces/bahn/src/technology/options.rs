@@ -24,15 +24,16 @@ Programs are DIN 66025 as a TF5200 reads it; a file may hold several, which run 
 Subroutines called with L lie beside their program. Without --parameters G00 runs at 10 m/min,
 axes accelerate with 1 m/s2; the list may hold only what is to be changed (`MP1010.0 : 5000`).
 
-PLC script, a line each; # begins a comment:
+PLC script: rules, a line each, and what happens at which time (docs/scripts.md); ; or # begins a comment:
   M25 ack 0.5       acknowledged 0.5 s after its output; 0 is the next cycle
   H5 ack never      X[M7] ack 1       S[M3] ack 0.4     a range before the brackets; without one all
   M26 at 3.0        acknowledged at a time of the run
   M7 nofetch        not even fetched
   default ack 0     what has no line of its own
   spindle S1 ready 0.8     probe X45     override 50 at 1.0
-  hold 2.0..2.5     reset 4.0     backward 2.0..3.0     simulated 2.0..3.0
-  single 2.0..3.0   in single block; start 2.5 starts the next block with a motion
+  1.5: override feed 50    2.0: key NC_STOP tap    2.5: key NC_START tap    3: end
+  2.0..2.5: hold           4.0: reset    2..3: backward    2..3: simulated    2..3: single
+  hold 2.0..2.5            a time may stand behind them, too
 
 JSON: completed, error (null, or code, message, program, block, line), time_s, cycle_s, events (t,
 kind output, fetch, acknowledge, stop, go or active, function, value, offset_us, v in mm/min,

@@ -1,6 +1,6 @@
 //! Programs and subroutines from files.
 //!
-//! Decision: Subroutines of `.nc` programs lie in the folder of a program of the run; names lead nowhere else
+//! Decision: Subroutines of the `.nc` programs of a run lie in the folder of any of them, or below
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -11,6 +11,7 @@ use bahn_din::Program;
 use bahn_technology::NcPrograms;
 use bahn_text::{Files, NamedFile};
 
+use crate::files::NcFolder;
 use crate::{UsageError, files};
 
 /// The programs of a run, and the files that they stand in.
@@ -22,19 +23,13 @@ pub(super) struct Sources {
 /// The programs of files in turn; a file may hold several.
 pub(super) fn read(paths: &[PathBuf]) -> Result<Sources, UsageError> {
     let mut programs = Vec::new();
-    let mut folders: Vec<PathBuf> = Vec::new();
     for path in paths {
         let bytes = files::read_program(path)?;
         let bytes = bytes.ok_or_else(|| UsageError::new(format!("{} is too large", path.display())))?;
         programs.push(Arc::new(Program::from_bytes(&file_name(path), &bytes)));
-        let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = parent.unwrap_or(Path::new(".")).to_owned();
-        if !folders.contains(&folder) {
-            folders.push(folder);
-        }
     }
     let files = paths.iter().cloned().zip(programs.iter().cloned()).collect();
-    let programs = NcPrograms::new(&programs, Arc::new(Folders(folders)))
+    let programs = NcPrograms::new(&programs, Arc::new(Folders::of(paths.iter())))
         .map_err(|fault| UsageError::new(format!("{}: {}", fault.program, fault.message)))?;
     Ok(Sources { programs, files })
 }
@@ -42,8 +37,7 @@ pub(super) fn read(paths: &[PathBuf]) -> Result<Sources, UsageError> {
 impl Sources {
     /// Functions that the programs give types: `M5` for `V.G.M_FCT[5].SYNCH`.
     pub fn typed(&self) -> BTreeSet<String> {
-        let folders = self.files.iter().filter_map(|(path, _)| path.parent());
-        let beside: Arc<dyn Files> = Arc::new(Folders(folders.map(Path::to_owned).collect()));
+        let beside: Arc<dyn Files> = Arc::new(Folders::of(self.files.iter().map(|(path, _)| path)));
         let values = self.files.iter().flat_map(|(_, program)| {
             let examined = bahn_din::examine(program, &beside, &AtomicBool::new(false));
             examined.values.into_keys()
@@ -63,7 +57,7 @@ impl Sources {
             return Some((path.clone(), program.clone()));
         }
         let mut folders = self.files.iter().filter_map(|(path, _)| path.parent());
-        let path = folders.find_map(|folder| find(folder, name))?;
+        let path = folders.find_map(|folder| Some(folder.join(files::below(folder, name)?)))?;
         let bytes = files::read_program(&path).ok()??;
         let program = Arc::new(Program::from_bytes(name, &bytes));
         Some((path, program))
@@ -83,31 +77,16 @@ pub(super) fn file_name(path: &Path) -> String {
 }
 
 /// The folders of the programs, where their subroutines lie.
-struct Folders(Vec<PathBuf>);
+struct Folders(Vec<NcFolder>);
 
-impl Files for Folders {
-    fn read(&self, name: &str) -> Option<NamedFile> {
-        let path = self.0.iter().find_map(|folder| find(folder, name))?;
-        let bytes = files::read_program(&path).ok()??;
-        let name = file_name(&path);
-        Some(NamedFile { name, bytes })
+impl Folders {
+    fn of<'a>(programs: impl Iterator<Item = &'a PathBuf>) -> Folders {
+        Folders(programs.map(|path| NcFolder::of(path)).collect())
     }
 }
 
-/// The file of a name in a folder, without regard to case if there is none written so. Names lead nowhere else.
-fn find(folder: &Path, name: &str) -> Option<PathBuf> {
-    if name.is_empty() || name.contains(['/', '\\', '\0']) || name == ".." {
-        return None;
+impl Files for Folders {
+    fn read(&self, name: &str) -> Option<NamedFile> {
+        self.0.iter().find_map(|folder| folder.read(name))
     }
-    let path = folder.join(name);
-    if path.is_file() {
-        return Some(path);
-    }
-    let entries = std::fs::read_dir(folder).ok()?;
-    let mut alike: Vec<PathBuf> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.is_file() && file_name(path).eq_ignore_ascii_case(name))
-        .collect();
-    alike.sort();
-    alike.into_iter().next()
 }

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use bahn_din::{Landmark, LandmarkKind, Program, SpanKind};
-use bahn_text::{Diagnostic, Files, NamedFile, path_below};
+use bahn_text::{Diagnostic, Files, NamedFile};
 
 use crate::language::{
     Analysis, Completion, Elsewhere, Examined, Fold, Hover, Mention, Role, Symbol, SymbolKind, Thing, Token,
@@ -181,8 +181,9 @@ struct Beside {
 
 impl Files for Beside {
     fn read(&self, name: &str) -> Option<NamedFile> {
-        let name = path_below(name)?;
-        let bytes = self.world.read(&self.folder.join(&name))?;
+        let path = self.world.below(&self.folder, name)?;
+        let bytes = self.world.read(&path)?;
+        let name = path.strip_prefix(&self.folder).ok()?.to_str()?.to_owned();
         Some(NamedFile { name, bytes })
     }
 }
@@ -272,7 +273,7 @@ impl Analysis for DinProgram {
 
     fn elsewhere(&self, thing: &Thing, world: &World) -> Option<Elsewhere> {
         let Thing::File(name) = thing else { return None };
-        let path = self.path.parent()?.join(path_below(name)?);
+        let path = world.below(self.path.parent()?, name)?;
         world.read(&path).map(|_| Elsewhere::front(path))
     }
 

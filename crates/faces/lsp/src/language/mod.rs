@@ -69,9 +69,6 @@ pub(crate) trait Analysis: Send + Sync {
     fn tokens(&self) -> Vec<(Range<usize>, Token)>;
 }
 
-/// Largest text that is looked at, 16 MiB: a program with half a million blocks.
-pub(crate) const BYTES_MAX: usize = 16 << 20;
-
 /// A fault of another file, at the place in this one that leads there.
 pub(crate) fn led_to(fault: Diagnostic, at: Span) -> Diagnostic {
     let name = fault.file.file_name().unwrap_or_default().to_string_lossy();

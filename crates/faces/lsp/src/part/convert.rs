@@ -12,9 +12,9 @@ use bahn_path::Axis;
 use bahn_program::{FormatOptions, Program};
 
 use super::PartProgram;
-use super::shelf::Shelf;
 use crate::language::{Conversion, Target};
 use crate::world::World;
+use bahn_reader::Shelf;
 
 /// What conversion and proof may take while the editor waits.
 const TIME_MAX: Duration = Duration::from_secs(2);
@@ -72,7 +72,11 @@ fn run(program: &Arc<Program>, of: &PartProgram, world: &World) -> Interpreter {
         skip_unknown: world.settings.skip_unknown,
         ..Settings::default()
     };
-    Interpreter::new(program.clone(), settings, Box::new(Shelf::with(program, world)))
+    Interpreter::new(
+        program.clone(),
+        settings,
+        Arc::new(Shelf::with_main(world.clone(), program)),
+    )
 }
 
 /// Block by block; what the other language cannot say is a reason not to.
@@ -83,7 +87,7 @@ fn in_blocks(
     stop: &Arc<AtomicBool>,
 ) -> Result<Conversion, String> {
     let is_iso = |name: &str| {
-        let found = world.files.called(name, &program.path);
+        let found = world.called(name, &program.path);
         found.is_some_and(|path| {
             path.extension()
                 .is_some_and(|ending| ending.eq_ignore_ascii_case("I"))

@@ -9,10 +9,10 @@ use bahn_interpreter::{Complete, Examination, Found, Settings};
 use bahn_program::{CycleWord, Operation, Program};
 use bahn_text::{Diagnostic, Span};
 
-use super::shelf::Shelf;
 use super::{PROGRAM_CYCLE, PartProgram};
 use crate::language::{Examined, led_to};
 use crate::world::World;
+use bahn_reader::Shelf;
 
 pub(super) fn examine(program: &PartProgram, world: &World, interrupt: &AtomicBool) -> Examined {
     if program.text.text.trim().is_empty() {
@@ -25,7 +25,7 @@ pub(super) fn examine(program: &PartProgram, world: &World, interrupt: &AtomicBo
         skip_unknown: world.settings.skip_unknown,
         ..Settings::default()
     };
-    let library = Box::new(Shelf::with(&program.program, world));
+    let library = Arc::new(Shelf::with_main(world.clone(), &program.program));
     let found = bahn_interpreter::examine(program.program.clone(), settings, library, interrupt);
     let faults = found
         .found

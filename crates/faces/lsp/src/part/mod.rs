@@ -7,7 +7,6 @@ mod hover;
 mod mentions;
 mod outline;
 mod part_program;
-mod shelf;
 mod words;
 
 use std::ops::Range;
@@ -44,7 +43,7 @@ impl Analysis for PartProgram {
 
     fn elsewhere(&self, thing: &Thing, world: &World) -> Option<Elsewhere> {
         match thing {
-            Thing::File(name) => world.files.called(name, &self.path).map(Elsewhere::front),
+            Thing::File(name) => world.called(name, &self.path).map(Elsewhere::front),
             _ => None,
         }
     }

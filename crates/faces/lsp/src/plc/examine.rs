@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use bahn_plc::{Compilation, LineOperand, Memories, Options, line_words};
-use bahn_text::{Diagnostic, Files, NamedFile, Span, decode, names_in_folder};
+use bahn_text::{Diagnostic, Files, NamedFile, Span, decode, name_alone};
 
 use super::PlcSource;
 use crate::language::{Elsewhere, Examined, led_to};
@@ -197,7 +197,9 @@ struct Folder<'a> {
 
 impl Files for Folder<'_> {
     fn read(&self, name: &str) -> Option<NamedFile> {
-        let bytes = names_in_folder(name).find_map(|name| self.world.read(&self.folder.join(name)))?;
+        let bytes = self
+            .world
+            .read(&self.world.named(&self.folder, name_alone(name)?)?)?;
         let name = name.to_owned();
         Some(NamedFile { name, bytes })
     }

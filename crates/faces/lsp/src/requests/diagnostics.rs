@@ -7,8 +7,9 @@ use lsp_types::{
 };
 
 use crate::document::Document;
-use crate::language::{BYTES_MAX, Examined};
+use crate::language::Examined;
 use crate::uri::uri_of;
+use crate::world::BYTES_MAX;
 
 /// Most faults that are shown: who has more has another kind of file.
 const SHOWN_MAX: usize = 1000;

@@ -36,12 +36,8 @@ impl Files for Folders {
 }
 
 impl Disk for Folders {
-    fn called(&self, name: &str, caller: &Path) -> Option<PathBuf> {
-        let folder = caller.parent()?;
-        ["", ".H", ".I", ".nc"]
-            .iter()
-            .map(|ending| folder.join(format!("{name}{ending}")))
-            .find(|path| path.is_file())
+    fn has(&self, path: &Path) -> bool {
+        path.is_file()
     }
 
     fn model_of(&self, _: &Path) -> Option<ControlModel> {

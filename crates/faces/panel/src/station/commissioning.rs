@@ -125,6 +125,7 @@ impl Station {
         }
         self.host.release_state();
         let mut power_on = PowerOn::kept(&machine).map_err(|error| error.to_string())?;
+        let lost = std::mem::take(&mut power_on.warnings);
         let commissioning = Commissioning::of(&machine, &mut power_on);
         let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
@@ -139,10 +140,19 @@ impl Station {
         let control = self.host.control();
         self.console = Console::new(control.mode(), control.model());
         self.read_settings();
+        self.say_lost(lost);
         self.instruments.plc.power_off();
         self.study.waits = Waits::new(&self.machine, self.host.plant());
         self.study.past = Past::new(&mut self.host);
         Ok(())
+    }
+
+    /// What was lost at power-on is said, a message each.
+    pub(super) fn say_lost(&mut self, lost: Vec<String>) {
+        for text in lost {
+            let lines: Vec<&str> = text.lines().map(str::trim).collect();
+            self.console.say(lines.join(" "));
+        }
     }
 
     /// What the operator has chosen is what was kept of it; what cannot be read is said.

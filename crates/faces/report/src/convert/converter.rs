@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_convert::{Language, Listed, Options, Proof, convert, gcode, prove, prove_unrolled, unroll};
-use bahn_host::files::FileLibrary;
-use bahn_interpreter::{Interpreter, Library, NoLibrary, Settings};
+use bahn_host::files;
+use bahn_interpreter::{Interpreter, NoPrograms, Programs, Settings};
 use bahn_parameters::ParameterList;
 use bahn_path::Axis;
 use bahn_program::{FormatOptions, Program};
@@ -133,8 +133,8 @@ impl Converter {
 
     fn blocks_of(&self, job: &Job, jobs: &[Job], language: Language) -> bahn_convert::Converted {
         let find = |name: &str| {
-            let mut library = FileLibrary::with_main(&job.program);
-            library.find(name, job.program.name()).ok().flatten()
+            let library = files::beside(&job.program);
+            library.open(name, job.program.name()).ok().flatten()
         };
         let ending = language.ending();
         let renamed = |name: &str| {
@@ -166,8 +166,8 @@ impl Converter {
     }
 
     fn run(&self, program: &Arc<Program>) -> Interpreter {
-        let library: Box<dyn Library + Send> = Box::new(FileLibrary::with_main(program));
-        Interpreter::new(program.clone(), self.settings.clone(), library)
+        let beside = Arc::new(files::beside(program));
+        Interpreter::new(program.clone(), self.settings.clone(), beside)
     }
 
     /// Proves what was made of a program: what is told of it, and the text for its file; none when it does something else.
@@ -226,7 +226,7 @@ impl Converter {
     ) -> Made {
         let target = Arc::new(target_program(job, self.to.ending(), &blocks.text));
         let proof = self.proves.then(|| {
-            let calls = Box::new(TargetLibrary::new(library.clone()));
+            let calls = Arc::new(TargetLibrary::new(library.clone()));
             let run = Interpreter::new(target, self.settings.clone(), calls);
             prove(self.run(&job.program), run, self.list.model(), &stop.flag())
         });
@@ -267,7 +267,7 @@ impl Converter {
             }
         };
         let target = Arc::new(target_program(job, language.ending(), &text));
-        let run = Interpreter::new(target, self.settings.clone(), Box::new(NoLibrary));
+        let run = Interpreter::new(target, self.settings.clone(), Arc::new(NoPrograms));
         // What is unrolled is proved whether that is wanted or not: only so is it known to be the whole.
         let proof = prove_unrolled(self.run(&job.program), run, model, &flag);
         if !proof.holds() {

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_interpreter::Library;
 use bahn_program::Program;
+use bahn_reader::Programs;
 
 use bahn_host::files::FileLibrary;
 
@@ -47,8 +47,8 @@ impl TargetLibrary {
     }
 }
 
-impl Library for TargetLibrary {
-    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+impl Programs for TargetLibrary {
+    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         // By the name of a target's file, where a call names that.
         let file = Path::new(name.trim());
         let named = |target: &&Arc<Program>| {
@@ -62,15 +62,15 @@ impl Library for TargetLibrary {
         if let Some(target) = self.converted.by_source.values().find(named) {
             return Ok(Some(target.clone()));
         }
-        let found = self.files.find(name, &self.source_of(caller))?;
+        let found = self.files.open(name, &self.source_of(caller))?;
         Ok(found.map(|source| {
             let converted = self.converted.by_source.get(source.name());
             converted.cloned().unwrap_or(source)
         }))
     }
 
-    fn find_in_eprom(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+    fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         let caller = self.source_of(caller);
-        self.files.find_in_eprom(name, &caller)
+        self.files.open_in_eprom(name, &caller)
     }
 }

@@ -22,7 +22,7 @@ use crate::block_time::BlockTime;
 use crate::follower::Follower;
 use crate::record::{End, ErrorReport, Notice, Place, Record, Report};
 use crate::stop::Stop;
-use bahn_host::files::{self, FileLibrary, Loaded};
+use bahn_host::files::{self, Loaded};
 
 /// What programs run on: model, machine parameters, tools.
 pub struct Bench {
@@ -143,8 +143,8 @@ impl Bench {
         if let Some(reader) = files::nc_reader(&program, &start) {
             return Box::new(reader);
         }
-        let library = FileLibrary::with_main(&program);
-        Box::new(Interpreter::new(program, settings.clone(), Box::new(library)))
+        let beside = Arc::new(files::beside(&program));
+        Box::new(Interpreter::new(program, settings.clone(), beside))
     }
 }
 

@@ -311,7 +311,7 @@ impl Reader<'_> {
     }
 
     fn script(&mut self, text: &str, stage: &Stage) -> Script {
-        let read = Script::of(self.path, text.as_bytes(), stage);
+        let read = stage.script(self.path, text.as_bytes());
         let script = read.unwrap_or_else(|faults| {
             self.faults.extend(faults);
             Script::default()

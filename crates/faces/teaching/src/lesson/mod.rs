@@ -107,7 +107,7 @@ pub fn load(machine: &LoadedMachine, plant: &AnyPlant, name: &str) -> Result<Les
     let bytes = files::read_table(&path).map_err(|error| error.to_string())?;
     Lesson::read(&path, &bytes, plant, &machine.parameters).map_err(|faults| {
         let line = |fault: &bahn_text::Diagnostic| {
-            format!("{}:{}: {}", path.display(), fault.span.line, fault.detail)
+            format!("{}:{}: {}", path.display(), fault.span.line, fault.exactly())
         };
         faults.iter().map(line).collect::<Vec<_>>().join("\n")
     })

@@ -36,10 +36,10 @@ impl Channel<'_> {
         let t = self.side.t() + 0.5 * self.side.cycle_s;
         let script = self.side.plc.script();
         let percent = script.and_then(|script| {
-            let said = script.overrides.iter().take_while(|(from, _)| *from <= t);
+            let said = script.driving.overrides.iter().take_while(|(from, _)| *from <= t);
             said.last().map(|(_, percent)| *percent)
         });
-        let held = script.is_some_and(|script| script.holds.iter().any(|hold| hold.contains(&t)));
+        let held = script.is_some_and(|script| script.driving.holds.iter().any(|hold| hold.contains(&t)));
         let percent = percent.unwrap_or(100.0);
         Drive {
             feed_override_percent: percent,
@@ -52,17 +52,10 @@ impl Channel<'_> {
     /// The next cycle in which the script changes how the path is driven.
     pub(super) fn next_change(&self) -> Option<u64> {
         let script = self.side.plc.script()?;
-        let ranges = script
-            .holds
-            .iter()
-            .chain(&script.backward)
-            .chain(&script.simulated)
-            .chain(&script.singles);
-        let times = ranges.flat_map(|range| [range.start, range.end]);
-        let overrides = script.overrides.iter().map(|(from, _)| *from);
-        let times = times.chain(overrides).chain(script.resets.iter().copied());
-        let times = times.chain(script.starts.iter().copied());
-        let cycles = times.map(|time| cycle_at(time, self.side.cycle_s));
+        let cycles = script
+            .driving
+            .changes()
+            .map(|time| cycle_at(time, self.side.cycle_s));
         cycles.filter(|cycle| *cycle > self.side.cycle).min()
     }
 
@@ -71,7 +64,8 @@ impl Channel<'_> {
         drive.hold |= self.resets();
         let t = self.side.t() + 0.5 * self.side.cycle_s;
         let script = self.side.plc.script();
-        let back = script.is_some_and(|script| script.backward.iter().any(|range| range.contains(&t)));
+        let back =
+            script.is_some_and(|script| script.driving.backward.iter().any(|range| range.contains(&t)));
         self.gates.cycle(drive, back, &mut self.side)
     }
 

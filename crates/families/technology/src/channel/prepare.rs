@@ -271,7 +271,11 @@ impl Taking<'_> {
         if let (Some(edge), Some(script)) = (&mut self.decoding.edge, self.script)
             && edge.probed.is_none()
         {
-            let mut crossings = script.probes.iter().filter_map(|probe| crossing(&leg, *probe));
+            let mut crossings = script
+                .driving
+                .probes
+                .iter()
+                .filter_map(|probe| crossing(&leg, *probe));
             edge.probed = crossings.next().map(|along| leg.from_mm + along);
         }
         let most = if settings.micro_joint.enabled {

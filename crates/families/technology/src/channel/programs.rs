@@ -31,7 +31,7 @@ enum Ended {
     Completed,
     Reset,
     Faulty,
-    /// Nothing can move any more.
+    /// Nothing can move any more, or the script has ended the run.
     Stuck,
 }
 
@@ -217,6 +217,9 @@ impl Channel<'_> {
                 self.side.record.stands_for_nothing(t);
                 return Ended::Completed;
             }
+            if self.is_over() {
+                return Ended::Stuck;
+            }
             if self.resets() && self.gates.is_still() {
                 self.reset();
                 return Ended::Reset;
@@ -296,17 +299,22 @@ impl Channel<'_> {
     fn follow_script(&mut self) {
         let t = self.side.t() + 0.5 * self.side.cycle_s;
         let script = self.side.plc.script();
-        let simulated = script.is_some_and(|script| script.simulated.iter().any(|range| range.contains(&t)));
+        let simulated =
+            script.is_some_and(|script| script.driving.simulated.iter().any(|range| range.contains(&t)));
         if simulated != self.side.simulated {
             self.side.simulated = simulated;
             self.gates.look_anew();
         }
         if let Some(script) = script {
             self.gates
-                .single_block(script.singles.iter().any(|range| range.contains(&t)));
+                .single_block(script.driving.singles.iter().any(|range| range.contains(&t)));
             let cycle = self.side.cycle;
             let over = |start: &f64| cycle_at(*start, self.side.cycle_s) <= cycle;
-            let starts = script.starts.get(self.progress.starts..).unwrap_or_default();
+            let starts = script
+                .driving
+                .starts
+                .get(self.progress.starts..)
+                .unwrap_or_default();
             for start in starts.iter().take_while(|start| over(start)) {
                 self.progress.starts += 1;
                 self.gates.start(*start);
@@ -338,8 +346,14 @@ impl Channel<'_> {
             .side
             .plc
             .script()
-            .and_then(|script| script.resets.get(self.progress.reset_count));
+            .and_then(|script| script.driving.resets.get(self.progress.reset_count));
         next.is_some_and(|reset| cycle_at(*reset, self.side.cycle_s) <= self.side.cycle)
+    }
+
+    /// Whether the script has ended the run, whatever is still to come.
+    fn is_over(&self) -> bool {
+        let end = self.side.plc.script().and_then(|script| script.driving.end);
+        end.is_some_and(|end| cycle_at(end, self.side.cycle_s) <= self.side.cycle)
     }
 
     /// Drops all that is open: the path stands [004:48] (inferred).

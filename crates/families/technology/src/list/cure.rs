@@ -1,6 +1,6 @@
 //! What is probably meant in a line of a list that cannot be read.
 
-use bahn_din::nearest;
+use bahn_text::nearest;
 
 use super::line::Line;
 use super::table::{Definition, Kind, SynchRow, pattern};

@@ -47,7 +47,7 @@ pub struct ChannelList {
 }
 
 /// Contour cycle where nobody says which machine the list is for, s: that of a TNC 415 B.
-const CYCLE_S: f64 = 0.003;
+pub(crate) const CYCLE_S: f64 = 0.003;
 
 impl ChannelList {
     /// Reads a list.

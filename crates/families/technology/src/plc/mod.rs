@@ -7,6 +7,7 @@
 mod output;
 mod said;
 mod script;
+mod verbs;
 mod window;
 
 use std::cmp::Reverse;

@@ -3,9 +3,9 @@
 //! Decision: A script with errors is used for nothing, and one that names what the channel does not have is in error;
 //! of a faulty program what stands before is executed (also `bahn/src/technology/mod.rs`)
 
-use bahn_din::nearest;
 use bahn_path::Axis;
 use bahn_text::Diagnostic;
+use bahn_text::nearest;
 
 use crate::settings::{ChannelSettings, SPINDLE_M};
 

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use bahn_nc::NcReader;
 use bahn_program::Program;
 use bahn_reader::Start;
-use bahn_text::{Files, NamedFile, path_below};
+use bahn_text::{Files, NamedFile};
 
-use super::read_program;
+use super::{below, read_program};
 
 /// Whether a file is a program of DIN 66025: it is named `.nc`, and does not begin as one of plain language. Shops name
 /// those so, too.
@@ -37,9 +37,8 @@ impl NcFolder {
 
 impl Files for NcFolder {
     fn read(&self, name: &str) -> Option<NamedFile> {
-        let name = path_below(name)?;
-        let path = Some(self.0.join(&name)).filter(|path| path.is_file())?;
-        let bytes = read_program(&path).ok()??;
+        let name = below(&self.0, name)?;
+        let bytes = read_program(&self.0.join(&name)).ok()??;
         Some(NamedFile { name, bytes })
     }
 }

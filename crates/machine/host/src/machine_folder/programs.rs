@@ -2,9 +2,8 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use bahn_interpreter::Library;
 use bahn_program::Program;
 use bahn_reader::{Reader, Start};
 use bahn_tnc::Programs;
@@ -20,7 +19,7 @@ pub struct FolderPrograms {
     /// Where digitized programs go, when they do not go into the folder.
     digitized: Option<PathBuf>,
     folder: PathBuf,
-    library: Mutex<FileLibrary>,
+    library: FileLibrary,
 }
 
 impl FolderPrograms {
@@ -36,7 +35,7 @@ impl FolderPrograms {
         };
         let main = load(&absolute(folder), main)?;
         Ok(FolderPrograms {
-            library: Mutex::new(FileLibrary::with_main(&main)),
+            library: files::beside(&main),
             main: Some(main),
             ..programs
         })
@@ -49,7 +48,7 @@ impl FolderPrograms {
             main: None,
             digitized: None,
             folder: absolute(folder),
-            library: Mutex::default(),
+            library: FileLibrary::default(),
         }
     }
 
@@ -97,15 +96,15 @@ impl Programs for FolderPrograms {
         if let Some(main) = self.main.as_ref().filter(|_| self.main_name() == Some(name)) {
             return Ok(Some(Arc::clone(main)));
         }
-        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
+        let library = &self.library;
         if !caller.is_empty()
-            && let Some(program) = library.find(name, caller)?
+            && let Some(program) = library.open(name, caller)?
         {
             return Ok(Some(program));
         }
-        let in_folder = library.find(name, &self.caller)?;
+        let in_folder = library.open(name, &self.caller)?;
         match (in_folder, &self.main) {
-            (None, Some(main)) => library.find(name, main.name()),
+            (None, Some(main)) => library.open(name, main.name()),
             (found, _) => Ok(found),
         }
     }
@@ -121,13 +120,13 @@ impl Programs for FolderPrograms {
     }
 
     fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
+        let library = &self.library;
         if !caller.is_empty()
-            && let Some(program) = library.find_in_eprom(name, caller)?
+            && let Some(program) = library.open_in_eprom(name, caller)?
         {
             return Ok(Some(program));
         }
-        library.find_in_eprom(name, &self.caller)
+        library.open_in_eprom(name, &self.caller)
     }
 
     fn store(&self, name: &str, pieces: &[Arc<[u8]>]) -> Result<(), String> {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use bahn_convert::{Converted, Language, Options, Proof, convert, gcode, prove};
-use bahn_interpreter::{Interpreter, Library, Settings};
+use bahn_interpreter::{Interpreter, Programs, Settings};
 use bahn_parameters::ControlModel;
 use bahn_program::{FormatOptions, Program};
 
@@ -42,8 +42,8 @@ fn collect(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
 #[derive(Clone)]
 pub struct Folder(pub PathBuf);
 
-impl Library for Folder {
-    fn find(&mut self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+impl Programs for Folder {
+    fn open(&self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
         for name in [name.to_owned(), format!("{name}.H"), format!("{name}.I")] {
             let path = self.0.join(&name);
             if let Ok(bytes) = std::fs::read(&path) {
@@ -63,7 +63,7 @@ pub fn settings(model: ControlModel) -> Settings {
 
 /// A run of a program beside others.
 pub fn run(program: &Program, settings: &Settings, folder: &Path) -> Interpreter {
-    let library = Box::new(Folder(folder.to_owned()));
+    let library = Arc::new(Folder(folder.to_owned()));
     Interpreter::new(Arc::new(program.clone()), settings.clone(), library)
 }
 

@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, Library, Message, ProgramError, Settings, Warning};
+use bahn_interpreter::{Interpreter, Message, ProgramError, Programs, Settings, Warning};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, Barrier, Blank, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Position, Step,
@@ -177,7 +177,7 @@ impl Job {
             memory: shelf(self.library, ""),
             eprom: shelf(self.eprom, "eprom/"),
         };
-        let mut interpreter = Interpreter::new(main, self.settings, Box::new(library));
+        let mut interpreter = Interpreter::new(main, self.settings, Arc::new(library));
         for (number, value) in self.q {
             interpreter.set_q(number, value);
         }
@@ -236,12 +236,12 @@ struct Shelf {
     eprom: BTreeMap<String, Arc<Program>>,
 }
 
-impl Library for Shelf {
-    fn find(&mut self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+impl Programs for Shelf {
+    fn open(&self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
         Ok(self.memory.get(name).cloned())
     }
 
-    fn find_in_eprom(&mut self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+    fn open_in_eprom(&self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
         Ok(self.eprom.get(name).cloned())
     }
 }

@@ -28,6 +28,7 @@ pub(super) fn command(options: &DncRunOptions) -> Result<Outcome, UsageError> {
         true => PowerOn::fresh(&machine),
         false => PowerOn::kept(&machine)?,
     };
+    diagnostics::print_warnings(&power_on.warnings);
     settings::assign(&mut power_on.parameters, &options.mp)?;
     settings::say_without_effect(&power_on.parameters, &options.mp);
     machine.parameters = power_on.parameters.clone();

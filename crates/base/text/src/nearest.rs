@@ -8,8 +8,8 @@ const MAX_LENGTH: usize = 64;
 ///
 /// ```
 /// let known = ["MVS_SVS", "MVS_SNS", "MOS"];
-/// assert_eq!(bahn_din::nearest("MVS_SSV", known), Some("MVS_SVS"));
-/// assert_eq!(bahn_din::nearest("soon", known), None);
+/// assert_eq!(bahn_text::nearest("MVS_SSV", known), Some("MVS_SVS"));
+/// assert_eq!(bahn_text::nearest("soon", known), None);
 /// ```
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.to_uppercase().chars().take(MAX_LENGTH + 1).collect();
