@@ -88,7 +88,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Notes an input or output that something is wired to.
-    pub fn wire(&self, at: usize, operand: String) {
+    pub fn wire(&self, at: usize, operand: String, opens: bool) {
         if self.wires.borrow().len() == WIRES_MAX {
             return self.fault(at, "too many wires".to_owned());
         }
@@ -98,7 +98,7 @@ impl<'t> Reader<'t> {
             operand,
             section: String::new(),
             key: String::new(),
-            opens: false,
+            opens,
         });
     }
 
@@ -110,7 +110,6 @@ impl<'t> Reader<'t> {
         for wire in &mut wires {
             let at = (wire.span.line as usize).saturating_sub(1);
             let line = lines.get(at).copied().unwrap_or_default();
-            let before: String = line.chars().take(wire.span.column as usize).collect();
             let key = line.split('=').next().unwrap_or_default().trim();
             sections
                 .get(at)
@@ -118,7 +117,6 @@ impl<'t> Reader<'t> {
                 .unwrap_or_default()
                 .clone_into(&mut wire.section);
             key.trim_matches('"').clone_into(&mut wire.key);
-            wire.opens = before.contains("not ") || line.contains(&format!("not {}", wire.operand));
         }
         wires
     }
@@ -451,11 +449,11 @@ impl<'r, 't> Section<'r, 't> {
             match entry
                 .get_ref()
                 .as_str()
-                .and_then(|text| operand(text, 'I', INPUTS))
+                .and_then(|text| operand(text, INPUT_LETTERS, INPUTS))
             {
                 Some((input, inverted)) => {
                     self.reader.taken.borrow_mut().push((at, input, self.path(key)));
-                    self.reader.wire(at, format!("I{input}"));
+                    self.reader.wire(at, format!("I{input}"), inverted);
                     contacts.push(Contact { input, inverted });
                 }
                 None => {
@@ -480,7 +478,7 @@ impl<'r, 't> Section<'r, 't> {
         let coil = value
             .get_ref()
             .as_str()
-            .and_then(|text| operand(text, 'O', OUTPUTS));
+            .and_then(|text| operand(text, OUTPUT_LETTERS, OUTPUTS));
         if coil.is_none() {
             let last = OUTPUTS - 1;
             self.reader.fault(
@@ -489,7 +487,8 @@ impl<'r, 't> Section<'r, 't> {
             );
         }
         let (output, inverted) = coil?;
-        self.reader.wire(value.span().start, format!("O{output}"));
+        self.reader
+            .wire(value.span().start, format!("O{output}"), inverted);
         Some(Coil { output, inverted })
     }
 
@@ -611,13 +610,17 @@ fn connector(text: &str, count: usize) -> Option<usize> {
     (number <= count).then(|| number.checked_sub(1))?
 }
 
+/// Letters of PLC inputs and outputs, the second ones as the TNC 151 and 155 write them [001:477-482].
+pub(crate) const INPUT_LETTERS: [char; 2] = ['I', 'E'];
+pub(crate) const OUTPUT_LETTERS: [char; 2] = ['O', 'A'];
+
 /// `I12` or `not I12`.
-fn operand(text: &str, letter: char, count: usize) -> Option<(usize, bool)> {
+fn operand(text: &str, letters: [char; 2], count: usize) -> Option<(usize, bool)> {
     let (inverted, plain) = match text.strip_prefix("not ") {
         Some(rest) => (true, rest.trim_start()),
         None => (false, text),
     };
-    let digits = plain.strip_prefix(letter)?;
+    let digits = plain.strip_prefix(letters)?;
     if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
