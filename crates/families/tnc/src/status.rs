@@ -96,8 +96,9 @@ pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
     }
 }
 
-/// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534].
-pub(crate) fn axes(mode: Mode, axes: &mut OwnAxes, exchange: &mut Exchange) {
+/// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534]. `by_wheel`: none is in position,
+/// as in Handwheel [000:5371-5384]; on the TNC 151/155 these say there, too, which axis moves *(inferred)*.
+pub(crate) fn axes(mode: Mode, by_wheel: bool, axes: &mut OwnAxes, exchange: &mut Exchange) {
     for unit in axes.iter_mut() {
         let index = unit.index;
         let slave = unit.parameters.synchronization.master.is_some();
@@ -107,8 +108,7 @@ pub(crate) fn axes(mode: Mode, axes: &mut OwnAxes, exchange: &mut Exchange) {
         } else if unit.servo.closed() && unit.servo.in_position() {
             unit.in_position = true;
         }
-        // In Handwheel no axis is in position [000:5371-5384].
-        let in_position = unit.in_position && mode != Mode::Handwheel;
+        let in_position = unit.in_position && !by_wheel;
         let values = [
             (&ENABLED, unit.servo.closed()),
             (&IN_POSITION, in_position),

@@ -90,7 +90,11 @@ impl Tnc {
             take_offsets(&mut axes, channel, &other.remembered);
         }
         mirror_parameters(&parameters, &mut exchange);
-        let spindle = SpindleUnit::new(SpindleWiring::default(), parameters.spindle_parameters(), timing);
+        let wiring = SpindleWiring {
+            input: model.limits().spindle_input.into(),
+            ..SpindleWiring::default()
+        };
+        let spindle = SpindleUnit::new(wiring, parameters.spindle_parameters(), timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
         link.selected_list.clone_from(&remembered.parameter_list);
         link.pallet = PalletSelection {

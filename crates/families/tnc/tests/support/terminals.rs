@@ -52,7 +52,7 @@ encoder = { input = "X3", period_um = 20, marks_coded = 20 }
 output = "S"
 rpm = 6000
 volts = 9
-encoder = { input = "X6", lines = 1024, mark_deg = 90 }
+encoder = { input = "X5", lines = 1024, mark_deg = 90 }
 
 [device.completed]
 start = "on"
