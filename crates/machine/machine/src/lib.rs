@@ -39,6 +39,7 @@
 mod acting;
 mod axis;
 mod by_hand;
+mod cabinet;
 mod chain;
 mod clock;
 mod current_drive;

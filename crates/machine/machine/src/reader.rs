@@ -74,6 +74,8 @@ pub(crate) struct Reader<'t> {
     /// The inputs given away: where, which, to whom.
     taken: RefCell<Vec<(usize, usize, String)>>,
     wires: RefCell<Vec<Wire>>,
+    /// Contacts of the cabinet and their places behind the outputs.
+    contacts: RefCell<Vec<(String, usize)>>,
 }
 
 impl<'t> Reader<'t> {
@@ -84,7 +86,24 @@ impl<'t> Reader<'t> {
             faults: RefCell::default(),
             taken: RefCell::default(),
             wires: RefCell::default(),
+            contacts: RefCell::default(),
         }
+    }
+
+    /// Contacts that may stand where an output does.
+    pub fn know_contacts(&self, contacts: Vec<(String, usize)>) {
+        *self.contacts.borrow_mut() = contacts;
+    }
+
+    /// An output, or a contact of the cabinet, and whether it opens.
+    fn switch(&self, text: &str) -> Option<(usize, bool)> {
+        let (inverted, plain) = match text.strip_prefix("not ") {
+            Some(rest) => (true, rest.trim_start()),
+            None => (false, text),
+        };
+        let contacts = self.contacts.borrow();
+        let contact = contacts.iter().find(|(name, _)| name == plain);
+        operand(text, OUTPUT_LETTERS, OUTPUTS).or_else(|| Some((contact?.1, inverted)))
     }
 
     /// Notes an input or output that something is wired to.
@@ -475,21 +494,42 @@ impl<'r, 't> Section<'r, 't> {
     }
 
     fn as_coil(&self, key: &str, value: &'r Spanned<DeValue<'t>>) -> Option<Coil> {
-        let coil = value
-            .get_ref()
-            .as_str()
-            .and_then(|text| operand(text, OUTPUT_LETTERS, OUTPUTS));
+        let at = value.span().start;
+        let text = value.get_ref().as_str();
+        let coil = text.and_then(|text| self.switched_by(at, text));
         if coil.is_none() {
             let last = OUTPUTS - 1;
-            self.reader.fault(
-                value.span().start,
-                format!("{key} is an output \"O0\" to \"O{last}\", or \"not O0\""),
-            );
+            let message = format!("{key} is an output \"O0\" to \"O{last}\", or \"not O0\"");
+            self.reader.fault(at, message);
         }
-        let (output, inverted) = coil?;
-        self.reader
-            .wire(value.span().start, format!("O{output}"), inverted);
+        coil
+    }
+
+    /// A contact of a circuit: an output, or one of the cabinet.
+    pub fn contact_at(&self, at: usize, text: &str) -> Option<Coil> {
+        let coil = self.switched_by(at, text);
+        if coil.is_none() {
+            let known = self.reader.contacts.borrow();
+            let known: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
+            let message = format!("`{text}` is neither an output nor a contact; there are {}", known.join(", "));
+            self.reader.fault(at, message);
+        }
+        coil
+    }
+
+    fn switched_by(&self, at: usize, text: &str) -> Option<Coil> {
+        let (output, inverted) = self.reader.switch(text)?;
+        if operand(text, OUTPUT_LETTERS, OUTPUTS).is_some() {
+            self.reader.wire(at, format!("O{output}"), inverted);
+        }
         Some(Coil { output, inverted })
+    }
+
+    /// The names that the user has given in a table, without reading it.
+    pub fn names(&self, key: &str) -> Vec<String> {
+        let table = self.table.get(key).and_then(|value| value.get_ref().as_table());
+        let names = table.into_iter().flat_map(|table| table.keys());
+        names.map(|name| name.get_ref().to_string()).collect()
     }
 
     /// The entries of a table whose keys are the user's names.
