@@ -42,7 +42,10 @@ pub(crate) fn set_contacts(mechanism: &Mechanism, panel: &Panel, voltage: bool, 
     for (place, device) in THINGS.zip(&mechanism.devices) {
         set(place, device.is_forth());
     }
-    let gear = mechanism.spindles.first().and_then(|spindle| spindle.state().gear);
+    let gear = mechanism
+        .spindles
+        .first()
+        .and_then(|spindle| spindle.state().gear);
     for place in GEARS {
         set(place, gear == Some(place - GEARS.start + 1));
     }

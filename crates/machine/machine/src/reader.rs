@@ -511,7 +511,10 @@ impl<'r, 't> Section<'r, 't> {
         if coil.is_none() {
             let known = self.reader.contacts.borrow();
             let known: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
-            let message = format!("`{text}` is neither an output nor a contact; there are {}", known.join(", "));
+            let message = format!(
+                "`{text}` is neither an output nor a contact; there are {}",
+                known.join(", ")
+            );
             self.reader.fault(at, message);
         }
         coil

@@ -424,7 +424,8 @@ RESET = "E30"
     let mut machine = Machine::from_toml(text).unwrap_or_else(|faults| panic!("{faults:?}"));
     machine.set_control_ready(true);
     machine.advance(100_000);
-    let state = |machine: &Machine, name: &str| machine.device(name).unwrap().state.unwrap_or("moves").to_owned();
+    let state =
+        |machine: &Machine, name: &str| machine.device(name).unwrap().state.unwrap_or("moves").to_owned();
     let outputs = |on: &[usize]| {
         let mut outputs = [false; bahn_servo::OUTPUTS];
         on.iter().for_each(|output| outputs[*output] = true);
@@ -440,7 +441,11 @@ RESET = "E30"
     machine.advance(3_000);
     machine.set_outputs(&outputs(&[]));
     machine.advance(200_000);
-    assert_eq!([state(&machine, "k1"), state(&machine, "pump")], ["on", "on"], "it holds itself");
+    assert_eq!(
+        [state(&machine, "k1"), state(&machine, "pump")],
+        ["on", "on"],
+        "it holds itself"
+    );
     machine.set_outputs(&outputs(&[17]));
     machine.advance(15_000);
     machine.set_outputs(&outputs(&[]));
@@ -458,5 +463,11 @@ RESET = "E30"
     assert_eq!(state(&machine, "k1"), "off", "it does not come by itself");
     // What is no contact is said with those that are.
     let faults = Machine::from_toml(&text.replace("A7 and A20", "A7 and k2")).unwrap_err();
-    assert!(faults[0].to_string().contains("`k2` is neither an output nor a contact; there are k1, pump, RESET, gear1"), "{}", faults[0]);
+    assert!(
+        faults[0]
+            .to_string()
+            .contains("`k2` is neither an output nor a contact; there are k1, pump, RESET, gear1"),
+        "{}",
+        faults[0]
+    );
 }
