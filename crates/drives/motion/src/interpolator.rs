@@ -64,6 +64,8 @@ pub struct Interpolator<E> {
 struct Overrides {
     /// Of feed, rapid traverse and spindle, %.
     percent: [f64; 3],
+    /// Programmed feeds count as rapid traverse.
+    rapid: bool,
     rapid_limit_mm_min: f64,
 }
 
@@ -100,6 +102,7 @@ impl<E> Interpolator<E> {
             after: After::Open,
             overrides: Overrides {
                 percent: [100.0; 3],
+                rapid: false,
                 rapid_limit_mm_min: f64::INFINITY,
             },
             phase: Phase::Done,
@@ -219,6 +222,10 @@ impl<E> Interpolator<E> {
         if overrides != self.overrides.percent {
             self.overrides.percent = overrides;
             self.ring.set_overrides(overrides);
+        }
+        if drive.rapid != self.overrides.rapid {
+            self.overrides.rapid = drive.rapid;
+            self.ring.set_all_rapid(drive.rapid);
         }
         if drive.rapid_limit_mm_min != self.overrides.rapid_limit_mm_min {
             self.overrides.rapid_limit_mm_min = drive.rapid_limit_mm_min;

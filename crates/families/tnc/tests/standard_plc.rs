@@ -580,3 +580,107 @@ fn lock_for_spindle_on() {
         assert!(rig.bit("A6"), "{blocks}: closed in Manual");
     }
 }
+
+/// Path speed, mm/min.
+fn path_speed(rig: &Rig) -> f64 {
+    rig.control.observe(&"path.speed".parse().unwrap())
+}
+
+/// E21 moves a program at rapid traverse whatever F says, on arcs as fast as they may be, and back at F when it is let go
+/// [001:465-469]; MP74 bit 0 says whether the override acts on it [001:3262].
+#[test]
+fn the_rapid_button_moves_programs() {
+    for (mp74, percent, wanted) in [(7, 100, 10_000.0), (7, 50, 5000.0), (6, 50, 10_000.0)] {
+        let mut rig = running(
+            terminals().mp(&format!("74={mp74}")),
+            "L IX+150 R0 F300\nL IY+1 F300",
+        );
+        rig.event(&format!("override feed {percent}"));
+        rig.seconds(1.0);
+        let usual = 300.0 * f64::from(percent) / 100.0;
+        assert!((path_speed(&rig) - usual).abs() < 1.0, "{}", path_speed(&rig));
+        rig.event("key RAPID press");
+        rig.seconds(0.6);
+        assert!(
+            (path_speed(&rig) - wanted).abs() < 1.0,
+            "MP74 = {mp74}: {}",
+            path_speed(&rig)
+        );
+        rig.event("key RAPID release");
+        rig.seconds(0.6);
+        assert!((path_speed(&rig) - usual).abs() < 1.0, "{}", path_speed(&rig));
+        rig.event("override feed 100");
+        rig.event("key RAPID press");
+        rig.until(10.0, "the end", |rig| rig.control.snapshot().ended);
+        assert_eq!(rig.messages(), [""; 0]);
+    }
+    // A circle of 20 mm: MP55 = 0.25 m/s^2 allows sqrt(250 * 20) = 70.7 mm/s, 4243 mm/min.
+    let mut rig = running(
+        terminals(),
+        "CC IX+20 IY+0\nC IX+40 IY+0 DR+ R0 F300\nC IX-40 IY+0 DR+",
+    );
+    rig.event("key RAPID press");
+    rig.seconds(0.8);
+    let most = (250.0f64 * 20.0).sqrt() * 60.0;
+    let speed = path_speed(&rig);
+    assert!(speed > 0.9 * most && speed < 1.001 * most, "{speed}");
+}
+
+/// Start together with a direction button latches the movement with MP68 = 1, stop ends it [001:1026-1028].
+#[test]
+fn start_latches_a_direction_button() {
+    for (mp68, runs) in [(1, true), (0, false)] {
+        let mut rig = terminals().mp(&format!("68={mp68}")).rig();
+        rig.power_on();
+        rig.event("key X+ press");
+        rig.seconds(0.3);
+        rig.event("key NC_START press");
+        rig.seconds(0.2);
+        rig.event("key NC_START release");
+        rig.event("key X+ release");
+        rig.seconds(0.5);
+        let speed = |rig: &Rig| rig.machine.axis('X').unwrap().speed_per_min.abs();
+        assert_eq!(speed(&rig) > 100.0, runs, "MP68 = {mp68}");
+        rig.event("key NC_STOP press");
+        rig.seconds(1.0);
+        assert!(speed(&rig) < 1.0);
+    }
+}
+
+/// E18 gives the feed: M2451 with its complement.
+#[test]
+fn feed_rate_release() {
+    let mut rig = running(terminals(), "L IX+30 R0 F1000");
+    rig.seconds(0.5);
+    rig.contact("release", false);
+    rig.seconds(0.5);
+    assert!(
+        !rig.bit("M2451") && rig.bit("M2467") && rig.machine.axis('X').unwrap().speed_per_min.abs() < 1.0
+    );
+    rig.contact("release", true);
+    rig.until(10.0, "the end without start", |rig| rig.control.snapshot().ended);
+}
+
+/// MP209 to MP212 are words for the PLC; MP126 is position 0 of PLC positioning, to which a program of one's own moves X at
+/// MP163.
+#[test]
+fn numbers_for_the_plc() {
+    let mut build = terminals()
+        .mp("209=5")
+        .mp("212=32769")
+        .mp("126=60")
+        .mp("163=6000")
+        .program("1.H", "L M8");
+    build.plc.push_str("       U     E40\n       UN    M90\n       S     M2452\n       R     M2468\n       U     E40\n       =     M90\n");
+    let mut rig = build.rig();
+    rig.power_on();
+    assert_eq!([rig.number("W982"), rig.number("W988")], [5, 32769 - 65536]);
+    assert!(rig.bit("M3200") && rig.bit("M3202") && rig.bit("M3263"));
+    rig.event("fault input E40 1");
+    rig.seconds(3.0);
+    assert!(
+        (rig.machine_position('X') - 60.0).abs() < 0.05,
+        "{}",
+        rig.machine_position('X')
+    );
+}
