@@ -50,7 +50,9 @@ pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360":
 
 /// A knee mill with relay cabinet and the standard PLC program; its control is a TNC 155.
 pub const MILL_TNC155: ShippedMachine = machine!("mill-tnc155" for "tnc155", "tnc151":
-    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "programs/BLOCK.H",
+    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "programs/ACCEL.H", "programs/BLOCK.H",
+    "programs/LAG.H", "lessons/01-contactor.lesson", "lessons/02-e17.lesson", "lessons/03-lag.lesson",
+    "lessons/04-kink.lesson", "lessons/05-acceleration.lesson", "lessons/06-square-root.lesson",
 );
 
 /// A mill with digital drives, whose speed loops the control closes; it is a TNC 425.
