@@ -45,9 +45,9 @@ fn nothing_is_not_enough(name: &str) {
 
 /// Enters machine parameters by the code number 95 148.
 fn parameters(trainee: &mut Trainee, values: &[(&str, &str)]) {
-    trainee.press("MANUAL MOD");
+    trainee.press("PROGRAM MOD");
     trainee.down_to("CODE NUMBER");
-    trainee.number("95148").press("ENT").wait(0.2);
+    trainee.press("ENT").number("95148").press("ENT").wait(0.2);
     for (number, value) in values {
         let digits: Vec<String> = number.chars().map(String::from).collect();
         trainee.press(&format!("GOTO {} ENT", digits.join(" "))).wait(0.1);
@@ -87,7 +87,7 @@ fn the_servo_lag() {
     runs(&mut trainee, "LAG");
     trainee.wait(8.0);
     assert_eq!(state(&trainee), LessonState::Running, "kv 1 lags by 10 mm");
-    trainee.press("NC_STOP");
+    trainee.press("NC_STOP").wait(1.5);
     action(&mut trainee, "stop");
     trainee.wait(1.0);
     parameters(&mut trainee, &[("177", "1.5")]);
@@ -111,7 +111,7 @@ fn the_acceleration() {
     runs(&mut trainee, "ACCEL");
     trainee.wait(8.0);
     assert_eq!(state(&trainee), LessonState::Running, "0.2 m/s^2 are not enough");
-    trainee.press("NC_STOP");
+    trainee.press("NC_STOP").wait(1.5);
     action(&mut trainee, "stop");
     trainee.wait(1.0);
     parameters(&mut trainee, &[("54", "1"), ("55", "0.5")]);
@@ -125,10 +125,13 @@ fn the_square_root_characteristic() {
     runs(&mut trainee, "LAG");
     trainee.wait(8.0);
     assert_eq!(state(&trainee), LessonState::Running, "with servo lag");
-    trainee.press("NC_STOP");
+    trainee.press("NC_STOP").wait(1.5);
     action(&mut trainee, "stop");
     trainee.wait(1.0);
-    parameters(&mut trainee, &[("32", "0.553"), ("33", "0.553"), ("34", "0.691"), ("60", "0")]);
+    parameters(
+        &mut trainee,
+        &[("32", "0.553"), ("33", "0.553"), ("34", "0.691"), ("60", "0")],
+    );
     runs(&mut trainee, "LAG");
     passed(&mut trainee);
 }

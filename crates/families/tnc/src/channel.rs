@@ -320,6 +320,10 @@ impl Channel {
         let (mode, old) = (self.desk.mode(), machine.has_old_interface());
         let exchange = machine.memory.of_mut(self.number);
         self.desk.publish(operator, exchange);
+        if old {
+            let screen = machine.link.screen().filter(|_| self.test.is_none());
+            status::programming(screen, &self.run, exchange);
+        }
         let axes = &mut machine.core.axes.of(self.number);
         status::axes(mode, mode == Mode::Handwheel && !old, axes, exchange);
         status::run(&self.run, !self.handshakes.is_idle(), exchange);

@@ -18,6 +18,7 @@ use crate::markers::{
 };
 use crate::plc_link::PlcLink;
 use crate::run::ProgramRun;
+use crate::screen_command::ScreenCommand;
 use crate::strobe_form;
 
 /// Mode markers of the TNC 355 kind that the later controls keep.
@@ -94,6 +95,15 @@ pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
     for (index, marker) in LAST_KEYS.into_iter().enumerate() {
         exchange.nc_put(marker, index == last_key);
     }
+}
+
+/// M2050 of the TNC 151/155: PROGRAMMING AND EDITING is on the screen, and not beside a program that runs [001:1039-1042].
+pub(crate) fn programming(screen: Option<ScreenCommand>, run: &ProgramRun, exchange: &mut Exchange) {
+    /// Bit of the windows of the editing screen.
+    const EDITING: u16 = 1;
+    let shown = screen.is_some_and(|screen| screen.windows & EDITING != 0);
+    let edits = shown && !run.is_active();
+    exchange.nc_put(signal::MODE_PROGRAMMING_EDITING_TNC355, edits);
 }
 
 /// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534]. `by_wheel`: none is in position,
