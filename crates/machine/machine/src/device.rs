@@ -2,7 +2,7 @@
 
 use bahn_servo::{INPUTS, OUTPUTS};
 
-use crate::cabinet::Circuit;
+use crate::circuit::Circuit;
 use crate::mechanics::DevicePlace;
 use crate::reader::{Coil, Contact, Section};
 

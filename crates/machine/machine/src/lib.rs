@@ -41,6 +41,7 @@ mod axis;
 mod by_hand;
 mod cabinet;
 mod chain;
+mod circuit;
 mod clock;
 mod current_drive;
 mod deviation;

@@ -351,9 +351,9 @@ pub(crate) struct SignalsOptions {
 /// Options of `bahn plc standard`.
 #[derive(Args, Debug)]
 pub(crate) struct StandardOptions {
-    /// The control model.
-    #[arg(long, value_name = "MODEL", default_value_t = ControlModel::Tnc155, ignore_case = true, value_parser = model_parser())]
-    pub model: ControlModel,
+    /// The control model, where there are several programs.
+    #[arg(long, value_name = "MODEL", ignore_case = true, value_parser = model_parser())]
+    pub model: Option<ControlModel>,
     /// Write it to this file.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,

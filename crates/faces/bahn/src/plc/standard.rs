@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use bahn_parameters::ControlModel;
 use bahn_plc::standard_program;
 
 use super::options::StandardOptions;
@@ -10,11 +11,18 @@ use crate::{Outcome, UsageError, console};
 
 /// Prints the standard program of a model, or writes it to a file.
 pub(super) fn command(options: &StandardOptions) -> Result<Outcome, UsageError> {
-    let model = options.model;
-    let text = standard_program(model).ok_or_else(|| {
+    let with_one = || {
+        ControlModel::ALL
+            .into_iter()
+            .filter(|model| standard_program(*model).is_some())
+    };
+    let model = options.model.or_else(|| with_one().next());
+    let text = model.and_then(standard_program).ok_or_else(|| {
+        let names: Vec<&str> = with_one().map(ControlModel::name).collect();
+        let name = model.map_or("control", ControlModel::name);
+        let names = names.join(" and ");
         UsageError::new(format!(
-            "the {} has no standard PLC program; those of TNC 151 and TNC 155 have one",
-            model.name()
+            "the {name} has no standard PLC program; {names} have one"
         ))
     })?;
     match &options.output {

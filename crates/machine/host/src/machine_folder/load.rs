@@ -22,7 +22,7 @@ use bahn_text::{Diagnostic, Severity, Span, decode};
 use bahn_tnc::{HandOver, NcFiles, Remembered, Tool};
 
 use super::channel::{Channels, LoadedChannel, position};
-use super::{plc_program, remembered, state};
+use super::{remembered, state};
 use crate::{HostError, files};
 
 /// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
@@ -124,8 +124,7 @@ impl LoadedMachine {
     /// The files that were read, and the lock of the state.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let folder = &self.folder;
-        let plc = Some(&folder.plc).filter(|name| !plc_program::is_standard(name));
-        let named = [Some(&folder.parameters), plc];
+        let named = [Some(folder.parameters.as_str()), folder.plc_file()];
         let further = [
             &folder.plant,
             &folder.plc_messages,
@@ -135,8 +134,11 @@ impl LoadedMachine {
             &folder.tools,
             &folder.pockets,
         ];
-        let named = named.into_iter().chain(further.map(Option::as_ref)).flatten();
-        let lists = self.channels.iter().map(|channel| &channel.folder.parameters);
+        let named = named.into_iter().chain(further.map(Option::as_deref)).flatten();
+        let lists = self
+            .channels
+            .iter()
+            .map(|channel| channel.folder.parameters.as_str());
         let files = named.chain(lists).map(|name| self.root.join(name));
         let lock = self.root.join(&folder.state).join(state::LOCK);
         files.chain(self.tables.iter().cloned()).chain([lock]).collect()
@@ -294,7 +296,7 @@ impl Loader<'_> {
         // Tables fit the list that is entered, when it is.
         let sizes = parameters.as_ref().filter(|_| self.to_be_entered.is_none());
         let tools = self.tool_files(&folder, sizes, files.as_mut().unwrap_or(&mut none));
-        let plc = self.plc_program(&folder.plc, model?, parameters.as_ref());
+        let plc = self.plc_program(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
         let mut files = files?;
         self.nonlinear(&folder.parameters, &parameters, &files);

@@ -6,27 +6,21 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use bahn_machine::MachineFolder;
 use bahn_parameters::{ControlModel, Numbering, ParameterList};
 use bahn_plc::{Options, PlcProgram, ProgramMemory, standard_program};
 
 use super::load::Loader;
 use crate::plc_source::PlcSource;
 
-/// The word that stands for the program that the control is delivered with.
-const STANDARD: &str = "standard";
 /// The name under which messages show it.
 const STANDARD_FILE: &str = "STANDARD.PLC";
-
-/// Whether `plc` of `machine.toml` names no file, but the standard program.
-pub(super) fn is_standard(name: &str) -> bool {
-    name == STANDARD
-}
 
 impl Loader<'_> {
     /// The PLC program that `plc` of `machine.toml` and the list of machine parameters choose.
     pub(super) fn plc_program(
         &mut self,
-        name: &str,
+        folder: &MachineFolder,
         model: ControlModel,
         parameters: Option<&ParameterList>,
     ) -> Option<Arc<PlcProgram>> {
@@ -37,9 +31,9 @@ impl Loader<'_> {
             false => ProgramMemory::Ram,
         };
         let options = Options::for_model(model).stored_in(memory);
-        if is_standard(name) {
+        let Some(name) = folder.plc_file() else {
             return self.standard(model, options);
-        }
+        };
         let old = model.limits().numbering == Numbering::Old;
         if old && memory == ProgramMemory::Eprom {
             return match PlcSource::eprom_image(&self.root.join(name)) {
