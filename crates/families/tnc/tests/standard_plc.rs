@@ -1,5 +1,7 @@
 //! The standard PLC program of the TNC 151 and 155 at the terminals: codes, strobes, decoded functions [001:458-900].
 
+#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+
 mod support;
 #[path = "support/terminals.rs"]
 mod terminals;

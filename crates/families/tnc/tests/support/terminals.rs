@@ -1,5 +1,7 @@
 //! A TNC 155 with its standard PLC program on a bench: what hangs at the terminals of the interface is moved by hand.
 
+#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+
 use std::collections::BTreeMap;
 
 use bahn_parameters::ControlModel;
