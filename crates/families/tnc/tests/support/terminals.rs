@@ -1,6 +1,10 @@
 //! A TNC 155 with its standard PLC program on a bench: what hangs at the terminals of the interface is moved by hand.
 
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "each test file uses a part of it; a helper that panics fails its test"
+)]
 
 use std::collections::BTreeMap;
 
