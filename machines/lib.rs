@@ -43,9 +43,16 @@ pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407":
 );
 
 /// A small mill of three axes; its control is a TNC 360.
-pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360", "tnc151", "tnc155":
+pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
     "plc/run.txt", "programs/COVER.H", "programs/PLATE.H",
+);
+
+/// A knee mill with relay cabinet and the standard PLC program; its control is a TNC 155.
+pub const MILL_TNC155: ShippedMachine = machine!("mill-tnc155" for "tnc155", "tnc151":
+    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "programs/ACCEL.H", "programs/BLOCK.H",
+    "programs/LAG.H", "lessons/01-contactor.lesson", "lessons/02-e17.lesson", "lessons/03-lag.lesson",
+    "lessons/04-kink.lesson", "lessons/05-acceleration.lesson", "lessons/06-square-root.lesson",
 );
 
 /// A mill with digital drives, whose speed loops the control closes; it is a TNC 425.
@@ -68,7 +75,7 @@ pub const GANTRY: ShippedMachine = machine!("gantry" for "tnc415b":
 );
 
 /// All of them; the first one that has a model is the start for it.
-pub const ALL: [ShippedMachine; 5] = [MILL, MILL_TNC360, DIG425, TWIN, GANTRY];
+pub const ALL: [ShippedMachine; 6] = [MILL, MILL_TNC360, MILL_TNC155, DIG425, TWIN, GANTRY];
 
 impl ShippedMachine {
     /// The text of a file.

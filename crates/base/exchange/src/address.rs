@@ -51,6 +51,26 @@ impl BitArea {
         }
     }
 
+    /// The area of a letter; E, A and Z are those of inputs, outputs and counters on the TNC 151, 155 and 355
+    /// [000:16189-16202].
+    ///
+    /// ```
+    /// use bahn_exchange::{Bit, BitArea};
+    /// assert_eq!(BitArea::of_letter('E'), Some(BitArea::I));
+    /// assert_eq!("A7".parse::<Bit>()?.to_string(), "O7");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn of_letter(letter: char) -> Option<BitArea> {
+        Some(match letter {
+            'M' => BitArea::M,
+            'I' | 'E' => BitArea::I,
+            'O' | 'A' => BitArea::O,
+            'T' => BitArea::T,
+            'C' | 'Z' => BitArea::C,
+            _ => return None,
+        })
+    }
+
     /// The first number after the area.
     pub const fn count(self) -> u16 {
         AREAS[self as usize].2
@@ -250,7 +270,7 @@ impl FromStr for Bit {
 
     fn from_str(text: &str) -> Result<Bit, NoSuchOperand> {
         let (letter, number) = split(text)?;
-        let area = BitArea::ALL.into_iter().find(|area| area.letter() == letter);
+        let area = BitArea::of_letter(letter);
         area.and_then(|area| Bit::new(area, number)).ok_or(NoSuchOperand)
     }
 }

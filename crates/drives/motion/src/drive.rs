@@ -11,6 +11,9 @@ pub struct Drive {
     pub feed_override_percent: f64,
     /// Override of rapid traverse, %; more than 100 % is without effect as MP1010 limits.
     pub rapid_override_percent: f64,
+    /// Programmed feeds that the override moves freely count as rapid traverse: the rapid button of a TNC 151/155
+    /// [001:465-469].
+    pub rapid: bool,
     /// Override of the spindle, %, as it acts on its speed: for elements that follow the spindle.
     pub spindle_override_percent: f64,
     /// The spindle, for elements that follow it.
@@ -43,6 +46,7 @@ impl Default for Drive {
         Drive {
             feed_override_percent: 100.0,
             rapid_override_percent: 100.0,
+            rapid: false,
             spindle_override_percent: 100.0,
             master: Master::default(),
             back: false,

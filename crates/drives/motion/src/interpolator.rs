@@ -80,6 +80,8 @@ clone_within!(Interpolator<E> {
 struct Overrides {
     /// Of feed, rapid traverse and spindle, %.
     percent: [f64; 3],
+    /// Programmed feeds count as rapid traverse.
+    rapid: bool,
     rapid_limit_mm_min: f64,
 }
 
@@ -116,6 +118,7 @@ impl<E> Interpolator<E> {
             after: After::Open,
             overrides: Overrides {
                 percent: [100.0; 3],
+                rapid: false,
                 rapid_limit_mm_min: f64::INFINITY,
             },
             phase: Phase::Done,
@@ -235,6 +238,10 @@ impl<E> Interpolator<E> {
         if overrides != self.overrides.percent {
             self.overrides.percent = overrides;
             self.ring.set_overrides(overrides);
+        }
+        if drive.rapid != self.overrides.rapid {
+            self.overrides.rapid = drive.rapid;
+            self.ring.set_all_rapid(drive.rapid);
         }
         if drive.rapid_limit_mm_min != self.overrides.rapid_limit_mm_min {
             self.overrides.rapid_limit_mm_min = drive.rapid_limit_mm_min;

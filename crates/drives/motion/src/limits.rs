@@ -110,6 +110,8 @@ pub(crate) struct Dynamics {
     feed_override: f64,
     rapid_override: f64,
     spindle_override: f64,
+    /// Programmed feeds count as rapid traverse.
+    pub(crate) all_rapid: bool,
     /// Overrides of feed and rapid traverse, %.
     percent: [f64; 2],
     gears: [SpindleGear; GEARS],
@@ -135,6 +137,7 @@ impl Dynamics {
             feed_override: factor(limits.feed_override_percent),
             rapid_override: factor(limits.rapid_override_percent).min(1.0),
             spindle_override: 1.0,
+            all_rapid: false,
             percent: [limits.feed_override_percent, limits.rapid_override_percent],
             gears: limits.spindle,
         }
@@ -178,6 +181,10 @@ impl Dynamics {
     #[inline]
     pub(crate) fn speed(&self, feed: FeedRate, law: OverrideLaw, slowest: Slowest) -> f64 {
         let slowest = slowest.time.max(slowest.share * self.least_slowness);
+        let feed = match law {
+            OverrideLaw::Free if self.all_rapid => FeedRate::Rapid,
+            _ => feed,
+        };
         let speed = match feed {
             FeedRate::Rapid => self.rapid(law) / slowest,
             FeedRate::Programmed(feed) => {

@@ -273,7 +273,9 @@ impl Ring {
 
     /// Other limits for what comes from now on, with overrides, %, and rapid traverse, mm/min, as they are.
     pub(crate) fn set_limits(&mut self, limits: &Limits, percent: [f64; 3], rapid_mm_min: f64) {
+        let all_rapid = self.dynamics.all_rapid;
         self.dynamics = Dynamics::new(limits);
+        self.dynamics.all_rapid = all_rapid;
         self.dynamics.set_overrides(percent);
         self.dynamics.set_rapid_limit(rapid_mm_min);
     }
@@ -281,6 +283,12 @@ impl Ring {
     /// Other overrides, %: feed, rapid traverse, spindle.
     pub(crate) fn set_overrides(&mut self, percent: [f64; 3]) {
         self.dynamics.set_overrides(percent);
+        self.envelope.forget_wanted();
+    }
+
+    /// Programmed feeds count as rapid traverse, or no more.
+    pub(crate) fn set_all_rapid(&mut self, all: bool) {
+        self.dynamics.all_rapid = all;
         self.envelope.forget_wanted();
     }
 

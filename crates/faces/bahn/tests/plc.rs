@@ -572,3 +572,34 @@ fn compile_errors_help() {
         "{err}"
     );
 }
+
+/// The standard program is printed or written, and has no fault on its control; others have none.
+#[test]
+fn the_standard_program() {
+    let folder = Folder::new();
+    let printed = folder.bahn("plc standard");
+    assert_eq!(printed.code(), 0, "{}", printed.err());
+    assert_eq!(folder.bahn("plc standard -o MAIN.PLC --model tnc151").code(), 0);
+    assert_eq!(folder.read("MAIN.PLC"), printed.out());
+    for model in ["tnc151", "tnc155"] {
+        let report = folder
+            .bahn(&format!("plc check MAIN.PLC --model {model} --format json"))
+            .json();
+        let faults = [
+            &report["ok"],
+            &report["errors"],
+            &report["warnings"],
+            &report["load"],
+        ];
+        assert_eq!(faults, [&json!(true), &json!([]), &json!([]), &json!([])]);
+    }
+    let again = folder.bahn("plc standard -o MAIN.PLC");
+    assert_eq!(again.code(), 0, "{}", again.err());
+    let none = folder.bahn("plc standard --model tnc407");
+    assert_eq!(none.code(), 2);
+    assert!(
+        none.err().contains("the TNC 407 has no standard PLC program"),
+        "{}",
+        none.err()
+    );
+}

@@ -406,7 +406,7 @@ fn a_lesson_is_seen_again() {
 #[test]
 fn every_machine_has_lessons_and_a_drawer() {
     let text = "title: T\ntask: T\nbegin: BEGIN\n[checks]\nOff => screen \"not there\"\n";
-    for machine in ["mill", "mill-tnc360", "dig425", "twin", "gantry"] {
+    for machine in ["mill", "mill-tnc360", "mill-tnc155", "dig425", "twin", "gantry"] {
         let mut trainee = Trainee::with(machine, |folder| {
             let lessons = folder.join("lessons");
             std::fs::create_dir_all(&lessons).unwrap();

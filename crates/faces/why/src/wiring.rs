@@ -4,7 +4,7 @@ use bahn_host::{Operable, Wired};
 use bahn_screen::texts::{self, Language};
 
 /// Parts and functions of [`Wired`] with their words; `{}` is the name of the part.
-const KEYS: [(&str, &str, &str); 24] = [
+const KEYS: [(&str, &str, &str); 26] = [
     ("axis.", "ready", "drive of {}: ready"),
     ("axis.", "enable", "drive of {}: enable"),
     ("axis.", "brake_output", "brake of {}"),
@@ -19,6 +19,8 @@ const KEYS: [(&str, &str, &str); 24] = [
     ("spindle.gear", "output", "valve of the gear"),
     ("device.", "output", "{}"),
     ("device.", "output_back", "{}, back"),
+    ("device.", "on", "{}"),
+    ("device.", "hold", "{}"),
     ("device.", "input_first", "{0}: {1}"),
     ("device.", "input_second", "{0}: {2}"),
     ("emergency_stop", "acknowledgement", "control voltage (X42/4)"),

@@ -199,6 +199,7 @@ impl Channel {
             feed_enable: self.desk.panel().feed_enable,
             monitoring_off,
             runs: self.run.progress().goes_on(),
+            keeps: machine.has_old_interface(),
         };
         let nc = machine.memory.of(self.number).nc();
         loops::follow(&mut machine.core.axes.of(self.number), nc, permission);
@@ -316,9 +317,15 @@ impl Channel {
 
     /// Brings markers and words up to date before a scan.
     pub fn publish(&mut self, operator: &OperatorInputs, machine: &mut MachineSide) {
+        let (mode, old) = (self.desk.mode(), machine.has_old_interface());
         let exchange = machine.memory.of_mut(self.number);
         self.desk.publish(operator, exchange);
-        status::axes(self.desk.mode(), &mut machine.core.axes.of(self.number), exchange);
+        if old {
+            let screen = machine.link.screen().filter(|_| self.test.is_none());
+            status::programming(screen, &self.run, exchange);
+        }
+        let axes = &mut machine.core.axes.of(self.number);
+        status::axes(mode, mode == Mode::Handwheel && !old, axes, exchange);
         status::run(&self.run, !self.handshakes.is_idle(), exchange);
         machine.spindles.of(self.number).publish(exchange);
     }
@@ -347,6 +354,7 @@ impl Channel {
     /// Takes the strobes that the PLC set in a scan, and resets them.
     pub fn take_strobes(&mut self, machine: &mut MachineSide) {
         let now = self.now(machine);
+        let old = machine.has_old_interface();
         let exchange = machine.memory.of_mut(self.number);
         let wanted = self.positioning.follow_strobes(exchange);
         if let Err(code) = wanted.and_then(|wanted| self.strobes.check(wanted, exchange.nc())) {
@@ -371,7 +379,7 @@ impl Channel {
         if let Some((number, value)) = self.strobes.q_parameter(exchange) {
             self.run.set_q(number, value);
         }
-        strobes::take_actual_values(self.desk.mode(), &mut axes, exchange.nc());
+        strobes::take_actual_values(self.desk.mode(), old, &mut axes, exchange.nc());
         // A key waits for the program that is read elsewhere.
         let key = strobes::key(exchange.nc()).filter(|_| !self.run.source.is_handed_over());
         if let Some(command) = key {

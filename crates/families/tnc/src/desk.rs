@@ -156,6 +156,7 @@ impl Desk {
             loops_closed: facts.loops_closed,
             feed_percent,
             program_percent: if rapid { 100.0 } else { feed_percent },
+            program_rapid: self.panel.rapid && self.rules.overrides.rapid_key_in_programs,
             axis_keys: self.panel.axis_keys,
             wheel_mm: self.manual.handwheel.travels(),
             rapid_limit_mm_min,

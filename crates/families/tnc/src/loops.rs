@@ -3,6 +3,9 @@
 //! Decision: Withdrawn feed enable is 0 V until it is back; the lag that was left is driven out on a path, by hand
 //! the axis stands where it stopped; an axis that stands is held in its loop
 //!
+//! Decision: On TNC 151/155 an axis whose loop the PLC had open goes back to its nominal value on the ramp of rapid traverse,
+//! unless the PLC has the actual value taken over (M2552 ff.), which it may in every operating mode
+//!
 //! Decision: An axis of a running program whose loop was open, and which was moved farther than MP1110 meanwhile, is
 //! monitored as at standstill when its loop closes (GROSS POSITIONING ERROR D); by hand and interrupted its actual
 //! value is transferred
@@ -27,6 +30,8 @@ pub(crate) struct Permission {
     pub monitoring_off: bool,
     /// A program runs, and is not stopped.
     pub runs: bool,
+    /// An axis whose loop the PLC has open keeps its nominal value.
+    pub keeps: bool,
 }
 
 /// Opens and closes the loop of each axis as the PLC asks for, and gives the feed enable
@@ -37,7 +42,12 @@ pub(crate) fn follow(axes: &mut OwnAxes, nc: &Image, permission: Permission) {
     for unit in axes.iter_mut().filter(|unit| unit.parameters.controlled) {
         let open = OPEN_LOOP.get(unit.index).is_some_and(|marker| nc.bit(*marker));
         let closed = permission.loops_closed && !open && !all_open;
-        loops::hold(unit, closed, permission.runs);
+        loops::hold(
+            unit,
+            closed,
+            permission.runs,
+            permission.keeps && permission.loops_closed && !all_open,
+        );
         loops::enable(unit, permission.feed_enable || by_axis >> unit.index & 1 != 0);
         let suppressed = MONITORING_OFF
             .get(unit.index)

@@ -4,6 +4,9 @@
 //! Decision: The PL 410 has analogue inputs only; the one analogue voltage that a PLC program gives is output S, by
 //! module 9130
 //!
+//! Decision: On TNC 151/155 M2504 compares with the speed that the voltage stands for. Code 31 of the orientation, the
+//! reference mark [001:1834], is the angle of the orientation cycle, and MP240 where none was executed
+//!
 //! Decision: What the PLC asks of a spindle in a thread waits for the end of the thread; an EMERGENCY STOP ends its
 //! orientation and resets M2712
 
@@ -29,6 +32,10 @@ const PER_RPM: f64 = 1000.0;
 const PER_DEGREE: f64 = 10_000.0;
 /// D592 with bit 31 alone: the angle of cycle 13.
 const ANGLE_OF_CYCLE: i32 = i32::MIN;
+/// The code of the marker form that is the reference mark on the TNC 151/155 [001:1834] [001:3117-3137].
+const REFERENCE_MARK: u32 = 31;
+/// M2504 of the TNC 151/155: the comparator speed is not reached [001:1516-1536]. The TNC 355 has another use for it.
+const BELOW_COMPARATOR: Bit = signal::AXIS_CLAMPING_AFTER_CONSTANT_CONTOUR_TRANSITION_TNC355;
 
 /// The state of the spindle for displays and reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,8 +65,8 @@ pub(crate) struct SpindleUnit {
     code: Option<u8>,
     /// Gear and speed that are on their way to the PLC.
     pending: Option<(u8, f64)>,
-    /// Angle of cycle 13, degrees.
-    cycle_deg: f64,
+    /// Angle of cycle 13, degrees, once it was executed.
+    cycle_deg: Option<f64>,
     /// A speed was refused since somebody asked.
     wrong_speed: bool,
     /// The speed was refused (M2092).
@@ -89,7 +96,7 @@ impl SpindleUnit {
             programmed_rpm: 0.0,
             code: None,
             pending: None,
-            cycle_deg: 0.0,
+            cycle_deg: None,
             wrong_speed: false,
             wrong: false,
             shown: [false; 3],
@@ -256,14 +263,14 @@ impl SpindleUnit {
 
     /// Cycle 13: the angle that D592 = $80000000 stands for; M2408 tells the PLC [000:5853-5865].
     pub fn set_cycle_angle(&mut self, angle_deg: f64, exchange: &mut Exchange) {
-        self.cycle_deg = angle_deg;
+        self.cycle_deg = Some(angle_deg);
         exchange.nc_set(signal::CYCLE_13_EXECUTED, true);
     }
 
     /// Module 9171, which has set M2712.
     fn orient(&mut self, orientation: SpindleOrientation) {
         let added = if orientation.added_to_cycle {
-            self.cycle_deg
+            self.cycle_angle_deg()
         } else {
             0.0
         };
@@ -302,7 +309,7 @@ impl SpindleUnit {
 
     /// The angle that D592 = $80000000 stands for, degrees.
     pub fn cycle_angle_deg(&self) -> f64 {
-        self.cycle_deg
+        self.cycle_deg.unwrap_or_default()
     }
 
     /// Turns it from where it stands by a distance, degrees: M2712 until it is there. `false` when it cannot be.
@@ -431,11 +438,17 @@ impl SpindleUnit {
         match form {
             Form::Words if nc.bit(signal::ORIENT_SPINDLE) => {
                 Some(match nc.number(signal::NOMINAL_SPINDLE_POSITION) {
-                    ANGLE_OF_CYCLE => self.cycle_deg,
+                    ANGLE_OF_CYCLE => self.cycle_angle_deg(),
                     target => f64::from(target) / PER_DEGREE,
                 })
             }
-            Form::Markers if ORIENTATION.is_set(nc) => numbers.coded_position_mm(ORIENTATION.code.read(nc)?),
+            Form::Markers if ORIENTATION.is_set(nc) => match ORIENTATION.code.read(nc)? {
+                REFERENCE_MARK if numbers.strobes.is_some() => {
+                    let mark = self.drive.parameters.settings.orientation.reference_deg;
+                    Some(self.cycle_deg.unwrap_or(mark))
+                }
+                code => numbers.coded_position_mm(code),
+            },
             _ => None,
         }
     }
@@ -479,6 +492,9 @@ impl SpindleUnit {
         put(signal::SPINDLE_VOLTAGE_ZERO, self.drive.servo.at_zero());
         put(signal::SPINDLE_IN_POSITION, self.drive.servo.in_position());
         put(signal::SPINDLE_IN_MOTION, self.drive.servo.orienting());
+        if let Some(below) = self.is_below_comparator() {
+            put(BELOW_COMPARATOR, below);
+        }
         let words = [
             (signal::NOMINAL_SPINDLE_SPEED, self.drive.servo.nominal_rpm()),
             (signal::ACTUAL_SPINDLE_SPEED, self.drive.servo.actual_rpm().abs()),
@@ -489,6 +505,14 @@ impl SpindleUnit {
                 exchange.nc_set_number(word, value);
             }
         }
+    }
+
+    /// Whether the speed of the voltage has not reached the comparator speed of the gear, MP82 to MP85; `None` where there is
+    /// no comparator.
+    fn is_below_comparator(&self) -> Option<bool> {
+        let speeds = self.drive.parameters.comparator_rpm?;
+        let speed = speeds.get(usize::from(self.drive.servo.gear_range()))?;
+        Some(self.drive.servo.output_rpm().abs() < *speed)
     }
 
     /// What module 9042 reads, in degrees.

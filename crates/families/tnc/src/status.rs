@@ -18,6 +18,7 @@ use crate::markers::{
 };
 use crate::plc_link::PlcLink;
 use crate::run::ProgramRun;
+use crate::screen_command::ScreenCommand;
 use crate::strobe_form;
 
 /// Mode markers of the TNC 355 kind that the later controls keep.
@@ -96,8 +97,18 @@ pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
     }
 }
 
-/// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534].
-pub(crate) fn axes(mode: Mode, axes: &mut OwnAxes, exchange: &mut Exchange) {
+/// M2050 of the TNC 151/155: PROGRAMMING AND EDITING is on the screen, and not beside a program that runs [001:1039-1042].
+pub(crate) fn programming(screen: Option<ScreenCommand>, run: &ProgramRun, exchange: &mut Exchange) {
+    /// Bit of the windows of the editing screen.
+    const EDITING: u16 = 1;
+    let shown = screen.is_some_and(|screen| screen.windows & EDITING != 0);
+    let edits = shown && !run.is_active();
+    exchange.nc_put(signal::MODE_PROGRAMMING_EDITING_TNC355, edits);
+}
+
+/// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534]. `by_wheel`: none is in position,
+/// as in Handwheel [000:5371-5384]; on the TNC 151/155 these say there, too, which axis moves *(inferred)*.
+pub(crate) fn axes(mode: Mode, by_wheel: bool, axes: &mut OwnAxes, exchange: &mut Exchange) {
     for unit in axes.iter_mut() {
         let index = unit.index;
         let slave = unit.parameters.synchronization.master.is_some();
@@ -107,8 +118,7 @@ pub(crate) fn axes(mode: Mode, axes: &mut OwnAxes, exchange: &mut Exchange) {
         } else if unit.servo.closed() && unit.servo.in_position() {
             unit.in_position = true;
         }
-        // In Handwheel no axis is in position [000:5371-5384].
-        let in_position = unit.in_position && mode != Mode::Handwheel;
+        let in_position = unit.in_position && !by_wheel;
         let values = [
             (&ENABLED, unit.servo.closed()),
             (&IN_POSITION, in_position),

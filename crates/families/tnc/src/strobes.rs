@@ -119,9 +119,10 @@ pub(crate) fn datum_correction(
     })
 }
 
-/// M2552 ff.: the actual value becomes the nominal value, in Manual and Handwheel [000:5423-5434].
-pub(crate) fn take_actual_values(mode: Mode, axes: &mut OwnAxes, nc: &Image) {
-    if !matches!(mode, Mode::Manual | Mode::Handwheel) {
+/// M2552 ff.: the actual value becomes the nominal value, in Manual and Handwheel [000:5423-5434], in every mode on the
+/// TNC 151/155 [001:486-499].
+pub(crate) fn take_actual_values(mode: Mode, everywhere: bool, axes: &mut OwnAxes, nc: &Image) {
+    if !(everywhere || matches!(mode, Mode::Manual | Mode::Handwheel)) {
         return;
     }
     for unit in axes.iter_mut() {

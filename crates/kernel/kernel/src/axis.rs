@@ -138,6 +138,8 @@ pub struct AxisUnit {
     pub way_back: WayBack,
     /// Where an interrupted path has left it, when the actual position became the nominal one meanwhile.
     pub left_at: Option<f64>,
+    /// Its loop was opened so that the nominal position stays: closed again, the axis goes back to it.
+    pub(crate) keeps_nominal: bool,
     /// A synchronized slave is led by its master.
     pub coupling: Option<Coupling>,
 }
@@ -176,6 +178,7 @@ impl AxisUnit {
             halted: false,
             way_back: WayBack::default(),
             left_at: None,
+            keeps_nominal: false,
             coupling: None,
             parameters,
         })

@@ -2,14 +2,20 @@
 
 use crate::axis::{AxisUnit, Mover};
 
-/// Closes the loop of an axis when that is wanted and nothing is wrong with it, or opens it.
-pub fn hold(unit: &mut AxisUnit, wanted: bool, runs: bool) {
+/// Closes the loop of an axis when that is wanted and nothing is wrong with it, or opens it. `keeps`: as long as the loop is
+/// open the nominal position stays, and the axis goes back to it [001:495-499].
+pub fn hold(unit: &mut AxisUnit, wanted: bool, runs: bool, keeps: bool) {
     let sound = unit.servo.fault().is_none_or(|fault| !fault.opens_loop());
     if wanted && sound && !unit.servo.closed() {
         // A clamped axis goes back to its nominal position. One that was moved meanwhile has lost its place in a program
         // that runs, which the standstill monitoring says: values are transferred by hand only [000:5423-5434]. Else the
         // path goes on from there: nothing goes back.
         let moved = (unit.servo.actual_mm() - unit.nominal).abs() > unit.parameters.monitoring.standstill_mm;
+        if moved && unit.keeps_nominal {
+            unit.servo.close();
+            unit.go_back();
+            return;
+        }
         let lost = moved && runs && unit.mover == Mover::Path;
         if moved && !lost {
             let left_at = unit.left_at;
@@ -24,6 +30,9 @@ pub fn hold(unit: &mut AxisUnit, wanted: bool, runs: bool) {
         unit.servo.open();
         unit.way_back.end();
         unit.stand(unit.nominal);
+        unit.keeps_nominal = keeps;
+    } else if !wanted {
+        unit.keeps_nominal &= keeps;
     }
 }
 

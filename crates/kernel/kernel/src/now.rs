@@ -28,6 +28,8 @@ pub struct Now {
     pub feed_percent: f64,
     /// Feed override as it acts on programs, %.
     pub program_percent: f64,
+    /// Programs run at rapid traverse, whatever their feed.
+    pub program_rapid: bool,
     /// The direction keys that are pressed, by axis index.
     pub axis_keys: PerPlcAxis<Option<Direction>>,
     /// What the handwheel was turned in this cycle to lead axes beside the path, by axis index, mm.

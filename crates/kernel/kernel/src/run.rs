@@ -361,6 +361,7 @@ impl Run {
         Drive {
             feed_override_percent: now.program_percent,
             rapid_override_percent: now.program_percent,
+            rapid: now.program_rapid,
             spindle_override_percent: at.spindle.effective_percent(),
             master: self.tapping.master(&self.track, &at.standing()),
             back,

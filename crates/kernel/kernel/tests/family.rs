@@ -184,6 +184,7 @@ impl Bench {
             loops_closed: self.core.loops_closed,
             feed_percent: 100.0,
             program_percent: 100.0,
+            program_rapid: false,
             axis_keys: PerPlcAxis::splat(None),
             wheel_mm: PerPlcAxis::splat(0.0),
             rapid_limit_mm_min: f64::INFINITY,

@@ -46,6 +46,7 @@ mod operand;
 mod program;
 mod run;
 mod source;
+mod standard;
 mod syntax;
 
 pub use access::{Access, Memory, Subject, accesses};
@@ -74,6 +75,7 @@ pub use run::{
     TraceStep, Tracer,
 };
 pub use source::{Memories, ProgramMemory};
+pub use standard::standard_program;
 pub use syntax::{
     InstructionForm, LineOperand, LineWords, Nesting, check_line, code_of_line, instructions, line_words,
     listed_code, nesting, split_comment,

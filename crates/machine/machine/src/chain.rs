@@ -6,7 +6,7 @@
 
 use bahn_servo::{INPUTS, OUTPUTS};
 
-use crate::reader::{Contact, Reader, Section};
+use crate::reader::{Contact, OUTPUT_LETTERS, Reader, Section};
 
 /// How the relay can fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,7 +106,7 @@ impl Chain {
     fn read_switched(&mut self, reader: &Reader, at: usize, text: &str) {
         let (first, last) = text.split_once('-').unwrap_or((text, text));
         let number = |text: &str| {
-            let number: usize = text.trim().strip_prefix('O')?.parse().ok()?;
+            let number: usize = text.trim().strip_prefix(OUTPUT_LETTERS)?.parse().ok()?;
             Some(number).filter(|number| *number < OUTPUTS)
         };
         match (number(first), number(last)) {

@@ -2,6 +2,7 @@
 
 use bahn_servo::{INPUTS, OUTPUTS};
 
+use crate::circuit::Circuit;
 use crate::mechanics::DevicePlace;
 use crate::reader::{Coil, Contact, Section};
 
@@ -46,6 +47,8 @@ pub(crate) struct Device {
     output: Option<Coil>,
     /// A second output that moves it back; without one a spring does.
     output_back: Option<Coil>,
+    /// What switches a contactor in place of an output.
+    circuit: Option<Circuit>,
     inputs: [Option<Contact>; 2],
     /// Share of the travel in a millisecond, forth and back.
     speed: [f64; 2],
@@ -78,6 +81,7 @@ impl Device {
             name,
             output: section.coil("output"),
             output_back: section.coil("output_back"),
+            circuit: Circuit::read(&section),
             inputs: [section.contact("input_first"), section.contact("input_second")],
             speed: [per_ms("back_ms"), per_ms("forth_ms")],
             clamps: section
@@ -91,13 +95,16 @@ impl Device {
         if device.output_back.is_some() && device.output.is_none() {
             section.fault_at("output_back", "output_back goes with output".to_owned());
         }
+        if device.circuit.is_some() && device.output.is_some() {
+            section.fault_at("on", "a thing has an output or on, not both".to_owned());
+        }
         section.finish();
         device
     }
 
     /// Whether the operator moves it, not the PLC.
     pub fn by_hand(&self) -> bool {
-        self.output.is_none()
+        self.output.is_none() && self.circuit.is_none()
     }
 
     /// Moves it by hand to one of its states.
@@ -113,6 +120,9 @@ impl Device {
                 Some(back) if back != output.is_on(outputs) => self.forth = !back,
                 Some(_) => {}
             }
+        }
+        if let Some(circuit) = &self.circuit {
+            self.forth = circuit.is_on(self.is_forth(), outputs);
         }
         if self.fault == Some(DeviceFault::Jammed) {
             return false;

@@ -8,6 +8,7 @@ use crate::axis::DriveFault;
 use crate::chain::{ContactFault, RelayFault};
 use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
+use crate::reader::INPUT_LETTERS;
 
 /// What can be done to a machine. The text form is in the table of [`Event::HELP`].
 #[derive(Clone, Debug, PartialEq)]
@@ -418,9 +419,9 @@ fn letter(text: &str, form: &'static str) -> Result<char, EventError> {
     }
 }
 
-/// The number of an input such as `I12`.
+/// The number of an input such as `I12`, or `E12`.
 pub(crate) fn input_number(text: &str) -> Option<usize> {
-    let digits = text.strip_prefix('I')?;
+    let digits = text.strip_prefix(INPUT_LETTERS)?;
     if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }

@@ -145,6 +145,14 @@ impl Default for OperatorKeys {
 }
 
 impl MachineFolder {
+    /// What `plc` says for the program that the control is delivered with.
+    pub const STANDARD_PLC: &str = "standard";
+
+    /// The main file of the PLC program; `None` for the standard program of the control.
+    pub fn plc_file(&self) -> Option<&str> {
+        Some(self.plc.as_str()).filter(|name| *name != MachineFolder::STANDARD_PLC)
+    }
+
     /// The name of the file in the folder.
     pub const FILE: &str = "machine.toml";
 

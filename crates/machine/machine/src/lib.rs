@@ -39,7 +39,9 @@
 mod acting;
 mod axis;
 mod by_hand;
+mod cabinet;
 mod chain;
+mod circuit;
 mod clock;
 mod current_drive;
 mod deviation;

@@ -7,6 +7,7 @@ use bahn_text::Diagnostic;
 
 use crate::axis::{Axis, AxisState};
 use crate::by_hand::ByHand;
+use crate::cabinet;
 use crate::chain::Chain;
 use crate::clock::{Clock, TICK_US};
 use crate::device::{Device, DeviceState};
@@ -83,6 +84,7 @@ impl Machine {
     }
 
     fn read(root: Section) -> Machine {
+        cabinet::name_contacts(&root);
         let step_us = root.number("step_us", 10.0..=1000.0).unwrap_or(200.0) as u32;
         if !TICK_US.is_multiple_of(step_us.max(1)) {
             root.fault_at("step_us", "step_us divides 1000".to_owned());
@@ -304,7 +306,7 @@ impl Machine {
 
     /// Contacts, relays and things: once in a millisecond.
     fn tick(&mut self) {
-        self.panel.advance();
+        self.rests &= !self.panel.advance();
         let (tool, angle) = (self.tool_in_spindle(), self.mechanism.spindle_deg());
         if let Some(probe) = &mut self.mechanism.probe {
             probe.is_held(tool, angle);
@@ -316,6 +318,8 @@ impl Machine {
             return;
         }
         self.plc.live = self.chain.live(&self.plc.outputs);
+        let voltage = self.chain.voltage();
+        cabinet::set_contacts(&self.mechanism, &self.panel, voltage, &mut self.plc.live);
         let mut moves = false;
         for device in &mut self.mechanism.devices {
             moves |= device.advance(&self.plc.live);
@@ -323,7 +327,6 @@ impl Machine {
         if let Some(magazine) = &mut self.mechanism.magazine {
             moves |= magazine.advance(&self.plc.live, &mut self.mechanism.devices);
         }
-        let voltage = self.chain.voltage();
         for axis in &mut self.mechanism.axes {
             moves |= axis.set_power(voltage, self.chain.control_ready, &self.plc.live);
             axis.clamped = self

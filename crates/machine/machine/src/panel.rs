@@ -95,9 +95,10 @@ impl Panel {
         self.keys.get(place).is_some_and(|key| key.pressed)
     }
 
-    /// Lets a millisecond pass.
-    pub fn advance(&mut self) {
-        if self.key_is_tapped {
+    /// Lets a millisecond pass; whether a key goes back by itself in it.
+    pub fn advance(&mut self) -> bool {
+        let tapped = self.key_is_tapped;
+        if tapped {
             self.key_is_tapped = false;
             for key in self.keys.iter_mut().filter(|key| key.tapped_ms > 0) {
                 key.tapped_ms -= 1;
@@ -115,6 +116,7 @@ impl Panel {
                 }
             }
         }
+        tapped
     }
 
     pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {

@@ -74,6 +74,8 @@ pub(crate) struct Reader<'t> {
     /// The inputs given away: where, which, to whom.
     taken: RefCell<Vec<(usize, usize, String)>>,
     wires: RefCell<Vec<Wire>>,
+    /// Contacts of the cabinet and their places behind the outputs.
+    contacts: RefCell<Vec<(String, usize)>>,
 }
 
 impl<'t> Reader<'t> {
@@ -84,11 +86,28 @@ impl<'t> Reader<'t> {
             faults: RefCell::default(),
             taken: RefCell::default(),
             wires: RefCell::default(),
+            contacts: RefCell::default(),
         }
     }
 
+    /// Contacts that may stand where an output does.
+    pub fn know_contacts(&self, contacts: Vec<(String, usize)>) {
+        *self.contacts.borrow_mut() = contacts;
+    }
+
+    /// An output, or a contact of the cabinet, and whether it opens.
+    fn switch(&self, text: &str) -> Option<(usize, bool)> {
+        let (inverted, plain) = match text.strip_prefix("not ") {
+            Some(rest) => (true, rest.trim_start()),
+            None => (false, text),
+        };
+        let contacts = self.contacts.borrow();
+        let contact = contacts.iter().find(|(name, _)| name == plain);
+        operand(text, OUTPUT_LETTERS, OUTPUTS).or_else(|| Some((contact?.1, inverted)))
+    }
+
     /// Notes an input or output that something is wired to.
-    pub fn wire(&self, at: usize, operand: String) {
+    pub fn wire(&self, at: usize, operand: String, opens: bool) {
         if self.wires.borrow().len() == WIRES_MAX {
             return self.fault(at, "too many wires".to_owned());
         }
@@ -98,7 +117,7 @@ impl<'t> Reader<'t> {
             operand,
             section: String::new(),
             key: String::new(),
-            opens: false,
+            opens,
         });
     }
 
@@ -110,7 +129,6 @@ impl<'t> Reader<'t> {
         for wire in &mut wires {
             let at = (wire.span.line as usize).saturating_sub(1);
             let line = lines.get(at).copied().unwrap_or_default();
-            let before: String = line.chars().take(wire.span.column as usize).collect();
             let key = line.split('=').next().unwrap_or_default().trim();
             sections
                 .get(at)
@@ -118,7 +136,6 @@ impl<'t> Reader<'t> {
                 .unwrap_or_default()
                 .clone_into(&mut wire.section);
             key.trim_matches('"').clone_into(&mut wire.key);
-            wire.opens = before.contains("not ") || line.contains(&format!("not {}", wire.operand));
         }
         wires
     }
@@ -451,11 +468,11 @@ impl<'r, 't> Section<'r, 't> {
             match entry
                 .get_ref()
                 .as_str()
-                .and_then(|text| operand(text, 'I', INPUTS))
+                .and_then(|text| operand(text, INPUT_LETTERS, INPUTS))
             {
                 Some((input, inverted)) => {
                     self.reader.taken.borrow_mut().push((at, input, self.path(key)));
-                    self.reader.wire(at, format!("I{input}"));
+                    self.reader.wire(at, format!("I{input}"), inverted);
                     contacts.push(Contact { input, inverted });
                 }
                 None => {
@@ -477,20 +494,45 @@ impl<'r, 't> Section<'r, 't> {
     }
 
     fn as_coil(&self, key: &str, value: &'r Spanned<DeValue<'t>>) -> Option<Coil> {
-        let coil = value
-            .get_ref()
-            .as_str()
-            .and_then(|text| operand(text, 'O', OUTPUTS));
+        let at = value.span().start;
+        let text = value.get_ref().as_str();
+        let coil = text.and_then(|text| self.switched_by(at, text));
         if coil.is_none() {
             let last = OUTPUTS - 1;
-            self.reader.fault(
-                value.span().start,
-                format!("{key} is an output \"O0\" to \"O{last}\", or \"not O0\""),
-            );
+            let message = format!("{key} is an output \"O0\" to \"O{last}\", or \"not O0\"");
+            self.reader.fault(at, message);
         }
-        let (output, inverted) = coil?;
-        self.reader.wire(value.span().start, format!("O{output}"));
+        coil
+    }
+
+    /// A contact of a circuit: an output, or one of the cabinet.
+    pub fn contact_at(&self, at: usize, text: &str) -> Option<Coil> {
+        let coil = self.switched_by(at, text);
+        if coil.is_none() {
+            let known = self.reader.contacts.borrow();
+            let known: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
+            let message = format!(
+                "`{text}` is neither an output nor a contact; there are {}",
+                known.join(", ")
+            );
+            self.reader.fault(at, message);
+        }
+        coil
+    }
+
+    fn switched_by(&self, at: usize, text: &str) -> Option<Coil> {
+        let (output, inverted) = self.reader.switch(text)?;
+        if operand(text, OUTPUT_LETTERS, OUTPUTS).is_some() {
+            self.reader.wire(at, format!("O{output}"), inverted);
+        }
         Some(Coil { output, inverted })
+    }
+
+    /// The names that the user has given in a table, without reading it.
+    pub fn names(&self, key: &str) -> Vec<String> {
+        let table = self.table.get(key).and_then(|value| value.get_ref().as_table());
+        let names = table.into_iter().flat_map(|table| table.keys());
+        names.map(|name| name.get_ref().to_string()).collect()
     }
 
     /// The entries of a table whose keys are the user's names.
@@ -611,13 +653,17 @@ fn connector(text: &str, count: usize) -> Option<usize> {
     (number <= count).then(|| number.checked_sub(1))?
 }
 
+/// Letters of PLC inputs and outputs, the second ones as the TNC 151 and 155 write them [001:477-482].
+pub(crate) const INPUT_LETTERS: [char; 2] = ['I', 'E'];
+pub(crate) const OUTPUT_LETTERS: [char; 2] = ['O', 'A'];
+
 /// `I12` or `not I12`.
-fn operand(text: &str, letter: char, count: usize) -> Option<(usize, bool)> {
+fn operand(text: &str, letters: [char; 2], count: usize) -> Option<(usize, bool)> {
     let (inverted, plain) = match text.strip_prefix("not ") {
         Some(rest) => (true, rest.trim_start()),
         None => (false, text),
     };
-    let digits = plain.strip_prefix(letter)?;
+    let digits = plain.strip_prefix(letters)?;
     if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }

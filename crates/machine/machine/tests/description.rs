@@ -28,7 +28,7 @@ output = \"6\"
 speed = 15000
 volts = 20
 travel = [100, -100]
-reference_cam = { range = [0, 10], input = \"E20\" }
+reference_cam = { range = [0, 10], input = \"Q20\" }
 [axis.Q]
 [lamps]
 START = \"O192\"

@@ -3,7 +3,7 @@
 
 mod common;
 
-use bahn_machine::{Event, EventError};
+use bahn_machine::{Event, EventError, Machine};
 use bahn_servo::{Commands, Measured, Plant, Step};
 use common::{BASE, IDEAL_X, input, machine, milliseconds, outputs, running};
 
@@ -393,4 +393,81 @@ fn an_axis_is_held_or_slow() {
     assert_eq!(travel("fault clamp X"), 0.0);
     assert!((travel("fault drive X slow") - 0.3 * whole).abs() < 1e-6 * whole);
     assert!((travel("") - whole).abs() < 1e-6 * whole);
+}
+
+/// A contactor that pulls in with any branch of `on`, each a series of contacts, and holds itself until one of `hold` opens. Its
+/// contact stands where an output does; E and A are letters of inputs and outputs, too.
+#[test]
+fn contactors_hold_themselves() {
+    let text = r#"
+name = "cabinet"
+[emergency_stop]
+acknowledgement = "E8"
+[axis.X]
+output = "1"
+speed = 1000
+volts = 9
+encoder = { input = "X1", period_um = 20 }
+[device.k1]
+on = ["A7 and A20", "RESET"]
+hold = ["voltage", "not A17"]
+forth_ms = 30
+back_ms = 10
+[device.pump]
+output = "k1"
+forth_ms = 100
+back_ms = 100
+input_second = "E40"
+[keys]
+RESET = "E30"
+"#;
+    let mut machine = Machine::from_toml(text).unwrap_or_else(|faults| panic!("{faults:?}"));
+    machine.set_control_ready(true);
+    machine.advance(100_000);
+    let state =
+        |machine: &Machine, name: &str| machine.device(name).unwrap().state.unwrap_or("moves").to_owned();
+    let outputs = |on: &[usize]| {
+        let mut outputs = [false; bahn_servo::OUTPUTS];
+        on.iter().for_each(|output| outputs[*output] = true);
+        outputs
+    };
+    // One contact of the series is not enough.
+    machine.set_outputs(&outputs(&[7]));
+    machine.advance(200_000);
+    assert_eq!(state(&machine, "k1"), "off");
+    machine.set_outputs(&outputs(&[7, 20]));
+    machine.advance(29_000);
+    assert_eq!(state(&machine, "k1"), "moves");
+    machine.advance(3_000);
+    machine.set_outputs(&outputs(&[]));
+    machine.advance(200_000);
+    assert_eq!(
+        [state(&machine, "k1"), state(&machine, "pump")],
+        ["on", "on"],
+        "it holds itself"
+    );
+    machine.set_outputs(&outputs(&[17]));
+    machine.advance(15_000);
+    machine.set_outputs(&outputs(&[]));
+    machine.advance(200_000);
+    assert_eq!([state(&machine, "k1"), state(&machine, "pump")], ["off", "off"]);
+    // By the key; without control voltage it drops out.
+    machine.apply("key RESET tap").unwrap();
+    machine.advance(400_000);
+    assert_eq!(state(&machine, "k1"), "on");
+    machine.apply("emergency press").unwrap();
+    machine.advance(200_000);
+    assert_eq!(state(&machine, "k1"), "off");
+    machine.apply("emergency release").unwrap();
+    machine.advance(200_000);
+    assert_eq!(state(&machine, "k1"), "off", "it does not come by itself");
+    // What is no contact is said with those that are.
+    let faults = Machine::from_toml(&text.replace("A7 and A20", "A7 and k2")).unwrap_err();
+    assert!(
+        faults[0]
+            .to_string()
+            .contains("`k2` is neither an output nor a contact; there are k1, pump, RESET, gear1"),
+        "{}",
+        faults[0]
+    );
 }

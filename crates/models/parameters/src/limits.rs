@@ -146,9 +146,11 @@ pub struct Limits {
     pub numbering: Numbering,
 
     // Terminals.
-    /// First encoder input with square-wave signals, counted from 0: X5 of the TNC 407, X6 of the TNC 415/425 [000:1503-1505]
-    /// [000:18201]; none on the others (inferred).
+    /// First encoder input with square-wave signals, counted from 0: X5 of the TNC 151/155 [001:2434-2454] and of the TNC 407,
+    /// X6 of the TNC 415/425 [000:1503-1505] [000:18201]; none on the TNC 360 (inferred).
     pub square_wave_input: u8,
+    /// Encoder input of the spindle, counted from 0: X5, axis V, of the TNC 151/155 [001:2434-2454], X6 of the others.
+    pub spindle_input: u8,
     /// Inputs that machines are wired to, first and last of each board: TNC 151/155 E0-E62, E64-E126
     /// [001:297]; [000:11556-11567] and those of the handwheel [000:8276-8281]; TNC 360 as these (inferred).
     pub inputs: &'static [(u16, u16)],

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use bahn_parameters::{ControlModel, ListText, Numbering, ParameterError, ParameterId, ParameterList};
+use bahn_parameters::{ControlModel, ListText, ParameterError};
 
 use super::options::NewOptions;
 use crate::files::{self, NewFile};
@@ -34,12 +34,10 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         let text = text
             .replace(shipped_model.name(), model.name())
             .replace("../FOLDER.md", "FOLDER.md");
-        let text = inputs_of_panel(&text, model);
         let content = match *file {
             "machine.toml" => description(&text, &name, model),
             "parameters.mp" => parameters(&text, model),
-            "plant.toml" => plant(&text.replace(shipped_model.id(), model.id()), model),
-            "README.md" => text.replace(shipped_model.id(), model.id()),
+            "plant.toml" | "README.md" => text.replace(shipped_model.id(), model.id()),
             _ => text,
         };
         write(&folder.join(file), &content)?;
@@ -66,68 +64,23 @@ fn write(path: &Path, content: &str) -> Result<(), UsageError> {
     Ok(file.finish()?)
 }
 
-/// Workpiece datum of the small mill where positions count from the reference marks, mm.
-const OLD_DATUM: &[(&str, &str)] = &[("X", "-274"), ("Y", "-147"), ("Z", "-221.5")];
-
 /// `machine.toml` with another name and model.
 fn description(text: &str, name: &str, model: ControlModel) -> String {
     let quoted = toml::Value::from(name).to_string();
-    let datum = |key: &str| OLD_DATUM.iter().find(|(axis, _)| is_old(model) && *axis == key);
     // Only the machine as a whole has a name and a model.
     let line = |line: &str| {
         let key = line.split('=').next().map_or("", str::trim);
-        match (key, datum(key)) {
-            ("name", _) => format!("name = {quoted}\n"),
-            ("model", _) => format!("model = \"{}\"\n", model.id()),
-            (_, Some((axis, value))) => format!("{axis} = {value}\n"),
+        match key {
+            "name" => format!("name = {quoted}\n"),
+            "model" => format!("model = \"{}\"\n", model.id()),
             _ => format!("{line}\n"),
         }
     };
     text.lines().map(line).collect()
 }
 
-/// What the small mill has other than the reference list of the TNC 151 and 155: no rotary table, marks
-/// every turn of the ballscrew after a cam, its travel from there, play, spindle and headstock.
-const SMALL_MILL_OLD: &[(u16, f64)] = &[
-    (72, 8.0),
-    (242, 0.0),
-    (243, 0.0),
-    (244, 0.0),
-    (44, 26.0),
-    (45, -374.0),
-    (46, 23.0),
-    (47, -227.0),
-    (48, 18.5),
-    (49, -281.5),
-    (36, 0.02),
-    (37, 0.02),
-    (38, 0.01),
-    (78, 4000.0),
-    (79, 0.0),
-    (169, 0.4),
-    // Timers T2, T3 and T8 of the PLC program.
-    (112, 200.0),
-    (113, 120.0),
-    (118, 3.0),
-    // Central tool memory.
-    (225, 99.0),
-];
-
-/// The list of the shipped machine without what the model does not have. The TNC 151 and 155 number theirs
-/// in another way: their reference list, fitted to the machine.
+/// The list of the shipped machine without what the model does not have.
 fn parameters(text: &str, model: ControlModel) -> String {
-    if is_old(model) {
-        let mut list = ListText::from_bytes(model, ParameterList::reference_text(model).as_bytes());
-        for (number, value) in SMALL_MILL_OLD {
-            let id = ParameterId {
-                number: *number,
-                index: None,
-            };
-            // The test of new machines would show a number that the model does not have.
-            let _ = list.set(id, *value);
-        }
-        return String::from_utf8_lossy(&list.to_bytes()).into_owned();
-    }
     let list = ListText::from_bytes(model, text.as_bytes());
     let unknown = |line: usize| {
         let mut faults = list.faults().iter();
@@ -161,43 +114,4 @@ fn shipped_for(
             names.join(", ")
         ))
     })
-}
-
-fn is_old(model: ControlModel) -> bool {
-    model.limits().numbering == Numbering::Old
-}
-
-/// The operating panel is wired to I128 ff. where the control has inputs of its own for it, otherwise to the
-/// second board, I64 ff.
-fn inputs_of_panel(text: &str, model: ControlModel) -> String {
-    if !is_old(model) {
-        return text.to_owned();
-    }
-    (PANEL_INPUTS..PANEL_INPUTS + 25).fold(text.to_owned(), |text, input| {
-        text.replace(
-            &format!("I{input}"),
-            &format!("I{}", input - PANEL_INPUTS + SECOND_BOARD),
-        )
-    })
-}
-
-/// First input of the operating panel [000:11556-11567].
-const PANEL_INPUTS: u16 = 128;
-/// First input of the second board of the TNC 151 and 155 [001:297].
-const SECOND_BOARD: u16 = 64;
-
-/// The TNC 151 and 155 count 20 steps to a signal period: 1 µm with one of 20 µm [001:1616-1625]; they take
-/// the first reference mark of each axis, so there is one.
-fn plant(text: &str, model: ControlModel) -> String {
-    if !is_old(model) {
-        return text.to_owned();
-    }
-    text.replace("period_um = 4,", "period_um = 20,")
-        .replace("marks_every = 10, marks_from = 4 ", "mark = 374 ")
-        .replace("marks_every = 10, marks_from = 7 ", "mark = 227 ")
-        .replace("marks_every = 10, marks_from = 1.5 ", "mark = 281.5 ")
-        .replace(
-            "10 mm pitch, 2500 lines, one mark a turn",
-            "10 mm pitch, 500 lines, one mark",
-        )
 }

@@ -34,8 +34,8 @@ Examples:
   bahn run INDEX.H --machine mymill
   bahn machine new mytwin --from twin
 
-Models of the 400 series start from a mill with rotary table and gear spindle, the others from a small mill
-without; twin is a portal mill with two channels. The README.md in the folder explains every file and key.";
+Models of the 400 series start from a mill with rotary table and gear spindle, the TNC 360 from a small mill without, TNC 151 and
+TNC 155 from a knee mill with relay cabinet; twin is a portal mill with two channels. The README.md in the folder explains every file and key.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -57,7 +57,8 @@ pub(crate) struct NewOptions {
     /// Control model of the new machine.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
-    /// A shipped machine by its name, instead of the usual one for the model: mill, mill-tnc360, dig425, twin.
+    /// A shipped machine by its name, instead of the usual one for the model: mill, mill-tnc360, mill-tnc155, dig425,
+    /// twin, gantry.
     #[arg(long, value_name = "MACHINE")]
     pub from: Option<String>,
     /// Name for people; that of the folder without it.

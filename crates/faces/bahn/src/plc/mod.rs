@@ -3,7 +3,7 @@
 //! - `options`: options and help texts;
 //! - `source`: the program, compile errors as rustc prints them;
 //! - `bench`: from options to a program on its bench; `live`: to one in the control of a machine; `subject`: one of the two;
-//! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
+//! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`, `standard`: the subcommands.
 //!
 //! What runs and is told of it is [`bahn_report::plc`].
 
@@ -17,6 +17,7 @@ mod retained;
 mod run;
 mod signals;
 mod source;
+mod standard;
 mod subject;
 mod trace;
 #[cfg(feature = "terminal")]
@@ -42,5 +43,6 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
         PlcCommand::List(options) => list::command(options),
         PlcCommand::Xref(options) => xref::command(options),
         PlcCommand::Signals(options) => signals::command(options),
+        PlcCommand::Standard(options) => standard::command(options),
     }
 }

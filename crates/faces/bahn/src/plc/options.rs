@@ -42,7 +42,19 @@ pub(crate) enum PlcCommand {
     /// List the fixed markers and words with who sets and resets them.
     #[command(after_help = SIGNALS_EXAMPLES)]
     Signals(SignalsOptions),
+    /// Print the PLC program that a TNC 151 or TNC 155 is delivered with.
+    #[command(after_help = STANDARD_EXAMPLES)]
+    Standard(StandardOptions),
 }
+
+const STANDARD_EXAMPLES: &str = "\
+Examples:
+  bahn plc standard
+  bahn plc standard -o MAIN.PLC
+  bahn plc check MAIN.PLC --model tnc155
+      The standard program as a file to begin a program of one's own with.
+
+A machine runs it with plc = \"standard\" in machine.toml; docs/tnc155.md tells its terminals.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -334,6 +346,17 @@ pub(crate) struct SignalsOptions {
     /// How the list is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
+}
+
+/// Options of `bahn plc standard`.
+#[derive(Args, Debug)]
+pub(crate) struct StandardOptions {
+    /// The control model, where there are several programs.
+    #[arg(long, value_name = "MODEL", ignore_case = true, value_parser = model_parser())]
+    pub model: Option<ControlModel>,
+    /// Write it to this file.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
 }
 
 /// Cycles from one to another, both included.

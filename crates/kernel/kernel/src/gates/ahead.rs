@@ -108,7 +108,7 @@ impl<T: Copy + Ord, O> Gates<T, O> {
         let mut fastest = 0.0f64;
         let mut number = self.motion.reached;
         while let Some(leg) = self.places.leg(number).filter(|leg| leg.from_mm < point) {
-            if leg.driving.rapid {
+            if leg.driving.rapid || drive.rapid {
                 return f64::INFINITY;
             }
             fastest = fastest.max(leg.driving.feed_mm_min);

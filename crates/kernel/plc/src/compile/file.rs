@@ -5,7 +5,7 @@ use super::labels::{Definition, Labels, Use, is_internal, module_number};
 use super::structure::Structure;
 use super::{Options, Place, Reports};
 use crate::program::{Condition, Field, Instruction, Op, Target};
-use crate::syntax::{Command, Cost, LineError, Mnemonic, Operand, parse};
+use crate::syntax::{Command, Cost, LineError, Mnemonic, Operand, has_old_letters, parse};
 use crate::{Module, PlcError};
 
 /// Entries of a CASE table at most [000:14541].
@@ -472,10 +472,12 @@ impl Translator<'_> {
         }
         if let Some(block) = self.block {
             if self.tnc355 {
-                // An EM is appended when a program of the TNC 355 is read [000:16199].
-                let detail = "EM appended, as for a program of the TNC 355";
-                self.reports
-                    .warning(self.file, block, PlcError::NoEndOfBlock, detail);
+                // An EM is appended when a program of the TNC 355 is read [000:16199]; the old controls know none.
+                if !has_old_letters(self.options.model) {
+                    let detail = "EM appended, as for a program of the TNC 355";
+                    self.reports
+                        .warning(self.file, block, PlcError::NoEndOfBlock, detail);
+                }
                 self.emit_with(
                     Op::Return {
                         condition: Condition::Always,

@@ -3,7 +3,7 @@
 //! The manual's own listings are typed loosely: `LBL230`, `OM 500`, `B 128`, `K + 0`, `X[`. Such lines are
 //! read, with a note that becomes a warning, or an error in strict checking.
 
-use bahn_parameters::ControlModel;
+use bahn_parameters::{ControlModel, Numbering};
 
 use super::form::{Class, Mnemonic, TNC_355};
 use super::memory::memory_operand;
@@ -195,7 +195,8 @@ fn read_operand(
         let detail = format!("`{character}` after {}", mnemonic.spelling());
         return Err(LineError::new(PlcError::NoLimiter, scanner.at(), detail));
     }
-    if tnc355 || old_letter {
+    let tnc355 = tnc355 || old_letter;
+    if tnc355 && !has_old_letters(model) {
         let detail = "command or operand letter of the TNC 355";
         notes.push(LineError::new(PlcError::NotACommand, start, detail));
     }
@@ -205,8 +206,14 @@ fn read_operand(
         column: LineError::new(PlcError::NotACommand, start, "").column,
         operand_column: LineError::new(PlcError::NotACommand, at, "").column,
         notes,
-        tnc355: tnc355 || old_letter,
+        tnc355,
     })
+}
+
+/// Whether the letters of the TNC 355 are those of the control itself: the interface of the TNC 151 and 155 is written with
+/// E and A [001:477-482].
+pub(crate) fn has_old_letters(model: ControlModel) -> bool {
+    model.limits().numbering == Numbering::Old
 }
 
 fn file_name(scanner: &mut Scanner) -> Result<String, LineError> {

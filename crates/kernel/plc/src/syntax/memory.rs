@@ -34,13 +34,13 @@ pub(super) fn memory_operand(
     };
     scanner.take(letter);
     let old_letter = matches!(letter, 'E' | 'A' | 'Z');
+    if let Some(area) = BitArea::of_letter(letter) {
+        return match wrong_type(Class::Bit) {
+            Some(error) => Err(error),
+            None => Ok((bit_operand(mnemonic, (area, model), scanner, at)?, old_letter)),
+        };
+    }
     let operand = match letter {
-        'M' | 'I' | 'O' | 'T' | 'C' | 'E' | 'A' | 'Z' => {
-            if let Some(error) = wrong_type(Class::Bit) {
-                return Err(error);
-            }
-            bit_operand(mnemonic, (area(letter), model), scanner, at)?
-        }
         'B' | 'W' | 'D' => {
             let (size, class) = match letter {
                 'B' => (Size::Byte, Class::Byte),
@@ -89,16 +89,6 @@ pub(super) fn memory_operand(
 
 fn stores_text(mnemonic: Mnemonic) -> bool {
     matches!(mnemonic, Mnemonic::Assign | Mnemonic::Overwrite)
-}
-
-fn area(letter: char) -> BitArea {
-    match letter {
-        'I' | 'E' => BitArea::I,
-        'O' | 'A' => BitArea::O,
-        'T' => BitArea::T,
-        'C' | 'Z' => BitArea::C,
-        _ => BitArea::M,
-    }
 }
 
 /// Consecutive bits that a command moves.

@@ -7,7 +7,7 @@ mod operand;
 mod words;
 
 pub(crate) use form::{CASE_ENTRY_BYTES, Class, Cost, Mnemonic};
-pub(crate) use line::{Command, parse};
+pub(crate) use line::{Command, has_old_letters, parse};
 pub use line::{check_line, code_of_line, split_comment};
 pub(crate) use operand::{LineError, MODULE_NUMBERS, Operand};
 pub use words::{

@@ -17,13 +17,12 @@ use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::Position;
-use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
+use bahn_plc::{MemoryTable, PlcProgram};
 use bahn_text::{Diagnostic, Severity, Span, decode};
 use bahn_tnc::{HandOver, NcFiles, Remembered, Tool};
 
 use super::channel::{Channels, LoadedChannel, position};
 use super::{remembered, state};
-use crate::plc_source::PlcSource;
 use crate::{HostError, files};
 
 /// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
@@ -125,7 +124,7 @@ impl LoadedMachine {
     /// The files that were read, and the lock of the state.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let folder = &self.folder;
-        let named = [&folder.parameters, &folder.plc].map(Some);
+        let named = [Some(folder.parameters.as_str()), folder.plc_file()];
         let further = [
             &folder.plant,
             &folder.plc_messages,
@@ -135,8 +134,11 @@ impl LoadedMachine {
             &folder.tools,
             &folder.pockets,
         ];
-        let named = named.into_iter().chain(further.map(Option::as_ref)).flatten();
-        let lists = self.channels.iter().map(|channel| &channel.folder.parameters);
+        let named = named.into_iter().chain(further.map(Option::as_deref)).flatten();
+        let lists = self
+            .channels
+            .iter()
+            .map(|channel| channel.folder.parameters.as_str());
         let files = named.chain(lists).map(|name| self.root.join(name));
         let lock = self.root.join(&folder.state).join(state::LOCK);
         files.chain(self.tables.iter().cloned()).chain([lock]).collect()
@@ -294,7 +296,7 @@ impl Loader<'_> {
         // Tables fit the list that is entered, when it is.
         let sizes = parameters.as_ref().filter(|_| self.to_be_entered.is_none());
         let tools = self.tool_files(&folder, sizes, files.as_mut().unwrap_or(&mut none));
-        let plc = self.plc(&folder, model?, parameters.as_ref());
+        let plc = self.plc_program(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
         let mut files = files?;
         self.nonlinear(&folder.parameters, &parameters, &files);
@@ -462,27 +464,6 @@ impl Loader<'_> {
         }
     }
 
-    fn plc(
-        &mut self,
-        folder: &MachineFolder,
-        model: ControlModel,
-        parameters: Option<&ParameterList>,
-    ) -> Option<Arc<PlcProgram>> {
-        let (path, _) = self.read("plc", &folder.plc)?;
-        let reference = || ParameterList::reference(model).plc_parameters();
-        let memory = match parameters
-            .map_or_else(reference, ParameterList::plc_parameters)
-            .from_eprom
-        {
-            true => ProgramMemory::Eprom,
-            false => ProgramMemory::Ram,
-        };
-        let options = Options::for_model(model).stored_in(memory);
-        let mut source = PlcSource::compile(&path, None, options);
-        self.sort(source.faults());
-        source.compilation.program.take().map(Arc::new)
-    }
-
     /// The simulated machine, or that there is none; `None` when it is faulty.
     fn plant(&mut self, folder: &MachineFolder, model: Option<ControlModel>) -> Option<Option<Machine>> {
         let Some(name) = &folder.plant else {
@@ -582,7 +563,7 @@ impl Loader<'_> {
     }
 
     /// Keeps warnings, and errors as faults; whether there was no error.
-    fn sort(&mut self, found: Vec<Diagnostic>) -> bool {
+    pub(super) fn sort(&mut self, found: Vec<Diagnostic>) -> bool {
         let before = self.faults.len();
         for fault in found {
             match fault.severity {

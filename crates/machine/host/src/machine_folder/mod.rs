@@ -1,6 +1,6 @@
 //! The folder of a machine.
 //!
-//! `load`: everything in it, all faults at once, with its `channels`; `compensation`: the tables of axis errors; `nc_memory` and `tool_files`: its tables; `programs`: its part programs; `state`:
+//! `load`: everything in it, all faults at once, with its `channels`; `compensation`: the tables of axis errors; `nc_memory` and `tool_files`: its tables; `plc_program`: which one it runs; `programs`: its part programs; `state`:
 //! what survives power-off, `remembered` and `mechanics` as files.
 
 mod channel;
@@ -10,6 +10,7 @@ mod functions;
 mod load;
 mod mechanics;
 mod nc_memory;
+mod plc_program;
 mod programs;
 mod remembered;
 mod state;

@@ -80,7 +80,8 @@ const TNC151: Limits = Limits {
     one_axis_by_mdi: false,
     shows_feed_of_keys: true,
     oscilloscope: false,
-    square_wave_input: 6,
+    square_wave_input: 4,
+    spindle_input: 4,
 };
 
 /// TNC 151 with graphics [001:186].
@@ -106,6 +107,8 @@ const TNC360: Limits = Limits {
     transfer_codes: true,
     one_axis_by_mdi: true,
     shows_feed_of_keys: false,
+    square_wave_input: 6,
+    spindle_input: 5,
     ..TNC155
 };
 

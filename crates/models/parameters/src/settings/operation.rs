@@ -92,6 +92,8 @@ pub enum OverrideSteps {
 pub struct OverrideParameters {
     /// The feed override acts on rapid traverse by key in program run: bit 0.
     pub on_rapid_key: bool,
+    /// The rapid key moves programs, too, whatever their feed: TNC 151/155 [001:465-469].
+    pub rapid_key_in_programs: bool,
     /// It acts on rapid key with direction keys in manual operation: bit 2.
     pub on_manual_rapid: bool,
     /// Steps of the feed override.
@@ -312,6 +314,7 @@ impl ParameterList {
         };
         OverrideParameters {
             on_rapid_key: bit_of(value, 0),
+            rapid_key_in_programs: self.has_old_numbers(),
             on_manual_rapid: bit_of(value, 2),
             feed_steps,
             spindle_steps,

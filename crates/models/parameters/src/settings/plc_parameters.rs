@@ -1,8 +1,8 @@
 //! What the PLC gets from the list: presets and numbers of the machine builder.
 //!
 //! Decision: Five markers choose one of MP4210.0 to .31 for a position of the TNC 355, MP4220 is its feed, MP4210.32
-//! to .46 are datum corrections of five axes for three traverse ranges; on TNC 151/155 the codes 1 to 31 are MP126 to
-//! MP156
+//! to .46 are datum corrections of five axes for three traverse ranges; on TNC 151/155 the codes 0 to 30 are MP126 to
+//! MP156, and 31 is the reference mark [001:1834]
 
 use crate::ParameterList;
 
@@ -24,7 +24,7 @@ const AXES: usize = 5;
 const OLD_UNIT_S: f64 = 0.02;
 
 /// The parameters of the PLC. "old" are the numbers of the TNC 151/155, which have fewer of most: 32
-/// timers, 16 counters, 31 positions, 3 words; the rest is 0.
+/// timers, 16 counters, 31 positions; the rest is 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlcParameters {
     /// The PLC program runs from the EPROM, not from the RAM: MP4010 = 0 (old MP77 = 1)
@@ -38,14 +38,11 @@ pub struct PlcParameters {
     /// Numbers in the doublewords D768 ff., mm or degrees; the PLC sees 10 000 times the value: MP4210
     /// (old MP126-156) [000:11670-11719].
     pub positions_mm: [f64; POSITIONS],
-    /// The code by which the marker form of PLC positioning names the first of these positions: MP4210.0 is 0, the
-    /// old ones are values 1 to 31 [001:1834] *(inferred)*.
-    pub first_code: usize,
     /// Numbers in the words W960 to W968, also the feed of the return to the contour, mm/min: MP4220 (old
     /// MP163-166) [000:11720-11724].
     pub feeds_mm_min: [f64; AXES],
     /// Words W976 to W988, whose bits are also the markers M2192 to M2239 and M3200 to M3263: MP4310 (old
-    /// MP158, MP249, MP250) [000:11725-11740].
+    /// MP158, MP249, MP250, MP209-212) [000:11725-11740] [001:1835-1840].
     pub words: [u16; WORDS],
     /// Correction for each PLC cycle of the compensation by lag tracking, mm: MP4070, 0.0001 to 0.005; old:
     /// none, 0 [000:3904-3912].
@@ -81,10 +78,10 @@ pub struct StrobeTimes {
 
 impl PlcParameters {
     /// The position that a code of the marker form names, mm or degrees: five markers choose one of MP4210.0 to
-    /// MP4210.31, in front of those of the datum correction (inferred) [000:16175-16183].
+    /// MP4210.31, in front of those of the datum correction (inferred) [000:16175-16183]. On a TNC 151/155 31 is the
+    /// reference mark, from which its positions count [001:1834].
     pub fn coded_position_mm(&self, code: u32) -> Option<f64> {
-        let index = usize::try_from(code).ok()?.checked_sub(self.first_code)?;
-        self.positions_mm.get(index).copied()
+        self.positions_mm.get(usize::try_from(code).ok()?).copied()
     }
 
     /// The datum correction of an axis in the marker form, mm or degrees: MP4210.32 to MP4210.46 [000:16182], which are
@@ -119,9 +116,10 @@ impl ParameterList {
                 .map(|value| value as u16),
             counters: self.run(4120, 94..110).map(|value| value as u16),
             positions_mm: self.run(4210, 126..157),
-            first_code: usize::from(old),
             feeds_mm_min: self.run(4220, 163..167),
-            words: self.run(4310, [158, 249, 250]).map(|value| value as u16),
+            words: self
+                .run(4310, [158, 249, 250, 209, 210, 211, 212])
+                .map(|value| value as u16),
             tracking_step_mm: self.get_new(4070, 0).unwrap_or_default(),
             monitoring_input: input,
             analogue_inputs: [0, 1].map(|bit| super::bit_of(self.get_new(4410, 0).unwrap_or_default(), bit)),
