@@ -152,7 +152,7 @@ impl Entry {
     /// The models that have the function, oldest first.
     pub fn models(&self) -> impl Iterator<Item = ControlModel> {
         let models = self.models;
-        ControlModel::ALL
+        ControlModel::FAMILIES
             .into_iter()
             .filter(move |model| models & bit(*model) != 0)
     }
@@ -214,7 +214,7 @@ pub fn find(model: ControlModel, kind: Kind, object: &str) -> Option<&'static En
 }
 
 pub(crate) const fn bit(model: ControlModel) -> u8 {
-    1 << model as u8
+    1 << model.place()
 }
 
 /// Reads one row; a test proves that every row can be read.
@@ -250,14 +250,14 @@ fn row(kind: Kind, line: &'static str) -> Option<Entry> {
 pub(crate) fn models(text: &str) -> Option<u8> {
     let place = |text: &str| {
         let is_named = |model: &ControlModel| model.id().strip_prefix("tnc") == Some(text);
-        ControlModel::ALL.iter().position(is_named)
+        ControlModel::FAMILIES.iter().position(is_named)
     };
     let (first, last) = match text.split_once('-') {
-        _ if text == "all" => (0, ControlModel::ALL.len() - 1),
+        _ if text == "all" => (0, ControlModel::FAMILIES.len() - 1),
         Some((first, last)) => (place(first)?, place(last)?),
         None => (place(text)?, place(text)?),
     };
-    let named = ControlModel::ALL.get(first..=last)?;
+    let named = ControlModel::FAMILIES.get(first..=last)?;
     Some(named.iter().fold(0, |all, model| all | bit(*model)))
 }
 

@@ -45,12 +45,12 @@ impl ParameterList {
 
     /// The text of the reference list, with the reason of every value.
     pub fn reference_text(model: ControlModel) -> &'static str {
-        match model {
+        match model.family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => include_str!("../data/reference/tnc151-155.mp"),
             ControlModel::Tnc360 => include_str!("../data/reference/tnc360.mp"),
             ControlModel::Tnc407 => include_str!("../data/reference/tnc407.mp"),
             ControlModel::Tnc415b => include_str!("../data/reference/tnc415b.mp"),
-            ControlModel::Tnc425 => include_str!("../data/reference/tnc425.mp"),
+            _ => include_str!("../data/reference/tnc425.mp"),
         }
     }
 

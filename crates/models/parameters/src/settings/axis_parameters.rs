@@ -242,7 +242,7 @@ impl ParameterList {
             reference: reference(&axis),
             travel: travel(&axis),
             synchronization: synchronization(&axis),
-            digital: (self.model() == ControlModel::Tnc425 && axis.bit_or(1900, || false))
+            digital: (self.model().family() == ControlModel::Tnc425 && axis.bit_or(1900, || false))
                 .then(|| digital(&axis)),
         }
     }
@@ -329,7 +329,7 @@ fn precontrol(axis: &AxisReader) -> PrecontrolSettings {
         kv_m105: axis.new_or(1515, || kv),
         transient_m_min: axis.common(1520, 53),
         damping: axis.common(1530, 64),
-        window_mm_min: axis.list().get(1525, 0).unwrap_or(match axis.list().model() {
+        window_mm_min: axis.list().get(1525, 0).unwrap_or(match axis.list().model().family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => f64::INFINITY,
             _ => WINDOW_MM_MIN,
         }),
