@@ -38,6 +38,7 @@
 
 mod acting;
 mod axis;
+mod bipolar;
 mod by_hand;
 mod chain;
 mod clock;
@@ -45,6 +46,7 @@ mod current_drive;
 mod deviation;
 mod device;
 mod encoder;
+mod equipment;
 mod event;
 mod folder;
 mod machine;
@@ -63,6 +65,7 @@ pub use axis::{AxisState, DriveFault};
 pub use chain::{ContactFault, RelayFault};
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
+pub use equipment::{EquipmentFolder, Said};
 pub use event::{Event, EventError, Fault, KeyAction};
 pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, OperatorKeys};
 pub use machine::Machine;

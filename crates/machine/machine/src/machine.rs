@@ -6,6 +6,7 @@ use bahn_servo::{Commands, Encoder, INPUTS, Measured, OUTPUTS, Plant, Probe as T
 use bahn_text::Diagnostic;
 
 use crate::axis::{Axis, AxisState};
+use crate::bipolar::Bipolar;
 use crate::by_hand::ByHand;
 use crate::chain::Chain;
 use crate::clock::{Clock, TICK_US};
@@ -57,6 +58,8 @@ pub struct Machine {
     voltage_key: Option<usize>,
     pub(crate) tool_probe: Option<ToolProbe>,
     pub(crate) plc: PlcSide,
+    /// The loads at bipolar outputs.
+    bipolar: Option<Bipolar>,
     /// Nothing has moved in the last tick and nobody has acted since: contacts, relays and things stay as they are.
     pub(crate) rests: bool,
     /// Of the logic unit.
@@ -127,6 +130,7 @@ impl Machine {
             panel,
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
             plc: PlcSide::default(),
+            bipolar: root.section("bipolar").map(Bipolar::read),
             rests: false,
             buffer_battery_low: false,
             wires: Vec::new(),
@@ -175,6 +179,17 @@ impl Machine {
     /// on it.
     pub fn wires(&self) -> &[Wire] {
         &self.wires
+    }
+
+    /// Fits it to the terminals of a control: which outputs lose their voltage with EMERGENCY STOP, unless the description
+    /// says it itself, and which are bipolar, pair by pair. Whether the description speaks of bipolar outputs that are not
+    /// there is the answer.
+    pub fn fit(&mut self, switched: impl Fn(usize) -> bool, bipolar: &[usize]) -> bool {
+        self.chain.fit(switched);
+        let outputs: Vec<&str> = self.wires.iter().map(|wire| wire.operand.as_str()).collect();
+        let Some(own) = &mut self.bipolar else { return false };
+        own.fit(bipolar, |output| outputs.contains(&format!("O{output}").as_str()));
+        bipolar.is_empty()
     }
 
     /// The name in the description.
@@ -495,6 +510,9 @@ impl Machine {
         }
         if let Some(magazine) = &self.mechanism.magazine {
             magazine.set_inputs(inputs);
+        }
+        if let Some(bipolar) = &self.bipolar {
+            bipolar.set_inputs(&self.plc.live, inputs);
         }
         self.plc.set_stuck(inputs, self.clock.time_us);
     }

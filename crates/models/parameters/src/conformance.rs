@@ -263,7 +263,7 @@ pub(crate) fn models(text: &str) -> Option<u8> {
 
 /// Consecutive objects of a table: letters, then number and index of the first and the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Range<'a> {
+pub(crate) struct Range<'a> {
     letters: &'a str,
     first: (u32, u32),
     last: (u32, u32),
@@ -272,7 +272,7 @@ struct Range<'a> {
 impl<'a> Range<'a> {
     /// Reads `M114`, `M20-M88`, `MP1060` with all its indices, `MP3410.2`, `MP3410.0-.1`; anything else stands
     /// for itself.
-    fn read(text: &'a str) -> Range<'a> {
+    pub(crate) fn read(text: &'a str) -> Range<'a> {
         Range::numbered(text).unwrap_or(Range {
             letters: text,
             first: (0, 0),
@@ -311,7 +311,7 @@ impl<'a> Range<'a> {
         })
     }
 
-    fn contains(&self, object: &Range<'_>) -> bool {
+    pub(crate) fn contains(&self, object: &Range<'_>) -> bool {
         self.letters == object.letters && self.first <= object.first && object.first <= self.last
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use bahn_text::{Diagnostic, Related, Severity, Span};
 
+use crate::equipment::Use;
 use crate::{Definition, Inconsistency, ListError, ListText, ParameterError, ParameterList, chapters};
 
 impl ListError {
@@ -57,8 +58,16 @@ impl ListText {
         if !faults.is_empty() {
             return faults.iter().map(|found| found.diagnostic(self, file)).collect();
         }
+        let lacking = self.entries().iter().filter_map(|entry| {
+            let id = entry.id.to_string();
+            let why = list.equipment().lacks(list.model(), Use::parameter(&id, entry.value))?;
+            let span = self.span_of(entry);
+            let fault = Diagnostic::error(span, format!("{id} with this value is {why}"));
+            Some(fault.with_code(id).at(file, self.line(span.line as usize)))
+        });
         let found = list.inconsistencies();
-        found.iter().map(|found| found.diagnostic(self, file)).collect()
+        let found = found.iter().map(|found| found.diagnostic(self, file));
+        lacking.chain(found).collect()
     }
 }
 

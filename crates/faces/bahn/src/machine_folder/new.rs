@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+use bahn_parameters::terminals::Board;
 use bahn_parameters::{ControlModel, ListText, Numbering, ParameterError, ParameterId, ParameterList};
 
 use super::options::NewOptions;
@@ -148,7 +149,7 @@ fn shipped_for(
     name: Option<&str>,
 ) -> Result<(bahn_machines::ShippedMachine, ControlModel), UsageError> {
     let is_meant = |shipped: &&bahn_machines::ShippedMachine| {
-        shipped.models.contains(&model.id()) && name.is_none_or(|name| shipped.name == name)
+        shipped.models.contains(&model.family().id()) && name.is_none_or(|name| shipped.name == name)
     };
     let shipped = bahn_machines::ALL.iter().find(is_meant);
     let own = shipped.and_then(|shipped| shipped.models.first()?.parse().ok());
@@ -168,10 +169,14 @@ fn is_old(model: ControlModel) -> bool {
 }
 
 /// The operating panel is wired to I128 ff. where the control has inputs of its own for it, otherwise to the
-/// second board, I64 ff.
+/// second board, I64 ff., or without boards to what is left of the standard interface.
 fn inputs_of_panel(text: &str, model: ControlModel) -> String {
     if !is_old(model) {
         return text.to_owned();
+    }
+    if Board::of(model).next().is_none() {
+        let moved = STANDARD_INTERFACE.iter();
+        return moved.fold(text.to_owned(), |text, (from, to)| text.replace(from, to));
     }
     (PANEL_INPUTS..PANEL_INPUTS + 25).fold(text.to_owned(), |text, input| {
         text.replace(
@@ -180,6 +185,24 @@ fn inputs_of_panel(text: &str, model: ControlModel) -> String {
         )
     })
 }
+
+/// Where the panel and the last output of the small mill are wired to in version B, which has E0-E23 and A0-A22.
+const STANDARD_INTERFACE: [(&str, &str); 14] = [
+    ("I128", "I4"),
+    ("I129", "I5"),
+    ("I130", "I6"),
+    ("I133", "I7"),
+    ("I134", "I8"),
+    ("I135", "I9"),
+    ("I138", "I12"),
+    ("I143", "I13"),
+    ("I144", "I14"),
+    ("I145", "I15"),
+    ("I146", "I17"),
+    ("I147", "I19"),
+    ("I148", "I20"),
+    ("O24", "O22"),
+];
 
 /// First input of the operating panel [000:11556-11567].
 const PANEL_INPUTS: u16 = 128;
@@ -192,7 +215,12 @@ fn plant(text: &str, model: ControlModel) -> String {
     if !is_old(model) {
         return text.to_owned();
     }
-    text.replace("period_um = 4,", "period_um = 20,")
+    // Versions R count the signals of an EXE, which makes five periods of one.
+    let period = match model.limits().square_wave_input {
+        0 => "period_um = 4,",
+        _ => "period_um = 20,",
+    };
+    text.replace("period_um = 4,", period)
         .replace("marks_every = 10, marks_from = 4 ", "mark = 374 ")
         .replace("marks_every = 10, marks_from = 7 ", "mark = 227 ")
         .replace("marks_every = 10, marks_from = 1.5 ", "mark = 281.5 ")
