@@ -14,6 +14,7 @@ use bahn_access::Role;
 use bahn_host::{LoadedMachine, Reader, Stamped};
 use bahn_panel::{Key, Link, Live, Station};
 use bahn_parameters::ControlModel;
+use bahn_parameters::tables::FileTypes;
 use bahn_store::{Change, InUse, PLC, Store, StoreError, TNC};
 
 use crate::error::ServiceError;
@@ -161,6 +162,8 @@ impl MachineService {
 
 /// What a machine was loaded with.
 struct Loaded {
+    /// The types of files that MP7224 disables and protects.
+    types: FileTypes,
     programs: PathBuf,
     plc: PathBuf,
     tables: tables::Files,
@@ -171,6 +174,7 @@ impl Loaded {
     fn of(machine: &LoadedMachine) -> Loaded {
         let (root, folder) = (&machine.root, &machine.folder);
         Loaded {
+            types: machine.parameters.table_parameters().types,
             programs: machine.programs(0),
             plc: plc_folder(machine),
             tables: tables::Files::of(root, folder),
@@ -201,7 +205,8 @@ impl Loaded {
             // A machine that has ended has nothing in use.
             asked.unwrap_or(false)
         }));
-        Store::of_machine_with(&self.programs, &self.plc, self.tables.views()?, in_use)
+        let store = Store::of_machine_with(&self.programs, &self.plc, self.tables.views()?, in_use)?;
+        Ok(store.with_file_types(self.types))
     }
 }
 

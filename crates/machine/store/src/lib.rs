@@ -65,6 +65,7 @@ pub use views::View;
 
 pub use entry::{Attributes, Entry, Existing};
 
+use bahn_parameters::tables::FileTypes;
 use medium::Medium;
 
 /// Drive of the part programs.
@@ -119,6 +120,15 @@ impl Store {
         Store::over(&[("", folder)], Vec::new(), InUse::never(), Some(DISK_FILES))
     }
 
+    /// The same with the types of files that MP7224 disables and protects; to be said before anybody else has the store.
+    #[must_use]
+    pub fn with_file_types(mut self, types: FileTypes) -> Store {
+        if let Some(medium) = Arc::get_mut(&mut self.medium) {
+            medium.types = types;
+        }
+        self
+    }
+
     fn over(
         folders: &[(&'static str, &Path)],
         views: Vec<View>,
@@ -141,6 +151,7 @@ impl Store {
                 views,
                 in_use,
                 limit,
+                types: FileTypes::default(),
                 busy: Mutex::default(),
                 changes: AtomicU64::new(0),
             }),
@@ -181,7 +192,7 @@ impl Store {
                 entries.insert(place, Entry { name, attributes });
             }
         }
-        Ok(entries)
+        Ok(self.medium.seen(folder, entries))
     }
 
     /// What there is to be said of a file or folder.
@@ -190,8 +201,12 @@ impl Store {
     /// When it is not there.
     pub fn attributes(&self, place: &Place) -> Result<Attributes, StoreError> {
         let no_file = || StoreError::NoFile(place.to_string());
+        let by_type = |attributes: Attributes| Attributes {
+            protected: attributes.protected || self.medium.is_protected(place),
+            ..attributes
+        };
         match self.medium.find_any(place) {
-            Ok(path) => lookup::attributes(&path).ok_or_else(no_file),
+            Ok(path) => lookup::attributes(&path).map(by_type).ok_or_else(no_file),
             Err(error) => self.medium.view(place).and_then(View::attributes).ok_or(error),
         }
     }

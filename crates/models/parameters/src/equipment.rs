@@ -72,8 +72,8 @@ enum Series {
 pub struct Use<'a> {
     kind: Option<Kind>,
     object: &'a str,
-    /// The value of a machine parameter.
-    value: Option<f64>,
+    /// The value of a machine parameter, and whether the control gives it by itself.
+    value: Option<(f64, bool)>,
 }
 
 impl<'a> Use<'a> {
@@ -86,12 +86,12 @@ impl<'a> Use<'a> {
         }
     }
 
-    /// A machine parameter with its value.
-    pub const fn parameter(id: &'a str, value: f64) -> Use<'a> {
+    /// A machine parameter with its value, and whether that is the one that the control gives it by itself.
+    pub const fn parameter(id: &'a str, value: f64, standard: bool) -> Use<'a> {
         Use {
             kind: Some(Kind::MachineParameter),
             object: id,
-            value: Some(value),
+            value: Some((value, standard)),
         }
     }
 }
@@ -125,6 +125,7 @@ enum When {
     Above(f64),
     Below(f64),
     Equals(f64),
+    Not(f64),
     Bit(u32),
 }
 
@@ -219,17 +220,19 @@ impl When {
             ">" => Some(When::Above(number)),
             "<" => Some(When::Below(number)),
             "=" => Some(When::Equals(number)),
+            "<>" => Some(When::Not(number)),
             "bit" => Some(When::Bit(number as u32)),
             _ => None,
         }
     }
 
-    fn holds(self, value: Option<f64>) -> bool {
-        let Some(value) = value else {
+    fn holds(self, value: Option<(f64, bool)>) -> bool {
+        let Some((value, standard)) = value else {
             return self == When::Always;
         };
         match self {
-            When::Always => true,
+            When::Always => !standard,
+            When::Not(other) => value != other,
             When::Above(limit) => value > limit,
             When::Below(limit) => value < limit,
             When::Equals(other) => value == other,
@@ -245,6 +248,7 @@ impl fmt::Display for When {
             When::Above(limit) => write!(f, " above {limit}"),
             When::Below(limit) => write!(f, " below {limit}"),
             When::Equals(value) => write!(f, " = {value}"),
+            When::Not(value) => write!(f, " other than {value}"),
             When::Bit(bit) => write!(f, " bit {bit}"),
         }
     }
@@ -513,13 +517,13 @@ mod tests {
             equipment.lacks(model, wanted).is_none()
         };
         // MP4230 came with 259 96 06, MP951 with 259 96 09, a month after 259 93 10.
-        let mp4230 = Use::parameter("MP4230.3", 0.0);
+        let mp4230 = Use::parameter("MP4230.3", 1.0, false);
         assert!(!has("259 96 05", mp4230) && has("259 96 06", mp4230) && has("259 93 04", mp4230));
-        let mp951 = Use::parameter("MP951.0", 0.0);
+        let mp951 = Use::parameter("MP951.0", 1.0, false);
         assert!(!has("259 96 08", mp951) && !has("259 93 09", mp951) && has("280 54 01", mp951));
         // Bit 4 of MP7420 is new, MP7420 is not.
-        assert!(!has("280 54 04", Use::parameter("MP7420", 16.0)) && has("280 54 04", Use::parameter("MP7420", 15.0)));
-        assert!(!has("280 54 05", Use::parameter("MP1925.0", 1.0)));
+        assert!(!has("280 54 04", Use::parameter("MP7420", 16.0, false)) && has("280 54 04", Use::parameter("MP7420", 15.0, false)));
+        assert!(!has("280 54 05", Use::parameter("MP1925.0", 1.0, false)));
     }
 
     #[test]

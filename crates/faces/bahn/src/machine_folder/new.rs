@@ -168,8 +168,8 @@ fn is_old(model: ControlModel) -> bool {
     model.limits().numbering == Numbering::Old
 }
 
-/// The operating panel is wired to I128 ff. where the control has inputs of its own for it, otherwise to the
-/// second board, I64 ff., or without boards to what is left of the standard interface.
+/// The operating panel is wired to I128 ff. where the control has inputs of its own for it, otherwise to I32 ff.
+/// of the first board, or without boards to what is left of the standard interface.
 fn inputs_of_panel(text: &str, model: ControlModel) -> String {
     if !is_old(model) {
         return text.to_owned();
@@ -181,7 +181,7 @@ fn inputs_of_panel(text: &str, model: ControlModel) -> String {
     (PANEL_INPUTS..PANEL_INPUTS + 25).fold(text.to_owned(), |text, input| {
         text.replace(
             &format!("I{input}"),
-            &format!("I{}", input - PANEL_INPUTS + SECOND_BOARD),
+            &format!("I{}", input - PANEL_INPUTS + OLD_PANEL_INPUTS),
         )
     })
 }
@@ -206,8 +206,8 @@ const STANDARD_INTERFACE: [(&str, &str); 14] = [
 
 /// First input of the operating panel [000:11556-11567].
 const PANEL_INPUTS: u16 = 128;
-/// First input of the second board of the TNC 151 and 155 [001:297].
-const SECOND_BOARD: u16 = 64;
+/// First input of the TNC 151 and 155 for the panel, on the first board [001:297].
+const OLD_PANEL_INPUTS: u16 = 32;
 
 /// The TNC 151 and 155 count 20 steps to a signal period: 1 µm with one of 20 µm [001:1616-1625]; they take
 /// the first reference mark of each axis, so there is one.

@@ -66,7 +66,7 @@ pub struct LoadedMachine {
     /// control goes on.
     pub to_be_entered: Option<String>,
     /// Faults of files that are refused when they are used: they come from outside, so that none of them keeps a machine
-    /// from being switched on.
+    /// from being switched on; and machine parameters that the control does not have.
     pub refused: Vec<Diagnostic>,
 }
 
@@ -430,6 +430,7 @@ impl Loader<'_> {
         let mut list = ParameterList::reference(model).with_equipment(self.equipment);
         list.take(&text);
         let found = text.diagnostics(&list, &path);
+        self.refused.extend(text.lacking(&list, &path));
         let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
         match faulty || text.entries().is_empty() {
             true => {
@@ -453,6 +454,7 @@ impl Loader<'_> {
         let mut list = ParameterList::reference(model).with_equipment(self.equipment);
         list.take(&text);
         let found = text.diagnostics(&list, &path);
+        self.refused.extend(text.lacking(&list, &path));
         self.sort(found).then_some(list)
     }
 
