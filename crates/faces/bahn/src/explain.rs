@@ -44,13 +44,21 @@ fn all(model: ControlModel) -> String {
 /// What a model has from which release of its software on, or with which option, and where the manuals say it.
 fn of_software(model: ControlModel) -> String {
     let rows = equipment::table(model);
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default();
+    let width = |column: usize| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or_default()
+    };
     let (what, takes) = (width(0), width(1));
     let line = |row: &[String; 3]| format!("  {:what$}  {:takes$}  {}\n", row[0], row[1], row[2]);
     let lines: String = rows.iter().map(line).collect();
     let heading = match lines.is_empty() {
         true => format!("No manual tells releases or options of the {}.\n", model.name()),
-        false => format!("{}: what takes an option or a release of the software\n", model.name()),
+        false => format!(
+            "{}: what takes an option or a release of the software\n",
+            model.name()
+        ),
     };
     heading + &lines
 }
@@ -244,9 +252,9 @@ fn mentions(wanted: &str, model: ControlModel) -> String {
         ];
         mentioned(&texts).then(|| format!("  {number:<7} {name}\n"))
     });
-    let rows = equipment::table(model).into_iter().filter_map(|[what, takes, _]| {
-        mentioned(&[&what, &takes]).then(|| format!("  {what}: {takes}\n"))
-    });
+    let rows = equipment::table(model)
+        .into_iter()
+        .filter_map(|[what, takes, _]| mentioned(&[&what, &takes]).then(|| format!("  {what}: {takes}\n")));
     let section = |title: &str, lines: &mut dyn Iterator<Item = String>| {
         let lines: String = lines.collect();
         match lines.is_empty() {

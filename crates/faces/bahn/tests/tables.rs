@@ -183,7 +183,11 @@ fn a_disabled_table_is_neither_seen_nor_changed() {
     );
     let run = folder.bahn("table show mill");
     assert_eq!(run.code(), 2);
-    assert!(run.err().contains("MP7224.0 disables tool tables"), "{}", run.err());
+    assert!(
+        run.err().contains("MP7224.0 disables tool tables"),
+        "{}",
+        run.err()
+    );
     let run = folder.bahn("table set mill/tools.tsv 1 L=72");
     assert_eq!(run.code(), 2);
     assert!(run.err().contains("is disabled (MP7224.0)"), "{}", run.err());

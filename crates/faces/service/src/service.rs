@@ -13,8 +13,7 @@ use std::sync::{Arc, Mutex};
 use bahn_access::Role;
 use bahn_host::{LoadedMachine, Reader, Stamped};
 use bahn_panel::{Key, Link, Live, Station};
-use bahn_parameters::ControlModel;
-use bahn_parameters::tables::FileTypes;
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_store::{Change, InUse, PLC, Store, StoreError, TNC};
 
 use crate::error::ServiceError;
@@ -162,8 +161,8 @@ impl MachineService {
 
 /// What a machine was loaded with.
 struct Loaded {
-    /// The types of files that MP7224 disables and protects.
-    types: FileTypes,
+    /// What it says of files.
+    list: ParameterList,
     programs: PathBuf,
     plc: PathBuf,
     tables: tables::Files,
@@ -174,7 +173,7 @@ impl Loaded {
     fn of(machine: &LoadedMachine) -> Loaded {
         let (root, folder) = (&machine.root, &machine.folder);
         Loaded {
-            types: machine.parameters.table_parameters().types,
+            list: machine.parameters.clone(),
             programs: machine.programs(0),
             plc: plc_folder(machine),
             tables: tables::Files::of(root, folder),
@@ -206,7 +205,7 @@ impl Loaded {
             asked.unwrap_or(false)
         }));
         let store = Store::of_machine_with(&self.programs, &self.plc, self.tables.views()?, in_use)?;
-        Ok(store.with_file_types(self.types))
+        Ok(store.ruled_by(&self.list))
     }
 }
 

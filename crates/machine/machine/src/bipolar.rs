@@ -25,7 +25,8 @@ impl Bipolar {
     /// Reads `[bipolar]`.
     pub fn read(section: Section) -> Bipolar {
         if !section.has("overload") {
-            section.fault("[bipolar] needs overload, the input that J3/11 is wired to, as \"I40\"".to_owned());
+            section
+                .fault("[bipolar] needs overload, the input that J3/11 is wired to, as \"I40\"".to_owned());
         }
         let bipolar = Bipolar {
             overload: section.contact("overload"),
@@ -39,7 +40,9 @@ impl Bipolar {
     /// The outputs that are bipolar, two and two, and whether something is wired to each.
     pub fn fit(&mut self, outputs: &[usize], is_wired: impl Fn(usize) -> bool) {
         let wired = |output: &usize| Some(*output).filter(|output| is_wired(*output));
-        let pairs = outputs.chunks(2).map(|pair| [pair.first().and_then(wired), pair.get(1).and_then(wired)]);
+        let pairs = outputs
+            .chunks(2)
+            .map(|pair| [pair.first().and_then(wired), pair.get(1).and_then(wired)]);
         self.pairs = pairs.filter(|pair| *pair != [None; 2]).collect();
     }
 

@@ -6,7 +6,6 @@ use bahn_servo::{Commands, Encoder, INPUTS, Measured, OUTPUTS, Plant, Probe as T
 use bahn_text::Diagnostic;
 
 use crate::axis::{Axis, AxisState};
-use crate::bipolar::Bipolar;
 use crate::by_hand::ByHand;
 use crate::chain::Chain;
 use crate::clock::{Clock, TICK_US};
@@ -58,8 +57,6 @@ pub struct Machine {
     voltage_key: Option<usize>,
     pub(crate) tool_probe: Option<ToolProbe>,
     pub(crate) plc: PlcSide,
-    /// The loads at bipolar outputs.
-    bipolar: Option<Bipolar>,
     /// Nothing has moved in the last tick and nobody has acted since: contacts, relays and things stay as they are.
     pub(crate) rests: bool,
     /// Of the logic unit.
@@ -129,8 +126,7 @@ impl Machine {
             voltage_key: None,
             panel,
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
-            plc: PlcSide::default(),
-            bipolar: root.section("bipolar").map(Bipolar::read),
+            plc: PlcSide::read(&root),
             rests: false,
             buffer_battery_low: false,
             wires: Vec::new(),
@@ -187,9 +183,8 @@ impl Machine {
     pub fn fit(&mut self, switched: impl Fn(usize) -> bool, bipolar: &[usize]) -> bool {
         self.chain.fit(switched);
         let outputs: Vec<&str> = self.wires.iter().map(|wire| wire.operand.as_str()).collect();
-        let Some(own) = &mut self.bipolar else { return false };
-        own.fit(bipolar, |output| outputs.contains(&format!("O{output}").as_str()));
-        bipolar.is_empty()
+        let is_wired = |output: usize| outputs.contains(&format!("O{output}").as_str());
+        self.plc.fit(bipolar, is_wired) && bipolar.is_empty()
     }
 
     /// The name in the description.
@@ -511,9 +506,7 @@ impl Machine {
         if let Some(magazine) = &self.mechanism.magazine {
             magazine.set_inputs(inputs);
         }
-        if let Some(bipolar) = &self.bipolar {
-            bipolar.set_inputs(&self.plc.live, inputs);
-        }
+        self.plc.set_inputs(inputs);
         self.plc.set_stuck(inputs, self.clock.time_us);
     }
 

@@ -389,7 +389,8 @@ impl<'r, 't> Section<'r, 't> {
 
     /// Where the value of a key stands, or the table without one.
     pub fn place_of(&self, key: &str) -> Span {
-        self.reader.place(self.table.get(key).map_or(self.at, |value| value.span().start))
+        self.reader
+            .place(self.table.get(key).map_or(self.at, |value| value.span().start))
     }
 
     /// A list of texts, each with its place.

@@ -60,18 +60,15 @@ pub use error::StoreError;
 pub use file_type::FileType;
 pub use files::{Reading, Writing};
 pub use in_use::{Change, InUse};
-pub use place::{NAME_MAX, Place};
+pub use place::{NAME_MAX, PLC, Place, TNC};
 pub use views::View;
 
 pub use entry::{Attributes, Entry, Existing};
 
+use bahn_parameters::ParameterList;
 use bahn_parameters::tables::FileTypes;
 use medium::Medium;
 
-/// Drive of the part programs.
-pub const TNC: &str = "TNC";
-/// Drive of the PLC's files.
-pub const PLC: &str = "PLC";
 /// Files on a disk of the FE 401 at most.
 pub const DISK_FILES: usize = 256;
 
@@ -120,11 +117,13 @@ impl Store {
         Store::over(&[("", folder)], Vec::new(), InUse::never(), Some(DISK_FILES))
     }
 
-    /// The same with the types of files that MP7224 disables and protects; to be said before anybody else has the store.
+    /// The same with what machine parameters say of files: the types that MP7224 disables and protects, and how long names are,
+    /// MP7222. To be said before anybody else has the store.
     #[must_use]
-    pub fn with_file_types(mut self, types: FileTypes) -> Store {
+    pub fn ruled_by(mut self, list: &ParameterList) -> Store {
         if let Some(medium) = Arc::get_mut(&mut self.medium) {
-            medium.types = types;
+            medium.types = list.table_parameters().types;
+            medium.name_max = Some(list.operation_parameters().file_name_max.into());
         }
         self
     }
@@ -152,6 +151,7 @@ impl Store {
                 in_use,
                 limit,
                 types: FileTypes::default(),
+                name_max: None,
                 busy: Mutex::default(),
                 changes: AtomicU64::new(0),
             }),

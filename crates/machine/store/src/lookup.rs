@@ -99,6 +99,9 @@ impl Medium {
         if self.is_disabled(place) {
             return Err(StoreError::Protected(place.to_string()));
         }
+        if self.is_too_long(place) {
+            return Err(StoreError::BadName(place.to_string()));
+        }
         let folder = self.find_folder(&place.folder().ok_or_else(exists)?)?;
         match self.find_any(place) {
             Ok(found) if old != Some(&found) => return Err(exists()),

@@ -340,9 +340,7 @@ impl Definition {
                     && !versions.starts_with("TNC 407 only")
                     && !versions.starts_with("not TNC 415")
             }
-            _ => {
-                !versions.starts_with("TNC 407 only") && !versions.starts_with("not TNC 415")
-            }
+            _ => !versions.starts_with("TNC 407 only") && !versions.starts_with("not TNC 415"),
         }
     }
 }

@@ -67,7 +67,8 @@ impl ListText {
     pub fn lacking(&self, list: &ParameterList, file: &Path) -> Vec<Diagnostic> {
         let lacking = self.entries().iter().filter_map(|entry| {
             let id = entry.id.to_string();
-            let standard = Definition::find(self.model(), entry.id.number, entry.id.index.unwrap_or(0))?.standard();
+            let standard =
+                Definition::find(self.model(), entry.id.number, entry.id.index.unwrap_or(0))?.standard();
             let wanted = Use::parameter(&id, entry.value, entry.value == standard);
             let why = list.equipment().lacks(list.model(), wanted)?;
             let span = self.span_of(entry);

@@ -153,12 +153,23 @@ struct Type {
     versions: &'static str,
 }
 
-static TYPES: LazyLock<Vec<Type>> =
-    LazyLock::new(|| include_str!("../data/software.tsv").lines().skip(1).filter_map(software_type).collect());
+static TYPES: LazyLock<Vec<Type>> = LazyLock::new(|| {
+    include_str!("../data/software.tsv")
+        .lines()
+        .skip(1)
+        .filter_map(software_type)
+        .collect()
+});
 
 static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| {
-    let releases = include_str!("../data/releases.tsv").lines().skip(1).filter_map(release_row);
-    let options = include_str!("../data/options.tsv").lines().skip(1).filter_map(option_row);
+    let releases = include_str!("../data/releases.tsv")
+        .lines()
+        .skip(1)
+        .filter_map(release_row);
+    let options = include_str!("../data/options.tsv")
+        .lines()
+        .skip(1)
+        .filter_map(option_row);
     options.chain(releases).collect()
 });
 
@@ -347,7 +358,9 @@ impl Release {
             Some((_, version)) => self.version >= *version,
             // Levels have nothing in common with software numbers.
             None if self.series == Series::Level => true,
-            None => since.iter().any(|(series, _)| *series == Series::Level || *series < self.series),
+            None => since
+                .iter()
+                .any(|(series, _)| *series == Series::Level || *series < self.series),
         }
     }
 }
@@ -419,7 +432,9 @@ impl Equipment {
             return None;
         }
         let object = Range::read(wanted.object);
-        let rows = ROWS.iter().filter(|row| row.kind == wanted.kind && row.when.holds(wanted.value));
+        let rows = ROWS
+            .iter()
+            .filter(|row| row.kind == wanted.kind && row.when.holds(wanted.value));
         let mut rows = rows.filter(|row| Range::read(row.objects).contains(&object));
         rows.find_map(|row| self.misses(model, row))
     }
@@ -433,7 +448,10 @@ impl Equipment {
             }
             Takes::Since(since) => {
                 let own = self.release.filter(|own| !own.has(since))?;
-                Some(format!("there from software {} on; this control has {own}", first(model, since)?))
+                Some(format!(
+                    "there from software {} on; this control has {own}",
+                    first(model, since)?
+                ))
             }
         }
     }
@@ -441,7 +459,9 @@ impl Equipment {
     /// Whether the software does it so.
     pub fn does(&self, behaviour: Behaviour) -> bool {
         let object = behaviour.object();
-        let mut rows = ROWS.iter().filter(|row| row.kind.is_none() && row.objects == object);
+        let mut rows = ROWS
+            .iter()
+            .filter(|row| row.kind.is_none() && row.objects == object);
         rows.all(|row| match (&row.takes, self.release) {
             (Takes::Since(since), Some(release)) => release.has(since),
             _ => true,
@@ -456,7 +476,9 @@ fn first(model: ControlModel, since: &[(Series, u8)]) -> Option<String> {
             let old = model.limits().numbering == Numbering::Old;
             return old.then(|| format!("level {version:02}"));
         }
-        let own = TYPES.iter().find(|one| one.series == *series && one.is_of(model))?;
+        let own = TYPES
+            .iter()
+            .find(|one| one.series == *series && one.is_of(model))?;
         Some(format!("{} {version:02}", own.name))
     });
     named
@@ -478,7 +500,6 @@ pub fn table(model: ControlModel) -> Vec<[String; 3]> {
     rows.collect()
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -499,7 +520,8 @@ mod tests {
             let dated = row.versions.contains("from 259 9") || row.versions.contains("from 280 5");
             let id = row.id.to_string();
             let known = ROWS.iter().any(|own| {
-                own.kind == Some(Kind::MachineParameter) && Range::read(own.objects).contains(&Range::read(&id))
+                own.kind == Some(Kind::MachineParameter)
+                    && Range::read(own.objects).contains(&Range::read(&id))
             });
             assert!(known || !dated, "{id}: {}", row.versions);
         }
@@ -522,7 +544,10 @@ mod tests {
         let mp951 = Use::parameter("MP951.0", 1.0, false);
         assert!(!has("259 96 08", mp951) && !has("259 93 09", mp951) && has("280 54 01", mp951));
         // Bit 4 of MP7420 is new, MP7420 is not.
-        assert!(!has("280 54 04", Use::parameter("MP7420", 16.0, false)) && has("280 54 04", Use::parameter("MP7420", 15.0, false)));
+        assert!(
+            !has("280 54 04", Use::parameter("MP7420", 16.0, false))
+                && has("280 54 04", Use::parameter("MP7420", 15.0, false))
+        );
         assert!(!has("280 54 05", Use::parameter("MP1925.0", 1.0, false)));
     }
 

@@ -99,7 +99,9 @@ impl ControlModel {
     pub const ALL: [ControlModel; 24] = {
         use ControlModel::*;
         [
-            Tnc151, Tnc151b, Tnc151br, Tnc151q, Tnc151qr, Tnc151f, Tnc151fr, Tnc151w, Tnc151wr, Tnc155, Tnc155b, Tnc155br, Tnc155q, Tnc155qr, Tnc155f, Tnc155fr, Tnc155w, Tnc155wr, Tnc360, Tnc407, Tnc415b, Tnc415f, Tnc425, Tnc425e,
+            Tnc151, Tnc151b, Tnc151br, Tnc151q, Tnc151qr, Tnc151f, Tnc151fr, Tnc151w, Tnc151wr, Tnc155,
+            Tnc155b, Tnc155br, Tnc155q, Tnc155qr, Tnc155f, Tnc155fr, Tnc155w, Tnc155wr, Tnc360, Tnc407,
+            Tnc415b, Tnc415f, Tnc425, Tnc425e,
         ]
     };
 

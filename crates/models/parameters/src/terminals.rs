@@ -108,11 +108,21 @@ struct Row {
     name: &'static str,
 }
 
-static BOARDS: LazyLock<Vec<Board>> =
-    LazyLock::new(|| include_str!("../data/boards.tsv").lines().skip(1).filter_map(board).collect());
+static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
+    include_str!("../data/boards.tsv")
+        .lines()
+        .skip(1)
+        .filter_map(board)
+        .collect()
+});
 
-static ROWS: LazyLock<Vec<Row>> =
-    LazyLock::new(|| include_str!("../data/terminals.tsv").lines().skip(1).filter_map(row).collect());
+static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| {
+    include_str!("../data/terminals.tsv")
+        .lines()
+        .skip(1)
+        .filter_map(row)
+        .collect()
+});
 
 fn board(line: &'static str) -> Option<Board> {
     let mut columns = line.split('\t');
@@ -122,7 +132,11 @@ fn board(line: &'static str) -> Option<Board> {
         name: next()?,
         unit: next()?,
         not_with: next()?,
-        second: [next()?.parse().ok()?, next()?.parse().ok()?, next()?.parse().ok()?],
+        second: [
+            next()?.parse().ok()?,
+            next()?.parse().ok()?,
+            next()?.parse().ok()?,
+        ],
         source: next()?,
     })
 }
@@ -191,7 +205,9 @@ impl Board {
     /// Has analogue inputs.
     pub fn has_analogue(&self) -> bool {
         let own = |row: &&Row| row.board == self.id;
-        ROWS.iter().filter(own).any(|row| row.kind == TerminalKind::Analogue)
+        ROWS.iter()
+            .filter(own)
+            .any(|row| row.kind == TerminalKind::Analogue)
     }
 
     /// The board with its analogue inputs switched on or off.
@@ -232,7 +248,8 @@ pub fn terminals(model: ControlModel, fitted: &[Fitted]) -> impl Iterator<Item =
             "digital" => fitted.all_digital,
             _ => true,
         };
-        rows.filter(acts).flat_map(move |row| row.terminals(Some(place + 1), shift))
+        rows.filter(acts)
+            .flat_map(move |row| row.terminals(Some(place + 1), shift))
     });
     own.chain(boards)
 }

@@ -306,6 +306,10 @@ fn versions_r_count_the_square_waves_of_an_exe() {
         (ControlModel::Tnc155wr, true, 20.0 / 5.0),
     ] {
         let encoder = ParameterList::reference(model).axis_parameters(0).encoder;
-        assert_eq!((encoder.square_wave, encoder.signal_period_um), (square, period_um), "{model}");
+        assert_eq!(
+            (encoder.square_wave, encoder.signal_period_um),
+            (square, period_um),
+            "{model}"
+        );
     }
 }

@@ -81,7 +81,10 @@ fn boards_of_the_tnc_151() {
         .filter_map(|terminal| Some(terminal.operand?.to_string()))
         .collect();
     // A25 to A30 and A57 to A62 [001:327].
-    let expected: Vec<String> = (25..=30).chain(57..=62).map(|number| format!("O{number}")).collect();
+    let expected: Vec<String> = (25..=30)
+        .chain(57..=62)
+        .map(|number| format!("O{number}"))
+        .collect();
     assert_eq!(bipolar, expected);
 }
 
@@ -117,7 +120,11 @@ fn the_lists_of_the_tnc_151() {
     ] {
         assert_eq!(at(Tnc151b, &[], b).as_deref(), Some(operand), "B {b}");
         assert_eq!(at(Tnc155fr, &[], b).as_deref(), Some(operand), "F {b}");
-        assert_eq!(at(Tnc151q, &one, &format!("PL1 {q}")).as_deref(), Some(operand), "Q {q}");
+        assert_eq!(
+            at(Tnc151q, &one, &format!("PL1 {q}")).as_deref(),
+            Some(operand),
+            "Q {q}"
+        );
     }
     // Without an operand: EMERGENCY STOP [001:903], nominal values [001:1091-1094].
     assert_eq!(at(Tnc151b, &[], "J1/8"), None);
@@ -175,8 +182,14 @@ fn the_tables_of_the_tnc_415() {
     ] {
         let two = fitted(&[(board, false), (board, false)]);
         for (terminal, first, second) in rows {
-            assert_eq!(at(Tnc415b, &two, &format!("PL1 {terminal}")).as_deref(), Some(first));
-            assert_eq!(at(Tnc415b, &two, &format!("PL2 {terminal}")).as_deref(), Some(second));
+            assert_eq!(
+                at(Tnc415b, &two, &format!("PL1 {terminal}")).as_deref(),
+                Some(first)
+            );
+            assert_eq!(
+                at(Tnc415b, &two, &format!("PL2 {terminal}")).as_deref(),
+                Some(second)
+            );
         }
     }
     // Voltage input 0 and thermistor 3 of each extension [000:8472-8479].
@@ -187,7 +200,11 @@ fn the_tables_of_the_tnc_415() {
         ("PL2 X2/1", "W464"),
         ("PL2 X10/2", "W478"),
     ] {
-        assert_eq!(at(Tnc415b, &analogue, terminal).as_deref(), Some(word), "{terminal}");
+        assert_eq!(
+            at(Tnc415b, &analogue, terminal).as_deref(),
+            Some(word),
+            "{terminal}"
+        );
     }
 }
 
@@ -210,11 +227,22 @@ fn each_terminal_is_one_operand_and_no_operand_is_without() {
     for model in ControlModel::ALL {
         let boards = Board::all_of(model, [false; 2]);
         let all: Vec<_> = terminals(model, &boards).collect();
-        let pins: BTreeSet<String> = all.iter().filter(|one| one.pin.is_some()).map(ToString::to_string).collect();
-        assert_eq!(pins.len(), all.iter().filter(|one| one.pin.is_some()).count(), "{model}");
+        let pins: BTreeSet<String> = all
+            .iter()
+            .filter(|one| one.pin.is_some())
+            .map(ToString::to_string)
+            .collect();
+        assert_eq!(
+            pins.len(),
+            all.iter().filter(|one| one.pin.is_some()).count(),
+            "{model}"
+        );
         for (letter, ranges) in [('I', model.limits().inputs), ('O', model.limits().outputs)] {
             let named: BTreeSet<u16> = ranges.iter().flat_map(|(first, last)| *first..=*last).collect();
-            let there = all.iter().filter_map(|one| one.operand).filter(|one| one.letter == letter);
+            let there = all
+                .iter()
+                .filter_map(|one| one.operand)
+                .filter(|one| one.letter == letter);
             assert_eq!(named, there.map(|one| one.number).collect(), "{model} {letter}");
         }
     }

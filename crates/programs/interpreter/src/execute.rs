@@ -165,7 +165,10 @@ fn formula(q: &mut QTable, target: u16, expression: &Expression, settings: &Sett
     }
     let wanted = Use::of(Kind::Fn, "FORMULA");
     if let Some(why) = settings.rules.equipment.lacks(settings.model, wanted) {
-        return Err(Fault::new(MessageId::BlockNotKnown, format!("a formula is {why}")));
+        return Err(Fault::new(
+            MessageId::BlockNotKnown,
+            format!("a formula is {why}"),
+        ));
     }
     let value = q.evaluate(expression)?;
     q.set(target, value)

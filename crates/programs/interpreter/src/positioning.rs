@@ -495,7 +495,9 @@ fn check_axes(c: &mut Context<'_>, axes: AxisSet) -> Result<(), Fault> {
         return Err(Fault::new(MessageId::WrongAxisProgrammed, reason));
     }
     let max = usize::from(c.settings.model.limits().line_axes_max);
-    let early = max == LATER_AXES && axes.len() == max && !c.settings.rules.equipment.does(Behaviour::LinesOfFourAxes);
+    let early = max == LATER_AXES
+        && axes.len() == max
+        && !c.settings.rules.equipment.does(Behaviour::LinesOfFourAxes);
     let max = if early { max.min(LATER_AXES - 1) } else { max };
     if axes.len() <= max {
         return Ok(());

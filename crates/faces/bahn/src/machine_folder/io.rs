@@ -82,7 +82,11 @@ fn text(machine: &LoadedMachine, rows: &[Row]) -> String {
         false => boards,
     };
     let head = format!("{}, {equipment}\n\n", machine.parameters.model().name());
-    let width = rows.iter().map(|row| row.terminal.len()).max().unwrap_or_default();
+    let width = rows
+        .iter()
+        .map(|row| row.terminal.len())
+        .max()
+        .unwrap_or_default();
     let lines = rows.iter().map(|row| {
         let operand = row.operand.as_deref().unwrap_or("-");
         let name = row.name.as_deref().map(bahn_text::printable).unwrap_or_default();

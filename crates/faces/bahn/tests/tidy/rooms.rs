@@ -91,7 +91,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("access", &[]),
-    ("store", &["program", "host"]),
+    ("store", &["parameters", "program", "host"]),
     ("link", &["access", "store", "parameters", "tnc", "host"]),
     (
         "screen",

@@ -18,8 +18,10 @@ impl Loader<'_> {
         let mut equipment = match &said.options {
             None => Equipment::default(),
             Some(options) => {
-                let known: Vec<HardwareOption> =
-                    options.iter().filter_map(|option| self.option(option, model)).collect();
+                let known: Vec<HardwareOption> = options
+                    .iter()
+                    .filter_map(|option| self.option(option, model))
+                    .collect();
                 Equipment::with_options(&known)
             }
         };
@@ -35,7 +37,9 @@ impl Loader<'_> {
     fn option(&mut self, said: &Said, model: ControlModel) -> Option<HardwareOption> {
         let option = HardwareOption::named(&said.text).filter(|option| option.is_of(model));
         if option.is_none() {
-            let known = HardwareOption::ALL.into_iter().filter(|option| option.is_of(model));
+            let known = HardwareOption::ALL
+                .into_iter()
+                .filter(|option| option.is_of(model));
             let known: Vec<&str> = known.map(HardwareOption::id).collect();
             let message = format!(
                 "`{}` is no option of the {}; there are {}",
@@ -55,8 +59,12 @@ impl Loader<'_> {
         model: ControlModel,
         parameters: Option<&ParameterList>,
     ) -> Vec<Fitted> {
-        let by_parameter = parameters.map_or([false; BOARDS_MAX], |list| list.plc_parameters().analogue_inputs);
-        let boards = said.boards.as_ref().map(|boards| self.named_boards(boards, model));
+        let by_parameter =
+            parameters.map_or([false; BOARDS_MAX], |list| list.plc_parameters().analogue_inputs);
+        let boards = said
+            .boards
+            .as_ref()
+            .map(|boards| self.named_boards(boards, model));
         if let Some((span, on)) = said.analogue
             && parameters.is_some()
             && on != by_parameter.contains(&true)
@@ -72,7 +80,9 @@ impl Loader<'_> {
             None => Board::all_of(model, by_parameter),
             Some(boards) => {
                 let fitted = boards.into_iter().zip(by_parameter);
-                fitted.map(|(board, analogue)| board.with_analogue(analogue)).collect()
+                fitted
+                    .map(|(board, analogue)| board.with_analogue(analogue))
+                    .collect()
             }
         }
     }
@@ -97,7 +107,10 @@ impl Loader<'_> {
                 continue;
             }
             if let Some(other) = boards.iter().find(|other| other.excludes(board)) {
-                let message = format!("a {} is never beside a {}; take one of them out", board.name, other.name);
+                let message = format!(
+                    "a {} is never beside a {}; take one of them out",
+                    board.name, other.name
+                );
                 self.fault_at_span(one.span, message);
             }
             boards.push(board);
@@ -119,25 +132,37 @@ impl Loader<'_> {
             let at = |terminal: &&Terminal| is_output(terminal, output);
             terminals.iter().filter(at).any(|terminal| terminal.switched)
         };
-        let bipolar = terminals.iter().filter(|terminal| terminal.kind == TerminalKind::Bipolar);
-        let bipolar: Vec<usize> =
-            bipolar.filter_map(|terminal| Some(terminal.operand?.number.into())).collect();
+        let bipolar = terminals
+            .iter()
+            .filter(|terminal| terminal.kind == TerminalKind::Bipolar);
+        let bipolar: Vec<usize> = bipolar
+            .filter_map(|terminal| Some(terminal.operand?.number.into()))
+            .collect();
         if plant.fit(switched, &bipolar) {
             let message = "[bipolar] is for outputs of a PL 110 B, which is not among the boards".to_owned();
             let line = self.text_of_plant(folder).and_then(|(_, text)| {
-                text.lines().position(|line| line.trim_start().starts_with("[bipolar]"))
+                text.lines()
+                    .position(|line| line.trim_start().starts_with("[bipolar]"))
             });
             self.fault_in_plant(folder, Span::line(line.map_or(1, |line| line + 1)), message);
         }
     }
 
-    fn wiring(&mut self, folder: &MachineFolder, plant: &Machine, model: ControlModel, terminals: &[Terminal]) {
+    fn wiring(
+        &mut self,
+        folder: &MachineFolder,
+        plant: &Machine,
+        model: ControlModel,
+        terminals: &[Terminal],
+    ) {
         /// Faults of the wiring that are named at most.
         const FAULTS_MAX: usize = 1000;
         let there = |letter: char| {
             let operands = terminals.iter().filter_map(|terminal| terminal.operand);
-            let mut numbers: Vec<u16> =
-                operands.filter(|own| own.letter == letter).map(|own| own.number).collect();
+            let mut numbers: Vec<u16> = operands
+                .filter(|own| own.letter == letter)
+                .map(|own| own.number)
+                .collect();
             numbers.sort_unstable();
             numbers.dedup();
             numbers

@@ -493,7 +493,9 @@ impl Loader<'_> {
             true => ProgramMemory::Eprom,
             false => ProgramMemory::Ram,
         };
-        let options = Options::for_model(model).stored_in(memory).with_equipment(self.equipment);
+        let options = Options::for_model(model)
+            .stored_in(memory)
+            .with_equipment(self.equipment);
         let mut source = PlcSource::compile(&path, None, options);
         self.sort(source.faults());
         source.compilation.program.take().map(Arc::new)

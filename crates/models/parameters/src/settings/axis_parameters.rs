@@ -336,10 +336,13 @@ fn precontrol(axis: &AxisReader) -> PrecontrolSettings {
         kv_m105: axis.new_or(1515, || kv),
         transient_m_min: axis.common(1520, 53),
         damping: axis.common(1530, 64),
-        window_mm_min: axis.list().get(1525, 0).unwrap_or(match axis.list().model().family() {
-            ControlModel::Tnc151 | ControlModel::Tnc155 => f64::INFINITY,
-            _ => WINDOW_MM_MIN,
-        }),
+        window_mm_min: axis
+            .list()
+            .get(1525, 0)
+            .unwrap_or(match axis.list().model().family() {
+                ControlModel::Tnc151 | ControlModel::Tnc155 => f64::INFINITY,
+                _ => WINDOW_MM_MIN,
+            }),
         monitoring_mm: axis.old_common(1410, 56),
         emergency_mm: axis.old_common(1420, 57),
     }
