@@ -102,6 +102,100 @@ fn terminals_of_boards_and_of_version_b() {
     assert_eq!((count(&rows, 'I'), count(&rows, 'O')), (126, 62));
 }
 
+/// Control, lines of machine.toml, place and message of their fault.
+const WRONG: [(&str, &str, &str, &str); 15] = [
+    (
+        "tnc415b",
+        "boards = [\"PL410B\", \"PL410\"]",
+        "1:21",
+        "a PL 410 is never beside a PL 410 B",
+    ),
+    (
+        "tnc415b",
+        "boards = [\"PL410B\", \"PA110\"]",
+        "1:21",
+        "a PA 110 is never beside a PL 410 B",
+    ),
+    (
+        "tnc415b",
+        "boards = [\"PL500\"]",
+        "1:11",
+        "`PL500` is no board of the TNC 415 B; there are PL410, PL410B, PL400, PA110",
+    ),
+    (
+        "tnc415b",
+        "boards = [\"PL100B\"]",
+        "1:11",
+        "`PL100B` is no board of the TNC 415 B",
+    ),
+    (
+        "tnc155q",
+        "boards = [\"PL400\"]",
+        "1:11",
+        "`PL400` is no board of the TNC 155 Q; there are PL100B, PL110B",
+    ),
+    (
+        "tnc155b",
+        "boards = [\"PL100B\"]",
+        "1:11",
+        "`PL100B` is no board of the TNC 155 B; it has none",
+    ),
+    (
+        "tnc415b",
+        "boards = [\"PL400\", \"PL400\", \"PL400\"]",
+        "1:29",
+        "2 boards are the most",
+    ),
+    (
+        "tnc415b",
+        "boards = \"PL400\"",
+        "1:10",
+        "boards is a list of texts",
+    ),
+    (
+        "tnc415b",
+        "boards = [\"PL410\"]\nanalogue = true",
+        "2:12",
+        "`analogue` is true, but MP4410 has analogue inputs of no board",
+    ),
+    (
+        "tnc155",
+        "options = [\"ts120\"]",
+        "1:12",
+        "`ts120` is no option of the TNC 155; there are spindle-orientation",
+    ),
+    (
+        "tnc407",
+        "options = [\"tm110\"]",
+        "1:12",
+        "`tm110` is no option of the TNC 407; there are ts120",
+    ),
+    (
+        "tnc415b",
+        "software = \"280 58 06\"",
+        "1:12",
+        "`280 58 06` is no software of the TNC 415 B; there are 243 05 02 to 16",
+    ),
+    (
+        "tnc155",
+        "software = 100",
+        "1:12",
+        "`100` is no level of the software of the TNC 155; there are 1 to 99",
+    ),
+    (
+        "tnc360",
+        "software = 8",
+        "1:12",
+        "no manual tells releases of the TNC 360",
+    ),
+    (
+        "tnc155",
+        "software = true",
+        "1:12",
+        "software is a text in quotes, or a whole number",
+    ),
+];
+
 /// A wire beyond what is fitted, and boards that do not go together, are faults at their places.
 #[test]
 fn machine_check_refuses_what_is_not_fitted() {
@@ -118,98 +212,7 @@ fn machine_check_refuses_what_is_not_fitted() {
     edit(&folder, "m/machine.toml", "boards = []", "boards = [\"PL410\"]");
     assert_eq!(folder.bahn("machine check m").code(), 0);
 
-    for (model, line, place, message) in [
-        (
-            "tnc415b",
-            "boards = [\"PL410B\", \"PL410\"]",
-            "1:21",
-            "a PL 410 is never beside a PL 410 B",
-        ),
-        (
-            "tnc415b",
-            "boards = [\"PL410B\", \"PA110\"]",
-            "1:21",
-            "a PA 110 is never beside a PL 410 B",
-        ),
-        (
-            "tnc415b",
-            "boards = [\"PL500\"]",
-            "1:11",
-            "`PL500` is no board of the TNC 415 B; there are PL410, PL410B, PL400, PA110",
-        ),
-        (
-            "tnc415b",
-            "boards = [\"PL100B\"]",
-            "1:11",
-            "`PL100B` is no board of the TNC 415 B",
-        ),
-        (
-            "tnc155q",
-            "boards = [\"PL400\"]",
-            "1:11",
-            "`PL400` is no board of the TNC 155 Q; there are PL100B, PL110B",
-        ),
-        (
-            "tnc155b",
-            "boards = [\"PL100B\"]",
-            "1:11",
-            "`PL100B` is no board of the TNC 155 B; it has none",
-        ),
-        (
-            "tnc415b",
-            "boards = [\"PL400\", \"PL400\", \"PL400\"]",
-            "1:29",
-            "2 boards are the most",
-        ),
-        (
-            "tnc415b",
-            "boards = \"PL400\"",
-            "1:10",
-            "boards is a list of texts",
-        ),
-        (
-            "tnc415b",
-            "boards = [\"PL410\"]\nanalogue = true",
-            "2:12",
-            "`analogue` is true, but MP4410 has analogue inputs of no board",
-        ),
-        (
-            "tnc155",
-            "options = [\"ts120\"]",
-            "1:12",
-            "`ts120` is no option of the TNC 155; there are spindle-orientation",
-        ),
-        (
-            "tnc407",
-            "options = [\"tm110\"]",
-            "1:12",
-            "`tm110` is no option of the TNC 407; there are ts120",
-        ),
-        (
-            "tnc415b",
-            "software = \"280 58 06\"",
-            "1:12",
-            "`280 58 06` is no software of the TNC 415 B; there are 243 05 02 to 16",
-        ),
-        (
-            "tnc155",
-            "software = 100",
-            "1:12",
-            "`100` is no level of the software of the TNC 155; there are 1 to 99",
-        ),
-        (
-            "tnc360",
-            "software = 8",
-            "1:12",
-            "no manual tells releases of the TNC 360",
-        ),
-        (
-            "tnc155",
-            "software = true",
-            "1:12",
-            "software is a text in quotes, or a whole number",
-        ),
-    ] {
+    for (model, line, place, message) in WRONG {
         let folder = with(model, line);
         let run = folder.bahn("machine check m");
         assert_eq!(run.code(), 1, "{line}: {}", run.err());

@@ -402,8 +402,7 @@ impl HardwareOption {
         match self {
             HardwareOption::SpindleOrientation => old,
             HardwareOption::Ts120 => !old,
-            // The TNC 407 has no input for it [000:191].
-            HardwareOption::Tm110 => !old && model.limits().square_wave_input == 5,
+            HardwareOption::Tm110 => model.limits().measuring_probe,
         }
     }
 
@@ -450,7 +449,7 @@ impl Equipment {
                 let own = self.release.filter(|own| !own.has(since))?;
                 Some(format!(
                     "there from software {} on; this control has {own}",
-                    first(model, since)?
+                    first(model, since, Some(own.series))?
                 ))
             }
         }
@@ -469,19 +468,19 @@ impl Equipment {
     }
 }
 
-/// The first release with something, as the numbers of a model have it.
-fn first(model: ControlModel, since: &[(Series, u8)]) -> Option<String> {
-    let named = since.iter().rev().find_map(|(series, version)| {
+/// The first release with something, as the numbers of a model have it: of these series if there is one, else of the latest.
+fn first(model: ControlModel, since: &[(Series, u8)], of: Option<Series>) -> Option<String> {
+    let old = model.limits().numbering == Numbering::Old;
+    let own = since.iter().filter(|(series, _)| Some(*series) == of);
+    own.chain(since.iter().rev()).find_map(|(series, version)| {
         if *series == Series::Level {
-            let old = model.limits().numbering == Numbering::Old;
             return old.then(|| format!("level {version:02}"));
         }
         let own = TYPES
             .iter()
             .find(|one| one.series == *series && one.is_of(model))?;
         Some(format!("{} {version:02}", own.name))
-    });
-    named
+    })
 }
 
 /// What the table says of a model: what is there from which release on, or with which option, and where it is said.
@@ -489,7 +488,7 @@ pub fn table(model: ControlModel) -> Vec<[String; 3]> {
     let rows = ROWS.iter().filter_map(|row| {
         let takes = match &row.takes {
             Takes::Option(option) => option.is_of(model).then(|| format!("option {}", option.id()))?,
-            Takes::Since(since) => format!("software {}", first(model, since)?),
+            Takes::Since(since) => format!("software {}", first(model, since, None)?),
         };
         let what = match row.kind {
             Some(Kind::Module) => format!("module {}", row.objects),

@@ -169,6 +169,8 @@ pub struct Limits {
     pub transfer_codes: bool,
     /// The screen of 14 inches: windows side by side, in colours [000:6289-6306] [000:2784-2833].
     pub windows: bool,
+    /// An input for a measuring probe, X14 [000:18194-18228].
+    pub measuring_probe: bool,
     /// Programs run while they are transferred; not on the export versions of the TNC 151/155 [001:136] [001:173].
     pub transfers_blockwise: bool,
     /// Graphics of programs and parts, hard copy: on the TNC 155, not on the TNC 151 [001:186] [001:2157].

@@ -239,6 +239,8 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "trials",
             "link",
             "panel",
+            "screen",
+            "why",
             "service",
             "store",
             "server",

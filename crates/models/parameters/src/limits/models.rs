@@ -92,6 +92,7 @@ const TNC151: Limits = Limits {
     rs_422: false,
     transfer_codes: false,
     windows: false,
+    measuring_probe: false,
     transfers_blockwise: true,
     graphics: false,
     draws_what_runs: false,
@@ -231,6 +232,7 @@ const TNC415B: Limits = Limits {
     plc_positioning_axes_max: 5,
     emergency_stop_test: STOP_TEST_415,
     draws_what_runs: true,
+    measuring_probe: true,
     square_wave_input: 5,
     ..TNC407
 };
