@@ -5,7 +5,8 @@
 //! Decision: What a release of one series brought, all releases of later series have; the types of the TNC 415 A and E, which
 //! are no models here, are taken for TNC 415 B and F
 //!
-//! Decision: Spindle orientation is an option of the TNC 151/155, digitizing one of the others that have it
+//! Decision: Spindle orientation is an option of the TNC 151/155, digitizing one of the others that have it: it takes M19, cycle 13
+//! and the strobe of the PLC; M2501 turns the spindle without it
 
 use std::fmt;
 use std::sync::LazyLock;

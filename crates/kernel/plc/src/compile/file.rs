@@ -1,7 +1,7 @@
 //! One source file: every line checked and translated.
 
 use bahn_parameters::conformance::Kind;
-use bahn_parameters::equipment::Use as Wanted;
+use bahn_parameters::equipment::{Equipment, Use as Wanted};
 
 use super::chain::Chains;
 use super::labels::{Definition, Labels, Use, is_internal, module_number};
@@ -281,6 +281,10 @@ impl Translator<'_> {
 
     /// A marker or word of the NC that this control does not have yet, or without an option.
     fn lacking(&mut self, command: &Command) {
+        // Most controls lack nothing: no name is written for them.
+        if self.options.equipment == Equipment::default() {
+            return;
+        }
         let name = match &command.operand {
             Operand::Bit(operand) => operand.bit.to_string(),
             Operand::Number(operand) => operand.number.to_string(),
