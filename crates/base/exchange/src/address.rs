@@ -77,12 +77,12 @@ impl BitArea {
     }
 
     /// The ranges of numbers that a program may name, both ends included. The directory's inputs, outputs
-    /// and counters have gaps between the boards [000:11556-11567]; the handwheel adds I160-I175 and
+    /// and counters have gaps between the boards [000:11556-11567]; a PL 410 adds I127 and I255 [000:2477-2496], the handwheel I160-I175 and
     /// O96-O111 [000:8276-8281], and O31 is the output "control is ready".
     pub const fn ranges(self) -> &'static [(u16, u16)] {
         match self {
             BitArea::M => &[(0, MARKERS - 1)],
-            BitArea::I => &[(0, 31), (64, 126), (128, 152), (160, 175), (192, 254)],
+            BitArea::I => &[(0, 31), (64, 127), (128, 152), (160, 175), (192, 255)],
             BitArea::O => &[(0, 30), (32, 62), (64, 94), (96, 111)],
             BitArea::T => &[(0, 95)],
             BitArea::C => &[(0, 31), (48, 79), (96, 127)],
@@ -93,7 +93,7 @@ impl BitArea {
     pub const fn last(self) -> u16 {
         match self {
             BitArea::M => MARKERS - 1,
-            BitArea::I => 254,
+            BitArea::I => 255,
             BitArea::O => 111,
             BitArea::T => 95,
             BitArea::C => 127,
@@ -396,12 +396,12 @@ mod tests {
     fn the_directory_has_gaps() {
         let listed = |text: &str| text.parse::<Bit>().is_ok_and(Bit::is_listed);
         for name in [
-            "M0", "M3263", "I31", "I64", "I152", "I175", "I254", "O30", "O111", "T95", "C127",
+            "M0", "M3263", "I31", "I64", "I152", "I175", "I127", "I255", "O30", "O111", "T95", "C127",
         ] {
             assert!(listed(name), "{name}");
         }
         for name in [
-            "I32", "I127", "I153", "I191", "I255", "O31", "O63", "C32", "C80", "M3264", "T96",
+            "I32", "I153", "I191", "I256", "O31", "O63", "C32", "C80", "M3264", "T96",
         ] {
             assert!(!listed(name), "{name}");
         }

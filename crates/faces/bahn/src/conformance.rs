@@ -115,9 +115,9 @@ impl Table {
                 && options.kind.is_none_or(|kind| entry.kind == kind)
         };
         let entries: Vec<&Entry> = all().iter().filter(is_wanted).collect();
-        let models = ControlModel::ALL
+        let models = ControlModel::FAMILIES
             .into_iter()
-            .filter(|model| options.model.is_none_or(|wanted| wanted == *model));
+            .filter(|model| options.model.is_none_or(|wanted| wanted.family() == *model));
         let totals = models.flat_map(|model| {
             let kinds = Kind::ALL.into_iter();
             kinds.map(move |kind| (kind, model))

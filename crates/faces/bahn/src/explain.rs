@@ -1,5 +1,6 @@
 //! `bahn explain`: what the control's messages and the errors of the PLC mean; everything that mentions a word.
 
+use bahn_parameters::equipment;
 use bahn_parameters::{Advice, ControlModel, Definition, MessageCode, MessageId, chapters};
 use bahn_plc::PlcError;
 
@@ -15,6 +16,8 @@ pub(crate) fn command(options: &ExplainOptions) -> Result<Outcome, UsageError> {
     let wanted = options.message.join(" ");
     let text = if wanted.trim().is_empty() {
         all(options.model)
+    } else if wanted.trim().eq_ignore_ascii_case("software") {
+        of_software(options.model)
     } else if let Some(error) = plc_error(&wanted) {
         of_plc_error(error)
     } else if let Some(found) = Found::of(&wanted) {
@@ -36,6 +39,28 @@ fn all(model: ControlModel) -> String {
         .iter()
         .map(|id| format!("{:<32}{}\n", id.name(), id.text(model)));
     lines.collect()
+}
+
+/// What a model has from which release of its software on, or with which option, and where the manuals say it.
+fn of_software(model: ControlModel) -> String {
+    let rows = equipment::table(model);
+    let width = |column: usize| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or_default()
+    };
+    let (what, takes) = (width(0), width(1));
+    let line = |row: &[String; 3]| format!("  {:what$}  {:takes$}  {}\n", row[0], row[1], row[2]);
+    let lines: String = rows.iter().map(line).collect();
+    let heading = match lines.is_empty() {
+        true => format!("No manual tells releases or options of the {}.\n", model.name()),
+        false => format!(
+            "{}: what takes an option or a release of the software\n",
+            model.name()
+        ),
+    };
+    heading + &lines
 }
 
 /// A message, with axis and code where they stand after its text.
@@ -61,7 +86,7 @@ impl Found {
         }
         let written = words(wanted);
         let texts = MessageId::ALL.iter().flat_map(|id| {
-            let texts = ControlModel::ALL.iter().map(|model| id.text(*model));
+            let texts = ControlModel::FAMILIES.iter().map(|model| id.text(*model));
             texts.map(|text| (*id, text))
         });
         // The longest text wins: GROSS POSITIONING ERROR is no POSITIONING ERROR.
@@ -227,6 +252,9 @@ fn mentions(wanted: &str, model: ControlModel) -> String {
         ];
         mentioned(&texts).then(|| format!("  {number:<7} {name}\n"))
     });
+    let rows = equipment::table(model)
+        .into_iter()
+        .filter_map(|[what, takes, _]| mentioned(&[&what, &takes]).then(|| format!("  {what}: {takes}\n")));
     let section = |title: &str, lines: &mut dyn Iterator<Item = String>| {
         let lines: String = lines.collect();
         match lines.is_empty() {
@@ -238,6 +266,7 @@ fn mentions(wanted: &str, model: ControlModel) -> String {
         section("Messages (bahn explain TEXT)", &mut { messages }),
         section("Errors of the PLC (bahn explain plc error N)", &mut { errors }),
         section("Machine parameters (bahn mp explain N)", &mut { parameters }),
+        section("Software and options (bahn explain software)", &mut { rows }),
     ]
     .concat()
 }
@@ -308,10 +337,10 @@ mod tests {
     fn every_message_is_found() {
         for id in MessageId::ALL {
             assert_eq!(found(id.name()).map(|found| found.0), Some(*id));
-            for model in ControlModel::ALL {
+            for model in ControlModel::FAMILIES {
                 let text = id.text(model);
                 let shown = found(text).map(|found| found.0);
-                let shown = shown.map(|id| ControlModel::ALL.map(|model| id.text(model)));
+                let shown = shown.map(|id| ControlModel::FAMILIES.map(|model| id.text(model)));
                 assert!(shown.is_some_and(|texts| texts.contains(&text)), "{text}");
             }
         }

@@ -39,6 +39,8 @@ Examples:
       With axis, sign and code as the control shows it.
   bahn explain plc error 16
       An error of the PLC program, found by the compiler or while it runs.
+  bahn explain software
+      What takes an option or a release of the software, with its source.
   bahn explain tapping
       Everything that mentions the word: messages, PLC errors, machine parameters.
   bahn explain

@@ -108,7 +108,7 @@ fn names_parameter(text: &str, number: &str) -> bool {
 fn names_title(text: &str, number: &str) -> bool {
     let patterns = text.lines().filter_map(|line| line.split_once(" | "));
     let patterns: Vec<&str> = patterns.map(|(pattern, _)| pattern).collect();
-    let definitions = ControlModel::ALL.into_iter().flat_map(Definition::all);
+    let definitions = ControlModel::FAMILIES.into_iter().flat_map(Definition::all);
     let mut titles = definitions
         .filter(|definition| definition.id.number.to_string() == number)
         .map(|definition| format!("{}, {}", definition.name, definition.axis));
@@ -162,7 +162,7 @@ fn is_about(entry: &Entry, source: &Source) -> bool {
             .any(|word| !word.is_empty() && has_word(file, word)),
         Kind::Message => {
             let id = MessageId::ALL.iter().find(|id| id.name() == entry.name);
-            let texts = ControlModel::ALL.map(|model| id.map_or("", |id| id.text(model)));
+            let texts = ControlModel::FAMILIES.map(|model| id.map_or("", |id| id.text(model)));
             has_word(test, entry.name) || texts.iter().any(|text| test.contains(text))
         }
         Kind::Marker => {
@@ -273,7 +273,7 @@ fn every_marker_module_and_message_has_its_row() {
 /// M0 to M99 on every model; beyond, what the manuals name, once on each model.
 #[test]
 fn every_m_function_has_one_row() {
-    for model in ControlModel::ALL {
+    for model in ControlModel::FAMILIES {
         for code in 0..=99 {
             let name = format!("M{code}");
             let rows = all()

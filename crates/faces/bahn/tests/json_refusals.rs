@@ -29,6 +29,7 @@ const COMMANDS: &[(&str, &[&str])] = &[
     ("tune", &["FILE X"]),
     ("compensate", &["FILE"]),
     ("machine check", &["FILE", "mill FILE"]),
+    ("machine io", &["FILE"]),
     ("check", &["FILE", "main.H FILE"]),
     ("convert", &["--to iso FILE", "--to iso main.H --tools FILE"]),
     ("plc check", &["FILE", "mill/plc/MAIN.PLC --parameters FILE"]),

@@ -171,6 +171,28 @@ fn a_protected_table_is_not_changed() {
     assert!(folder.read("mill/tools.tsv").contains("\n1\t71\t"));
 }
 
+/// MP7224.0 bit 2 disables tool tables: nobody sees them [000:6857-6868].
+#[test]
+fn a_disabled_table_is_neither_seen_nor_changed() {
+    let folder = Folder::with_mill("");
+    assert_eq!(folder.bahn("table show mill").code(), 0);
+    let list = folder.read("mill/parameters.mp");
+    folder.write(
+        "mill/parameters.mp",
+        list.replace("MP7224.0 : %00000000", "MP7224.0 : %00000100"),
+    );
+    let run = folder.bahn("table show mill");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.err().contains("MP7224.0 disables tool tables"),
+        "{}",
+        run.err()
+    );
+    let run = folder.bahn("table set mill/tools.tsv 1 L=72");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("is disabled (MP7224.0)"), "{}", run.err());
+}
+
 /// A machine that is switched on reads its tables at power-on only: they are not changed behind its back.
 #[test]
 fn tables_of_a_machine_that_is_on_stay() {

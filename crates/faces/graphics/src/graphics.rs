@@ -61,6 +61,8 @@ pub struct Graphics {
     sight: Sight,
     /// Threads cut, not the machine's own one.
     beside: bool,
+    /// The control has graphics: a TNC 151 has a screen for characters.
+    there: bool,
     /// What is set and recorded of the oscilloscope.
     pub scope: Scope,
     serial: u64,
@@ -79,6 +81,7 @@ impl Graphics {
             view: None,
             sight: Sight::default(),
             beside: false,
+            there: host.control().model().has_graphics(),
             scope: Scope::new(host.control()),
             serial: 0,
             shown: (0, 0),
@@ -169,6 +172,9 @@ impl Graphics {
 
     /// Takes a key; `false` when it is not for the graphics.
     pub fn key(&mut self, subject: Subject, key: Key) -> bool {
+        if !self.there {
+            return false;
+        }
         if subject == Subject::Programmed {
             let taken = key == Key::Magn && self.programmed.is_on() && self.magnify();
             self.serial += u64::from(taken);

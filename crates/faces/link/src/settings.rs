@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
+use bahn_parameters::equipment::Behaviour;
 use bahn_parameters::interfaces::{ControlCharacters, Mode, TransferFormat};
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::{ControlModel, Numbering, ParameterList};
 
 use crate::Characters;
 
@@ -64,7 +65,22 @@ impl Settings {
             Mode::Me | Mode::Fe1 | Mode::Fe2 => return fixed,
         };
         let [ext1, ext2, _] = interfaces.formats;
-        fixed.with_format(&[ext1, ext2][index])
+        fixed.with_format(&[ext1, ext2][index]).with_flow_of(parameters)
+    }
+
+    /// A TNC 151/155 of software level 05 or later controls the flow of a blockwise transfer by ACK and NAK alone, whatever
+    /// MP222 says of RTS and DC3; before, DC1 stands behind headers and blocks (inferred from the tables) [001:1946-1948].
+    fn with_flow_of(self, parameters: &ParameterList) -> Settings {
+        let old = parameters.model().limits().numbering == Numbering::Old;
+        let by_answers = parameters.equipment().does(Behaviour::FlowByAcknowledgement);
+        match old && self.blockwise && by_answers {
+            true => Settings {
+                with_dc1: false,
+                stop_by_rts: false,
+                ..self
+            },
+            false => self,
+        }
     }
 
     /// What a list says for a line of the PLC: EXT3 [000:15609-15636].

@@ -620,41 +620,6 @@ fn freely_configured() {
     assert_eq!(said, b"&");
 }
 
-/// The TNC 155 knows programs by their number only: % stands before it, and it shows no letter after its messages
-/// [001:2080-2126] [001:2036-2052].
-#[test]
-fn a_tnc_155() {
-    let settings = ext(ControlModel::Tnc155, &[(222, 168.0), (223, 1.0), (92, 1.0)]);
-    let script = READ_ONE.replace("H1E", "%1E");
-    let stored = Memory::default();
-    let reported = converse(
-        Role::Control,
-        &mut reading(settings, &stored, selected("1.H")),
-        &script,
-    );
-    assert_eq!(reported, ["received 1.H", "complete"]);
-    assert_eq!(stored.get("1.H").unwrap(), ONE);
-    let reported = converse(Role::Device, &mut device(settings, &stored), &script);
-    assert_eq!(reported, ["sent 1.H", "complete"]);
-    // What comes gets its type by its first line.
-    for (line, last, name) in [
-        ("0 BEGIN PGM 7 MM", "1 END PGM 7 MM", "7.H"),
-        ("%7 G71", "N99999 %7 G71", "7.I"),
-    ] {
-        let script = format!(
-            "T: SOH %7A ETB BCC DC1\nP: ACK\nT: STX \"{line}\" ETB BCC DC1\nP: ACK\nT: STX \"{last}\" ETB BCC DC1\nP: ACK\nT: ETX"
-        );
-        converse(Role::Device, &mut device(settings, &stored), &script);
-        assert_eq!(stored.get(name).unwrap(), format!("{line}\n{last}\n"));
-    }
-    let header = "T: SOH %1A ETB BCC DC1\n";
-    let script = format!("{header}P: NAK\n{header}P: NAK\n{header}P: NAK\nT: EOT");
-    let mut control = writing(settings, &stored, &["1.H"]);
-    converse(Role::Control, &mut control, &script);
-    let shown = bahn_link::Shown::Control(bahn_parameters::MessageId::TransferredDataIncorrect, Some('E'));
-    assert_eq!(shown.text(ControlModel::Tnc155), "TRANSFERRED DATA INCORRECT");
-}
-
 /// Real senders: lines with CR LF in their blocks, no DC1, ETX and then silence; or EOT alone.
 #[test]
 fn what_real_senders_do() {

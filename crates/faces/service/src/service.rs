@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex};
 use bahn_access::Role;
 use bahn_host::{LoadedMachine, Reader, Stamped};
 use bahn_panel::{Key, Link, Live, Station};
-use bahn_parameters::ControlModel;
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_store::{Change, InUse, PLC, Store, StoreError, TNC};
 
 use crate::error::ServiceError;
@@ -161,6 +161,8 @@ impl MachineService {
 
 /// What a machine was loaded with.
 struct Loaded {
+    /// What it says of files.
+    list: ParameterList,
     programs: PathBuf,
     plc: PathBuf,
     tables: tables::Files,
@@ -171,6 +173,7 @@ impl Loaded {
     fn of(machine: &LoadedMachine) -> Loaded {
         let (root, folder) = (&machine.root, &machine.folder);
         Loaded {
+            list: machine.parameters.clone(),
             programs: machine.programs(0),
             plc: plc_folder(machine),
             tables: tables::Files::of(root, folder),
@@ -201,7 +204,8 @@ impl Loaded {
             // A machine that has ended has nothing in use.
             asked.unwrap_or(false)
         }));
-        Store::of_machine_with(&self.programs, &self.plc, self.tables.views()?, in_use)
+        let store = Store::of_machine_with(&self.programs, &self.plc, self.tables.views()?, in_use)?;
+        Ok(store.ruled_by(&self.list))
     }
 }
 

@@ -52,6 +52,8 @@ pub(crate) struct Chain {
     drop_out_ms: u32,
     /// Outputs without voltage while the relay is off [000:2134-2174].
     switched: Vec<bool>,
+    /// The description says which these are.
+    switched_is_said: bool,
 
     pub supply: bool,
     pub button: bool,
@@ -71,6 +73,7 @@ impl Chain {
             pull_in_ms: 15,
             drop_out_ms: 15,
             switched: vec![false; OUTPUTS],
+            switched_is_said: false,
             supply: true,
             button: false,
             control_ready: false,
@@ -95,6 +98,7 @@ impl Chain {
         };
         chain.pull_in_ms = delay("pull_in_ms");
         chain.drop_out_ms = delay("drop_out_ms");
+        chain.switched_is_said = section.has("switched_outputs");
         for (at, text) in section.texts("switched_outputs") {
             chain.read_switched(section.reader, at, text);
         }
@@ -116,6 +120,13 @@ impl Chain {
                 }
             }
             _ => reader.fault(at, format!("`{text}` is no range of outputs like O0-O23")),
+        }
+    }
+
+    /// Which outputs lose their voltage by their terminals, where the description does not say it.
+    pub fn fit(&mut self, switched: impl Fn(usize) -> bool) {
+        if !self.switched_is_said {
+            self.switched = (0..OUTPUTS).map(switched).collect();
         }
     }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use bahn_text::Diagnostic;
 
+use crate::equipment::EquipmentFolder;
 use crate::reader::{Reader, Section};
 
 /// What `machine.toml` in the folder of a machine says. Paths count from the folder; no file is opened here.
@@ -64,6 +65,8 @@ pub struct MachineFolder {
     pub hand_overs: Vec<HandOverFolder>,
     /// The M functions that are synchronised otherwise than the control model does.
     pub functions: Vec<FunctionFolder>,
+    /// Boards, options and software of the control.
+    pub equipment: EquipmentFolder,
 }
 
 /// A channel beside the first one: `[[channel]]`.
@@ -210,6 +213,7 @@ impl MachineFolder {
             channels: root.list("channel").into_iter().map(read_channel).collect(),
             hand_overs: root.list("hand_over").into_iter().map(read_hand_over).collect(),
             functions: root.list("function").into_iter().map(read_function).collect(),
+            equipment: EquipmentFolder::read(&root),
         };
         root.finish();
         (folder, reader.faults())

@@ -38,6 +38,7 @@
 
 mod acting;
 mod axis;
+mod bipolar;
 mod by_hand;
 mod cabinet;
 mod chain;
@@ -47,6 +48,7 @@ mod current_drive;
 mod deviation;
 mod device;
 mod encoder;
+mod equipment;
 mod event;
 mod folder;
 mod machine;
@@ -65,6 +67,7 @@ pub use axis::{AxisState, DriveFault};
 pub use chain::{ContactFault, RelayFault};
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
+pub use equipment::{EquipmentFolder, Said};
 pub use event::{Button, Event, EventError, Fault, KeyAction, Put};
 pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, OperatorKeys};
 pub use machine::Machine;

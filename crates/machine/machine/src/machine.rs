@@ -128,7 +128,7 @@ impl Machine {
             voltage_key: None,
             panel,
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
-            plc: PlcSide::default(),
+            plc: PlcSide::read(&root),
             rests: false,
             buffer_battery_low: false,
             wires: Vec::new(),
@@ -177,6 +177,16 @@ impl Machine {
     /// on it.
     pub fn wires(&self) -> &[Wire] {
         &self.wires
+    }
+
+    /// Fits it to the terminals of a control: which outputs lose their voltage with EMERGENCY STOP, unless the description
+    /// says it itself, and which are bipolar, pair by pair. Whether the description speaks of bipolar outputs that are not
+    /// there is the answer.
+    pub fn fit(&mut self, switched: impl Fn(usize) -> bool, bipolar: &[usize]) -> bool {
+        self.chain.fit(switched);
+        let outputs: Vec<&str> = self.wires.iter().map(|wire| wire.operand.as_str()).collect();
+        let is_wired = |output: usize| outputs.contains(&format!("O{output}").as_str());
+        self.plc.fit(bipolar, is_wired) && bipolar.is_empty()
     }
 
     /// The name in the description.
@@ -499,6 +509,7 @@ impl Machine {
         if let Some(magazine) = &self.mechanism.magazine {
             magazine.set_inputs(inputs);
         }
+        self.plc.set_inputs(inputs);
         self.plc.set_stuck(inputs, self.clock.time_us);
     }
 

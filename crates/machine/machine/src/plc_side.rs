@@ -2,7 +2,9 @@
 
 use bahn_servo::{ANALOGUE_INPUTS, INPUTS, OUTPUTS};
 
+use crate::bipolar::Bipolar;
 use crate::chain::{Chain, ContactFault};
+use crate::reader::Section;
 
 /// What the PLC has put out, and what its wires say.
 #[derive(Clone, Debug)]
@@ -14,6 +16,8 @@ pub(crate) struct PlcSide {
     pub volts: [f64; ANALOGUE_INPUTS],
     pub temperatures: [f64; ANALOGUE_INPUTS],
     stuck: Vec<(usize, ContactFault)>,
+    /// The loads at bipolar outputs.
+    bipolar: Option<Bipolar>,
 }
 
 impl Default for PlcSide {
@@ -24,11 +28,35 @@ impl Default for PlcSide {
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [20.0; ANALOGUE_INPUTS],
             stuck: Vec::new(),
+            bipolar: None,
         }
     }
 }
 
 impl PlcSide {
+    /// What the description says of outputs beside what is wired to them.
+    pub fn read(root: &Section) -> PlcSide {
+        PlcSide {
+            bipolar: root.section("bipolar").map(Bipolar::read),
+            ..PlcSide::default()
+        }
+    }
+
+    /// Whether there are loads at bipolar outputs; which outputs these are, pair by pair, and what is wired.
+    pub fn fit(&mut self, bipolar: &[usize], is_wired: impl Fn(usize) -> bool) -> bool {
+        if let Some(own) = &mut self.bipolar {
+            own.fit(bipolar, is_wired);
+        }
+        self.bipolar.is_some()
+    }
+
+    /// Sets the inputs that the outputs themselves have.
+    pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
+        if let Some(bipolar) = &self.bipolar {
+            bipolar.set_inputs(&self.live, inputs);
+        }
+    }
+
     /// The contact of an input fails from now on.
     pub fn stick(&mut self, input: usize, fault: ContactFault) {
         self.loosen(input);

@@ -390,6 +390,26 @@ impl<'r, 't> Section<'r, 't> {
         text
     }
 
+    /// A text, or a whole number as it is written, with its place.
+    pub fn text_or_number(&self, key: &'static str) -> Option<(usize, &'r str)> {
+        let value = self.value(key)?;
+        let text = match value.get_ref() {
+            DeValue::Integer(number) => Some(number.as_str()),
+            other => other.as_str(),
+        };
+        if text.is_none() {
+            let form = format!("{key} is a text in quotes, or a whole number");
+            self.reader.fault(value.span().start, form);
+        }
+        Some((value.span().start, text?))
+    }
+
+    /// Where the value of a key stands, or the table without one.
+    pub fn place_of(&self, key: &str) -> Span {
+        self.reader
+            .place(self.table.get(key).map_or(self.at, |value| value.span().start))
+    }
+
     /// A list of texts, each with its place.
     pub fn texts(&self, key: &'static str) -> Vec<(usize, &'r str)> {
         let Some(value) = self.value(key) else {

@@ -60,17 +60,15 @@ pub use error::StoreError;
 pub use file_type::FileType;
 pub use files::{Reading, Writing};
 pub use in_use::{Change, InUse};
-pub use place::{NAME_MAX, Place};
+pub use place::{NAME_MAX, PLC, Place, TNC};
 pub use views::View;
 
 pub use entry::{Attributes, Entry, Existing};
 
+use bahn_parameters::ParameterList;
+use bahn_parameters::tables::FileTypes;
 use medium::Medium;
 
-/// Drive of the part programs.
-pub const TNC: &str = "TNC";
-/// Drive of the PLC's files.
-pub const PLC: &str = "PLC";
 /// Files on a disk of the FE 401 at most.
 pub const DISK_FILES: usize = 256;
 
@@ -119,6 +117,17 @@ impl Store {
         Store::over(&[("", folder)], Vec::new(), InUse::never(), Some(DISK_FILES))
     }
 
+    /// The same with what machine parameters say of files: the types that MP7224 disables and protects, and how long names are,
+    /// MP7222. To be said before anybody else has the store.
+    #[must_use]
+    pub fn ruled_by(mut self, list: &ParameterList) -> Store {
+        if let Some(medium) = Arc::get_mut(&mut self.medium) {
+            medium.types = list.table_parameters().types;
+            medium.name_max = Some(list.operation_parameters().file_name_max.into());
+        }
+        self
+    }
+
     fn over(
         folders: &[(&'static str, &Path)],
         views: Vec<View>,
@@ -141,6 +150,8 @@ impl Store {
                 views,
                 in_use,
                 limit,
+                types: FileTypes::default(),
+                name_max: None,
                 busy: Mutex::default(),
                 changes: AtomicU64::new(0),
             }),
@@ -181,7 +192,7 @@ impl Store {
                 entries.insert(place, Entry { name, attributes });
             }
         }
-        Ok(entries)
+        Ok(self.medium.seen(folder, entries))
     }
 
     /// What there is to be said of a file or folder.
@@ -190,8 +201,12 @@ impl Store {
     /// When it is not there.
     pub fn attributes(&self, place: &Place) -> Result<Attributes, StoreError> {
         let no_file = || StoreError::NoFile(place.to_string());
+        let by_type = |attributes: Attributes| Attributes {
+            protected: attributes.protected || self.medium.is_protected(place),
+            ..attributes
+        };
         match self.medium.find_any(place) {
-            Ok(path) => lookup::attributes(&path).ok_or_else(no_file),
+            Ok(path) => lookup::attributes(&path).map(by_type).ok_or_else(no_file),
             Err(error) => self.medium.view(place).and_then(View::attributes).ok_or(error),
         }
     }

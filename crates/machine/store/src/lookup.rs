@@ -57,6 +57,9 @@ impl Medium {
         let no_file = || StoreError::NoFile(place.to_string());
         let name = place.name().ok_or_else(no_file)?;
         let folder = self.find_folder(&place.folder().ok_or_else(no_file)?)?;
+        if self.is_disabled(place) {
+            return Err(no_file());
+        }
         spelled(&folder, name, Kind::File)
             .or_else(|| nc_name(name).and_then(|name| spelled(&folder, &name, Kind::File)))
             .ok_or_else(no_file)
@@ -76,7 +79,8 @@ impl Medium {
             }
             found => found?,
         };
-        if attributes(&path).is_some_and(|attributes| attributes.protected) {
+        let by_itself = attributes(&path).is_some_and(|attributes| attributes.protected);
+        if by_itself || self.is_protected(place) {
             return Err(StoreError::Protected(place.to_string()));
         }
         if self.busy().contains(&path) {
@@ -92,6 +96,12 @@ impl Medium {
     pub(super) fn free(&self, place: &Place, old: Option<&Path>) -> Result<PathBuf, StoreError> {
         let exists = || StoreError::Exists(place.to_string());
         let name = place.name().ok_or_else(exists)?;
+        if self.is_disabled(place) {
+            return Err(StoreError::Protected(place.to_string()));
+        }
+        if self.is_too_long(place) {
+            return Err(StoreError::BadName(place.to_string()));
+        }
         let folder = self.find_folder(&place.folder().ok_or_else(exists)?)?;
         match self.find_any(place) {
             Ok(found) if old != Some(&found) => return Err(exists()),

@@ -4,6 +4,10 @@ use std::fmt;
 
 use super::StoreError;
 
+/// Drive of the part programs.
+pub const TNC: &str = "TNC";
+/// Drive of the PLC's files.
+pub const PLC: &str = "PLC";
 /// Characters of a name at most.
 pub const NAME_MAX: usize = 40;
 /// What stands between folders.

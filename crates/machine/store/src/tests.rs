@@ -450,3 +450,60 @@ fn what_comes_into_use_while_it_is_written_stays() {
     assert_eq!(file.commit(), Err(StoreError::InUse("TNC:\\1.H".to_owned())));
     assert_eq!(read(&store, "1.H").unwrap(), "old");
 }
+
+/// MP7224.0 bit 1 disables ISO programs, MP7224.1 bit 0 protects HEIDENHAIN programs [000:6857-6880]: of a disabled type nothing is
+/// seen, read or written, a protected one is read alone. The files of the PLC have no such types.
+#[test]
+fn types_of_files_are_disabled_and_protected() {
+    let folder = Folder::new("types");
+    let before = folder.store();
+    for name in ["A.H", "B.I", "C.A"] {
+        write(&before, name, "0").unwrap();
+    }
+    fs::write(folder.0.join("plc/D.I"), "0").unwrap();
+    let mut list = bahn_parameters::ParameterList::reference(bahn_parameters::ControlModel::Tnc415b);
+    list.assign("7224.0=%00000010").unwrap();
+    list.assign("7224.1=%00000001").unwrap();
+    let store = folder.store().ruled_by(&list);
+    assert_eq!(names(&store, "TNC:"), ["A.H", "C.A"]);
+    assert_eq!(names(&store, "PLC:"), ["D.I"]);
+    let no_file = Err(StoreError::NoFile("TNC:\\B.I".into()));
+    assert_eq!(read(&store, "B.I").map(drop), no_file);
+    assert_eq!(store.delete(&at(&store, "B.I")), no_file);
+    let protected = |name: &str| Err(StoreError::Protected(format!("TNC:\\{name}")));
+    assert_eq!(write(&store, "B.I", "1"), protected("B.I"));
+    assert_eq!(write(&store, "A.H", "1"), protected("A.H"));
+    assert_eq!(store.delete(&at(&store, "A.H")), protected("A.H"));
+    assert_eq!(
+        store.rename(&at(&store, "A.H"), &at(&store, "E.A")),
+        protected("A.H")
+    );
+    assert!(store.attributes(&at(&store, "A.H")).unwrap().protected);
+    assert_eq!(read(&store, "A.H").unwrap(), "0");
+    write(&store, "C.A", "1").unwrap();
+}
+
+/// MP7222 = 0: names of eight characters, 1: twelve [000:6847-6852]. A file that is there stays.
+#[test]
+fn names_are_as_long_as_mp7222_says() {
+    let folder = Folder::new("names");
+    write(&folder.store(), "LONGPROGRAM.H", "0").unwrap();
+    let mut list = bahn_parameters::ParameterList::reference(bahn_parameters::ControlModel::Tnc415b);
+    for (value, nine, thirteen) in [
+        ("7222=0", false, false),
+        ("7222=1", true, false),
+        ("7222=2", true, true),
+    ] {
+        list.assign(value).unwrap();
+        let store = folder.store().ruled_by(&list);
+        for (name, allowed) in [
+            ("12345678.H", true),
+            ("123456789.H", nine),
+            ("1234567890123.I", thirteen),
+        ] {
+            assert_eq!(write(&store, name, "0").is_ok(), allowed, "{value} {name}");
+            let _ = store.delete(&at(&store, name));
+        }
+        write(&store, "LONGPROGRAM.H", "1").unwrap();
+    }
+}

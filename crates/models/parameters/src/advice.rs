@@ -31,9 +31,9 @@ pub struct Advice {
 impl Advice {
     /// All numbers of a model in ascending order.
     pub fn all(model: ControlModel) -> &'static [Advice] {
-        static LISTS: [OnceLock<Vec<Advice>>; ControlModel::ALL.len()] =
-            [const { OnceLock::new() }; ControlModel::ALL.len()];
-        LISTS[model as usize].get_or_init(|| list(model))
+        static LISTS: [OnceLock<Vec<Advice>>; ControlModel::FAMILIES.len()] =
+            [const { OnceLock::new() }; ControlModel::FAMILIES.len()];
+        LISTS[model.place()].get_or_init(|| list(model.family()))
     }
 
     /// What is known of a number of a model.
@@ -46,7 +46,7 @@ impl Advice {
 
 /// Rows of the model's own table, and the rest from that of its family, for the numbers that it has.
 fn list(model: ControlModel) -> Vec<Advice> {
-    let (own, family) = match model {
+    let (own, family) = match model.family() {
         ControlModel::Tnc151 | ControlModel::Tnc155 => (TNC_15X, ""),
         ControlModel::Tnc360 => (TNC_360, TNC_4XX),
         _ => (TNC_4XX, ""),

@@ -152,7 +152,7 @@ impl Entry {
     /// The models that have the function, oldest first.
     pub fn models(&self) -> impl Iterator<Item = ControlModel> {
         let models = self.models;
-        ControlModel::ALL
+        ControlModel::FAMILIES
             .into_iter()
             .filter(move |model| models & bit(*model) != 0)
     }
@@ -214,7 +214,7 @@ pub fn find(model: ControlModel, kind: Kind, object: &str) -> Option<&'static En
 }
 
 pub(crate) const fn bit(model: ControlModel) -> u8 {
-    1 << model as u8
+    1 << model.place()
 }
 
 /// Reads one row; a test proves that every row can be read.
@@ -250,20 +250,20 @@ fn row(kind: Kind, line: &'static str) -> Option<Entry> {
 pub(crate) fn models(text: &str) -> Option<u8> {
     let place = |text: &str| {
         let is_named = |model: &ControlModel| model.id().strip_prefix("tnc") == Some(text);
-        ControlModel::ALL.iter().position(is_named)
+        ControlModel::FAMILIES.iter().position(is_named)
     };
     let (first, last) = match text.split_once('-') {
-        _ if text == "all" => (0, ControlModel::ALL.len() - 1),
+        _ if text == "all" => (0, ControlModel::FAMILIES.len() - 1),
         Some((first, last)) => (place(first)?, place(last)?),
         None => (place(text)?, place(text)?),
     };
-    let named = ControlModel::ALL.get(first..=last)?;
+    let named = ControlModel::FAMILIES.get(first..=last)?;
     Some(named.iter().fold(0, |all, model| all | bit(*model)))
 }
 
 /// Consecutive objects of a table: letters, then number and index of the first and the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Range<'a> {
+pub(crate) struct Range<'a> {
     letters: &'a str,
     first: (u32, u32),
     last: (u32, u32),
@@ -272,7 +272,7 @@ struct Range<'a> {
 impl<'a> Range<'a> {
     /// Reads `M114`, `M20-M88`, `MP1060` with all its indices, `MP3410.2`, `MP3410.0-.1`; anything else stands
     /// for itself.
-    fn read(text: &'a str) -> Range<'a> {
+    pub(crate) fn read(text: &'a str) -> Range<'a> {
         Range::numbered(text).unwrap_or(Range {
             letters: text,
             first: (0, 0),
@@ -311,7 +311,7 @@ impl<'a> Range<'a> {
         })
     }
 
-    fn contains(&self, object: &Range<'_>) -> bool {
+    pub(crate) fn contains(&self, object: &Range<'_>) -> bool {
         self.letters == object.letters && self.first <= object.first && object.first <= self.last
     }
 }

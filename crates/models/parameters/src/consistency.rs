@@ -76,7 +76,10 @@ struct Reporter<'a> {
 
 impl Reporter<'_> {
     fn is_old(&self) -> bool {
-        matches!(self.list.model(), ControlModel::Tnc151 | ControlModel::Tnc155)
+        matches!(
+            self.list.model().family(),
+            ControlModel::Tnc151 | ControlModel::Tnc155
+        )
     }
 
     /// Reports when a rule does not hold. `new` is number and index, `old` the number in the list of the

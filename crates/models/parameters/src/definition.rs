@@ -101,9 +101,9 @@ struct Entry {
 impl Definition {
     /// All machine parameters of a model in ascending order.
     pub fn all(model: ControlModel) -> &'static [Definition] {
-        static LISTS: [OnceLock<Vec<Definition>>; ControlModel::ALL.len()] =
-            [const { OnceLock::new() }; ControlModel::ALL.len()];
-        LISTS[model as usize].get_or_init(|| list(model))
+        static LISTS: [OnceLock<Vec<Definition>>; ControlModel::FAMILIES.len()] =
+            [const { OnceLock::new() }; ControlModel::FAMILIES.len()];
+        LISTS[model.place()].get_or_init(|| list(model.family()))
     }
 
     /// The machine parameter of a number and index. A parameter with one value only is found with
@@ -288,7 +288,7 @@ impl Definition {
     /// [000:10015].
     fn stored_by(mut self, model: ControlModel) -> Definition {
         const COARSE_DECIMALS: u8 = 3;
-        let is_coarse = matches!(model, ControlModel::Tnc407 | ControlModel::Tnc360);
+        let is_coarse = matches!(model.family(), ControlModel::Tnc407 | ControlModel::Tnc360);
         if is_coarse && self.decimals > COARSE_DECIMALS && matches!(self.unit, "mm" | "deg" | "mm or deg") {
             let scale = scale(COARSE_DECIMALS);
             self.decimals = COARSE_DECIMALS;
@@ -321,7 +321,7 @@ impl Definition {
     /// Whether the versions column gives the parameter to the model.
     fn exists_on(&self, model: ControlModel) -> bool {
         let versions = self.versions;
-        match model {
+        match model.family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => true,
             ControlModel::Tnc360 => {
                 !versions.starts_with("TNC 4")
@@ -340,16 +340,14 @@ impl Definition {
                     && !versions.starts_with("TNC 407 only")
                     && !versions.starts_with("not TNC 415")
             }
-            ControlModel::Tnc425 => {
-                !versions.starts_with("TNC 407 only") && !versions.starts_with("not TNC 415")
-            }
+            _ => !versions.starts_with("TNC 407 only") && !versions.starts_with("not TNC 415"),
         }
     }
 }
 
 /// The rows of a model: those of its own list, and the rest from the list of its family.
 fn list(model: ControlModel) -> Vec<Definition> {
-    let (own, family) = match model {
+    let (own, family) = match model.family() {
         ControlModel::Tnc151 | ControlModel::Tnc155 => (TNC_15X, ""),
         ControlModel::Tnc360 => (TNC_360, TNC_4XX),
         _ => (TNC_4XX, ""),

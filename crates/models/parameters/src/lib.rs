@@ -16,7 +16,9 @@
 //! - [`fault`]: what the control does about each fault;
 //! - [`conformance`]: what each function of a control does here, and what it does not;
 //! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them;
-//!   [`own_functions`]: those that a machine builder synchronises otherwise.
+//!   [`own_functions`]: those that a machine builder synchronises otherwise;
+//! - [`equipment`]: options and software releases, and what takes them;
+//! - [`terminals`]: where inputs and outputs of the PLC are, on the control and on its boards.
 //!
 //! ```
 //! use bahn_parameters::{ControlModel, MessageId, ParameterList};
@@ -49,6 +51,7 @@ mod consistency;
 mod data_interface;
 mod definition;
 mod diagnostic;
+pub mod equipment;
 mod error;
 pub mod fault;
 mod fn14;
@@ -62,6 +65,7 @@ mod plc_axes;
 mod settings;
 pub mod space;
 pub mod technology;
+pub mod terminals;
 mod text;
 
 pub use adjustment::Adjustment;

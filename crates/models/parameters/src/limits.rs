@@ -151,8 +151,12 @@ pub struct Limits {
     pub square_wave_input: u8,
     /// Encoder input of the spindle, counted from 0: X5, axis V, of the TNC 151/155 [001:2434-2454], X6 of the others.
     pub spindle_input: u8,
-    /// Inputs that machines are wired to, first and last of each board: TNC 151/155 E0-E62, E64-E126
-    /// [001:297]; [000:11556-11567] and those of the handwheel [000:8276-8281]; TNC 360 as these (inferred).
+    /// The unit that its terminals belong to, as [`crate::terminals`] has them: `B` and `Q` are those of the TNC 151/155 without
+    /// and with PLC boards [001:132-165], `LE` is the logic unit of the TNC 407/415/425; TNC 360 as these (inferred).
+    pub unit: &'static str,
+    /// Inputs that a PLC program may name, first and last of each board: TNC 151/155 E0-E62, E64-E126
+    /// [001:297], version B E0-E23; [000:11556-11567] [000:2380-2496] and those of the handwheel [000:8276-8281]; TNC 360 as these
+    /// (inferred).
     pub inputs: &'static [(u16, u16)],
     /// Outputs in the same way: TNC 151/155 A0-A30, A32-A62 [001:311].
     pub outputs: &'static [(u16, u16)],
@@ -167,6 +171,12 @@ pub struct Limits {
     pub transfer_codes: bool,
     /// The screen of 14 inches: windows side by side, in colours [000:6289-6306] [000:2784-2833].
     pub windows: bool,
+    /// An input for a measuring probe, X14 [000:18194-18228].
+    pub measuring_probe: bool,
+    /// Programs run while they are transferred; not on the export versions of the TNC 151/155 [001:136] [001:173].
+    pub transfers_blockwise: bool,
+    /// Graphics of programs and parts, hard copy: on the TNC 155, not on the TNC 151 [001:186] [001:2157].
+    pub graphics: bool,
     /// Program run draws what runs; the graphics of a TNC 407 are those of TEST RUN [000:164-166] [000:6370].
     pub draws_what_runs: bool,
     /// The program run modes simulate the selected program before it runs [003:856-874].

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::definition::parse_id;
+use crate::equipment::Equipment;
 use crate::space::{Content, ParameterSpace};
 use crate::text::read_assignment;
 use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
@@ -20,6 +21,8 @@ use crate::{ControlModel, Definition, ListError, ListText, ParameterError, Param
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterList {
     model: ControlModel,
+    /// What the control has that it is the list of.
+    equipment: Equipment,
     /// One value for each of [`Definition::all`], in its order.
     values: Vec<f64>,
 }
@@ -31,6 +34,7 @@ impl ParameterList {
     pub fn smallest(model: ControlModel) -> ParameterList {
         ParameterList {
             model,
+            equipment: Equipment::default(),
             values: Definition::all(model).iter().map(Definition::standard).collect(),
         }
     }
@@ -45,13 +49,24 @@ impl ParameterList {
 
     /// The text of the reference list, with the reason of every value.
     pub fn reference_text(model: ControlModel) -> &'static str {
-        match model {
+        match model.family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => include_str!("../data/reference/tnc151-155.mp"),
             ControlModel::Tnc360 => include_str!("../data/reference/tnc360.mp"),
             ControlModel::Tnc407 => include_str!("../data/reference/tnc407.mp"),
             ControlModel::Tnc415b => include_str!("../data/reference/tnc415b.mp"),
-            ControlModel::Tnc425 => include_str!("../data/reference/tnc425.mp"),
+            _ => include_str!("../data/reference/tnc425.mp"),
         }
+    }
+
+    /// The same list in a control with other options or software.
+    pub fn with_equipment(mut self, equipment: Equipment) -> ParameterList {
+        self.equipment = equipment;
+        self
+    }
+
+    /// Options and software of the control.
+    pub fn equipment(&self) -> Equipment {
+        self.equipment
     }
 
     /// The control model of the list.

@@ -18,7 +18,7 @@ impl MessageId {
         message
             .variants
             .iter()
-            .find(|(models, _)| models.contains(&model))
+            .find(|(models, _)| models.contains(&model.family()))
             .map_or(message.text, |(_, text)| *text)
     }
 

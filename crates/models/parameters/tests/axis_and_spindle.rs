@@ -38,7 +38,7 @@ fn every_axis_of_every_model_can_be_controlled() {
             assert!(axis.output.rapid_volts >= 1.0, "{model} {index}");
             assert!(axis.encoder.signal_period_um >= 0.1, "{model} {index}");
             assert!(axis.monitoring.window_mm > 0.0, "{model} {index}");
-            assert!(axis.digital.is_none() || model == ControlModel::Tnc425);
+            assert!(axis.digital.is_none() || model.family() == ControlModel::Tnc425);
         }
     }
 }
@@ -297,4 +297,22 @@ fn display_steps_of_the_models() {
     assert_eq!(step(ControlModel::Tnc407, "7290.1=1"), 0.05);
     assert_eq!(step(ControlModel::Tnc360, "7290=1"), 0.005);
     assert_eq!(step(ControlModel::Tnc155, "65=0"), 0.001);
+}
+
+/// A TNC 151 R counts the square waves of an EXE that divides the 20 µm of a scale by 5: four steps of 1 µm to each signal
+/// period, as 20 steps to a period of the scale on the others [001:175-177] [001:416-444].
+#[test]
+fn versions_r_count_the_square_waves_of_an_exe() {
+    for (model, square, period_um) in [
+        (ControlModel::Tnc151b, false, 20.0),
+        (ControlModel::Tnc151br, true, 20.0 / 5.0),
+        (ControlModel::Tnc155wr, true, 20.0 / 5.0),
+    ] {
+        let encoder = ParameterList::reference(model).axis_parameters(0).encoder;
+        assert_eq!(
+            (encoder.square_wave, encoder.signal_period_um),
+            (square, period_um),
+            "{model}"
+        );
+    }
 }

@@ -8,7 +8,7 @@ use bahn_path::{Axis, AxisSet};
 
 #[test]
 fn every_line_is_accepted_by_its_model() {
-    for model in ControlModel::ALL {
+    for model in ControlModel::FAMILIES {
         let text = ParameterList::reference_text(model);
         let errors = ParameterList::smallest(model).read(text.as_bytes());
         assert!(errors.is_empty(), "{model}: {errors:?}");
@@ -18,7 +18,7 @@ fn every_line_is_accepted_by_its_model() {
 #[test]
 fn every_group_of_values_gives_its_reason() {
     // The first line of a number's group has a comment; its other indices share it.
-    for model in ControlModel::ALL {
+    for model in ControlModel::FAMILIES {
         let mut explained = HashSet::new();
         for line in ParameterList::reference_text(model)
             .lines()
@@ -43,7 +43,7 @@ fn every_group_of_values_gives_its_reason() {
 
 #[test]
 fn every_value_is_in_its_range() {
-    for model in ControlModel::ALL {
+    for model in ControlModel::FAMILIES {
         let list = ParameterList::reference(model);
         for definition in Definition::all(model) {
             let id = definition.id;
@@ -61,7 +61,7 @@ fn every_value_is_in_its_range() {
 
 #[test]
 fn axis_getters_answer_for_every_axis_of_every_model() {
-    for model in ControlModel::ALL {
+    for model in ControlModel::FAMILIES {
         let list = ParameterList::reference(model);
         assert!(list.axes().len() <= usize::from(model.limits().axes_max));
         for axis in Axis::ALL {
@@ -92,7 +92,7 @@ fn axis_getters_answer_for_every_axis_of_every_model() {
 
 #[test]
 fn machining_getters_answer_on_every_model() {
-    for model in ControlModel::ALL {
+    for model in ControlModel::FAMILIES {
         let list = ParameterList::reference(model);
         assert!(list.radial_acceleration_m_s2() >= 0.25, "{model}");
         assert!((1.0..=15.0).contains(&list.corner_angle_deg()), "{model}");
@@ -267,7 +267,7 @@ fn the_list_of_smallest_values_is_a_programming_station_in_standard_colours() {
 /// A control starts on the list, and its axes run in closed loop with lag and with pre-control.
 #[test]
 fn a_machine_runs_in_closed_loop() {
-    for model in ControlModel::ALL {
+    for model in ControlModel::FAMILIES {
         let list = ParameterList::reference(model);
         let radial = list.radial_acceleration_m_s2();
         for index in (0..5).filter(|index| list.axis_parameters(*index).active) {

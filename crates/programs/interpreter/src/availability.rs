@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use bahn_parameters::conformance::{Effect, Entry, Kind, find};
+use bahn_parameters::equipment::Use;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_program::{CycleBlock, CycleWord};
 
@@ -49,13 +50,16 @@ pub(crate) mod words {
 impl Feature {
     /// The row of the registry; `None` when the model does not have the function.
     fn entry(self, model: ControlModel) -> Option<&'static Entry> {
-        let kind = match self {
+        find(model, self.kind(), &self.to_string())
+    }
+
+    fn kind(self) -> Kind {
+        match self {
             Feature::M(_) => Kind::MFunction,
             Feature::Cycle(_) | Feature::Probe(_) => Kind::Cycle,
             Feature::Fn(_) => Kind::Fn,
             Feature::Word(_) => Kind::Word,
-        };
-        find(model, kind, &self.to_string())
+        }
     }
 
     /// Whether the function is executed, and what the user is told when it is not, or not wholly.
@@ -70,6 +74,11 @@ impl Feature {
         let Some(entry) = self.entry(settings.model) else {
             return passed_over(format!("this control has no {self}"));
         };
+        let name = self.to_string();
+        let wanted = Use::of(self.kind(), &name);
+        if let Some(why) = settings.rules.equipment.lacks(settings.model, wanted) {
+            return Err(Fault::new(MessageId::BlockNotKnown, format!("{name} is {why}")));
+        }
         if let Some(why) = self.not_enabled(&settings.rules) {
             return passed_over(format!("{self} {why}"));
         }

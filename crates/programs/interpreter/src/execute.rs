@@ -1,5 +1,7 @@
 //! The execution of one block: which part of the run does what it says.
 
+use bahn_parameters::conformance::Kind;
+use bahn_parameters::equipment::Use;
 use bahn_parameters::{MessageId, technology};
 use bahn_path::Function;
 use bahn_program::{
@@ -159,6 +161,13 @@ fn formula(q: &mut QTable, target: u16, expression: &Expression, settings: &Sett
         return Err(Fault::new(
             MessageId::BlockNotKnown,
             "this control has no formulas",
+        ));
+    }
+    let wanted = Use::of(Kind::Fn, "FORMULA");
+    if let Some(why) = settings.rules.equipment.lacks(settings.model, wanted) {
+        return Err(Fault::new(
+            MessageId::BlockNotKnown,
+            format!("a formula is {why}"),
         ));
     }
     let value = q.evaluate(expression)?;

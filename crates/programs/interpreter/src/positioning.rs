@@ -9,6 +9,7 @@
 //! WRONG AXIS PROGRAMMED (also `interpreter/src/tools.rs`)
 
 use bahn_parameters::MessageId;
+use bahn_parameters::equipment::Behaviour;
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Frame, Position};
 use bahn_program::{Compensation, Coordinates, Feed, Motion, MotionKind};
 
@@ -482,6 +483,10 @@ pub(crate) fn take_feed(
     }))
 }
 
+/// The export versions TNC 415 F and TNC 425 E move so many axes since software 259 94 09, one less before [000:752-760]. All
+/// software of the TNC 415 B and 425 moves five.
+const LATER_AXES: usize = 4;
+
 /// Refuses axes that the machine does not have for programs, and more than the control moves together [001:167-173]
 /// [003:7761-7763] [000:139]. No manual prints the message *(inferred)*.
 #[inline]
@@ -490,6 +495,10 @@ fn check_axes(c: &mut Context<'_>, axes: AxisSet) -> Result<(), Fault> {
         return Err(Fault::new(MessageId::WrongAxisProgrammed, reason));
     }
     let max = usize::from(c.settings.model.limits().line_axes_max);
+    let early = max == LATER_AXES
+        && axes.len() == max
+        && !c.settings.rules.equipment.does(Behaviour::LinesOfFourAxes);
+    let max = if early { max.min(LATER_AXES - 1) } else { max };
     if axes.len() <= max {
         return Ok(());
     }

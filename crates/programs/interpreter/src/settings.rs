@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use bahn_parameters::equipment::Equipment;
 use bahn_parameters::machining::ScaledAxes;
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
@@ -230,6 +231,8 @@ pub struct Rules {
     pub paraxial_inhibited: bool,
     /// MP7240, MP7250, MP7251: cycles of the machine builder.
     pub oem_cycles: OemCycleRules,
+    /// Options and software of the control.
+    pub equipment: Equipment,
     /// MP7680 bit 6: in LN blocks the length contains DR2 [000:9179-9192].
     pub normal_length_with_dr2: bool,
     /// MP7510 to MP7592: the swivel axes; `None` when there are none [000:4258-4301].
@@ -307,6 +310,7 @@ impl Rules {
                 .into_iter()
                 .find(|axis| list.axis_index(*axis) == Some(4)),
             oem_cycles: OemCycleRules::of(list),
+            equipment: list.equipment(),
             ..Rules::default()
         }
     }
@@ -346,6 +350,7 @@ impl Default for Rules {
     fn default() -> Self {
         Rules {
             arc_tolerance_mm: 0.016,
+            equipment: Equipment::default(),
             scaling_in_plane_only: false,
             probe_keeps_tool: true,
             contour_pocket: ContourPocketRules::default(),

@@ -80,8 +80,8 @@ pub(super) fn machine(folder: &Path) -> Result<Option<MachineFiles>, UsageError>
     let store = Store::of_machine(&machine.programs(0), &bahn_service::plc_folder(&machine));
     let store = store.map_err(|error| UsageError::new(error.to_string()))?;
     Ok(Some(MachineFiles {
+        store: store.ruled_by(&machine.parameters),
         list: machine.parameters,
-        store,
     }))
 }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use bahn_host::files;
 use bahn_link::{HardCopy, PrintOut, Protocol};
+use bahn_parameters::equipment::Behaviour;
 use bahn_picture::Image;
 use clap::{Args, ValueHint};
 
@@ -20,8 +21,9 @@ Examples:
   bahn link print part.png --machine mill155 --port serial:/dev/ttyUSB0,mode=ext1,baud=9600
 
 Machine parameters 226 to 233 of a TNC 155 say what sets the printer up and what stands before each line; without them
-nothing is printed. A picture becomes 512 dots wide, what shines on the screen is black. Exit codes: 0 printed, 1 the
-machine describes no printer or the device is not ready, 2 wrong use.";
+nothing is printed. A picture becomes 512 dots wide, what shines on the screen is black. A TNC 151
+has no graphics. Exit codes: 0 printed, 1 the machine has no graphics or describes no printer, or the device is not
+ready, 2 wrong use.";
 
 /// Options of `bahn link print`.
 #[derive(Args, Debug)]
@@ -45,6 +47,14 @@ pub(super) fn command(options: &PrintOptions) -> Result<Outcome, UsageError> {
     let Some(machine) = port::machine(&options.machine)? else {
         return Ok(Outcome::ProgramError);
     };
+    let model = machine.list.model();
+    if !model.has_graphics() {
+        diagnostics::print_line(&format!(
+            "error: the {} has no graphics, so no hard copy; those of the TNC 155 have",
+            model.name()
+        ));
+        return Ok(Outcome::ProgramError);
+    }
     let printer = HardCopy::of(&machine.list);
     if !printer.is_set_up() {
         diagnostics::print_line("error: MP230 to MP233 of the machine describe no printer");
@@ -73,8 +83,10 @@ pub(super) fn command(options: &PrintOptions) -> Result<Outcome, UsageError> {
         return Ok(Outcome::ProgramError);
     };
     let mut settings = port::settings(&machine.list, &spec);
-    // A hard copy has eight data bits, whatever MP222 says (from software version 08 on) [001:2176].
-    settings.characters.data_bits = 8;
+    // A hard copy has eight data bits, whatever MP222 says, from software level 08 on [001:2176-2180].
+    if machine.list.equipment().does(Behaviour::HardCopyOf8Bits) {
+        settings.characters.data_bits = 8;
+    }
     let protocol: Box<dyn Protocol> = Box::new(PrintOut::new(bytes));
     let desk = Desk::new(settings.model, Answer::No, Format::Text, Until::Ended);
     talk(&spec, settings, vec![protocol], desk, None)

@@ -1,8 +1,9 @@
 //! `bahn machine`: the folder of a machine.
 //!
-//! `options`, `new`, `check`, `list`: the subcommands.
+//! `options`, `new`, `check`, `io`, `list`: the subcommands.
 
 mod check;
+mod io;
 mod list;
 mod load;
 mod new;
@@ -20,6 +21,7 @@ pub(crate) fn command(options: &MachineFolderOptions) -> Result<Outcome, UsageEr
     match &options.command {
         MachineCommand::New(options) => new::command(options),
         MachineCommand::Check(options) => check::command(options),
+        MachineCommand::Io(options) => io::command(options),
         MachineCommand::List(options) => list::command(options),
     }
 }

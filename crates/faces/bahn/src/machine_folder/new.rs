@@ -37,7 +37,8 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         let content = match *file {
             "machine.toml" => description(&text, &name, model),
             "parameters.mp" => parameters(&text, model),
-            "plant.toml" | "README.md" => text.replace(shipped_model.id(), model.id()),
+            "plant.toml" => plant(&text.replace(shipped_model.id(), model.id()), model),
+            "README.md" => text.replace(shipped_model.id(), model.id()),
             _ => text,
         };
         write(&folder.join(file), &content)?;
@@ -95,13 +96,22 @@ fn parameters(text: &str, model: ControlModel) -> String {
         .collect()
 }
 
+/// The plant of the shipped machine: the encoders of versions R of the TNC 151 and 155 are at an EXE, which makes five signal
+/// periods of one [001:175-177].
+fn plant(text: &str, model: ControlModel) -> String {
+    match model.limits().square_wave_input {
+        0 => text.replace("period_um = 20,", "period_um = 4,"),
+        _ => text.to_owned(),
+    }
+}
+
 /// The shipped machine that is a start for a model, and its own model.
 fn shipped_for(
     model: ControlModel,
     name: Option<&str>,
 ) -> Result<(bahn_machines::ShippedMachine, ControlModel), UsageError> {
     let is_meant = |shipped: &&bahn_machines::ShippedMachine| {
-        shipped.models.contains(&model.id()) && name.is_none_or(|name| shipped.name == name)
+        shipped.models.contains(&model.family().id()) && name.is_none_or(|name| shipped.name == name)
     };
     let shipped = bahn_machines::ALL.iter().find(is_meant);
     let own = shipped.and_then(|shipped| shipped.models.first()?.parse().ok());

@@ -23,6 +23,9 @@ pub(crate) enum MachineCommand {
     /// Load everything in a folder, and show all faults of all files.
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckOptions),
+    /// List the terminals of the control and its boards: inputs, outputs, and what is wired to them.
+    #[command(after_help = IO_EXAMPLES)]
+    Io(IoOptions),
     /// List axes, keys, lamps, things and signals of a machine, and the events and commands of scripts.
     List(ListOptions),
 }
@@ -47,6 +50,28 @@ The part programs are checked, too, for the control, the parameters and the tool
 JSON: for each folder: folder, name, model, ok, faults (severity, file, line, column, message, detail), programs
 (as `bahn check --format json` has them).
 Exit codes: 0 fine, 1 faults, 2 wrong use.";
+
+const IO_EXAMPLES: &str = "\
+Examples:
+  bahn machine io machines/mill
+  bahn machine io machines/mill --format json
+
+The boards are those of `boards` in machine.toml; without it all that the control can have.
+
+JSON: for each terminal: terminal (`X42/4`, on a board `PL1 X4/1`), operand (`I3`, null without one), name (what is
+wired to it, null when it is free), kind (digital, relay, bipolar, analogue).
+Exit codes: 0 fine, 1 the machine has faults, 2 wrong use.";
+
+/// Options of `bahn machine io`.
+#[derive(Args, Debug)]
+pub(crate) struct IoOptions {
+    /// Folder of the machine.
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// How the terminals are written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
 
 /// Options of `bahn machine new`.
 #[derive(Args, Debug)]

@@ -82,12 +82,11 @@ fn refused(path: &Path, kind: TableForm) -> Option<&'static str> {
     let mut folders = path.ancestors().skip(1).take(2);
     let root = folders.find(|folder| folder.join(MachineFolder::FILE).exists())?;
     let machine = LoadedMachine::load(root).ok()?.ok()?;
-    if machine
-        .parameters
-        .table_parameters()
-        .types
-        .is_protected(kind.protected_with())
-    {
+    let types = machine.parameters.table_parameters().types;
+    if types.is_disabled(kind.protected_with()) {
+        return Some("is disabled (MP7224.0)");
+    }
+    if types.is_protected(kind.protected_with()) {
         return Some("is protected (MP7224.1)");
     }
     machine

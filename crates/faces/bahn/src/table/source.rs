@@ -72,6 +72,14 @@ pub(super) fn machine(path: &Path) -> Result<Option<LoadedMachine>, UsageError> 
 
 /// The file of a table of a machine.
 pub(super) fn of_machine(machine: &LoadedMachine, kind: TableForm) -> Result<PathBuf, UsageError> {
+    let types = machine.parameters.table_parameters().types;
+    if types.is_disabled(kind.protected_with()) {
+        return Err(UsageError::new(format!(
+            "{}: MP7224.0 disables {} tables, nobody sees them",
+            machine.root.display(),
+            kind.name()
+        )));
+    }
     let folder = &machine.folder;
     let in_programs = |name: &Option<String>| {
         let name = name.as_ref()?;

@@ -97,7 +97,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("access", &[]),
-    ("store", &["program", "host"]),
+    ("store", &["parameters", "program", "host"]),
     ("link", &["access", "store", "parameters", "tnc", "host"]),
     (
         "screen",
@@ -245,6 +245,8 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "trials",
             "link",
             "panel",
+            "screen",
+            "why",
             "service",
             "store",
             "server",

@@ -93,6 +93,9 @@ impl Programming {
     fn graphics_key(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
         let editor = &self.open.as_ref()?.editor;
         match key {
+            Key::Graphics | Key::Start | Key::Magn if !site.control().model().has_graphics() => {
+                return Some(Turn::Refused);
+            }
             Key::SkLeft | Key::SkRight => return self.drawn.keys.turn(key, editor),
             Key::Graphics => self.switch(!self.drawn.auto, site),
             Key::Start => self.draw(None, site),

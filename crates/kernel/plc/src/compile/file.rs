@@ -1,5 +1,8 @@
 //! One source file: every line checked and translated.
 
+use bahn_parameters::conformance::Kind;
+use bahn_parameters::equipment::{Equipment, Use as Wanted};
+
 use super::chain::Chains;
 use super::labels::{Definition, Labels, Use, is_internal, module_number};
 use super::structure::Structure;
@@ -111,6 +114,7 @@ impl Translator<'_> {
     fn command(&mut self, command: &Command) {
         self.place.column = command.column;
         self.notes(command);
+        self.lacking(command);
         if self.table.is_some() && self.table_line(command) {
             return;
         }
@@ -275,6 +279,27 @@ impl Translator<'_> {
         self.chains.called();
     }
 
+    /// A marker or word of the NC that this control does not have yet, or without an option.
+    fn lacking(&mut self, command: &Command) {
+        // Most controls lack nothing: no name is written for them.
+        if self.options.equipment == Equipment::default() {
+            return;
+        }
+        let name = match &command.operand {
+            Operand::Bit(operand) => operand.bit.to_string(),
+            Operand::Number(operand) => operand.number.to_string(),
+            _ => return,
+        };
+        self.refuse_lacking(Kind::Marker, &name, &name);
+    }
+
+    fn refuse_lacking(&mut self, kind: Kind, object: &str, name: &str) {
+        let Options { model, equipment, .. } = self.options;
+        if let Some(why) = equipment.lacks(model, Wanted::of(kind, object)) {
+            self.report(Some(PlcError::OperandOutOfRange), &format!("{name} is {why}"));
+        }
+    }
+
     /// Deviations from the editor's spelling: too long a line is an error, the rest warnings.
     fn notes(&mut self, command: &Command) {
         for note in &command.notes {
@@ -363,6 +388,7 @@ impl Translator<'_> {
                         &format!("there is no module {number}"),
                     );
                 }
+                self.refuse_lacking(Kind::Module, &number.to_string(), &format!("module {number}"));
                 Target::Module(number)
             }
             None => {

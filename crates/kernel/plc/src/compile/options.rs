@@ -1,6 +1,7 @@
 //! What a compilation is asked for.
 
 use bahn_parameters::ControlModel;
+use bahn_parameters::equipment::Equipment;
 
 use crate::source::ProgramMemory;
 
@@ -10,6 +11,8 @@ use crate::source::ProgramMemory;
 pub struct Options {
     /// The control: it limits the length of the code.
     pub model: ControlModel,
+    /// Options and software of the control: a marker or module that it lacks is out of range.
+    pub equipment: Equipment,
     /// Whether lines that only the manual's own listings spell like that are errors.
     pub strict: bool,
     /// Where the files come from (MP4010).
@@ -21,6 +24,7 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             model: ControlModel::Tnc415b,
+            equipment: Equipment::default(),
             strict: false,
             memory: ProgramMemory::Ram,
         }
@@ -34,6 +38,11 @@ impl Options {
             model,
             ..Options::default()
         }
+    }
+
+    /// For a control with other options or software.
+    pub fn with_equipment(self, equipment: Equipment) -> Options {
+        Options { equipment, ..self }
     }
 
     /// Refuses what only the manual's own listings spell like that.

@@ -12,9 +12,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
+use bahn_parameters::equipment::Equipment;
 use bahn_parameters::own_functions::OwnFunctions;
+use bahn_parameters::terminals::Fitted;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::Position;
 use bahn_plc::{MemoryTable, PlcProgram};
@@ -34,6 +35,8 @@ pub struct LoadedMachine {
     pub root: PathBuf,
     /// What `machine.toml` says.
     pub folder: MachineFolder,
+    /// The boards with more inputs and outputs.
+    pub boards: Vec<Fitted>,
     /// Its machine parameters.
     pub parameters: ParameterList,
     /// Its PLC program.
@@ -62,7 +65,7 @@ pub struct LoadedMachine {
     /// control goes on.
     pub to_be_entered: Option<String>,
     /// Faults of files that are refused when they are used: they come from outside, so that none of them keeps a machine
-    /// from being switched on.
+    /// from being switched on; and machine parameters that the control does not have.
     pub refused: Vec<Diagnostic>,
 }
 
@@ -230,6 +233,7 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
         warnings: Vec::new(),
         refused: Vec::new(),
         description: (file.clone(), text),
+        equipment: Equipment::default(),
     };
     for fault in faults {
         // At the begin of a line all of it is meant.
@@ -280,6 +284,8 @@ pub(super) struct Loader<'a> {
     pub refused: Vec<Diagnostic>,
     /// `machine.toml`: its path and text.
     description: (PathBuf, String),
+    /// Options and software of the control.
+    pub equipment: Equipment,
 }
 
 impl Loader<'_> {
@@ -287,12 +293,19 @@ impl Loader<'_> {
     fn load(&mut self, folder: MachineFolder) -> Option<LoadedMachine> {
         self.stays_inside("state", &folder.state);
         let model = self.model(&folder.model);
-        let plant = self.plant(&folder, model);
+        if let Some(model) = model {
+            self.equipment = self.equipment(&folder.equipment, model);
+        }
+        let mut plant = self.plant(&folder);
         let plc_messages = self.texts("plc_messages", folder.plc_messages.as_deref(), MESSAGES);
         let plc_dialogues = self.texts("plc_dialogues", folder.plc_dialogues.as_deref(), 4096);
         let mut files = self.compensation(&folder);
         let parameters = model.and_then(|model| self.parameters(&folder, model));
         let mut none = NcFiles::default();
+        let boards = model.map(|model| self.boards(&folder.equipment, model, parameters.as_ref()));
+        if let (Some(model), Some(boards), Some(Some(plant))) = (model, &boards, &mut plant) {
+            self.fit(&folder, plant, model, boards);
+        }
         // Tables fit the list that is entered, when it is.
         let sizes = parameters.as_ref().filter(|_| self.to_be_entered.is_none());
         let tools = self.tool_files(&folder, sizes, files.as_mut().unwrap_or(&mut none));
@@ -316,6 +329,7 @@ impl Loader<'_> {
         }
         Some(LoadedMachine {
             root: self.root.to_owned(),
+            boards: boards?,
             parameters,
             plc: plc?,
             plc_messages: plc_messages?,
@@ -415,9 +429,10 @@ impl Loader<'_> {
             _ => self.read_at(line, name, files::read_table)?.1,
         };
         let text = ListText::from_bytes(model, &bytes);
-        let mut list = ParameterList::reference(model);
+        let mut list = ParameterList::reference(model).with_equipment(self.equipment);
         list.take(&text);
         let found = text.diagnostics(&list, &path);
+        self.refused.extend(text.lacking(&list, &path));
         let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
         match faulty || text.entries().is_empty() {
             true => {
@@ -426,7 +441,7 @@ impl Loader<'_> {
             false => self.warnings.extend(found),
         }
         match list.inconsistencies().iter().any(|found| found.impossible) {
-            true => Some(ParameterList::reference(model)),
+            true => Some(ParameterList::reference(model).with_equipment(self.equipment)),
             false => Some(list),
         }
     }
@@ -438,9 +453,10 @@ impl Loader<'_> {
         }
         let (path, bytes) = self.read_at(line, name, files::read_table)?;
         let text = ListText::from_bytes(model, &bytes);
-        let mut list = ParameterList::reference(model);
+        let mut list = ParameterList::reference(model).with_equipment(self.equipment);
         list.take(&text);
         let found = text.diagnostics(&list, &path);
+        self.refused.extend(text.lacking(&list, &path));
         self.sort(found).then_some(list)
     }
 
@@ -454,7 +470,7 @@ impl Loader<'_> {
             }
             let list = files::read_table(&entry.path()).ok().and_then(|bytes| {
                 let text = ListText::from_bytes(model, &bytes);
-                let mut list = ParameterList::reference(model);
+                let mut list = ParameterList::reference(model).with_equipment(self.equipment);
                 list.take(&text);
                 let found = text.diagnostics(&list, &entry.path());
                 let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
@@ -465,19 +481,14 @@ impl Loader<'_> {
     }
 
     /// The simulated machine, or that there is none; `None` when it is faulty.
-    fn plant(&mut self, folder: &MachineFolder, model: Option<ControlModel>) -> Option<Option<Machine>> {
+    fn plant(&mut self, folder: &MachineFolder) -> Option<Option<Machine>> {
         let Some(name) = &folder.plant else {
             return Some(None);
         };
         let (path, bytes) = self.read_with("plant", name, files::read_description)?;
         let text = decode(&bytes);
         match Machine::from_toml(&text) {
-            Ok(machine) => {
-                if let Some(model) = model {
-                    self.wiring(&path, &text, &machine, model);
-                }
-                Some(Some(machine))
-            }
+            Ok(machine) => Some(Some(machine)),
             Err(faults) => {
                 let faults = faults.into_iter();
                 self.faults.extend(
@@ -488,39 +499,15 @@ impl Loader<'_> {
         }
     }
 
-    /// Every wire ends at an input or output that the control has.
-    fn wiring(&mut self, path: &Path, text: &str, machine: &Machine, model: ControlModel) {
-        /// Faults of the wiring that are named at most.
-        const FAULTS_MAX: usize = 1000;
-        let limits = model.limits();
-        let boards = |bit: Bit| match bit.area() {
-            BitArea::O => limits.outputs,
-            _ => limits.inputs,
+    /// The file of the simulated machine and its text.
+    pub(super) fn text_of_plant(&self, folder: &MachineFolder) -> Option<(PathBuf, String)> {
+        let name = folder.plant.as_deref()?;
+        let path = self.root.join(name);
+        let bytes = match self.file.filter(|(own, _)| *own == name) {
+            Some((_, bytes)) => bytes.to_vec(),
+            None => files::read_description(&path).ok()?,
         };
-        let is_missing = |bit: &Bit| {
-            let mut boards = boards(*bit).iter();
-            !boards.any(|(first, last)| (*first..=*last).contains(&bit.number()))
-        };
-        let bits = machine.wires().iter();
-        let bits = bits.filter_map(|wire| Some((wire, wire.operand.parse::<Bit>().ok()?)));
-        for (wire, bit) in bits.filter(|(_, bit)| is_missing(bit)).take(FAULTS_MAX) {
-            let (what, area) = match bit.area() {
-                BitArea::O => ("output", "O"),
-                _ => ("input", "I"),
-            };
-            let there: Vec<String> = boards(bit)
-                .iter()
-                .map(|(first, last)| format!("{area}{first}-{area}{last}"))
-                .collect();
-            let message = format!(
-                "{} has no {what} {}; there are {}",
-                model.name(),
-                wire.operand,
-                there.join(", ")
-            );
-            let fault = Diagnostic::error(wire.span, message).under("the wiring is wrong");
-            self.faults.push(fault.in_text(path, text));
-        }
+        Some((path, decode(&bytes)))
     }
 
     fn texts(&mut self, key: &str, name: Option<&str>, most: usize) -> Option<Vec<String>> {
@@ -598,6 +585,10 @@ impl Loader<'_> {
         let place = Span::line(self.line_of(key).unwrap_or(1));
         let fault = Diagnostic::warning(place, message).under("something is not used");
         self.warnings.push(fault.in_text(path, text));
+    }
+
+    pub(super) fn fault_at_span(&mut self, span: Span, message: String) {
+        self.fault_in_description(Diagnostic::error(span, message));
     }
 
     pub(super) fn fault_at_line(&mut self, line: usize, message: String) {

@@ -1,11 +1,13 @@
 //! The folder of a machine.
 //!
-//! `load`: everything in it, all faults at once, with its `channels`; `compensation`: the tables of axis errors; `nc_memory` and `tool_files`: its tables; `plc_program`: which one it runs; `programs`: its part programs; `state`:
+//! `load`: everything in it, all faults at once, with its `channels`; `compensation`: the tables of axis errors; `equipment`: boards,
+//! options, software; `nc_memory` and `tool_files`: its tables; `plc_program`: which one it runs; `programs`: its part programs; `state`:
 //! what survives power-off, `remembered` and `mechanics` as files.
 
 mod channel;
 mod channels;
 mod compensation;
+mod equipment;
 mod functions;
 mod load;
 mod mechanics;

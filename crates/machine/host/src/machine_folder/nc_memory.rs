@@ -213,7 +213,7 @@ impl Loader<'_> {
         }
         memory.faulty.extend(twice);
         memory.names = paths.into_keys().collect();
-        self.refused = self.faults.split_off(of_others);
+        self.refused.extend(self.faults.split_off(of_others));
         read
     }
 

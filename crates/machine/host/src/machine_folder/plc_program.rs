@@ -30,7 +30,9 @@ impl Loader<'_> {
             true => ProgramMemory::Eprom,
             false => ProgramMemory::Ram,
         };
-        let options = Options::for_model(model).stored_in(memory);
+        let options = Options::for_model(model)
+            .stored_in(memory)
+            .with_equipment(self.equipment);
         let Some(name) = folder.plc_file() else {
             return self.standard(model, options);
         };

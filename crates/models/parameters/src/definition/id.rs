@@ -17,7 +17,7 @@ impl ParameterId {
     /// Whether it says which axes a machine has, or what they are called: MP10 and MP410 [000:3174-3182, 3350-3370],
     /// MP72 and MP90 of the TNC 151/155 [001:1388-1390].
     pub fn says_axes(self, model: ControlModel) -> bool {
-        match model {
+        match model.family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => matches!(self.number, 72 | 90),
             _ => matches!(self.number, 10 | 410),
         }

@@ -7,13 +7,30 @@ use crate::ControlModel;
 impl ControlModel {
     /// Limits and functions of the model.
     pub const fn limits(self) -> &'static Limits {
+        use ControlModel::*;
         match self {
-            ControlModel::Tnc151 => &TNC151,
-            ControlModel::Tnc155 => &TNC155,
-            ControlModel::Tnc360 => &TNC360,
-            ControlModel::Tnc407 => &TNC407,
-            ControlModel::Tnc415b => &TNC415B,
-            ControlModel::Tnc425 => &TNC425,
+            Tnc151 | Tnc151q => &TNC151,
+            Tnc151b => &TNC151B,
+            Tnc151br => &TNC151BR,
+            Tnc151qr => &TNC151QR,
+            Tnc151f => &TNC151F,
+            Tnc151fr => &TNC151FR,
+            Tnc151w => &TNC151W,
+            Tnc151wr => &TNC151WR,
+            Tnc155 | Tnc155q => &TNC155,
+            Tnc155b => &TNC155B,
+            Tnc155br => &TNC155BR,
+            Tnc155qr => &TNC155QR,
+            Tnc155f => &TNC155F,
+            Tnc155fr => &TNC155FR,
+            Tnc155w => &TNC155W,
+            Tnc155wr => &TNC155WR,
+            Tnc360 => &TNC360,
+            Tnc407 => &TNC407,
+            Tnc415b => &TNC415B,
+            Tnc415f => &TNC415F,
+            Tnc425 => &TNC425,
+            Tnc425e => &TNC425E,
         }
     }
 }
@@ -75,17 +92,69 @@ const TNC151: Limits = Limits {
     rs_422: false,
     transfer_codes: false,
     windows: false,
-    draws_what_runs: true,
-    simulates_in_program_run: true,
+    measuring_probe: false,
+    transfers_blockwise: true,
+    graphics: false,
+    draws_what_runs: false,
+    simulates_in_program_run: false,
     one_axis_by_mdi: false,
     shows_feed_of_keys: true,
     oscilloscope: false,
     square_wave_input: 4,
     spindle_input: 4,
+    unit: "Q",
 };
 
 /// TNC 151 with graphics [001:186].
-const TNC155: Limits = TNC151;
+const TNC155: Limits = Limits {
+    graphics: true,
+    draws_what_runs: true,
+    simulates_in_program_run: true,
+    ..TNC151
+};
+
+const TNC151B: Limits = with_standard_interface(TNC151);
+const TNC151BR: Limits = with_square_waves(TNC151B);
+const TNC151QR: Limits = with_square_waves(TNC151);
+const TNC151F: Limits = for_export(TNC151B);
+const TNC151FR: Limits = for_export(TNC151BR);
+const TNC151W: Limits = for_export(TNC151);
+const TNC151WR: Limits = for_export(TNC151QR);
+const TNC155B: Limits = with_standard_interface(TNC155);
+const TNC155BR: Limits = with_square_waves(TNC155B);
+const TNC155QR: Limits = with_square_waves(TNC155);
+const TNC155F: Limits = for_export(TNC155B);
+const TNC155FR: Limits = for_export(TNC155BR);
+const TNC155W: Limits = for_export(TNC155);
+const TNC155WR: Limits = for_export(TNC155QR);
+
+/// Version B: the terminals of the standard interface, without PLC boards [001:144-150].
+const fn with_standard_interface(of: Limits) -> Limits {
+    Limits {
+        unit: "B",
+        inputs: INPUTS_B,
+        outputs: OUTPUTS_B,
+        ..of
+    }
+}
+
+/// Suffix R: encoder inputs for square-wave signals [001:175-177].
+const fn with_square_waves(of: Limits) -> Limits {
+    Limits {
+        square_wave_input: 0,
+        ..of
+    }
+}
+
+/// Versions F and W: without movement in space and "transfer blockwise" [001:132-136] [001:167-173].
+const fn for_export(of: Limits) -> Limits {
+    Limits {
+        line_axes_max: 2,
+        helix_axes_max: 2,
+        transfers_blockwise: false,
+        ..of
+    }
+}
 
 /// Numbers of machine parameters, terminals and interface as on the later models.
 const TNC360: Limits = Limits {
@@ -102,6 +171,7 @@ const TNC360: Limits = Limits {
     output_bits: 14,
     emergency_stop_test: STOP_TEST_407,
     numbering: Numbering::New,
+    unit: "LE",
     inputs: INPUTS,
     outputs: OUTPUTS,
     transfer_codes: true,
@@ -165,12 +235,24 @@ const TNC415B: Limits = Limits {
     plc_positioning_axes_max: 5,
     emergency_stop_test: STOP_TEST_415,
     draws_what_runs: true,
+    measuring_probe: true,
     square_wave_input: 5,
     ..TNC407
 };
 
 /// TNC 415 B with digital speed control, which is the matter of its parameters [000:18117-18152].
 const TNC425: Limits = TNC415B;
+
+/// TNC 415 B for export: four of five axes, 1 µm [000:339-355] [000:752-760].
+const TNC415F: Limits = Limits {
+    line_axes_max: 4,
+    resolution_mm: 1e-3,
+    resolution_deg: 1e-3,
+    ..TNC415B
+};
+
+/// TNC 425 for export.
+const TNC425E: Limits = TNC415F;
 
 const FREE: Blockwise = Blockwise {
     block_number_max: None,
@@ -203,7 +285,9 @@ const STOP_TEST_415: EmergencyStopTest = EmergencyStopTest {
     restore_us: 18_000,
 };
 const INPUTS_151: &[(u16, u16)] = &[(0, 62), (64, 126)];
-const INPUTS: &[(u16, u16)] = &[(0, 31), (64, 126), (128, 152), (160, 175), (192, 254)];
+const INPUTS_B: &[(u16, u16)] = &[(0, 23)];
+const OUTPUTS_B: &[(u16, u16)] = &[(0, 22)];
+const INPUTS: &[(u16, u16)] = &[(0, 31), (64, 127), (128, 152), (160, 175), (192, 255)];
 const OUTPUTS_151: &[(u16, u16)] = &[(0, 30), (32, 62)];
 const OUTPUTS: &[(u16, u16)] = &[(0, 30), (32, 62), (64, 94), (96, 111)];
 const FN_151: &[u8] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14];

@@ -242,7 +242,7 @@ impl ParameterList {
             reference: reference(&axis),
             travel: travel(&axis),
             synchronization: synchronization(&axis),
-            digital: (self.model() == ControlModel::Tnc425 && axis.bit_or(1900, || false))
+            digital: (self.model().family() == ControlModel::Tnc425 && axis.bit_or(1900, || false))
                 .then(|| digital(&axis)),
         }
     }
@@ -259,14 +259,21 @@ fn wiring(axis: &AxisReader) -> WiringParameters {
     }
 }
 
+/// Signal periods that an EXE makes of one of the encoder [001:416].
+const EXE_DIVISION: f64 = 5.0;
+
 fn encoder(axis: &AxisReader, input: u8) -> EncoderSettings {
     // MP76: bit 0 concerns inhibited axes, bits 1 to 4 switch X to IV off.
     let checked = || !axis.list().old_bit(76, u32::from(axis.index()) + 1);
+    let limits = axis.list().model().limits();
+    let square_wave = input >= limits.square_wave_input;
+    // The EXE in front of a TNC 151/155 R always divides by 5 [001:416-444].
+    let exe = if square_wave { EXE_DIVISION } else { 1.0 };
     EncoderSettings {
-        square_wave: input >= axis.list().model().limits().square_wave_input,
+        square_wave,
         // 20-fold and 10-fold evaluation both make counting steps of 1 µm.
-        signal_period_um: axis.new_or(330, || if axis.old(12) == 2.0 { 10.0 } else { 20.0 }),
-        interpolation: axis.new_or(340, || 1.0).max(1.0) as u8,
+        signal_period_um: axis.new_or(330, || if axis.old(12) == 2.0 { 10.0 } else { 20.0 } / exe),
+        interpolation: axis.new_or(340, || exe).max(1.0) as u8,
         counts_negative: axis.flag(210, 20),
         check_distance_code: axis.bit_or(30, || false),
         check_amplitude: axis.bit_or(31, checked),
@@ -329,10 +336,13 @@ fn precontrol(axis: &AxisReader) -> PrecontrolSettings {
         kv_m105: axis.new_or(1515, || kv),
         transient_m_min: axis.common(1520, 53),
         damping: axis.common(1530, 64),
-        window_mm_min: axis.list().get(1525, 0).unwrap_or(match axis.list().model() {
-            ControlModel::Tnc151 | ControlModel::Tnc155 => f64::INFINITY,
-            _ => WINDOW_MM_MIN,
-        }),
+        window_mm_min: axis
+            .list()
+            .get(1525, 0)
+            .unwrap_or(match axis.list().model().family() {
+                ControlModel::Tnc151 | ControlModel::Tnc155 => f64::INFINITY,
+                _ => WINDOW_MM_MIN,
+            }),
         monitoring_mm: axis.old_common(1410, 56),
         emergency_mm: axis.old_common(1420, 57),
     }

@@ -97,7 +97,7 @@ impl<'a> AxisReader<'a> {
     pub fn display_step(&self) -> f64 {
         const STEPS: [f64; 7] = [0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001];
         let list = self.list;
-        let fine = match list.model() {
+        let fine = match list.model().family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => list.old(65) == 0.0,
             ControlModel::Tnc360 => list.get(7290, 0) == Some(0.0),
             _ => {

@@ -247,7 +247,7 @@ impl ParameterList {
     pub fn program_end_clearing(&self) -> ProgramEndClearing {
         let value = self.value((7300, 0), (173, 0));
         let at_program_end = bit_of(value, 0);
-        match self.model() {
+        match self.model().family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => ProgramEndClearing {
                 status: true,
                 q_parameters: false,

@@ -306,7 +306,7 @@ impl ParameterList {
                 OverrideSteps::TwoPercent
             }
         };
-        let [feed_steps, spindle_steps] = match self.model() {
+        let [feed_steps, spindle_steps] = match self.model().family() {
             ControlModel::Tnc151 | ControlModel::Tnc155 => [continuous(1), continuous(3)],
             ControlModel::Tnc360 => [continuous(1); 2],
             _ if bit_of(value, 3) => [OverrideSteps::NonLinear; 2],

@@ -24,6 +24,14 @@ pub(super) fn command(options: &DncRunOptions) -> Result<Outcome, UsageError> {
             return Ok(Outcome::ProgramError);
         }
     };
+    let model = machine.parameters.model();
+    if !model.transfers_blockwise() {
+        return Err(UsageError::new(format!(
+            "the {} is an export version without \"transfer blockwise\": transfer the program first, then run \
+             it from its memory",
+            model.name()
+        )));
+    }
     let mut power_on = match options.fresh {
         true => PowerOn::fresh(&machine),
         false => PowerOn::kept(&machine)?,

@@ -122,7 +122,8 @@ impl ListFile {
         if let Some(fault) = text.faults().first() {
             return Err(Refused::Line(fault.clone()));
         }
-        let mut list = ParameterList::reference(text.model());
+        let mut list =
+            ParameterList::reference(text.model()).with_equipment(site.machine.parameters.equipment());
         list.take(text);
         if let Some(found) = list.inconsistencies().iter().find(|found| found.impossible) {
             return Err(Refused::Words(format!("{}: {}", found.id, found.rule)));

@@ -169,7 +169,7 @@ impl Parameters {
     /// Shows what stands in the file. Lines that belong to no parameter come first.
     fn read(&mut self, site: &Site) -> Result<(), String> {
         let text = self.file.with(&self.entered, site)?;
-        self.list = ParameterList::reference(text.model());
+        self.list = ParameterList::reference(text.model()).with_equipment(self.list.equipment());
         self.list.take(&text);
         self.rows.retain(|row| row.definition.is_some());
         let found = |fault: &ListError| (fault.clone(), text.line(fault.span.line as usize));

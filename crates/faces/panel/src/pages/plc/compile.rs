@@ -49,7 +49,9 @@ pub(super) fn source_of(name: &str, site: &Site) -> PlcSource {
         true => ProgramMemory::Eprom,
         false => ProgramMemory::Ram,
     };
-    let options = Options::for_model(site.control().model()).stored_in(memory);
+    let options = Options::for_model(site.control().model())
+        .stored_in(memory)
+        .with_equipment(site.parameters().equipment());
     PlcSource::compile(&source::path(name, site), None, options)
 }
 
