@@ -43,10 +43,7 @@ impl PlcSource {
     /// The image of a main file in the EPROM, where there is one.
     pub(crate) fn eprom_image(file: &Path) -> Option<PathBuf> {
         let name = file.file_name()?.to_string_lossy();
-        let folder = file.parent()?.join(EPROM);
-        names_in_folder(&name)
-            .map(|name| folder.join(name))
-            .find(|path| path.is_file())
+        files::named(&file.parent()?.join(EPROM), &name)
     }
 
     /// What keeps the program from running, then what is accepted although the printed rules refuse it; files as they lie
