@@ -209,11 +209,18 @@ impl Loaded {
     }
 }
 
-/// The folder of the PLC program; a main file beside machine.toml does not open the whole folder.
+/// The folder of the PLC program; a main file beside machine.toml does not open the whole folder. With the standard program of the
+/// control it is `plc`, made where it is not there: nothing has to lie in it.
 pub fn plc_folder(machine: &LoadedMachine) -> PathBuf {
-    let main = machine.root.join(&machine.folder.plc);
+    let own = machine.root.join("plc");
+    let Some(main) = machine.folder.plc_file() else {
+        // Where it cannot be made the store says that it is not there.
+        let _ = std::fs::create_dir_all(&own);
+        return own;
+    };
+    let main = machine.root.join(main);
     match main.parent().filter(|folder| **folder != machine.root) {
         Some(folder) => folder.to_owned(),
-        None => machine.root.join("plc"),
+        None => own,
     }
 }
