@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use bahn_interpreter::{Interpreter, NoPrograms, Rules, Settings};
 use bahn_panel::{GraphicsView, Star};
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::ParameterList;
 use bahn_path::{BlockRef, ElementSource, LiveData, Step};
 use bahn_workpiece::{Columns, Cutting, Hears, Memory, Remark};
 use support::Trainee;
@@ -354,33 +354,4 @@ fn a_tnc_360_simulates_in_program_run() {
     trainee.press("NC_START");
     trainee.until(5.0, |screen| screen.status.star == Star::Steady);
     assert_eq!(removed_mm3(&mut trainee), 0.0, "the run has a blank of its own");
-}
-
-/// A TNC 151 has a screen for characters, a TNC 155 one for graphics [001:186].
-#[test]
-fn a_tnc_151_has_no_graphics() {
-    for (model, there) in [(ControlModel::Tnc151, false), (ControlModel::Tnc155, true)] {
-        let mut trainee = Trainee::with("mill-tnc360", |folder| {
-            let edit = |name: &str, what: &dyn Fn(String) -> String| {
-                let path = folder.join(name);
-                std::fs::write(&path, what(std::fs::read_to_string(&path).unwrap())).unwrap();
-            };
-            edit("machine.toml", &|text| text.replace("tnc360", model.id()));
-            edit("parameters.mp", &|_| {
-                ParameterList::reference_text(model).to_owned()
-            });
-            // The panel is wired to I32 ff.
-            for file in ["plant.toml", "plc/MAIN.PLC"] {
-                edit(file, &|text| {
-                    let moved = |text: String, input: u16| {
-                        text.replace(&format!("I{input}"), &format!("I{}", input - 96))
-                    };
-                    (128..153).fold(text, moved)
-                });
-            }
-        });
-        trainee.write("programs/77.H", &GROOVE.replace("GROOVE", "77"));
-        trainee.press("CE FULL PGM_NR 7 7 ENT GRAPHICS");
-        assert_eq!(trainee.screen().graphics.is_some(), there, "{model}");
-    }
 }

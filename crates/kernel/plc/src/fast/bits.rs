@@ -209,11 +209,11 @@ mod tests {
         };
         let first = bahn_exchange::BitArea::I.first_cell();
         assert_eq!(consecutive(&inputs("I0", false), 32), Some(first));
-        assert_eq!(consecutive(&inputs("I247", false), 8), Some(first + 247));
+        assert_eq!(consecutive(&inputs("I248", false), 8), Some(first + 248));
         assert_eq!(
-            consecutive(&inputs("I248", false), 8),
+            consecutive(&inputs("I249", false), 8),
             None,
-            "I255 is none of a program"
+            "I256 is none of a program"
         );
         assert_eq!(consecutive(&inputs("I0", true), 8), None);
     }
