@@ -545,6 +545,7 @@ impl Channel {
                 done
             }
             Command::Code(code) => {
+                self.desk.take_code(code);
                 machine.offsets.shown |= desk::enter_code(code, machine.memory.of_mut(self.number));
                 machine.oscilloscope.enter_code(code, machine.link.list().model())
             }

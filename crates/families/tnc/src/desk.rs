@@ -7,8 +7,8 @@
 //! Decision: M, S and TOUCH PROBE that the PLC presses are on the screen in MANUAL OPERATION and ELECTRONIC
 //! HANDWHEEL; codes of the soft-key row, whose table is lost, are M2187
 
-use bahn_exchange::{Exchange, Image, signal};
-use bahn_kernel::reference::ReferenceRun;
+use bahn_exchange::{Bit, Exchange, Image, signal};
+use bahn_kernel::reference::{Cams, DirectionKeys, ReferenceRun, is_asked};
 use bahn_kernel::{Chain, Leaning, Mover, Now, OwnAxes, Progress, RunState};
 use bahn_parameters::code_numbers::{ERASE_MEMORY, OFFSET_ADJUSTMENT};
 use bahn_parameters::machining::MeasuringProbe;
@@ -23,7 +23,7 @@ use crate::key_code::KeyCode;
 use crate::machine::Facts;
 use crate::manual::Manual;
 use crate::marker_codes;
-use crate::markers::REFERENCE_CAM;
+use crate::markers::{REFERENCE_CAM, REFERENCE_INHIBIT};
 use crate::message::Messages;
 use crate::overrides::Override;
 use crate::panel::{Panel, PlcFaultCode};
@@ -63,7 +63,10 @@ impl Desk {
             spindle_override: Override::spindle(rules.overrides.spindle_steps),
             manual: Manual::default(),
             leaning: Leaning::default(),
-            reference: ReferenceRun::default(),
+            reference: ReferenceRun::new(match rules.marks_by_code {
+                true => DirectionKeys::Dead,
+                false => DirectionKeys::ChooseAxis,
+            }),
             stylus: Stylus::default(),
             key: None,
             rules,
@@ -196,7 +199,7 @@ impl Desk {
             // Single block ends a full sequence at the end of its block, and back.
             _ => self.mode != Mode::Mdi && matches!(mode, Mode::SingleBlock | Mode::FullSequence),
         };
-        let missing = axes.iter().any(|unit| !unit.referenced && !unit.is_plc_axis());
+        let missing = axes.iter().any(is_asked);
         if !possible || mode == Mode::Reference && !missing {
             return false;
         }
@@ -225,6 +228,14 @@ impl Desk {
     pub fn ask_for_reference(&mut self, axes: &mut OwnAxes) {
         if self.reference.is_asked_for(axes) {
             self.set_mode(Mode::Reference, axes);
+        }
+    }
+
+    /// A code number was entered: after 84 159 direction buttons lead the axes over their marks, where they do not without
+    /// it, until power-off (inferred) [001:955].
+    pub fn take_code(&mut self, code: u32) {
+        if code == CODE_84159 && self.rules.marks_by_code {
+            self.reference.set_keys(DirectionKeys::Lead);
         }
     }
 
@@ -439,13 +450,20 @@ impl Desk {
     }
 }
 
-/// The cams of the axes that are closed: the PLC copies them from its inputs.
-fn reference_cams(nc: &Image) -> PerPlcAxis<bool> {
-    let mut cams = PerPlcAxis::splat(false);
-    for (cam, marker) in cams.iter_mut().zip(REFERENCE_CAM) {
-        *cam = nc.bit(marker);
+/// The cams of the axes: the PLC copies them from its inputs.
+pub(crate) fn reference_cams(nc: &Image) -> Cams {
+    let closed = |markers: &[Bit]| {
+        let of = |axis: u8| {
+            markers
+                .get(usize::from(axis))
+                .is_some_and(|marker| nc.bit(*marker))
+        };
+        PerPlcAxis::from_fn(of)
+    };
+    Cams {
+        end: closed(&REFERENCE_CAM),
+        inhibit: closed(&REFERENCE_INHIBIT),
     }
-    cams
 }
 
 /// A code number; the last one stands in D276 for the PLC [000:6928-6947]. Whether it shows the offsets of the

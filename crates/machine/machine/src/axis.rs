@@ -97,6 +97,8 @@ pub(crate) struct Axis {
     play: f64,
     travel: [f64; 2],
     reference_cam: Option<Cam>,
+    /// Chooses one of the pulses of a rotary encoder: its contact is open around that one alone.
+    pulse_inhibit: Option<Cam>,
     /// Limit switches below and above, open when actuated.
     limits: [Option<Cam>; 2],
     on_motor: bool,
@@ -130,10 +132,10 @@ pub(crate) struct Axis {
 }
 
 impl Cam {
-    /// Reads `[axis.X.reference_cam]`; `None` without one.
-    fn of_reference(axis: &Section) -> Option<Cam> {
-        let section = axis.section("reference_cam")?;
-        let [from, to] = section.range("range").unwrap_or([0.0, 1.0]);
+    /// Reads `[axis.X.reference_cam]` or `pulse_inhibit`, whose range is a `key`; `None` without one.
+    fn of_reference(axis: &Section, name: &'static str, key: &'static str) -> Option<Cam> {
+        let section = axis.section(name)?;
+        let [from, to] = section.range(key).unwrap_or([0.0, 1.0]);
         let contact = section.contact("input");
         section.finish();
         Some(Cam { from, to, contact })
@@ -289,7 +291,8 @@ impl Axis {
             per_force,
             play: section.number("backlash", 0.0..=100.0).unwrap_or(0.0),
             travel,
-            reference_cam: Cam::of_reference(&section),
+            reference_cam: Cam::of_reference(&section, "reference_cam", "range"),
+            pulse_inhibit: Cam::of_reference(&section, "pulse_inhibit", "open"),
             limits: ["limit_minus", "limit_plus"].map(|key| Cam::of_limit(&section, key)),
             on_motor: section
                 .section("encoder")
@@ -561,18 +564,13 @@ impl Axis {
         !self.limits.iter().flatten().any(|cam| cam.holds(self.table))
     }
 
-    /// Sets reference cam, limit switches and ready contact. Limit switches open when actuated.
+    /// Sets reference cam, pulse inhibit, limit switches and ready contact. Limit switches open when actuated.
     pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
-        if let Some((cam, contact)) = self
-            .reference_cam
-            .as_ref()
-            .and_then(|cam| Some((cam, cam.contact?)))
-        {
-            contact.set(inputs, cam.holds(self.table));
-        }
-        for cam in self.limits.iter().flatten() {
+        let closers = self.reference_cam.iter().map(|cam| (cam, true));
+        let openers = self.pulse_inhibit.iter().chain(self.limits.iter().flatten());
+        for (cam, closes) in closers.chain(openers.map(|cam| (cam, false))) {
             if let Some(contact) = cam.contact {
-                contact.set(inputs, !cam.holds(self.table));
+                contact.set(inputs, cam.holds(self.table) == closes);
             }
         }
         if let Some(ready) = self.ready {

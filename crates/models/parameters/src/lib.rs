@@ -81,8 +81,8 @@ pub use text::{Entry, ListText};
 /// Of an axis: [`ParameterList::axis_parameters`](crate::ParameterList::axis_parameters).
 pub mod axis {
     pub use crate::settings::{
-        AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
-        WiringParameters,
+        AxisParameters, InhibitedMark, Modulo, MotionParameters, ReferenceParameters, Synchronization,
+        TravelParameters, WiringParameters,
     };
 }
 

@@ -21,8 +21,8 @@ mod tables;
 mod tool_probe;
 
 pub use axis_parameters::{
-    AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
-    WiringParameters,
+    AxisParameters, InhibitedMark, Modulo, MotionParameters, ReferenceParameters, Synchronization,
+    TravelParameters, WiringParameters,
 };
 pub use characteristics::Characteristics;
 pub use interfaces::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};

@@ -107,9 +107,28 @@ pub struct ReferenceParameters {
     pub place: Option<u8>,
     /// How the axis finds its reference mark: MP1350 (old MP242+) [000:4656-4667].
     pub kind: MarkKind,
+    /// An axis that stands on its cam is first backed off it: old MP69 [001:989-995]. Not a rotary one, whose cam is
+    /// bridged for good [001:957].
+    pub backs_off: bool,
+    /// What an axis that is not controlled has of its mark.
+    pub inhibited: InhibitedMark,
     /// Spacing of distance-coded marks, mm: old MP242+ times 20 µm [001:977-987] [001:1480]; 20 mm where the
     /// list has no such parameter (inferred: the spacing of the LS scales).
     pub mark_spacing_mm: f64,
+}
+
+/// What the reference mark is to an axis that is not controlled: old MP75 [001:3266].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InhibitedMark {
+    /// It counts from power-on; its counter is 0 on the mark [000:4573]. The controls with MP50.
+    Zeroes,
+    /// It counts from its mark on.
+    Needed {
+        /// The prompt of the reference run names it: MP75 = 1, not 0.
+        asked: bool,
+    },
+    /// MP75 = 2: its position is 0 at power-on, and counts at once.
+    Preset,
 }
 
 /// How far a rotary axis counts.
@@ -374,11 +393,19 @@ const MARK_SPACING_MM: f64 = 20.0;
 fn reference(axis: &AxisReader) -> ReferenceParameters {
     let feed_mm_min = axis.value(1330, 8);
     let old_spacing = axis.old(242);
-    let kind = match axis.new_or(1350, || if old_spacing > 0.0 { 0.0 } else { 1.0 }) as u8 {
-        0 => MarkKind::DistanceCodedOld,
-        1 => MarkKind::OneMark,
-        2 => MarkKind::RotaryEncoder,
-        _ => MarkKind::DistanceCoded,
+    let list = axis.list();
+    let kind = match list.get_new(1350, axis.index()).map(|kind| kind as u8) {
+        None if old_spacing > 0.0 => MarkKind::DistanceCodedBesideCam,
+        None => MarkKind::UnderCam,
+        Some(0) => MarkKind::DistanceCodedOld,
+        Some(1) => MarkKind::OneMark,
+        Some(2) => MarkKind::RotaryEncoder,
+        Some(_) => MarkKind::DistanceCoded,
+    };
+    let inhibited = match list.old(75) as u8 {
+        _ if !list.has_old_numbers() => InhibitedMark::Zeroes,
+        2 => InhibitedMark::Preset,
+        asked => InhibitedMark::Needed { asked: asked == 1 },
     };
     ReferenceParameters {
         negative: axis.flag(1320, 16),
@@ -389,6 +416,8 @@ fn reference(axis: &AxisReader) -> ReferenceParameters {
             .reference_place(axis.index())
             .filter(|_| axis.exists()),
         kind,
+        backs_off: list.old(69) == 1.0 && kind == MarkKind::UnderCam && !axis.is_rotary(),
+        inhibited,
         mark_spacing_mm: if old_spacing > 0.0 {
             old_spacing * MARK_UNIT_MM
         } else {

@@ -19,6 +19,8 @@ pub struct OperationParameters {
     /// START while an axis direction key is held keeps the axis moving: MP7680 bit 0 (old MP68)
     /// [000:7545-7552].
     pub keys_latched: bool,
+    /// Direction keys lead the axes over their reference marks after code number 84 159 alone; old: yes [001:955].
+    pub marks_by_code: bool,
     /// The axes wait for the acknowledgement of an M function: MP7440 bit 2 = 0 [000:7255].
     pub axes_wait_at_m: bool,
     /// Manual modes always show the smallest manual feed: MP7270 = 1 (old MP167) [000:6536].
@@ -241,6 +243,7 @@ impl ParameterList {
             ram_test: test(0),
             eprom_test: test(1),
             keys_latched: if old { self.old(68) == 1.0 } else { multi(0) },
+            marks_by_code: old,
             axes_wait_at_m: self.m_functions().axes_wait,
             manual_feed_shown: self.bit((7270, 0), (167, 0), 0),
             stop_ends_m: self.model() == ControlModel::Tnc360
