@@ -3,6 +3,9 @@
 //! Decision: Withdrawn feed enable is 0 V until it is back; the lag that was left is driven out on a path, by hand
 //! the axis stands where it stopped; an axis that stands is held in its loop
 //!
+//! Decision: TNC 151/155: without feed release a movement comes down on the ramp of MP54 and goes on by itself when the
+//! release is back, a thread and a probing too; what is turned at the handwheel meanwhile moves nothing
+//!
 //! Decision: An axis of a running program whose loop was open, and which was moved farther than MP1110 meanwhile, is
 //! monitored as at standstill when its loop closes (GROSS POSITIONING ERROR D); by hand and interrupted its actual
 //! value is transferred

@@ -160,7 +160,7 @@ impl ReferenceRun {
             return;
         };
         unit.ask_to_unclamp();
-        if !(unit.servo.closed() && unit.enabled && unit.stands()) {
+        if !(unit.can_be_driven() && unit.stands()) {
             return;
         }
         let backs_off = self.automatic && backs_off(unit, cams);
@@ -235,7 +235,7 @@ fn run_axis(
     let time = now.time_s;
     let unit = axes.get_mut(place)?;
     let cam = cams.holds(unit);
-    if !(unit.servo.closed() && unit.enabled) {
+    if !unit.can_be_driven() {
         unit.mover = Mover::None;
         return None;
     }

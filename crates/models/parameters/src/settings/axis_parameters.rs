@@ -90,6 +90,9 @@ pub struct MotionParameters {
     /// Feed in which the PLC positions the axis and the contour is returned to, mm/min: MP4220, 10 to
     /// 30 000 (old MP163+) [000:11720-11724] [001:3144-3369].
     pub plc_mm_min: f64,
+    /// Without feed enable it comes down on the ramp of MP54 and goes on when the enable is back; old: yes
+    /// [001:509-516]. Else its voltage is 0 at once [000:5352].
+    pub ramps_without_enable: bool,
 }
 
 /// Reference run of an axis.
@@ -314,6 +317,7 @@ fn motion(axis: &AxisReader) -> MotionParameters {
         manual_mm_min: axis.value(1020, 4),
         acceleration_m_s2: axis.old_common(1060, 54),
         plc_mm_min: axis.value(4220, 163),
+        ramps_without_enable: axis.list().has_old_numbers(),
     }
 }
 
