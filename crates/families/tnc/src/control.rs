@@ -447,8 +447,12 @@ impl Control {
         }
     }
 
-    /// The offsets that code number 75 368 shows while its dialogue is open, by axis index, in units of
-    /// 0.15 mV [000:5014-5016].
+    /// The unit of [`Control::offsets_shown`], V: 0.15 mV, 2.44 mV of a TNC 151/155 [000:5016] [001:2577].
+    pub fn offset_unit_volts(&self) -> f64 {
+        self.tnc.machine.core.timing.offset_unit_volts()
+    }
+
+    /// The offsets that code number 75 368 shows while its dialogue is open, by axis index [000:5014-5016].
     pub fn offsets_shown(&self) -> Option<PerPlcAxis<i32>> {
         let axes = self.tnc.machine.core.axes.owned(0);
         let units = by_index(axes, |unit| unit.index, |unit| unit.servo.offset_units());

@@ -36,6 +36,8 @@ impl BufferBattery {
 pub(crate) struct DriveOffsets {
     /// When they are adjusted next (MP1220).
     interval: OffsetInterval,
+    /// All axes have passed their marks.
+    referenced: bool,
     /// Code number 75 368 shows them.
     pub shown: bool,
 }
@@ -44,6 +46,7 @@ impl DriveOffsets {
     pub fn new(interval_s: f64) -> DriveOffsets {
         DriveOffsets {
             interval: OffsetInterval::new(interval_s),
+            referenced: false,
             shown: false,
         }
     }
@@ -54,13 +57,22 @@ impl DriveOffsets {
     }
 
     /// The cyclic offset adjustment: all axes stand in their loops, the spindle is off. An axis with
-    /// integral factor does without [000:5012] [000:5022-5037].
+    /// integral factor does without [000:5012] [000:5022-5037]. Controls with patience adjust outside the window, too,
+    /// and once the axes have passed their marks [001:2600-2606].
     pub fn adjust_cyclically(&mut self, cycle_us: u32, spindle_off: bool, axes: &mut Axes) {
+        let settled = |unit: &AxisUnit| {
+            let stood_s = f64::from(unit.stood_cycles) * f64::from(cycle_us) * 1e-6;
+            let patience = unit.parameters.offset_patience_s;
+            unit.servo.in_position() || patience.is_some_and(|patience_s| stood_s > patience_s)
+        };
+        let controlled = || axes.iter().filter(|unit| unit.parameters.controlled);
         let permitted = spindle_off
-            && axes
-                .iter()
-                .filter(|unit| unit.parameters.controlled)
-                .all(|unit| unit.servo.closed() && unit.stands() && unit.servo.in_position());
+            && controlled().all(|unit| unit.servo.closed() && unit.stands() && settled(unit));
+        let referenced = controlled().all(|unit| unit.referenced);
+        let passed = referenced && !std::mem::replace(&mut self.referenced, referenced);
+        if passed && controlled().all(|unit| unit.parameters.offset_patience_s.is_some()) {
+            self.interval.come();
+        }
         if !self.interval.pass(cycle_us, permitted) {
             return;
         }

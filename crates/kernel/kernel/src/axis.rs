@@ -141,6 +141,8 @@ pub struct AxisUnit {
     pub travelled: f64,
     /// Actual position of the last cycle, for the distance travelled.
     last_actual: f64,
+    /// Contour cycles in which it was commanded to stand, since it moved last.
+    pub stood_cycles: u32,
     /// Largest lag since power-on, mm.
     pub max_lag: f64,
     /// Status marker M2008 ff.: in position after a movement.
@@ -186,6 +188,7 @@ impl AxisUnit {
             direction: Direction::Plus,
             travelled: 0.0,
             last_actual: 0.0,
+            stood_cycles: 0,
             max_lag: 0.0,
             in_position: true,
             limits: [f64::NEG_INFINITY, f64::INFINITY],
@@ -473,6 +476,10 @@ impl AxisUnit {
         if self.servo.closed() {
             self.max_lag = self.max_lag.max(self.servo.lag_mm().abs());
         }
+        self.stood_cycles = match self.stands() {
+            true => self.stood_cycles.saturating_add(1),
+            false => 0,
+        };
         if self.speed > 0.0 {
             self.direction = Direction::Plus;
         } else if self.speed < 0.0 {

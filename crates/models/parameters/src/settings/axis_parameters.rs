@@ -42,6 +42,9 @@ pub struct AxisParameters {
     /// Interval of the automatic offset adjustment, s, 0 without: MP1220 (old MP252, 20 ms)
     /// [000:5022-5037] [001:2591-2606].
     pub offset_interval_s: f64,
+    /// So long stands the nominal value of an axis at its target before it is adjusted outside its positioning window, s;
+    /// the axes are adjusted at once when they have passed their marks: old; `None`: neither [001:2600-2606].
+    pub offset_patience_s: Option<f64>,
     /// Feed rates and acceleration.
     pub motion: MotionParameters,
     /// Operation with servo lag.
@@ -254,6 +257,7 @@ impl ParameterList {
             encoder: encoder(&axis, wiring.input),
             output: output(&axis),
             offset_interval_s: self.get(1220, 0).unwrap_or_else(|| self.old(252) * 0.02),
+            offset_patience_s: self.has_old_numbers().then_some(OFFSET_PATIENCE_S),
             motion: motion(&axis),
             lag: lag(&axis),
             precontrol: precontrol(&axis),
@@ -295,6 +299,9 @@ fn encoder(axis: &AxisReader, input: u8) -> EncoderSettings {
         check_edges: axis.bit_or(32, checked),
     }
 }
+
+/// Offsets are adjusted when the nominal value is at its target so long, s [001:2604].
+const OFFSET_PATIENCE_S: f64 = 5.0;
 
 /// The encoder input whose MP253 to MP257 names the axis, otherwise its own [001:2434-2454].
 fn old_input(axis: &AxisReader) -> u8 {
