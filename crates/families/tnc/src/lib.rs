@@ -131,6 +131,7 @@ mod upkeep;
 mod view;
 mod watch;
 mod window;
+mod without_plc;
 
 pub use bahn_interpreter::{Done, Work};
 pub use bahn_interpreter::{DripFeedLine, DripFeedState};

@@ -27,6 +27,7 @@ use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
 use crate::tables::{self, LoadedTables};
+use crate::without_plc;
 use crate::upkeep::{self, BufferBattery, DriveOffsets};
 use crate::window::Window;
 
@@ -55,6 +56,8 @@ pub(crate) struct MachineSide {
     /// Axes and EMERGENCY STOP, which the kernel moves and watches.
     pub core: Core,
     station: Station,
+    /// A programming station moves its axes in their nominal positions.
+    moves_without_machine: bool,
     pub plc_parameters: PlcParameters,
     handwheel: HandwheelParameters,
     /// The memory of the PLC as each channel sees it; the first channel's is the memory itself.
@@ -218,6 +221,7 @@ impl MachineSide {
                 loops_closed: false,
             },
             station: operation.station,
+            moves_without_machine: operation.moves_without_machine,
             plc_parameters: parameters.plc_parameters(),
             handwheel: operation.handwheel,
             compensation,
@@ -265,9 +269,15 @@ impl MachineSide {
         letters
     }
 
+    /// The axes are moved in their nominal positions, whatever is connected: MP170 of a TNC 151/155.
+    pub fn has_no_machine(&self) -> bool {
+        self.moves_without_machine
+    }
+
     /// Whether a PLC scan is due. The PLC runs from the end of `POWER INTERRUPTED` on [000:7033-7040].
     pub fn scan_is_due(&mut self, now_us: u64) -> bool {
-        if self.station == Station::WithoutPlc || self.plc.machine.stopped().is_some() {
+        let scans = self.station != Station::WithoutPlc || self.moves_without_machine;
+        if !scans || self.plc.machine.stopped().is_some() {
             return false;
         }
         let runs = !matches!(
@@ -324,6 +334,10 @@ impl MachineSide {
     /// Runs the PLC program. `false` when it has stopped.
     pub fn scan(&mut self, block: Option<BlockRef>, tracer: Option<&mut (dyn Tracer + '_)>) -> bool {
         self.plc.scans += 1;
+        if self.station == Station::WithoutPlc {
+            without_plc::scan(self.memory.first_mut());
+            return true;
+        }
         let (exchange, others) = self.memory.split_mut();
         for (window, own) in self.windows.iter().zip(others.iter_mut()) {
             window.publish(own, exchange);
@@ -357,7 +371,7 @@ impl MachineSide {
 
     /// What the "control is ready" circuit asks for, with its messages.
     pub fn circuit_order(&mut self, block: Option<BlockRef>) -> CircuitOrder {
-        if self.station != Station::Machine {
+        if self.station != Station::Machine && !self.moves_without_machine {
             // A programming station has no machine: its loops stay open [000:6951].
             return CircuitOrder::Nothing;
         }
@@ -371,7 +385,13 @@ impl MachineSide {
             self.messages.remove(&VOLTAGE_MISSING);
         }
         let fault = match circuit {
-            Circuit::Ready if !self.core.loops_closed => return CircuitOrder::CloseLoops,
+            Circuit::Ready if !self.core.loops_closed => {
+                if self.moves_without_machine {
+                    // It has no marks to pass.
+                    self.core.axes.iter_mut().for_each(|unit| unit.referenced = true);
+                }
+                return CircuitOrder::CloseLoops;
+            }
             Circuit::PowerInterrupted | Circuit::VoltageMissing | Circuit::Testing | Circuit::Ready => {
                 return CircuitOrder::Nothing;
             }

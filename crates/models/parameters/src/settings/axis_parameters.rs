@@ -303,8 +303,12 @@ fn encoder(axis: &AxisReader, input: u8) -> EncoderSettings {
 /// Offsets are adjusted when the nominal value is at its target so long, s [001:2604].
 const OFFSET_PATIENCE_S: f64 = 5.0;
 
-/// The encoder input whose MP253 to MP257 names the axis, otherwise its own [001:2434-2454].
+/// The encoder input whose MP253 to MP257 names the axis, otherwise its own [001:2434-2454]; its own, too, of a programming
+/// station, which has no encoders.
 fn old_input(axis: &AxisReader) -> u8 {
+    if axis.list().old(170) != 0.0 {
+        return axis.index();
+    }
     let names_axis =
         |input: &u8| axis.list().get(253 + u16::from(*input), 0) == Some(f64::from(axis.index() + 1));
     (0..5).find(names_axis).unwrap_or(axis.index())

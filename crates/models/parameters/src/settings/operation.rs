@@ -8,6 +8,9 @@ use crate::{ControlModel, ParameterId, ParameterList, PerPlcAxis};
 pub struct OperationParameters {
     /// Whether there is a machine: MP7210 (old MP170) [000:6949-6954] [001:1637-1641].
     pub station: Station,
+    /// A programming station moves its axes in their nominal positions and needs neither voltage nor encoders: old: yes
+    /// [001:1637-1641]. Else it has PROGRAMMING AND EDITING and TEST RUN alone [000:6949].
+    pub moves_without_machine: bool,
     /// POWER INTERRUPTED waits for CE after switch-on: MP7212 = 0; old: always [000:7033-7040].
     pub power_interrupted: bool,
     /// The dialogue is English: MP7230 = 1 (old MP92 + 2) [000:6956-6966] [001:3277-3281].
@@ -238,6 +241,7 @@ impl ParameterList {
                 1 => Station::WithPlc,
                 _ => Station::WithoutPlc,
             },
+            moves_without_machine: old && self.old(170) != 0.0,
             power_interrupted: !is_one(7212),
             english: if old { self.old_bit(92, 1) } else { is_one(7230) },
             ram_test: test(0),
