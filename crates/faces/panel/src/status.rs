@@ -129,7 +129,7 @@ pub(crate) fn of(
         tool: snapshot.tool,
         t_inverse: control.memory().bit(signal::TOOL_DISPLAY_INVERSE),
         tool_axis,
-        s: snapshot.spindle.programmed_rpm,
+        s: speed(snapshot, parameters),
         gear: snapshot.spindle.gear,
         spindle_rpm: snapshot.spindle.actual_rpm,
         f: feed(snapshot, control, parameters, notation),
@@ -257,6 +257,13 @@ fn feed(snapshot: &Snapshot, control: &Control, parameters: &ParameterList, nota
         (None, _) => shown(0.0),
         _ => String::new(),
     }
+}
+
+/// The programmed speed of the spindle; with MP191 = 0 of a TNC 151/155 once it turns [001:1577].
+fn speed(snapshot: &Snapshot, parameters: &ParameterList) -> f64 {
+    let spindle = &snapshot.spindle;
+    let shown = spindle.rotation != Rotation::M5 || parameters.operation_parameters().speed_shown_at_rest;
+    if shown { spindle.programmed_rpm } else { 0.0 }
 }
 
 /// `M5/9`: the M functions of spindle and coolant as the PLC shows them [000:6563-6579].

@@ -11,7 +11,7 @@ use bahn_interpreter::Rules;
 use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Now, Track, path_limits};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
-use bahn_servo::{Measured, OperatorInputs};
+use bahn_servo::Measured;
 
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
@@ -315,9 +315,9 @@ impl Channel {
     }
 
     /// Brings markers and words up to date before a scan.
-    pub fn publish(&mut self, operator: &OperatorInputs, machine: &mut MachineSide) {
+    pub fn publish(&mut self, measured: &Measured, machine: &mut MachineSide) {
         let exchange = machine.memory.of_mut(self.number);
-        self.desk.publish(operator, exchange);
+        self.desk.publish(measured, exchange);
         status::axes(self.desk.mode(), &mut machine.core.axes.of(self.number), exchange);
         status::run(&self.run, !self.handshakes.is_idle(), exchange);
         machine.spindles.of(self.number).publish(exchange);

@@ -4,6 +4,9 @@
 //! direction keys do; as key codes X, Y and Z alone, since those of IV and V are in the manual's lost table. With
 //! MP7640 = 2 highlight and handwheel go together (also `tnc/src/handwheel.rs`)
 //!
+//! Decision: MP66 = 2 of a TNC 151/155: the external potentiometer acts by hand, that of the control in the other
+//! modes; its wiper is the first analogue input of the plant, 0 to 10 V for 0 to 150 %
+//!
 //! Decision: M, S and TOUCH PROBE that the PLC presses are on the screen in MANUAL OPERATION and ELECTRONIC
 //! HANDWHEEL; codes of the soft-key row, whose table is lost, are M2187
 
@@ -15,7 +18,7 @@ use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{ControlModel, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Position};
-use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
+use bahn_servo::{HandwheelInputs, Measured};
 
 use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
@@ -256,9 +259,14 @@ impl Desk {
     }
 
     /// Operating mode and overrides before a PLC scan.
-    pub fn publish(&mut self, operator: &OperatorInputs, exchange: &mut Exchange) {
-        self.feed_override
-            .publish(exchange, operator.feed_override_percent);
+    pub fn publish(&mut self, measured: &Measured, exchange: &mut Exchange) {
+        let operator = &measured.operator;
+        let external = self.rules.overrides.external[usize::from(!self.mode.is_automatic())];
+        let feed_percent = match external {
+            true => external_percent(measured),
+            false => operator.feed_override_percent,
+        };
+        self.feed_override.publish(exchange, feed_percent);
         self.spindle_override
             .publish(exchange, operator.spindle_override_percent);
         status::mode(self.mode, self.manual.last_key(), exchange);
@@ -448,6 +456,13 @@ impl Desk {
             self.set_mode(Mode::Manual, axes);
         }
     }
+}
+
+/// The external feed potentiometer of a TNC 151/155, whose wiper is the first analogue input: 0 to 10 V for 0 to 150 %
+/// (inferred) [001:1014-1016].
+fn external_percent(measured: &Measured) -> f64 {
+    let [wiper_volts, ..] = measured.volts;
+    wiper_volts.max(0.0) * 15.0
 }
 
 /// The cams of the axes: the PLC copies them from its inputs.

@@ -27,9 +27,9 @@ use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
 use crate::tables::{self, LoadedTables};
-use crate::without_plc;
-use crate::upkeep::{self, BufferBattery, DriveOffsets};
+use crate::upkeep::{self, BufferBattery, DriveOffsets, MemoryTest};
 use crate::window::Window;
+use crate::without_plc;
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
 const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
@@ -73,6 +73,7 @@ pub(crate) struct MachineSide {
     pub oscilloscope: OscilloscopeKeys,
     pub compensation: Compensation,
     battery: BufferBattery,
+    memory_test: MemoryTest,
     pub loaded_tables: LoadedTables,
     pub loaded_datums: LoadedDatums,
     /// What is to be stored has changed since it was stored.
@@ -226,6 +227,7 @@ impl MachineSide {
             handwheel: operation.handwheel,
             compensation,
             battery: BufferBattery::default(),
+            memory_test: MemoryTest::new(&operation),
             memory,
             windows,
             link,
@@ -454,6 +456,10 @@ impl MachineSide {
             Message::Plain(MessageId::PowerInterrupted | MessageId::ExternalEmergencyStop) => {
                 self.core.emergency.clear();
             }
+            Message::Plain(MessageId::OperatingParametersErased) => {
+                let asked = Message::Plain(MessageId::MachineParameterAsked);
+                self.messages.of_machine().show(asked, None);
+            }
             Message::Axis {
                 id: MessageId::PositioningError,
                 axis,
@@ -475,6 +481,8 @@ impl MachineSide {
     pub fn look_after(&mut self, measured: &Measured) {
         self.battery
             .watch(measured.buffer_battery_low, &mut self.messages);
+        self.memory_test
+            .follow(measured.memory_defective, &mut self.messages);
         let off = self.spindles.iter().all(|spindle| spindle.state().volts == 0.0);
         self.offsets
             .adjust_cyclically(self.core.timing.contour_us(), off, &mut self.core.axes);

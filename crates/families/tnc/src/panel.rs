@@ -193,7 +193,10 @@ pub(crate) fn press(buttons: &Buttons, plc: &mut Image) {
         (&FEED, true),
     ];
     let pressed = buttons.directions.iter().flatten().copied();
-    let directions = AXIS_KEYS.iter().flatten().zip(pressed.chain(std::iter::repeat(false)));
+    let directions = AXIS_KEYS
+        .iter()
+        .flatten()
+        .zip(pressed.chain(std::iter::repeat(false)));
     for (command, pressed) in single.into_iter().chain(directions) {
         plc.set_bit(command.marker, pressed);
         plc.set_bit(command.complement, !pressed);

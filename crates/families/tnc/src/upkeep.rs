@@ -3,9 +3,12 @@
 //!
 //! Decision: EXCHANGE BUFFER BATTERY comes as soon as the battery is low, once since power-on; nothing stops, and the
 //! memory is kept
+//!
+//! Decision: A memory that fails its test at switch-on flashes MEMORY TEST with what is defective; no manual prints a text
 
 use bahn_exchange::Exchange;
 use bahn_kernel::{Axes, AxisUnit, Direction, OwnAxes};
+use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_servo::OffsetInterval;
 
@@ -28,6 +31,33 @@ impl BufferBattery {
             messages.of_machine().show(message, None);
         }
         self.said = low;
+    }
+}
+
+/// The memory test at switch-on, as the machine parameters have it: RAM; EPROMs and checksum. What fails it stops the
+/// control for good [001:906-908] [001:2369-2371] [000:6976-6986].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MemoryTest {
+    /// What is still to be tested.
+    due: [bool; 2],
+}
+
+impl MemoryTest {
+    pub fn new(rules: &OperationParameters) -> MemoryTest {
+        MemoryTest {
+            due: [rules.ram_test, rules.eprom_test],
+        }
+    }
+
+    /// Once in each contour cycle; the first one tests.
+    pub fn follow(&mut self, defective: [bool; 2], messages: &mut Messages) {
+        let texts = [MessageId::MemoryDefective, MessageId::MemoryChecksum];
+        let tested = std::mem::take(&mut self.due).into_iter().zip(defective);
+        for ((due, defective), text) in tested.zip(texts) {
+            if due && defective {
+                messages.of_machine().show(Message::Plain(text), None);
+            }
+        }
     }
 }
 
@@ -66,8 +96,8 @@ impl DriveOffsets {
             unit.servo.in_position() || patience.is_some_and(|patience_s| stood_s > patience_s)
         };
         let controlled = || axes.iter().filter(|unit| unit.parameters.controlled);
-        let permitted = spindle_off
-            && controlled().all(|unit| unit.servo.closed() && unit.stands() && settled(unit));
+        let permitted =
+            spindle_off && controlled().all(|unit| unit.servo.closed() && unit.stands() && settled(unit));
         let referenced = controlled().all(|unit| unit.referenced);
         let passed = referenced && !std::mem::replace(&mut self.referenced, referenced);
         if passed && controlled().all(|unit| unit.parameters.offset_patience_s.is_some()) {

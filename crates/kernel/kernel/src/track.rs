@@ -157,9 +157,7 @@ impl Track {
         let stands = self.path.speed_mm_s() == 0.0;
         axes.iter()
             .filter(|unit| element.moves_axis(unit.axis))
-            .all(|unit| {
-                unit.is_released() && unit.way_back.is_over() && (unit.servo.closed() || stands)
-            })
+            .all(|unit| unit.is_released() && unit.way_back.is_over() && (unit.servo.closed() || stands))
     }
 
     /// An axis that the current element moves comes down on its ramp, since its feed is not enabled.

@@ -166,6 +166,7 @@ impl Machine {
             Fault::ProbeBattery => self.probe()?.battery_low = true,
             Fault::ProbeEarly => self.probe()?.early = true,
             Fault::BufferBattery => self.buffer_battery_low = true,
+            Fault::Memory { eprom } => self.memory_defective[usize::from(*eprom)] = true,
         }
         Ok(())
     }
@@ -253,6 +254,7 @@ impl Machine {
             self.plc.loosen_all();
             self.chain.fault = None;
             self.buffer_battery_low = false;
+            self.memory_defective = [false; 2];
             if self.mechanism.probe.is_some() {
                 self.repair("probe")?;
             }
@@ -265,6 +267,7 @@ impl Machine {
         match what {
             "relay" => self.chain.fault = None,
             "battery" => self.buffer_battery_low = false,
+            "memory" => self.memory_defective = [false; 2],
             "probe" => {
                 let probe = self.probe()?;
                 probe.ready = true;

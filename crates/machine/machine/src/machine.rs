@@ -61,6 +61,8 @@ pub struct Machine {
     pub(crate) rests: bool,
     /// Of the logic unit.
     pub(crate) buffer_battery_low: bool,
+    /// RAM, and EPROMs with their checksum, of the control's memory.
+    pub(crate) memory_defective: [bool; 2],
     wires: Vec<Wire>,
 }
 
@@ -129,6 +131,7 @@ impl Machine {
             plc: PlcSide::default(),
             rests: false,
             buffer_battery_low: false,
+            memory_defective: [false; 2],
             wires: Vec::new(),
             mechanism,
         };
@@ -355,6 +358,7 @@ impl Plant for Machine {
         measured.probe = self.touch_probe();
         measured.tool_probe = self.tool_probe();
         measured.buffer_battery_low = self.buffer_battery_low;
+        measured.memory_defective = self.memory_defective;
         measured.volts = self.plc.volts;
         measured.temperatures = self.plc.temperatures;
     }

@@ -101,6 +101,7 @@ pub mod operation {
     pub use crate::settings::{
         DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters,
         OverrideSteps, RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
+        UserText,
     };
 }
 

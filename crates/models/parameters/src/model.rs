@@ -98,6 +98,12 @@ impl ControlModel {
         self.limits().shows_feed_of_keys
     }
 
+    /// Code number 531 210 erases the machine parameters, too [001:1293-1297]; on the later controls markers and bytes alone
+    /// [000:6941].
+    pub const fn erases_its_list(self) -> bool {
+        matches!(self.limits().numbering, crate::Numbering::Old)
+    }
+
     /// Has an oscilloscope after code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
         self.limits().oscilloscope

@@ -1,5 +1,6 @@
 //! Miscellaneous functions: when they act and what they do in the control.
 
+use bahn_parameters::ControlModel;
 use bahn_parameters::technology::{ControlAction, Output, Technology};
 use bahn_path::{Axis, ControlFunction, Function, SpindleOrder};
 use bahn_program::{Compensation, MFunctions};
@@ -36,7 +37,7 @@ fn take_m_function(
     m: &MFunctions,
     block: &mut BlockFunctions,
 ) -> Result<(), Fault> {
-    if !c.executes(Feature::M(code))? {
+    if is_idle_approach(c, code) || !c.executes(Feature::M(code))? {
         return Ok(());
     }
     let Some(technology) = Technology::of_m(c.settings.model, code) else {
@@ -74,6 +75,13 @@ fn take_m_function(
         block.output.push(rules.machine.m_output(code, own, technology));
     }
     Ok(())
+}
+
+/// M95 and M96 of a TNC 151/155 change how a compensated contour is approached and left, and put nothing out: without
+/// compensation they have nothing to do [001:707-708].
+fn is_idle_approach(c: &Context<'_>, code: u16) -> bool {
+    let model = matches!(c.settings.model, ControlModel::Tnc151 | ControlModel::Tnc155);
+    model && matches!(code, 95 | 96) && c.modal.compensation == Compensation::Off
 }
 
 /// Why a function does nothing where it stands: M97 and M98 act on the corners of compensated paths

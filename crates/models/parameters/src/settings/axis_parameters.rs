@@ -85,7 +85,8 @@ pub struct WiringParameters {
 pub struct MotionParameters {
     /// Rapid traverse, mm/min: MP1010, 10 to 300 000 (old MP0+) [000:4836-4841].
     pub rapid_mm_min: f64,
-    /// Manual feed, mm/min: MP1020, 10 to 300 000 (old MP4+) [000:4848-4853].
+    /// Manual feed, mm/min: MP1020, 10 to 300 000 (old MP4+, with MP167 = 1 the smallest of all) [000:4848-4853]
+    /// [001:1020-1024].
     pub manual_mm_min: f64,
     /// Acceleration, m/s², for a rotary axis 1000 degrees/s²: MP1060, 0.001 to 5 (old MP54)
     /// [000:4790-4797].
@@ -300,6 +301,17 @@ fn encoder(axis: &AxisReader, input: u8) -> EncoderSettings {
     }
 }
 
+/// MP4 to MP7; with MP167 = 1 the smallest of them for all axes [001:1020-1024].
+fn old_manual_mm_min(axis: &AxisReader) -> f64 {
+    let list = axis.list();
+    match list.old(167) == 1.0 {
+        true => (4..8)
+            .map(|number| list.old(number))
+            .fold(f64::INFINITY, f64::min),
+        false => axis.old(4),
+    }
+}
+
 /// Offsets are adjusted when the nominal value is at its target so long, s [001:2604].
 const OFFSET_PATIENCE_S: f64 = 5.0;
 
@@ -325,7 +337,7 @@ fn output(axis: &AxisReader) -> OutputSettings {
 fn motion(axis: &AxisReader) -> MotionParameters {
     MotionParameters {
         rapid_mm_min: axis.value(1010, 0),
-        manual_mm_min: axis.value(1020, 4),
+        manual_mm_min: axis.new_or(1020, || old_manual_mm_min(axis)),
         acceleration_m_s2: axis.old_common(1060, 54),
         plc_mm_min: axis.value(4220, 163),
         ramps_without_enable: axis.list().has_old_numbers(),

@@ -14,6 +14,7 @@ mod file;
 mod lists;
 
 use bahn_dialogue::Key;
+use bahn_parameters::operation::UserText;
 use bahn_parameters::{Definition, ListError, MessageId, ParameterList, Reaction};
 use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 use bahn_tnc::Command;
@@ -119,9 +120,17 @@ pub(crate) fn user(site: &Site) -> Turn {
     let list = site.parameters();
     let row = |own: bahn_parameters::operation::UserParameter| {
         let definition = Definition::named(list.model(), own.id).ok()?;
-        let dialogues = site.control().plc_dialogues();
+        let control = site.control();
+        let text = |texts: &[String], number: u16| texts.get(usize::from(number)).cloned();
+        let dialogue = match own.text {
+            UserText::Dialogue(line) => text(control.plc_dialogues(), line),
+            UserText::PlcError { number, place } => {
+                let named = text(control.plc_messages(), number).filter(|text| !text.is_empty());
+                Some(named.unwrap_or_else(|| format!("USER PAR. {place}")))
+            }
+        };
         Some(Row {
-            dialogue: dialogues.get(usize::from(own.dialogue_line)).cloned(),
+            dialogue,
             ..Row::of(definition)
         })
     };
@@ -631,7 +640,13 @@ impl Page for Parameters {
         };
         let mut window = list::window(title, WindowKind::Table, cursor, rows, line);
         window.lines.extend(self.meaning(site));
-        let prompt = self.definition().map(|own| format!("{} =", own.id));
+        let asks = site.control().model().erases_its_list();
+        let prompt = self.definition().map(|own| match asks {
+            true => site
+                .words("MACHINE PARAMETER {} ?")
+                .replace("{}", &own.id.to_string()),
+            false => format!("{} =", own.id),
+        });
         View {
             window: Some(window),
             dialogue: Dialogue {
