@@ -12,9 +12,9 @@
 
 mod file;
 mod lists;
+mod user;
 
 use bahn_dialogue::Key;
-use bahn_parameters::operation::UserText;
 use bahn_parameters::{Definition, ListError, MessageId, ParameterList, Reaction};
 use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 use bahn_tnc::Command;
@@ -26,6 +26,8 @@ use crate::pages::{interface, list};
 use crate::site::Site;
 use crate::transfer::TransferFiles;
 use file::{Entered, ListFile, Refused};
+
+pub(crate) use user::user;
 
 /// What EXT transfers: the lists of the machine.
 const LISTS: Own = Own {
@@ -105,6 +107,17 @@ pub(crate) fn commission(site: &Site) -> Result<Box<dyn Page>, String> {
     Ok(Box::new(editor))
 }
 
+/// The memory of the machine parameters of a TNC 151/155 is empty [001:2489-2493].
+pub(crate) fn is_erased(site: &Site) -> bool {
+    let machine = site.machine;
+    let name = machine
+        .to_be_entered
+        .as_ref()
+        .unwrap_or(&machine.folder.parameters);
+    let text = ListFile::new(name.clone(), site).with(&Entered::default(), site);
+    site.control().model().erases_its_list() && text.is_ok_and(|text| text.entries().is_empty())
+}
+
 /// Opens the editor with all parameters of the list.
 pub(crate) fn all(site: &Site) -> Turn {
     editor(site, |_| true)
@@ -113,29 +126,6 @@ pub(crate) fn all(site: &Site) -> Turn {
 /// What the manual lets the operator change.
 pub(crate) fn of_code(site: &Site) -> Turn {
     editor(site, |definition| definition.user)
-}
-
-/// Up to sixteen that the machine builder has chosen, with his dialogues [000:6907-6926].
-pub(crate) fn user(site: &Site) -> Turn {
-    let list = site.parameters();
-    let row = |own: bahn_parameters::operation::UserParameter| {
-        let definition = Definition::named(list.model(), own.id).ok()?;
-        let control = site.control();
-        let text = |texts: &[String], number: u16| texts.get(usize::from(number)).cloned();
-        let dialogue = match own.text {
-            UserText::Dialogue(line) => text(control.plc_dialogues(), line),
-            UserText::PlcError { number, place } => {
-                let named = text(control.plc_messages(), number).filter(|text| !text.is_empty());
-                Some(named.unwrap_or_else(|| format!("USER PAR. {place}")))
-            }
-        };
-        Some(Row {
-            dialogue,
-            ..Row::of(definition)
-        })
-    };
-    let rows: Vec<Row> = list.user_parameters().into_iter().filter_map(row).collect();
-    opened(rows, site)
 }
 
 fn editor(site: &Site, is_meant: impl Fn(&Definition) -> bool) -> Turn {
