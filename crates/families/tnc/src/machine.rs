@@ -6,7 +6,7 @@
 //! `panel/src/pages/table/editor.rs`)
 
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
-use bahn_kernel::{Axes, AxisId, Circuit, CircuitOrder, Core, EmergencyStop, PerChannel};
+use bahn_kernel::{Axes, AxisId, Circuit, CircuitOrder, Core, DriveOffsets, EmergencyStop, PerChannel};
 use bahn_parameters::fault::{FaultId, Reaction};
 use bahn_parameters::operation::{HandwheelParameters, Station};
 use bahn_parameters::plc::PlcParameters;
@@ -27,7 +27,7 @@ use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
 use crate::tables::{self, LoadedTables};
-use crate::upkeep::{self, BufferBattery, DriveOffsets, MemoryTest};
+use crate::upkeep::{self, BufferBattery, MemoryTest};
 use crate::window::Window;
 use crate::without_plc;
 
