@@ -67,6 +67,9 @@ fn the_pulse_of_a_rotary_encoder_is_chosen_by_the_inhibit_cam() {
     let inhibit = "pulse_inhibit = { open = [150, 160], input = \"I4\" }";
     let marks = "marks_every = 10\nmarks_from = 5";
     let mut rig = asked(only_x(inhibit, marks, 50.0));
+    // Closed where X stands; nothing is wired for Y, Z and IV.
+    let inhibited = ["M2616", "M2617", "M2618", "M2619"].map(|marker| rig.bit(marker));
+    assert_eq!(inhibited, [true, false, false, false]);
     let [_, most] = way(&mut rig);
     assert!((155.0..160.0).contains(&most), "{most}");
     close(rig.machine_position('X'), rig.table('X') - 155.0, 0.001);

@@ -1,6 +1,5 @@
 //! Miscellaneous functions: when they act and what they do in the control.
 
-use bahn_parameters::ControlModel;
 use bahn_parameters::technology::{ControlAction, Output, Technology};
 use bahn_path::{Axis, ControlFunction, Function, SpindleOrder};
 use bahn_program::{Compensation, MFunctions};
@@ -80,8 +79,8 @@ fn take_m_function(
 /// M95 and M96 of a TNC 151/155 change how a compensated contour is approached and left, and put nothing out: without
 /// compensation they have nothing to do [001:707-708].
 fn is_idle_approach(c: &Context<'_>, code: u16) -> bool {
-    let model = matches!(c.settings.model, ControlModel::Tnc151 | ControlModel::Tnc155);
-    model && matches!(code, 95 | 96) && c.modal.compensation == Compensation::Off
+    let approaches = c.settings.model.has_approach_functions() && matches!(code, 95 | 96);
+    approaches && c.modal.compensation == Compensation::Off
 }
 
 /// Why a function does nothing where it stands: M97 and M98 act on the corners of compensated paths

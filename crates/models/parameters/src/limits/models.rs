@@ -80,6 +80,8 @@ const TNC151: Limits = Limits {
     one_axis_by_mdi: false,
     shows_feed_of_keys: true,
     oscilloscope: false,
+    erases_its_list: true,
+    approach_functions: true,
     square_wave_input: 6,
 };
 
@@ -106,6 +108,8 @@ const TNC360: Limits = Limits {
     transfer_codes: true,
     one_axis_by_mdi: true,
     shows_feed_of_keys: false,
+    erases_its_list: false,
+    approach_functions: false,
     ..TNC155
 };
 

@@ -15,6 +15,7 @@ mod lists;
 mod user;
 
 use bahn_dialogue::Key;
+use bahn_parameters::operation::UserParameter;
 use bahn_parameters::{Definition, ListError, MessageId, ParameterList, Reaction};
 use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 use bahn_tnc::Command;
@@ -26,8 +27,7 @@ use crate::pages::{interface, list};
 use crate::site::Site;
 use crate::transfer::TransferFiles;
 use file::{Entered, ListFile, Refused};
-
-pub(crate) use user::user;
+use user::dialogue_of;
 
 /// What EXT transfers: the lists of the machine.
 const LISTS: Own = Own {
@@ -126,6 +126,21 @@ pub(crate) fn all(site: &Site) -> Turn {
 /// What the manual lets the operator change.
 pub(crate) fn of_code(site: &Site) -> Turn {
     editor(site, |definition| definition.user)
+}
+
+/// Up to sixteen that the machine builder has chosen, with his dialogues [000:6907-6926] [001:1299-1334].
+pub(crate) fn user(site: &Site) -> Turn {
+    let list = site.parameters();
+    let row = |own: UserParameter| {
+        let definition = Definition::named(list.model(), own.id).ok()?;
+        let control = site.control();
+        Some(Row {
+            dialogue: dialogue_of(own.text, control.plc_dialogues(), control.plc_messages()),
+            ..Row::of(definition)
+        })
+    };
+    let rows: Vec<Row> = list.user_parameters().into_iter().filter_map(row).collect();
+    opened(rows, site)
 }
 
 fn editor(site: &Site, is_meant: impl Fn(&Definition) -> bool) -> Turn {

@@ -1,33 +1,13 @@
-//! USER PARAMETERS: those that the machine builder gives to the operator, with his dialogues.
+//! What the parameters are called that the machine builder gives to the operator.
 
-use bahn_parameters::Definition;
-use bahn_parameters::operation::{UserParameter, UserText};
-
-use super::{Row, opened};
-use crate::page::Turn;
-use crate::site::Site;
+use bahn_parameters::operation::UserText;
 
 /// Characters of the text of a user parameter of a TNC 151/155 [001:1323].
 const USER_TEXT_MAX: usize = 16;
 
-/// Up to sixteen that the machine builder has chosen, with his dialogues [000:6907-6926] [001:1299-1334].
-pub(crate) fn user(site: &Site) -> Turn {
-    let list = site.parameters();
-    let row = |own: UserParameter| {
-        let definition = Definition::named(list.model(), own.id).ok()?;
-        let control = site.control();
-        Some(Row {
-            dialogue: dialogue_of(own.text, control.plc_dialogues(), control.plc_messages()),
-            ..Row::of(definition)
-        })
-    };
-    let rows: Vec<Row> = list.user_parameters().into_iter().filter_map(row).collect();
-    opened(rows, site)
-}
-
 /// What a user parameter is called: by a line of the PLC dialogues, or by a PLC error message of at most 16 characters, else
 /// `USER PAR. 1` [001:1315-1328].
-fn dialogue_of(text: UserText, dialogues: &[String], messages: &[String]) -> Option<String> {
+pub(super) fn dialogue_of(text: UserText, dialogues: &[String], messages: &[String]) -> Option<String> {
     match text {
         UserText::Dialogue(line) => dialogues.get(usize::from(line)).cloned(),
         UserText::PlcError { number, place } => {
