@@ -597,10 +597,10 @@ impl Axis {
         self.measuring.track(offset_mm, step_mm);
     }
 
-    /// The offset that the drive shows at rest, in units of 0.15 mV, as code number 75 368 shows it
-    /// [000:5014-5016].
+    /// The offset that the drive shows at rest, as code number 75 368 shows it, in units of
+    /// [`Timing::offset_unit_volts`] [000:5014-5016] [001:2575-2581].
     pub fn offset_units(&self) -> i32 {
-        self.offset.units()
+        self.offset.units(&self.timing)
     }
 
     /// Compensates the offset that is shown: ENT after code number 75 368; on a TNC 407 from 0.6 mV on

@@ -44,9 +44,47 @@ impl Default for IdealAxes {
 }
 
 impl IdealAxes {
+    /// These axes in the place of those of a plant, which keeps its contacts and what the operator has in his hands: a
+    /// programming station, which has no machine.
+    pub fn over<'a>(&'a mut self, plant: &'a mut dyn Plant) -> impl Plant + use<'a> {
+        OverPlant { ideal: self, plant }
+    }
+
+    /// Where its encoders and its circuit are now.
+    fn tell(&self, measured: &mut Measured) {
+        for (encoder, count) in measured.encoders.iter_mut().zip(self.counts) {
+            *encoder = Encoder {
+                count,
+                ..Encoder::default()
+            };
+        }
+        (measured.control_ready, measured.control_ready_changed_at) = (self.ready, None);
+    }
+
     /// Where an encoder stands, steps since power-on.
     pub fn count(&self, encoder: usize) -> i64 {
         self.counts.get(encoder).copied().unwrap_or(0)
+    }
+}
+
+/// A plant whose axes are ideal ones.
+struct OverPlant<'a> {
+    ideal: &'a mut IdealAxes,
+    plant: &'a mut dyn Plant,
+}
+
+impl Plant for OverPlant<'_> {
+    fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
+        let outputs = Commands {
+            outputs: commands.outputs,
+            reads_inputs: commands.reads_inputs,
+            ..Commands::default()
+        };
+        self.plant.exchange(step, &outputs, measured);
+        (self.ideal.inputs, self.ideal.operator) = (measured.inputs, measured.operator);
+        // What the plant measures of its own axes is not told.
+        self.ideal.tell(measured);
+        self.ideal.exchange(step, commands, measured);
     }
 }
 

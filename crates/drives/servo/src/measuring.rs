@@ -1,6 +1,6 @@
 //! From the count of an encoder to the position of the axis.
 
-use crate::settings::{AxisSettings, MarkKind};
+use crate::settings::AxisSettings;
 
 use crate::fault::EncoderFault;
 use crate::marks::DistanceCode;
@@ -77,12 +77,8 @@ impl MeasuringSystem {
             false => 1,
         };
         let interpolation = encoder.interpolation.max(1);
-        let coded = matches!(
-            settings.marks.kind,
-            MarkKind::DistanceCoded | MarkKind::DistanceCodedOld
-        );
         let grating_mm = period_um * 1e-3 * f64::from(interpolation);
-        self.code = coded.then(|| DistanceCode {
+        self.code = settings.marks.kind.is_coded().then(|| DistanceCode {
             interval: (settings.marks.spacing_mm / grating_mm).round() as i64,
             period_steps: Encoder::STEPS * i64::from(interpolation),
         });

@@ -1,14 +1,12 @@
 //! The offset voltage of a drive and its compensation, in all its forms [000:5002-5072].
 
 use crate::fault::GrossFault;
-use crate::timing::{OUTPUT_VOLTS, Timing};
+use crate::timing::Timing;
 
 /// From here on an offset is an error, V [000:5006].
 const OFFSET_MAX_VOLTS: f64 = 0.1;
 /// The offset in which the cyclic adjustment takes its large step, V [000:5032].
 const LARGE_STEP_VOLTS: f64 = 0.001;
-/// Unit in which offsets are shown, V: 0.15 mV [000:5016].
-const DISPLAY_UNIT_VOLTS: f64 = OUTPUT_VOLTS / 65_536.0;
 /// The integral factor that takes over the whole voltage of the loop in one contour cycle (inferred: the
 /// unit of MP1080 is not given; 100 to start with takes it over in about two seconds).
 const INTEGRAL_UNIT: f64 = 65_536.0;
@@ -50,9 +48,9 @@ impl Offset {
         self.compensation_volts = volts;
     }
 
-    /// The offset in units of 0.15 mV.
-    pub(crate) fn units(&self) -> i32 {
-        (self.residual_volts / DISPLAY_UNIT_VOLTS).round() as i32
+    /// The offset in units as it is shown.
+    pub(crate) fn units(&self, timing: &Timing) -> i32 {
+        (self.residual_volts / timing.offset_unit_volts()).round() as i32
     }
 
     /// Compensates all that is seen, unless the converter cannot resolve it.
@@ -63,12 +61,14 @@ impl Offset {
         }
     }
 
-    /// One adjustment: 1 mV when the offset is larger, else one step of the converter.
+    /// One adjustment: 1 mV when the offset is larger, else one step of the converter; one of 2.44 mV of a TNC 151/155
+    /// always [001:2606].
     pub(crate) fn adjust(&mut self, timing: &Timing) {
+        let resolution = timing.resolution_volts();
         let step = if self.residual_volts.abs() > LARGE_STEP_VOLTS {
-            LARGE_STEP_VOLTS
+            LARGE_STEP_VOLTS.max(resolution)
         } else {
-            timing.resolution_volts()
+            resolution
         };
         if self.residual_volts.abs() >= step {
             self.add(step.copysign(self.residual_volts));
@@ -100,6 +100,11 @@ impl OffsetInterval {
             interval_us: (interval_s * 1e6).round() as u64,
             elapsed_us: 0,
         }
+    }
+
+    /// The time has come, as soon as an adjustment is permitted: the axes have passed their marks [001:2602].
+    pub fn come(&mut self) {
+        self.elapsed_us = self.elapsed_us.max(self.interval_us);
     }
 
     /// Lets time pass, µs. True when all axes shall do [`Axis::adjust_offset`](crate::Axis::adjust_offset).

@@ -116,6 +116,8 @@ pub struct Measured {
     pub tool_probe: Probe,
     /// The buffer battery of the control's memory is low [000:1385-1400].
     pub buffer_battery_low: bool,
+    /// The memory of the control does not pass its test at power-on: its RAM; its EPROMs and the checksum [001:2369-2371].
+    pub memory_defective: [bool; 2],
     /// Analogue inputs of the PLC, V.
     pub volts: [f64; ANALOGUE_INPUTS],
     /// Pt 100 inputs of the PLC, degrees Celsius.
@@ -135,6 +137,7 @@ impl Default for Measured {
             probe: Probe::default(),
             tool_probe: Probe::default(),
             buffer_battery_low: false,
+            memory_defective: [false; 2],
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [0.0; ANALOGUE_INPUTS],
         }

@@ -200,19 +200,27 @@ pub struct SpeedLoopSettings {
 /// How an axis finds its reference mark: MP1350 [000:4656-4667].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkKind {
-    /// 0: distance-coded marks, the sequence before 1/92 (old: MP242+ greater than 0).
+    /// 0: distance-coded marks, the sequence before 1/92.
     DistanceCodedOld,
-    /// 1: one mark (old: MP242+ = 0).
+    /// 1: one mark, which lies before the cam.
     OneMark,
     /// 2: rotary encoder on a ballscrew, one pulse for each turn; the cam chooses the pulse.
     RotaryEncoder,
     /// 3: distance-coded marks, the sequence from 1/92 on.
     DistanceCoded,
+    /// TNC 151/155, MP242+ = 0: the mark lies under the closed cam; of several the one whose pulse is not inhibited
+    /// [001:957-969].
+    UnderCam,
+    /// TNC 151/155, MP242+ greater than 0: distance-coded marks, which count while the cam is open [001:977-987].
+    DistanceCodedBesideCam,
 }
 
 impl MarkKind {
     /// Two neighbouring marks tell where they are.
     pub fn is_coded(self) -> bool {
-        matches!(self, MarkKind::DistanceCodedOld | MarkKind::DistanceCoded)
+        matches!(
+            self,
+            MarkKind::DistanceCodedOld | MarkKind::DistanceCoded | MarkKind::DistanceCodedBesideCam
+        )
     }
 }

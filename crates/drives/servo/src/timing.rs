@@ -54,6 +54,17 @@ impl Timing {
         self.resolution_volts
     }
 
+    /// The unit in which offsets are shown, V: 0.15 mV [000:5016]; a step of the converter, 2.44 mV, where that has 12 bits
+    /// [001:2577].
+    pub fn offset_unit_volts(&self) -> f64 {
+        const FINE_VOLTS: f64 = OUTPUT_VOLTS / 65_536.0;
+        const COARSE_VOLTS: f64 = OUTPUT_VOLTS / 4096.0;
+        match self.resolution_volts >= COARSE_VOLTS {
+            true => self.resolution_volts,
+            false => FINE_VOLTS,
+        }
+    }
+
     /// The voltage that the converter makes of a nominal value, V: a multiple of the resolution, at most
     /// 10 V of either sign; 0 V for what is no number.
     pub fn convert(&self, volts: f64) -> f64 {

@@ -72,12 +72,12 @@ fn parameters_of_the_command_line_say_what_they_do_not() {
         "test main.H --report shelf.json",
         "run main.H --machine m --fresh --no-graphics",
     ] {
-        let run = folder.bahn(&format!("{command} --mp 7690=1,7310=1,1060.0=2"));
+        let run = folder.bahn(&format!("{command} --mp 7315=1,7310=1,1060.0=2"));
         assert_eq!(run.code(), 0, "{command}: {}", run.err());
         let said = run.err();
         assert!(
             said.contains(
-                "warning: --mp 7690=1: MP7690 has no effect here: memory is not tested: it has no faults here"
+                "warning: --mp 7315=1: MP7315 has no effect here: no graphics without TOOL CALL, none that M functions start"
             ),
             "{command}: {said}"
         );

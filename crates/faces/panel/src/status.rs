@@ -13,7 +13,7 @@ use bahn_parameters::machining::Decimal;
 use bahn_path::Axis;
 use bahn_screen::{AxisLine, Star, Status};
 use bahn_servo::Rotation;
-use bahn_tnc::{AxisState, Control, InForce, Mode, RunState, Snapshot};
+use bahn_tnc::{AxisState, Control, InForce, Mode, RunState, Snapshot, SpindleState};
 
 use crate::settings::{PositionType, Settings};
 
@@ -129,7 +129,7 @@ pub(crate) fn of(
         tool: snapshot.tool,
         t_inverse: control.memory().bit(signal::TOOL_DISPLAY_INVERSE),
         tool_axis,
-        s: snapshot.spindle.programmed_rpm,
+        s: speed(&snapshot.spindle, parameters),
         gear: snapshot.spindle.gear,
         spindle_rpm: snapshot.spindle.actual_rpm,
         f: feed(snapshot, control, parameters, notation),
@@ -259,6 +259,12 @@ fn feed(snapshot: &Snapshot, control: &Control, parameters: &ParameterList, nota
     }
 }
 
+/// The programmed speed of the spindle; with MP191 = 0 of a TNC 151/155 once it turns [001:1577].
+fn speed(spindle: &SpindleState, parameters: &ParameterList) -> f64 {
+    let shown = spindle.rotation != Rotation::M5 || parameters.operation_parameters().speed_shown_at_rest;
+    if shown { spindle.programmed_rpm } else { 0.0 }
+}
+
 /// `M5/9`: the M functions of spindle and coolant as the PLC shows them [000:6563-6579].
 fn functions(snapshot: &Snapshot, control: &Control) -> String {
     let spindle = match snapshot.spindle.rotation {
@@ -294,6 +300,26 @@ mod tests {
 
     fn notation(inch: bool, decimal: Decimal) -> Notation {
         Notation { inch, decimal }
+    }
+
+    /// MP191 of a TNC 155: with 0 the speed of the S word is shown once the spindle turns, with 1 before [001:1577].
+    #[test]
+    fn mp191_shows_the_speed_before_the_spindle_runs() {
+        for (mp191, at_rest) in [("191=0", 0.0), ("191=1", 1200.0)] {
+            let mut list = ParameterList::reference(bahn_parameters::ControlModel::Tnc155);
+            assert!(list.assign(mp191).is_ok());
+            let spindle = |rotation| SpindleState {
+                programmed_rpm: 1200.0,
+                nominal_rpm: 0.0,
+                actual_rpm: 0.0,
+                volts: 0.0,
+                gear: 1,
+                rotation,
+                angle_deg: None,
+            };
+            assert_eq!(speed(&spindle(Rotation::M5), &list), at_rest, "{mp191}");
+            assert_eq!(speed(&spindle(Rotation::M3), &list), 1200.0, "{mp191}");
+        }
     }
 
     #[test]

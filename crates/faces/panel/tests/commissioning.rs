@@ -506,3 +506,29 @@ fn no_list_goes_into_effect_while_another_channel_runs() {
     trainee.press("CE CE");
     trainee.soft("QUIT");
 }
+
+/// An empty list of a TNC 155: OPERATING PARAMTERS ERASED, and the control asks for MP0 [001:2483-2499].
+#[test]
+fn an_empty_list_of_a_tnc_155_is_said_in_its_words() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let change = |name: &str, to: &dyn Fn(String) -> String| {
+            let path = folder.join(name);
+            let text = std::fs::read_to_string(&path).unwrap();
+            std::fs::write(path, to(text)).unwrap();
+        };
+        change("machine.toml", &|text| text.replace("\"tnc415b\"", "\"tnc155\""));
+        // Its boards have fewer inputs.
+        change("plant.toml", &|text| {
+            (128..=152).fold(text, |text, number| {
+                text.replace(&format!("I{number}\""), &format!("I{}\"", number - 40))
+            })
+        });
+        std::fs::write(folder.join("parameters.mp"), "").unwrap();
+        std::fs::write(folder.join("plc/MAIN.PLC"), "       EM\n").unwrap();
+    });
+    trainee.wait(0.1);
+    assert_eq!(trainee.messages(), ["OPERATING PARAMTERS ERASED"]);
+    trainee.press("CE");
+    assert_eq!(trainee.messages(), [""; 0]);
+    assert_eq!(trainee.screen().dialogue.prompt, "MACHINE PARAMETER MP0 ?");
+}

@@ -4,11 +4,12 @@ use bahn_host::{Operable, Wired};
 use bahn_screen::texts::{self, Language};
 
 /// Parts and functions of [`Wired`] with their words; `{}` is the name of the part.
-const KEYS: [(&str, &str, &str); 26] = [
+const KEYS: [(&str, &str, &str); 27] = [
     ("axis.", "ready", "drive of {}: ready"),
     ("axis.", "enable", "drive of {}: enable"),
     ("axis.", "brake_output", "brake of {}"),
     ("axis.", "reference_cam", "reference cam of {}"),
+    ("axis.", "pulse_inhibit", "cam of the reference pulse of {}"),
     ("axis.", "limit_minus", "limit switch {}-"),
     ("axis.", "limit_plus", "limit switch {}+"),
     ("spindle", "ready", "spindle: drive ready"),

@@ -11,7 +11,7 @@ use bahn_interpreter::Rules;
 use bahn_kernel::{Axes, AxisUnit, Chain, Feeder, Kinematics, Now, Track, path_limits};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
-use bahn_servo::{Measured, OperatorInputs};
+use bahn_servo::Measured;
 
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
@@ -316,10 +316,10 @@ impl Channel {
     }
 
     /// Brings markers and words up to date before a scan.
-    pub fn publish(&mut self, operator: &OperatorInputs, machine: &mut MachineSide) {
+    pub fn publish(&mut self, measured: &Measured, machine: &mut MachineSide) {
         let (mode, old) = (self.desk.mode(), machine.has_old_interface());
         let exchange = machine.memory.of_mut(self.number);
-        self.desk.publish(operator, exchange);
+        self.desk.publish(measured, exchange);
         if old {
             let screen = machine.link.screen().filter(|_| self.test.is_none());
             status::programming(screen, &self.run, exchange);
@@ -554,6 +554,7 @@ impl Channel {
                 done
             }
             Command::Code(code) => {
+                self.desk.take_code(code);
                 machine.offsets.shown |= desk::enter_code(code, machine.memory.of_mut(self.number));
                 machine.oscilloscope.enter_code(code, machine.link.list().model())
             }

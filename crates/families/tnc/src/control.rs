@@ -1,5 +1,8 @@
 //! The control as others see it: commands in, state and messages out; and its supply, which makes the TNC anew.
 //!
+//! Decision: Code number 531 210 of a TNC 151/155 erases the list in the control; the file of the folder, which stands
+//! for the list on the machine builder's data medium, stays
+//!
 //! Decision: After power-off axes that were handed over are those of the channel whose list describes them; the
 //! operator passes the reference marks again and starts no program (also `host/src/operator.rs`)
 
@@ -9,6 +12,7 @@ use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Work};
 use bahn_kernel::{AxisUnit, Feeder, RunState, ServoSampler, ServoView, path_limits};
 use bahn_motion::Limits;
+use bahn_parameters::code_numbers::ERASE_MEMORY;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::{PathElement, Switch};
 use bahn_plc::{HostMessage, Tracer};
@@ -142,6 +146,17 @@ impl Control {
         self.supply.starts = before.supply.starts + 1;
     }
 
+    /// Code number 531 210 of a TNC 151/155 erases the machine parameters and resets M1000 to M2000 [001:1293-1297]. The
+    /// list is the one that a control makes when none is entered, until another is.
+    fn erase_list(&mut self, channel: usize) {
+        self.tnc.execute(channel, Command::Code(ERASE_MEMORY));
+        self.begin_anew(ParameterList::smallest(self.model()));
+        self.supply.starts += 1;
+        self.tnc.machine.messages.forget();
+        let erased = Message::Plain(MessageId::OperatingParametersErased);
+        self.tnc.machine.messages.of_machine().show(erased, None);
+    }
+
     /// The TNC begins anew with what it has kept, at the time that it is.
     fn begin_anew(&mut self, parameters: ParameterList) {
         let (mut setup, mut others) = (*self.supply.made_of).clone();
@@ -218,6 +233,10 @@ impl Control {
                 }
                 altered => altered == Altered::Done,
             },
+            (Command::Code(ERASE_MEMORY), false) if self.model().erases_its_list() => {
+                self.erase_list(channel);
+                return true;
+            }
             (Command::DataLine(event), _) => return self.tnc.machine.link.lines.happen(event),
             (command, _) => self.tnc.execute(channel, command),
         };
@@ -447,8 +466,12 @@ impl Control {
         }
     }
 
-    /// The offsets that code number 75 368 shows while its dialogue is open, by axis index, in units of
-    /// 0.15 mV [000:5014-5016].
+    /// The unit of [`Control::offsets_shown`], V: 0.15 mV, 2.44 mV of a TNC 151/155 [000:5016] [001:2577].
+    pub fn offset_unit_volts(&self) -> f64 {
+        self.tnc.machine.core.timing.offset_unit_volts()
+    }
+
+    /// The offsets that code number 75 368 shows while its dialogue is open, by axis index [000:5014-5016].
     pub fn offsets_shown(&self) -> Option<PerPlcAxis<i32>> {
         let axes = self.tnc.machine.core.axes.owned(0);
         let units = by_index(axes, |unit| unit.index, |unit| unit.servo.offset_units());
@@ -458,6 +481,11 @@ impl Control {
     /// Texts of the PLC dialogues, from 0.
     pub fn plc_dialogues(&self) -> &[String] {
         self.tnc.machine.link.dialogues()
+    }
+
+    /// Texts of the PLC messages, from 0.
+    pub fn plc_messages(&self) -> &[String] {
+        self.tnc.machine.link.messages()
     }
 
     /// The line of the compensation assignment that is active: it survives power-off [000:15547-15580].

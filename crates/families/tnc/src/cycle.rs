@@ -45,7 +45,7 @@ impl Family for Cycle<'_, '_> {
         let machine = &mut *self.machine;
         machine.read_inputs(measured);
         for channel in self.channels.iter_mut() {
-            channel.publish(&measured.operator, machine);
+            channel.publish(measured, machine);
         }
         machine.link.program_running = self.channels.iter().any(|channel| channel.run.is_active());
         self.channels.first().inform(machine);

@@ -4,18 +4,21 @@
 //! direction keys do; as key codes X, Y and Z alone, since those of IV and V are in the manual's lost table. With
 //! MP7640 = 2 highlight and handwheel go together (also `tnc/src/handwheel.rs`)
 //!
+//! Decision: MP66 = 2 of a TNC 151/155: the external potentiometer acts by hand, that of the control in the other
+//! modes; its wiper is the first analogue input of the plant, 0 to 10 V for 0 to 150 %
+//!
 //! Decision: M, S and TOUCH PROBE that the PLC presses are on the screen in MANUAL OPERATION and ELECTRONIC
 //! HANDWHEEL; codes of the soft-key row, whose table is lost, are M2187
 
-use bahn_exchange::{Exchange, Image, signal};
-use bahn_kernel::reference::ReferenceRun;
+use bahn_exchange::{Bit, Exchange, Image, signal};
+use bahn_kernel::reference::{Cams, DirectionKeys, ReferenceRun, is_asked};
 use bahn_kernel::{Chain, Leaning, Mover, Now, OwnAxes, Progress, RunState};
 use bahn_parameters::code_numbers::{ERASE_MEMORY, OFFSET_ADJUSTMENT};
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{ControlModel, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, BlockRef, Position};
-use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
+use bahn_servo::{HandwheelInputs, Measured};
 
 use crate::command::{Command, Mode};
 use crate::datums::{Datums, NewDatum};
@@ -23,7 +26,7 @@ use crate::key_code::KeyCode;
 use crate::machine::Facts;
 use crate::manual::Manual;
 use crate::marker_codes;
-use crate::markers::REFERENCE_CAM;
+use crate::markers::{REFERENCE_CAM, REFERENCE_INHIBIT};
 use crate::message::Messages;
 use crate::overrides::Override;
 use crate::panel::{Panel, PlcFaultCode};
@@ -63,7 +66,10 @@ impl Desk {
             spindle_override: Override::spindle(rules.overrides.spindle_steps),
             manual: Manual::default(),
             leaning: Leaning::default(),
-            reference: ReferenceRun::default(),
+            reference: ReferenceRun::new(match rules.marks_by_code {
+                true => DirectionKeys::Dead,
+                false => DirectionKeys::ChooseAxis,
+            }),
             stylus: Stylus::default(),
             key: None,
             rules,
@@ -197,7 +203,7 @@ impl Desk {
             // Single block ends a full sequence at the end of its block, and back.
             _ => self.mode != Mode::Mdi && matches!(mode, Mode::SingleBlock | Mode::FullSequence),
         };
-        let missing = axes.iter().any(|unit| !unit.referenced && !unit.is_plc_axis());
+        let missing = axes.iter().any(is_asked);
         if !possible || mode == Mode::Reference && !missing {
             return false;
         }
@@ -229,6 +235,14 @@ impl Desk {
         }
     }
 
+    /// A code number was entered: after 84 159 direction buttons lead the axes over their marks, where they do not without
+    /// it, until power-off (inferred) [001:955].
+    pub fn take_code(&mut self, code: u32) {
+        if code == CODE_84159 && self.rules.marks_by_code {
+            self.reference.set_keys(DirectionKeys::Lead);
+        }
+    }
+
     /// What is entered for moving by hand: M and S in Manual and Handwheel, jog increment, handwheel. `false` for what cannot
     /// be entered.
     pub fn enter(&mut self, command: &Command, model: ControlModel, axes: &OwnAxes) -> bool {
@@ -246,9 +260,14 @@ impl Desk {
     }
 
     /// Operating mode and overrides before a PLC scan.
-    pub fn publish(&mut self, operator: &OperatorInputs, exchange: &mut Exchange) {
-        self.feed_override
-            .publish(exchange, operator.feed_override_percent);
+    pub fn publish(&mut self, measured: &Measured, exchange: &mut Exchange) {
+        let operator = &measured.operator;
+        let external = self.rules.overrides.external[usize::from(!self.mode.is_automatic())];
+        let feed_percent = match external {
+            true => external_percent(measured),
+            false => operator.feed_override_percent,
+        };
+        self.feed_override.publish(exchange, feed_percent);
         self.spindle_override
             .publish(exchange, operator.spindle_override_percent);
         status::mode(self.mode, self.manual.last_key(), exchange);
@@ -440,13 +459,27 @@ impl Desk {
     }
 }
 
-/// The cams of the axes that are closed: the PLC copies them from its inputs.
-fn reference_cams(nc: &Image) -> PerPlcAxis<bool> {
-    let mut cams = PerPlcAxis::splat(false);
-    for (cam, marker) in cams.iter_mut().zip(REFERENCE_CAM) {
-        *cam = nc.bit(marker);
+/// The external feed potentiometer of a TNC 151/155, whose wiper is the first analogue input: 0 to 10 V for 0 to 150 %
+/// (inferred) [001:1014-1016].
+fn external_percent(measured: &Measured) -> f64 {
+    let [wiper_volts, ..] = measured.volts;
+    wiper_volts.max(0.0) * 15.0
+}
+
+/// The cams of the axes: the PLC copies them from its inputs.
+pub(crate) fn reference_cams(nc: &Image) -> Cams {
+    let closed = |markers: &[Bit]| {
+        let of = |axis: u8| {
+            markers
+                .get(usize::from(axis))
+                .is_some_and(|marker| nc.bit(*marker))
+        };
+        PerPlcAxis::from_fn(of)
+    };
+    Cams {
+        end: closed(&REFERENCE_CAM),
+        inhibit: closed(&REFERENCE_INHIBIT),
     }
-    cams
 }
 
 /// A code number; the last one stands in D276 for the PLC [000:6928-6947]. Whether it shows the offsets of the

@@ -6,6 +6,9 @@
 //! Decision: On TNC 151/155 an axis whose loop the PLC had open goes back to its nominal value on the ramp of rapid traverse,
 //! unless the PLC has the actual value taken over (M2552 ff.), which it may in every operating mode
 //!
+//! Decision: TNC 151/155: without feed release a movement comes down on the ramp of MP54 and goes on by itself when the
+//! release is back, a thread and a probing too; what is turned at the handwheel meanwhile moves nothing
+//!
 //! Decision: An axis of a running program whose loop was open, and which was moved farther than MP1110 meanwhile, is
 //! monitored as at standstill when its loop closes (GROSS POSITIONING ERROR D); by hand and interrupted its actual
 //! value is transferred

@@ -6,7 +6,7 @@
 //! `panel/src/pages/table/editor.rs`)
 
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
-use bahn_kernel::{Axes, AxisId, Circuit, CircuitOrder, Core, EmergencyStop, PerChannel};
+use bahn_kernel::{Axes, AxisId, Circuit, CircuitOrder, Core, DriveOffsets, EmergencyStop, PerChannel};
 use bahn_parameters::fault::{FaultId, Reaction};
 use bahn_parameters::operation::{HandwheelParameters, Station};
 use bahn_parameters::plc::PlcParameters;
@@ -27,8 +27,9 @@ use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
 use crate::tables::{self, LoadedTables};
-use crate::upkeep::{self, BufferBattery, DriveOffsets};
+use crate::upkeep::{self, BufferBattery, MemoryTest};
 use crate::window::Window;
+use crate::without_plc;
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
 const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
@@ -55,6 +56,8 @@ pub(crate) struct MachineSide {
     /// Axes and EMERGENCY STOP, which the kernel moves and watches.
     pub core: Core,
     station: Station,
+    /// A programming station moves its axes in their nominal positions.
+    moves_without_machine: bool,
     pub plc_parameters: PlcParameters,
     handwheel: HandwheelParameters,
     /// The memory of the PLC as each channel sees it; the first channel's is the memory itself.
@@ -70,6 +73,7 @@ pub(crate) struct MachineSide {
     pub oscilloscope: OscilloscopeKeys,
     pub compensation: Compensation,
     battery: BufferBattery,
+    memory_test: MemoryTest,
     pub loaded_tables: LoadedTables,
     pub loaded_datums: LoadedDatums,
     /// What is to be stored has changed since it was stored.
@@ -218,10 +222,12 @@ impl MachineSide {
                 loops_closed: false,
             },
             station: operation.station,
+            moves_without_machine: operation.moves_without_machine,
             plc_parameters: parameters.plc_parameters(),
             handwheel: operation.handwheel,
             compensation,
             battery: BufferBattery::default(),
+            memory_test: MemoryTest::new(&operation),
             memory,
             windows,
             link,
@@ -265,9 +271,15 @@ impl MachineSide {
         letters
     }
 
+    /// The axes are moved in their nominal positions, whatever is connected: MP170 of a TNC 151/155.
+    pub fn has_no_machine(&self) -> bool {
+        self.moves_without_machine
+    }
+
     /// Whether a PLC scan is due. The PLC runs from the end of `POWER INTERRUPTED` on [000:7033-7040].
     pub fn scan_is_due(&mut self, now_us: u64) -> bool {
-        if self.station == Station::WithoutPlc || self.plc.machine.stopped().is_some() {
+        let scans = self.station != Station::WithoutPlc || self.moves_without_machine;
+        if !scans || self.plc.machine.stopped().is_some() {
             return false;
         }
         let runs = !matches!(
@@ -329,6 +341,10 @@ impl MachineSide {
     /// Runs the PLC program. `false` when it has stopped.
     pub fn scan(&mut self, block: Option<BlockRef>, tracer: Option<&mut (dyn Tracer + '_)>) -> bool {
         self.plc.scans += 1;
+        if self.station == Station::WithoutPlc {
+            without_plc::scan(self.memory.first_mut());
+            return true;
+        }
         let (exchange, others) = self.memory.split_mut();
         for (window, own) in self.windows.iter().zip(others.iter_mut()) {
             window.publish(own, exchange);
@@ -362,7 +378,7 @@ impl MachineSide {
 
     /// What the "control is ready" circuit asks for, with its messages.
     pub fn circuit_order(&mut self, block: Option<BlockRef>) -> CircuitOrder {
-        if self.station != Station::Machine {
+        if self.station != Station::Machine && !self.moves_without_machine {
             // A programming station has no machine: its loops stay open [000:6951].
             return CircuitOrder::Nothing;
         }
@@ -376,7 +392,13 @@ impl MachineSide {
             self.messages.remove(&VOLTAGE_MISSING);
         }
         let fault = match circuit {
-            Circuit::Ready if !self.core.loops_closed => return CircuitOrder::CloseLoops,
+            Circuit::Ready if !self.core.loops_closed => {
+                if self.moves_without_machine {
+                    // It has no marks to pass.
+                    self.core.axes.iter_mut().for_each(|unit| unit.referenced = true);
+                }
+                return CircuitOrder::CloseLoops;
+            }
             Circuit::PowerInterrupted | Circuit::VoltageMissing | Circuit::Testing | Circuit::Ready => {
                 return CircuitOrder::Nothing;
             }
@@ -439,6 +461,10 @@ impl MachineSide {
             Message::Plain(MessageId::PowerInterrupted | MessageId::ExternalEmergencyStop) => {
                 self.core.emergency.clear();
             }
+            Message::Plain(MessageId::OperatingParametersErased) => {
+                let asked = Message::Plain(MessageId::MachineParameterAsked);
+                self.messages.of_machine().show(asked, None);
+            }
             Message::Axis {
                 id: MessageId::PositioningError,
                 axis,
@@ -460,6 +486,8 @@ impl MachineSide {
     pub fn look_after(&mut self, measured: &Measured) {
         self.battery
             .watch(measured.buffer_battery_low, &mut self.messages);
+        self.memory_test
+            .follow(measured.memory_defective, &mut self.messages);
         let off = self.spindles.iter().all(|spindle| spindle.state().volts == 0.0);
         self.offsets
             .adjust_cyclically(self.core.timing.contour_us(), off, &mut self.core.axes);

@@ -9,8 +9,8 @@
 
 use bahn_exchange::signal;
 use bahn_kernel::{
-    AtLimit, AxisUnit, HandMove, Leaning, MAIN, Mover, Now, OwnAxes, Wish, look_at_limit, move_by_hand,
-    within,
+    AtLimit, AxisUnit, HandMove, Leaning, MAIN, Mover, Now, OwnAxes, StylusLead, Wish, look_at_limit,
+    move_by_hand, within,
 };
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_parameters::operation::HandwheelParameters;
@@ -26,7 +26,6 @@ use crate::message::{Message, Messages};
 use crate::plc_link::StatusChanges;
 use crate::reach::Reach;
 use crate::site::Site;
-use crate::stylus_lead::StylusLead;
 
 /// M functions that end what was entered: spindle and coolant off.
 const SWITCHED_OFF: [u16; 2] = [5, 9];

@@ -95,6 +95,13 @@ pub(crate) const REFERENCE_CAM: [Bit; AXES] = [
     REFERENCE_END_POSITION_AXIS_4,
     REFERENCE_END_POSITION_AXIS_5,
 ];
+/// M2616 ff.: the pulse of the reference mark does not count; four axes [001:946-949].
+pub(crate) const REFERENCE_INHIBIT: [Bit; 4] = [
+    REFERENCE_PULSE_INHIBIT_AXIS_X,
+    REFERENCE_PULSE_INHIBIT_AXIS_Y,
+    REFERENCE_PULSE_INHIBIT_AXIS_Z,
+    REFERENCE_PULSE_INHIBIT_AXIS_4,
+];
 /// M2624 ff.: software limit switch, plus and minus.
 pub(crate) const LIMIT: [[Bit; 2]; AXES] = [
     [LIMIT_REACHED_X_PLUS, LIMIT_REACHED_X_MINUS],

@@ -181,6 +181,8 @@ fn of_plain(id: MessageId) -> FaultId {
         FaultId::StylusDeflection,
         FaultId::PowerInterrupted,
         FaultId::BufferBattery,
+        FaultId::MemoryDefective,
+        FaultId::MemoryChecksum,
         FaultId::VoltageMissing,
         FaultId::EmergencyStopDefective,
         FaultId::ExternalEmergencyStop,

@@ -175,6 +175,35 @@ impl Panel {
     }
 }
 
+/// Buttons that act without a PLC program.
+pub(crate) struct Buttons {
+    pub start: bool,
+    pub rapid: bool,
+    /// Plus and minus of X, Y, Z, IV.
+    pub directions: [[bool; 2]; 4],
+}
+
+/// Sets the commands that buttons give: start latches directions that are held, the feed is enabled, and NC stop is not
+/// given.
+pub(crate) fn press(buttons: &Buttons, plc: &mut Image) {
+    let single = [
+        (&START, buttons.start),
+        (&MEMORY, buttons.start),
+        (&RAPID, buttons.rapid),
+        (&FEED, true),
+    ];
+    let pressed = buttons.directions.iter().flatten().copied();
+    let directions = AXIS_KEYS
+        .iter()
+        .flatten()
+        .zip(pressed.chain(std::iter::repeat(false)));
+    for (command, pressed) in single.into_iter().chain(directions) {
+        plc.set_bit(command.marker, pressed);
+        plc.set_bit(command.complement, !pressed);
+    }
+    plc.set_bit(signal::NC_STOP, true);
+}
+
 impl Command {
     fn active(&self, plc: &Image) -> Result<bool, PlcFaultCode> {
         let (marker, complement) = (plc.bit(self.marker), plc.bit(self.complement));

@@ -1,10 +1,12 @@
 //! The state of the control for a display, a report or a test.
 
+use bahn_kernel::reference::{backs_off, is_asked};
 use bahn_kernel::{AxisUnit, RunState, path_positions};
 use bahn_path::{BlockRef, Position};
 
 use crate::channel::Channel;
 use crate::command::Mode;
+use crate::desk::reference_cams;
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::message::Shown;
@@ -34,6 +36,10 @@ pub struct AxisState {
     pub distance_to_go: f64,
     /// The reference mark was passed.
     pub referenced: bool,
+    /// The prompt of the reference run names it: it has not passed its mark, and shall.
+    pub mark_wanted: bool,
+    /// It stands on its cam and is backed off it before it approaches its mark.
+    pub backs_off: bool,
     /// The loop is closed.
     pub closed: bool,
     /// The feed is enabled.
@@ -92,6 +98,7 @@ impl AxisState {
         let [actual, nominal] = at;
         let leads = machine.core.axes.master(unit).unwrap_or(unit);
         let offsets = &channel.chain().offsets;
+        let nc = machine.memory.of(channel.number()).nc();
         AxisState {
             letter: unit.axis.letter(),
             index: unit.index,
@@ -106,6 +113,8 @@ impl AxisState {
             max_lag: unit.max_lag,
             distance_to_go: run.distance_to_go(unit, channel.chain()),
             referenced: unit.referenced,
+            mark_wanted: is_asked(unit),
+            backs_off: backs_off(unit, &reference_cams(nc)),
             closed: unit.servo.closed(),
             enabled: unit.enabled,
             in_position: unit.in_position,

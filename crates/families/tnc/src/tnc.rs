@@ -3,7 +3,7 @@
 use bahn_kernel::{Axes, AxisUnit, Cartesian, Clock, PerChannel, ServoSampler, first_ids, units};
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_plc::{Tracer, mirror_parameters};
-use bahn_servo::Plant;
+use bahn_servo::{IdealAxes, Plant};
 
 use crate::channel::{Channel, Parts};
 use crate::command::Command;
@@ -31,6 +31,8 @@ pub(crate) struct Tnc {
     pub keeps: bool,
     /// The axes that the PLC may hand over.
     pub ordered: Vec<Ordered>,
+    /// The axes of a programming station.
+    ideal: IdealAxes,
 }
 
 /// The connectors of the spindle of the first channel.
@@ -152,6 +154,7 @@ impl Tnc {
             channels,
             keeps: false,
             ordered: Vec::new(),
+            ideal: IdealAxes::default(),
         };
         tnc.show_power_interrupted();
         tnc
@@ -172,7 +175,13 @@ impl Tnc {
             keeps: self.keeps,
             tracer,
         };
-        self.clock.cycle(&mut cycle, is_off, plant, sampler);
+        match cycle.machine.has_no_machine() {
+            true => {
+                let mut desktop = self.ideal.over(plant);
+                self.clock.cycle(&mut cycle, is_off, &mut desktop, sampler);
+            }
+            false => self.clock.cycle(&mut cycle, is_off, plant, sampler),
+        }
     }
 
     /// A command for a channel; `false` when it is not possible now.

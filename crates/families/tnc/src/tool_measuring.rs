@@ -6,6 +6,7 @@
 //! broken tool keeps its data; Q115 and Q116 are the differences; a measuring that is broken off stops the spindle
 
 use bahn_exchange::{Exchange, signal};
+use bahn_kernel::probing_speed::{feed_mm_min, speed_rpm};
 use bahn_kernel::{AxisUnit, Chain, OwnAxes, Straight};
 use bahn_motion::Aim;
 use bahn_parameters::MessageId;
@@ -15,7 +16,6 @@ use bahn_servo::Measured;
 
 use crate::handshake::Transfer;
 use crate::message::Message;
-use crate::probing_speed::{feed_mm_min, speed_rpm};
 use crate::site::Site;
 use crate::tool::{MeasuredTool, ToolCondition};
 use crate::tool_contacts::{Contact, Contacts};

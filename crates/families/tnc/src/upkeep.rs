@@ -1,14 +1,16 @@
-//! What the control looks after beside the movements: offsets of the drives, lubrication, limits that axes
-//! have left, the buffer battery.
+//! What the control looks after beside the movements: lubrication, limits that axes have left, the buffer battery, the
+//! memory test.
 //!
 //! Decision: EXCHANGE BUFFER BATTERY comes as soon as the battery is low, once since power-on; nothing stops, and the
 //! memory is kept
+//!
+//! Decision: A memory that fails its test at switch-on flashes MEMORY TEST with what is defective; no manual prints a text
 
 use bahn_exchange::Exchange;
 use bahn_kernel::{Axes, AxisUnit, OwnAxes};
+use bahn_parameters::operation::OperationParameters;
 use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_path::Direction;
-use bahn_servo::OffsetInterval;
 
 use crate::markers::LUBRICATION_PULSE;
 use crate::message::{Message, Messages};
@@ -32,63 +34,30 @@ impl BufferBattery {
     }
 }
 
-/// The offsets of the drives.
-#[derive(Clone, Debug)]
-pub(crate) struct DriveOffsets {
-    /// When they are adjusted next (MP1220).
-    interval: OffsetInterval,
-    /// Code number 75 368 shows them.
-    pub shown: bool,
+/// The memory test at switch-on, as the machine parameters have it: RAM; EPROMs and checksum. What fails it stops the
+/// control for good [001:906-908] [001:2369-2371] [000:6976-6986].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MemoryTest {
+    /// What is still to be tested.
+    due: [bool; 2],
 }
 
-impl DriveOffsets {
-    pub fn new(interval_s: f64) -> DriveOffsets {
-        DriveOffsets {
-            interval: OffsetInterval::new(interval_s),
-            shown: false,
+impl MemoryTest {
+    pub fn new(rules: &OperationParameters) -> MemoryTest {
+        MemoryTest {
+            due: [rules.ram_test, rules.eprom_test],
         }
     }
 
-    /// The interval has changed.
-    pub fn set_interval(&mut self, interval_s: f64) {
-        self.interval = OffsetInterval::new(interval_s);
-    }
-
-    /// The cyclic offset adjustment: all axes stand in their loops, the spindle is off. An axis with
-    /// integral factor does without [000:5012] [000:5022-5037].
-    pub fn adjust_cyclically(&mut self, cycle_us: u32, spindle_off: bool, axes: &mut Axes) {
-        let permitted = spindle_off
-            && axes
-                .iter()
-                .filter(|unit| unit.parameters.controlled)
-                .all(|unit| unit.servo.closed() && unit.stands() && unit.servo.in_position());
-        if !self.interval.pass(cycle_us, permitted) {
-            return;
-        }
-        for unit in axes.iter_mut() {
-            if unit.parameters.controlled && unit.parameters.output.integral_factor == 0.0 {
-                unit.servo.adjust_offset();
+    /// Once in each contour cycle; the first one tests.
+    pub fn follow(&mut self, defective: [bool; 2], messages: &mut Messages) {
+        let texts = [MessageId::MemoryDefective, MessageId::MemoryChecksum];
+        let tested = std::mem::take(&mut self.due).into_iter().zip(defective);
+        for ((due, defective), text) in tested.zip(texts) {
+            if due && defective {
+                messages.of_machine().show(Message::Plain(text), None);
             }
         }
-    }
-
-    /// Answers to code number 75 368: compensates the offsets of the axes, or switches the automatic
-    /// adjustment off [000:5014-5020]. `false` when they are not shown.
-    pub fn answer(&mut self, adjust: bool, axes: &mut Axes) -> bool {
-        if !std::mem::take(&mut self.shown) {
-            return false;
-        }
-        for unit in axes.iter_mut() {
-            if adjust {
-                unit.servo.compensate_offset();
-            } else {
-                unit.servo.set_offset_compensation(0.0);
-            }
-        }
-        if !adjust {
-            self.interval = OffsetInterval::new(0.0);
-        }
-        true
     }
 }
 

@@ -124,6 +124,8 @@ pub struct AxisUnit {
     pub travelled: f64,
     /// Actual position of the last cycle, for the distance travelled.
     last_actual: f64,
+    /// Contour cycles in which it was commanded to stand, since it moved last.
+    pub stood_cycles: u32,
     /// Largest lag since power-on, mm.
     pub max_lag: f64,
     /// Status marker M2008 ff.: in position after a movement.
@@ -171,6 +173,7 @@ impl AxisUnit {
             direction: Direction::Plus,
             travelled: 0.0,
             last_actual: 0.0,
+            stood_cycles: 0,
             max_lag: 0.0,
             in_position: true,
             limits: [f64::NEG_INFINITY, f64::INFINITY],
@@ -208,9 +211,28 @@ impl AxisUnit {
         (self.referenced && self.parameters.travel.modulo.is_none()).then_some(self.limits)
     }
 
+    /// Its drive gets a voltage: the feed is enabled, or withdrawn on a ramp.
+    pub fn is_released(&self) -> bool {
+        self.enabled || self.parameters.motion.ramps_without_enable
+    }
+
+    /// Its feed is not enabled: it comes down on its ramp, and goes on when the enable is back [001:509-516].
+    pub fn ramps_down(&self) -> bool {
+        !self.enabled && self.parameters.motion.ramps_without_enable
+    }
+
+    /// Its loop is closed, and its drive gets a voltage.
+    pub fn can_be_driven(&self) -> bool {
+        self.servo.closed() && self.is_released()
+    }
+
     /// Moves for a cycle, no path; no faster than the rapid traverse.
     pub fn drive(&mut self, time_s: f64, aim: Aim, feed_mm_min: f64) {
         let acceleration = self.parameters.motion.acceleration_m_s2;
+        let (aim, feed_mm_min) = match self.ramps_down() {
+            true => (Aim::Feed(0.0), f64::INFINITY),
+            false => (aim, feed_mm_min),
+        };
         let feed = feed_mm_min.min(self.parameters.motion.rapid_mm_min);
         self.nominal = self.ptp.cycle(time_s, aim, feed, acceleration);
         self.speed = self.ptp.speed_mm_s();
@@ -330,7 +352,7 @@ impl AxisUnit {
 
     /// It has feed enable, is where it shall be, and its loop is closed unless it stands.
     pub fn may_be_led(&self) -> bool {
-        self.enabled && self.way_back.is_over() && (self.servo.closed() || self.stands())
+        self.is_released() && self.way_back.is_over() && (self.servo.closed() || self.stands())
     }
 
     /// Whether it is held at its place, or not held at all.
@@ -441,6 +463,10 @@ impl AxisUnit {
         if self.servo.closed() {
             self.max_lag = self.max_lag.max(self.servo.lag_mm().abs());
         }
+        self.stood_cycles = match self.stands() {
+            true => self.stood_cycles.saturating_add(1),
+            false => 0,
+        };
         if self.speed > 0.0 {
             self.direction = Direction::Plus;
         } else if self.speed < 0.0 {

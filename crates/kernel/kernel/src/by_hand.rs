@@ -35,7 +35,7 @@ pub fn move_by_hand(unit: &mut AxisUnit, wanted: &HandMove, now: &Now) -> bool {
         return false;
     }
     let target = wanted.jog.or(wanted.wheel);
-    if !(unit.servo.closed() && unit.enabled) {
+    if !unit.can_be_driven() {
         if !now.stop && (wanted.key.is_some() || target.is_some()) {
             unit.ask_to_unclamp();
         }

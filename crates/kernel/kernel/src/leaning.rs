@@ -229,7 +229,7 @@ impl Leaning {
 fn is_able(axes: &mut OwnAxes, part: impl Fn(Axis) -> f64) -> bool {
     let mut able = true;
     for unit in axes.iter_mut().filter(|unit| part(unit.axis) != 0.0) {
-        let held = unit.servo.closed() && unit.enabled;
+        let held = unit.can_be_driven();
         if !held {
             unit.ask_to_unclamp();
         }

@@ -10,6 +10,7 @@
 //! - [`Run`] is the run of a program on its track: start, stop, single block, end, [return](Restoration) to the contour. A
 //!   [`RunFamily`] says where it acts and takes its functions; its [`Demands`] come as data.
 //! - [`probing`] and [`ScanMove`] lead a stylus; [`move_by_hand`], [`Leaning`], [`reference`] and [`Positioning`] single axes.
+//!   [`StylusLead`] and [`probing_speed`] are how fast, [`DriveOffsets`] adjusts those of the drives.
 //! - [`block_search`] passes over what stands before the block with which a run begins.
 //! - [`gates`] are the places of a path where functions go out and where it waits for them.
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
@@ -38,6 +39,7 @@ pub mod block_search;
 mod block_time;
 mod by_hand;
 mod clock;
+mod drive_offsets;
 mod emergency;
 mod feeder;
 pub mod gantry;
@@ -51,6 +53,7 @@ mod path_limits;
 mod per_channel;
 mod positioning;
 pub mod probing;
+pub mod probing_speed;
 mod progress;
 pub mod reference;
 mod restore;
@@ -60,6 +63,7 @@ mod sampling;
 mod scanning;
 mod spindle;
 mod straight;
+mod stylus_lead;
 mod superimposing;
 pub mod thread;
 pub mod touched;
@@ -72,6 +76,7 @@ pub use axis::{AxisId, AxisUnit, Coupling, Mover, Operation};
 pub use block_time::BlockTime;
 pub use by_hand::{AtLimit, HandMove, look_at_limit, move_by_hand, within};
 pub use clock::{CircuitOrder, Clock, Core, Family};
+pub use drive_offsets::DriveOffsets;
 pub use emergency::{Circuit, EmergencyStop};
 pub use feeder::{Feeder, RunFault, program_error};
 pub use kinematics::{Box2, Cartesian, Chain, Kinematics, Offsets, Shares, along_path};
@@ -89,6 +94,7 @@ pub use sampling::{ServoSampler, ServoSignal, ServoView};
 pub use scanning::{Felt, ScanMove};
 pub use spindle::{SpindleLoop, SpindleWiring};
 pub use straight::Straight;
+pub use stylus_lead::StylusLead;
 pub use superimposing::{Superimposed, Wheels};
 pub use thread::{Leading, Preparation, Standing, Tapping, Taps, is_floating, is_rigid};
 pub use track::{LOOK_AHEAD, Outputs, Track, distance_to_go};

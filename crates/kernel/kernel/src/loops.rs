@@ -38,7 +38,8 @@ pub fn hold(unit: &mut AxisUnit, wanted: bool, runs: bool, keeps: bool) {
 
 /// Gives the feed enable to an axis, or withdraws it.
 pub fn enable(unit: &mut AxisUnit, enabled: bool) {
-    if unit.enabled && !enabled && !(unit.stands() && unit.servo.in_position()) {
+    let dead = !(enabled || unit.parameters.motion.ramps_without_enable);
+    if unit.enabled && dead && !(unit.stands() && unit.servo.in_position()) {
         // The voltage is 0 at once, without a ramp [000:5352]. An axis that stands is held in its
         // loop (inferred).
         unit.halted = true;

@@ -55,7 +55,7 @@ impl OrderedAxis {
     /// Moves its axis for a cycle.
     pub fn moves(&mut self, unit: &mut AxisUnit, now: &Now) {
         let rapid = unit.parameters.motion.rapid_mm_min;
-        let able = unit.servo.closed() && unit.enabled && now.ready;
+        let able = unit.can_be_driven() && now.ready;
         let passes_marks = matches!(self.order, Some(AxisOrder::FindMark { .. }));
         let cancels = unit.servo.fault().is_some_and(|fault| !fault.opens_loop());
         if able && passes_marks && cancels && self.target.is_none() {

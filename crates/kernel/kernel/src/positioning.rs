@@ -68,7 +68,7 @@ impl Positioning {
                 continue;
             };
             unit.ask_to_unclamp();
-            if !(unit.servo.closed() && unit.enabled) {
+            if !unit.can_be_driven() {
                 continue;
             }
             unit.mover = Mover::Positioning;
@@ -126,7 +126,7 @@ impl Positioning {
 
     /// Turns the axes of the free rotation, with feeds by axis index, mm/min.
     pub fn move_turning(&mut self, axes: &mut OwnAxes, feed_mm_min: impl Fn(usize) -> f64, now: &Now) {
-        for unit in axes.iter_mut().filter(|unit| unit.servo.closed() && unit.enabled) {
+        for unit in axes.iter_mut().filter(|unit| unit.can_be_driven()) {
             let turning = self.turning.get(unit.index).copied().flatten();
             match turning.filter(|_| now.ready) {
                 Some(sign) if matches!(unit.mover, Mover::None | Mover::Rotation) => {

@@ -2,18 +2,63 @@
 //!
 //! The flow charts of the four sequences are lost in the manual's text; what is built here is what remains
 //! of them and what sister manuals say (inferred) [000:4583-4667]. The cams of the axes are given by their indices.
+//!
+//! Decision: TNC 151/155: an axis that stands on its cam takes the first mark on its way; with MP69 all that stand on
+//! theirs are first backed off with the feed of the run, in the order of MP59, and coded marks need no MP69
+//!
+//! Decision: TNC 151/155: direction buttons lead an axis over its mark after code number 84 159 alone, with the feed of the
+//! run and in the direction of the button, until the mark is found (also `tnc/src/desk.rs`)
+//!
+//! Decision: TNC 151/155: the mark of an inhibited axis counts under the cams as any other (MP75); until then its display
+//! stands at 0
 
 use bahn_motion::Aim;
 use bahn_parameters::PerPlcAxis;
+use bahn_parameters::axis::InhibitedMark;
 use bahn_servo::settings::MarkKind;
 
 use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Mover};
+use crate::axis::{AxisUnit, Direction, Mover};
 use crate::gantry;
 use crate::now::Now;
 
-/// The cams that are closed, by axis index.
-type Cams = PerPlcAxis<bool>;
+/// The cams of the axes, by axis index.
+#[derive(Clone, Copy, Debug)]
+pub struct Cams {
+    /// The reference end position is closed.
+    pub end: PerPlcAxis<bool>,
+    /// The pulse of the mark is inhibited.
+    pub inhibit: PerPlcAxis<bool>,
+}
+
+impl Cams {
+    /// The end cam of an axis is closed.
+    fn holds(&self, unit: &AxisUnit) -> bool {
+        self.end.get(unit.index).is_some_and(|cam| *cam)
+    }
+
+    /// A mark of an axis counts where the cams are now.
+    fn choose(&self, unit: &AxisUnit) -> bool {
+        let inhibited = self.inhibit.get(unit.index).is_some_and(|cam| *cam);
+        match unit.parameters.reference.kind {
+            MarkKind::UnderCam => self.holds(unit) && !inhibited,
+            MarkKind::OneMark | MarkKind::DistanceCodedBesideCam => !self.holds(unit),
+            MarkKind::DistanceCodedOld | MarkKind::RotaryEncoder | MarkKind::DistanceCoded => true,
+        }
+    }
+}
+
+/// What the direction keys do in the reference run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DirectionKeys {
+    /// They choose the axis; its direction is that of the machine parameters [000:4563-4566].
+    #[default]
+    ChooseAxis,
+    /// Nothing.
+    Dead,
+    /// They lead the axis in their direction [001:955].
+    Lead,
+}
 
 /// What is left of the reference run: the axes seek their marks one after the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,10 +69,13 @@ pub struct ReferenceRun {
     running: Option<(usize, Step)>,
     /// The control has asked for it since power-on.
     asked: bool,
+    keys: DirectionKeys,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
+    /// Back from the cam, so far as it opens, before the axes approach their marks [001:989-995].
+    BackOff,
     /// Towards the mark; `reversed` after the cam.
     Seek { reversed: bool },
     /// Back from the cam, slowly, until it opens [`MarkKind::RotaryEncoder`].
@@ -39,6 +87,19 @@ enum Step {
 }
 
 impl ReferenceRun {
+    /// A run in which the direction keys do so.
+    pub fn new(keys: DirectionKeys) -> ReferenceRun {
+        ReferenceRun {
+            keys,
+            ..ReferenceRun::default()
+        }
+    }
+
+    /// The direction keys do something else from now on.
+    pub fn set_keys(&mut self, keys: DirectionKeys) {
+        self.keys = keys;
+    }
+
     /// Axes are led over their marks, or are to be.
     pub fn is_running(&self) -> bool {
         self.automatic || self.running.is_some()
@@ -66,8 +127,10 @@ impl ReferenceRun {
             self.next_axis(axes, cams, now);
         }
         if let Some((place, step)) = self.running {
-            let stop = now.stop || !(self.automatic || key_of(place, axes, now));
-            self.running = run_axis(place, step, stop, axes, cams, now);
+            let key = self.key_of(place, axes, now);
+            let stop = now.stop || !(self.automatic || key.is_some());
+            let led = key.filter(|_| self.keys == DirectionKeys::Lead && !self.automatic);
+            self.running = run_axis(place, step, (stop, led), axes, cams, now);
         }
         if self.running.is_some() {
             return false;
@@ -85,22 +148,23 @@ impl ReferenceRun {
         let next = if self.automatic {
             let named = axes.places().filter_map(|place| {
                 let unit = axes.get(place).filter(|unit| waits(unit))?;
-                Some((unit.parameters.reference.place?, place))
+                Some((!backs_off(unit, cams), unit.parameters.reference.place?, place))
             });
-            named.min().map(|(_, place)| place)
+            named.min().map(|(_, _, place)| place)
         } else {
             axes.places()
-                .find(|place| key_of(*place, axes, now) && axes.get(*place).is_some_and(waits))
+                .find(|place| self.key_of(*place, axes, now).is_some() && axes.get(*place).is_some_and(waits))
         };
         let Some(place) = next else { return };
         let Some(unit) = axes.get_mut(place) else {
             return;
         };
         unit.ask_to_unclamp();
-        if !(unit.servo.closed() && unit.enabled && unit.stands()) {
+        if !(unit.can_be_driven() && unit.stands()) {
             return;
         }
-        let cam = cam(place, axes, cams);
+        let backs_off = self.automatic && backs_off(unit, cams);
+        let cam = cams.holds(unit);
         for unit in axes.all_mut() {
             let slave = unit.coupling.as_ref().is_some_and(|of| of.master == place);
             if slave {
@@ -110,19 +174,20 @@ impl ReferenceRun {
         if let Some(unit) = axes.get_mut(place) {
             unit.servo.forget_marks();
             let step = match unit.parameters.reference.kind {
+                _ if backs_off => Step::BackOff,
+                MarkKind::UnderCam => Step::Seek { reversed: false },
                 MarkKind::RotaryEncoder if cam => Step::LeaveCam,
                 _ => Step::Seek { reversed: cam },
             };
             self.running = Some((place, step));
         }
     }
-}
 
-/// A direction key of the axis is pressed: the operator chooses the order [000:4563-4566].
-fn key_of(place: usize, axes: &OwnAxes, now: &Now) -> bool {
-    axes.get(place)
-        .and_then(|unit| now.axis_keys.get(unit.index))
-        .is_some_and(Option::is_some)
+    /// The direction key of the axis that is pressed, where it does something.
+    fn key_of(&self, place: usize, axes: &OwnAxes, now: &Now) -> Option<Direction> {
+        let unit = axes.get(place).filter(|_| self.keys != DirectionKeys::Dead)?;
+        now.axis_keys.get(unit.index).copied().flatten()
+    }
 }
 
 /// An axis whose mark is evaluated has not passed it.
@@ -130,40 +195,54 @@ pub fn is_due<'a>(mut axes: impl Iterator<Item = &'a AxisUnit>) -> bool {
     axes.any(|unit| waits(unit) && unit.parameters.reference.place.is_some())
 }
 
-/// An axis has not passed its reference mark: any one, or one of those that the machine parameters name.
+/// An axis has not passed its reference mark: any one, or one of those that the machine parameters name. What is asked of
+/// an axis that is not controlled the operator does.
 fn is_missing(axes: &OwnAxes, named: bool) -> bool {
-    match named {
-        true => is_due(axes.iter()),
-        false => axes.iter().any(waits),
-    }
+    let wanted = InhibitedMark::Needed { asked: true };
+    let by_hand =
+        |unit: &AxisUnit| !unit.parameters.controlled && unit.parameters.reference.inhibited == wanted;
+    axes.iter().any(|unit| by_hand(unit) && !unit.referenced)
+        || match named {
+            true => is_due(axes.iter()),
+            false => axes.iter().any(waits),
+        }
 }
 
-/// The cam of an axis is closed.
-fn cam(place: usize, axes: &OwnAxes, cams: &Cams) -> bool {
-    axes.get(place)
-        .and_then(|unit| cams.get(unit.index))
-        .is_some_and(|cam| *cam)
+/// An axis stands on its cam and is backed off it before the axes approach their marks [001:993-995].
+pub fn backs_off(unit: &AxisUnit, cams: &Cams) -> bool {
+    unit.parameters.reference.backs_off && waits(unit) && cams.holds(unit)
 }
 
-/// One cycle of the run of an axis; what comes next.
+/// The prompt of the reference run names an axis: it has not passed its mark, and shall.
+pub fn is_asked(unit: &AxisUnit) -> bool {
+    let asked = match unit.parameters.reference.inhibited {
+        InhibitedMark::Needed { asked } => asked,
+        InhibitedMark::Zeroes => true,
+        InhibitedMark::Preset => false,
+    };
+    !unit.referenced && !unit.is_plc_axis() && (unit.parameters.controlled || asked)
+}
+
+/// One cycle of the run of an axis, which is to stop or is `led` by a key; what comes next.
 fn run_axis(
     place: usize,
     step: Step,
-    stop: bool,
+    (stop, led): (bool, Option<Direction>),
     axes: &mut OwnAxes,
     cams: &Cams,
     now: &Now,
 ) -> Option<(usize, Step)> {
-    let (time, cam) = (now.time_s, cam(place, axes, cams));
+    let time = now.time_s;
     let unit = axes.get_mut(place)?;
-    if !(unit.servo.closed() && unit.enabled) {
+    let cam = cams.holds(unit);
+    if !unit.can_be_driven() {
         unit.mover = Mover::None;
         return None;
     }
     unit.mover = Mover::Reference;
     let reference = unit.parameters.reference;
-    let forwards = reference.direction.sign();
-    if stop && step != Step::Stop {
+    let forwards = led.unwrap_or(reference.direction).sign();
+    if stop && step != Step::Stop || step == Step::BackOff && !cam {
         unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
         if !unit.stands() {
             return Some((place, step));
@@ -175,7 +254,7 @@ fn run_axis(
     let unit = axes.get_mut(place)?;
     let (direction, feed) = match step {
         Step::Seek { reversed: false } => (forwards, reference.feed_mm_min),
-        Step::Seek { reversed: true } => (-forwards, reference.feed_mm_min),
+        Step::Seek { reversed: true } | Step::BackOff => (-forwards, reference.feed_mm_min),
         Step::LeaveCam | Step::Pulse => (-forwards, reference.leaving_mm_min),
         Step::Stop => (0.0, reference.feed_mm_min),
     };
@@ -208,25 +287,23 @@ fn run_axis(
 
 /// What the cam and the marks make of a step, and whether slaves are where they shall be.
 fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, cams: &Cams) -> (Step, bool) {
-    let cam_of = |unit: &AxisUnit| cams.get(unit.index).is_some_and(|cam| *cam);
     let Some(unit) = axes.get_mut(place) else {
         return (Step::Stop, true);
     };
     let kind = unit.parameters.reference.kind;
     let turned = turn_at_cam(unit, step, kind, cam);
-    // Marks do not count before the cam has chosen them, nor under the cam with one mark: it must lie
-    // outside.
-    let choosing = kind == MarkKind::RotaryEncoder && turned != Step::Pulse;
+    // Marks do not count before the cam has chosen them, nor while an axis is backed off.
+    let choosing = kind == MarkKind::RotaryEncoder && turned != Step::Pulse || turned == Step::BackOff;
     let counts = turned == step && !choosing;
     let mark = unit.servo.take_mark();
-    let mark = mark.filter(|_| counts && !unit.referenced && !(cam && kind == MarkKind::OneMark));
+    let mark = mark.filter(|_| counts && !unit.referenced && cams.choose(unit));
     if let Some((count, position_mm)) = mark.and_then(|mark| unit.located(mark)) {
         unit.referenced = true;
         let shift = unit.set_datum(count, position_mm);
         gantry::shifted(axes.all_mut(), place, shift);
     }
     let slaves = gantry::reference(axes.all_mut(), place, counts, |unit| {
-        kind == MarkKind::OneMark && cam_of(unit)
+        kind == MarkKind::OneMark && cams.holds(unit)
     });
     let found = axes.get(place).is_some_and(|unit| unit.referenced) && slaves.found;
     let step = if found { Step::Stop } else { turned };
@@ -234,19 +311,20 @@ fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, cams: &Cam
 }
 
 /// Axes that are only displayed: the counter is zero on the reference mark [000:4573].
-pub fn count_display_axes(axes: &mut OwnAxes) {
-    for unit in axes.iter_mut().filter(|unit| !unit.parameters.controlled) {
-        if unit.referenced {
-            continue;
-        }
-        if let Some((count, scale)) = unit
-            .servo
-            .take_mark()
-            .and_then(|mark| Some((mark.count, mark.scale_mm?)))
-        {
+pub fn count_display_axes(axes: &mut OwnAxes, cams: &Cams) {
+    let missing = |unit: &&mut AxisUnit| !unit.parameters.controlled && !unit.referenced;
+    for unit in axes.iter_mut().filter(missing) {
+        let inhibited = unit.parameters.reference.inhibited;
+        let mark = unit.servo.take_mark();
+        let mark = mark.filter(|_| inhibited == InhibitedMark::Zeroes || cams.choose(unit));
+        let at = mark.and_then(|mark| Some((mark.count, mark.scale_mm?)));
+        if let Some((count, scale)) = at {
             unit.set_datum(count, scale);
-            unit.referenced = true;
+        } else if matches!(inhibited, InhibitedMark::Needed { .. }) {
+            unit.set_datum(unit.servo.count(), 0.0);
+            unit.stand(0.0);
         }
+        unit.referenced = at.is_some() || inhibited == InhibitedMark::Preset;
     }
 }
 

@@ -324,7 +324,7 @@ fn lead_to(target: &Position, stopped: bool, at: &mut Acting) -> bool {
         if turn && !unit.ptp.is_at(target[unit.axis]) {
             unit.ask_to_unclamp();
         }
-        if !(unit.servo.closed() && unit.enabled) {
+        if !unit.can_be_driven() {
             continue;
         }
         unit.mover = Mover::Positioning;

@@ -368,7 +368,10 @@ impl Run {
             rapid_limit_mm_min: now.rapid_limit_mm_min,
             // Without spindle enable nothing is led. Functions at which the axes do not stop may come faster than they are
             // taken.
-            hold: stopped || demands.crowded || coupled && !at.spindle.is_enabled(),
+            hold: stopped
+                || demands.crowded
+                || coupled && !at.spindle.is_enabled()
+                || self.track.ramps_down(at.axes),
             single_block: demands.single_block || on || demands.read_in_inhibited,
             stop_before: demands.stop_before,
             acknowledged: self.track.has_output_all() && transferred,

@@ -113,6 +113,8 @@ impl Straight {
         chain: &Chain,
         now: &Now,
     ) -> Position {
+        let ramps_down = axes.iter().any(|unit| self.moves(unit.axis) && unit.ramps_down());
+        let aim = if ramps_down { Aim::Feed(0.0) } else { aim };
         let at = self
             .way
             .cycle(now.time_s, aim, feed_mm_min, self.acceleration_m_s2);

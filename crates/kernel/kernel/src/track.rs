@@ -157,7 +157,14 @@ impl Track {
         let stands = self.path.speed_mm_s() == 0.0;
         axes.iter()
             .filter(|unit| element.moves_axis(unit.axis))
-            .all(|unit| unit.enabled && unit.way_back.is_over() && (unit.servo.closed() || stands))
+            .all(|unit| unit.is_released() && unit.way_back.is_over() && (unit.servo.closed() || stands))
+    }
+
+    /// An axis that the current element moves comes down on its ramp, since its feed is not enabled.
+    pub fn ramps_down(&self, axes: &OwnAxes) -> bool {
+        let element = self.path.element();
+        let moves = |unit: &AxisUnit| element.is_some_and(|element| element.moves_axis(unit.axis));
+        axes.iter().any(|unit| moves(unit) && unit.ramps_down())
     }
 
     /// A block wants a clamped axis: its marker M2008 ff. falls, and the PLC unclamps it [000:5407].

@@ -160,7 +160,7 @@ pub trait NcMotion {
 /// MP4220 and MP4310, the last also as markers M2192-M2239 and M3200-M3263 [000:11665-11742]; TNC 151/155 their
 /// MP126-156, MP163-166 and MP158, 249, 250. What the model does not have is 0.
 pub fn mirror_parameters(parameters: &ParameterList, exchange: &mut Exchange) {
-    let values = parameters.plc_parameters();
+    let plc_parameters = parameters.plc_parameters();
     let numbers = signal::all().iter().filter_map(|signal| match signal.operand {
         signal::SignalOperand::Number(number) => Some((parameter_of(signal.name)?, number)),
         _ => None,
@@ -168,9 +168,12 @@ pub fn mirror_parameters(parameters: &ParameterList, exchange: &mut Exchange) {
     for ((parameter, index), number) in numbers {
         let index = usize::from(index);
         let value = match parameter {
-            4210 => values.positions_mm.get(index).map(|position| position * 10_000.0),
-            4220 => values.feeds_mm_min.get(index).copied(),
-            4310 => values.words.get(index).map(|word| f64::from(*word)),
+            4210 => plc_parameters
+                .positions_mm
+                .get(index)
+                .map(|position| position * 10_000.0),
+            4220 => plc_parameters.feeds_mm_min.get(index).copied(),
+            4310 => plc_parameters.words.get(index).map(|word| f64::from(*word)),
             _ => None,
         };
         if let Some(value) = value {
@@ -181,7 +184,7 @@ pub fn mirror_parameters(parameters: &ParameterList, exchange: &mut Exchange) {
         .iter()
         .chain(signal::MP4310_3_TO_6_BITS.iter());
     for (position, marker) in markers.enumerate() {
-        if let Some(word) = values.words.get(position / 16) {
+        if let Some(word) = plc_parameters.words.get(position / 16) {
             exchange.nc_set(marker, word >> (position % 16) & 1 != 0);
         }
     }

@@ -165,7 +165,8 @@ impl Machine {
             Fault::ProbeNotReady => self.probe()?.ready = false,
             Fault::ProbeBattery => self.probe()?.battery_low = true,
             Fault::ProbeEarly => self.probe()?.early = true,
-            Fault::BufferBattery => self.buffer_battery_low = true,
+            Fault::BufferBattery => self.memory.battery_low = true,
+            Fault::Memory { eprom } => self.memory.defective[usize::from(*eprom)] = true,
         }
         Ok(())
     }
@@ -252,7 +253,8 @@ impl Machine {
             }
             self.plc.loosen_all();
             self.chain.fault = None;
-            self.buffer_battery_low = false;
+            self.memory.battery_low = false;
+            self.memory.defective = [false; 2];
             if self.mechanism.probe.is_some() {
                 self.repair("probe")?;
             }
@@ -264,7 +266,8 @@ impl Machine {
         }
         match what {
             "relay" => self.chain.fault = None,
-            "battery" => self.buffer_battery_low = false,
+            "battery" => self.memory.battery_low = false,
+            "memory" => self.memory.defective = [false; 2],
             "probe" => {
                 let probe = self.probe()?;
                 probe.ready = true;

@@ -96,7 +96,9 @@ pub(crate) struct Axis {
     per_force: f64,
     play: f64,
     travel: [f64; 2],
-    reference_cam: Option<Cam>,
+    /// The reference end position; and what chooses one of the pulses of a rotary encoder: its contact is open around that
+    /// one alone.
+    reference_cams: [Option<Cam>; 2],
     /// Limit switches below and above, open when actuated.
     limits: [Option<Cam>; 2],
     on_motor: bool,
@@ -130,13 +132,15 @@ pub(crate) struct Axis {
 }
 
 impl Cam {
-    /// Reads `[axis.X.reference_cam]`; `None` without one.
-    fn of_reference(axis: &Section) -> Option<Cam> {
-        let section = axis.section("reference_cam")?;
-        let [from, to] = section.range("range").unwrap_or([0.0, 1.0]);
-        let contact = section.contact("input");
-        section.finish();
-        Some(Cam { from, to, contact })
+    /// Reads `[axis.X.reference_cam]` and `pulse_inhibit`; `None` without one.
+    fn of_reference(axis: &Section) -> [Option<Cam>; 2] {
+        [("reference_cam", "range"), ("pulse_inhibit", "open")].map(|(name, key)| {
+            let section = axis.section(name)?;
+            let [from, to] = section.range(key).unwrap_or([0.0, 1.0]);
+            let contact = section.contact("input");
+            section.finish();
+            Some(Cam { from, to, contact })
+        })
     }
 
     /// `[axis.X.limit_minus]` or `limit_plus`: pressed from a place on to the end.
@@ -289,7 +293,7 @@ impl Axis {
             per_force,
             play: section.number("backlash", 0.0..=100.0).unwrap_or(0.0),
             travel,
-            reference_cam: Cam::of_reference(&section),
+            reference_cams: Cam::of_reference(&section),
             limits: ["limit_minus", "limit_plus"].map(|key| Cam::of_limit(&section, key)),
             on_motor: section
                 .section("encoder")
@@ -561,18 +565,14 @@ impl Axis {
         !self.limits.iter().flatten().any(|cam| cam.holds(self.table))
     }
 
-    /// Sets reference cam, limit switches and ready contact. Limit switches open when actuated.
+    /// Sets reference cam, pulse inhibit, limit switches and ready contact. Limit switches open when actuated.
     pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
-        if let Some((cam, contact)) = self
-            .reference_cam
-            .as_ref()
-            .and_then(|cam| Some((cam, cam.contact?)))
-        {
-            contact.set(inputs, cam.holds(self.table));
-        }
-        for cam in self.limits.iter().flatten() {
+        let [end, inhibit] = &self.reference_cams;
+        let openers = self.limits.iter().chain([inhibit]).flatten();
+        let cams = end.iter().map(|cam| (cam, true));
+        for (cam, closes) in cams.chain(openers.map(|cam| (cam, false))) {
             if let Some(contact) = cam.contact {
-                contact.set(inputs, !cam.holds(self.table));
+                contact.set(inputs, cam.holds(self.table) == closes);
             }
         }
         if let Some(ready) = self.ready {

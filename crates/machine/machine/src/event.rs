@@ -48,7 +48,7 @@ pub enum Event {
     Force(char, f64),
     /// A fault is injected.
     Fault(Fault),
-    /// Something is repaired: an axis letter, `S`, the name of a thing, an input, `relay`, `battery`, or `all`.
+    /// Something is repaired: an axis letter, `S`, the name of a thing, an input, `relay`, `battery`, `memory`, or `all`.
     Repair(String),
 }
 
@@ -124,6 +124,11 @@ pub enum Fault {
     ProbeEarly,
     /// The buffer battery of the control's memory is low.
     BufferBattery,
+    /// The memory of the control does not pass its test at the next power-on: its RAM, or the EPROMs and the checksum.
+    Memory {
+        /// The EPROMs and the checksum, not the RAM.
+        eprom: bool,
+    },
 }
 
 /// Why an event was refused.
@@ -200,7 +205,8 @@ fault magazine lost                 the arm, or the shuttle, drops its tools
 fault relay slow MS | welded | open
 fault probe not-ready|battery|early
 fault battery                       the buffer battery of the control's memory is low
-repair AXIS|S|THING|gear|magazine|I12|relay|probe|battery|all
+fault memory [eprom]                the RAM of the control, or EPROM and checksum, at power-on
+repair AXIS|S|THING|gear|magazine|I12|relay|probe|battery|memory|all
 ";
 
     /// Reads an event from its text form. Whether the machine has what it names shows when it is
@@ -400,13 +406,16 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
         ["probe", "battery"] => Ok(Fault::ProbeBattery),
         ["probe", "early"] => Ok(Fault::ProbeEarly),
         ["battery"] => Ok(Fault::BufferBattery),
+        ["memory"] => Ok(Fault::Memory { eprom: false }),
+        ["memory", "eprom"] => Ok(Fault::Memory { eprom: true }),
+        ["memory", ..] => Err(EventError::Form("fault memory [eprom]")),
         ["battery", ..] => Err(EventError::Form("fault battery")),
         ["device", ..] => Err(EventError::Form(
             "fault device THING|gear|magazine jammed|no-feedback|permanent|slow",
         )),
         ["relay", ..] => Err(EventError::Form("fault relay slow MS | welded | open")),
         _ => Err(EventError::Form(
-            "fault encoder|drive|motor|brake|clamp|offset|input|device|magazine|relay|probe|battery ..",
+            "fault encoder|drive|motor|brake|clamp|offset|input|device|magazine|relay|probe|battery|memory ..",
         )),
     }
 }

@@ -21,6 +21,14 @@ use crate::reader::{Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 use crate::tool_probe::ToolProbe;
 
+/// What is wrong with the memory of the control: its battery, its RAM, its EPROMs with their checksum.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ControlMemory {
+    pub battery_low: bool,
+    /// RAM; EPROMs and checksum.
+    pub defective: [bool; 2],
+}
+
 /// A simulated machine, described by a TOML file. The same description and the same calls give the
 /// same machine, bit by bit.
 ///
@@ -60,8 +68,8 @@ pub struct Machine {
     pub(crate) plc: PlcSide,
     /// Nothing has moved in the last tick and nobody has acted since: contacts, relays and things stay as they are.
     pub(crate) rests: bool,
-    /// Of the logic unit.
-    pub(crate) buffer_battery_low: bool,
+    /// What is wrong with the memory of the control.
+    pub(crate) memory: ControlMemory,
     wires: Vec<Wire>,
 }
 
@@ -130,7 +138,7 @@ impl Machine {
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
             plc: PlcSide::read(&root),
             rests: false,
-            buffer_battery_low: false,
+            memory: ControlMemory::default(),
             wires: Vec::new(),
             mechanism,
         };
@@ -367,7 +375,8 @@ impl Plant for Machine {
         measured.operator = self.panel.operator;
         measured.probe = self.touch_probe();
         measured.tool_probe = self.tool_probe();
-        measured.buffer_battery_low = self.buffer_battery_low;
+        measured.buffer_battery_low = self.memory.battery_low;
+        measured.memory_defective = self.memory.defective;
         measured.volts = self.plc.volts;
         measured.temperatures = self.plc.temperatures;
     }

@@ -316,17 +316,26 @@ fn an_axis_in_emergency_stop_is_braked() {
 #[test]
 fn cams_and_limit_switches_are_plc_inputs() {
     let keys = "travel = [-100, 500]\nreference_cam = { range = [400, 500], input = \"I20\" }\n\
-                limit_minus = { at = -95, input = \"I21\" }\nlimit_plus = { at = 495, input = \"I22\" }";
+                limit_minus = { at = -95, input = \"I21\" }\nlimit_plus = { at = 495, input = \"I22\" }\n\
+                pulse_inhibit = { open = [420, 430], input = \"I23\" }";
     let mut machine = running(&x(keys));
     let mut go = |volts: f64, time: u32| {
         machine.set_nominal(0, volts);
         milliseconds(&mut machine, time);
-        [20, 21, 22].map(|number| input(&mut machine, number))
+        [20, 21, 22, 23].map(|number| input(&mut machine, number))
     };
-    assert_eq!(go(0.0, 1), [false, true, true]);
-    assert_eq!(go(9.0, 1700), [true, true, true], "425 mm: on the cam");
-    assert_eq!(go(9.0, 300), [true, true, false], "500 mm: limit switch open");
-    assert_eq!(go(-9.0, 2400), [false, false, true], "-100 mm");
+    assert_eq!(go(0.0, 1), [false, true, true, true]);
+    assert_eq!(
+        go(9.0, 1700),
+        [true, true, true, false],
+        "425 mm: on the cam, around the pulse"
+    );
+    assert_eq!(
+        go(9.0, 300),
+        [true, true, false, true],
+        "500 mm: limit switch open"
+    );
+    assert_eq!(go(-9.0, 2400), [false, false, true, true], "-100 mm");
 }
 
 #[test]

@@ -46,6 +46,9 @@ pub enum ParameterError {
     /// The list does not define a parameter of the model.
     #[error("{0} is not defined")]
     NotDefined(ParameterId),
+    /// More parameters are given to the operator than there can be: the 17th of a TNC 151/155 [001:1309-1313].
+    #[error("{0}: TOO MANY USER PARAMETERS")]
+    TooManyUserParameters(ParameterId),
     /// The list gives the parameter twice; the first value counts.
     #[error("{id} is already defined in line {first_line}")]
     DoublyDefined {
@@ -70,12 +73,13 @@ impl ParameterError {
             ParameterError::DoublyDefined { .. } => 4,
             ParameterError::NotDefined(_) => 5,
             ParameterError::NotStorable(..) => 6,
+            ParameterError::TooManyUserParameters(_) => 7,
         }
     }
 
     /// The text that the control shows with [`ParameterError::number`] [000:10056-10062].
     pub fn control_text(&self) -> &'static str {
-        const TEXTS: [&str; 7] = [
+        const TEXTS: [&str; 8] = [
             "No MP number found",
             "Invalid MP number",
             "No separator \";\" found",
@@ -83,6 +87,7 @@ impl ParameterError {
             "MP doubly defined",
             "MP not defined",
             "MP can not be stored",
+            "TOO MANY USER PARAMETERS",
         ];
         TEXTS.get(usize::from(self.number())).copied().unwrap_or_default()
     }
@@ -100,6 +105,7 @@ impl ParameterError {
             | ParameterError::NoChoice(id, _)
             | ParameterError::NotStorable(id, _)
             | ParameterError::NotDefined(id)
+            | ParameterError::TooManyUserParameters(id)
             | ParameterError::DoublyDefined { id, .. } => Some(id),
         }
     }
@@ -118,6 +124,7 @@ impl ParameterError {
             | ParameterError::UnknownNumber(_)
             | ParameterError::IndexMissing(_)
             | ParameterError::NotDefined(_)
+            | ParameterError::TooManyUserParameters(_)
             | ParameterError::DoublyDefined { .. } => None,
         }
     }

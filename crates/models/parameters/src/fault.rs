@@ -267,6 +267,10 @@ faults! {
         Asked, NotStarted, None, Ce, "[000:7033-7040]";
     BufferBattery: "the buffer battery is low", Some(M::ExchangeBufferBattery), "",
         ContourCycle, Said, None, Ce, "[000:1385-1400] (inferred)";
+    MemoryDefective: "the RAM of the control does not pass its test", Some(M::MemoryDefective), "",
+        Asked, ControlReadyOff, Brake, PowerOff, "[001:906-908] [000:6976-6986] (inferred)";
+    MemoryChecksum: "EPROMs or checksum of the control do not pass their test", Some(M::MemoryChecksum), "",
+        Asked, ControlReadyOff, Brake, PowerOff, "[001:906-908] [000:6976-6986] (inferred)";
     VoltageMissing: "the control voltage does not come", Some(M::RelayExtDcVoltageMissing), "",
         ContourCycle, NotStarted, None, Itself, "[000:6184]";
     EmergencyStopDefective: "the acknowledgement X42/4 does not fall in the test", Some(M::EmergencyStopDefective), "",

@@ -85,8 +85,8 @@ pub use text::{Entry, ListText};
 /// Of an axis: [`ParameterList::axis_parameters`](crate::ParameterList::axis_parameters).
 pub mod axis {
     pub use crate::settings::{
-        AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
-        WiringParameters,
+        AxisParameters, InhibitedMark, Modulo, MotionParameters, ReferenceParameters, Synchronization,
+        TravelParameters, WiringParameters,
     };
 }
 
@@ -105,6 +105,7 @@ pub mod operation {
     pub use crate::settings::{
         DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters,
         OverrideSteps, RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
+        UserText,
     };
 }
 

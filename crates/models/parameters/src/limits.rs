@@ -188,6 +188,10 @@ pub struct Limits {
     pub shows_feed_of_keys: bool,
     /// An oscilloscope after code number 688 379 [000:18640].
     pub oscilloscope: bool,
+    /// Code number 531 210 erases the machine parameters [001:1293-1297].
+    pub erases_its_list: bool,
+    /// M95 and M96 belong to the approach of a contour [001:707-708].
+    pub approach_functions: bool,
 }
 
 /// Limits of programs that are executed while they are transferred [003:1661-1674]; subprograms and repeats, whose blocks are

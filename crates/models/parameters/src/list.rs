@@ -5,7 +5,7 @@ use std::fmt;
 use crate::definition::parse_id;
 use crate::equipment::Equipment;
 use crate::space::{Content, ParameterSpace};
-use crate::text::read_assignment;
+use crate::text::{USERS_MAX, read_assignment};
 use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
 
 /// The machine parameters of one machine: a value within its range for every parameter of the model.
@@ -25,6 +25,8 @@ pub struct ParameterList {
     equipment: Equipment,
     /// One value for each of [`Definition::all`], in its order.
     values: Vec<f64>,
+    /// Those that the operator may change, in ascending order: TNC 151/155.
+    users: Vec<ParameterId>,
 }
 
 impl ParameterList {
@@ -36,6 +38,7 @@ impl ParameterList {
             model,
             equipment: Equipment::default(),
             values: Definition::all(model).iter().map(Definition::standard).collect(),
+            users: Vec::new(),
         }
     }
 
@@ -103,7 +106,13 @@ impl ParameterList {
     /// When it is no assignment, the model has no such parameter, or the value is outside its range.
     pub fn assign(&mut self, assignment: &str) -> Result<ParameterId, ParameterError> {
         let found = read_assignment(self.model, assignment, 0).map_err(|(error, _)| error)?;
-        self.set_id(found.id, found.value).map(|_| found.id)
+        let is_user = found.user_at.is_some();
+        if is_user && self.users.len() >= USERS_MAX && !self.users.contains(&found.id) {
+            return Err(ParameterError::TooManyUserParameters(found.id));
+        }
+        self.set_id(found.id, found.value)?;
+        self.give(found.id, is_user || self.users.contains(&found.id));
+        Ok(found.id)
     }
 
     /// Reads the text of a list over the values of this one. Parsing never fails: what can be read is
@@ -128,6 +137,7 @@ impl ParameterList {
     pub fn take(&mut self, text: &ListText) {
         for entry in text.entries() {
             self.put((entry.id.number, entry.id.index.unwrap_or(0)), entry.value);
+            self.give(entry.id, entry.user);
         }
     }
 
@@ -146,6 +156,20 @@ impl ParameterList {
         let mut list = ParameterList::smallest(model);
         list.take(&text);
         Ok(list)
+    }
+
+    /// Those that the operator may change by the letter P in the list, in ascending order [001:1299-1334].
+    pub(crate) fn given(&self) -> &[ParameterId] {
+        &self.users
+    }
+
+    /// A parameter is given to the operator, or not.
+    fn give(&mut self, id: ParameterId, to_the_operator: bool) {
+        self.users.retain(|user| *user != id);
+        if to_the_operator && self.users.len() < USERS_MAX {
+            let place = self.users.partition_point(|user| *user < id);
+            self.users.insert(place, id);
+        }
     }
 
     fn set_id(&mut self, id: ParameterId, value: f64) -> Result<f64, ParameterError> {
@@ -198,7 +222,13 @@ impl ParameterSpace for ParameterList {
 impl fmt::Display for ParameterList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (definition, value) in Definition::all(self.model).iter().zip(&self.values) {
-            writeln!(f, "{}", definition.line(&definition.format_value(*value)))?;
+            let user = if self.users.contains(&definition.id) {
+                " P"
+            } else {
+                ""
+            };
+            let value = format!("{}{user}", definition.format_value(*value));
+            writeln!(f, "{}", definition.line(&value))?;
         }
         Ok(())
     }

@@ -94,5 +94,13 @@ mod tests {
             MessageId::CircleEndPosIncorrect.text(Tnc415b),
             "ARC END-POINT INCORRECT"
         );
+        // The switch-on test of a TNC 151/155 [001:927-933].
+        for model in [ControlModel::Tnc151, ControlModel::Tnc155] {
+            assert_eq!(
+                MessageId::RelayExtDcVoltageMissing.text(model),
+                "RELAY EXT-DC VOLTAGE MISSING"
+            );
+            assert_eq!(MessageId::ExternalEmergencyStop.text(model), "EMERGENCY STOP");
+        }
     }
 }

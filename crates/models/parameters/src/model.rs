@@ -200,6 +200,17 @@ impl ControlModel {
         self.limits().shows_feed_of_keys
     }
 
+    /// Code number 531 210 erases the machine parameters, too [001:1293-1297]; on the later controls markers and bytes alone
+    /// [000:6941].
+    pub const fn erases_its_list(self) -> bool {
+        self.limits().erases_its_list
+    }
+
+    /// M95 and M96 change how a compensated contour is approached and left [001:707-708].
+    pub const fn has_approach_functions(self) -> bool {
+        self.limits().approach_functions
+    }
+
     /// Has an oscilloscope after code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
         self.limits().oscilloscope

@@ -21,8 +21,8 @@ mod tables;
 mod tool_probe;
 
 pub use axis_parameters::{
-    AxisParameters, Modulo, MotionParameters, ReferenceParameters, Synchronization, TravelParameters,
-    WiringParameters,
+    AxisParameters, InhibitedMark, Modulo, MotionParameters, ReferenceParameters, Synchronization,
+    TravelParameters, WiringParameters,
 };
 pub use characteristics::Characteristics;
 pub use interfaces::{ControlCharacters, DripFeedMemory, InterfaceParameters, TransferFormat};
@@ -32,7 +32,7 @@ pub use machining::{
 };
 pub use operation::{
     DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters, OverrideSteps,
-    RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
+    RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter, UserText,
 };
 pub use plc_parameters::{MonitoringInput, PlcParameters, StrobeTimes};
 pub use spindle::Tapping;

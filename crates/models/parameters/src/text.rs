@@ -6,13 +6,13 @@ use std::ops::Range;
 use bahn_text::{MARK_BYTES, Span, utf8_or_latin};
 
 use crate::definition::{parse_id, parse_number};
-use crate::{ControlModel, Definition, ListError, ParameterError, ParameterId};
+use crate::{ControlModel, Definition, ListError, Numbering, ParameterError, ParameterId};
 
 /// The text of a list of machine parameters. Reading it never fails and keeps every byte; a value can be
 /// changed in its place, so that comments and order stay.
 ///
 /// A line holds number, separator (`:`, `=` or blanks), value and, after a semicolon, a comment
-/// [000:10017]. The value is decimal, `%` binary or `$` hexadecimal [000:10019-10046]. A line that starts
+/// [000:10017]. In a list of a TNC 151/155 a `P` behind the value gives it to the operator [001:1303-1307]. The value is decimal, `%` binary or `$` hexadecimal [000:10019-10046]. A line that starts
 /// with `;` or `*` is a comment [001:2521-2523].
 ///
 /// ```
@@ -36,6 +36,9 @@ pub struct ListText {
     not_listed: usize,
 }
 
+/// Parameters that the operator may change, of a TNC 151/155 [001:1301].
+pub(crate) const USERS_MAX: usize = 16;
+
 /// Faults of a list that are kept: a file that is no list has one in each of a million lines.
 const LISTED_MAX: usize = 1000;
 
@@ -46,6 +49,8 @@ pub struct Entry {
     pub id: ParameterId,
     /// Its value, in range and rounded to what is stored.
     pub value: f64,
+    /// The operator may change it: `P` behind the value, TNC 151/155 [001:1303-1307].
+    pub user: bool,
     /// Line of the text, from 1.
     pub line: usize,
     /// The bytes of the value.
@@ -302,7 +307,7 @@ impl ListText {
     fn read(&mut self) {
         let mut first_lines = BTreeMap::new();
         let (mut lines, mut entries, mut faults) = (Vec::new(), Vec::new(), Vec::new());
-        let mut not_listed = 0;
+        let (mut not_listed, mut users) = (0, 0);
         let mut list = |fault| match faults.len() < LISTED_MAX {
             true => faults.push(fault),
             false => not_listed += 1,
@@ -317,9 +322,16 @@ impl ListText {
                 Ok(Some(found)) => match first_lines.get(&found.id) {
                     None => {
                         first_lines.insert(found.id, line);
+                        users += usize::from(found.user_at.is_some());
+                        let is_user = found.user_at.is_some() && users <= USERS_MAX;
+                        if let Some(at) = found.user_at.filter(|_| users > USERS_MAX) {
+                            let error = ParameterError::TooManyUserParameters(found.id);
+                            list(fault(error, line, &text, at));
+                        }
                         entries.push(Entry {
                             id: found.id,
                             value: found.value,
+                            user: is_user,
                             line,
                             // What stands before a value that could be read is ASCII.
                             value_at: start + found.value_at.start..start + found.value_at.end,
@@ -356,6 +368,8 @@ fn fault(error: ParameterError, line: usize, text: &str, at: Range<usize>) -> Li
 pub(crate) struct Assignment {
     pub id: ParameterId,
     pub value: f64,
+    /// Where it is said that the operator may change it.
+    pub user_at: Option<Range<usize>>,
     pub id_at: Range<usize>,
     pub value_at: Range<usize>,
 }
@@ -399,13 +413,18 @@ pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> R
         rest
     };
     let value_at = end - text[separated..end].trim_start().len()..end;
+    let user_at = user_letter(model, &text[value_at.clone()]).map(|at| value_at.start + at..end);
+    let value_end = user_at
+        .as_ref()
+        .map_or(end, |at| text[..at.start].trim_end().len());
+    let value_at = value_at.start..value_end;
     let written = &text[value_at.clone()];
     let definition = Definition::named(model, id).map_err(|error| (error, id_at.clone()))?;
     let (value, value_at) = match read_value(written) {
         Ok(value) => (value, value_at),
         Err(length) => {
             let (first, after) = written.split_at(length);
-            let after_at = end - after.trim_start().len()..end;
+            let after_at = value_end - after.trim_start().len()..value_end;
             return Err(if length == 0 {
                 (
                     ParameterError::NotANumber(definition.id, written.to_owned()),
@@ -426,9 +445,17 @@ pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> R
     Ok(Assignment {
         id: definition.id,
         value,
+        user_at,
         id_at,
         value_at,
     })
+}
+
+/// Where the letter P stands behind a value, in a list of a TNC 151/155.
+fn user_letter(model: ControlModel, written: &str) -> Option<usize> {
+    let before = written.strip_suffix(['P', 'p'])?;
+    let apart = before.ends_with(char::is_whitespace) && !before.trim().is_empty();
+    (apart && model.limits().numbering == Numbering::Old).then_some(before.len())
 }
 
 /// Reads a value; the error is the length of what could be read of it, 0 for nothing.

@@ -103,7 +103,7 @@ fn the_old_list_answers_under_its_own_numbers() {
     );
     assert_eq!(
         (y.reference.kind, y.reference.mark_spacing_mm),
-        (MarkKind::DistanceCodedOld, 10.0)
+        (MarkKind::DistanceCodedBesideCam, 10.0)
     );
     assert_eq!(
         (y.encoder.signal_period_um, y.encoder.counts_negative),

@@ -145,6 +145,8 @@ const CIRCUMSTANCES: &[&[&str]] = &[
         "420.3=1",
         "430.3=2.5",
     ],
+    // Marks under the cams and a coded speed of a TNC 155.
+    &["242=0", "243=0", "244=0", "245=0", "62=1", "63=1991"],
     // A printer is told seven characters.
     &["226=1819", "230=1802"],
     &["730=%11111", "410.3=2", "410.4=0", "90=5", "6200=1"],

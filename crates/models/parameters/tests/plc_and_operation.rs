@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
 
-use bahn_parameters::operation::{Handwheel, OverrideSteps, Station, ToolOutput, ToolOutputKind};
+use bahn_parameters::operation::{
+    Handwheel, OverrideSteps, Station, ToolOutput, ToolOutputKind, UserParameter, UserText,
+};
 use bahn_parameters::plc::MonitoringInput;
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::{ControlModel, ListText, ParameterId, ParameterList};
 use bahn_path::Direction;
 
 /// The reference list of a model with other values.
@@ -188,9 +190,66 @@ fn user_parameters_have_a_two_digit_index() {
     let found: Vec<_> = list
         .user_parameters()
         .iter()
-        .map(|user| (user.id.to_string(), user.dialogue_line))
+        .map(|user| (user.id.to_string(), user.text))
         .collect();
-    assert_eq!(found, [("MP5030.1".to_owned(), 17), ("MP7280".to_owned(), 0)]);
+    assert_eq!(
+        found,
+        [
+            ("MP5030.1".to_owned(), UserText::Dialogue(17)),
+            ("MP7280".to_owned(), UserText::Dialogue(0))
+        ]
+    );
+}
+
+/// The letter P behind a value gives the parameter to the operator, as `MP 217 0 P` on the screen; they are listed in
+/// ascending order, with the texts of PLC: ERROR 99, 98 and so on [001:1299-1334].
+#[test]
+fn the_letter_p_gives_a_parameter_to_the_operator() {
+    let mut list = ParameterList::reference(ControlModel::Tnc155);
+    let text = b"MP217 : 0 P ; dialogue or ISO\nMP 54 0.5 P\nMP92 : 3\n";
+    assert_eq!(list.read(text), []);
+    let found: Vec<_> = list.user_parameters();
+    let of = |number, error, place| UserParameter {
+        id: ParameterId { number, index: None },
+        text: UserText::PlcError { number: error, place },
+    };
+    assert_eq!(found, [of(54, 99, 1), of(217, 98, 2)]);
+    assert_eq!((list.get(217, 0), list.get(54, 0)), (Some(0.0), Some(0.5)));
+    // It stays where the list is written, and where a value is changed in its place.
+    let mut again = ParameterList::smallest(ControlModel::Tnc155);
+    again.read(list.to_string().as_bytes());
+    assert_eq!(again, list);
+    let mut file = ListText::from_bytes(ControlModel::Tnc155, text);
+    file.set(of(217, 98, 2).id, 1.0).unwrap();
+    assert!(file.to_bytes().starts_with(b"MP217 : 1 P ; dialogue"));
+    // The later controls have MP7330 for it: there nothing may follow a value.
+    let mut later = ParameterList::reference(ControlModel::Tnc407);
+    assert_eq!(later.read(b"MP7280 : 0 P\n").len(), 1);
+}
+
+/// The 17th is TOO MANY USER PARAMETERS [001:1309-1313].
+#[test]
+fn sixteen_parameters_at_most_are_the_operator_s() {
+    let lines = |count: usize| {
+        (0..count)
+            .map(|number| format!("MP{number} : 1000 P\n"))
+            .collect::<String>()
+    };
+    let mut list = ParameterList::reference(ControlModel::Tnc155);
+    assert_eq!(list.read(lines(12).as_bytes()), []);
+    let more = (44..48)
+        .map(|number| format!("MP{number} : 100 P\n"))
+        .collect::<String>();
+    let mut full = ParameterList::reference(ControlModel::Tnc155);
+    assert_eq!(full.read((lines(12) + &more).as_bytes()), []);
+    assert_eq!(full.user_parameters().len(), 16);
+    let errors = full.read((lines(12) + &more + "MP48 : 100 P\n").as_bytes());
+    let error = errors.first().map(ToString::to_string);
+    assert_eq!(error.as_deref(), Some("line 17: MP48: TOO MANY USER PARAMETERS"));
+    assert_eq!(errors[0].error.control_text(), "TOO MANY USER PARAMETERS");
+    let refused = full.assign("49=-100 P").map_err(|error| error.to_string());
+    assert_eq!(refused, Err("MP49: TOO MANY USER PARAMETERS".to_owned()));
+    assert_eq!(full.user_parameters().len(), 16);
 }
 
 /// MP65 of a TNC 151/155: display in steps of 1 um with 0, of 5 um with 1 [001:1612-1614].

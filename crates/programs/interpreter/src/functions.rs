@@ -36,7 +36,7 @@ fn take_m_function(
     m: &MFunctions,
     block: &mut BlockFunctions,
 ) -> Result<(), Fault> {
-    if !c.executes(Feature::M(code))? {
+    if is_idle_approach(c, code) || !c.executes(Feature::M(code))? {
         return Ok(());
     }
     let Some(technology) = Technology::of_m(c.settings.model, code) else {
@@ -74,6 +74,13 @@ fn take_m_function(
         block.output.push(rules.machine.m_output(code, own, technology));
     }
     Ok(())
+}
+
+/// M95 and M96 of a TNC 151/155 change how a compensated contour is approached and left, and put nothing out: without
+/// compensation they have nothing to do [001:707-708].
+fn is_idle_approach(c: &Context<'_>, code: u16) -> bool {
+    let approaches = c.settings.model.has_approach_functions() && matches!(code, 95 | 96);
+    approaches && c.modal.compensation == Compensation::Off
 }
 
 /// Why a function does nothing where it stands: M97 and M98 act on the corners of compensated paths

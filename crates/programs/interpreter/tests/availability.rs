@@ -293,3 +293,25 @@ fn inhibited_by_the_machine_builder() {
     assert_eq!(with_list("7246=1", paraxial), Some((BlockNotKnown, 2)));
     assert_eq!(with_list("7246=0", paraxial), None);
 }
+
+/// M95 and M96 of a TNC 151/155 change how a contour is approached and left; nothing is put out. Where no compensation is
+/// in force there is nothing to change; with RL or RR the path would be another, and no manual describes it
+/// [001:707-708].
+#[test]
+fn m95_and_m96_do_nothing_without_radius_compensation() {
+    for m in [95, 96] {
+        let run = with(&format!("L X+1 R0 F100 M{m}\nL X+2"), |settings| {
+            settings.model = Tnc155;
+            settings.strict = true;
+        });
+        run.assert_completed();
+        assert_eq!(warnings(&run), []);
+        assert!(
+            run.elements.iter().all(|element| element.functions().is_empty()),
+            "no output"
+        );
+        let tool = "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S100\n";
+        let compensated = format!("{tool}L X+1 Y+0 RL F100\nL X+20 M{m}\nL Y+20 R0");
+        assert_eq!(on(Tnc155, &compensated), Some((BlockNotKnown, 4)));
+    }
+}

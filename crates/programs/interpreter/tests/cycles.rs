@@ -136,6 +136,46 @@ fn tapping_by_the_list() {
     }
 }
 
+/// A TNC 155 with a coded speed: MP67 is the dwell before the spindle reverses, MP73 the lead of switching it off before the
+/// end of the thread [001:1804-1812]; with an analogue speed MP73 is without effect [001:3261].
+#[test]
+fn tapping_by_the_list_of_a_tnc_155() {
+    for (kind, lead) in [("62=1", Some(0.35)), ("62=3", None)] {
+        let mut list = ParameterList::reference(ControlModel::Tnc155);
+        for assignment in [kind, "63=1991", "67=0.3", "73=0.35"] {
+            list.assign(assignment).unwrap();
+        }
+        let settings = Settings {
+            model: ControlModel::Tnc155,
+            rules: Rules::of(&list),
+            ..Settings::default()
+        };
+        let run = run_with(
+            "TOOL DEF 1 L+0 R+3
+             TOOL CALL 1 Z S1000
+             CYCL DEF 2.0 TAPPING
+             CYCL DEF 2.1 SET UP -2
+             CYCL DEF 2.2 DEPTH -30
+             CYCL DEF 2.3 DWELL 0.2
+             CYCL DEF 2.4 F1000
+             L X+0 Y+0 Z+2 F9999 M3
+             CYCL CALL",
+            settings,
+        );
+        let call: Vec<_> = run.elements.iter().filter(|e| e.block.block == 9).collect();
+        let all: Vec<_> = call.iter().flat_map(|e| e.functions()).collect();
+        let At::BeforeEnd(early) = all[0].at else {
+            panic!("{all:?}")
+        };
+        match lead {
+            Some(lead) => close(early, lead, 1e-12),
+            None => assert!((early - 0.35).abs() > 1e-3, "{early}"),
+        }
+        let dwells: Vec<_> = call.iter().map(|e| e.dwell_s).filter(|s| *s > 0.0).collect();
+        assert_eq!(dwells, [0.3, 0.2]);
+    }
+}
+
 /// Cycle 17: the path follows the spindle with the pitch and sense of the thread, in and out; feed override has
 /// no effect. The spindle stops, and is oriented unless MP7160 says no [003:4845] [003:5071-5106] [000:6122-6141].
 #[test]

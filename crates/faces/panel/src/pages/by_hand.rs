@@ -7,7 +7,7 @@ use bahn_dialogue::Key;
 use bahn_exchange::signal;
 use bahn_parameters::MessageId;
 use bahn_screen::{Dialogue, Line, Window, WindowKind};
-use bahn_tnc::{Command, Message, Mode};
+use bahn_tnc::{AxisState, Command, Message, Mode};
 
 use crate::page::{Page, Turn, View};
 use crate::pages::handwheel::Handwheel;
@@ -168,12 +168,22 @@ fn factor(site: &Site) -> String {
     })
 }
 
-/// `PASS OVER REFERENCE MARK X Y Z`: the axes that have not passed theirs.
+/// `PASS OVER REFERENCE MARK X Y Z`: the axes that have not passed theirs and shall; `REFERENCE POINT X APPROACH` as long
+/// as axes are backed off their cams first [001:993-995].
 fn missing_references(site: &Site) -> String {
     let snapshot = site.control().snapshot();
-    let missing = snapshot.axes.iter().filter(|axis| !axis.referenced);
-    let letters = missing
-        .map(|axis| format!(" {}", axis.letter))
-        .collect::<String>();
-    format!("{}{letters}", site.words("PASS OVER REFERENCE MARK"))
+    let letters = |named: fn(&&AxisState) -> bool| {
+        let axes = snapshot.axes.iter().filter(named);
+        axes.map(|axis| axis.letter.to_string()).collect::<Vec<_>>()
+    };
+    let on_cams = letters(|axis| axis.backs_off);
+    match on_cams.is_empty() {
+        true => {
+            let missing = letters(|axis| axis.mark_wanted).join(" ");
+            format!("{} {missing}", site.words("PASS OVER REFERENCE MARK"))
+        }
+        false => site
+            .words("REFERENCE POINT {} APPROACH")
+            .replace("{}", &on_cams.join("/")),
+    }
 }

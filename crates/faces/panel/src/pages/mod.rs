@@ -41,7 +41,7 @@ use crate::site::Site;
 pub(crate) use backup::{ended as backup_ended, everything, restored};
 pub(crate) use files::{is_needed, runs};
 pub(crate) use help::follow as follow_help;
-pub(crate) use parameters::commission;
+pub(crate) use parameters::{commission, is_erased};
 
 use no_program::no_program;
 

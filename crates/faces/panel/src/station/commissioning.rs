@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use bahn_host::backup::Restore;
 use bahn_host::{Action, PowerOn, Source};
+use bahn_parameters::MessageId;
 use bahn_path::Switch;
 use bahn_screen::programs::ProgramMemory;
 use bahn_screen::texts;
@@ -37,6 +38,9 @@ impl Station {
         self.supply.is_on = false;
         let (console, site) = self.parts();
         let presented = pages::commission(&site).map(|page| console.enter(page));
+        if pages::is_erased(&site) {
+            console.say(site.message(MessageId::OperatingParametersErased));
+        }
         let is_presented = presented.map_err(|why| console.say(why)).is_ok();
         if let Some(own) = &mut self.commissioning {
             own.is_presented = is_presented;

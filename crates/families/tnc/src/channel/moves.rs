@@ -5,6 +5,7 @@ use bahn_servo::{HandwheelInputs, Measured};
 
 use super::Channel;
 use crate::command::Mode;
+use crate::desk::reference_cams;
 use crate::machine::MachineSide;
 
 /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the
@@ -12,7 +13,8 @@ use crate::machine::MachineSide;
 pub fn move_axes(channel: &mut Channel, machine: &mut MachineSide, measured: &Measured) {
     let now = channel.now(machine);
     let mut axes = machine.core.axes.of(channel.number);
-    reference::count_display_axes(&mut axes);
+    let cams = reference_cams(machine.memory.of(channel.number).nc());
+    reference::count_display_axes(&mut axes, &cams);
     let superimposes = channel.datums.chain.superimposed.is_on();
     let exchange = machine.memory.of_mut(channel.number);
     channel

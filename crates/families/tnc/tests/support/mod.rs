@@ -8,6 +8,7 @@
 )]
 
 pub mod bench;
+pub mod knee;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -100,6 +100,8 @@ const TNC151: Limits = Limits {
     one_axis_by_mdi: false,
     shows_feed_of_keys: true,
     oscilloscope: false,
+    erases_its_list: true,
+    approach_functions: true,
     square_wave_input: 4,
     spindle_input: 4,
     unit: "Q",
@@ -177,6 +179,8 @@ const TNC360: Limits = Limits {
     transfer_codes: true,
     one_axis_by_mdi: true,
     shows_feed_of_keys: false,
+    erases_its_list: false,
+    approach_functions: false,
     square_wave_input: 6,
     spindle_input: 5,
     ..TNC155

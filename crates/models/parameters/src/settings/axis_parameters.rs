@@ -42,6 +42,9 @@ pub struct AxisParameters {
     /// Interval of the automatic offset adjustment, s, 0 without: MP1220 (old MP252, 20 ms)
     /// [000:5022-5037] [001:2591-2606].
     pub offset_interval_s: f64,
+    /// So long stands the nominal value of an axis at its target before it is adjusted outside its positioning window, s;
+    /// the axes are adjusted at once when they have passed their marks: old; `None`: neither [001:2600-2606].
+    pub offset_patience_s: Option<f64>,
     /// Feed rates and acceleration.
     pub motion: MotionParameters,
     /// Operation with servo lag.
@@ -82,7 +85,8 @@ pub struct WiringParameters {
 pub struct MotionParameters {
     /// Rapid traverse, mm/min: MP1010, 10 to 300 000 (old MP0+) [000:4836-4841].
     pub rapid_mm_min: f64,
-    /// Manual feed, mm/min: MP1020, 10 to 300 000 (old MP4+) [000:4848-4853].
+    /// Manual feed, mm/min: MP1020, 10 to 300 000 (old MP4+, with MP167 = 1 the smallest of all) [000:4848-4853]
+    /// [001:1020-1024].
     pub manual_mm_min: f64,
     /// Acceleration, m/s², for a rotary axis 1000 degrees/s²: MP1060, 0.001 to 5 (old MP54)
     /// [000:4790-4797].
@@ -90,6 +94,9 @@ pub struct MotionParameters {
     /// Feed in which the PLC positions the axis and the contour is returned to, mm/min: MP4220, 10 to
     /// 30 000 (old MP163+) [000:11720-11724] [001:3144-3369].
     pub plc_mm_min: f64,
+    /// Without feed enable it comes down on the ramp of MP54 and goes on when the enable is back; old: yes
+    /// [001:509-516]. Else its voltage is 0 at once [000:5352].
+    pub ramps_without_enable: bool,
 }
 
 /// Reference run of an axis.
@@ -107,9 +114,28 @@ pub struct ReferenceParameters {
     pub place: Option<u8>,
     /// How the axis finds its reference mark: MP1350 (old MP242+) [000:4656-4667].
     pub kind: MarkKind,
+    /// An axis that stands on its cam is first backed off it: old MP69 [001:989-995]. Not a rotary one, whose cam is
+    /// bridged for good [001:957].
+    pub backs_off: bool,
+    /// What an axis that is not controlled has of its mark.
+    pub inhibited: InhibitedMark,
     /// Spacing of distance-coded marks, mm: old MP242+ times 20 µm [001:977-987] [001:1480]; 20 mm where the
     /// list has no such parameter (inferred: the spacing of the LS scales).
     pub mark_spacing_mm: f64,
+}
+
+/// What the reference mark is to an axis that is not controlled: old MP75 [001:3266].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InhibitedMark {
+    /// It counts from power-on; its counter is 0 on the mark [000:4573]. The controls with MP50.
+    Zeroes,
+    /// It counts from its mark on.
+    Needed {
+        /// The prompt of the reference run names it: MP75 = 1, not 0.
+        asked: bool,
+    },
+    /// MP75 = 2: its position is 0 at power-on, and counts at once.
+    Preset,
 }
 
 /// How far a rotary axis counts.
@@ -232,6 +258,7 @@ impl ParameterList {
             encoder: encoder(&axis, wiring.input),
             output: output(&axis),
             offset_interval_s: self.get(1220, 0).unwrap_or_else(|| self.old(252) * 0.02),
+            offset_patience_s: self.has_old_numbers().then_some(OFFSET_PATIENCE_S),
             motion: motion(&axis),
             lag: lag(&axis),
             precontrol: precontrol(&axis),
@@ -281,8 +308,26 @@ fn encoder(axis: &AxisReader, input: u8) -> EncoderSettings {
     }
 }
 
-/// The encoder input whose MP253 to MP257 names the axis, otherwise its own [001:2434-2454].
+/// MP4 to MP7; with MP167 = 1 the smallest of them for all axes [001:1020-1024].
+fn old_manual_mm_min(axis: &AxisReader) -> f64 {
+    let list = axis.list();
+    match list.old(167) == 1.0 {
+        true => (4..8)
+            .map(|number| list.old(number))
+            .fold(f64::INFINITY, f64::min),
+        false => axis.old(4),
+    }
+}
+
+/// Offsets are adjusted when the nominal value is at its target so long, s [001:2604].
+const OFFSET_PATIENCE_S: f64 = 5.0;
+
+/// The encoder input whose MP253 to MP257 names the axis, otherwise its own [001:2434-2454]; its own, too, of a programming
+/// station, which has no encoders.
 fn old_input(axis: &AxisReader) -> u8 {
+    if axis.list().old(170) != 0.0 {
+        return axis.index();
+    }
     let names_axis =
         |input: &u8| axis.list().get(253 + u16::from(*input), 0) == Some(f64::from(axis.index() + 1));
     (0..5).find(names_axis).unwrap_or(axis.index())
@@ -299,9 +344,10 @@ fn output(axis: &AxisReader) -> OutputSettings {
 fn motion(axis: &AxisReader) -> MotionParameters {
     MotionParameters {
         rapid_mm_min: axis.value(1010, 0),
-        manual_mm_min: axis.value(1020, 4),
+        manual_mm_min: axis.new_or(1020, || old_manual_mm_min(axis)),
         acceleration_m_s2: axis.old_common(1060, 54),
         plc_mm_min: axis.value(4220, 163),
+        ramps_without_enable: axis.list().has_old_numbers(),
     }
 }
 
@@ -384,11 +430,19 @@ const MARK_SPACING_MM: f64 = 20.0;
 fn reference(axis: &AxisReader) -> ReferenceParameters {
     let feed_mm_min = axis.value(1330, 8);
     let old_spacing = axis.old(242);
-    let kind = match axis.new_or(1350, || if old_spacing > 0.0 { 0.0 } else { 1.0 }) as u8 {
-        0 => MarkKind::DistanceCodedOld,
-        1 => MarkKind::OneMark,
-        2 => MarkKind::RotaryEncoder,
-        _ => MarkKind::DistanceCoded,
+    let list = axis.list();
+    let kind = match list.get_new(1350, axis.index()).map(|kind| kind as u8) {
+        None if old_spacing > 0.0 => MarkKind::DistanceCodedBesideCam,
+        None => MarkKind::UnderCam,
+        Some(0) => MarkKind::DistanceCodedOld,
+        Some(1) => MarkKind::OneMark,
+        Some(2) => MarkKind::RotaryEncoder,
+        Some(_) => MarkKind::DistanceCoded,
+    };
+    let inhibited = match list.old(75) as u8 {
+        _ if !list.has_old_numbers() => InhibitedMark::Zeroes,
+        2 => InhibitedMark::Preset,
+        asked => InhibitedMark::Needed { asked: asked == 1 },
     };
     ReferenceParameters {
         direction: Direction::minus_if(axis.flag(1320, 16)),
@@ -399,6 +453,8 @@ fn reference(axis: &AxisReader) -> ReferenceParameters {
             .reference_place(axis.index())
             .filter(|_| axis.exists()),
         kind,
+        backs_off: list.old(69) == 1.0 && kind == MarkKind::UnderCam && !axis.is_rotary(),
+        inhibited,
         mark_spacing_mm: if old_spacing > 0.0 {
             old_spacing * MARK_UNIT_MM
         } else {

@@ -10,6 +10,9 @@ use crate::{ControlModel, ParameterId, ParameterList, PerPlcAxis};
 pub struct OperationParameters {
     /// Whether there is a machine: MP7210 (old MP170) [000:6949-6954] [001:1637-1641].
     pub station: Station,
+    /// A programming station moves its axes in their nominal positions and needs neither voltage nor encoders: old: yes
+    /// [001:1637-1641]. Else it has PROGRAMMING AND EDITING and TEST RUN alone [000:6949].
+    pub moves_without_machine: bool,
     /// POWER INTERRUPTED waits for CE after switch-on: MP7212 = 0; old: always [000:7033-7040].
     pub power_interrupted: bool,
     /// The dialogue is English: MP7230 = 1 (old MP92 + 2) [000:6956-6966] [001:3277-3281].
@@ -21,6 +24,8 @@ pub struct OperationParameters {
     /// START while an axis direction key is held keeps the axis moving: MP7680 bit 0 (old MP68)
     /// [000:7545-7552].
     pub keys_latched: bool,
+    /// Direction keys lead the axes over their reference marks after code number 84 159 alone; old: yes [001:955].
+    pub marks_by_code: bool,
     /// The axes wait for the acknowledgement of an M function: MP7440 bit 2 = 0 [000:7255].
     pub axes_wait_at_m: bool,
     /// Manual modes always show the smallest manual feed: MP7270 = 1 (old MP167) [000:6536].
@@ -40,6 +45,8 @@ pub struct OperationParameters {
     /// The length of the tool counts in the display of the tool axis: MP7285 = 1; old: no
     /// [000:6428-6434].
     pub tool_length_shown: bool,
+    /// The programmed speed is shown before the spindle runs: old MP191; else yes [001:1577].
+    pub speed_shown_at_rest: bool,
     /// The angle of the spindle is shown while it stands: MP40 bit 5 [000:3418-3432]; old: no.
     pub spindle_shown: bool,
     /// Characters of a file name without its type: MP7222 [000:6847-6852], not more than the model has.
@@ -100,6 +107,8 @@ pub struct OverrideParameters {
     pub feed_steps: OverrideSteps,
     /// Steps of the spindle override.
     pub spindle_steps: OverrideSteps,
+    /// Where the feed potentiometer is, in automatic operation and by hand: old MP66; else in the control.
+    pub external: [bool; 2],
 }
 
 /// Return to the contour and block scan: MP7680 bits 1 to 5; old: neither [000:6785-6812].
@@ -217,13 +226,28 @@ pub enum Handwheel {
 }
 
 /// A parameter that the operator may change under USER PARAMETERS: MP7330 and MP7340
-/// [000:6907-6926].
+/// [000:6907-6926]; TNC 151/155: by the letter P in the list [001:1299-1334].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UserParameter {
     /// The parameter that may be changed.
     pub id: ParameterId,
-    /// Line of the PLC dialogue file that names it.
-    pub dialogue_line: u16,
+    /// What names it.
+    pub text: UserText,
+}
+
+/// What names a parameter that the operator may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UserText {
+    /// A line of the PLC dialogue file: MP7340.
+    Dialogue(u16),
+    /// The text of a PLC error message, TNC 151/155: 99 of the first parameter down to 84 of the 16th; without one
+    /// `USER PAR.` with the place [001:1315-1332].
+    PlcError {
+        /// Number of the error message.
+        number: u16,
+        /// Its place among the user parameters, from 1.
+        place: u16,
+    },
 }
 
 impl ParameterList {
@@ -240,11 +264,13 @@ impl ParameterList {
                 1 => Station::WithPlc,
                 _ => Station::WithoutPlc,
             },
+            moves_without_machine: old && self.old(170) != 0.0,
             power_interrupted: !is_one(7212),
             english: if old { self.old_bit(92, 1) } else { is_one(7230) },
             ram_test: test(0),
             eprom_test: test(1),
             keys_latched: if old { self.old(68) == 1.0 } else { multi(0) },
+            marks_by_code: old,
             axes_wait_at_m: self.m_functions().axes_wait,
             manual_feed_shown: self.bit((7270, 0), (167, 0), 0),
             stop_ends_m: self.model() == ControlModel::Tnc360
@@ -265,6 +291,7 @@ impl ParameterList {
             datums: self.datum_parameters(),
             handwheel: self.handwheel_parameters(),
             tool_length_shown: is_one(7285),
+            speed_shown_at_rest: !old || self.old(191) == 1.0,
             spindle_shown: bit_of(self.get_new(40, 0).unwrap_or_default(), 5),
             file_name_max: match self.get_new(7222, 0) {
                 Some(0.0) => 8,
@@ -286,12 +313,22 @@ impl ParameterList {
     /// The parameters that the operator may change under USER PARAMETERS; an entry of 0 is none. MP7330
     /// holds the number with a two-digit index: 5030.01 is MP5030.1 [000:6911-6919].
     pub fn user_parameters(&self) -> Vec<UserParameter> {
+        if self.has_old_numbers() {
+            let of = |(place, id): (u16, &ParameterId)| UserParameter {
+                id: *id,
+                text: UserText::PlcError {
+                    number: 100 - place,
+                    place,
+                },
+            };
+            return (1..).zip(self.given()).map(of).collect();
+        }
         let entry = |place: u8| {
             let hundredths = (self.get_new(7330, place)? * 100.0).round() as u32;
             let (number, index) = ((hundredths / 100) as u16, (hundredths % 100) as u8);
             Some(UserParameter {
                 id: crate::Definition::find(self.model(), number, index)?.id,
-                dialogue_line: self.get(7340, place)? as u16,
+                text: UserText::Dialogue(self.get(7340, place)? as u16),
             })
         };
         (0..16).filter_map(entry).collect()
@@ -316,6 +353,11 @@ impl ParameterList {
             on_rapid_key: bit_of(value, 0),
             rapid_key_in_programs: self.has_old_numbers(),
             on_manual_rapid: bit_of(value, 2),
+            external: match self.old(66) as u8 {
+                0 => [false; 2],
+                1 => [true; 2],
+                _ => [false, true],
+            },
             feed_steps,
             spindle_steps,
         }

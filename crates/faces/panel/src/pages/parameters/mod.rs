@@ -12,8 +12,10 @@
 
 mod file;
 mod lists;
+mod user;
 
 use bahn_dialogue::Key;
+use bahn_parameters::operation::UserParameter;
 use bahn_parameters::{Definition, ListError, MessageId, ParameterList, Reaction};
 use bahn_screen::{Dialogue, Line, Mark, WindowKind};
 use bahn_tnc::Command;
@@ -25,6 +27,7 @@ use crate::pages::{interface, list};
 use crate::site::Site;
 use crate::transfer::TransferFiles;
 use file::{Entered, ListFile, Refused};
+use user::dialogue_of;
 
 /// What EXT transfers: the lists of the machine.
 const LISTS: Own = Own {
@@ -104,6 +107,17 @@ pub(crate) fn commission(site: &Site) -> Result<Box<dyn Page>, String> {
     Ok(Box::new(editor))
 }
 
+/// The memory of the machine parameters of a TNC 151/155 is empty [001:2489-2493].
+pub(crate) fn is_erased(site: &Site) -> bool {
+    let machine = site.machine;
+    let name = machine
+        .to_be_entered
+        .as_ref()
+        .unwrap_or(&machine.folder.parameters);
+    let text = ListFile::new(name.clone(), site).with(&Entered::default(), site);
+    site.control().model().erases_its_list() && text.is_ok_and(|text| text.entries().is_empty())
+}
+
 /// Opens the editor with all parameters of the list.
 pub(crate) fn all(site: &Site) -> Turn {
     editor(site, |_| true)
@@ -114,14 +128,14 @@ pub(crate) fn of_code(site: &Site) -> Turn {
     editor(site, |definition| definition.user)
 }
 
-/// Up to sixteen that the machine builder has chosen, with his dialogues [000:6907-6926].
+/// Up to sixteen that the machine builder has chosen, with his dialogues [000:6907-6926] [001:1299-1334].
 pub(crate) fn user(site: &Site) -> Turn {
     let list = site.parameters();
-    let row = |own: bahn_parameters::operation::UserParameter| {
+    let row = |own: UserParameter| {
         let definition = Definition::named(list.model(), own.id).ok()?;
-        let dialogues = site.control().plc_dialogues();
+        let control = site.control();
         Some(Row {
-            dialogue: dialogues.get(usize::from(own.dialogue_line)).cloned(),
+            dialogue: dialogue_of(own.text, control.plc_dialogues(), control.plc_messages()),
             ..Row::of(definition)
         })
     };
@@ -631,7 +645,13 @@ impl Page for Parameters {
         };
         let mut window = list::window(title, WindowKind::Table, cursor, rows, line);
         window.lines.extend(self.meaning(site));
-        let prompt = self.definition().map(|own| format!("{} =", own.id));
+        let asks = site.control().model().erases_its_list();
+        let prompt = self.definition().map(|own| match asks {
+            true => site
+                .words("MACHINE PARAMETER {} ?")
+                .replace("{}", &own.id.to_string()),
+            false => format!("{} =", own.id),
+        });
         View {
             window: Some(window),
             dialogue: Dialogue {

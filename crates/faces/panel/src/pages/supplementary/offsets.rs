@@ -65,8 +65,11 @@ impl Page for Offsets {
             })
         });
         let lines: Vec<Line> = lines.collect();
+        let unit_mv = format!("{:.2}", site.control().offset_unit_volts() * 1e3);
         let mut view = View::of(Window {
-            title: site.words("OFFSET ADJUSTMENT (1 = 0.15 mV)"),
+            title: site
+                .words("OFFSET ADJUSTMENT (1 = {} mV)")
+                .replace("{}", &unit_mv),
             kind: WindowKind::List,
             total: lines.len(),
             lines,

@@ -10,7 +10,7 @@ use bahn_parameters::machining::{ToolProbeParameters, ToolProbeTolerance};
 const SPEED_MAX_RPM: f64 = 1000.0;
 
 /// The speed for a radius in mm, rpm: `n = MP6570 / (2 π r 10^-3)` [000:7985-7992].
-pub(crate) fn speed_rpm(parameters: &ToolProbeParameters, radius_mm: f64) -> f64 {
+pub fn speed_rpm(parameters: &ToolProbeParameters, radius_mm: f64) -> f64 {
     let speed = parameters.surface_m_min / (std::f64::consts::TAU * radius_mm * 1e-3);
     speed.min(SPEED_MAX_RPM)
 }
@@ -29,7 +29,7 @@ fn tolerance_mm(parameters: &ToolProbeParameters, radius_mm: f64) -> f64 {
 }
 
 /// The probing feed, mm/min: the tolerance in each turn [000:7993-8005].
-pub(crate) fn feed_mm_min(parameters: &ToolProbeParameters, radius_mm: f64) -> f64 {
+pub fn feed_mm_min(parameters: &ToolProbeParameters, radius_mm: f64) -> f64 {
     tolerance_mm(parameters, radius_mm) * speed_rpm(parameters, radius_mm)
 }
 

@@ -15,11 +15,12 @@ const REST_MM: f64 = 0.1;
 
 /// The stylus leads the axes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StylusLead {
+pub struct StylusLead {
     probe: MeasuringProbe,
 }
 
 impl StylusLead {
+    /// That of a measuring probe.
     pub fn of(probe: MeasuringProbe) -> StylusLead {
         StylusLead { probe }
     }
