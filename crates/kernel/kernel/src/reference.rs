@@ -18,9 +18,10 @@ use bahn_parameters::axis::InhibitedMark;
 use bahn_servo::settings::MarkKind;
 
 use crate::axes::OwnAxes;
-use crate::axis::{AxisUnit, Direction, Mover};
+use crate::axis::{AxisUnit, Mover};
 use crate::gantry;
 use crate::now::Now;
+use bahn_path::Direction;
 
 /// The cams of the axes, by axis index.
 #[derive(Clone, Copy, Debug)]
