@@ -27,8 +27,8 @@ fn a_new_machine_of_each_model_is_whole_and_runs() {
             (&"Test".into(), &model.into())
         );
         let programs = ["INDEX.H", "COVER.H", "BLOCK.H"].into_iter();
-        let program = programs.filter(|name| folder.path(&format!("m/programs/{name}")).exists());
-        let program = program.last().unwrap();
+        let mut program = programs.filter(|name| folder.path(&format!("m/programs/{name}")).exists());
+        let program = program.next_back().unwrap();
         let run = folder.bahn(&format!("run {program} --machine m --no-graphics --fresh"));
         assert_eq!(run.code(), 0, "{model}: {}{}", run.err(), run.out());
     }
