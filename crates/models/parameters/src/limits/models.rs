@@ -1,7 +1,7 @@
 //! The control models as constants: what is not named is that of the model before. Citations and what is inferred stand
 //! at the fields of [`Limits`].
 
-use super::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
+use super::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering, OemTexts};
 use crate::ControlModel;
 
 impl ControlModel {
@@ -73,18 +73,25 @@ const TNC151: Limits = Limits {
     outputs: OUTPUTS_151,
     plc_mode: false,
     rs_422: false,
+    baud_rate_max: 9600,
     transfer_codes: false,
     windows: false,
+    graphics: false,
     draws_what_runs: true,
     simulates_in_program_run: true,
     one_axis_by_mdi: false,
     shows_feed_of_keys: true,
     oscilloscope: false,
+    soft_keys: false,
+    oem_texts: OEM_TEXTS_151,
     square_wave_input: 6,
 };
 
 /// TNC 151 with graphics [001:186].
-const TNC155: Limits = TNC151;
+const TNC155: Limits = Limits {
+    graphics: true,
+    ..TNC151
+};
 
 /// Numbers of machine parameters, terminals and interface as on the later models.
 const TNC360: Limits = Limits {
@@ -103,9 +110,12 @@ const TNC360: Limits = Limits {
     numbering: Numbering::New,
     inputs: INPUTS,
     outputs: OUTPUTS,
+    baud_rate_max: 38_400,
     transfer_codes: true,
     one_axis_by_mdi: true,
     shows_feed_of_keys: false,
+    soft_keys: true,
+    oem_texts: OEM_TEXTS,
     ..TNC155
 };
 
@@ -178,6 +188,18 @@ const BLOCKWISE_360: Blockwise = Blockwise {
     block_number_max: Some(65_534),
     tool_definitions_max: Some(20),
     digitizes_and_prints: false,
+};
+const OEM_TEXTS_151: OemTexts = OemTexts {
+    number_max: 99,
+    name_max: 14,
+    parameter_max: 32,
+    standard: Some(["User Cycl", "Cycl parameter"]),
+};
+const OEM_TEXTS: OemTexts = OemTexts {
+    number_max: 127,
+    name_max: 34,
+    parameter_max: 34,
+    standard: None,
 };
 /// Twice within 200 ms [001:929-932]; the other times are not given (inferred).
 const STOP_TEST_151: EmergencyStopTest = EmergencyStopTest {
