@@ -136,6 +136,13 @@ fn nothing_is_cut_off() {
                 top + tall
             );
         }
+        // Nothing lies on a key.
+        let covered = "[...document.querySelectorAll('.key')].filter(key => { \
+                       if (!key.checkVisibility()) return false; \
+                       const { left, right, top, bottom } = key.getBoundingClientRect(); \
+                       const at = document.elementFromPoint((left + right) / 2, (top + bottom) / 2); \
+                       return at && at !== key; }).map(key => key.dataset.key)";
+        assert_eq!(page.evaluate(covered).unwrap(), json!([]), "{width} x {height}");
         // Each label fits its key.
         let wide = "[...document.querySelectorAll('[data-region=keyboard] .key')].filter(key => key.checkVisibility() && key.scrollWidth > key.clientWidth + 1).map(key => key.dataset.key)";
         assert_eq!(page.evaluate(wide).unwrap(), json!([]), "{width} x {height}");

@@ -1,4 +1,8 @@
 //! The cycles of the machine builder that a machine has, with their dialogue texts [000:17691-17984].
+//!
+//! Decision: The name of a customized macro of a TNC 151/155 may have 16 characters, as the manual's example has, not 14;
+//! nothing of its Q parameters is local, and DLG-DEF, which the manual prints, runs at its definition (also
+//! `parameters/src/limits/models.rs`, `parameters/src/settings/operation.rs`)
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;

@@ -203,7 +203,8 @@ pub struct Blockwise {
 pub struct OemTexts {
     /// Highest number of a text [001:2764] [000:17742].
     pub number_max: u16,
-    /// Characters of the name of a cycle [001:2925] [000:17861-17866].
+    /// Characters of the name of a cycle [000:17861-17866]; TNC 151/155 16, as the example BOLT HOLE CIRCLE has [001:2908], not
+    /// the 14 of the rule that it breaks [001:2925].
     pub name_max: u8,
     /// Characters of the text of a parameter.
     pub parameter_max: u8,

@@ -228,7 +228,7 @@ fn wrong_definitions() {
     assert_eq!(message("L X+1 FMAX\nDLG-CALL 0/1"), Some((BlockNotKnown, 2)));
     assert_eq!(message("DLG-DEF 0/200"), Some((EntryValueIncorrect, 1)));
     let old =
-        job("CYCL DEF 68.0 HOLES", &[(68, HOLES)]).with(|settings| settings.model = ControlModel::Tnc155);
+        job("CYCL DEF 68.0 HOLES", &[(68, HOLES)]).with(|settings| settings.model = ControlModel::Tnc360);
     assert_eq!(old.run().message(), Some((BlockNotKnown, 1)));
 }
 

@@ -191,7 +191,7 @@ const BLOCKWISE_360: Blockwise = Blockwise {
 };
 const OEM_TEXTS_151: OemTexts = OemTexts {
     number_max: 99,
-    name_max: 14,
+    name_max: 16,
     parameter_max: 32,
     standard: Some(["User Cycl", "Cycl parameter"]),
 };
