@@ -166,3 +166,18 @@ fn everything_has_a_key_of_the_keyboard() {
     trainee.press("END TEST ENT").wait(0.5);
     assert!(trainee.station.control().test_report().is_some());
 }
+
+/// What the machine waits for is named by the parameter that the control has: MP59 is the order of the reference run
+/// [001:1443-1478], MP1340 that of a TNC 360.
+#[test]
+fn reasons_name_the_parameters_of_the_control() {
+    for (model, named) in [(Some(Tnc155), "MP59:"), (None, "MP1340:")] {
+        let mut trainee = match model {
+            Some(model) => Trainee::with_tnc155(model, &[]),
+            None => Trainee::at("mill-tnc360"),
+        };
+        on(&mut trainee).wait(1.5);
+        let why = trainee.screen().why.join(" ");
+        assert!(why.contains(named), "{why}");
+    }
+}
