@@ -33,7 +33,7 @@ fn the_screen_has_one_colour_and_no_soft_keys() {
 /// "Clamped axes are indicated in the display by a decimal point which suffixes the axis designation" [001:505-507]: before
 /// the reference run no loop is closed [001:484]; the later controls put `*` before the letter [000:5366].
 #[test]
-fn a_clamped_axis_has_a_point_behind_its_letter() {
+fn a_clamped_axis_has_a_point_after_its_letter() {
     let labels = |trainee: &mut Trainee| {
         let axes = screen(trainee)["status"]["axes"].clone();
         let label = |axis: &serde_json::Value| axis["label"].as_str().unwrap_or_default().to_owned();
@@ -47,6 +47,16 @@ fn a_clamped_axis_has_a_point_behind_its_letter() {
     let mut later = Trainee::at("mill-tnc360");
     later.wait(0.5);
     assert_eq!(labels(&mut later), ["*X ", "*Y ", "*Z "]);
+}
+
+/// Without feed enable the status display shows an inverted F [001:509-516].
+#[test]
+fn f_is_inverse_without_feed_enable() {
+    let mut trainee = Trainee::with_tnc155(Tnc155, &[]);
+    trainee.ready();
+    assert!(!trainee.screen().status.f_inverse);
+    trainee.press("EMERGENCY_STOP").wait(0.5);
+    assert!(trainee.screen().status.f_inverse);
 }
 
 /// "TNC 151: character screen; graphics only on the TNC 155" [001:186] [001:2157].
