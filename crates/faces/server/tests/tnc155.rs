@@ -152,3 +152,43 @@ fn nothing_is_cut_off() {
     }
     assert_eq!(page.complaints(), [] as [String; 0]);
 }
+
+/// The graphics stand in the place of the program, in shades of the colour of the screen [001:186].
+#[test]
+fn the_graphics_have_the_colour_of_the_screen() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    let panel = Panel::of("mill-tnc360", |folder| {
+        tnc155::fit(folder, Tnc155, &[]);
+        let program = "BEGIN PGM 77 MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+60 Z+0\nTOOL CALL 1 Z S1000\n\
+                       L Z+2 R0 F15999 M3\nL X+20 Y+30 F15999\nL Z-5 F200\nL X+80 F300\nL Z+50 F15999 M2\nEND PGM 77 MM\n";
+        std::fs::write(folder.join("programs/77.H"), program).unwrap();
+    });
+    let mut page = open(&panel, &browser);
+    panel.until(|screen| screen["messages"][0]["text"] == "POWER INTERRUPTED");
+    for key in [
+        "CE", "TEST", "PGM_NR", "7", "7", "ENT", "ENT", "GRAPHICS", "GRAPHICS",
+    ] {
+        panel.press(key);
+    }
+    panel.until(|screen| {
+        screen["graphics"]["view"] == "three_planes" && screen["graphics"]["running"] == false
+    });
+    let shown = "[...document.querySelectorAll('.windows > .window')].filter(window => window.checkVisibility()).map(window => window.dataset.region).join()";
+    until(
+        &mut page,
+        &format!(
+            "{shown} === 'graphics' && document.querySelector('[data-region=graphics] img').naturalWidth > 300"
+        ),
+    );
+    assert!(page.number(HUES).unwrap() < 16.0);
+    let drawn = "getComputedStyle(document.querySelector('[data-region=graphics] img')).filter.includes('grayscale(1)')";
+    assert_eq!(page.evaluate(drawn).unwrap(), true);
+    // The picture is there as a whole.
+    let inside = "(() => { const [inner, outer] = ['[data-region=graphics] img', '[data-region=graphics]'].map(name => \
+                  document.querySelector(name).getBoundingClientRect()); return inner.bottom <= outer.bottom + 0.5; })()";
+    assert_eq!(page.evaluate(inside).unwrap(), true);
+    pictures::take(&mut page, "tnc155-graphics");
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
