@@ -318,7 +318,11 @@ impl Console {
 
     fn choose(&mut self, mode: Mode, site: &mut Site) {
         let there = self.mode == mode && self.front == Side::Machine;
-        if there {
+        let misses_marks = site.control().first().misses_marks();
+        let has_soft_key = site.control().model().has_soft_keys();
+        if there && mode == Mode::Manual && misses_marks && !has_soft_key {
+            site.command(Command::Mode(Mode::Reference));
+        } else if there {
             self.machine.opened.clear();
         } else if site.command(Command::Mode(mode)) {
             self.front = Side::Machine;
@@ -385,6 +389,9 @@ impl Console {
 
     /// The soft-key row of the side that has the keys.
     pub fn soft_keys(&self, site: &Site) -> SoftKeys {
+        if !site.control().model().has_soft_keys() {
+            return SoftKeys::default();
+        }
         let stack = match (self.front(), &self.programming) {
             (Side::Programming, Some((_, stack))) => stack,
             _ => &self.machine,

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::Path;
 
 use bahn_host::files::{self, NewFile};
+use bahn_parameters::ControlModel;
 use bahn_parameters::interfaces::Mode;
 use bahn_screen::texts::{self, Language};
 use serde::{Deserialize, Serialize};
@@ -70,12 +71,14 @@ pub(crate) enum InterfaceMode {
 }
 
 impl InterfaceMode {
-    /// Those of a control with a single interface, or with two.
-    pub fn all(single: bool) -> &'static [InterfaceMode] {
+    /// Those of a control: with two interfaces, with one, and of a TNC 151/155, where there is always a device
+    /// [001:1137-1148].
+    pub fn all(model: ControlModel) -> &'static [InterfaceMode] {
         use InterfaceMode::{Ext1, Ext2, Fe1, Fe2, Lsv2, Me, None};
-        match single {
-            true => &[Fe1, Me, Ext1, None],
-            false => &[Fe1, Fe2, Me, Ext1, Ext2, Lsv2],
+        match (model.has_rs_422(), model.has_soft_keys()) {
+            (true, _) => &[Fe1, Fe2, Me, Ext1, Ext2, Lsv2],
+            (false, true) => &[Fe1, Me, Ext1, None],
+            (false, false) => &[Me, Fe1, Ext1],
         }
     }
 

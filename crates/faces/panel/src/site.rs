@@ -41,7 +41,7 @@ impl Site<'_> {
             return name.to_owned();
         }
         let [plain, iso] = ENDINGS.map(|ending| format!("{name}.{ending}"));
-        let (chosen, other) = if self.settings.iso {
+        let (chosen, other) = if self.writes_iso() {
             (iso, plain)
         } else {
             (plain, iso)
@@ -50,6 +50,12 @@ impl Site<'_> {
             true => other,
             false => chosen,
         }
+    }
+
+    /// New programs are in DIN/ISO: as the operator has chosen by PROGRAM INPUT, or MP217 says [001:1653].
+    pub fn writes_iso(&self) -> bool {
+        let said = self.parameters().operation_parameters().iso_programs;
+        said.unwrap_or(self.settings.iso)
     }
 
     /// Asks the control for something; `false` when it refuses.

@@ -510,17 +510,21 @@ impl Station {
     }
 
     fn layout(&self) -> Layout {
-        match self.control().model().has_windows() {
-            true => Layout::Windows,
-            false => Layout::OneColumn,
+        let model = self.control().model();
+        match (model.has_windows(), model.has_soft_keys()) {
+            (true, _) => Layout::Windows,
+            (false, true) => Layout::OneColumn,
+            (false, false) => Layout::Monochrome,
         }
     }
 
     fn look(&self) -> Look {
+        let list = self.parameters();
         Look {
             layout: self.layout(),
+            letters: list.operation_parameters().iso_programs != Some(false),
             language: self.language(),
-            colours: colours::all(self.parameters()),
+            colours: colours::all(list),
         }
     }
 

@@ -116,7 +116,13 @@ pub(crate) fn of(
         handwheel: wheel == Some(axis.index),
         ..axis_line(axis, parameters, settings.position_type, notation)
     });
-    let axes = axes.chain(spindle_line(snapshot, parameters, notation));
+    let has_point = !parameters.model().has_soft_keys();
+    let axes = axes
+        .chain(spindle_line(snapshot, parameters, notation))
+        .map(|axis| AxisLine {
+            label: label(axis.letter, axis.locked, has_point),
+            ..axis
+        });
     // While the program is read on another thread what was shown stays.
     let (tool_axis, flags) = match control.first().in_force() {
         Some(in_force) => of_program(&in_force, snapshot.tool),
@@ -165,6 +171,15 @@ fn of_program(in_force: &InForce, tool: u32) -> (Option<String>, Vec<String>) {
     ];
     let axis = (tool > 0).then(|| in_force.tool_axis.letter().to_string());
     (axis, flags.into_iter().flatten().collect())
+}
+
+/// A letter with the mark of an open loop: a star before it [000:5366], or a point behind it [001:505-507].
+fn label(letter: char, locked: bool, has_point: bool) -> String {
+    match (locked, has_point) {
+        (true, false) => format!("*{letter} "),
+        (true, true) => format!(" {letter}."),
+        (false, _) => format!(" {letter} "),
+    }
 }
 
 /// The machine parameters of an axis.
@@ -228,7 +243,7 @@ fn axis_line(
         locked: !axis.closed,
         referenced: axis.referenced,
         degrees,
-        handwheel: false,
+        ..AxisLine::default()
     }
 }
 

@@ -184,8 +184,7 @@ fn status(sheet: &mut Sheet, screen: &Screen) {
     sheet.rule(STATUS);
     sheet.text(1, STATUS, &status.position_type, sheet.message);
     for (place, axis) in status.axes.iter().enumerate().take(6) {
-        let locked = if axis.locked { '*' } else { ' ' };
-        let text = format!("{locked}{} {:>12}", axis.letter, axis.value);
+        let text = format!("{}{:>12}", axis.label, axis.value);
         sheet.text(8 + 24 * (place % 3), STATUS + 1 + place / 3, &text, sheet.fore);
     }
     let star = match status.star {

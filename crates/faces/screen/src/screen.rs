@@ -58,6 +58,8 @@ pub struct Look {
     /// The language of all that is written.
     #[serde(serialize_with = "code")]
     pub language: Language,
+    /// The letters of the keyboard are in use: always where they have keys of their own, on a TNC 151/155 for DIN/ISO.
+    pub letters: bool,
     /// MP7350 to MP7363 as `7352.1` and `#d28220`; none on a screen without colours.
     pub colours: BTreeMap<String, String>,
 }
@@ -76,6 +78,8 @@ pub enum Layout {
     /// One column of text, on the 12 inch screens before: one operating mode at a time, and graphics in the place of the
     /// program (inferred).
     OneColumn,
+    /// The same in one colour and without soft keys: a TNC 151/155 [001:186].
+    Monochrome,
 }
 
 /// An operating mode in the header.
@@ -236,9 +240,11 @@ pub enum Star {
 pub struct AxisLine {
     /// Letter of the axis.
     pub letter: char,
+    /// The letter between the marks of an open loop: `*X ` [000:5366], on a TNC 151/155 ` X.` [001:505-507], else ` X `.
+    pub label: String,
     /// The position as it stands on the screen.
     pub value: String,
-    /// `*`: the axis is locked, its loop is open.
+    /// The axis is locked, its loop is open.
     pub locked: bool,
     /// Its reference mark was passed.
     pub referenced: bool,

@@ -403,7 +403,7 @@ fn a_small_screen_has_one_column() {
     };
     let panel = Panel::of("mill-tnc360", |_| {});
     panel.to_manual();
-    let look = json!({"layout": "one_column", "language": "en", "colours": {}});
+    let look = json!({"layout": "one_column", "language": "en", "letters": true, "colours": {}});
     assert_eq!(panel.screen()["look"], look);
     let mut page = open(&panel, &browser);
     choose(&mut page, "#scheme", "control");

@@ -17,8 +17,9 @@ export function build(changed) {
 }
 
 /** How the screen of the control is made. */
-export function look({ layout, colours }) {
+export function look({ layout, letters, colours }) {
   document.body.dataset.layout = layout;
+  document.body.dataset.letters = letters;
   const known = Object.entries(colours);
   display.classList.toggle("monochrome", known.length === 0);
   for (const [name, colour] of known) display.style.setProperty(`--mp-${name.replace(".", "-")}`, colour);

@@ -127,8 +127,8 @@ function largePositions(lines, status) {
   axes.forEach((axis, place) => {
     nodes[place].className = axis.referenced ? "axis" : "axis unreferenced";
     const [star, letter, value] = nodes[place].children;
-    setText(star, (axis.handwheel ? "⊙" : "") + (axis.locked ? "*" : ""));
-    setText(letter, axis.letter);
+    setText(star, axis.handwheel ? "⊙" : "");
+    setText(letter, axis.label);
     setText(value, axis.value);
   });
 }
@@ -166,7 +166,7 @@ export function drawStatus(status) {
 // A line breaks between axes, never within one.
 function axes(node, shown) {
   const nodes = children(node, shown.length, () => element("span", "axis-value"));
-  shown.forEach((axis, place) => setText(nodes[place], `${axis.handwheel ? "⊙" : ""}${axis.locked ? "*" : ""}${axis.letter} ${axis.value} `));
+  shown.forEach((axis, place) => setText(nodes[place], `${axis.handwheel ? "⊙" : ""}${axis.label.trim()} ${axis.value} `));
 }
 
 /** `M5/9`: the PLC shows the function of the spindle or that of the coolant inverse. */

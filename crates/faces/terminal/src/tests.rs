@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant, UNIX_EPOCH};
 
 use bahn_panel::{
-    CheckLine, Input, Key, KeyAction, Language, LessonLine, LessonState, MessageLine, PlcLine, Screen,
-    Station, load,
+    CheckLine, Input, Key, KeyAction, Language, Layout, LessonLine, LessonState, MessageLine, PlcLine,
+    Screen, Station, load,
 };
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -496,4 +496,30 @@ fn every_size_is_drawn() {
             }
         }
     }
+}
+
+/// The screen of a TNC 155 has no soft keys, and a point behind an axis that is clamped [001:505-507].
+#[test]
+fn a_screen_of_one_colour_has_no_soft_keys() {
+    let mut hall = Hall::of("mill-tnc360");
+    hall.run(1.0);
+    hall.keys("CE");
+    hall.run(2.0);
+    hall.keys("PROGRAM MOD");
+    let soft_keys = |drawn: &Drawn| {
+        let targets = drawn.targets.0.iter();
+        let soft =
+            targets.filter(|(_, target)| matches!(target, Target::Key(key) if key.soft_key().is_some()));
+        soft.count()
+    };
+    let mut screen = hall.screen();
+    assert!(soft_keys(&hall.draw_screen(&screen, 100, 40).1) > 0);
+    screen.look.layout = Layout::Monochrome;
+    for axis in &mut screen.status.axes {
+        axis.label = format!(" {}.", axis.letter);
+    }
+    let (buffer, drawn) = hall.draw_screen(&screen, 100, 40);
+    assert_eq!(soft_keys(&drawn), 0);
+    let (letter, value) = (place(&buffer, "X."), place(&buffer, &screen.status.axes[0].value));
+    assert_eq!(letter.y, value.y);
 }

@@ -3,7 +3,7 @@
 use bahn_exchange::signal::{self, SignalOperand};
 use bahn_exchange::{Bit, BitArea};
 use bahn_host::{LoadedMachine, Operable, Wired};
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, Numbering};
 use bahn_path::{BlockRef, Direction};
 use bahn_screen::texts::{self, Language, filled as fill};
 use bahn_servo::Rotation;
@@ -21,6 +21,24 @@ const AT_SPEED: f64 = 0.5;
 const TURNS_RPM: f64 = 1.0;
 /// Suffixes of the names of markers of axes, by their index.
 const SUFFIXES: &str = "XYZ45";
+/// Machine parameters that reasons name, and what they are on a TNC 151/155: handwheel [001:2208-2226], order of the reference
+/// run [001:1443-1478], software limits [001:3188-3195], positioning window [001:1784-1787].
+const OLD_NUMBERS: [(&str, &str); 14] = [
+    ("MP7640", "MP171"),
+    ("MP1340", "MP59"),
+    ("MP910.0", "MP44"),
+    ("MP910.1", "MP46"),
+    ("MP910.2", "MP48"),
+    ("MP910.3", "MP50"),
+    ("MP920.0", "MP45"),
+    ("MP920.1", "MP47"),
+    ("MP920.2", "MP49"),
+    ("MP920.3", "MP51"),
+    ("MP1030.0", "MP58"),
+    ("MP1030.1", "MP58"),
+    ("MP1030.2", "MP58"),
+    ("MP1030.3", "MP192"),
+];
 
 /// A machine as it is now.
 pub(crate) struct Situation<'a> {
@@ -68,7 +86,7 @@ impl Situation<'_> {
                 }
                 Message::Plain(MessageId::HandwheelMissing) => {
                     let text = self.words("The handwheel does not answer: plug it in (MP7640), then CE");
-                    found.push(with_parameter(reason(Urgency::Stands, text), "MP7640"));
+                    found.push(self.with_parameter(reason(Urgency::Stands, text), "MP7640"));
                 }
                 Message::Limit { axis, end } => found.extend(self.limit(snapshot, *axis, *end)),
                 _ if shown.flashing => found.push(self.flashing(shown)),
@@ -115,7 +133,7 @@ impl Situation<'_> {
             marker: Some(marker.to_string()),
             ..reason(Urgency::Stands, text)
         };
-        Some(with_parameter(reported, &parameter))
+        Some(self.with_parameter(reported, &parameter))
     }
 
     /// EMERGENCY STOP chain and control voltage.
@@ -182,7 +200,7 @@ impl Situation<'_> {
             "Reference marks are missing of {1}, in the order of MP1340: NC start, or the key of the axis",
         );
         let text = fill(&text, &[&letters.join(" ")]);
-        found.push(with_parameter(reason(Urgency::Waits, text), "MP1340"));
+        found.push(self.with_parameter(reason(Urgency::Waits, text), "MP1340"));
     }
 
     /// Feed enable, override, loops that the PLC opens.
@@ -344,7 +362,7 @@ impl Situation<'_> {
                 marker: Some(name.clone()),
                 ..reason(Urgency::Stands, fill(&text, &[letter, lag, name, window]))
             };
-            found.push(with_parameter(reported, &parameter));
+            found.push(self.with_parameter(reported, &parameter));
         }
     }
 
@@ -386,7 +404,7 @@ impl Situation<'_> {
         let automatic = snapshot.mode.is_automatic();
         if self.start_in_vain && automatic && self.control.first().lacks_reference() {
             let text = self.words("No program starts: reference marks are missing (MP1340)");
-            found.push(with_parameter(reason(Urgency::Stands, text), "MP1340"));
+            found.push(self.with_parameter(reason(Urgency::Stands, text), "MP1340"));
         } else if self.start_in_vain && automatic && snapshot.program.is_none() && snapshot.mode != Mode::Mdi
         {
             let text = self.words("No program is selected: choose one with PGM NR");
@@ -495,6 +513,19 @@ impl Situation<'_> {
     fn words(&self, english: &'static str) -> String {
         texts::words(self.language, english).to_owned()
     }
+
+    /// A reason with its machine parameter, which a control with old numbers names by its own.
+    fn with_parameter(&self, reason: Reason, parameter: &str) -> Reason {
+        let numbering = self.control.model().limits().numbering;
+        let mut own = OLD_NUMBERS.iter().filter(|_| numbering == Numbering::Old);
+        let old = own.find(|(new, _)| *new == parameter);
+        let own = old.map_or(parameter, |(_, old)| *old);
+        Reason {
+            text: reason.text.replace(parameter, own),
+            parameter: Some(own.to_owned()),
+            ..reason
+        }
+    }
 }
 
 fn reason(urgency: Urgency, text: String) -> Reason {
@@ -512,13 +543,6 @@ fn reason(urgency: Urgency, text: String) -> Reason {
 fn started(reason: Reason) -> Reason {
     Reason {
         marker: Some(signal::NC_START.to_string()),
-        ..reason
-    }
-}
-
-fn with_parameter(reason: Reason, parameter: &str) -> Reason {
-    Reason {
-        parameter: Some(parameter.to_owned()),
         ..reason
     }
 }

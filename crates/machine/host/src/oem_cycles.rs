@@ -1,10 +1,14 @@
 //! The cycles of the machine builder that a machine has, with their dialogue texts [000:17691-17984].
+//!
+//! Decision: The name of a customized macro of a TNC 151/155 may have 16 characters, as the manual's example has, not 14;
+//! nothing of its Q parameters is local, and DLG-DEF, which the manual prints, runs at its definition (also
+//! `parameters/src/limits/models.rs`, `parameters/src/settings/operation.rs`)
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use bahn_parameters::ParameterList;
+use bahn_parameters::{OemTexts, ParameterList};
 use bahn_program::{Dialog, Operation, Program};
 
 use crate::HostError;
@@ -12,8 +16,6 @@ use crate::files::{self, Loaded};
 
 /// The numbers of the cycles: of their programs less 99999900 [000:17728-17730].
 pub const NUMBERS: RangeInclusive<u32> = 68..=99;
-/// Longest dialogue text; 20 characters of it are shown in the dialogue line [000:17861-17866].
-pub const TEXT_MAX: usize = 34;
 /// M2240 inhibits cycle 68 of the EPROM [000:10674-10705].
 const FIRST_INHIBIT: u32 = 2240;
 
@@ -32,6 +34,8 @@ pub struct OemCycle {
     pub dialog: Option<OemDialog>,
     /// Line of the first CALL LBL REP, which must not stand in the EPROM [000:17705-17724].
     pub repeats_at: Option<u32>,
+    /// What the model asks of the texts.
+    limits: OemTexts,
 }
 
 /// What a dialogue block says.
@@ -67,12 +71,22 @@ impl OemCycle {
         };
         let repeats = self.repeats_at.filter(|_| in_eprom || self.in_eprom);
         let repeats = repeats.map(|line| format!("line {line}: CALL LBL REP must not stand in the EPROM"));
-        let texts = std::iter::once(&dialog.name).chain(dialog.parameters.iter().map(|(_, text)| text));
-        let wrong = texts.filter_map(|Text { number, text }| match text.chars().count() {
-            0 => Some(format!("dialogue {number} has no text")),
-            length if length > TEXT_MAX => Some(format!(
-                "dialogue {number} has {length} characters, {TEXT_MAX} fit"
+        let OemTexts {
+            number_max,
+            name_max,
+            parameter_max,
+            ..
+        } = self.limits;
+        let parameters = dialog.parameters.iter().map(|(_, text)| (text, parameter_max));
+        let texts = std::iter::once((&dialog.name, name_max)).chain(parameters);
+        let wrong = texts.filter_map(|(Text { number, text }, most)| match text.chars().count() {
+            _ if *number > u32::from(number_max) => Some(format!(
+                "dialogue {number}: the texts have the numbers 0 to {number_max}"
             )),
+            0 => Some(format!("dialogue {number} has no text")),
+            length if length > usize::from(most) => {
+                Some(format!("dialogue {number} has {length} characters, {most} fit"))
+            }
             _ => None,
         });
         wrong.chain(repeats).collect()
@@ -96,14 +110,15 @@ pub fn find(programs: &Path, dialogues: &[String], list: &ParameterList) -> Resu
                 Loaded::Program(program) => (dialog_block(&program), repeat(&program)),
                 Loaded::Empty(_) | Loaded::TooLarge => (None, None),
             };
-            let offset = rules.definition_offset;
+            let text_of = |number: u16| text(number, dialogues, list);
             let cycle = OemCycle {
                 number,
                 path,
                 in_eprom,
                 is_hidden: false,
-                dialog: dialog.map(|dialog| read(&dialog, dialogues, offset)),
+                dialog: dialog.map(|dialog| read(&dialog, text_of, rules.definition_offset)),
                 repeats_at,
+                limits: list.model().limits().oem_texts,
             };
             found.insert((number, in_eprom), cycle);
         }
@@ -136,11 +151,20 @@ fn repeat(program: &Program) -> Option<u32> {
         .map(|block| block.line)
 }
 
-fn read(dialog: &Dialog, dialogues: &[String], definition_offset: u8) -> OemDialog {
-    let text = |number: &u16| Text {
-        number: u32::from(*number),
-        text: dialogues.get(usize::from(*number)).cloned().unwrap_or_default(),
-    };
+/// The text in force for a dialogue of a program: in English MP259 higher [001:2801-2823]; where the machine builder has
+/// none that of the control [001:2911-2922].
+fn text(number: u16, dialogues: &[String], list: &ParameterList) -> Text {
+    let shown = number + u16::from(list.operation_parameters().oem_cycles.text_offset);
+    let own = dialogues.get(usize::from(shown)).filter(|own| !own.is_empty());
+    let standard = || list.model().limits().oem_texts.standard(number);
+    Text {
+        number: u32::from(shown),
+        text: own.cloned().unwrap_or_else(standard),
+    }
+}
+
+fn read(dialog: &Dialog, text: impl Fn(u16) -> Text, definition_offset: u8) -> OemDialog {
+    let text = |number: &u16| text(*number);
     let offset = if dialog.call {
         0
     } else {

@@ -75,7 +75,7 @@ pub use consistency::Inconsistency;
 pub use definition::{Change, Definition, Format, ParameterId, Reaction};
 pub use error::{ListError, ParameterError};
 pub use fn14::error_text;
-pub use limits::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
+pub use limits::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering, OemTexts};
 pub use list::ParameterList;
 pub use message::{MessageCode, MessageId};
 pub use model::{ControlModel, UnknownModel};

@@ -166,6 +166,8 @@ pub struct Limits {
     pub plc_mode: bool,
     /// A second data interface, RS-422/V.11, beside RS-232-C/V.24 [000:16712-16722].
     pub rs_422: bool,
+    /// Fastest data interface, baud [001:1162] [003:7048] [000:17560-17566].
+    pub baud_rate_max: u32,
     /// A letter after TRANSFERRED DATA INCORRECT; the TNC 151/155 has none, and calls what it could not send
     /// PROGRAM INCOMPLETE [000:17581-17601] [001:2036-2052].
     pub transfer_codes: bool,
@@ -192,6 +194,10 @@ pub struct Limits {
     pub erases_its_list: bool,
     /// M95 and M96 belong to the approach of a contour [001:707-708].
     pub approach_functions: bool,
+    /// Soft keys below the screen; the TNC 151/155 has none, what its screen asks keys of the keyboard answer [001:2774-2780].
+    pub soft_keys: bool,
+    /// What the texts of cycles of the machine builder must keep to.
+    pub oem_texts: OemTexts,
 }
 
 /// Limits of programs that are executed while they are transferred [003:1661-1674]; subprograms and repeats, whose blocks are
@@ -204,6 +210,41 @@ pub struct Blockwise {
     pub tool_definitions_max: Option<u8>,
     /// Digitizing cycles and FN15 may be there.
     pub digitizes_and_prints: bool,
+}
+
+/// Numbers and lengths of the dialogue texts of cycles of the machine builder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OemTexts {
+    /// Highest number of a text [001:2764] [000:17742].
+    pub number_max: u16,
+    /// Characters of the name of a cycle [000:17861-17866]; TNC 151/155 16, as the example BOLT HOLE CIRCLE has [001:2908], not
+    /// the 14 of the rule that it breaks [001:2925].
+    pub name_max: u8,
+    /// Characters of the text of a parameter.
+    pub parameter_max: u8,
+    /// Texts that are there without any of the machine builder: that of the name, and of a parameter before its number
+    /// [001:2913-2922].
+    pub standard: Option<[&'static str; 2]>,
+}
+
+impl OemTexts {
+    /// The text that a number has when the machine builder has written none: 0 the name, 1 to 14 the parameters.
+    ///
+    /// ```
+    /// use bahn_parameters::ControlModel::{Tnc155, Tnc407};
+    ///
+    /// let texts = Tnc155.limits().oem_texts;
+    /// assert_eq!(texts.standard(0), "User Cycl");
+    /// assert_eq!(texts.standard(14), "Cycl parameter 14");
+    /// assert_eq!((texts.standard(15), Tnc407.limits().oem_texts.standard(0)), (String::new(), String::new()));
+    /// ```
+    pub fn standard(&self, number: u16) -> String {
+        match (self.standard, number) {
+            (Some([name, _]), 0) => name.to_owned(),
+            (Some([_, parameter]), 1..=14) => format!("{parameter} {number}"),
+            _ => String::new(),
+        }
+    }
 }
 
 /// Times and repetitions of the test of the EMERGENCY STOP circuit.

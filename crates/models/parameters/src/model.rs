@@ -179,6 +179,16 @@ impl ControlModel {
         self.limits().windows
     }
 
+    /// Draws programs and parts, and prints its screen; the TNC 151 has a screen for characters [001:186] [001:2157].
+    pub const fn has_graphics(self) -> bool {
+        self.limits().graphics
+    }
+
+    /// Has soft keys below its screen; the TNC 151/155 has none.
+    pub const fn has_soft_keys(self) -> bool {
+        self.limits().soft_keys
+    }
+
     /// Draws in program run what runs; the graphics of a TNC 407 are those of TEST RUN [000:164-166] [000:6370].
     pub const fn draws_what_runs(self) -> bool {
         self.limits().draws_what_runs

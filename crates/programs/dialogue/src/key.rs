@@ -1,8 +1,9 @@
 //! The keys of the control: keyboard with contour, tool, cycle and mode keys, alpha keyboard, soft keys
 //! [003:9-206].
 //!
-//! Decision: The keyboard of a TNC 360 is that of its cover, and HELP and soft keys, which are ours there; a key that
-//! a model does not have is refused with a word
+//! Decision: The keyboard of a TNC 360 is that of its cover, and HELP and soft keys, which are ours there; that of a
+//! TNC 151/155 is the same without soft keys, and has letters while MP217 = 1; a key that a model does not have is
+//! refused with a word
 
 use std::fmt;
 
@@ -239,7 +240,8 @@ impl Key {
 
     /// Whether the keyboard of a control model has it. That of a TNC 360 has four axes, no key for the layout of its one
     /// column, none for a chamfer, which is L and a number, and no letters but those of other keys [003:9-206]
-    /// [003:2682-2685].
+    /// [003:2682-2685]. That of a TNC 155 is the same without soft keys, and with letters for DIN/ISO, which has no soft keys
+    /// to write them; a TNC 151 has none of the keys of the graphics [001:186].
     ///
     /// ```
     /// use bahn_dialogue::Key;
@@ -249,11 +251,13 @@ impl Key {
     /// assert!(!Key::Screen.is_on(ControlModel::Tnc360));
     /// ```
     pub const fn is_on(self, model: ControlModel) -> bool {
-        model.has_windows()
-            || !matches!(
-                (self, self.group()),
-                (_, KeyGroup::Letter) | (Key::Screen | Key::Chf | Key::V, _)
-            )
+        match (self, self.group()) {
+            (_, KeyGroup::Soft) => model.has_soft_keys(),
+            (_, KeyGroup::Graphics) => model.has_graphics(),
+            (_, KeyGroup::Letter) => model.has_windows() || !model.has_soft_keys(),
+            (Key::Screen | Key::Chf | Key::V, _) => model.has_windows(),
+            _ => true,
+        }
     }
 
     /// Which part of the keyboard it belongs to.
@@ -344,6 +348,19 @@ mod tests {
         let expected: Vec<_> = names.split_whitespace().collect();
         let small = Key::ALL.iter().filter(|key| key.is_on(ControlModel::Tnc360));
         assert_eq!(small.map(|key| key.name()).collect::<Vec<_>>(), expected);
+        // That of a TNC 155 has no soft keys, and letters of DIN/ISO for MP217 = 1; a TNC 151 has no graphics [001:186].
+        let has = |model, name| Key::from_name(name).unwrap().is_on(model);
+        for name in expected.iter().filter(|name| !name.starts_with("SK")) {
+            let drawn = ["GRAPHICS", "BLK_FORM", "MAGN", "START"].contains(name);
+            assert!(has(ControlModel::Tnc155, name), "{name}");
+            assert_eq!(has(ControlModel::Tnc151, name), !drawn, "{name}");
+        }
+        for name in ["SK1", "SK8", "SK_LEFT", "SK_RIGHT", "SCREEN", "CHF", "V"] {
+            assert!(!has(ControlModel::Tnc155, name), "{name}");
+        }
+        for name in ["D", "F", "G", "H", "J", "K", "M", "N", "R", "S", "T"] {
+            assert!(has(ControlModel::Tnc155, name), "{name}");
+        }
         for model in [ControlModel::Tnc407, ControlModel::Tnc415b, ControlModel::Tnc425] {
             assert!(Key::ALL.iter().all(|key| key.is_on(model)), "{model}");
         }

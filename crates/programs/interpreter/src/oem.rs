@@ -3,7 +3,8 @@
 //!
 //! The dialogue block of the program says when it runs: after its definition (DLG-DEF), or at the cycle call
 //! (DLG-CALL). The definition assigns its parameters to Q1, Q2, ..., those of DLG-DEF cycles MP7250 higher. What the
-//! cycle makes of Q parameters below Q[100 - MP7251] is gone after its end [000:17763-17800].
+//! cycle makes of Q parameters below Q[100 - MP7251] is gone after its end [000:17763-17800]. On a TNC 151/155 MP263 is what
+//! MP7250 is later [001:2784-2799], and all Q parameters stay as the cycle leaves them.
 //!
 //! Decision: A cycle of the machine builder gives back the local Q parameters, the cycle for the call and M89 of who
 //! called it; one in the EPROM is a program in the folder `eprom` beside the programs (also `host/src/files.rs`)
@@ -11,7 +12,7 @@
 //! Decision: M00 must not stand in a cycle of the machine builder, as STOP must not; M01 may, since the control does
 //! not stop for it
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, Numbering};
 use bahn_program::{MFunctions, Operation};
 
 use crate::definition::{Definition, OEM_CYCLES, RunningOem};
@@ -79,23 +80,26 @@ pub(crate) fn leave(run: &mut Run, settings: &Settings) {
 }
 
 /// Refuses what a cycle must not have [000:17705-17724]; no manual prints the message (inferred). M functions are permitted
-/// "without program-run stop": M00 stops as the block STOP does, M01 does not stop here [000:7080-7081].
+/// "without program-run stop": M00 stops as the block STOP does, M01 does not stop here [000:7080-7081]. A TNC 151/155 forbids
+/// repeats in the EPROM alone [001:2829-2833].
 pub(crate) fn permit(
     running: Option<&RunningOem>,
     operation: &Operation,
     settings: &Settings,
 ) -> Result<(), Fault> {
     let Some(running) = running else { return Ok(()) };
+    let old = settings.model.limits().numbering == Numbering::Old;
     let stops = |m: &MFunctions| {
         let m6 = settings.rules.machine.m6_stops && m.contains(6);
         let ends = [0, 2, 30].into_iter().any(|number| m.contains(number));
         (ends || m6).then_some("M00, M02, M30, or M06 with program stop,")
     };
     let what = match operation {
+        Operation::CallLabel { repeats: Some(_), .. } if running.in_eprom => Some("CALL LBL REP"),
+        _ if old => None,
         Operation::Stop(_) => Some("STOP"),
         Operation::CallProgram(_) => Some("CALL PGM"),
         Operation::Cycle(block) if block.number == 14 => Some("CYCL DEF 14"),
-        Operation::CallLabel { repeats: Some(_), .. } if running.in_eprom => Some("CALL LBL REP"),
         Operation::ToolDefinition { length, radius, .. } if !running.in_eprom => {
             (length.is_some() || radius.is_some()).then_some("TOOL DEF, unless it is in the EPROM,")
         }

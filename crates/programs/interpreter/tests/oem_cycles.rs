@@ -228,6 +228,93 @@ fn wrong_definitions() {
     assert_eq!(message("L X+1 FMAX\nDLG-CALL 0/1"), Some((BlockNotKnown, 2)));
     assert_eq!(message("DLG-DEF 0/200"), Some((EntryValueIncorrect, 1)));
     let old =
-        job("CYCL DEF 68.0 HOLES", &[(68, HOLES)]).with(|settings| settings.model = ControlModel::Tnc155);
+        job("CYCL DEF 68.0 HOLES", &[(68, HOLES)]).with(|settings| settings.model = ControlModel::Tnc360);
     assert_eq!(old.run().message(), Some((BlockNotKnown, 1)));
+}
+
+/// Holes on a circle with the arithmetic of the manual [001:2853-2869]: the loop goes on while the angle is below 361.
+fn bolts(block: &str, q: u32) -> String {
+    let q = |number: u32| q + number;
+    let [count, radius, x, y, clearance, depth, feed] = [1, 2, 3, 4, 5, 6, 7].map(q);
+    format!(
+        "{block} 0/1/2/3/4/5/6/7/ / / /\nFN 1 : Q{depth} = + Q{depth} + +Q{clearance}\n\
+         FN 4 : Q80 = +360.000 DIV +Q{count}\nFN 0 : Q81 = +0.000\nCC X+Q{x} Y+Q{y}\nLBL 11\n\
+         LP PR+Q{radius} PA+Q81 R0 F15999 M\nL IZ+Q{depth} R0 FQ{feed} M\nL IZ-Q{depth} R0 F15999 M\n\
+         FN 1 : Q81 = +Q81 + +Q80\nFN 12 : IF +Q81 LT +361.000 GOTO LBL 11"
+    )
+}
+
+/// Places of the strokes of a run, and how deep they are.
+fn strokes(run: &Run) -> Vec<[f64; 3]> {
+    let ends = run.moves().map(|element| xyz(&element.end));
+    ends.filter(|end| end[2] < 0.0).collect()
+}
+
+/// 27 holes of R40 about (50,50) from Z+2: Q5 = -2 and Q6 = -20 go 22 mm down to Z-20. The last angle is 360, below 361, so that
+/// the first hole is drilled twice: 28 strokes at 27 places. By DLG-CALL at CYCL CALL from Q1 on, by DLG-DEF after its
+/// definition from Q51 on with MP263 = 50 [001:2784-2799] [001:3067-3080].
+#[test]
+fn the_bolt_circle_of_a_tnc_155() {
+    let of_155 = |settings: &mut Settings| {
+        let mut list = ParameterList::reference(ControlModel::Tnc155);
+        assert!(list.assign("263=50").is_ok());
+        settings.model = ControlModel::Tnc155;
+        settings.rules = bahn_interpreter::Rules::of(&list);
+    };
+    for (block, offset, call) in [("DLG-CALL", 0, "CYCL CALL M\n"), ("DLG-DEF", 50, "")] {
+        let q = |number: u32| offset + number;
+        let main = format!(
+            "TOOL DEF 1 L+0,000 R+2,000\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+2,000 R0 F15999 M03\n\
+             CYCL DEF 68.0 BOLT HOLE CIRCLE\nCYCL DEF 68.1 Q{} = +27,000 Q{} = +40,000 Q{} = +50,000\n\
+             CYCL DEF 68.2 Q{} = +50,000 Q{} = -2,000 Q{} = -20,000\nCYCL DEF 68.3 Q{} = +100,000 Q{} = Q{} =\n{call}L Z+50 R0 F15999",
+            q(1),
+            q(2),
+            q(3),
+            q(4),
+            q(5),
+            q(6),
+            q(7),
+            q(8),
+            q(9)
+        );
+        let run = job(&main, &[(68, &bolts(block, offset))]).with(of_155).run();
+        run.assert_completed();
+        let expected: Vec<[f64; 3]> = (0..28)
+            .map(|hole| {
+                let (sin, cos) = (f64::from(hole) * 360.0 / 27.0).to_radians().sin_cos();
+                [50.0 + 40.0 * cos, 50.0 + 40.0 * sin, -20.0]
+            })
+            .collect();
+        close_points(&strokes(&run), &expected, 1e-6);
+        let mut places: Vec<[i64; 2]> = strokes(&run)
+            .iter()
+            .map(|at| [0, 1].map(|axis| (at[axis] * 1e3).round() as i64))
+            .collect();
+        places.sort_unstable();
+        places.dedup();
+        assert_eq!(places.len(), 27, "{block}");
+        // What the cycle has computed is there after it: nothing is local on this control.
+        assert_eq!(run.q[(offset + 6) as usize], -22.0, "{block}");
+    }
+}
+
+/// A macro of a TNC 155 may stop and call programs; only repeats are forbidden, in the EPROM [001:2829-2833].
+#[test]
+fn what_a_macro_of_a_tnc_155_may_have() {
+    let of_155 = |settings: &mut Settings| {
+        settings.model = ControlModel::Tnc155;
+        settings.rules = bahn_interpreter::Rules::of(&ParameterList::reference(ControlModel::Tnc155));
+    };
+    let cycle =
+        "DLG-DEF 0\nLBL 1\nFN 1: Q90 = +Q90 + +1\nCALL LBL 1 REP 2/2\nCALL PGM 7\nFN 1: Q90 = +Q90 + +1";
+    let run = job("CYCL DEF 68.0 COUNT\nL X+1 R0 F500", &[(68, cycle)])
+        .library(
+            "7",
+            "BEGIN PGM 7 MM\nFN 1: Q90 = +Q90 + +10\nEND PGM 7 MM\n".to_owned(),
+        )
+        .with(of_155)
+        .run();
+    run.assert_completed();
+    // Three times 1, 10 of program 7, and 1.
+    assert_eq!(run.q[90], 14.0);
 }

@@ -2,6 +2,10 @@
 //!
 //! Decision: DATUM SET stands in a second row of soft keys; INCREMENT in ELECTRONIC HANDWHEEL alone (also
 //! `panel/src/pages/datum.rs`)
+//!
+//! Decision: Where a control has no soft keys, MANUAL goes to the reference marks that were left out when it is pressed
+//! in MANUAL OPERATION, ENT begins TEST RUN and GOTO says where it stops, P in the directory gives and takes protection
+//! (also `panel/src/console.rs`, `panel/src/pages/test_run.rs`, `panel/src/pages/files.rs`)
 
 use bahn_dialogue::Key;
 use bahn_exchange::signal;
@@ -45,6 +49,13 @@ impl Page for ByHand {
             return Turn::Refused;
         }
         match key {
+            _ if leads_handwheel(key, site) => {
+                let mut page = Handwheel::default();
+                match page.key(key, site) {
+                    Turn::Done => Turn::Open(Box::new(page)),
+                    other => other,
+                }
+            }
             Key::X | Key::Y | Key::Z | Key::Iv | Key::V => axis(key, site),
             Key::M => self.soft_key(0, 0, site),
             Key::S | Key::ToolCall => self.soft_key(0, 1, site),
@@ -131,6 +142,13 @@ impl Page for ByHand {
             },
         }
     }
+}
+
+/// In ELECTRONIC HANDWHEEL of a control without soft keys axis keys and digits choose axis and factor [001:1059].
+fn leads_handwheel(key: Key, site: &Site) -> bool {
+    let is_axis = matches!(key, Key::X | Key::Y | Key::Z | Key::Iv);
+    let chooses = site.mode() == Mode::Handwheel && !site.control().model().has_soft_keys();
+    chooses && (is_axis || key.digit().is_some())
 }
 
 /// POWER INTERRUPTED still stands there.

@@ -176,6 +176,16 @@ impl Directory {
         }
     }
 
+    /// The key P protects, and asks before it takes protection away.
+    fn turn_protection(&self, site: &Site) -> Turn {
+        let name = self.name(site);
+        let mut entries = self.entries.iter();
+        match entries.any(|entry| name.as_ref() == Some(&entry.name) && entry.protected) {
+            true => self.cancel_protection(site),
+            false => self.protect(site),
+        }
+    }
+
     /// The soft key UNPROTECT asks for the code number before.
     fn cancel_protection(&self, site: &Site) -> Turn {
         let Some(name) = self.name(site) else {
@@ -377,6 +387,7 @@ impl Page for Directory {
             self.current = list::moved(self.current, lines, self.entries.len());
             return Turn::Done;
         }
+        let edits = self.purpose == Purpose::Edit;
         match key {
             Key::Ent => {
                 let turn = self.choose(site);
@@ -386,9 +397,10 @@ impl Page for Directory {
                 }
                 return turn;
             }
-            Key::ClPgm if self.purpose == Purpose::Edit => {
+            Key::ClPgm if edits => {
                 return self.name(site).map_or(Turn::Refused, |name| erase(name, site));
             }
+            Key::P if edits && !site.control().model().has_soft_keys() => return self.turn_protection(site),
             Key::End | Key::Del | Key::NoEnt | Key::PgmNr | Key::ClPgm => return Turn::Close,
             Key::Ce if !self.typed.is_empty() => self.typed.clear(),
             _ => match key.character() {

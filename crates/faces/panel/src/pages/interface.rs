@@ -163,7 +163,7 @@ fn enter_baud(place: usize, digit: Key, site: &mut Site) -> Turn {
         return Turn::Refused;
     }
     let ask = Number::turning(format!("{} =", site.words("BAUD RATE")), move |value, site| {
-        let mut rates = BAUD_RATES.into_iter();
+        let mut rates = rates(site).iter().copied();
         let Some(baud) = rates.find(|rate| f64::from(*rate) == value) else {
             return Turn::Say(site.message(MessageId::EntryValueIncorrect));
         };
@@ -180,10 +180,9 @@ fn change(place: usize, on: bool, site: &mut Site) -> Turn {
     let Some(row) = rows(site).get(place).copied() else {
         return Turn::Refused;
     };
-    let single = !site.control().model().has_rs_422();
     match row {
         Row::Mode(port) | Row::Baud(port) if is_inhibited(port, site) => Turn::Refused,
-        Row::Mode(port) => change_mode(port, on, single, site),
+        Row::Mode(port) => change_mode(port, on, site),
         Row::Baud(port) => change_baud(port, on, site),
         Row::Assigned(transfer) => {
             site.settings.swap_port(transfer);
@@ -193,9 +192,9 @@ fn change(place: usize, on: bool, site: &mut Site) -> Turn {
     }
 }
 
-fn change_mode(port: usize, on: bool, single: bool, site: &mut Site) -> Turn {
+fn change_mode(port: usize, on: bool, site: &mut Site) -> Turn {
     let own = site.settings.interfaces.get(port).copied().unwrap_or_default();
-    let mode = neighbour(InterfaceMode::all(single), own.mode, on);
+    let mode = neighbour(InterfaceMode::all(site.control().model()), own.mode, on);
     take(port, Interface { mode, ..own }, site)
 }
 
@@ -204,7 +203,7 @@ fn change_baud(port: usize, on: bool, site: &mut Site) -> Turn {
     if own.mode == InterfaceMode::Me {
         return Turn::Refused;
     }
-    let baud = neighbour(&BAUD_RATES, own.baud, on);
+    let baud = neighbour(rates(site), own.baud, on);
     take(port, Interface { baud, ..own }, site)
 }
 
@@ -224,6 +223,13 @@ fn take(port: usize, wanted: Interface, site: &mut Site) -> Turn {
 /// Whether the interfaces cannot have the baud rates that they have.
 fn excludes(site: &Site) -> bool {
     rates_exclude_each_other(baud(0, site), baud(1, site)) && site.control().model().has_rs_422()
+}
+
+/// Baud rates that the control has.
+fn rates(site: &Site) -> &'static [u32] {
+    let most = site.control().model().limits().baud_rate_max;
+    let count = BAUD_RATES.iter().take_while(|rate| **rate <= most).count();
+    BAUD_RATES.get(..count).unwrap_or(&BAUD_RATES)
 }
 
 /// The next one of all, or the one before; after the last comes the first.

@@ -29,7 +29,7 @@ pub(crate) fn order(
         port,
         mode,
         baud: baud(port, site),
-        kind: files.usual(site.settings.iso),
+        kind: files.usual(site.writes_iso()),
         files,
         action,
     })

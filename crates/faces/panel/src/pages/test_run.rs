@@ -130,6 +130,8 @@ impl Page for TestRun {
         match key {
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Test, site))),
             Key::Start => self.start(site),
+            Key::Ent if !site.control().model().has_soft_keys() => self.start(site),
+            Key::Goto if !site.control().model().has_soft_keys() => self.ask_where_to_stop(site),
             Key::Stop => self.stop(site),
             Key::NoEnt => go_on(site),
             Key::Q if is_interrupted(site) => Turn::Open(Box::new(QParameters::of_test())),

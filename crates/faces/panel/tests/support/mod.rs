@@ -4,11 +4,13 @@
 
 #[path = "../../../../machine/host/tests/support/copy.rs"]
 mod copy;
+mod tnc155;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use bahn_panel::{Input, InputText, Screen, Station};
+use bahn_parameters::ControlModel;
 use copy::copy;
 
 /// A station whose time passes as the test says.
@@ -39,6 +41,11 @@ impl Trainee {
             station: on(&folder),
             folder: Folder(folder),
         }
+    }
+
+    /// The small mill with a TNC 151 or 155, and lines of its list in place of those of the reference list.
+    pub fn with_tnc155(model: ControlModel, lines: &[&str]) -> Trainee {
+        Trainee::with("mill-tnc360", |folder| tnc155::fit(folder, model, lines))
     }
 
     /// His station, and his machine's folder, which is to be removed.

@@ -62,6 +62,10 @@ pub(crate) fn draw(frame: &mut Frame, scene: &Scene) -> Drawn {
         windows::lesson_height(lesson, area.width).min(6 + spare / SHARE)
     });
     let machine = machine::height(scene, area.width, area.height >= ROOMY);
+    let soft = match screen.look.layout {
+        bahn_panel::Layout::Monochrome => 0,
+        _ => 3,
+    };
     let parts = Layout::vertical([
         Constraint::Length(1),
         Constraint::Length(1),
@@ -70,7 +74,7 @@ pub(crate) fn draw(frame: &mut Frame, scene: &Scene) -> Drawn {
         Constraint::Length(plc),
         Constraint::Length(why),
         Constraint::Length(lesson),
-        Constraint::Length(3),
+        Constraint::Length(soft),
         Constraint::Length(machine),
         Constraint::Length(1),
     ]);
@@ -84,7 +88,9 @@ pub(crate) fn draw(frame: &mut Frame, scene: &Scene) -> Drawn {
     windows::plc(frame, scene, plc);
     windows::why(frame, scene, why);
     windows::lesson(frame, scene, lesson);
-    soft_keys::draw(frame, scene, soft, &mut drawn.targets);
+    if soft.height > 0 {
+        soft_keys::draw(frame, scene, soft, &mut drawn.targets);
+    }
     machine::draw(frame, scene, keys, area.height >= ROOMY, &mut drawn.targets);
     foot::draw(frame, scene, foot);
     if let Some(scrolled) = scene.desk.help {

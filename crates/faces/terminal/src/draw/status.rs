@@ -66,14 +66,13 @@ pub(super) fn draw(frame: &mut Frame, scene: &Scene, area: Rect) {
 
 /// `⊙*X     +12.500`: the handwheel moves it, its loop is open; what has no reference mark yet is dim.
 fn position(scene: &Scene, axis: &AxisLine) -> Line<'static> {
-    let star = if axis.locked { '*' } else { ' ' };
     let role = match axis.referenced {
         true => Role::Value,
         false => Role::Quiet,
     };
     let wheel = if axis.handwheel { '⊙' } else { ' ' };
     Line::from(vec![
-        Span::raw(format!("{wheel}{star}{} ", axis.letter)),
+        Span::raw(format!("{wheel}{}", axis.label)),
         Span::styled(format!("{:>14}", axis.value), scene.palette.style(role)),
     ])
 }

@@ -228,12 +228,11 @@ fn positions(scene: &Scene, status: &Status, area: Rect) -> Vec<Line<'static>> {
         if airy {
             lines.push(Line::default());
         }
-        let star = if axis.locked { '*' } else { ' ' };
         let role = match axis.referenced {
             true => Role::Value,
             false => Role::Quiet,
         };
-        let letter = Span::styled(format!("   {star} {}   ", axis.letter), Style::new().bold());
+        let letter = Span::styled(format!("    {}  ", axis.label), Style::new().bold());
         let value = Span::styled(format!("{:>14}", axis.value), scene.palette.style(role));
         lines.push(Line::from(vec![letter, value]));
     }

@@ -1,7 +1,7 @@
 //! The control models as constants: what is not named is that of the model before. Citations and what is inferred stand
 //! at the fields of [`Limits`].
 
-use super::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
+use super::{Blockwise, EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering, OemTexts};
 use crate::ControlModel;
 
 impl ControlModel {
@@ -90,6 +90,7 @@ const TNC151: Limits = Limits {
     outputs: OUTPUTS_151,
     plc_mode: false,
     rs_422: false,
+    baud_rate_max: 9600,
     transfer_codes: false,
     windows: false,
     measuring_probe: false,
@@ -105,6 +106,8 @@ const TNC151: Limits = Limits {
     square_wave_input: 4,
     spindle_input: 4,
     unit: "Q",
+    soft_keys: false,
+    oem_texts: OEM_TEXTS_151,
 };
 
 /// TNC 151 with graphics [001:186].
@@ -176,6 +179,7 @@ const TNC360: Limits = Limits {
     unit: "LE",
     inputs: INPUTS,
     outputs: OUTPUTS,
+    baud_rate_max: 38_400,
     transfer_codes: true,
     one_axis_by_mdi: true,
     shows_feed_of_keys: false,
@@ -183,6 +187,8 @@ const TNC360: Limits = Limits {
     approach_functions: false,
     square_wave_input: 6,
     spindle_input: 5,
+    soft_keys: true,
+    oem_texts: OEM_TEXTS,
     ..TNC155
 };
 
@@ -267,6 +273,18 @@ const BLOCKWISE_360: Blockwise = Blockwise {
     block_number_max: Some(65_534),
     tool_definitions_max: Some(20),
     digitizes_and_prints: false,
+};
+const OEM_TEXTS_151: OemTexts = OemTexts {
+    number_max: 99,
+    name_max: 16,
+    parameter_max: 32,
+    standard: Some(["User Cycl", "Cycl parameter"]),
+};
+const OEM_TEXTS: OemTexts = OemTexts {
+    number_max: 127,
+    name_max: 34,
+    parameter_max: 34,
+    standard: None,
 };
 /// Twice within 200 ms [001:929-932]; the other times are not given (inferred).
 const STOP_TEST_151: EmergencyStopTest = EmergencyStopTest {

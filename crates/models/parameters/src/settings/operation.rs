@@ -59,17 +59,23 @@ pub struct OperationParameters {
     pub oem_cycles: OemCycleParameters,
     /// Step of the block numbers of ISO programs: MP7220; 1 where there is none [000:6885].
     pub iso_step: u8,
+    /// Whether programs are written in DIN/ISO: old MP217 [001:1653]; `None` where the operator chooses, by PROGRAM INPUT.
+    pub iso_programs: Option<bool>,
 }
 
-/// Cycles of the machine builder [000:17757-17810]; the TNC 151/155 have numbers of their own.
+/// Cycles of the machine builder [000:17757-17810] [001:2784-2823].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OemCycleParameters {
-    /// Programs in the memory may have the names of cycles in the EPROM, and go before them: MP7240 = 1.
+    /// Programs in the memory may have the names of cycles in the EPROM, and go before them: MP7240 = 1; old: they do [001:3009].
     pub names_free: bool,
-    /// By how much the Q parameters of DLG-DEF cycles lie above those of DLG-CALL cycles: MP7250.
+    /// By how much the Q parameters of DLG-DEF cycles lie above those of DLG-CALL cycles: MP7250 (old MP263).
     pub definition_offset: u8,
-    /// How many Q parameters below Q100 a cycle shares with who calls it: MP7251.
+    /// How many Q parameters below Q100 a cycle shares with who calls it: MP7251; old: all, since nothing
+    /// makes any of them local (inferred).
     pub global_parameters: u8,
+    /// By how much the numbers of the dialogue texts in force lie above those of the program: old MP259 in the English
+    /// dialogue [001:2801-2823].
+    pub text_offset: u8,
 }
 
 /// Whether there is a machine [000:6949-6954].
@@ -258,6 +264,7 @@ impl ParameterList {
         let test = |bit: u32| !self.bit((7690, 0), (92, 0), if old { bit + 2 } else { bit });
         let multi = |bit| bit_of(self.get_new(7680, 0).unwrap_or_default(), bit);
         let is_one = |number| self.get_new(number, 0) == Some(1.0);
+        let english = if old { self.old_bit(92, 1) } else { is_one(7230) };
         OperationParameters {
             station: match self.value((7210, 0), (170, 0)) as u8 {
                 0 => Station::Machine,
@@ -266,7 +273,7 @@ impl ParameterList {
             },
             moves_without_machine: old && self.old(170) != 0.0,
             power_interrupted: !is_one(7212),
-            english: if old { self.old_bit(92, 1) } else { is_one(7230) },
+            english,
             ram_test: test(0),
             eprom_test: test(1),
             keys_latched: if old { self.old(68) == 1.0 } else { multi(0) },
@@ -301,12 +308,26 @@ impl ParameterList {
             .min(self.model().limits().program_name_max),
             tilting: is_one(7500),
             normal_length_with_dr2: multi(6),
-            oem_cycles: OemCycleParameters {
-                names_free: is_one(7240),
-                definition_offset: self.get_new(7250, 0).unwrap_or_default() as u8,
-                global_parameters: self.get_new(7251, 0).unwrap_or_default() as u8,
-            },
+            oem_cycles: self.oem_cycle_parameters(english),
             iso_step: self.get_new(7220, 0).map_or(1, |step| step as u8),
+            iso_programs: old.then(|| self.old(217) == 1.0),
+        }
+    }
+
+    fn oem_cycle_parameters(&self, english: bool) -> OemCycleParameters {
+        if self.has_old_numbers() {
+            return OemCycleParameters {
+                names_free: true,
+                definition_offset: self.old(263) as u8,
+                global_parameters: 100,
+                text_offset: if english { self.old(259) as u8 } else { 0 },
+            };
+        }
+        OemCycleParameters {
+            names_free: self.get_new(7240, 0) == Some(1.0),
+            definition_offset: self.get_new(7250, 0).unwrap_or_default() as u8,
+            global_parameters: self.get_new(7251, 0).unwrap_or_default() as u8,
+            text_offset: 0,
         }
     }
 

@@ -101,6 +101,7 @@ impl Supplementary {
         let all = self.functions.iter().copied();
         let ranges = site.parameters().operation_parameters().datums.ranges;
         let helps = help::is_there(site);
+        let operator_chooses = site.parameters().operation_parameters().iso_programs.is_none();
         all.filter(move |function| match function {
             Function::Plc => plc,
             Function::Oscilloscope => oscilloscope,
@@ -108,6 +109,8 @@ impl Supplementary {
             Function::AxisLimit(range) => *range <= ranges,
             // Where there is a help file [000:7044].
             Function::Help => helps,
+            // MP217 says it on a TNC 151/155 [001:1653].
+            Function::Input => operator_chooses,
             _ => true,
         })
     }
