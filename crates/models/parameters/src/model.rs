@@ -179,11 +179,6 @@ impl ControlModel {
         self.limits().windows
     }
 
-    /// Draws programs and parts, and prints its screen; the TNC 151 has a screen for characters [001:186] [001:2157].
-    pub const fn has_graphics(self) -> bool {
-        self.limits().graphics
-    }
-
     /// Has soft keys below its screen; the TNC 151/155 has none.
     pub const fn has_soft_keys(self) -> bool {
         self.limits().soft_keys
