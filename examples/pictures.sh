@@ -31,6 +31,12 @@ echo "$out/scope.png"
 "$bahn" scope "$recording/circle.csv" --circle X,Y --title "CIRCLE.H: radius 40 mm at F3000 in both directions" \
     -o "$out/round.png" >/dev/null
 echo "$out/round.png"
+# The strobes of the knee mill with a TNC 155: a change of gear, then M13.
+"$bahn" run BLOCK.H --machine machines/mill-tnc155 --fresh --record "$recording/strobes.csv" \
+    --signals A7,A8,A11,A15,A18,A20,A21,E17,S.volts >/dev/null
+"$bahn" scope "$recording/strobes.csv" --from 82.1 --to 85.4 \
+    --title "BLOCK.H: gear 2, then M13 with the ramp of the spindle" -o "$out/tnc155-strobes.png" >/dev/null
+echo "$out/tnc155-strobes.png"
 # A model is digitized, and machined again from the digitized program: both, and how far the copy is off.
 copy=$(mktemp -d)
 trap 'rm -rf "$recording" "$copy"' EXIT
