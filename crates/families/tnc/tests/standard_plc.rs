@@ -307,13 +307,18 @@ fn emergency_stop_in_a_code_leaves_the_spindle_off() {
         let mut rig = running(terminals().mp("78=3000").mp("168=0.1"), &blocks);
         rig.until(2.0, "the code", |rig| rig.bit(line));
         rig.contact("completed", false);
-        rig.until(2.0, "the spindle turns", |rig| rig.machine.spindle().unwrap().rpm.abs() > 100.0);
+        rig.until(2.0, "the spindle turns", |rig| {
+            rig.machine.spindle().unwrap().rpm.abs() > 100.0
+        });
         rig.event("emergency press");
         rig.seconds(3.0);
         rig.event("emergency release");
         rig.seconds(3.0);
         let shown = rig.messages();
-        assert!(!shown.iter().any(|text| text.starts_with("ERROR IN PLC-PROGRAM")), "M{m}: {shown:?}");
+        assert!(
+            !shown.iter().any(|text| text.starts_with("ERROR IN PLC-PROGRAM")),
+            "M{m}: {shown:?}"
+        );
         assert!(rig.bit(line), "M{m}: the code waits for E17");
         assert_eq!(rig.machine.spindle().unwrap().rpm, 0.0, "M{m}");
         rig.contact("completed", true);
