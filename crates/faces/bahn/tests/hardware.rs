@@ -3,6 +3,7 @@
 
 mod support;
 
+use bahn_parameters::ControlModel;
 use serde_json::Value;
 use support::Folder;
 
@@ -427,4 +428,31 @@ fn a_later_release_is_named() {
     );
     edit(&folder, "m/machine.toml", "software = 2", "software = 3");
     assert_eq!(folder.bahn("machine check m").code(), 0);
+}
+
+/// A machine of each model and version can be switched on as it is made.
+#[test]
+fn a_new_machine_of_each_version_has_no_fault() {
+    for model in ControlModel::ALL.map(ControlModel::id) {
+        let folder = new(model);
+        let run = folder.bahn("machine check m");
+        assert_eq!(run.code(), 0, "{model}: {}", run.err());
+    }
+}
+
+/// A wrong name is one fault: what follows from it would hide it.
+#[test]
+fn an_unknown_board_or_option_is_one_fault() {
+    for (model, line) in [
+        ("tnc155q", "boards = [\"PL999\"]"),
+        ("tnc155q", "boards = [\"PL400\"]"),
+        ("tnc155q", "options = [\"ts120\"]"),
+        ("tnc415b", "boards = [\"PL110B\"]"),
+        ("tnc415b", "options = [\"spindle-orientation\"]"),
+    ] {
+        let run = with(model, line).bahn("machine check m --format json");
+        assert_eq!(run.code(), 1, "{model} {line}");
+        let faults = run.json()[0]["faults"].as_array().map(Vec::len);
+        assert_eq!(faults, Some(1), "{model} {line}: {}", run.json());
+    }
 }

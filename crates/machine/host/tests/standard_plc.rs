@@ -59,6 +59,23 @@ fn mp77_chooses_the_program() {
     }
 }
 
+/// The control is delivered with its program whatever is fitted to it: it runs without the option of spindle orientation, whose
+/// markers it names. A program of one's own that names them takes the option [001:179-182] [001:3117-3137].
+#[test]
+fn the_standard_program_takes_no_option() {
+    let none = (
+        "machine.toml",
+        "model = \"tnc155\"",
+        "model = \"tnc155\"\noptions = []",
+    );
+    let (_copy, machine) = edited("mill-tnc155", &[none]);
+    assert!(machine.is_ok(), "{:?}", machine.err());
+    let names = ("OWN.PLC", "", "       U     E0\n       =     M2527\n");
+    let (_copy, machine) = edited("mill-tnc155", &[none, NAMED, names, RAM]);
+    let said = machine.err().unwrap();
+    assert!(said.contains("spindle-orientation"), "{said}");
+}
+
 /// A control without a standard program says so at the line of the key.
 #[test]
 fn other_controls_have_none() {

@@ -102,6 +102,28 @@ fn the_twin_keeps_every_rule() {
     try_seeds("twin", 0..500);
 }
 
+#[test]
+fn the_knee_mill_keeps_every_rule() {
+    try_seeds("mill-tnc155", 0..500);
+}
+
+#[test]
+#[ignore]
+fn survey() {
+    let campaign = campaign("mill-tnc155");
+    let mut worker = campaign.worker().unwrap();
+    let start = std::time::Instant::now();
+    for seed in 0..500 {
+        let plan = worker.plan(seed);
+        let trial = worker.run(&plan);
+        if let Some(violation) = &trial.violation {
+            let few = worker.shrink(&plan, violation.rule);
+            println!("seed {seed} {} {violation:?}\n   {:?}", campaign.programs()[plan.program], few.happenings.iter().map(|h| format!("{}: {}", h.time_us, h.what)).collect::<Vec<_>>());
+        }
+    }
+    println!("{:?}", start.elapsed());
+}
+
 /// The mill whose tools come from the magazine: MP4310.0 bit 1, any pocket.
 fn magazine() -> Campaign {
     let mut machine = support::machine("mill");

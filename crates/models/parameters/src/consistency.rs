@@ -5,7 +5,7 @@
 //! Decision: A list of which no machine can be (MP850 to itself, in a circle or to an absent axis, two axes of one
 //! letter) is an error at its line, at power-on and in the list editor, too
 
-use crate::settings::{AxisParameters, SpindleOutput, SpindleParameters, Station};
+use crate::settings::{AxisParameters, PlcParameters, SpindleOutput, SpindleParameters, Station};
 use crate::{ControlModel, ListText, ParameterId, ParameterList};
 
 /// Values that do not go together.
@@ -65,6 +65,7 @@ impl ParameterList {
         reference_run(&axes, &mut report);
         synchronized(&axes, &mut report);
         spindle(&self.spindle_parameters(), &axes, &mut report);
+        strobes(&self.plc_parameters(), &mut report);
         found
     }
 }
@@ -353,6 +354,21 @@ fn synchronized(axes: &[AxisParameters], report: &mut Reporter) {
             report.check(after, (1340, Some(0), 0), rule, "000:4497-4504", pair);
         }
     }
+}
+
+/// The strobe of an M, S or T function is off before its acknowledgement is looked at [001:548-552].
+fn strobes(plc: &PlcParameters, report: &mut Reporter) {
+    let Some(times) = plc.strobes else {
+        return;
+    };
+    let rule = "the strobe is not off before E17 is looked at";
+    report.check(
+        times.off_s < times.test_s,
+        (0, None, 121),
+        rule,
+        "001:548-552",
+        || format!("off after {:.2} s, E17 after {:.2} s", times.off_s, times.test_s),
+    );
 }
 
 fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Reporter) {

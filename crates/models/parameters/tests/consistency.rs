@@ -216,3 +216,16 @@ fn a_programming_station_has_no_machine() {
         assert_eq!(ParameterList::smallest(model).inconsistencies(), [], "{model}");
     }
 }
+
+/// MP121 must be below MP122: the strobe is off before E17 is looked at. Equal is not below [001:548-552].
+#[test]
+fn the_strobe_ends_before_its_acknowledgement_is_looked_at() {
+    let rule = "MP121 the strobe is not off before E17 is looked at";
+    for (off, test, expected) in [(7, 9, &[][..]), (8, 9, &[]), (9, 9, &[rule]), (10, 9, &[rule])] {
+        let assignments = [format!("121={off}"), format!("122={test}")];
+        let assignments: Vec<&str> = assignments.iter().map(String::as_str).collect();
+        for model in [ControlModel::Tnc151, ControlModel::Tnc155] {
+            assert_eq!(wrong(model, &assignments), expected, "{model}: {assignments:?}");
+        }
+    }
+}

@@ -18,11 +18,10 @@ impl Loader<'_> {
         let mut equipment = match &said.options {
             None => Equipment::default(),
             Some(options) => {
-                let known: Vec<HardwareOption> = options
-                    .iter()
-                    .filter_map(|option| self.option(option, model))
-                    .collect();
-                Equipment::with_options(&known)
+                let named: Vec<Option<HardwareOption>> =
+                    options.iter().map(|option| self.option(option, model)).collect();
+                let known: Option<Vec<HardwareOption>> = named.into_iter().collect();
+                known.map_or_else(Equipment::default, |known| Equipment::with_options(&known))
             }
         };
         if let Some(software) = &said.software {
@@ -52,7 +51,7 @@ impl Loader<'_> {
         option
     }
 
-    /// The boards that are fitted; all that the model can have where nobody says it.
+    /// The boards that are fitted; all that the model can have where nobody says it, or something else.
     pub(super) fn boards(
         &mut self,
         said: &EquipmentFolder,
@@ -64,7 +63,7 @@ impl Loader<'_> {
         let boards = said
             .boards
             .as_ref()
-            .map(|boards| self.named_boards(boards, model));
+            .and_then(|boards| self.named_boards(boards, model));
         if let Some((span, on)) = said.analogue
             && parameters.is_some()
             && on != by_parameter.contains(&true)
@@ -87,8 +86,10 @@ impl Loader<'_> {
         }
     }
 
-    fn named_boards(&mut self, said: &[Said], model: ControlModel) -> Vec<&'static Board> {
+    /// `None` where one is no board of the model, which is said.
+    fn named_boards(&mut self, said: &[Said], model: ControlModel) -> Option<Vec<&'static Board>> {
         let mut boards: Vec<&'static Board> = Vec::new();
+        let mut all_known = true;
         for one in said {
             let known: Vec<&str> = Board::of(model).map(|board| board.id).collect();
             let board = Board::named(&one.text).filter(|board| known.contains(&board.id));
@@ -99,6 +100,7 @@ impl Loader<'_> {
                 };
                 let message = format!("`{}` is no board of the {}; {there}", one.text, model.name());
                 self.fault_at_span(one.span, message);
+                all_known = false;
                 continue;
             };
             if boards.len() == BOARDS_MAX {
@@ -115,7 +117,7 @@ impl Loader<'_> {
             }
             boards.push(board);
         }
-        boards
+        all_known.then_some(boards)
     }
 
     /// Every wire ends at a terminal, and the outputs fall with their supply.

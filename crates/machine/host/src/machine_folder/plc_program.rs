@@ -30,17 +30,17 @@ impl Loader<'_> {
             true => ProgramMemory::Eprom,
             false => ProgramMemory::Ram,
         };
-        let options = Options::for_model(model)
-            .stored_in(memory)
-            .with_equipment(self.equipment);
+        // The standard program comes with the control, whatever is fitted to it.
+        let delivered = Options::for_model(model).stored_in(memory);
+        let options = delivered.with_equipment(self.equipment);
         let Some(name) = folder.plc_file() else {
-            return self.standard(model, options);
+            return self.standard(model, delivered);
         };
         let old = model.limits().numbering == Numbering::Old;
         if old && memory == ProgramMemory::Eprom {
             return match PlcSource::eprom_image(&self.root.join(name)) {
                 Some(image) => self.compiled(&image, None, options),
-                None => self.standard(model, options),
+                None => self.standard(model, delivered),
             };
         }
         let (path, _) = self.read("plc", name)?;
