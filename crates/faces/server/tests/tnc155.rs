@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const WINDOWS: [(u32, u32); 3] = [(1024, 768), (1280, 800), (1440, 900)];
 
 fn panel(lines: &'static [&'static str]) -> Panel {
-    Panel::of("mill-tnc360", |folder| tnc155::fit(folder, Tnc155, lines))
+    Panel::of("mill-tnc155", |folder| tnc155::fit(folder, Tnc155, lines))
 }
 
 fn open(panel: &Panel, browser: &Browser) -> Page {

@@ -168,10 +168,10 @@ pub fn mirror_parameters(parameters: &ParameterList, exchange: &mut Exchange) {
     for ((parameter, index), number) in numbers {
         let index = usize::from(index);
         let value = match parameter {
-            4210 => plc_parameters
-                .positions_mm
-                .get(index)
-                .map(|position| position * 10_000.0),
+            4210 => {
+                let position = plc_parameters.positions_mm.get(index);
+                position.map(|position| position * 10_000.0)
+            }
             4220 => plc_parameters.feeds_mm_min.get(index).copied(),
             4310 => plc_parameters.words.get(index).map(|word| f64::from(*word)),
             _ => None,

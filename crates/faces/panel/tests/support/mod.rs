@@ -43,9 +43,9 @@ impl Trainee {
         }
     }
 
-    /// The small mill with a TNC 151 or 155, and lines of its list in place of those of the reference list.
+    /// The knee mill with a TNC 151 or 155, and lines of its list in place of its own.
     pub fn with_tnc155(model: ControlModel, lines: &[&str]) -> Trainee {
-        Trainee::with("mill-tnc360", |folder| tnc155::fit(folder, model, lines))
+        Trainee::with("mill-tnc155", |folder| tnc155::fit(folder, model, lines))
     }
 
     /// His station, and his machine's folder, which is to be removed.
