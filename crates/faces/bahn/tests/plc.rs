@@ -598,7 +598,8 @@ fn the_standard_program() {
     let none = folder.bahn("plc standard --model tnc407");
     assert_eq!(none.code(), 2);
     assert!(
-        none.err().contains("the TNC 407 has no standard PLC program"),
+        none.err()
+            .contains("the TNC 407 has no standard PLC program; TNC 151 and TNC 155 have one"),
         "{}",
         none.err()
     );

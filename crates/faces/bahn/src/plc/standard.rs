@@ -12,7 +12,7 @@ use crate::{Outcome, UsageError, console};
 /// Prints the standard program of a model, or writes it to a file.
 pub(super) fn command(options: &StandardOptions) -> Result<Outcome, UsageError> {
     let with_one = || {
-        ControlModel::ALL
+        ControlModel::FAMILIES
             .into_iter()
             .filter(|model| standard_program(*model).is_some())
     };
