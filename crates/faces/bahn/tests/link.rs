@@ -8,7 +8,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use support::{Folder, copy, machines};
 
@@ -210,12 +210,20 @@ fn both_languages_are_sent() {
             "{arguments}: {}",
             sent.out()
         );
-        let entries = fs::read_dir(folder.path("disk")).unwrap();
-        let mut there: Vec<String> = entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        there.sort();
-        assert_eq!(there, expected, "{arguments}");
+        // The disk gives a file its name when the line has told its end.
+        let there = || {
+            let entries = fs::read_dir(folder.path("disk")).unwrap();
+            let mut there: Vec<String> = entries
+                .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+                .collect();
+            there.sort();
+            there
+        };
+        let patience = Instant::now() + Duration::from_secs(20);
+        while there() != expected && Instant::now() < patience {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert_eq!(there(), expected, "{arguments}");
     }
 }
 
