@@ -137,12 +137,16 @@ impl ParameterList {
         if self.has_old_numbers() {
             let number = match old? {
                 OldNumber::Common(number) => number,
-                OldNumber::EachAxis(first) => first + u16::from(Some(index).filter(|index| *index < OLD_AXES)?),
+                OldNumber::EachAxis(first) => {
+                    first + u16::from(Some(index).filter(|index| *index < OLD_AXES)?)
+                }
             };
             return Definition::named(self.model(), id(number, None)).ok();
         }
         let found = Definition::named(self.model(), id(number, Some(index)));
-        found.or_else(|_| Definition::named(self.model(), id(number, None))).ok()
+        found
+            .or_else(|_| Definition::named(self.model(), id(number, None)))
+            .ok()
     }
 
     /// What an entry is for the value 1: MP32 to MP35 are output steps for each µm of lag, not kv.
