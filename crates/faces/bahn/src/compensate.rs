@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use bahn_host::LoadedMachine;
 use bahn_machine::MachineFolder;
-use bahn_parameters::{Adjustment, ListText};
+use bahn_parameters::{Adjustment, ListText, ParameterList};
 use bahn_trials::interferometer::{AxisResult, Compensated, TABLE_NAME, compensate};
 use clap::{Args, ValueHint};
 use serde::Serialize;
@@ -23,17 +23,21 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   bahn compensate machines/mill-tnc360
       Measures X, Y and Z against where their tables stand in truth; proposes MP710, MP720 or a table; measures again.
+  bahn compensate machines/mill-tnc155 --axes X
+      The same with the numbers of a TNC 155: MP36 and MP40.
   bahn compensate mill --axes X --warm-up 10 --write
       X of a machine that was on for ten minutes; the entries go into the list, tables beside machine.toml.
 
 Each axis goes through its travel upwards and downwards and rests at every point; what the first point has moved by in the
 end is drift, and taken out of the readings in proportion to the time. Half the difference of the directions to either side
 is backlash (MP710); a straight line is the linear error (MP720); what that leaves, when it is more than 0.1 µm and a
-counting step of the encoder, is a table (.COM, named LASER-X and so on, with MP730 and the assignment .CMA).
+counting step of the encoder, is a table (.COM, named LASER-X and so on, with MP730 and the assignment .CMA). A TNC 151/155
+has MP36 to MP39 and MP40 to MP43, and no tables. When an axis gets no better, nothing is written.
 
 JSON: written, axes (axis, points, resolution_um, before_um, after_um: greatest error of both directions; backlash_mm,
-linear_mm_m, by_table, drift_um; errors: at_mm, up_um, down_um, and residual_up_um, residual_down_um after it).
-Exit codes: 0 fine, 1 the machine is wrong or a run was broken off, 2 wrong use.";
+linear_mm_m, by_table, drift_um; entries: parameter, from, to; errors: at_mm, up_um, down_um, and residual_up_um,
+residual_down_um after it).
+Exit codes: 0 fine, 1 the machine is wrong, a run was broken off or an axis gets no better, 2 wrong use.";
 
 /// Options of `bahn compensate`.
 #[derive(Args, Debug)]
@@ -72,7 +76,32 @@ struct Row {
     linear_mm_m: f64,
     by_table: bool,
     drift_um: f64,
+    entries: Vec<Entry>,
     errors: Vec<Point>,
+    #[serde(skip)]
+    gets_no_better: bool,
+}
+
+/// A machine parameter of the axis, as it was and as it is proposed.
+#[derive(Serialize)]
+struct Entry {
+    parameter: String,
+    from: f64,
+    to: f64,
+}
+
+/// What an axis is compensated with.
+const ENTRIES: [Adjustment; 3] = [Adjustment::Backlash, Adjustment::Linear, Adjustment::Nonlinear];
+
+fn entries(index: u8, before: &ParameterList, after: &ParameterList) -> Vec<Entry> {
+    let entry = |what: &Adjustment| {
+        Some(Entry {
+            parameter: after.adjustment_id(*what, index)?.to_string(),
+            from: before.adjustment(*what, index)?,
+            to: after.adjustment(*what, index)?,
+        })
+    };
+    ENTRIES.iter().filter_map(entry).collect()
 }
 
 #[derive(Serialize)]
@@ -85,7 +114,7 @@ struct Point {
 }
 
 impl Row {
-    fn of(result: &AxisResult) -> Row {
+    fn of(result: &AxisResult, list: &ParameterList, proposed: &ParameterList) -> Row {
         let um = |mm: f64| tidy(mm * 1e3);
         let (before, after) = (&result.before, &result.after);
         let errors = before.errors_mm.iter().zip(&after.errors_mm);
@@ -99,6 +128,8 @@ impl Row {
             linear_mm_m: result.linear_mm_m,
             by_table: result.by_table,
             drift_um: um(before.drift_mm),
+            entries: entries(before.index, list, proposed),
+            gets_no_better: result.gets_no_better(),
             errors: std::iter::zip(&before.at_mm, errors)
                 .map(|(at, ([up, down], [left_up, left_down]))| Point {
                     at_mm: tidy(*at),
@@ -135,18 +166,26 @@ pub(crate) fn command(options: &CompensateOptions) -> Result<Outcome, UsageError
             return Ok(Outcome::ProgramError);
         }
     };
-    if options.write {
+    let helps = !found.axes.iter().any(AxisResult::gets_no_better);
+    let named = machine.folder.compensation.is_some();
+    let changes = named || !found.tables.is_empty() || found.list != machine.parameters;
+    let written = options.write && helps && changes;
+    if written {
         write(&machine, &found)?;
     }
+    let row = |result| Row::of(result, &machine.parameters, &found.list);
     let report = Report {
-        written: options.write,
-        axes: found.axes.iter().map(Row::of).collect(),
+        written,
+        axes: found.axes.iter().map(row).collect(),
     };
     match options.format {
         Format::Json => console::print_json(&report)?,
         Format::Text => console::print(&text(&report))?,
     }
-    Ok(Outcome::Fine)
+    Ok(match helps {
+        true => Outcome::Fine,
+        false => Outcome::ProgramError,
+    })
 }
 
 /// Tables that somebody else made, of sag for instance, are not replaced.
@@ -197,10 +236,11 @@ fn write(machine: &LoadedMachine, found: &Compensated) -> Result<(), UsageError>
     let mut text = ListText::from_bytes(machine.parameters.model(), &files::read_table(&path)?);
     let mut list = found.list.clone();
     for result in &found.axes {
-        for what in [Adjustment::Backlash, Adjustment::Linear, Adjustment::Nonlinear] {
+        for what in ENTRIES {
             let index = result.before.index;
             let value = found.list.adjustment(what, index).unwrap_or_default();
-            if let Some((id, entry)) = list.adjust(what, index, value) {
+            if let Some((id, _)) = list.adjust(what, index, value) {
+                let entry = list.get(id.number, id.index.unwrap_or(0)).unwrap_or_default();
                 text.set(id, entry)
                     .map_err(|error| UsageError::new(error.to_string()))?;
             }
@@ -233,14 +273,24 @@ fn name_assignment(text: &str) -> String {
 
 fn text(report: &Report) -> String {
     let mut text = format!(
-        "{:<6}{:>7}{:>12}{:>12}{:>12}{:>12}{:>12}  {}\n",
-        "axis", "points", "before, µm", "after, µm", "drift, µm", "MP710, mm", "MP720, mm/m", "by"
+        "{:<6}{:>7}{:>12}{:>12}{:>12}{:>14}{:>14}  {}\n",
+        "axis", "points", "before, µm", "after, µm", "drift, µm", "backlash, mm", "linear, mm/m", "by"
     );
     for row in &report.axes {
+        let mut by: Vec<&str> = row
+            .entries
+            .iter()
+            .map(|entry| entry.parameter.as_str())
+            .take(2)
+            .collect();
+        if row.by_table {
+            by.truncate(1);
+            by.push("table");
+        }
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<6}{:>7}{:>12.3}{:>12.3}{:>12.2}{:>12.4}{:>12.3}  {}",
+            "{:<6}{:>7}{:>12.3}{:>12.3}{:>12.2}{:>14.4}{:>14.3}  {}",
             row.axis,
             row.points,
             row.before_um,
@@ -248,12 +298,20 @@ fn text(report: &Report) -> String {
             row.drift_um,
             row.backlash_mm,
             row.linear_mm_m,
-            if row.by_table { "table" } else { "MP720" }
+            by.join(", ")
         );
     }
-    text.push_str(match report.written {
-        true => "\nwritten into the list of machine parameters and the tables\n",
-        false => "\nnothing is changed; --write puts it into the list and the tables\n",
+    text.push('\n');
+    let worse = || report.axes.iter().filter(|row| row.gets_no_better);
+    for row in worse() {
+        let _ = writeln!(text, "{} gets no better by that", row.axis);
+    }
+    let mut entries = report.axes.iter().flat_map(|row| &row.entries);
+    let proposed = entries.any(|entry| entry.from != entry.to) || report.axes.iter().any(|row| row.by_table);
+    text.push_str(match (report.written, proposed && worse().next().is_none()) {
+        (true, _) => "written into the list of machine parameters and the tables\n",
+        (false, true) => "nothing is changed; --write puts it into the list and the tables\n",
+        (false, false) => "nothing is changed\n",
     });
     text
 }

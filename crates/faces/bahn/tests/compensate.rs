@@ -121,7 +121,131 @@ fn backlash_alone_needs_no_table() {
         assert!(number(axis, "/after_um") < 0.2, "{}", number(axis, "/after_um"));
     }
     let text = folder.bahn("compensate m --axes X");
-    assert!(text.out().contains("MP710, mm") && text.out().contains("nothing is changed"));
+    assert!(text.out().contains("MP710.0") && text.out().contains("nothing is changed"));
+}
+
+/// The knee mill with encoders on its screws: X has 20 µm of play and a screw that is 30 µm long on 600 mm, Z one that is
+/// 8 µm short on 400 mm.
+fn knee_mill(plays: [&str; 3]) -> Folder {
+    let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("m"));
+    let mut plant = folder.read("m/plant.toml");
+    let screws = [
+        ("X1", plays[0], ", errors_um = [[0, 0], [600, 30]]"),
+        ("X2", plays[1], ""),
+        ("X3", plays[2], ", errors_um = [[0, 0], [400, -8]]"),
+    ];
+    for (input, play, errors) in screws {
+        let scale = format!("encoder = {{ input = \"{input}\", period_um = 20,");
+        let (head, tail) = plant.split_once(&scale).unwrap();
+        let (before, after) = head.rsplit_once("backlash = 0.01").unwrap();
+        plant = format!(
+            "{before}backlash = {play}{after}encoder = {{ input = \"{input}\", on = \"motor\"{errors}, period_um = 20,{tail}"
+        );
+    }
+    folder.write("m/plant.toml", plant);
+    folder
+}
+
+/// TNC 151/155: backlash is MP36 to MP39, mm [001:1789-1794], the linear error MP40 to MP43, mm/m [001:1797-1802]; both have
+/// three decimals, and there are no tables. 30 µm on 600 mm are 0.05 mm/m, -8 µm on 400 mm are -0.02 mm/m.
+#[test]
+fn a_tnc_155_gets_backlash_and_linear_error_under_its_own_numbers() {
+    let folder = knee_mill(["0.02", "0.01", "0"]);
+    let run = folder.bahn("compensate m --write --format json");
+    assert_eq!(run.code(), 0, "{}{}", run.out(), run.err());
+    let report = run.json();
+    assert_eq!(report["written"], true);
+    let truth = [
+        (0.02, 0.05, "MP36", "MP40"),
+        (0.01, 0.0, "MP37", "MP41"),
+        (0.0, -0.02, "MP38", "MP42"),
+    ];
+    for (axis, (play, slope, backlash, linear)) in report["axes"].as_array().unwrap().iter().zip(truth) {
+        assert!((number(axis, "/backlash_mm") - play).abs() <= 0.0011, "{axis}");
+        assert!((number(axis, "/linear_mm_m") - slope).abs() <= 0.0021, "{axis}");
+        assert_eq!(axis["by_table"], false);
+        assert_eq!(
+            (&axis["entries"][0]["parameter"], &axis["entries"][1]["parameter"]),
+            (&backlash.into(), &linear.into())
+        );
+        // Half a step of each entry: 0.5 µm, and 0.0005 mm/m on 600 mm; a counting step of 1 µm.
+        assert!(number(axis, "/after_um") < 2.0, "{axis}");
+    }
+    let list = folder.read("m/parameters.mp");
+    let entry = |name: &str| -> f64 {
+        let line = list
+            .lines()
+            .find(|line| line.split_whitespace().next() == Some(name));
+        let value = line.unwrap().split_once(':').unwrap().1;
+        value.split(';').next().unwrap().trim().parse().unwrap()
+    };
+    assert!((entry("MP36") - 0.02).abs() <= 0.0011, "{list}");
+    assert!((entry("MP40") - 0.05).abs() <= 0.0021, "{list}");
+    let check = folder.bahn("machine check m");
+    assert_eq!(check.code(), 0, "{}{}", check.out(), check.err());
+    let text = folder.bahn("compensate m --axes X");
+    assert!(
+        text.out().contains("MP36") && !text.out().contains("MP710"),
+        "{}",
+        text.out()
+    );
+}
+
+/// A bump of 20 µm near the machine datum: the straight line through all points falls, so that the bump stands out of it by
+/// more than 20 µm. Nothing is better than that line, nothing is written, and the exit code says so.
+#[test]
+fn what_gets_no_better_is_not_said_to_be_written() {
+    let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("m"));
+    let plant = folder.read("m/plant.toml").replace(
+        "encoder = { input = \"X1\",",
+        "encoder = { input = \"X1\", errors_um = [[0, 0], [60, 20], [120, 0], [600, 0]],",
+    );
+    folder.write("m/plant.toml", plant);
+    let list = folder.read("m/parameters.mp");
+    let run = folder.bahn("compensate m --axes X --write");
+    let json = folder.bahn("compensate m --axes X --format json").json();
+    let (before, after) = (
+        number(&json, "/axes/0/before_um"),
+        number(&json, "/axes/0/after_um"),
+    );
+    assert!(before > 15.0 && after >= before, "{before} {after}");
+    assert_eq!(run.code(), 1, "{}{}", run.out(), run.err());
+    assert_eq!(folder.read("m/parameters.mp"), list);
+    assert!(!run.out().contains("\nwritten"), "{}", run.out());
+    assert!(run.out().contains("X gets no better"), "{}", run.out());
+}
+
+/// Scales on the tables see their play: there is nothing to write, and it is not said.
+#[test]
+fn a_machine_without_errors_keeps_its_list() {
+    let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("m"));
+    let list = folder.read("m/parameters.mp");
+    let run = folder.bahn("compensate m --axes X --write");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert!(run.out().ends_with("\nnothing is changed\n"), "{}", run.out());
+    assert_eq!(folder.read("m/parameters.mp"), list);
+}
+
+/// A limit switch that lies before the software limit opens the EMERGENCY STOP chain: the run ends there.
+#[test]
+fn a_limit_switch_in_the_way_breaks_the_run_off() {
+    let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("m"));
+    let plant = folder.read("m/plant.toml");
+    folder.write(
+        "m/plant.toml",
+        plant.replace("limit_minus = { at = -5 }", "limit_minus = { at = 100 }"),
+    );
+    let run = folder.bahn("compensate m --axes X");
+    assert_eq!(run.code(), 1, "{}", run.err());
+    assert!(
+        run.err().contains("cannot be measured: EMERGENCY STOP"),
+        "{}",
+        run.err()
+    );
 }
 
 #[test]

@@ -316,3 +316,86 @@ fn slaves_and_rotary_axes_have_no_circle() {
         assert!(run.err().contains(expected), "{arguments}: {}", run.err());
     }
 }
+
+/// The entry of a parameter without an index.
+fn entry(list: &str, name: &str) -> f64 {
+    let line = list
+        .lines()
+        .find(|line| line.split_whitespace().next() == Some(name));
+    let value = line.unwrap().split_once(':').unwrap().1;
+    value.split(';').next().unwrap().trim().parse().unwrap()
+}
+
+/// A TNC 155 from its preliminary values [001:2618-2634]. The drives of the plant follow in 8 ms: a loop with kv greater than
+/// 1 / (2 * 8 ms) = 62.5 1/s = 3.75 (m/min)/mm would swing more than by 1/sqrt(2).
+#[test]
+fn a_tnc_155_is_commissioned_under_its_own_numbers() {
+    let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("m"));
+    let preliminary = "54=0.2,55=0.1,60=1,174=100,175=90,176=1,177=1,178=1,179=1,181=100";
+    let run = folder.bahn(&format!(
+        "tune m X,Y --machining-feed 3000 --write --format json --mp {preliminary}"
+    ));
+    assert_eq!(run.code(), 0, "{}{}", run.out(), run.err());
+    let report = run.json();
+    let (before, after) = (
+        number(&report, "/before/contour_mm"),
+        number(&report, "/after/contour_mm"),
+    );
+    // Lag 2000 mm/min / kv 1 = 2 mm: the circle of 20 mm gets smaller by 2^2 / (2 * 20) = 0.1 mm.
+    assert!(
+        (before - 0.1).abs() < 0.03 && after <= 0.5 * before,
+        "{before} {after}"
+    );
+    let list = folder.read("m/parameters.mp");
+    let kv = entry(&list, "MP177");
+    assert_eq!(entry(&list, "MP178"), kv, "axes that interpolate");
+    assert!(kv > 1.0 && kv <= 3.75, "{kv}");
+    // Lag at rapid traverse, 10 m/min, by the slower kv of Z, which is not tuned: 8 m/min / 1 = 8 mm; and by hand of X with
+    // the kink [001:1715-1725]. MP175 and MP174 lie 10 to 20 % above the greater one [001:2689].
+    let (factor, point) = (entry(&list, "MP176"), entry(&list, "MP181"));
+    let lag = |rapid: f64, kv: f64| {
+        let kink = point / 100.0 * rapid;
+        kink / kv + (rapid - kink) / (kv * factor)
+    };
+    let greatest = lag(10.0, kv).max(lag(8.0, entry(&list, "MP179")));
+    for name in ["MP175", "MP174"] {
+        let part = entry(&list, name) / greatest;
+        assert!((1.0999..=1.2001).contains(&part), "{name}: {part}");
+    }
+    if factor < 1.0 {
+        // Above 3000 mm/min of the slowest axis, 8000 mm/min.
+        assert!(point >= 37.5, "{point}");
+    }
+    // From rapid traverse X is in the positioning window 0.3 s after its nominal value is at the target.
+    folder.write(
+        "STOP.H",
+        program("L X+0 R0 FMAX\nL X+150 R0 FMAX\nCYCL DEF 9.0 DWELL\nCYCL DEF 9.1 DWELL 1.000"),
+    );
+    let run = folder
+        .bahn("run STOP.H --machine m --fresh --no-graphics --record stop.csv --signals X.table,X.nominal");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let table = folder.read("stop.csv");
+    let points: Vec<[f64; 3]> = rows(&table)
+        .iter()
+        .map(|row| [0, 1, 2].map(|place| row[place].parse::<f64>().unwrap()))
+        .collect();
+    let end = points.last().unwrap();
+    let arrived = points
+        .iter()
+        .rfind(|point| (point[2] - end[2]).abs() > 1e-6)
+        .unwrap()[0];
+    let window = entry(&list, "MP58");
+    let outside = points
+        .iter()
+        .rfind(|point| (point[1] - end[2]).abs() > window)
+        .unwrap()[0];
+    assert!(outside - arrived < 0.3, "{arrived} {outside}");
+    let text = folder.bahn("tune m Z --radius 10");
+    assert!(
+        !text.out().contains("MP1810") && text.code() == 0,
+        "{}{}",
+        text.out(),
+        text.err()
+    );
+}

@@ -25,7 +25,7 @@ const FEED_MM_MIN: f64 = 1000.0;
 const KV_MAX: f64 = 1.5;
 /// It rests so long before it is measured, s.
 const REST_S: f64 = 0.5;
-/// Entries of tables and of MP710, mm.
+/// Entries of tables, mm.
 const ENTRY_MM: f64 = 1e-4;
 /// Names of tables begin with it.
 pub const TABLE_NAME: &str = "LASER-";
@@ -109,7 +109,7 @@ impl AxisErrors {
 pub struct Compensated {
     /// As the machine is without compensation, with it, and what was chosen, by axis.
     pub axes: Vec<AxisResult>,
-    /// The list of machine parameters with MP710, MP720 and MP730.
+    /// The list of machine parameters with MP710, MP720 and MP730 (TNC 151/155: MP36 to MP39, MP40 to MP43).
     pub list: ParameterList,
     /// Names and texts of the tables (.COM), and the assignment (.CMA); none when no axis needs one.
     pub tables: BTreeMap<String, String>,
@@ -124,14 +124,24 @@ pub struct AxisResult {
     pub before: AxisErrors,
     /// Those that are left with it.
     pub after: AxisErrors,
-    /// Entry of MP710, mm.
+    /// Entry of MP710 (MP36 to MP39), mm.
     pub backlash_mm: f64,
-    /// Entry of MP720, mm/m; it acts where there is no table.
+    /// Entry of MP720 (MP40 to MP43), mm/m; it acts where there is no table.
     pub linear_mm_m: f64,
     /// A table acts, in place of `linear_mm_m`.
     pub by_table: bool,
     /// A counting step of the encoder, mm.
     pub resolution_mm: f64,
+    /// The least difference of two entries of backlash, mm.
+    pub entry_mm: f64,
+}
+
+impl AxisResult {
+    /// Whether the axis has errors that can be told from a counting step and an entry, and they do not get less.
+    pub fn gets_no_better(&self) -> bool {
+        let before = self.before.greatest_mm();
+        before > self.resolution_mm.max(self.entry_mm) && self.after.greatest_mm() >= before
+    }
 }
 
 /// Measures axes of a machine, all linear ones when none is named, after it has warmed up for some minutes; finds what
@@ -218,8 +228,11 @@ fn choose(list: &mut ParameterList, axis: &AxisParameters, before: AxisErrors) -
         list.adjust(what, axis.index, value)
             .map_or(0.0, |(_, entry)| entry)
     };
+    let entry_mm = list
+        .adjustment_step(Adjustment::Backlash, axis.index)
+        .unwrap_or(ENTRY_MM);
     let backlash =
-        Some(before.backlash_mm()).filter(|backlash| backlash.abs() >= ENTRY_MM.max(resolution_mm));
+        Some(before.backlash_mm()).filter(|backlash| backlash.abs() >= entry_mm.max(resolution_mm));
     let backlash_mm = entry(list, Adjustment::Backlash, backlash.unwrap_or(0.0));
     let linear_mm_m = entry(list, Adjustment::Linear, slope);
     let tables = list.adjustment(Adjustment::Nonlinear, axis.index).is_some();
@@ -232,6 +245,7 @@ fn choose(list: &mut ParameterList, axis: &AxisParameters, before: AxisErrors) -
         linear_mm_m,
         by_table,
         resolution_mm,
+        entry_mm,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bahn_machine::Machine;
-use bahn_parameters::ParameterList;
+use bahn_parameters::{MessageId, ParameterList};
 use bahn_program::Program;
 use bahn_tnc::{Control, Message, Programs};
 
@@ -78,7 +78,9 @@ pub(crate) fn run_within(
                 shown.message,
                 Message::Axis { .. } | Message::Program(_) | Message::Limit { .. }
             );
-            of_axis || shown.flashing && !matches!(shown.message, Message::Plc(_))
+            // Nobody unlocks it in a trial.
+            let stopped = begun && shown.message == Message::Plain(MessageId::ExternalEmergencyStop);
+            of_axis || stopped || shown.flashing && !matches!(shown.message, Message::Plc(_))
         });
         if let Some(shown) = broken {
             return Err(control.shown_text(shown));

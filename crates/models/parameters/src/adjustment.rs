@@ -1,4 +1,5 @@
-//! The machine parameters that are found by trial when a machine is commissioned [000:9549-9817].
+//! The machine parameters that are found by trial when a machine is commissioned [000:9549-9817], on the TNC 151/155 under
+//! their old numbers [001:2573-2760].
 
 use crate::{Definition, ParameterId, ParameterList};
 
@@ -82,30 +83,32 @@ impl Adjustment {
         Adjustment::Nonlinear,
     ];
 
-    fn number(self) -> u16 {
+    /// Its numbers: that of the TNC 360 and later, and that of the TNC 151/155, if they have it.
+    fn numbers(self) -> (u16, Option<OldNumber>) {
+        use OldNumber::{Common, EachAxis};
         match self {
-            Adjustment::ServoLag => 1390,
-            Adjustment::Transient => 1520,
-            Adjustment::KvPrecontrol => 1510,
-            Adjustment::KvLag => 1810,
-            Adjustment::KinkFactor => 1820,
-            Adjustment::KinkPoint => 1830,
-            Adjustment::IntegralFactor => 1080,
-            Adjustment::LagMonitor => 1710,
-            Adjustment::LagEmergency => 1720,
-            Adjustment::Proportional => 1940,
-            Adjustment::Integral => 1920,
-            Adjustment::SpeedMonitor => 1910,
-            Adjustment::AccelerationPrecontrol => 1945,
-            Adjustment::DigitalReversal => 1960,
-            Adjustment::ReversalHeight => 711,
-            Adjustment::ReversalStep => 712,
-            Adjustment::StictionFactor => 1511,
-            Adjustment::StictionLimit => 1512,
-            Adjustment::StictionFeed => 1513,
-            Adjustment::Backlash => 710,
-            Adjustment::Linear => 720,
-            Adjustment::Nonlinear => 730,
+            Adjustment::ServoLag => (1390, Some(Common(60))),
+            Adjustment::Transient => (1520, Some(Common(53))),
+            Adjustment::KvPrecontrol => (1510, Some(EachAxis(32))),
+            Adjustment::KvLag => (1810, Some(EachAxis(177))),
+            Adjustment::KinkFactor => (1820, Some(Common(176))),
+            Adjustment::KinkPoint => (1830, Some(Common(181))),
+            Adjustment::IntegralFactor => (1080, Some(EachAxis(28))),
+            Adjustment::LagMonitor => (1710, Some(Common(175))),
+            Adjustment::LagEmergency => (1720, Some(Common(174))),
+            Adjustment::Proportional => (1940, None),
+            Adjustment::Integral => (1920, None),
+            Adjustment::SpeedMonitor => (1910, None),
+            Adjustment::AccelerationPrecontrol => (1945, None),
+            Adjustment::DigitalReversal => (1960, None),
+            Adjustment::ReversalHeight => (711, None),
+            Adjustment::ReversalStep => (712, None),
+            Adjustment::StictionFactor => (1511, None),
+            Adjustment::StictionLimit => (1512, None),
+            Adjustment::StictionFeed => (1513, None),
+            Adjustment::Backlash => (710, Some(EachAxis(36))),
+            Adjustment::Linear => (720, Some(EachAxis(40))),
+            Adjustment::Nonlinear => (730, None),
         }
     }
 
@@ -115,44 +118,92 @@ impl Adjustment {
     }
 }
 
+/// Where an adjustment stands in the list of the TNC 151/155.
+#[derive(Clone, Copy)]
+enum OldNumber {
+    /// One number for all axes.
+    Common(u16),
+    /// The number of X, of four in sequence.
+    EachAxis(u16),
+}
+
+/// Axes with numbers of their own in the list of the TNC 151/155.
+const OLD_AXES: u8 = 4;
+
 impl ParameterList {
     fn adjusted(&self, what: Adjustment, index: u8) -> Option<&'static Definition> {
-        // The numbers of the TNC 151/155 mean something else.
-        let number = Some(what.number()).filter(|_| !self.has_old_numbers())?;
-        let id = |index| ParameterId { number, index };
-        let found = Definition::named(self.model(), id(Some(index)));
-        found.or_else(|_| Definition::named(self.model(), id(None))).ok()
+        let (number, old) = what.numbers();
+        let id = |number, index| ParameterId { number, index };
+        if self.has_old_numbers() {
+            let number = match old? {
+                OldNumber::Common(number) => number,
+                OldNumber::EachAxis(first) => {
+                    first + u16::from(Some(index).filter(|index| *index < OLD_AXES)?)
+                }
+            };
+            return Definition::named(self.model(), id(number, None)).ok();
+        }
+        let found = Definition::named(self.model(), id(number, Some(index)));
+        found
+            .or_else(|_| Definition::named(self.model(), id(number, None)))
+            .ok()
+    }
+
+    /// What an entry is for the value 1: MP32 to MP35 are output steps for each µm of lag, not kv.
+    fn entry_per_value(&self, what: Adjustment, index: u8) -> f64 {
+        match what {
+            Adjustment::KvPrecontrol if self.has_old_numbers() => self.old_steps_per_kv(index),
+            _ => 1.0,
+        }
+    }
+
+    /// The parameter that an adjustment of an axis is, if the model has it.
+    pub fn adjustment_id(&self, what: Adjustment, index: u8) -> Option<ParameterId> {
+        self.adjusted(what, index).map(|definition| definition.id)
+    }
+
+    /// Whether an adjustment is one for all axes in this list.
+    pub fn is_common(&self, what: Adjustment) -> bool {
+        self.adjustment_id(what, 0) == self.adjustment_id(what, 1)
+    }
+
+    /// The least difference between two entries, in the unit of the value.
+    pub fn adjustment_step(&self, what: Adjustment, index: u8) -> Option<f64> {
+        let definition = self.adjusted(what, index)?;
+        let step = 10f64.powi(-i32::from(definition.decimals));
+        Some(step / self.entry_per_value(what, index))
     }
 
     /// The value of an axis by its index; `None` where the model has no such parameter.
     pub fn adjustment(&self, what: Adjustment, index: u8) -> Option<f64> {
         let definition = self.adjusted(what, index)?;
-        let value = self.get(what.number(), definition.id.index.unwrap_or(0))?;
+        let value = self.get(definition.id.number, definition.id.index.unwrap_or(0))?;
         Some(match what {
             Adjustment::Nonlinear => f64::from(u8::from(crate::settings::bit_of(value, index.into()))),
-            _ => value,
+            _ => value / self.entry_per_value(what, index),
         })
     }
 
-    /// Adjusts a parameter of an axis to a value within its range and decimals: which one, and the entry as it is now.
+    /// Adjusts a parameter of an axis to a value within its range and decimals: which one, and the value as it is now.
     /// `None` where the model has no such parameter.
     pub fn adjust(&mut self, what: Adjustment, index: u8, value: f64) -> Option<(ParameterId, f64)> {
         let definition = self.adjusted(what, index)?;
         let place = definition.id.index.unwrap_or(0);
+        let scale = self.entry_per_value(what, index);
         let entry = match what {
             Adjustment::Nonlinear => {
                 let bit = 1u32 << index;
-                let before = self.get(what.number(), place)? as u32;
+                let before = self.get(definition.id.number, place)? as u32;
                 f64::from(if value == 0.0 { before & !bit } else { before | bit })
             }
             _ => {
-                let scale = 10f64.powi(definition.decimals.into());
-                (value.clamp(definition.min, definition.max) * scale).round() / scale
+                let decimals = 10f64.powi(definition.decimals.into());
+                ((value * scale).clamp(definition.min, definition.max) * decimals).round() / decimals
             }
         };
         let text = format!("{}={}", definition.id, definition.format_value(entry));
         self.assign(text.trim_start_matches("MP")).ok()?;
-        Some((definition.id, self.get(what.number(), place)?))
+        Some((definition.id, self.get(definition.id.number, place)? / scale))
     }
 }
 
@@ -184,7 +235,38 @@ mod tests {
         ids.sort();
         ids.dedup();
         assert_eq!(ids.len(), Adjustment::ALL.len());
-        let mut old = ParameterList::reference(ControlModel::Tnc155);
-        assert_eq!(old.adjust(Adjustment::KvLag, 0, 2.0), None);
+    }
+
+    /// The list of the TNC 151/155 has other numbers, of which some are common to all axes, and no tables. kv 1.2 at rapid
+    /// traverse 10 m/min and 9 V is 0.44 in MP32 [001:1746-1762]: 3.6864 * 1.2 / 10 = 0.4424.
+    #[test]
+    fn the_tnc_155_has_its_own_numbers() {
+        use Adjustment::{Backlash, KinkPoint, KvLag, KvPrecontrol, LagMonitor, Linear, Nonlinear, ServoLag};
+        let mut list = ParameterList::reference(ControlModel::Tnc155);
+        for (what, axis, value, name) in [
+            (KvLag, 0, 2.0, "MP177"),
+            (KvLag, 3, 1.5, "MP180"),
+            (Backlash, 1, 0.02, "MP37"),
+            (Linear, 2, -0.05, "MP42"),
+            (KinkPoint, 2, 40.0, "MP181"),
+            (LagMonitor, 0, 8.0, "MP175"),
+            (ServoLag, 1, 1.0, "MP60"),
+        ] {
+            let (id, entry) = list.adjust(what, axis, value).unwrap();
+            assert_eq!((id.to_string().as_str(), entry), (name, value));
+            assert_eq!(list.adjustment(what, axis), Some(value), "{name}");
+        }
+        assert_eq!(list.axis_parameters(0).lag.kv, 2.0);
+        assert_eq!(list.axis_parameters(2).compensation.linear_mm_m, -0.05);
+        assert!(list.is_common(KinkPoint) && !list.is_common(KvLag));
+        assert_eq!(list.adjust(Nonlinear, 0, 1.0), None);
+        assert_eq!(list.adjust(KvLag, 4, 1.0), None);
+        list.assign("0=10000").unwrap();
+        list.assign("52=9").unwrap();
+        let (id, kv) = list.adjust(KvPrecontrol, 0, 1.2).unwrap();
+        assert_eq!(id.to_string(), "MP32");
+        assert_eq!(list.get(32, 0), Some(0.442));
+        assert!((kv - 1.2).abs() < 0.002);
+        assert!((list.axis_parameters(0).precontrol.kv - kv).abs() < 1e-9);
     }
 }

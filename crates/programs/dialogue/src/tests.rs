@@ -283,7 +283,9 @@ fn enter(setting: &Setting, text: &str) {
 /// How many axes a straight line moves: versions F and W of the TNC 151/155 have none in three [001:132-136].
 fn axes_of_line(block: &str) -> usize {
     let words = block.strip_prefix("L ").unwrap_or_default().split(' ');
-    words.filter(|word| word.trim_start_matches('I').starts_with(['X', 'Y', 'Z', 'C'])).count()
+    words
+        .filter(|word| word.trim_start_matches('I').starts_with(['X', 'Y', 'Z', 'C']))
+        .count()
 }
 
 #[test]

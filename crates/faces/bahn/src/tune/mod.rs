@@ -44,10 +44,11 @@ rapid traverse overshoot, the kink point (MP1820, MP1830); with pre-control kv (
 both; MP710, reversal peaks (MP711, MP712; MP1960), stiction (MP1511 to MP1513); MP1080. kv is the same for both axes, and a
 slave (MP850) gets what its master gets. A proposal is taken when the contour error falls by 2 % and stops overshoot no more
 than 5 µm, or than before. An axis alone leaves MP1390 and MP1520, which are common to all, and its MP1810 does not go above
-that of the others.
+that of the others. A TNC 151/155 has MP177 to MP180 (kv), MP176 and MP181 (kink point), MP175 and MP174 (monitoring), MP60,
+MP32 to MP35 and MP53 (pre-control), MP36 to MP39, MP28 to MP31.
 
 JSON: axes, radius_mm, feed_mm_min, trials, written; before and after (contour_mm, of an axis alone from its nominal value;
-roundness_mm, overshoot_mm, standstill_mm of each axis); changes (parameter, name, from, to); kv_lag, MP1810 of each axis.
+roundness_mm, overshoot_mm, standstill_mm of each axis); changes (parameter, name, from, to); kv_lag, kv with servo lag of each axis.
 Of the spindle: trials, written, changes; before and after (beyond_mm the depth, off_mm from where the spindle's angle says,
 threads_s, orientation_s before two threads of each gear range).
 Exit codes: 0 fine, also without a proposal; 1 the machine is wrong or does not get through the trial; 2 wrong use.";
@@ -220,7 +221,7 @@ fn text(report: &Report) -> String {
             .collect();
         let _ = writeln!(
             text,
-            "kv with servo lag (MP1810) differs: {}; axes that interpolate need the same",
+            "kv with servo lag differs: {}; axes that interpolate need the same",
             each.join(", ")
         );
     }

@@ -1,5 +1,5 @@
 //! The commissioning assistant: circle tests and stops on the plant, parameter by parameter in the order of the manual
-//! [000:9549-9817] [000:18523-18607].
+//! [000:9549-9817] [000:18523-18607], of the TNC 151/155 under their old numbers [001:2377-2392] [001:2612-2760].
 //!
 //! Decision: `bahn tune` judges by where the tables of the plant stand; each trial is a machine that is switched on
 //! anew; a proposal counts when the contour error falls by 2 % and stops overshoot no more than 5 µm or than before
@@ -39,6 +39,9 @@ const INTEGRAL_STEPS: u8 = 10;
 /// Recommended monitoring, times the lag at rapid traverse [000:9806-9817].
 const MONITOR: f64 = 1.2;
 const EMERGENCY: f64 = 1.4;
+/// The same where one entry holds for all axes: lag of the slowest loop and 10 to 20 % [001:2689].
+const COMMON_MONITOR: f64 = 1.1;
+const COMMON_EMERGENCY: f64 = 1.2;
 
 /// What is tuned, and with what.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,12 +152,6 @@ fn axes(list: &ParameterList, task: &Task) -> Result<Vec<AxisParameters>, String
 /// # Errors
 /// When the machine has no such axes, or its list does not get it through the trial.
 pub fn tune(machine: &LoadedMachine, list: &ParameterList, task: &Task) -> Result<Tuned, String> {
-    if list.adjustment(Adjustment::KvLag, 0).is_none() {
-        return Err(format!(
-            "the control loops of the {} have machine parameters that this does not adjust",
-            list.model()
-        ));
-    }
     let subject = Subject {
         machine,
         axes: axes(list, task)?,
@@ -199,13 +196,22 @@ fn changes(before: &ParameterList, after: &ParameterList) -> Vec<Change> {
     differ.collect()
 }
 
-/// MP1710 and MP1720 for the lag that an axis has at rapid traverse.
+/// MP1710 and MP1720 for the lag that an axis has at rapid traverse; MP175 and MP174 for the greatest one of all axes.
 fn monitor(list: &mut ParameterList, index: u8) {
-    let axis = list.axis_parameters(index);
-    let rapid = axis.motion.rapid_mm_min;
-    let lag_mm = Characteristic::with_kink(axis.lag.kv, &axis.lag, rapid).lag_mm(rapid);
-    list.adjust(Adjustment::LagMonitor, index, MONITOR * lag_mm);
-    list.adjust(Adjustment::LagEmergency, index, EMERGENCY * lag_mm);
+    let common = list.is_common(Adjustment::LagMonitor);
+    let lag_mm = path_axes(list)
+        .filter(|axis| common || axis.index == index)
+        .map(|axis| {
+            let rapid = axis.motion.rapid_mm_min;
+            Characteristic::with_kink(axis.lag.kv, &axis.lag, rapid).lag_mm(rapid)
+        })
+        .fold(0.0, f64::max);
+    let (monitor, emergency) = match common {
+        true => (COMMON_MONITOR, COMMON_EMERGENCY),
+        false => (MONITOR, EMERGENCY),
+    };
+    list.adjust(Adjustment::LagMonitor, index, monitor * lag_mm);
+    list.adjust(Adjustment::LagEmergency, index, emergency * lag_mm);
 }
 
 impl Assistant<'_> {
@@ -349,6 +355,10 @@ impl Assistant<'_> {
                     .map(|kv| (Adjustment::KvLag, axis, kv)),
             );
         }
+        // An axis that has no kv with pre-control begins with that with servo lag, as the table of MP32 does [001:2712].
+        for axis in path_axes(&self.list).filter(|axis| servo_lag == 0.0 && axis.precontrol.kv <= 0.0) {
+            entries.push((Adjustment::KvPrecontrol, axis.index, axis.lag.kv));
+        }
         let list = self.adjusted(&entries);
         if changes(&self.list, &list).is_empty() {
             return true;
@@ -425,10 +435,14 @@ impl Assistant<'_> {
         axes.into_iter().map(|axis| (what, axis, kv)).collect()
     }
 
-    /// MP1830: the greatest machining feed in percent of rapid traverse [000:9684-9688].
+    /// MP1830: the greatest machining feed in percent of rapid traverse [000:9684-9688]; where one entry holds for all axes, of
+    /// that of the slowest one, so that it lies above the feed for each [001:2677-2679].
     fn kink_points(&self) -> Vec<(u8, f64)> {
+        let rapids = path_axes(&self.list).map(|axis| axis.motion.rapid_mm_min);
+        let least = rapids.fold(f64::INFINITY, f64::min);
+        let common = self.list.is_common(Adjustment::KinkPoint);
         let points = self.subject.axes.iter().map(|axis| {
-            let rapid = axis.motion.rapid_mm_min;
+            let rapid = if common { least } else { axis.motion.rapid_mm_min };
             let feed = self.machining_mm_min.unwrap_or(rapid / 2.0);
             (axis.index, (100.0 * feed / rapid).min(100.0))
         });

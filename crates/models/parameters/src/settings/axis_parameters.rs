@@ -371,11 +371,16 @@ const STEPS_PER_KV: f64 = 3.6864;
 /// The voltage at rapid traverse that the table is made for, V.
 const TABLE_VOLTS: f64 = 9.0;
 
+impl ParameterList {
+    /// MP32 to MP35 for kv 1, at the rapid traverse and the voltage of the list of the TNC 151/155.
+    pub(crate) fn old_steps_per_kv(&self, index: u8) -> f64 {
+        let rapid_m_min = AxisReader::new(self, index).old(0) / 1000.0;
+        STEPS_PER_KV / rapid_m_min.max(f64::MIN_POSITIVE) * self.old(52) / TABLE_VOLTS
+    }
+}
+
 fn precontrol(axis: &AxisReader) -> PrecontrolSettings {
-    let old_kv = || {
-        let rapid_m_min = axis.old(0) / 1000.0;
-        axis.old(32) * rapid_m_min / STEPS_PER_KV * TABLE_VOLTS / axis.list().old(52).max(f64::MIN_POSITIVE)
-    };
+    let old_kv = || axis.old(32) / axis.list().old_steps_per_kv(axis.index());
     let kv = axis.new_or(1510, old_kv);
     PrecontrolSettings {
         kv,
