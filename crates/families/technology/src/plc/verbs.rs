@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
-use bahn_path::Axis;
+use bahn_path::{Axis, Switch};
 use bahn_script::{Fault, Line, Times, Verbs, Words};
 use bahn_text::{Diagnostic, Span};
 
@@ -52,7 +52,7 @@ enum Change {
     NcStart,
     /// A key is released.
     Nothing,
-    SingleBlock(bool),
+    SingleBlock(Switch),
     InternalStop,
     End,
 }
@@ -119,8 +119,8 @@ fn happen(driving: &mut Driving, lines: &[Line<Change, Infallible>]) -> Option<u
                 Some(from) => driving.holds.push(from..now),
                 None => driving.starts.push(now),
             },
-            Change::SingleBlock(true) => single = single.or(Some(now)),
-            Change::SingleBlock(false) => {
+            Change::SingleBlock(Switch::On) => single = single.or(Some(now)),
+            Change::SingleBlock(Switch::Off) => {
                 driving.singles.extend(single.take().map(|from| from..now));
             }
             Change::InternalStop => match stopped.take() {
@@ -170,7 +170,7 @@ impl Verbs for Known {
                 }
                 Change::Override(percent)
             }
-            "mode" => Change::SingleBlock(words.one_of(&["single", "full"])? == "single"),
+            "mode" => Change::SingleBlock(Switch::from(words.one_of(&["single", "full"])? == "single")),
             "stop" => Change::InternalStop,
             "end" => Change::End,
             verb => return self.own(verb, words),
