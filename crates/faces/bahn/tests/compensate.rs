@@ -136,11 +136,12 @@ fn knee_mill(plays: [&str; 3]) -> Folder {
         ("X3", plays[2], ", errors_um = [[0, 0], [400, -8]]"),
     ];
     for (input, play, errors) in screws {
-        let scale = format!("encoder = {{ input = \"{input}\", period_um = 20,");
-        let (head, tail) = plant.split_once(&scale).unwrap();
+        let encoder = format!("encoder = {{ input = \"{input}\",");
+        let (head, tail) = plant.split_once(&encoder).unwrap();
+        let tail = tail.trim_start_matches(" on = \"motor\",");
         let (before, after) = head.rsplit_once("backlash = 0.01").unwrap();
         plant = format!(
-            "{before}backlash = {play}{after}encoder = {{ input = \"{input}\", on = \"motor\"{errors}, period_um = 20,{tail}"
+            "{before}backlash = {play}{after}encoder = {{ input = \"{input}\", on = \"motor\"{errors},{tail}"
         );
     }
     folder.write("m/plant.toml", plant);
@@ -200,7 +201,7 @@ fn what_gets_no_better_is_not_said_to_be_written() {
     copy(&machines().join("mill-tnc155"), &folder.path("m"));
     let plant = folder.read("m/plant.toml").replace(
         "encoder = { input = \"X1\",",
-        "encoder = { input = \"X1\", errors_um = [[0, 0], [60, 20], [120, 0], [600, 0]],",
+        "encoder = { input = \"X1\", errors_um = [[0, 0], [480, 0], [540, 20], [600, 0]],",
     );
     folder.write("m/plant.toml", plant);
     let list = folder.read("m/parameters.mp");
