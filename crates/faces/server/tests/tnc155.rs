@@ -159,7 +159,7 @@ fn the_graphics_have_the_colour_of_the_screen() {
     let Some(browser) = Browser::for_test().unwrap() else {
         return;
     };
-    let panel = Panel::of("mill-tnc360", |folder| {
+    let panel = Panel::of("mill-tnc155", |folder| {
         tnc155::fit(folder, Tnc155, &[]);
         let program = "BEGIN PGM 77 MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+60 Z+0\nTOOL CALL 1 Z S1000\n\
                        L Z+2 R0 F15999 M3\nL X+20 Y+30 F15999\nL Z-5 F200\nL X+80 F300\nL Z+50 F15999 M2\nEND PGM 77 MM\n";
