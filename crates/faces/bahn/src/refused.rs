@@ -72,7 +72,10 @@ pub(crate) fn fault(fault: &Diagnostic, most: usize) {
                 line: fault.span.line,
                 column: fault.span.columns().map(|(column, _)| column),
                 title: fault.message.clone(),
-                message: fault.label(),
+                message: match fault.detail.is_empty() {
+                    true => fault.exactly().to_owned(),
+                    false => fault.label(),
+                },
             });
         }
     }

@@ -192,3 +192,18 @@ fn reasons_name_the_parameters_of_the_control() {
         assert!(why.contains(named), "{why}");
     }
 }
+
+/// The control sees its voltage at E8 [001:904], not at X42/4 of the later ones: nothing is said while it is there.
+#[test]
+fn the_control_voltage_is_seen_at_e8() {
+    let mut trainee = Trainee::with_tnc155(Tnc155, &[]);
+    trainee.ready();
+    let missing = |trainee: &mut Trainee| {
+        let why = trainee.screen().why;
+        why.into_iter()
+            .find(|line| line.contains("control voltage is missing"))
+    };
+    assert_eq!(missing(&mut trainee), None);
+    trainee.press("EMERGENCY_STOP").wait(0.5);
+    assert!(missing(&mut trainee).is_some_and(|line| line.contains("I8")));
+}

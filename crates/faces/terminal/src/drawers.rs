@@ -112,7 +112,7 @@ fn standing(live: &Live) -> MachineService {
             .program
             .lines
             .iter()
-            .any(|line| line.text.contains("CIRCLE"))
+            .any(|line| line.text.contains("BEGIN PGM CIRCLE"))
     });
     machine.input(Input::Pause(bahn_panel::Switch::On)).unwrap();
     machine

@@ -13,8 +13,10 @@ use crate::reason::{Reason, Urgency};
 use crate::trace::{Cause, Trace, Writers};
 use crate::wiring;
 
-/// The acknowledgement of the control voltage, X42/4 [000:6149-6228].
+/// The acknowledgement of the control voltage where the plant says nothing of its wires: I3, X42/4 [000:6149-6228]; E8 of the TNC
+/// 151/155 [001:904].
 const ACKNOWLEDGEMENT: u16 = 3;
+const OLD_ACKNOWLEDGEMENT: u16 = 8;
 /// A spindle that turns slower than this part of its nominal speed is not at speed.
 const AT_SPEED: f64 = 0.5;
 /// Slower is standing, rpm.
@@ -138,7 +140,7 @@ impl Situation<'_> {
 
     /// EMERGENCY STOP chain and control voltage.
     fn voltage(&self, found: &mut Vec<Reason>) {
-        let Some(input) = Bit::new(BitArea::I, ACKNOWLEDGEMENT) else {
+        let Some(input) = self.acknowledgement() else {
             return;
         };
         let says = |id| self.shows(id);
@@ -163,6 +165,18 @@ impl Situation<'_> {
             causes: self.chain(),
             ..reason(Urgency::Stands, fill(&text, &[&input.to_string()]))
         });
+    }
+
+    /// The input at which the control sees its voltage.
+    fn acknowledgement(&self) -> Option<Bit> {
+        let is_it = |wire: &&Wired| wire.part == "emergency_stop" && wire.function == "acknowledgement";
+        let wired = self.wired.iter().find(is_it);
+        let wired = wired.and_then(|wire| wire.operand.parse().ok());
+        let usual = match self.control.model().limits().numbering {
+            Numbering::Old => OLD_ACKNOWLEDGEMENT,
+            Numbering::New => ACKNOWLEDGEMENT,
+        };
+        wired.or_else(|| Bit::new(BitArea::I, usual))
     }
 
     /// What keeps the relay of the chain open.

@@ -23,6 +23,8 @@ fn a_test_run_beside_the_run() {
     rig.start();
     rig.until(30.0, "it runs", |rig| rig.control.snapshot().feed_mm_min > 0.0);
     assert!(!rig.control.test("9.H"), "there is none");
+    assert_eq!(rig.messages(), ["PROGRAM NOT FOUND"]);
+    rig.command("ce");
     assert!(rig.control.test("2.H"));
     rig.seconds(0.1);
     let report = rig.control.test_report().unwrap();
