@@ -82,6 +82,10 @@ impl Pace {
         // A spindle that trembles about the edge of a step stands: what is counted has a play of a step.
         let [last, ..] = self.counts;
         let count = last.clamp(count.saturating_sub(Encoder::SQUARE_WAVE_STEPS), count);
+        // Where nothing has turned for all cycles, one more changes nothing.
+        if self.counts == [count; CYCLES + 1] {
+            return 0.0;
+        }
         self.counts.copy_within(..CYCLES, 1);
         let [newest, ..] = &mut self.counts;
         *newest = count;
