@@ -40,20 +40,11 @@ fn only_x(kind: u8, marks: &str, start: f64) -> Build {
         )
 }
 
-/// Largest and least position of the table until the run ends, and where it stands then.
+/// Least and greatest place of the table until the run ends, and where it stands then.
 fn way(rig: &mut Rig) -> [f64; 3] {
-    rig.start();
-    let mut way = [f64::INFINITY, f64::NEG_INFINITY];
-    let end = rig.control.time_us() + 60_000_000;
-    while rig.control.snapshot().mode == Mode::Reference {
-        assert!(rig.control.time_us() < end, "{:?}", rig.control.snapshot());
-        rig.cycle();
-        way = [way[0].min(rig.table('X')), way[1].max(rig.table('X'))];
-    }
-    rig.settle();
-    assert_eq!(rig.messages(), [""; 0]);
+    let [least, greatest] = rig.way_to_mark();
     close(rig.machine_position('X'), rig.table('X'), 0.001);
-    [way[0], way[1], rig.table('X')]
+    [least, greatest, rig.table('X')]
 }
 
 /// W272 = 7; the axes go one after the other in the order of MP1340, here Y, Z, X: M2008 ff. falls as the

@@ -4,7 +4,7 @@
 mod support;
 
 use bahn_tnc::Mode;
-use support::bench::close;
+use support::bench::{TABLE, close};
 use support::knee::*;
 use support::*;
 
@@ -22,27 +22,12 @@ fn only_x(keys: &str, marks: &str, start: f64) -> Build {
         )
 }
 
-/// Least and greatest place of the table until the run ends.
-fn way(rig: &mut Rig) -> [f64; 2] {
-    rig.start();
-    let mut way = [f64::INFINITY, f64::NEG_INFINITY];
-    let end = rig.control.time_us() + 30_000_000;
-    while rig.control.snapshot().mode == Mode::Reference {
-        assert!(rig.control.time_us() < end, "{:?}", rig.control.snapshot());
-        rig.cycle();
-        way = [way[0].min(rig.table('X')), way[1].max(rig.table('X'))];
-    }
-    rig.settle();
-    assert_eq!(rig.messages(), [""; 0]);
-    way
-}
-
 /// From 50 mm up; a mark that lies at 100 mm, before the cam, is passed over, that at 150 mm under the closed cam counts
 /// [001:957] [001:967-969]. At 3 m/min with 0.5 m/s² the axis stands 50² / 1000 = 2.5 mm and a lag after it.
 #[test]
 fn the_mark_lies_under_the_closed_cam() {
     let mut rig = asked(only_x("", "marks_every = 50\nmarks_from = 100", 50.0));
-    let [least, most] = way(&mut rig);
+    let [least, most] = rig.way_to_mark();
     close(least, 50.0, 0.01);
     assert!((150.0..155.0).contains(&most), "{most}");
     close(rig.machine_position('X'), rig.table('X') - 150.0, 0.001);
@@ -70,7 +55,7 @@ fn the_pulse_of_a_rotary_encoder_is_chosen_by_the_inhibit_cam() {
     // Closed where X stands; nothing is wired for Y, Z and IV.
     let inhibited = ["M2616", "M2617", "M2618", "M2619"].map(|marker| rig.bit(marker));
     assert_eq!(inhibited, [true, false, false, false]);
-    let [_, most] = way(&mut rig);
+    let [_, most] = rig.way_to_mark();
     assert!((155.0..160.0).contains(&most), "{most}");
     close(rig.machine_position('X'), rig.table('X') - 155.0, 0.001);
 }
@@ -85,7 +70,7 @@ fn the_direction_is_that_of_mp16() {
             "range = [0, 60], input = \"I0\"",
         );
     let mut rig = asked(build);
-    let [least, most] = way(&mut rig);
+    let [least, most] = rig.way_to_mark();
     close(most, 120.0, 0.01);
     assert!((45.0..50.0).contains(&least), "{least}");
     close(rig.machine_position('X'), rig.table('X') - 50.0, 0.001);
@@ -98,7 +83,7 @@ fn the_direction_is_that_of_mp16() {
 fn mp69_backs_an_axis_off_its_cam_first() {
     let marks = "marks_every = 10\nmarks_from = 0";
     let mut rig = asked(only_x("", marks, 163.0));
-    let [least, _] = way(&mut rig);
+    let [least, _] = rig.way_to_mark();
     close(least, 163.0, 0.01);
     close(rig.machine_position('X'), rig.table('X') - 170.0, 0.001);
     // The cam closes at 140.5 mm, so that no mark is at its edge.
@@ -107,7 +92,7 @@ fn mp69_backs_an_axis_off_its_cam_first() {
         "range = [140.5, 200], input = \"I0\"",
     );
     let mut rig = asked(build);
-    let [least, most] = way(&mut rig);
+    let [least, most] = rig.way_to_mark();
     assert!((130.0..140.5).contains(&least), "{least}");
     assert!((163.0..163.1).contains(&most), "{most}");
     close(rig.machine_position('X'), rig.table('X') - 150.0, 0.001);
@@ -143,7 +128,7 @@ fn the_cam_of_a_rotary_table_is_bridged() {
 fn coded_marks_count_beside_the_open_cam() {
     let build = only_x("", "marks_coded = 20", 50.0).mps("242=1000");
     let mut rig = asked(build);
-    let [least, most] = way(&mut rig);
+    let [least, most] = rig.way_to_mark();
     close(least, 50.0, 0.01);
     assert!(most < 50.0 + 20.0 + 5.0, "{most}");
     // With the contact closed no mark counts.

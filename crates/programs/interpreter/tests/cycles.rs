@@ -90,88 +90,64 @@ fn p24_tapping() {
     assert_eq!(dwell, 0.4);
 }
 
+/// A left-hand thread of cycle 2 by a list: the lead of switching the spindle off, s, the M functions and the dwells, s.
+fn tapped(model: ControlModel, kind: &str, assignments: &str) -> (f64, Vec<Function>, Vec<f64>) {
+    let mut list = ParameterList::reference(model);
+    for assignment in assignments.split(' ').chain([kind]) {
+        list.assign(assignment).unwrap();
+    }
+    let settings = Settings {
+        model,
+        rules: Rules::of(&list),
+        ..Settings::default()
+    };
+    let run = run_with(
+        "TOOL DEF 1 L+0 R+3
+         TOOL CALL 1 Z S1000
+         CYCL DEF 2.0 TAPPING
+         CYCL DEF 2.1 SET UP -2
+         CYCL DEF 2.2 DEPTH -30
+         CYCL DEF 2.3 DWELL 0.2
+         CYCL DEF 2.4 F1000
+         L X+0 Y+0 Z+2 F9999 M4
+         CYCL CALL",
+        settings,
+    );
+    let call: Vec<_> = run.elements.iter().filter(|e| e.block.block == 9).collect();
+    let all: Vec<_> = call.iter().flat_map(|e| e.functions()).collect();
+    let At::BeforeEnd(early) = all[0].at else {
+        panic!("{all:?}")
+    };
+    (
+        early,
+        all.iter().map(|f| f.function.clone()).collect(),
+        call.iter().map(|e| e.dwell_s).filter(|s| *s > 0.0).collect(),
+    )
+}
+
 /// Cycle 2 on a machine: S1000 are 6 V of gear 1 (1500 rpm at 9 V); at 0.1 V/ms they take 60 ms, less the run-on
 /// of 20 ms. With coded speed MP7120.1 counts. Then the dwell MP7120.0 and the programmed one [000:6060-6116].
 #[test]
 fn tapping_by_the_list() {
+    let list = "3510.0=1500 3210.0=9 3410.2=0.1 7120.0=0.3 7120.1=0.35 7120.2=0.02";
     for (kind, lead) in [("3010=3", 0.04), ("3010=1", 0.35)] {
-        let mut list = ParameterList::reference(ControlModel::Tnc415b);
-        for assignment in [
-            kind,
-            "3510.0=1500",
-            "3210.0=9",
-            "3410.2=0.1",
-            "7120.0=0.3",
-            "7120.1=0.35",
-            "7120.2=0.02",
-        ] {
-            list.assign(assignment).unwrap();
-        }
-        let settings = Settings {
-            rules: Rules::of(&list),
-            ..Settings::default()
-        };
-        let run = run_with(
-            "TOOL DEF 1 L+0 R+3
-             TOOL CALL 1 Z S1000
-             CYCL DEF 2.0 TAPPING
-             CYCL DEF 2.1 SET UP -2
-             CYCL DEF 2.2 DEPTH -30
-             CYCL DEF 2.3 DWELL 0.2
-             CYCL DEF 2.4 F1000
-             L X+0 Y+0 Z+2 FMAX M4
-             CYCL CALL",
-            settings,
-        );
-        let call: Vec<_> = run.elements.iter().filter(|e| e.block.block == 9).collect();
-        let all: Vec<_> = call.iter().flat_map(|e| e.functions()).collect();
-        let At::BeforeEnd(early) = all[0].at else {
-            panic!("{all:?}")
-        };
+        let (early, codes, dwells) = tapped(ControlModel::Tnc415b, kind, list);
         close(early, lead, 1e-12);
-        let codes: Vec<_> = all.iter().map(|f| f.function.clone()).collect();
         assert_eq!(codes, [5, 3, 5, 4].map(Function::M), "a left-hand thread");
-        let dwells: Vec<_> = call.iter().map(|e| e.dwell_s).filter(|s| *s > 0.0).collect();
         assert_eq!(dwells, [0.3, 0.2]);
     }
 }
 
 /// A TNC 155 with a coded speed: MP67 is the dwell before the spindle reverses, MP73 the lead of switching it off before the
-/// end of the thread [001:1804-1812]; with an analogue speed MP73 is without effect [001:3261].
+/// end of the thread [001:1804-1812]; with an analogue speed MP73 is without effect [001:3261]: the lead is the ramp from
+/// 1000 / 1500 * 9 V = 6 V with 0.1 V/ms, 60 ms.
 #[test]
 fn tapping_by_the_list_of_a_tnc_155() {
-    for (kind, lead) in [("62=1", Some(0.35)), ("62=3", None)] {
-        let mut list = ParameterList::reference(ControlModel::Tnc155);
-        for assignment in [kind, "63=1991", "67=0.3", "73=0.35"] {
-            list.assign(assignment).unwrap();
-        }
-        let settings = Settings {
-            model: ControlModel::Tnc155,
-            rules: Rules::of(&list),
-            ..Settings::default()
-        };
-        let run = run_with(
-            "TOOL DEF 1 L+0 R+3
-             TOOL CALL 1 Z S1000
-             CYCL DEF 2.0 TAPPING
-             CYCL DEF 2.1 SET UP -2
-             CYCL DEF 2.2 DEPTH -30
-             CYCL DEF 2.3 DWELL 0.2
-             CYCL DEF 2.4 F1000
-             L X+0 Y+0 Z+2 F9999 M3
-             CYCL CALL",
-            settings,
-        );
-        let call: Vec<_> = run.elements.iter().filter(|e| e.block.block == 9).collect();
-        let all: Vec<_> = call.iter().flat_map(|e| e.functions()).collect();
-        let At::BeforeEnd(early) = all[0].at else {
-            panic!("{all:?}")
-        };
-        match lead {
-            Some(lead) => close(early, lead, 1e-12),
-            None => assert!((early - 0.35).abs() > 1e-3, "{early}"),
-        }
-        let dwells: Vec<_> = call.iter().map(|e| e.dwell_s).filter(|s| *s > 0.0).collect();
+    let list = "63=1991 67=0.3 73=0.35 78=1500 79=0 86=9 168=0.1";
+    for (kind, lead) in [("62=1", 0.35), ("62=3", 0.06)] {
+        let (early, codes, dwells) = tapped(ControlModel::Tnc155, kind, list);
+        close(early, lead, 1e-12);
+        assert_eq!(codes, [5, 3, 5, 4].map(Function::M), "a left-hand thread");
         assert_eq!(dwells, [0.3, 0.2]);
     }
 }

@@ -4,12 +4,10 @@
 //! X, Y and Z travel 0 to 200 mm with one reference mark at 100 mm; each cam is closed from 180 mm on (I0,
 //! I1, I2) and the axis stands at 50 mm. Free inputs are forced with `fault input I30 1`.
 
-use std::collections::BTreeMap;
-
 use bahn_parameters::ControlModel;
-use bahn_tnc::Remembered;
+use bahn_tnc::Mode;
 
-use super::{Build, Rig, Shelf};
+use super::{Build, Rig};
 
 const PLANT: &str = r#"
 name = "bench"
@@ -20,45 +18,6 @@ step_us = 200
 acknowledgement = "I3"
 pull_in_ms = 10
 drop_out_ms = 50
-
-[axis.X]
-output = "1"
-speed = 6000
-volts = 9
-time_constant_ms = 2
-travel = [0, 200]
-start = 50
-reference_cam = { range = [180, 200], input = "I0" }
-[axis.X.encoder]
-input = "X1"
-period_um = 20
-mark = 100
-
-[axis.Y]
-output = "2"
-speed = 6000
-volts = 9
-time_constant_ms = 2
-travel = [0, 200]
-start = 50
-reference_cam = { range = [180, 200], input = "I1" }
-[axis.Y.encoder]
-input = "X2"
-period_um = 20
-mark = 100
-
-[axis.Z]
-output = "3"
-speed = 6000
-volts = 9
-time_constant_ms = 2
-travel = [0, 200]
-start = 50
-reference_cam = { range = [180, 200], input = "I2" }
-[axis.Z.encoder]
-input = "X3"
-period_um = 20
-mark = 100
 
 [keys]
 "X-" = "I128"
@@ -77,6 +36,31 @@ RAPID = "I148"
 LATCH = "I150"
 NO_FEED = "I151"
 "#;
+
+/// The axes X, Y and Z, whose cams are closed from a place to the end of the travel, and whose marks lie at a place, mm.
+pub fn three_axes(cam: u32, mark: u32) -> String {
+    let axis = |(number, letter)| {
+        format!(
+            r#"
+[axis.{letter}]
+output = "{}"
+speed = 6000
+volts = 9
+time_constant_ms = 2
+travel = [0, 200]
+start = 50
+reference_cam = {{ range = [{cam}, 200], input = "I{number}" }}
+[axis.{letter}.encoder]
+input = "X{}"
+period_um = 20
+mark = {mark}
+"#,
+            number + 1,
+            number + 1
+        )
+    };
+    (0..).zip("XYZ".chars()).map(axis).collect()
+}
 
 /// A fourth axis like the others: letter, output and encoder input X4.
 pub fn fourth(letter: char, more: &str) -> String {
@@ -182,30 +166,10 @@ const PLC: &str = "
        LN    I151
        = M2451
        =N M2467
-       L     I133
-       = M2456
-       =N M2472
-       L     I128
-       = M2457
-       =N M2473
-       L     I134
-       = M2458
-       =N M2474
-       L     I129
-       = M2459
-       =N M2475
-       L     I135
-       = M2460
-       =N M2476
-       L     I130
-       = M2461
-       =N M2477
-       L     I136
-       = M2462
-       =N M2478
-       L     I131
-       = M2463
-       =N M2479
+";
+
+/// Keys of the fifth axis, cams.
+const FIFTH_AND_CAMS: &str = "
        L     I137
        = M2524
        =N M2540
@@ -220,6 +184,10 @@ const PLC: &str = "
        = M2558
        L     I4
        = M2559
+";
+
+/// Everything is acknowledged; no spindle after an EMERGENCY STOP.
+pub const ACKNOWLEDGE: &str = "
        L     M2045
        = M2482
        L     M2043
@@ -236,18 +204,27 @@ const PLC: &str = "
 
 /// A bench whose PLC program goes on with these instructions.
 pub fn bench(instructions: &str) -> Build {
+    let plant = format!("{PLANT}{}", three_axes(180, 100));
+    let keys = axis_keys([133, 128, 134, 129, 135, 130, 136, 131]);
+    let plc = format!(
+        "{PLC}{keys}{FIFTH_AND_CAMS}{ACKNOWLEDGE}{}",
+        after_panel(instructions)
+    );
     Build {
-        model: ControlModel::Tnc415b,
-        plant: PLANT.to_owned(),
-        parameters: Vec::new(),
-        plc: format!("{PLC}{}", after_panel(instructions)),
         list: Some(PARAMETERS.to_owned()),
-        programs: Shelf::default(),
-        tools: Some(BTreeMap::new()),
-        remembered: Remembered::default(),
-        files: bahn_tnc::NcFiles::default(),
-        functions: Default::default(),
+        ..Build::new(ControlModel::Tnc415b, plant, plc)
     }
+}
+
+/// Inputs to the markers of the axis keys X+ X- Y+ Y- Z+ Z- IV+ IV-, M2456 ff., with their complements.
+pub fn axis_keys(inputs: [u16; 8]) -> String {
+    let key = |(marker, input)| {
+        format!(
+            "       L     I{input}\n       = M{marker}\n       =N M{}\n",
+            marker + 16
+        )
+    };
+    (2456..).zip(inputs).map(key).collect()
 }
 
 /// Instructions of a test; what follows its first label stands after the end of the main program.
@@ -285,6 +262,21 @@ impl Build {
 }
 
 impl Rig {
+    /// NC start of the reference run: least and greatest place of the table of X until it ends, mm.
+    pub fn way_to_mark(&mut self) -> [f64; 2] {
+        self.start();
+        let mut way = [f64::INFINITY, f64::NEG_INFINITY];
+        let end = self.control.time_us() + 60_000_000;
+        while self.control.snapshot().mode == Mode::Reference {
+            assert!(self.control.time_us() < end, "{:?}", self.control.snapshot());
+            self.cycle();
+            way = [way[0].min(self.table('X')), way[1].max(self.table('X'))];
+        }
+        self.settle();
+        assert_eq!(self.messages(), [""; 0]);
+        way
+    }
+
     /// Forces a PLC input.
     pub fn input(&mut self, name: &str, on: bool) {
         self.event(&format!("fault input {name} {}", u8::from(on)));

@@ -4,12 +4,11 @@
 //! X, Y and Z travel 0 to 200 mm with one reference mark at 150 mm; each end cam is closed from 140 mm to the end of the
 //! travel, past any limit switch, and the axis stands at 50 mm. Free inputs are forced with `fault input I30 1`.
 
-use std::collections::BTreeMap;
-
 use bahn_parameters::ControlModel;
-use bahn_tnc::{Mode, Remembered};
+use bahn_tnc::Mode;
 
-use super::{Build, Rig, Shelf};
+use super::bench::{ACKNOWLEDGE, axis_keys, three_axes};
+use super::{Build, Rig};
 
 const PLANT: &str = r#"
 name = "knee"
@@ -20,45 +19,6 @@ step_us = 200
 acknowledgement = "I8"
 pull_in_ms = 10
 drop_out_ms = 50
-
-[axis.X]
-output = "1"
-speed = 6000
-volts = 9
-time_constant_ms = 2
-travel = [0, 200]
-start = 50
-reference_cam = { range = [140, 200], input = "I0" }
-[axis.X.encoder]
-input = "X1"
-period_um = 20
-mark = 150
-
-[axis.Y]
-output = "2"
-speed = 6000
-volts = 9
-time_constant_ms = 2
-travel = [0, 200]
-start = 50
-reference_cam = { range = [140, 200], input = "I1" }
-[axis.Y.encoder]
-input = "X2"
-period_um = 20
-mark = 150
-
-[axis.Z]
-output = "3"
-speed = 6000
-volts = 9
-time_constant_ms = 2
-travel = [0, 200]
-start = 50
-reference_cam = { range = [140, 200], input = "I2" }
-[axis.Z.encoder]
-input = "X3"
-period_um = 20
-mark = 150
 
 [keys]
 "X+" = "I9"
@@ -73,21 +33,6 @@ NO_FEED = "not I18"
 RAPID = "I21"
 NC_START = "I22"
 NC_STOP = "not I23"
-"#;
-
-/// Axis IV, a rotary table with a mark at 90 degrees in each turn.
-pub const TABLE: &str = r#"
-[axis.C]
-output = "4"
-speed = 3600
-volts = 9
-time_constant_ms = 2
-start = 10
-[axis.C.encoder]
-input = "X4"
-period_um = 20
-marks_every = 360
-marks_from = 90
 "#;
 
 /// Rapid traverse 6 m/min at 9 V, kv 2, reference run with 3 m/min up; three axes, IV inhibited.
@@ -142,30 +87,10 @@ const PLC: &str = "
        L     I18
        = M2451
        =N M2467
-       L     I9
-       = M2456
-       =N M2472
-       L     I10
-       = M2457
-       =N M2473
-       L     I11
-       = M2458
-       =N M2474
-       L     I12
-       = M2459
-       =N M2475
-       L     I13
-       = M2460
-       =N M2476
-       L     I14
-       = M2461
-       =N M2477
-       L     I15
-       = M2462
-       =N M2478
-       L     I16
-       = M2463
-       =N M2479
+";
+
+/// No keys of a fifth axis; cams and pulse inhibit.
+const CAMS: &str = "
        LN    M2719
        = M2524
        =N M2540
@@ -187,33 +112,16 @@ const PLC: &str = "
        = M2618
        L     I7
        = M2619
-       L     M2045
-       = M2482
-       L     M2043
-       = M2480
-       L     M2044
-       = M2481
-       L     M2046
-       = M2483
-       L     M2047
-       = M2484
-       L     M2180
-       S     M2487
 ";
 
 /// The mill, whose PLC program goes on with these instructions.
 pub fn knee(instructions: &str) -> Build {
+    let plant = format!("{PLANT}{}", three_axes(140, 150));
+    let keys = axis_keys([9, 10, 11, 12, 13, 14, 15, 16]);
+    let plc = format!("{PLC}{keys}{CAMS}{ACKNOWLEDGE}{instructions}\n       EM\n");
     Build {
-        model: ControlModel::Tnc155,
-        plant: PLANT.to_owned(),
-        parameters: Vec::new(),
-        plc: format!("{PLC}{instructions}\n       EM\n"),
         list: Some(PARAMETERS.to_owned()),
-        programs: Shelf::default(),
-        tools: Some(BTreeMap::new()),
-        remembered: Remembered::default(),
-        files: bahn_tnc::NcFiles::default(),
-        functions: Default::default(),
+        ..Build::new(ControlModel::Tnc155, plant, plc)
     }
 }
 

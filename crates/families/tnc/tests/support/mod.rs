@@ -78,6 +78,22 @@ fn read(path: PathBuf) -> String {
 }
 
 impl Build {
+    /// A plant with a PLC program, the reference list and a tool file without tools.
+    pub fn new(model: ControlModel, plant: impl Into<String>, plc: impl Into<String>) -> Build {
+        Build {
+            model,
+            plant: plant.into(),
+            parameters: Vec::new(),
+            plc: plc.into(),
+            list: None,
+            programs: Shelf::default(),
+            tools: Some(BTreeMap::new()),
+            remembered: Remembered::default(),
+            files: NcFiles::default(),
+            functions: OwnFunctions::default(),
+        }
+    }
+
     /// The mill of `machines/mill`.
     pub fn mill() -> Build {
         let folder = folder("mill");
@@ -90,17 +106,11 @@ impl Build {
             },
             ..Tool::default()
         };
+        let (plant, plc) = (read(folder.join("plant.toml")), read(folder.join("plc/MAIN.PLC")));
         Build {
-            model: ControlModel::Tnc415b,
-            plant: read(folder.join("plant.toml")),
-            parameters: Vec::new(),
-            plc: read(folder.join("plc/MAIN.PLC")),
             list: Some(read(folder.join("parameters.mp"))),
-            programs: Shelf::default(),
             tools: Some([(1, tool(70.0, 31.5)), (2, tool(95.0, 10.0)), (3, tool(85.0, 5.0))].into()),
-            remembered: Remembered::default(),
-            files: NcFiles::default(),
-            functions: OwnFunctions::default(),
+            ..Build::new(ControlModel::Tnc415b, plant, plc)
         }
     }
 

@@ -9,9 +9,9 @@
 use std::collections::BTreeMap;
 
 use bahn_parameters::ControlModel;
-use bahn_tnc::{Remembered, Tool};
+use bahn_tnc::Tool;
 
-use crate::support::{Build, Rig, Shelf};
+use crate::support::{Build, Rig};
 
 /// Drives of 10 m/min, scales with distance-coded marks; a spindle of 6000 rpm without gears of its own.
 const PLANT: &str = r#"
@@ -90,18 +90,9 @@ const CHANGES: [&str; 9] = [
 pub fn terminals() -> Build {
     let plc = bahn_plc::standard_program(ControlModel::Tnc155).unwrap();
     Build {
-        model: ControlModel::Tnc155,
-        plant: PLANT.to_owned(),
         parameters: CHANGES.map(str::to_owned).to_vec(),
-        plc: plc.to_owned(),
-        list: None,
-        programs: Shelf::default(),
-        tools: None,
-        remembered: Remembered::default(),
-        files: bahn_tnc::NcFiles::default(),
-        functions: Default::default(),
+        ..Build::new(ControlModel::Tnc155, PLANT, plc)
     }
-    .tools([])
 }
 
 impl Build {
