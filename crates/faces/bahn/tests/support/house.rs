@@ -57,3 +57,32 @@ pub fn file(named: &str) -> PathBuf {
         .find(|folder| name(folder) == room)
         .map_or_else(|| root().join(named), |folder| folder.join(rest))
 }
+
+/// Whether a room has a test in a file of a name, or in a folder of that name.
+pub fn has_test(room: &str, file: &str, test: &str) -> bool {
+    let Some(room) = rooms().into_iter().find(|folder| name(folder) == room) else {
+        return false;
+    };
+    let mut sources = Vec::new();
+    for part in ["src", "tests"] {
+        sources_below(&room.join(part), &mut sources);
+    }
+    let head = format!("fn {test}(");
+    sources
+        .iter()
+        .filter(|path| {
+            let folder = path.parent().map(name);
+            path.file_stem().is_some_and(|stem| stem == file) || folder.is_some_and(|folder| folder == file)
+        })
+        .any(|path| fs::read_to_string(path).unwrap().contains(&head))
+}
+
+fn sources_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for path in fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
+        if path.is_dir() {
+            sources_below(&path, found);
+        } else if path.extension().is_some_and(|end| end == "rs") {
+            found.push(path);
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Roundings and chamfers between two contour elements.
 //!
 //! Decision: RND, CT and chamfer after a block that moves the tool axis beside the plane take its direction in the
-//! plane, at the depth at which it ends; one of the tool axis alone has none (also `interpreter/tests/readings.rs`)
+//! plane, at the depth at which it ends; one of the tool axis alone has none (also `interpreter/tests/suite/readings.rs`)
 
 use bahn_parameters::MessageId;
 use bahn_path::{

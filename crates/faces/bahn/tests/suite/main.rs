@@ -1,0 +1,48 @@
+//! The tests of this room as one program: what they share is built and linked once.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod any_file;
+mod channel;
+mod check_and_format;
+mod check_din;
+mod compensate;
+mod contour_deviation;
+mod convert;
+mod cuts;
+mod digitizing;
+mod din_iso;
+mod documented_commands;
+mod gantry;
+mod hard_to_break;
+mod hardware;
+mod json_refusals;
+mod machine_folder;
+mod machines;
+mod mp;
+mod nc_on_a_machine;
+mod oem_cycles;
+mod oem_eprom;
+mod oscilloscope;
+mod pallets;
+mod plc;
+mod plc_diagram;
+mod plc_examples;
+mod plc_machine;
+mod power_off;
+mod recording;
+mod run;
+mod run_rules;
+mod scope;
+mod scripts;
+mod shelf;
+mod tables;
+mod technology;
+mod test_on_a_machine;
+mod test_run;
+mod threads;
+mod tune;
+mod tune_spindle;
+mod twin;
+mod workpieces;

@@ -1,0 +1,21 @@
+//! The tests of this room as one program: what they share is built and linked once.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod after_faults;
+mod after_faults_led;
+mod executed_path;
+mod following;
+mod inserted_tool_call;
+mod knee_mill;
+mod nc_memory;
+mod oem_texts;
+mod own_functions;
+mod power_off;
+mod replay;
+mod rules_of_a_run;
+mod scripts;
+mod standard_plc;
+mod tnc355;
+mod twin;

@@ -1,0 +1,13 @@
+//! The tests of this room as one program: what they share is built and linked once.
+
+#[path = "../desk/mod.rs"]
+mod desk;
+
+mod blocks;
+mod comments;
+mod editing;
+mod iso;
+mod laws;
+mod operations;
+mod program;
+mod words;
