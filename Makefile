@@ -52,7 +52,7 @@ test: deps
 check: tools
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
-	$(CARGO) test -p bahn --locked --quiet --test tidy --test documents
+	$(CARGO) test -p bahn-house --locked --quiet
 	@for room in $$(git status --porcelain -- crates | cut -c4- | cut -d/ -f3 | sort -u | grep -v '^bahn$$'); do \
 		$(CARGO) test -p bahn-$$room --locked --quiet || exit 1; \
 	done
@@ -82,7 +82,7 @@ conformance:
 
 # docs/decisions.md, made anew from the decisions beside the code.
 decisions:
-	BAHN_WRITE_DOCS=1 $(CARGO) test -p bahn --locked --quiet --test decisions the_document
+	BAHN_WRITE_DOCS=1 $(CARGO) test -p bahn-house --locked --quiet --test decisions the_document
 
 # docs/faults.md, made anew from the table of faults.
 faults:

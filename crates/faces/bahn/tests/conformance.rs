@@ -1,14 +1,13 @@
 //! The registry of what each function does: complete, proven, shown by the commands.
 #![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
-#[path = "support/house.rs"]
-mod house;
 mod support;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use bahn_house as house;
 use bahn_parameters::conformance::{Effect, Entry, Kind, all};
 use bahn_parameters::{ControlModel, Definition, MessageId};
 use support::{Folder, holds_document};

@@ -160,19 +160,7 @@ pub fn machines() -> PathBuf {
 pub fn holds_document(document: &str, command: &str, written_by: &str) {
     let run = Folder::new().bahn(command);
     assert_eq!(run.code(), 0, "{}", run.err());
-    holds_text(document, &run.out(), written_by);
-}
-
-/// A document of the project is this text; with BAHN_WRITE_DOCS=1 it becomes so.
-pub fn holds_text(document: &str, text: &str, written_by: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../..")
-        .join(document);
-    if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
-        std::fs::write(&path, text).unwrap();
-    }
-    let written = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(written == text, "{document} is made anew by `{written_by}`");
+    bahn_house::holds_text(document, &run.out(), written_by);
 }
 
 /// Blocks with BEGIN and END.

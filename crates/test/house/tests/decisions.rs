@@ -2,15 +2,13 @@
 //! file: paragraphs that end with an empty line of the comment. `(also ..)` at the end names further files.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-#[path = "support/house.rs"]
-mod house;
-mod support;
 
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use support::holds_text;
+use bahn_house as house;
+use bahn_house::holds_text;
 
 const MARK: &str = "Decision: ";
 const HEAD: &str = "# Decisions\n\n\

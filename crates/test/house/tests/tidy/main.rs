@@ -1,8 +1,6 @@
 //! The order of the house: arrows between rooms, file lengths, unfinished work.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-#[path = "../support/house.rs"]
-mod house;
 mod names;
 mod rooms;
 mod source;
@@ -16,7 +14,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::house::root;
+use bahn_house as house;
+use bahn_house::root;
 use crate::names::{Files, Texts};
 use crate::rooms::ROOMS;
 use crate::source::{code_of, has_word, source_files};

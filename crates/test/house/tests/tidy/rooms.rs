@@ -7,6 +7,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("path", &[]),
     ("picture", &[]),
     ("browser", &[]),
+    ("house", &[]),
     ("servo", &[]),
     ("parameters", &["text", "path", "servo"]),
     ("program", &["text", "path", "parameters"]),

@@ -1,13 +1,12 @@
 //! The documents lead where they say, and the index knows them all.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-#[path = "support/house.rs"]
-mod house;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use house::root;
+use bahn_house as house;
+use bahn_house::root;
 
 /// The pages that people read, from the root of the project.
 fn pages() -> Vec<PathBuf> {

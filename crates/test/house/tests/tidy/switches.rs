@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::house;
+use bahn_house as house;
 use crate::source::{code_of, is_of_name, source_files};
 
 /// Variants with a bare truth value, and why it says enough.

@@ -1,5 +1,9 @@
-//! The folders of the rooms: each stands in that of its layer, below `crates`.
-#![allow(dead_code, reason = "each test uses a part")]
+//! The order of the house, looked at without building it: the folders of the rooms, each in that of its layer, below `crates`.
+//!
+//! ```
+//! assert!(bahn_house::rooms().iter().any(|room| bahn_house::name(room) == "motion"));
+//! ```
+#![allow(clippy::unwrap_used, reason = "tests alone ask, and what fails here fails the test")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -56,6 +60,19 @@ pub fn file(named: &str) -> PathBuf {
         .into_iter()
         .find(|folder| name(folder) == room)
         .map_or_else(|| root().join(named), |folder| folder.join(rest))
+}
+
+/// A document of the project is this text; with BAHN_WRITE_DOCS=1 it becomes so. `written_by` is the command that makes it anew.
+///
+/// # Panics
+/// When it is another text.
+pub fn holds_text(document: &str, text: &str, written_by: &str) {
+    let path = root().join(document);
+    if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
+        fs::write(&path, text).unwrap();
+    }
+    let written = fs::read_to_string(&path).unwrap_or_default();
+    assert!(written == text, "{document} is made anew by `{written_by}`");
 }
 
 /// Whether a room has a test in a file of a name, or in a folder of that name.

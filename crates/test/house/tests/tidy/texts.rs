@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::house;
+use bahn_house as house;
 use crate::source::{code_of, source_files};
 
 /// Byte order marks: who knows them decodes files by itself.
