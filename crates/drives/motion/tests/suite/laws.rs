@@ -93,7 +93,7 @@ fn an_arc_and_a_corner_within_one_cycle() {
             max_feed_mm_min: PerAxis::splat(500.0),
             acceleration_m_s2,
             radial_acceleration_m_s2: 0.304,
-            ..common::limits()
+            ..crate::common::limits()
         },
     };
     // Wherever the samples fall: each line before the arc shifts them by some of a cycle.

@@ -23,7 +23,7 @@ fn limits() -> Limits {
     };
     Limits {
         spindle,
-        ..common::limits()
+        ..crate::common::limits()
     }
 }
 
