@@ -306,12 +306,20 @@ impl Channel {
             self.desk.spindle_percent()
         };
         spindle.cycle(exchange, percent);
-        if spindle.take_wrong_speed() {
-            self.show(Message::Plain(MessageId::WrongRpm), machine);
-            let (run, mut site, _) = self.parts(machine);
-            if !run.refuse_block(&mut site) {
-                self.stop();
-            }
+        if !spindle.take_wrong_speed() {
+            return;
+        }
+        let message = Message::Plain(MessageId::WrongRpm);
+        if let Some(refused) = self.run.core.track.refused() {
+            // The run ends before it as soon as the axes stand.
+            let messages = machine.messages.of_channel(self.number);
+            messages.show(message, Some(refused.block));
+            return;
+        }
+        self.show(message, machine);
+        let (run, mut site, _) = self.parts(machine);
+        if !run.refuse_block(&mut site) {
+            self.stop();
         }
     }
 

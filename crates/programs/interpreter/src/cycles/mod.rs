@@ -116,7 +116,7 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
         ));
     };
     let words = definition.block(block.sub).to_vec();
-    match block.number {
+    let acts = match block.number {
         7 => datum_shift(c, &words),
         8 => mirror_image(c.modal, &words),
         9 => dwell(c.modal, c.pen, &words, c.settings),
@@ -126,7 +126,12 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
         26 => axis_scaling(c, &words),
         19 => working_plane(c, &words),
         _ => contour_geometry(c.modal, &words, c.settings),
+    };
+    if acts.is_err() {
+        // The run may try the block again.
+        c.modal.cycle.effective.take_back();
     }
+    acts
 }
 
 /// CYCL CALL, M99 or M89: runs the last defined machining cycle [003:4857-4881].
