@@ -4,7 +4,7 @@
 //! is turned or mirrored around it
 
 use bahn_exchange::{Exchange, signal};
-use bahn_kernel::{AxisUnit, Chain, Mover, OwnAxes, RunState, path_positions};
+use bahn_kernel::{AxisUnit, Chain, OwnAxes, RunState, path_positions};
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_path::{Direction, Position, deflection_along_axes};
@@ -113,12 +113,7 @@ pub(crate) fn axes(mode: Mode, by_wheel: bool, axes: &mut OwnAxes, exchange: &mu
         let index = unit.index;
         let slave = unit.parameters.synchronization.master.is_some();
         let moving = !unit.stands();
-        if moving || unit.mover == Mover::Reference {
-            unit.in_position = false;
-        } else if unit.servo.closed() && unit.servo.in_position() {
-            unit.in_position = true;
-        }
-        let in_position = unit.in_position && !by_wheel;
+        let in_position = unit.show_in_position() && !by_wheel;
         let values = [
             (&ENABLED, unit.servo.closed()),
             (&IN_POSITION, in_position),

@@ -488,6 +488,38 @@ fn manual_traverse_opens_the_loops() {
     assert_eq!(both, [true; 2], "{seen:?}");
 }
 
+/// Under "manual traverse" X moves alone, then with Y, then Y alone, then with Z: each block closes the loops of its axes for its
+/// time, none of which opens and closes again before it begins.
+#[test]
+fn axes_of_a_block_close_together_under_manual_traverse() {
+    let blocks = "L IX+5 R0 F1000\nL IX+5 IY+5\nL IY+5\nL IY+5 IZ+5";
+    let mut rig = terminals().program("1.H", blocks).rig();
+    rig.power_on();
+    rig.contact("manual", true);
+    rig.seconds(0.1);
+    assert_eq!(releases(&rig), "0000");
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    let mut seen = vec![releases(&rig)];
+    let end = rig.control.time_us() + 20_000_000;
+    while !rig.control.snapshot().ended || releases(&rig) != "0000" {
+        assert!(rig.control.time_us() < end, "{seen:?}");
+        rig.cycle();
+        let now = releases(&rig);
+        if seen.last() != Some(&now) {
+            seen.push(now);
+        }
+    }
+    // An axis that the block before has moved may stay closed, or open for the scan in which the next block is begun.
+    let blocks = ["1000", "1100", "0100", "0110"];
+    let only: Vec<_> = seen
+        .iter()
+        .filter(|seen| blocks.contains(&seen.as_str()))
+        .collect();
+    assert_eq!(only, blocks, "{seen:?}");
+}
+
 /// An axis that was turned by hand while its loop was open: with MP158 + 16384 it stays where it is, without it goes back to
 /// its nominal value [001:495-499]. A force of 60 N against a friction of 50 N moves
 /// 10 kg for 0.1 s: (1 m/s^2 (0.1 s)^2) / 2 = 5 mm, and 1 mm more until it stands.

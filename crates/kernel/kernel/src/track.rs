@@ -185,14 +185,15 @@ impl Track {
         axes.iter().any(|unit| moves(unit) && unit.ramps_down())
     }
 
-    /// A block wants a clamped axis: its marker M2008 ff. falls, and the PLC unclamps it [000:5407].
+    /// A block wants a clamped axis: the markers M2008 ff. of its axes fall, and the PLC unclamps them [000:5407].
     pub fn ask_to_unclamp(&self, clamped: AxisSet, axes: &mut OwnAxes) {
         let Some(element) = self.path.element() else {
             return;
         };
-        for unit in axes.iter_mut() {
-            if clamped.contains(unit.axis) && element.moves_axis(unit.axis) {
-                unit.in_position = false;
+        let wants = |axis| element.moves_axis(axis);
+        if clamped.iter().any(wants) {
+            for unit in axes.iter_mut().filter(|unit| wants(unit.axis)) {
+                unit.wait_to_begin();
             }
         }
     }
