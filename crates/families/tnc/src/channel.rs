@@ -330,7 +330,7 @@ impl Channel {
         self.desk.publish(measured, exchange);
         if old {
             let screen = machine.link.screen().filter(|_| self.test.is_none());
-            status::programming(screen, &self.run, exchange);
+            status::of_old_interface(screen, &self.run, exchange);
         }
         let axes = &mut machine.core.axes.of(self.number);
         status::axes(mode, mode == Mode::Handwheel && !old, axes, exchange);

@@ -98,12 +98,15 @@ pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
 }
 
 /// M2050 of the TNC 151/155: PROGRAMMING AND EDITING is on the screen, and not beside a program that runs [001:1039-1042].
-pub(crate) fn programming(screen: Option<ScreenCommand>, run: &ProgramRun, exchange: &mut Exchange) {
+/// M2189: a programmed stop is in force [001:1049-1053].
+pub(crate) fn of_old_interface(screen: Option<ScreenCommand>, run: &ProgramRun, exchange: &mut Exchange) {
     /// Bit of the windows of the editing screen.
     const EDITING: u16 = 1;
     let shown = screen.is_some_and(|screen| screen.windows & EDITING != 0);
     let edits = shown && !run.is_active();
     exchange.nc_put(signal::MODE_PROGRAMMING_EDITING_TNC355, edits);
+    let stopped = run.progress().state() == RunState::Stopped;
+    exchange.nc_put(signal::PROGRAMMED_STOP, stopped);
 }
 
 /// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534]. `by_wheel`: none is in position,

@@ -591,35 +591,6 @@ fn status_outputs() {
     assert_eq!(rig.contacts(4, 2), "01");
 }
 
-/// A6 opens with a programmed spindle stop and a programmed stop together, is closed in Manual [001:1046-1053].
-#[test]
-fn lock_for_spindle_on() {
-    for (blocks, open) in [
-        ("L M0", true),
-        ("L M3\nL M6", true),
-        ("L M5\nSTOP", true),
-        ("L M3\nSTOP", false),
-        ("L M3\nL M30", true),
-        ("L M5\nL IX+1 R0 F1000", false),
-    ] {
-        let mut rig = running(terminals().mp("214=0"), blocks);
-        rig.until(0.5, "it runs", |rig| rig.bit("A4"));
-        assert!(rig.bit("A6"), "{blocks}");
-        rig.until(10.0, "it stands", |rig| {
-            rig.control.snapshot().run == RunState::Stopped || rig.control.snapshot().ended
-        });
-        rig.seconds(0.1);
-        // The end of a program is a stop, too, when M02 or M30 says it.
-        assert_eq!(!rig.bit("A6"), open, "{blocks}");
-        if !rig.control.snapshot().ended {
-            rig.command("stop");
-        }
-        rig.command("mode manual");
-        rig.seconds(0.1);
-        assert!(rig.bit("A6"), "{blocks}: closed in Manual");
-    }
-}
-
 /// Path speed, mm/min.
 fn path_speed(rig: &Rig) -> f64 {
     rig.control.observe(&"path.speed".parse().unwrap())

@@ -433,9 +433,14 @@ impl Run {
         Came::On
     }
 
-    /// A block is over: the run `waits` for NC start, or goes on unless that is inhibited.
+    /// A block is over: the run `waits` for NC start, or goes on unless that is inhibited. A block that stops the program waits
+    /// once only, as at its stop.
     pub fn end_block(&mut self, waits: bool, inhibited: bool) {
-        if waits {
+        let stops = match (self.track.path.element(), self.track.path.stop_after_this()) {
+            (Some(element), Some(Stop::Barrier(Barrier::Stop { block, .. }))) => *block == element.block,
+            _ => false,
+        };
+        if waits && !stops {
             self.progress.enter(RunState::BlockEnd);
         } else if !inhibited {
             self.track.path.go_on();
