@@ -98,7 +98,8 @@ pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
 }
 
 /// M2050 of the TNC 151/155: PROGRAMMING AND EDITING is on the screen, and not beside a program that runs [001:1039-1042].
-/// M2189: a programmed stop is in force [001:1049-1053].
+/// M2189: a programmed stop is in force [001:1049-1053]. M2024: the touch probe is not ready, which no plant tells from a transmission
+/// that is not, M2022 [001:2262-2263].
 pub(crate) fn of_old_interface(screen: Option<ScreenCommand>, run: &ProgramRun, exchange: &mut Exchange) {
     /// Bit of the windows of the editing screen.
     const EDITING: u16 = 1;
@@ -107,6 +108,8 @@ pub(crate) fn of_old_interface(screen: Option<ScreenCommand>, run: &ProgramRun, 
     exchange.nc_put(signal::MODE_PROGRAMMING_EDITING_TNC355, edits);
     let stopped = run.progress().state() == RunState::Stopped;
     exchange.nc_put(signal::PROGRAMMED_STOP, stopped);
+    let not_ready = exchange.nc().bit(signal::PROBE_NOT_READY);
+    exchange.nc_put(signal::TOUCH_PROBE_READY_TNC355, not_ready);
 }
 
 /// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534]. `by_wheel`: none is in position,

@@ -1,10 +1,11 @@
 //! Machine side and channels under the clock of the kernel: how they are put together, and what is asked of both.
 
 use bahn_kernel::{Axes, AxisUnit, Cartesian, Clock, PerChannel, ServoSampler, first_ids, units};
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::{ControlModel, MessageId, Numbering};
 use bahn_plc::{Tracer, mirror_parameters};
 use bahn_servo::{IdealAxes, Plant};
 
+use crate::axis_switchover::AxisSwitchover;
 use crate::channel::{Channel, Parts};
 use crate::command::Command;
 use crate::compensation::Compensation;
@@ -31,6 +32,8 @@ pub(crate) struct Tnc {
     pub keeps: bool,
     /// The axes that the PLC may hand over.
     pub ordered: Vec<Ordered>,
+    /// Axis IV in the place of another one.
+    switchover: AxisSwitchover,
     /// The axes of a programming station.
     ideal: IdealAxes,
 }
@@ -116,6 +119,7 @@ impl Tnc {
             parameters.operation_parameters().tools.pockets,
         );
         let compensation = Compensation::at_power_on(&link.files, remembered.compensation_line);
+        let switchover = AxisSwitchover::new(model.limits().numbering == Numbering::Old, &plc);
         let parts = MachineParts {
             plc: PlcUnit::new(plc, model),
             link,
@@ -154,6 +158,7 @@ impl Tnc {
             channels,
             keeps: false,
             ordered: Vec::new(),
+            switchover,
             ideal: IdealAxes::default(),
         };
         tnc.show_power_interrupted();
@@ -217,6 +222,7 @@ impl Tnc {
         for ordered in &mut self.ordered {
             ordered.follow(&mut self.channels, &mut self.machine);
         }
+        self.switchover.follow(&mut self.channels, &mut self.machine);
         let datums_changed = std::mem::take(&mut self.machine.loaded_datums.changed);
         for channel in self.channels.iter_mut() {
             channel.prepare(datums_changed, &mut self.machine);

@@ -4,7 +4,6 @@ mod support;
 #[path = "support/terminals.rs"]
 mod terminals;
 
-use support::*;
 use terminals::*;
 
 /// A6 opens with a programmed spindle stop and a programmed stop together, is closed in Manual [001:1046-1053], in each mode in
