@@ -10,6 +10,7 @@
 
 use bahn_exchange::{Bit, Image, signal};
 use bahn_kernel::{AxisId, PerChannel};
+use bahn_parameters::{ControlModel, Numbering};
 use bahn_path::Axis;
 use bahn_plc::{PlcProgram, Subject, accesses};
 
@@ -32,8 +33,9 @@ pub(crate) struct AxisSwitchover {
 }
 
 impl AxisSwitchover {
-    /// Of a machine whose control has these markers, `old`, with its PLC program.
-    pub fn new(old: bool, plc: &PlcProgram) -> AxisSwitchover {
+    /// Of a control with a PLC program; those after the TNC 151/155 do not know the markers.
+    pub fn new(model: ControlModel, plc: &PlcProgram) -> AxisSwitchover {
+        let old = model.limits().numbering == Numbering::Old;
         let names = |subject: &Subject| matches!(subject, Subject::Bit { bit, indexed: false } if MARKERS.contains(bit));
         let mut code = plc.code.iter();
         let assigns = old && code.any(|line| accesses(&line.op).iter().any(|(subject, _)| names(subject)));

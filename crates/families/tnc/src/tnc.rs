@@ -1,7 +1,7 @@
 //! Machine side and channels under the clock of the kernel: how they are put together, and what is asked of both.
 
 use bahn_kernel::{Axes, AxisUnit, Cartesian, Clock, PerChannel, ServoSampler, first_ids, units};
-use bahn_parameters::{ControlModel, MessageId, Numbering};
+use bahn_parameters::{ControlModel, MessageId};
 use bahn_plc::{Tracer, mirror_parameters};
 use bahn_servo::{IdealAxes, Plant};
 
@@ -50,6 +50,14 @@ fn take_offsets(axes: &mut Axes, channel: usize, remembered: &Remembered) {
     for unit in axes.of(channel).iter_mut() {
         let volts = remembered.offsets_volts.get(unit.index).copied();
         unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
+    }
+}
+
+/// The line of the pallet table and the datum table that were selected.
+fn pallet(remembered: &Remembered) -> PalletSelection {
+    PalletSelection {
+        line: remembered.pallet_line,
+        datum_table: remembered.datum_table.clone(),
     }
 }
 
@@ -106,10 +114,7 @@ impl Tnc {
         let spindle = SpindleUnit::new(first_spindle(model), parameters.spindle_parameters(), timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
         link.selected_list.clone_from(&remembered.parameter_list);
-        link.pallet = PalletSelection {
-            line: remembered.pallet_line,
-            datum_table: remembered.datum_table.clone(),
-        };
+        link.pallet = pallet(&remembered);
         let loaded_datums = LoadedDatums::set_up(&mut link, &remembered.written_datums);
         let mut magazine = Magazine::new(tools, &remembered.pockets);
         let loaded_tables = LoadedTables::set_up(
@@ -119,7 +124,7 @@ impl Tnc {
             parameters.operation_parameters().tools.pockets,
         );
         let compensation = Compensation::at_power_on(&link.files, remembered.compensation_line);
-        let switchover = AxisSwitchover::new(model.limits().numbering == Numbering::Old, &plc);
+        let switchover = AxisSwitchover::new(model, &plc);
         let parts = MachineParts {
             plc: PlcUnit::new(plc, model),
             link,

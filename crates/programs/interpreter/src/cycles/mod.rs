@@ -7,6 +7,10 @@
 //! The list of the TNC 360 says "a new cycle definition" [003:4877-4881] after the two kinds of cycles that it has
 //! just told apart [003:4846-4860]; the TNC 415 names none at all and calls the last-programmed machining cycle
 //! [000:7274], which a datum shift is not
+//!
+//! Decision: CYCL CALL, M99 and M89 machine nothing where the only cycle that was defined is a macro of a TNC 151/155 that has
+//! run at its definition (DLG-DEF): the program that the manual prints calls it after that, and makes its holes once
+//! [001:2853-2869] [001:3067-3080]
 
 mod contour_cycle;
 mod contour_data;
@@ -19,7 +23,7 @@ mod machining;
 mod pockets;
 mod transformation;
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, Numbering};
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_cycle::contour_cycle;
@@ -134,8 +138,19 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
     acts
 }
 
+/// The only cycle that was defined is a macro of a TNC 151/155 that has run at its definition: the printed program calls it all the
+/// same [001:3067-3080].
+fn has_run_at_definition(c: &Context<'_>) -> bool {
+    let old = c.settings.model.limits().numbering == Numbering::Old;
+    let cycle = &c.modal.cycle;
+    old && cycle.machining.is_empty() && cycle.oem.ready().is_some()
+}
+
 /// CYCL CALL, M99 or M89: runs the last defined machining cycle [003:4857-4881].
 pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
+    if has_run_at_definition(c) {
+        return Ok(Flow::Next);
+    }
     let Some(definition) = c.modal.cycle.machining.ready().cloned() else {
         let cause = match c.modal.cycle.machining.is_empty() {
             true => Cause::NoCycle,
