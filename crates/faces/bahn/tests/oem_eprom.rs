@@ -257,9 +257,10 @@ fn macros_of_a_tnc_155_run_from_the_eprom() {
     let texts = "BOLT HOLE CIRCLE\nNUMBER OF HOLES\nRADIUS\nX CENTRE\nY CENTRE\nSET UP\nDEPTH\nFEED\n";
     folder.write("m/DIALOG.TXT", texts);
     let toml = std::fs::read_to_string(folder.path("m/machine.toml")).unwrap();
+    // The image of the PLC program is what MP77 = 1 runs.
     let toml = toml.replacen(
         "plc = \"standard\"",
-        "plc = \"standard\"\nplc_dialogues = \"DIALOG.TXT\"",
+        "plc_dialogues = \"DIALOG.TXT\"\nplc = \"MAIN.PLC\"",
         1,
     );
     folder.write("m/machine.toml", &toml);
@@ -277,7 +278,9 @@ fn macros_of_a_tnc_155_run_from_the_eprom() {
     );
     let run = folder.bahn("oem export m LIST.TXT --output EPROM.S3");
     assert_eq!(run.code(), 0, "{}", run.err());
-    std::fs::remove_file(folder.path("m/programs/99999968.H")).unwrap();
+    for ram in ["m/programs/99999968.H", "m/MAIN.PLC"] {
+        std::fs::remove_file(folder.path(ram)).unwrap();
+    }
     std::fs::create_dir_all(folder.path("m/programs/eprom")).unwrap();
     std::fs::create_dir_all(folder.path("m/eprom")).unwrap();
     std::fs::create_dir(folder.path("out")).unwrap();

@@ -302,7 +302,8 @@ fn a_tnc_155_has_its_own_words() {
         "MAIN.H",
         "BEGIN PGM MAIN MM\nL IX+1 R0 F500 M8\nL M30\nEND PGM MAIN MM\n",
     );
-    let run = "run MAIN.H --machine mill-tnc155 --fresh --no-graphics --record r.csv --signals A18,O7,E17,I18,M2045";
+    assert_eq!(folder.bahn("machine new m --model tnc155").code(), 0);
+    let run = "run MAIN.H --machine m --fresh --no-graphics --record r.csv --signals A18,O7,E17,I18,M2045";
     assert_eq!(folder.bahn(run).code(), 0);
     let table = folder.read("r.csv");
     let names = table.lines().next().unwrap();

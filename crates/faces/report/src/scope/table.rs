@@ -228,7 +228,7 @@ impl Trace {
         // A channel may stand before it, as in `2:M2045`.
         let operand = name.split_once(':').map_or(name, |(_, operand)| operand);
         let digits = operand
-            .strip_prefix(['M', 'I', 'O', 'T', 'C'])
+            .strip_prefix(['M', 'I', 'O', 'T', 'C', 'E', 'A', 'Z'])
             .unwrap_or_default();
         // The pins of "control is ready".
         let is_pin = matches!(operand, "X41/34" | "X42/4");
