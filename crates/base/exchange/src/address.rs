@@ -51,6 +51,16 @@ impl BitArea {
         }
     }
 
+    /// The letter that programs of the TNC 151, 155 and 355 use [000:16189-16202].
+    pub const fn old_letter(self) -> char {
+        match self {
+            BitArea::I => 'E',
+            BitArea::O => 'A',
+            BitArea::C => 'Z',
+            area => area.letter(),
+        }
+    }
+
     /// The area of a letter; E, A and Z are those of inputs, outputs and counters on the TNC 151, 155 and 355
     /// [000:16189-16202].
     ///

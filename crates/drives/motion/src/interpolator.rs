@@ -570,6 +570,11 @@ impl<E> Interpolator<E> {
         }
     }
 
+    /// Why the path ends with the current element; `None` when it does not, or that is not known yet.
+    pub fn stop_after_this(&self) -> Option<&Stop<E>> {
+        self.stop().filter(|_| self.ring.following().is_none())
+    }
+
     /// What comes from now on is planned within other limits; what was read already keeps its own. Overrides stay.
     pub fn set_limits(&mut self, limits: &Limits) {
         self.ring

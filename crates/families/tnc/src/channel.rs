@@ -306,12 +306,20 @@ impl Channel {
             self.desk.spindle_percent()
         };
         spindle.cycle(exchange, percent);
-        if spindle.take_wrong_speed() {
-            self.show(Message::Plain(MessageId::WrongRpm), machine);
-            let (run, mut site, _) = self.parts(machine);
-            if !run.refuse_block(&mut site) {
-                self.stop();
-            }
+        if !spindle.take_wrong_speed() {
+            return;
+        }
+        let message = Message::Plain(MessageId::WrongRpm);
+        if let Some(refused) = self.run.core.track.refused() {
+            // The run ends before it as soon as the axes stand.
+            let messages = machine.messages.of_channel(self.number);
+            messages.show(message, Some(refused.block));
+            return;
+        }
+        self.show(message, machine);
+        let (run, mut site, _) = self.parts(machine);
+        if !run.refuse_block(&mut site) {
+            self.stop();
         }
     }
 
@@ -322,7 +330,7 @@ impl Channel {
         self.desk.publish(measured, exchange);
         if old {
             let screen = machine.link.screen().filter(|_| self.test.is_none());
-            status::programming(screen, &self.run, exchange);
+            status::of_old_interface(screen, &self.run, exchange);
         }
         let axes = &mut machine.core.axes.of(self.number);
         status::axes(mode, mode == Mode::Handwheel && !old, axes, exchange);

@@ -130,7 +130,7 @@ pub(crate) fn hand_over(
 
 /// No program is on its way, or it stands where nothing after it was read: at the strobe of a function, or at a
 /// programmed stop.
-fn rests(channel: &Channel) -> bool {
+pub(crate) fn rests(channel: &Channel) -> bool {
     let path = &channel.run.core.track.path;
     let closed = matches!(
         path.stop(),

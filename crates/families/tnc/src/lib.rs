@@ -63,6 +63,7 @@
 )]
 
 mod alteration;
+mod axis_switchover;
 mod beside;
 mod channel;
 mod command;

@@ -13,8 +13,8 @@
 use bahn_exchange::{Image, signal};
 use bahn_kernel::reference::is_due;
 use bahn_kernel::{
-    AxisUnit, BrokenOff, Came, Chain, Demands, Feeder, Progress, Run, RunFault, RunState, ScanEnd, Started,
-    Track, distance_to_go,
+    AxisUnit, BrokenOff, Came, Chain, Demands, Feeder, Progress, RefusedBlock, Run, RunFault, RunState,
+    ScanEnd, Started, Track, distance_to_go,
 };
 use bahn_motion::Stop;
 use bahn_parameters::MessageId;
@@ -315,6 +315,13 @@ impl ProgramRun {
                 self.show(Message::Plain(MessageId::SelectedBlockNotAddressed), site);
             }
             Some(ScanEnd::Fault(fault)) => self.show_fault(fault, site),
+            Some(ScanEnd::Refused(refused)) => {
+                self.show_refused(refused, site);
+                self.internal_stop(site);
+                // Tool and datum are as before it: nothing after it is executed with those of the block.
+                self.source.resume_at(Some(Resume::Block(refused.sequence)));
+                return;
+            }
         }
         self.internal_stop(site);
     }
@@ -381,6 +388,10 @@ impl ProgramRun {
                 self.show(Message::Plain(MessageId::WrongRpm), site);
                 let block = self.core.track.path.element();
                 self.abort(Resume::Block(block.map_or(0, |element| element.sequence)), site);
+            }
+            Came::Refused(refused) => {
+                self.show_refused(refused, site);
+                self.abort(Resume::Block(refused.sequence), site);
             }
             Came::Stop(stop) => self.take_stop(stop, site),
         }
@@ -451,6 +462,14 @@ impl ProgramRun {
                 site.messages.show(message, block);
                 self.abort(Resume::Block(sequence), site);
             }
+        }
+    }
+
+    /// A function of a block was refused: shows why.
+    fn show_refused(&self, refused: RefusedBlock, site: &mut Site) {
+        if site.spindle.take_wrong_speed() {
+            let message = Message::Plain(MessageId::WrongRpm);
+            site.messages.show(message, Some(refused.block));
         }
     }
 

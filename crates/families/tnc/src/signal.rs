@@ -225,6 +225,16 @@ impl FromStr for Signal {
     }
 }
 
+impl Signal {
+    /// Its name with the letters of a control: E17 and A7 where inputs and outputs are E and A, `old`, I17 and O7 elsewhere.
+    pub fn name(&self, old: bool) -> String {
+        match self {
+            Signal::Bit(bit) if old => format!("{}{}", bit.area().old_letter(), bit.number()),
+            signal => signal.to_string(),
+        }
+    }
+}
+
 impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

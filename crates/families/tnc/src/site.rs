@@ -54,8 +54,8 @@ impl<'a> Site<'a> {
     }
 
     /// Outputs a function: its effect in the control, and what goes to the PLC. FN19 says whether its program is
-    /// in inches.
-    pub fn output(&mut self, function: &Function, inch: bool) {
+    /// in inches. Whether it is taken: a speed that the spindle does not have is refused.
+    pub fn output(&mut self, function: &Function, inch: bool) -> bool {
         match function {
             Function::M(code) => {
                 // Each that goes to the PLC has a code of two digits [000:7206].
@@ -64,13 +64,13 @@ impl<'a> Site<'a> {
                 }
             }
             Function::Control(function) => self.control(*function),
-            Function::Tool(call) => self.tool(call),
+            Function::Tool(call) => return self.tool(call),
             Function::NextTool(tool) => {
                 if let Some(transfer) = self.tools.define(*tool, self.magazine) {
                     self.handshakes.push(transfer);
                 }
             }
-            Function::SpindleSpeed(rpm) => self.speed(*rpm, true),
+            Function::SpindleSpeed(rpm) => return self.speed(*rpm, true),
             Function::OrientationAngle(angle) => self.spindle.set_cycle_angle(*angle, self.exchange),
             Function::Plc(values) => self.handshakes.push(Transfer::Plc {
                 values: values.map(|value| value.map(|value| value.round() as i32)),
@@ -87,6 +87,7 @@ impl<'a> Site<'a> {
             | Function::Voltage(_)
             | Function::Blank(_) => {}
         }
+        true
     }
 
     /// What acts here and never reaches the PLC.
@@ -114,11 +115,11 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// TOOL CALL: the tool goes to the PLC, then its speed; length and axis count from here on.
-    fn tool(&mut self, call: &ToolCall) {
+    /// TOOL CALL: the tool goes to the PLC, then its speed; length and axis count from here on. A wrong speed refuses the
+    /// call as a whole.
+    fn tool(&mut self, call: &ToolCall) -> bool {
         if !self.spindle.judge(call.speed_rpm, self.exchange) {
-            // The call is refused as a whole.
-            return;
+            return false;
         }
         let before = (self.chain.offsets.tool_length, self.chain.offsets.tool_axis);
         self.tools
@@ -133,7 +134,7 @@ impl<'a> Site<'a> {
                 .map_or(!axes.contains(&call.axis), |axis| *axis == call.axis);
             self.exchange.nc_put(*marker, set);
         }
-        self.speed(call.speed_rpm, true);
+        self.speed(call.speed_rpm, true)
     }
 
     /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
@@ -150,18 +151,21 @@ impl<'a> Site<'a> {
         if called && !self.magazine.may_be_called(call.tool) {
             return;
         }
-        match inserted.tool {
+        let _taken = match inserted.tool {
             Some(_) => self.tool(&call),
-            None if inserted.speed.is_some() => self.speed(call.speed_rpm, true),
-            None => {}
-        }
+            None => inserted.speed.is_none() || self.speed(call.speed_rpm, true),
+        };
     }
 
-    /// A speed: gear range or S code, by MP3010.
-    pub fn speed(&mut self, rpm: f64, tool_call: bool) {
+    /// A speed: gear range or S code, by MP3010. Whether the spindle has it.
+    pub fn speed(&mut self, rpm: f64, tool_call: bool) -> bool {
+        if !self.spindle.judge(rpm, self.exchange) {
+            return false;
+        }
         if let Some(transfer) = self.spindle.program(rpm, tool_call, self.exchange) {
             self.handshakes.push(transfer);
         }
+        true
     }
 
     /// The message of an axis that a block would lead beyond its limit.
@@ -213,8 +217,8 @@ impl Outputs for PathOutputs<'_, '_> {
         self.q_transfer.strobe();
     }
 
-    fn output(&mut self, function: &Function) {
-        self.site.output(function, self.inch);
+    fn output(&mut self, function: &Function) -> bool {
+        self.site.output(function, self.inch)
     }
 
     fn voltage(&mut self, order: Voltage, sequence: u64) {

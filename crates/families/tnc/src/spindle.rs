@@ -204,12 +204,9 @@ impl SpindleUnit {
         SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.drive.parameters.codes))
     }
 
-    /// A programmed speed: the gear range or the S code that goes to the PLC, when one does. A speed that
-    /// the spindle does not have is refused: M2092 [000:5653-5656].
+    /// A programmed speed that the spindle [has](SpindleUnit::judge): the gear range or the S code that goes to the PLC, when
+    /// one does.
     pub fn program(&mut self, rpm: f64, tool_call: bool, exchange: &mut Exchange) -> Option<Transfer> {
-        if !self.judge(rpm, exchange) {
-            return None;
-        }
         self.programmed_rpm = rpm;
         match self.drive.parameters.output {
             SpindleOutput::None => None,

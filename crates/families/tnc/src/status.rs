@@ -4,7 +4,7 @@
 //! is turned or mirrored around it
 
 use bahn_exchange::{Exchange, signal};
-use bahn_kernel::{AxisUnit, Chain, Mover, OwnAxes, RunState, path_positions};
+use bahn_kernel::{AxisUnit, Chain, OwnAxes, RunState, path_positions};
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::machining::MeasuringProbe;
 use bahn_path::{Direction, Position, deflection_along_axes};
@@ -98,12 +98,18 @@ pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
 }
 
 /// M2050 of the TNC 151/155: PROGRAMMING AND EDITING is on the screen, and not beside a program that runs [001:1039-1042].
-pub(crate) fn programming(screen: Option<ScreenCommand>, run: &ProgramRun, exchange: &mut Exchange) {
+/// M2189: a programmed stop is in force [001:1049-1053]. M2024: the touch probe is not ready, which no plant tells from a transmission
+/// that is not, M2022 [001:2262-2263].
+pub(crate) fn of_old_interface(screen: Option<ScreenCommand>, run: &ProgramRun, exchange: &mut Exchange) {
     /// Bit of the windows of the editing screen.
     const EDITING: u16 = 1;
     let shown = screen.is_some_and(|screen| screen.windows & EDITING != 0);
     let edits = shown && !run.is_active();
     exchange.nc_put(signal::MODE_PROGRAMMING_EDITING_TNC355, edits);
+    let stopped = run.progress().state() == RunState::Stopped;
+    exchange.nc_put(signal::PROGRAMMED_STOP, stopped);
+    let not_ready = exchange.nc().bit(signal::PROBE_NOT_READY);
+    exchange.nc_put(signal::TOUCH_PROBE_READY_TNC355, not_ready);
 }
 
 /// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534]. `by_wheel`: none is in position,
@@ -113,12 +119,7 @@ pub(crate) fn axes(mode: Mode, by_wheel: bool, axes: &mut OwnAxes, exchange: &mu
         let index = unit.index;
         let slave = unit.parameters.synchronization.master.is_some();
         let moving = !unit.stands();
-        if moving || unit.mover == Mover::Reference {
-            unit.in_position = false;
-        } else if unit.servo.closed() && unit.servo.in_position() {
-            unit.in_position = true;
-        }
-        let in_position = unit.in_position && !by_wheel;
+        let in_position = unit.show_in_position() && !by_wheel;
         let values = [
             (&ENABLED, unit.servo.closed()),
             (&IN_POSITION, in_position),

@@ -5,6 +5,7 @@ use bahn_parameters::{ControlModel, MessageId};
 use bahn_plc::{Tracer, mirror_parameters};
 use bahn_servo::{IdealAxes, Plant};
 
+use crate::axis_switchover::AxisSwitchover;
 use crate::channel::{Channel, Parts};
 use crate::command::Command;
 use crate::compensation::Compensation;
@@ -31,6 +32,8 @@ pub(crate) struct Tnc {
     pub keeps: bool,
     /// The axes that the PLC may hand over.
     pub ordered: Vec<Ordered>,
+    /// Axis IV in the place of another one.
+    switchover: AxisSwitchover,
     /// The axes of a programming station.
     ideal: IdealAxes,
 }
@@ -47,6 +50,14 @@ fn take_offsets(axes: &mut Axes, channel: usize, remembered: &Remembered) {
     for unit in axes.of(channel).iter_mut() {
         let volts = remembered.offsets_volts.get(unit.index).copied();
         unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
+    }
+}
+
+/// The line of the pallet table and the datum table that were selected.
+fn pallet(remembered: &Remembered) -> PalletSelection {
+    PalletSelection {
+        line: remembered.pallet_line,
+        datum_table: remembered.datum_table.clone(),
     }
 }
 
@@ -103,10 +114,7 @@ impl Tnc {
         let spindle = SpindleUnit::new(first_spindle(model), parameters.spindle_parameters(), timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
         link.selected_list.clone_from(&remembered.parameter_list);
-        link.pallet = PalletSelection {
-            line: remembered.pallet_line,
-            datum_table: remembered.datum_table.clone(),
-        };
+        link.pallet = pallet(&remembered);
         let loaded_datums = LoadedDatums::set_up(&mut link, &remembered.written_datums);
         let mut magazine = Magazine::new(tools, &remembered.pockets);
         let loaded_tables = LoadedTables::set_up(
@@ -116,6 +124,7 @@ impl Tnc {
             parameters.operation_parameters().tools.pockets,
         );
         let compensation = Compensation::at_power_on(&link.files, remembered.compensation_line);
+        let switchover = AxisSwitchover::new(model, &plc);
         let parts = MachineParts {
             plc: PlcUnit::new(plc, model),
             link,
@@ -154,6 +163,7 @@ impl Tnc {
             channels,
             keeps: false,
             ordered: Vec::new(),
+            switchover,
             ideal: IdealAxes::default(),
         };
         tnc.show_power_interrupted();
@@ -217,6 +227,7 @@ impl Tnc {
         for ordered in &mut self.ordered {
             ordered.follow(&mut self.channels, &mut self.machine);
         }
+        self.switchover.follow(&mut self.channels, &mut self.machine);
         let datums_changed = std::mem::take(&mut self.machine.loaded_datums.changed);
         for channel in self.channels.iter_mut() {
             channel.prepare(datums_changed, &mut self.machine);

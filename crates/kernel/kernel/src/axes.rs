@@ -98,6 +98,15 @@ impl Axes {
         true
     }
 
+    /// Gives an axis another slot of its channel. Whoever does so for several leaves no slot to two of them.
+    pub fn rename(&mut self, id: AxisId, slot: Axis) {
+        if let Some(unit) = self.with_id_mut(id) {
+            unit.axis = slot;
+            unit.mover = Mover::None;
+            unit.left_at = None;
+        }
+    }
+
     /// An axis may go to another channel: it stands, and moves for nobody but a path; it is coupled to none.
     pub fn may_leave(&self, id: AxisId) -> bool {
         let mut couplings = self.units.iter().filter_map(|unit| unit.coupling.as_ref());

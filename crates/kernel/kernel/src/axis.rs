@@ -130,6 +130,8 @@ pub struct AxisUnit {
     pub max_lag: f64,
     /// Status marker M2008 ff.: in position after a movement.
     pub in_position: bool,
+    /// What moves it next waits for another axis.
+    awaits_other: bool,
     /// Software limits of the active traverse range with the AXIS LIMIT of MOD, least and greatest.
     pub limits: [f64; 2],
     /// At a software limit.
@@ -176,6 +178,7 @@ impl AxisUnit {
             stood_cycles: 0,
             max_lag: 0.0,
             in_position: true,
+            awaits_other: false,
             limits: [f64::NEG_INFINITY, f64::INFINITY],
             at_limit: None,
             halted: false,
@@ -297,6 +300,23 @@ impl AxisUnit {
         if !self.servo.closed() {
             self.in_position = false;
         }
+    }
+
+    /// Several axes are wanted together, one of which is clamped: the markers M2008 ff. of all of them fall, so that the PLC clamps
+    /// none that it has unclamped while it unclamps another. To be said as long as they wait.
+    pub fn wait_to_begin(&mut self) {
+        (self.in_position, self.awaits_other) = (false, true);
+    }
+
+    /// Status marker M2008 ff. before a PLC scan.
+    pub fn show_in_position(&mut self) -> bool {
+        let waits = std::mem::take(&mut self.awaits_other);
+        if !self.stands() || self.mover == Mover::Reference {
+            self.in_position = false;
+        } else if self.servo.closed() && self.servo.in_position() && !waits {
+            self.in_position = true;
+        }
+        self.in_position
     }
 
     /// Stands at once where it is: the loop was opened, or the feed enable withdrawn.

@@ -227,13 +227,15 @@ impl Leaning {
 
 /// The axes with a part in the movement are free to move.
 fn is_able(axes: &mut OwnAxes, part: impl Fn(Axis) -> f64) -> bool {
-    let mut able = true;
-    for unit in axes.iter_mut().filter(|unit| part(unit.axis) != 0.0) {
-        let held = unit.can_be_driven();
-        if !held {
-            unit.ask_to_unclamp();
+    let (mut able, mut clamped) = (true, false);
+    for unit in axes.iter().filter(|unit| part(unit.axis) != 0.0) {
+        clamped |= !unit.servo.closed();
+        able &= unit.can_be_driven() && unit.is_free() && matches!(unit.mover, Mover::None | Mover::Manual);
+    }
+    if clamped {
+        for unit in axes.iter_mut().filter(|unit| part(unit.axis) != 0.0) {
+            unit.wait_to_begin();
         }
-        able &= held && unit.is_free() && matches!(unit.mover, Mover::None | Mover::Manual);
     }
     able
 }

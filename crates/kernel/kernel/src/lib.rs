@@ -97,6 +97,6 @@ pub use straight::Straight;
 pub use stylus_lead::StylusLead;
 pub use superimposing::{Superimposed, Wheels};
 pub use thread::{Leading, Preparation, Standing, Tapping, Taps, is_floating, is_rigid};
-pub use track::{LOOK_AHEAD, Outputs, Track, distance_to_go};
+pub use track::{LOOK_AHEAD, Outputs, RefusedBlock, Track, distance_to_go};
 pub use voltage::{Along, VoltageOutput};
 pub use way_back::WayBack;

@@ -24,7 +24,7 @@ use crate::block_search::{PassOver, Passed, Search, search};
 use crate::feeder::{Feeder, RunFault};
 use crate::kinematics::Offsets;
 use crate::run_family::{Acting, RunFamily};
-use crate::track::Track;
+use crate::track::{RefusedBlock, Track};
 
 /// Steps of a search in one call of prepare at most.
 const BUDGET: usize = 1000;
@@ -36,6 +36,8 @@ enum Restore {
     Scan {
         block: u32,
         functions: VecDeque<TechnologyFunction>,
+        /// The block that gives them.
+        giver: RefusedBlock,
         /// A dwell time lasts until then, µs since power-on.
         dwell_until_us: u64,
     },
@@ -56,6 +58,8 @@ pub enum ScanEnd {
     NotAddressed,
     /// A block is refused.
     Fault(RunFault),
+    /// A function of a block is refused, and its block with it.
+    Refused(RefusedBlock),
 }
 
 /// The return to the contour that is on its way, if one is.
@@ -132,7 +136,7 @@ impl Restoration {
         match search(&mut scan, BUDGET) {
             Ok(Search::Found | Search::Open) => None,
             Ok(Search::Missing) => Some(ScanEnd::NotAddressed),
-            Err(fault) => Some(ScanEnd::Fault(fault)),
+            Err(end) => Some(end),
         }
     }
 
@@ -192,12 +196,13 @@ struct Scan<'s, 'b> {
 }
 
 impl PassOver for Scan<'_, '_> {
-    type Fault = RunFault;
+    type Fault = ScanEnd;
 
-    fn pass(&mut self) -> Result<Passed, RunFault> {
+    fn pass(&mut self) -> Result<Passed, ScanEnd> {
         let Some(Restore::Scan {
             block,
             functions,
+            giver,
             dwell_until_us,
         }) = &mut self.state
         else {
@@ -211,8 +216,10 @@ impl PassOver for Scan<'_, '_> {
         let block = *block;
         if let Some(function) = functions.pop_front() {
             self.family.begin();
-            self.family.output(&function.function);
-            return Ok(Passed::Block);
+            return match self.family.output(&function.function) {
+                true => Ok(Passed::Block),
+                false => Err(ScanEnd::Refused(*giver)),
+            };
         }
         match self.feeder.next() {
             Step::Element(element) => {
@@ -230,13 +237,13 @@ impl PassOver for Scan<'_, '_> {
             Step::Barrier(_) => self.feeder.resume(self.family.answer()),
             Step::Starved => return Ok(Passed::Waits),
             Step::End => return Ok(Passed::End),
-            Step::Error(fault) => return Err(fault),
+            Step::Error(fault) => return Err(ScanEnd::Fault(fault)),
         }
         Ok(Passed::Block)
     }
 
     /// The programs of a file are one for the reader.
-    fn begin_next(&mut self) -> Result<bool, RunFault> {
+    fn begin_next(&mut self) -> Result<bool, ScanEnd> {
         Ok(false)
     }
 }
@@ -261,6 +268,7 @@ impl Scan<'_, '_> {
         let at = self.family.acting();
         if let Some(Restore::Scan {
             functions,
+            giver,
             dwell_until_us,
             ..
         }) = &mut self.state
@@ -269,6 +277,7 @@ impl Scan<'_, '_> {
                 *dwell_until_us = at.now.us + (element.dwell_s * 1e6) as u64;
             }
             functions.extend(element.functions().iter().cloned());
+            (giver.block, giver.sequence) = (element.block, element.sequence);
         }
         pass_tool_change(element, self.feeder, self.rules, &at);
     }
@@ -278,6 +287,7 @@ fn scan_to(block: u32) -> Restore {
     Restore::Scan {
         block,
         functions: VecDeque::new(),
+        giver: RefusedBlock::default(),
         dwell_until_us: 0,
     }
 }

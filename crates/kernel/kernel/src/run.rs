@@ -15,7 +15,7 @@ use crate::progress::{Progress, RunState};
 use crate::restore::{Restoration, ScanEnd};
 use crate::run_family::{Acting, Demands, RunFamily};
 use crate::thread::{self, Preparation, Tapping, Taps, is_floating, is_rigid};
-use crate::track::Track;
+use crate::track::{RefusedBlock, Track};
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
@@ -69,6 +69,9 @@ pub enum Came {
     BlockEnd,
     /// A thread cannot begin: its spindle cannot be led.
     NoThread,
+    /// The path stands at a block one of whose functions was refused, or after it where the axes did not stand for it: the run
+    /// is to end before that block.
+    Refused(RefusedBlock),
     /// What the program says after its path: the end, a fault, or what the family does before it answers.
     Stop(Stop<RunFault>),
 }
@@ -244,6 +247,7 @@ impl Run {
         at: &Acting,
         answered: impl FnOnce(&mut Feeder, bool),
     ) {
+        let refused = self.track.refused();
         let path = &mut self.track.path;
         if let Some(recalled) = path.take_recalled() {
             feeder.put_back(recalled.into_iter());
@@ -261,7 +265,8 @@ impl Run {
             answered(feeder, probed);
         }
         if let Some(element) = path.element() {
-            feeder.forget_before(element.sequence);
+            // The next start goes back before a block that is refused.
+            feeder.forget_before(refused.map_or(element.sequence, |refused| refused.sequence));
         }
         feeder.allow_work();
         let before = feeder.elements_read();
@@ -370,6 +375,7 @@ impl Run {
             // taken.
             hold: stopped
                 || demands.crowded
+                || self.track.refused().is_some()
                 || coupled && !at.spindle.is_enabled()
                 || self.track.ramps_down(at.axes),
             single_block: demands.single_block || on || demands.read_in_inhibited,
@@ -391,6 +397,11 @@ impl Run {
     ) -> Came {
         let all_output = self.track.has_output_all() && family.has_transferred();
         let mut at = family.acting();
+        if let Some(refused) = self.track.refused()
+            && self.track.stands(at.axes)
+        {
+            return Came::Refused(refused);
+        }
         let done = drive.in_position && all_output && self.restoration.is_over(at.axes);
         match state {
             State::Gate(_) if all_output && !demands.positions => {
@@ -422,9 +433,14 @@ impl Run {
         Came::On
     }
 
-    /// A block is over: the run `waits` for NC start, or goes on unless that is inhibited.
+    /// A block is over: the run `waits` for NC start, or goes on unless that is inhibited. A block that stops the program waits
+    /// once only, as at its stop.
     pub fn end_block(&mut self, waits: bool, inhibited: bool) {
-        if waits {
+        let stops = match (self.track.path.element(), self.track.path.stop_after_this()) {
+            (Some(element), Some(Stop::Barrier(Barrier::Stop { block, .. }))) => *block == element.block,
+            _ => false,
+        };
+        if waits && !stops {
             self.progress.enter(RunState::BlockEnd);
         } else if !inhibited {
             self.track.path.go_on();

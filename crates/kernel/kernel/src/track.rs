@@ -10,7 +10,7 @@
 use std::collections::VecDeque;
 
 use bahn_motion::{FunctionOutput, Interpolator, Limits};
-use bahn_path::{Axis, AxisSet, Curve, FeedRate, Function, PathElement, Position, Voltage};
+use bahn_path::{Axis, AxisSet, BlockRef, Curve, FeedRate, Function, PathElement, Position, Voltage};
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -31,11 +31,20 @@ pub trait Outputs {
     /// A block gives its functions now; they follow in their order.
     fn begin(&mut self);
 
-    /// The block that was begun gives a function.
-    fn output(&mut self, function: &Function);
+    /// The block that was begun gives a function. Whether it is taken: one that is not is refused, and its block with it.
+    fn output(&mut self, function: &Function) -> bool;
 
     /// An order for the voltage along the path, by the block with a sequence.
     fn voltage(&mut self, order: Voltage, sequence: u64);
+}
+
+/// A block is refused by who takes its functions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RefusedBlock {
+    /// Program and number of the block.
+    pub block: BlockRef,
+    /// Its place in the order of execution.
+    pub sequence: u64,
 }
 
 /// The path of a run with what follows it.
@@ -45,6 +54,8 @@ pub struct Track {
     pub path: Interpolator<RunFault>,
     /// Functions on the path that wait for the axes to be in position.
     waiting: VecDeque<FunctionOutput>,
+    /// A function was refused: the path goes no farther, and the run ends before its block.
+    refused: Option<RefusedBlock>,
     /// Position of the path in the last cycle.
     last: Option<Position>,
     /// The path speed, mm/s.
@@ -63,6 +74,7 @@ impl Track {
         Track {
             path: Interpolator::new(limits, LOOK_AHEAD),
             waiting: VecDeque::new(),
+            refused: None,
             last: None,
             speed: 0.0,
             feed: 0.0,
@@ -131,12 +143,18 @@ impl Track {
     /// Nothing waits any more, and nothing moves.
     pub fn break_off(&mut self) {
         self.waiting.clear();
+        self.refused = None;
         self.speed = 0.0;
     }
 
-    /// No function waits to be output.
+    /// No function waits to be output, and none was refused.
     pub fn has_output_all(&self) -> bool {
-        self.waiting.is_empty()
+        self.waiting.is_empty() && self.refused.is_none()
+    }
+
+    /// The block one of whose functions was refused, until the run is broken off.
+    pub fn refused(&self) -> Option<RefusedBlock> {
+        self.refused
     }
 
     /// No axis moves along the path.
@@ -167,14 +185,15 @@ impl Track {
         axes.iter().any(|unit| moves(unit) && unit.ramps_down())
     }
 
-    /// A block wants a clamped axis: its marker M2008 ff. falls, and the PLC unclamps it [000:5407].
+    /// A block wants a clamped axis: the markers M2008 ff. of its axes fall, and the PLC unclamps them [000:5407].
     pub fn ask_to_unclamp(&self, clamped: AxisSet, axes: &mut OwnAxes) {
         let Some(element) = self.path.element() else {
             return;
         };
-        for unit in axes.iter_mut() {
-            if clamped.contains(unit.axis) && element.moves_axis(unit.axis) {
-                unit.in_position = false;
+        let wants = |axis| element.moves_axis(axis);
+        if clamped.iter().any(wants) {
+            for unit in axes.iter_mut().filter(|unit| wants(unit.axis)) {
+                unit.wait_to_begin();
             }
         }
     }
@@ -283,17 +302,24 @@ impl Track {
 
     fn output_waiting(&mut self, outputs: &mut dyn Outputs, settled: bool) {
         while let Some(output) = self.waiting.front().copied() {
-            if output.waits && !settled {
+            if output.waits && !settled || self.refused.is_some() {
                 return;
             }
             self.waiting.pop_front();
             outputs.begin();
-            for function in self.path.functions(&output) {
-                match function.function {
-                    Function::Voltage(order) => outputs.voltage(order, output.sequence),
-                    _ => outputs.output(&function.function),
+            let mut functions = self.path.functions(&output);
+            // What comes after a function that is refused does not go out.
+            let taken = functions.all(|function| match function.function {
+                Function::Voltage(order) => {
+                    outputs.voltage(order, output.sequence);
+                    true
                 }
-            }
+                _ => outputs.output(&function.function),
+            });
+            self.refused = (!taken).then_some(RefusedBlock {
+                block: output.block,
+                sequence: output.sequence,
+            });
         }
     }
 

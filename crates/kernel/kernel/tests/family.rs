@@ -25,6 +25,8 @@ const CLOSES_US: u64 = 250_000;
 const SCAN_US: u64 = 20_000;
 /// The function that closes it.
 const CLAMP: u16 = 40;
+/// A function that the control does not have.
+const UNKNOWN: u16 = 41;
 
 /// The clamp, and what is told to it.
 #[derive(Default)]
@@ -48,10 +50,11 @@ struct Site<'a> {
 impl Outputs for Site<'_> {
     fn begin(&mut self) {}
 
-    fn output(&mut self, function: &Function) {
+    fn output(&mut self, function: &Function) -> bool {
         if *function == Function::M(CLAMP) {
             self.clamp.asked = true;
         }
+        *function != Function::M(UNKNOWN)
     }
 
     fn voltage(&mut self, _: Voltage, _: u64) {}
@@ -98,6 +101,8 @@ struct Bench {
     by_hand: Option<f64>,
     /// Why the run has ended, when it was not its program.
     fault: Option<RunFault>,
+    /// The block that was refused, by its place in the order of execution.
+    refused: Option<u64>,
 }
 
 impl Bench {
@@ -168,6 +173,7 @@ impl Bench {
             single: false,
             by_hand: None,
             fault: None,
+            refused: None,
         }
     }
 
@@ -268,6 +274,10 @@ impl Bench {
             Came::On => {}
             Came::BlockEnd => run.end_block(demands.single_block, false),
             Came::NoThread => unreachable!("no program has a thread"),
+            Came::Refused(refused) => {
+                run.break_off(&mut site.acting());
+                self.refused = Some(refused.sequence);
+            }
             Came::Stop(stop) => self.take(stop),
         }
     }
@@ -500,6 +510,16 @@ fn what_leaves_the_traverse_range_is_refused() {
         "{:?}",
         rig.bench.fault
     );
+    assert!((rig.at()[0] - 20.0).abs() < 0.01);
+}
+
+/// A function that the control does not have, before X moves to 60: its block does not begin, and the one after it neither.
+#[test]
+fn a_function_that_is_refused_refuses_its_block() {
+    let mut rig = Rig::on(&[(20.0, 0.0, None), (60.0, 0.0, Some(UNKNOWN)), (90.0, 0.0, None)]);
+    rig.start();
+    rig.until(|rig| rig.bench.refused.is_some());
+    assert_eq!(rig.bench.refused, Some(2));
     assert!((rig.at()[0] - 20.0).abs() < 0.01);
 }
 

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use bahn_parameters::{ControlModel, Numbering};
 use bahn_tnc::{AxisSignal, ChannelView, Control, Signal, SignalError, split_channel};
 
 use crate::operable::Operable;
@@ -220,6 +221,15 @@ impl fmt::Display for Observed {
 }
 
 impl Observed {
+    /// Its name in the words of a control, which the TNC 151/155 has of its own for inputs and outputs [001:477-482].
+    pub fn name(&self, model: ControlModel) -> String {
+        let old = model.limits().numbering == Numbering::Old;
+        match &self.what {
+            Observable::Signal(signal) if self.channel == 0 => signal.name(old),
+            _ => self.to_string(),
+        }
+    }
+
     /// Its value now; of a channel or an axis that is not there 0.
     pub fn value(&self, control: &Control, plant: &dyn Operable) -> f64 {
         let channel = control.channel(self.channel);

@@ -97,6 +97,13 @@ impl Collector {
         }
     }
 
+    /// The block that was taken last is refused: it has still to come.
+    pub fn take_back(&mut self) {
+        if let Some(definition) = &mut self.definition {
+            definition.blocks.pop();
+        }
+    }
+
     /// Whether the signs of the definition are to be warned of now: once, however often it is called.
     pub fn report_sign(&mut self) -> bool {
         !std::mem::replace(&mut self.sign_reported, true)

@@ -305,7 +305,7 @@ fn recording(
         wanted.signals.clone()
     };
     let every_us = wanted.every.map_or(0, |ms| u64::from(ms) * 1000);
-    Ok(Some(Recording::create(path, signals, every_us)?))
+    Ok(Some(Recording::create(path, signals, every_us, control.model())?))
 }
 
 /// Writes all files and the report.

@@ -246,3 +246,70 @@ fn wrong_lists_are_refused() {
         );
     }
 }
+
+/// The macros of a TNC 155, with the PLC program and the texts of their dialogues: they go into an EPROM, come out of it, and the
+/// machine runs the bolt circle from there, with nothing of it in its program memory: 28 strokes [001:2962-3021].
+#[test]
+fn macros_of_a_tnc_155_run_from_the_eprom() {
+    let folder = Folder::new();
+    assert_eq!(folder.bahn("machine new m --model tnc155").code(), 0);
+    let texts = "BOLT HOLE CIRCLE\nNUMBER OF HOLES\nRADIUS\nX CENTRE\nY CENTRE\nSET UP\nDEPTH\nFEED\n";
+    folder.write("m/DIALOG.TXT", texts);
+    let toml = std::fs::read_to_string(folder.path("m/machine.toml")).unwrap();
+    // The image of the PLC program is what MP77 = 1 runs.
+    let toml = toml.replacen(
+        "plc = \"standard\"",
+        "plc_dialogues = \"DIALOG.TXT\"\nplc = \"MAIN.PLC\"",
+        1,
+    );
+    folder.write("m/machine.toml", &toml);
+    folder.write("m/MAIN.PLC", folder.bahn("plc standard").out());
+    let bolts = "DLG-DEF 0/1/2/3/4/5/6/7/ / / /\nFN 1 : Q6 = + Q6 + +Q5\nFN 4 : Q50 = +360.000 DIV +Q1\nFN 0 : Q60 = +0.000\n\
+         CC X+Q3 Y+Q4\nLBL 11\nLP PR+Q2 PA+Q60 R0 F15999 M\nL IZ+Q6 R0 FQ7 M\nFN 1 : Q90 = +Q90 + +1\nL IZ-Q6 R0 F15999 M\n\
+         FN 1 : Q60 = +Q60 + +Q50\nFN 12 : IF +Q60 LT +361.000 GOTO LBL 11";
+    folder.write(
+        "m/programs/99999968.H",
+        format!("BEGIN PGM 99999968 MM P\n{bolts}\nEND PGM 99999968 MM P\n"),
+    );
+    folder.write(
+        "LIST.TXT",
+        "IDENT  155 000 01\nLOAD   MAIN.PLC /M\nLOAD   999 999 68.H\nLOAD   DIALOG.TXT\n",
+    );
+    let run = folder.bahn("oem export m LIST.TXT --output EPROM.S3");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    for ram in ["m/programs/99999968.H", "m/MAIN.PLC"] {
+        std::fs::remove_file(folder.path(ram)).unwrap();
+    }
+    std::fs::create_dir_all(folder.path("m/programs/eprom")).unwrap();
+    std::fs::create_dir_all(folder.path("m/eprom")).unwrap();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    assert_eq!(folder.bahn("oem import EPROM.S3 --to out").code(), 0);
+    for (from, to) in [
+        ("99999968.H", "m/programs/eprom/99999968.H"),
+        ("MAIN.PLC", "m/eprom/MAIN.PLC"),
+    ] {
+        std::fs::copy(folder.path(&format!("out/{from}")), folder.path(to)).unwrap();
+    }
+    let list = folder.bahn("oem list m");
+    assert_eq!(list.code(), 0, "{}{}", list.out(), list.err());
+    assert!(
+        list.out()
+            .starts_with("68 BOLT HOLE CIRCLE: EPROM, acts at its definition"),
+        "{}",
+        list.out()
+    );
+    folder.write(
+        "1000.H",
+        "BEGIN PGM 1000 MM\nTOOL DEF 1 L+0 R+2\nTOOL CALL 1 Z S500\nL Z+20 R0 F5000 M03\nCYCL DEF 68.0 BOLT HOLE CIRCLE\n\
+         CYCL DEF 68.1 Q1 = +27,000 Q2 = +40,000 Q3 = +50,000\nCYCL DEF 68.2 Q4 = +50,000 Q5 = -2,000 Q6 = -20,000\n\
+         CYCL DEF 68.3 Q7 = +2000,000 Q8 = Q9 =\nCYCL CALL M\nL Z+30 R0 F5000\nEND PGM 1000 MM\n",
+    );
+    let run =
+        folder.bahn("run 1000.H --machine m --fresh --no-graphics --record r.csv --signals Q90 --every 20");
+    assert_eq!(run.code(), 0, "{}{}", run.out(), run.err());
+    let table = folder.read("r.csv");
+    let strokes = table
+        .lines()
+        .filter_map(|line| line.split(',').nth(1)?.parse::<f64>().ok());
+    assert_eq!(strokes.fold(0.0, f64::max), 28.0);
+}

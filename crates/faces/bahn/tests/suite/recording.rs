@@ -291,3 +291,32 @@ fn what_is_not_there_is_refused() {
         assert!(run.code() == 2 && run.err().contains(said), "{}", run.err());
     }
 }
+
+/// Inputs and outputs of a TNC 155 are E and A, in the first line of the table and beside a pulse, however they were asked for; a
+/// drawing takes both names.
+#[test]
+fn a_tnc_155_has_its_own_words() {
+    let folder = Folder::new();
+    folder.write(
+        "MAIN.H",
+        "BEGIN PGM MAIN MM\nL IX+1 R0 F500 M8\nL M30\nEND PGM MAIN MM\n",
+    );
+    assert_eq!(folder.bahn("machine new m --model tnc155").code(), 0);
+    let run = "run MAIN.H --machine m --fresh --no-graphics --record r.csv --signals A18,O7,E17,I18,M2045";
+    assert_eq!(folder.bahn(run).code(), 0);
+    let table = folder.read("r.csv");
+    let names = table.lines().next().unwrap();
+    assert_eq!(names, "time [s],A18,A7,E17,E18,M2045,event");
+    // M08 is on A18 while its code is on the lines.
+    let recorded = Recorded::of(&table);
+    assert!(recorded.column("A18").contains(&1.0));
+    for names in ["A18,E17", "O18,I17"] {
+        let scope = folder.bahn(&format!("scope r.csv --signals {names} --format json"));
+        assert_eq!(scope.code(), 0, "{}", scope.err());
+        assert!(
+            scope.out().contains("\"A18\"") && scope.out().contains("\"E17\""),
+            "{}",
+            scope.out()
+        );
+    }
+}

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use bahn_host::{Edges, Observable, Observed, Operand};
 use bahn_machine::Machine;
+use bahn_parameters::ControlModel;
 use bahn_plc::Tracer;
 use bahn_tnc::{AxisSignal, ChannelView, Control, RunState, Signal};
 
@@ -17,6 +18,8 @@ pub struct Recording {
     path: PathBuf,
     file: NewFile,
     signals: Vec<Observed>,
+    /// What the control calls them.
+    names: Vec<String>,
     /// Operands of the PLC among them, inside its scans.
     edges: Edges,
     every_us: u64,
@@ -31,12 +34,18 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Begins a table; `every_us` of 0 records every contour cycle.
-    pub fn create(path: &Path, signals: Vec<Observed>, every_us: u64) -> Result<Recording, ReportError> {
+    /// Begins a table in the words of a control; `every_us` of 0 records every contour cycle.
+    pub fn create(
+        path: &Path,
+        signals: Vec<Observed>,
+        every_us: u64,
+        model: ControlModel,
+    ) -> Result<Recording, ReportError> {
         let mut recording = Recording {
             path: path.to_owned(),
             file: NewFile::create(path)?,
             edges: Edges::of(signals.iter().filter_map(operand)),
+            names: signals.iter().map(|signal| signal.name(model)).collect(),
             signals,
             every_us,
             due_us: 0,
@@ -46,10 +55,10 @@ impl Recording {
             block: None,
         };
         recording.row.push_str("time [s]");
-        for signal in &recording.signals {
+        for (signal, name) in recording.signals.iter().zip(&recording.names) {
             match signal.what.unit() {
-                "" => write!(recording.row, ",{signal}"),
-                unit => write!(recording.row, ",{signal} [{unit}]"),
+                "" => write!(recording.row, ",{name}"),
+                unit => write!(recording.row, ",{name} [{unit}]"),
             }
             .unwrap_or_default();
         }
@@ -102,11 +111,14 @@ impl Recording {
     pub fn cycle(&mut self, control: &Control, plant: &Machine, started: bool) -> Result<(), ReportError> {
         self.watch(control, started);
         let mut pulses = String::new();
-        for (operand, count) in self.edges.take_pulses() {
+        for (pulsed, count) in self.edges.take_pulses() {
+            let named = |(signal, _): &(&Observed, &String)| operand(signal) == Some(pulsed);
+            let name = self.signals.iter().zip(&self.names).find(named);
+            let name = name.map_or("", |(_, name)| name);
             let separator = if pulses.is_empty() { "" } else { "; " };
             let _ = match count {
-                1 => write!(pulses, "{separator}{operand} pulse"),
-                count => write!(pulses, "{separator}{operand} pulse x{count}"),
+                1 => write!(pulses, "{separator}{name} pulse"),
+                count => write!(pulses, "{separator}{name} pulse x{count}"),
             };
         }
         if !pulses.is_empty() {

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use crate::ReportError;
+use bahn_exchange::Bit;
 use bahn_host::files;
+
+use crate::ReportError;
 
 /// What a signal is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -145,9 +147,14 @@ impl Table {
         start.map(|(time, _)| *time)
     }
 
-    /// The signal of a name.
+    /// The signal of a name; E17 and I17, A7 and O7 are the same.
     pub fn trace(&self, name: &str) -> Option<&Trace> {
-        self.traces.iter().find(|trace| trace.name == name)
+        let found = self.traces.iter().find(|trace| trace.name == name);
+        found.or_else(|| {
+            let wanted: Bit = name.parse().ok()?;
+            let mut traces = self.traces.iter();
+            traces.find(|trace| trace.name.parse() == Ok(wanted))
+        })
     }
 
     /// The signals of these names, in this order; all without names.
@@ -158,7 +165,7 @@ impl Table {
                 let known: Vec<&str> = self.traces.iter().map(|trace| trace.name.as_str()).collect();
                 return Err(ReportError::NoSignal(name.to_owned(), known.join(", ")));
             };
-            if chosen.iter().all(|known| known.name != name) {
+            if chosen.iter().all(|known| known.name != trace.name) {
                 chosen.push(trace.clone());
             }
         }
@@ -221,7 +228,7 @@ impl Trace {
         // A channel may stand before it, as in `2:M2045`.
         let operand = name.split_once(':').map_or(name, |(_, operand)| operand);
         let digits = operand
-            .strip_prefix(['M', 'I', 'O', 'T', 'C'])
+            .strip_prefix(['M', 'I', 'O', 'T', 'C', 'E', 'A', 'Z'])
             .unwrap_or_default();
         // The pins of "control is ready".
         let is_pin = matches!(operand, "X41/34" | "X42/4");

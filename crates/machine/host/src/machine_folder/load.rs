@@ -23,7 +23,7 @@ use bahn_text::{Diagnostic, Severity, Span, decode};
 use bahn_tnc::{HandOver, NcFiles, Remembered, Tool};
 
 use super::channel::{Channels, LoadedChannel, position};
-use super::{remembered, state};
+use super::{macros, remembered, state};
 use crate::{HostError, files};
 
 /// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
@@ -247,6 +247,9 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
     Ok(match machine {
         Some(mut machine) if loader.faults.is_empty() => {
             machine.warnings = loader.warnings;
+            let (dialogues, list) = (&machine.plc_dialogues, &machine.parameters);
+            let wrong = macros::warnings(&machine.programs(0), dialogues, list);
+            machine.warnings.extend(wrong);
             machine.to_be_entered = loader.to_be_entered;
             machine.refused = loader.refused;
             Ok(machine)

@@ -10,6 +10,7 @@ mod compensation;
 mod equipment;
 mod functions;
 mod load;
+mod macros;
 mod mechanics;
 mod nc_memory;
 mod plc_program;

@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
+mod support;
+
 use std::path::PathBuf;
 
+use bahn_host::LoadedMachine;
 use bahn_host::oem_cycles::{self, OemCycle};
 use bahn_parameters::{ControlModel, ParameterList};
 
@@ -98,4 +101,29 @@ fn texts_keep_to_their_limits() {
         "dialogue 100: the texts have the numbers 0 to 99",
     ];
     assert_eq!(folder.cycle(&texts, &[]).faults(false), expected);
+}
+
+/// A machine whose macro has no dialogue block, and another that repeats a part in the EPROM, is switched on all the same, and says
+/// at the files what `bahn oem list` says.
+#[test]
+fn a_machine_says_what_is_wrong_with_its_macros() {
+    let copy = support::Copy::of("mill-tnc155", "macros");
+    let programs = copy.path().join("programs");
+    std::fs::create_dir_all(programs.join("eprom")).unwrap();
+    let program =
+        |number: u32, blocks: &str| format!("BEGIN PGM {number} MM\n{blocks}\nEND PGM {number} MM\n");
+    let of_68 = programs.join("99999968.H");
+    std::fs::write(&of_68, program(99_999_968, "L X+1 R0 F500")).unwrap();
+    let of_69 = programs.join("eprom/99999969.H");
+    let repeats = "DLG-DEF 0\nLBL 1\nCALL LBL 1 REP 2/2";
+    std::fs::write(&of_69, program(99_999_969, repeats)).unwrap();
+    let machine = LoadedMachine::load(copy.path()).unwrap().unwrap();
+    let said: Vec<_> = machine
+        .warnings
+        .iter()
+        .map(|warning| (warning.file.clone(), warning.message.clone()))
+        .collect();
+    let no_block = "no dialogue block DLG-DEF or DLG-CALL";
+    let repeat = "line 3: CALL LBL REP must not stand in the EPROM";
+    assert_eq!(said, [(of_68, no_block.to_owned()), (of_69, repeat.to_owned())]);
 }

@@ -7,6 +7,10 @@
 //! The list of the TNC 360 says "a new cycle definition" [003:4877-4881] after the two kinds of cycles that it has
 //! just told apart [003:4846-4860]; the TNC 415 names none at all and calls the last-programmed machining cycle
 //! [000:7274], which a datum shift is not
+//!
+//! Decision: CYCL CALL, M99 and M89 machine nothing where the only cycle that was defined is a macro of a TNC 151/155 that has
+//! run at its definition (DLG-DEF): the program that the manual prints calls it after that, and makes its holes once
+//! [001:2853-2869] [001:3067-3080]
 
 mod contour_cycle;
 mod contour_data;
@@ -19,7 +23,7 @@ mod machining;
 mod pockets;
 mod transformation;
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, Numbering};
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_cycle::contour_cycle;
@@ -116,7 +120,7 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
         ));
     };
     let words = definition.block(block.sub).to_vec();
-    match block.number {
+    let acts = match block.number {
         7 => datum_shift(c, &words),
         8 => mirror_image(c.modal, &words),
         9 => dwell(c.modal, c.pen, &words, c.settings),
@@ -126,11 +130,27 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
         26 => axis_scaling(c, &words),
         19 => working_plane(c, &words),
         _ => contour_geometry(c.modal, &words, c.settings),
+    };
+    if acts.is_err() {
+        // The run may try the block again.
+        c.modal.cycle.effective.take_back();
     }
+    acts
+}
+
+/// The only cycle that was defined is a macro of a TNC 151/155 that has run at its definition: the printed program calls it all the
+/// same [001:3067-3080].
+fn has_run_at_definition(c: &Context<'_>) -> bool {
+    let old = c.settings.model.limits().numbering == Numbering::Old;
+    let cycle = &c.modal.cycle;
+    old && cycle.machining.is_empty() && cycle.oem.ready().is_some()
 }
 
 /// CYCL CALL, M99 or M89: runs the last defined machining cycle [003:4857-4881].
 pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
+    if has_run_at_definition(c) {
+        return Ok(Flow::Next);
+    }
     let Some(definition) = c.modal.cycle.machining.ready().cloned() else {
         let cause = match c.modal.cycle.machining.is_empty() {
             true => Cause::NoCycle,

@@ -297,6 +297,38 @@ fn the_bolt_circle_of_a_tnc_155() {
     }
 }
 
+/// The blocks of program 1000 as printed [001:3067-3080].
+const PRINTED: &str = "BLK FORM 0.1 Z X + 0,000 Y + 0,000 Z - 20,000\nBLK FORM 0.2 X + 100,000 Y + 100,000 Z + 0,000\n\
+    TOOL DEF 1 L + 0,000 R + 2,000\nTOOL CALL 1 Z S\nL Z + 2,000 R0 F15999 M03\nCYCL DEF 68.0 BOLT HOLE CIRCLE\n\
+    CYCL DEF 68.1 Q1 = +27,000 Q2 = +40,000 Q3 = +50,000\nCYCL DEF 68.2 Q4 = +50,000 Q5 = -2,000 Q6 = -20,000\n\
+    CYCL DEF 68.3 Q7 = +100,000 Q8 = Q9 =\nCYCL CALL M";
+
+/// The printed macro begins with DLG-DEF and runs at its definition; the printed program calls it after that: the 28 strokes are
+/// not made twice. With DLG-CALL it is the call that makes them. Where a standard cycle was defined the call machines that one;
+/// without any definition it is refused as before.
+#[test]
+fn the_printed_program_of_a_tnc_155() {
+    let of_155 = |settings: &mut Settings| {
+        settings.model = ControlModel::Tnc155;
+        settings.rules = bahn_interpreter::Rules::of(&ParameterList::reference(ControlModel::Tnc155));
+    };
+    for block in ["DLG-DEF", "DLG-CALL"] {
+        let run = job(PRINTED, &[(68, &bolts(block, 0))]).with(of_155).run();
+        run.assert_completed();
+        assert_eq!(strokes(&run).len(), 28, "{block}");
+    }
+    let pecking = "TOOL DEF 1 L+0 R+2\nTOOL CALL 1 Z S500\nL X+0 Y+0 Z+2 R0 F15999 M03\nCYCL DEF 1.0 PECKING\n\
+        CYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -5\nCYCL DEF 1.3 PECKG -5\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n\
+        CYCL DEF 68.0 COUNT\nCYCL CALL";
+    let run = job(pecking, &[(68, "DLG-DEF 0\nFN 1: Q90 = +Q90 + +1")])
+        .with(of_155)
+        .run();
+    run.assert_completed();
+    assert_eq!((strokes(&run).len(), run.q[90]), (1, 1.0));
+    let run = job("CYCL CALL", &[]).with(of_155).run();
+    assert_eq!(run.message(), Some((CyclIncomplete, 1)));
+}
+
 /// A macro of a TNC 155 may stop and call programs; only repeats are forbidden, in the EPROM [001:2829-2833].
 #[test]
 fn what_a_macro_of_a_tnc_155_may_have() {
