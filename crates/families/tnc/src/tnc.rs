@@ -1,7 +1,7 @@
 //! Machine side and channels under the clock of the kernel: how they are put together, and what is asked of both.
 
 use bahn_kernel::{Axes, AxisUnit, Cartesian, Clock, PerChannel, ServoSampler, first_ids, units};
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::{Tracer, mirror_parameters};
 use bahn_servo::{IdealAxes, Plant};
 
@@ -36,9 +36,9 @@ pub(crate) struct Tnc {
 }
 
 /// The connectors of the spindle of the first channel.
-fn first_spindle(model: ControlModel) -> SpindleWiring {
+fn first_spindle(list: &ParameterList) -> SpindleWiring {
     SpindleWiring {
-        input: model.limits().spindle_input.into(),
+        input: list.spindle_parameters().input.into(),
         ..SpindleWiring::default()
     }
 }
@@ -100,7 +100,11 @@ impl Tnc {
             take_offsets(&mut axes, channel, &other.remembered);
         }
         mirror_parameters(&parameters, &mut exchange);
-        let spindle = SpindleUnit::new(first_spindle(model), parameters.spindle_parameters(), timing);
+        let spindle = SpindleUnit::new(
+            first_spindle(&parameters),
+            parameters.spindle_parameters(),
+            timing,
+        );
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
         link.selected_list.clone_from(&remembered.parameter_list);
         link.pallet = PalletSelection {
