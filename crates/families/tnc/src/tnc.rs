@@ -3,7 +3,7 @@
 use bahn_kernel::{Axes, AxisUnit, Cartesian, Clock, PerChannel, ServoSampler, first_ids, units};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::{Tracer, mirror_parameters};
-use bahn_servo::{IdealAxes, Plant};
+use bahn_servo::{IdealAxes, Plant, Timing};
 
 use crate::channel::{Channel, Parts};
 use crate::command::Command;
@@ -35,12 +35,14 @@ pub(crate) struct Tnc {
     ideal: IdealAxes,
 }
 
-/// The connectors of the spindle of the first channel.
-fn first_spindle(list: &ParameterList) -> SpindleWiring {
-    SpindleWiring {
-        input: list.spindle_parameters().input.into(),
+/// The spindle of the first channel.
+fn first_spindle(list: &ParameterList, timing: Timing) -> SpindleUnit {
+    let parameters = list.spindle_parameters();
+    let wiring = SpindleWiring {
+        input: parameters.input.into(),
         ..SpindleWiring::default()
-    }
+    };
+    SpindleUnit::new(wiring, parameters, timing)
 }
 
 fn take_offsets(axes: &mut Axes, channel: usize, remembered: &Remembered) {
@@ -100,11 +102,7 @@ impl Tnc {
             take_offsets(&mut axes, channel, &other.remembered);
         }
         mirror_parameters(&parameters, &mut exchange);
-        let spindle = SpindleUnit::new(
-            first_spindle(&parameters),
-            parameters.spindle_parameters(),
-            timing,
-        );
+        let spindle = first_spindle(&parameters, timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
         link.selected_list.clone_from(&remembered.parameter_list);
         link.pallet = PalletSelection {

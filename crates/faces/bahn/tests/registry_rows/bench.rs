@@ -187,3 +187,42 @@ pub fn same<T: PartialEq + Debug>(found: T, wanted: T) -> Verdict {
 pub fn holds(so: bool, what: impl FnOnce() -> String) -> Verdict {
     if so { Ok(()) } else { Err(what()) }
 }
+
+/// What the reference run, a direction button and a program with M functions show in each cycle: places of the tables and
+/// voltages, and the markers of the PLC in the end.
+fn shown(mps: &str) -> (Vec<u64>, Vec<bool>) {
+    let blocks = "TOOL CALL 1 Z S1000\nL IX-3 IY-2 R0 F1000 M3\nL IZ-2 M8\nL IU-1 M30";
+    let build = bench("62=2 61=1").mps(mps).program("1", blocks);
+    let tools = [(1, bahn_tnc::Tool::default())];
+    let mut rig = asked(Build {
+        tools: Some(tools.into()),
+        ..build
+    });
+    rig.start();
+    let mut seen = Vec::new();
+    let look = |rig: &Rig, seen: &mut Vec<u64>| {
+        let volts = [1, 2, 3, 4].map(|output: u8| signal(rig, &format!("output.{output}")));
+        seen.extend(tables(rig).into_iter().chain(volts).map(f64::to_bits));
+    };
+    for action in ["", "key X- press", "key X- release"] {
+        if !action.is_empty() {
+            rig.event(action);
+        }
+        for _ in 0..150 {
+            rig.cycle();
+            look(&rig, &mut seen);
+        }
+    }
+    rig.seconds(0.5);
+    watch(&mut rig, |rig| look(rig, &mut seen));
+    let markers = (0..3264).map(|marker| rig.bit(&format!("M{marker}")));
+    let markers = markers.collect();
+    (seen, markers)
+}
+
+/// A run with another value is the same.
+pub fn unmoved(number: u16) -> Verdict {
+    let [before, after] = both(number, "1", shown);
+    holds(before.0.len() > 1000, || "nothing is seen".to_owned())?;
+    holds(before == after, || "a run differs".to_owned())
+}

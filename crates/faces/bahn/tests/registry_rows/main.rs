@@ -76,7 +76,7 @@ fn faults(rows: &[Row]) -> Vec<String> {
         for number in numbers.clone() {
             let verdict = match (effect(number), probe) {
                 (Some(Effect::Acts | Effect::Partly), Probe::Acts(probe)) => verdict(*probe, number),
-                (Some(Effect::None), Probe::Nothing) => Ok(()),
+                (Some(Effect::None), Probe::Nothing) => verdict(bench::unmoved, number),
                 (said, _) => Err(format!("the registry says {said:?}, and the row otherwise")),
             };
             if let Err(why) = verdict {
@@ -144,4 +144,10 @@ fn rows_of_spindle() {
 #[test]
 fn rows_of_transfer() {
     assert_eq!(faults(transfer::ROWS).join("\n"), "");
+}
+
+#[test]
+fn rows_of_nothing() {
+    assert_eq!(faults(NOTHING).join("\n"), "");
+    assert!(verdict(bench::unmoved, 177).is_err(), "a kv factor is seen");
 }
