@@ -300,7 +300,7 @@ impl Graphics {
         let settings = list.graphics();
         let of_part = |stock, program, time_s| {
             let view = self.view?;
-            let picture = Picture::of_part(stock, program, time_s, view, self.sight, settings.third_angle);
+            let picture = Picture::of_part(stock, program, time_s, view, self.sight, settings);
             Some(picture.in_colours(part_colours(list, view)))
         };
         match subject {

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use bahn_dialogue::FigurePart;
+use bahn_parameters::machining::GraphicsSettings;
 use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, Scheme, ThreePlanes, View3d};
 
@@ -79,6 +80,8 @@ struct PartPicture {
     view: PartView,
     sight: Sight,
     projection: Projection,
+    /// MP7310 + 2, MP236 + 2: the plane is turned by 90°.
+    turned: bool,
     colours: Option<Scheme>,
 }
 
@@ -106,7 +109,7 @@ impl Picture {
         time_s: Option<f64>,
         view: PartView,
         sight: Sight,
-        third_angle: bool,
+        settings: GraphicsSettings,
     ) -> Picture {
         Picture(Kind::Part(PartPicture {
             stock,
@@ -114,7 +117,8 @@ impl Picture {
             time_s,
             view,
             sight,
-            projection: match third_angle {
+            turned: settings.plane_rotated,
+            projection: match settings.third_angle {
                 true => Projection::ThirdAngle,
                 false => Projection::FirstAngle,
             },
@@ -224,6 +228,9 @@ impl PartPicture {
         let Some(part) = self.stock.part() else {
             return Ok(None);
         };
+        // The eye goes round a solid; of the other views the part is turned.
+        let turned = self.turned && self.view != PartView::Solid;
+        let part = if turned { part.turned() } else { part };
         let part = self.detail(&part).unwrap_or(part);
         let [min, max] = [part.min(), part.max()];
         let side = |k: usize| max[k] - min[k];
@@ -248,7 +255,7 @@ impl PartPicture {
                     false => 1.0,
                 };
                 let options = View3d {
-                    azimuth_deg: self.sight.azimuth_deg(),
+                    azimuth_deg: self.sight.azimuth_deg() - if self.turned { 90.0 } else { 0.0 },
                     height_factor,
                     ..View3d::default()
                 };

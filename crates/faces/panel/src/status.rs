@@ -3,6 +3,9 @@
 //! Decision: With MP7285 = 0 the display, and DATUM SET with it, are of the nose of the spindle; CAPTURE and the
 //! probing by hand stay with the tip of the tool (also `panel/src/pages/datum.rs`)
 //!
+//! Decision: Axis V of a TNC 151/155 that takes the place of axis IV is called V with MP237 = 2; its angle is that of the
+//! spindle from its reference mark on, and is not shown before
+//!
 //! Decision: F is highlighted when any controlled axis lacks its feed enable; between blocks it is the last feed that
 //! was programmed, 0 after the choice of a program (also `kernel/src/track.rs`)
 
@@ -10,6 +13,7 @@ use bahn_exchange::signal;
 use bahn_parameters::ParameterList;
 use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::machining::Decimal;
+use bahn_parameters::operation::SpindleDisplay;
 use bahn_path::Axis;
 use bahn_screen::{AxisLine, Star, Status};
 use bahn_servo::Rotation;
@@ -21,6 +25,8 @@ use crate::settings::{PositionType, Settings};
 const INCH_MM: f64 = 25.4;
 /// Step of the angle of the spindle, degrees (inferred).
 const SPINDLE_STEP_DEG: f64 = 0.001;
+/// Index of axis IV.
+const FOURTH: usize = 3;
 /// Decimals of an inch display [003:7093-7102].
 const INCH_DECIMALS: usize = 4;
 
@@ -111,7 +117,7 @@ pub(crate) fn of(
     let axes = snapshot
         .axes
         .iter()
-        .filter(|axis| of_axis(axis, parameters).shown);
+        .filter(|axis| of_axis(axis, parameters).shown && !gives_way(axis, parameters));
     let axes = axes.map(|axis| AxisLine {
         handwheel: wheel == Some(axis.index),
         ..axis_line(axis, parameters, settings.position_type, notation)
@@ -202,13 +208,24 @@ pub(crate) fn hidden_length_mm(axis: &AxisState, parameters: &ParameterList) -> 
     }
 }
 
-/// The angle of the spindle, as long as neither M03 nor M04 is active: MP40 bit 5 [000:3418-3432] [000:5883].
+/// Whether the spindle is shown in place of an axis: MP237 from 2 on puts axis V there where axis IV is [001:3109].
+fn gives_way(axis: &AxisState, parameters: &ParameterList) -> bool {
+    let display = parameters.operation_parameters().spindle_display;
+    axis.index == FOURTH && matches!(display, SpindleDisplay::AsFourth(_))
+}
+
+/// The angle of the spindle: MP40 bit 5 as long as neither M03 nor M04 is active [000:3418-3432] [000:5883]; as axis V of a
+/// TNC 151/155 always.
 fn spindle_line(snapshot: &Snapshot, parameters: &ParameterList, notation: Notation) -> Option<AxisLine> {
-    let shown = parameters.operation_parameters().spindle_shown;
     let stands = snapshot.spindle.rotation == Rotation::M5;
-    let angle_deg = snapshot.spindle.angle_deg.filter(|_| shown && stands)?;
+    let letter = match parameters.operation_parameters().spindle_display {
+        SpindleDisplay::Standing if stands => 'S',
+        SpindleDisplay::AsFourth(letter) => letter,
+        SpindleDisplay::Standing | SpindleDisplay::None => return None,
+    };
+    let angle_deg = snapshot.spindle.angle_deg?;
     Some(AxisLine {
-        letter: 'S',
+        letter,
         value: notation.position(angle_deg.rem_euclid(360.0), SPINDLE_STEP_DEG, true),
         referenced: true,
         degrees: true,

@@ -1,5 +1,8 @@
 //! The electronic handwheel: which axis its wheels lead and how far, and where its keys go [000:8060-8446].
 //!
+//! Decision: The first wheel of an HE 310 moves X or IV, the second Y or Z, as they were chosen last; so X-Y, X-Z, Y-IV and
+//! IV-Z can move together
+//!
 //! Decision: Direction keys of a handwheel move axes in the mode Electronic Handwheel only; an HR 332 with all keys
 //! at the PLC has its axis keys where places are left
 
@@ -40,6 +43,8 @@ const SPEED_KEYS: [HandwheelKey; 3] = [HandwheelKey::Slow, HandwheelKey::Medium,
 pub(crate) struct Handwheel {
     /// Axis index of the wheel that has no axis of its own.
     axis: usize,
+    /// Axis indices of the two wheels of an HE 310.
+    pair: [usize; 2],
     /// Interpolation factors, by axis index.
     factors: PerPlcAxis<u8>,
     /// Speed of the HR 410: slow, medium, fast.
@@ -70,6 +75,7 @@ impl Default for Handwheel {
     fn default() -> Handwheel {
         Handwheel {
             axis: 0,
+            pair: [0, 1],
             factors: PerPlcAxis::splat(5),
             speed: 0,
             wheels: [Wheel::default(); WHEELS],
@@ -107,7 +113,7 @@ impl Handwheel {
         self.take_keys(inputs, rules, axes);
         self.travels = PerPlcAxis::splat(0.0);
         for (number, count) in inputs.counts.into_iter().enumerate() {
-            let axis = wheel_axis(number, rules, inputs, self.axis);
+            let axis = wheel_axis(number, rules, inputs, (self.axis, self.pair));
             let factor = axis.map_or(FACTOR_MAX, |index| self.factor(index, rules, axes));
             let Some(wheel) = self.wheels.get_mut(number) else {
                 continue;
@@ -153,7 +159,8 @@ impl Handwheel {
         if rules.factor_from_plc && *own != factor {
             return false;
         }
-        (*own, self.axis) = (factor, index);
+        *own = factor;
+        self.go_to(index);
         self.highlight = Some(index).filter(|_| shares_highlight(rules));
         true
     }
@@ -161,7 +168,19 @@ impl Handwheel {
     /// The highlight goes to an axis: with MP7640 = 2 the handwheel, too [000:8139-8151].
     pub fn go_with_highlight(&mut self, index: usize, rules: &HandwheelParameters) {
         if shares_highlight(rules) {
-            self.axis = index;
+            self.go_to(index);
+        }
+    }
+
+    /// The wheel moves another axis, of an HE 310 the one that has it: X and IV are of its first wheel, Y and Z of its second
+    /// (inferred from the pairs that move together [001:1073-1077]).
+    fn go_to(&mut self, index: usize) {
+        self.axis = index;
+        let [first, second] = &mut self.pair;
+        match index {
+            0 | 3 => *first = index,
+            1 | 2 => *second = index,
+            _ => {}
         }
     }
 
@@ -175,7 +194,9 @@ impl Handwheel {
         for (factor, changed) in self.factors.iter_mut().zip(factors) {
             *factor = changed.unwrap_or(*factor);
         }
-        self.axis = axis.unwrap_or(self.axis);
+        if let Some(axis) = axis {
+            self.go_to(axis);
+        }
     }
 
     /// Where a wheel leads an axis.
@@ -205,7 +226,7 @@ impl Handwheel {
             && let Some(index) = AXIS_KEYS.iter().position(pressed)
             && axes.with_index(index).is_some()
         {
-            self.axis = index;
+            self.go_to(index);
             self.highlight = Some(index).filter(|_| shares_highlight(rules));
         }
         if is_hr410_of_the_nc(rules)
@@ -258,7 +279,7 @@ impl Handwheel {
     ) {
         let rules = &reach.rules.handwheel;
         for (number, count) in inputs.counts.into_iter().enumerate() {
-            let axis = wheel_axis(number, rules, inputs, self.axis);
+            let axis = wheel_axis(number, rules, inputs, (self.axis, self.pair));
             let factor = axis.map_or(FACTOR_MAX, |index| self.factor(index, rules, reach.axes));
             let Some(wheel) = self.wheels.get_mut(number) else {
                 continue;
@@ -331,14 +352,15 @@ fn travel_mm(steps: i64, factor: u8, rules: &HandwheelParameters) -> f64 {
 }
 
 /// The axis that a wheel leads: the first and second at an HRA 110 X and Y, the third the one of MP7645 or of
-/// switch S2; all others the one that is chosen [000:8310-8351].
+/// switch S2; those of an HE 310 one of a pair each [001:1073-1077]; all others the one that is chosen [000:8310-8351].
 fn wheel_axis(
     number: usize,
     rules: &HandwheelParameters,
     inputs: &HandwheelInputs,
-    chosen: usize,
+    (chosen, pair): (usize, [usize; 2]),
 ) -> Option<usize> {
     match (rules.kind, number) {
+        (Kind::He310, _) => pair.get(number).copied(),
         (Kind::Hra110, 0 | 1) => Some(number),
         (Kind::Hra110, _) => third_axis(rules.initialization, inputs.switches[1]),
         (_, 0) => Some(chosen),
@@ -362,7 +384,7 @@ fn third_axis([first, fixed, from_parameter, ..]: [u8; 8], position: u8) -> Opti
 
 fn axis_keys_are_of_the_nc(rules: &HandwheelParameters) -> bool {
     match rules.kind {
-        Kind::Hr330 | Kind::Hr130 | Kind::Hr330Plc => true,
+        Kind::Hr330 | Kind::Hr130 | Kind::Hr330Plc | Kind::He310 => true,
         Kind::Hr332 | Kind::Hr410 => rules.initialization[0] == 0,
         _ => false,
     }

@@ -1,9 +1,9 @@
 //! Machine side and channels under the clock of the kernel: how they are put together, and what is asked of both.
 
 use bahn_kernel::{Axes, AxisUnit, Cartesian, Clock, PerChannel, ServoSampler, first_ids, units};
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::{Tracer, mirror_parameters};
-use bahn_servo::{IdealAxes, Plant};
+use bahn_servo::{IdealAxes, Plant, Timing};
 
 use crate::axis_switchover::AxisSwitchover;
 use crate::channel::{Channel, Parts};
@@ -38,12 +38,14 @@ pub(crate) struct Tnc {
     ideal: IdealAxes,
 }
 
-/// The connectors of the spindle of the first channel.
-fn first_spindle(model: ControlModel) -> SpindleWiring {
-    SpindleWiring {
-        input: model.limits().spindle_input.into(),
+/// The spindle of the first channel.
+fn first_spindle(list: &ParameterList, timing: Timing) -> SpindleUnit {
+    let parameters = list.spindle_parameters();
+    let wiring = SpindleWiring {
+        input: parameters.input.into(),
         ..SpindleWiring::default()
-    }
+    };
+    SpindleUnit::new(wiring, parameters, timing)
 }
 
 fn take_offsets(axes: &mut Axes, channel: usize, remembered: &Remembered) {
@@ -111,7 +113,7 @@ impl Tnc {
             take_offsets(&mut axes, channel, &other.remembered);
         }
         mirror_parameters(&parameters, &mut exchange);
-        let spindle = SpindleUnit::new(first_spindle(model), parameters.spindle_parameters(), timing);
+        let spindle = first_spindle(&parameters, timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
         link.selected_list.clone_from(&remembered.parameter_list);
         link.pallet = pallet(&remembered);

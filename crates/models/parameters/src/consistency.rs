@@ -416,11 +416,11 @@ fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Re
         );
     }
     if spindle.controlled {
-        let taken = axes.iter().find(|axis| axis.wiring.input == 5);
+        let taken = axes.iter().find(|axis| axis.wiring.input == spindle.input);
         let rule = "an axis has the encoder input of the spindle";
         report.check(
             taken.is_none(),
-            (110, taken.map(|axis| axis.index), 0),
+            (110, taken.map(|axis| axis.index), 253 + u16::from(spindle.input)),
             rule,
             "000:3374-3378",
             String::new,

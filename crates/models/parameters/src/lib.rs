@@ -104,8 +104,8 @@ pub mod machining {
 pub mod operation {
     pub use crate::settings::{
         DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters,
-        OverrideSteps, RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
-        UserText,
+        OverrideSteps, RestartParameters, SpindleDisplay, Station, ToolOutput, ToolOutputKind,
+        ToolParameters, UserParameter, UserText,
     };
 }
 

@@ -32,7 +32,8 @@ pub use machining::{
 };
 pub use operation::{
     DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters, OverrideSteps,
-    RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter, UserText,
+    RestartParameters, SpindleDisplay, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
+    UserText,
 };
 pub use plc_parameters::{MonitoringInput, PlcParameters, StrobeTimes};
 pub use spindle::Tapping;

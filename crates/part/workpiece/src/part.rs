@@ -159,6 +159,44 @@ impl Part {
         })
     }
 
+    /// The part with the coordinate system turned by +90 degrees in the working plane, to be drawn: the first axis points up,
+    /// the second one to the left [000:6386-6396]. It has no tool path.
+    pub fn turned(&self) -> Part {
+        let Grid { nx, ny, dx, dy } = self.grid;
+        let [first, second, tool] = self.setup.axes;
+        let ([x, y, z], [a, b, c]) = (self.setup.min, self.setup.size);
+        Part {
+            setup: Setup {
+                axes: [second, first, tool],
+                min: [-(y + b), x, z],
+                size: [b, a, c],
+                leftwards: true,
+            },
+            grid: Grid {
+                nx: ny,
+                ny: nx,
+                dx: dy,
+                dy: dx,
+            },
+            heights: turned(&self.heights, nx),
+            cutters: self
+                .cutters
+                .as_ref()
+                .map(|cutters| cutters.with_marks(turned(&cutters.marks, nx))),
+            trail: None,
+        }
+    }
+
+    /// Coordinates of the left and the right side of the blank, mm.
+    pub(crate) fn left_and_right(&self) -> [f64; 2] {
+        [self.min()[0], self.max()[0]].map(|side| self.across(side))
+    }
+
+    /// The coordinate that is shown for a place along the first axis, mm.
+    pub(crate) fn across(&self, place: f64) -> f64 {
+        if self.setup.leftwards { -place } else { place }
+    }
+
     /// Height of a column over the lower face; 0 outside.
     #[inline]
     pub(crate) fn height(&self, i: usize, j: usize) -> f32 {
@@ -181,4 +219,12 @@ fn section<T: Copy>(values: &[T], width: usize, i: &Range<usize>, j: &Range<usiz
         kept.extend_from_slice(row.get(i.clone())?);
     }
     Some(kept)
+}
+
+/// Rows of `nx` values that are turned to the left by 90 degrees.
+fn turned<T: Copy>(values: &[T], nx: usize) -> Vec<T> {
+    let columns = 0..nx;
+    columns
+        .flat_map(|i| values.chunks(nx).rev().filter_map(move |row| row.get(i).copied()))
+        .collect()
 }

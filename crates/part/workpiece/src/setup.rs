@@ -15,6 +15,8 @@ pub(crate) struct Setup {
     pub min: Local,
     /// Side lengths in the order of `axes`, mm.
     pub size: Local,
+    /// Coordinates of the first axis count to the left, with the other sign: a part that is drawn turned.
+    pub leftwards: bool,
 }
 
 impl Setup {
@@ -26,6 +28,7 @@ impl Setup {
             axes,
             min: [0.0; 3],
             size: [0.0; 3],
+            leftwards: false,
         };
         for (k, axis) in axes.into_iter().enumerate() {
             // The main axes X, Y, Z are the first three of all axes, as the corners of a blank are.

@@ -2,7 +2,6 @@
 
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 use bahn_path::Axis;
-use bahn_program::InputSteps;
 
 use crate::dialogue::Dialogue;
 use crate::editor::{Editor, Open};
@@ -76,7 +75,7 @@ impl Editor {
     /// A position in the unit of the program and its input steps, as it can be entered [003:7825].
     fn position_text(&self, axis: Axis, value: f64) -> String {
         let unit = self.program.unit();
-        let steps = InputSteps::of(self.setting.model, unit);
+        let steps = self.setting.steps(unit);
         let (value, step) = match axis.is_rotary() {
             true => (value, steps.angle()),
             false => (value / unit.mm(), steps.length()),

@@ -4,7 +4,7 @@ use bahn_parameters::MessageId::{
     self, EntryValueIncorrect, JumpToLabelZeroNotPermitted, LabelNumberAllocated, WrongAxisProgrammed,
     WrongSignProgrammed,
 };
-use bahn_program::{CycleWord, InputSteps, Operation, Program, Sign, Value, check_limits};
+use bahn_program::{CycleWord, Operation, Program, Sign, Value, check_limits};
 
 use crate::Setting;
 use crate::field::Field;
@@ -64,7 +64,7 @@ impl Context<'_> {
         if let Some(fault) = check_limits(operation, unit, self.setting.reading()) {
             return Err(fault.message);
         }
-        if InputSteps::of(self.setting.model, unit).round(operation) {
+        if self.setting.steps(unit).round(operation) {
             return Err(EntryValueIncorrect);
         }
         let mut parts = operation.parts().iter();

@@ -4,7 +4,7 @@ use bahn_parameters::conformance::{Kind, find};
 use bahn_parameters::machining::Decimal;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, AxisSet};
-use bahn_program::{Program, Reading};
+use bahn_program::{InputSteps, Program, Reading, Unit};
 
 use crate::{Key, Tongue};
 
@@ -32,6 +32,8 @@ pub struct Setting {
     pub fourth: Option<Axis>,
     /// The axis of key V.
     pub fifth: Option<Axis>,
+    /// Step of lengths that are entered, mm, where it is coarser than that of the model: MP65 of a TNC 151/155.
+    pub input_step_mm: Option<f64>,
     /// Numbers are shown with a comma.
     pub decimal_comma: bool,
     /// Blocks with R+ and R- are inhibited.
@@ -71,6 +73,7 @@ impl Setting {
             axes,
             fourth: at(3),
             fifth: at(4),
+            input_step_mm: list.input_step_mm(),
             decimal_comma: list.decimal() == Decimal::Comma,
             paraxial_inhibited: list.paraxial_inhibited(),
             inhibited_cycles: (0..=CYCLE_MAX)
@@ -109,6 +112,11 @@ impl Setting {
     pub(crate) fn rapid(&self) -> String {
         let feed = self.model.limits().rapid_feed_mm_min;
         feed.map_or_else(|| "MAX".to_owned(), |feed| feed.to_string())
+    }
+
+    /// How fine the numbers of a program may be.
+    pub(crate) fn steps(&self, unit: Unit) -> InputSteps {
+        InputSteps::of(self.model, unit).not_finer(self.input_step_mm, self.model)
     }
 
     /// What programs are read for.

@@ -15,6 +15,7 @@ const CHUNKS_KEPT: usize = 128;
 #[derive(Clone)]
 pub(crate) struct Code {
     model: ControlModel,
+    input_step_mm: Option<f64>,
     programs: Vec<Loaded>,
     /// Programs that were called at least once, and the main program.
     called: usize,
@@ -70,9 +71,11 @@ pub(crate) struct Fetched<'a> {
 }
 
 impl Code {
-    pub fn new(main: Arc<Program>, model: ControlModel) -> Code {
+    /// A main program on a control, whose lengths may have a coarser step than its model, mm.
+    pub fn new(main: Arc<Program>, model: ControlModel, input_step_mm: Option<f64>) -> Code {
         let mut code = Code {
             model,
+            input_step_mm,
             programs: Vec::new(),
             called: 1,
             kept: VecDeque::new(),
@@ -199,7 +202,8 @@ impl Code {
             *slot = None;
         }
         if let Some(loaded) = self.programs.get_mut(usize::from(program)) {
-            let steps = InputSteps::of(self.model, loaded.program.unit());
+            let steps =
+                InputSteps::of(self.model, loaded.program.unit()).not_finer(self.input_step_mm, self.model);
             let chunk_read = loaded.program.decode_for(chunk as u32, self.model.limits());
             let decoded = Arc::new(Decoded::new(chunk_read, steps));
             if let Some(slot) = loaded.chunks.get_mut(chunk) {
@@ -220,7 +224,7 @@ mod tests {
         let text = format!("BEGIN PGM LONG MM\n{blocks}END PGM LONG MM\n");
         let program = Program::from_bytes("LONG.H", text.into_bytes());
         let program = Arc::new(program);
-        let mut code = Code::new(Arc::clone(&program), ControlModel::Tnc415b);
+        let mut code = Code::new(Arc::clone(&program), ControlModel::Tnc415b, None);
         for number in 0..program.block_count() {
             assert!(code.block(0, number).is_some());
         }

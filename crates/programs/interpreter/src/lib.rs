@@ -173,10 +173,11 @@ impl Interpreter {
     pub fn new(main: Arc<Program>, settings: Settings, programs: Arc<dyn Programs>) -> Interpreter {
         let run = Run::new(&settings, main.unit());
         let (position, model) = (settings.start, settings.model);
+        let input_step_mm = settings.rules.input_step_mm;
         let mut interpreter = Interpreter {
             settings,
             programs,
-            code: Code::new(main, model),
+            code: Code::new(main, model, input_step_mm),
             run,
             ended: None,
             waiting: None,

@@ -132,7 +132,8 @@ impl Run {
     /// ENTRY VALUE INCORRECT where checking is strict.
     #[cold]
     pub(crate) fn tell_rounded(&mut self, settings: &Settings) -> Result<(), Fault> {
-        let steps = InputSteps::of(settings.model, self.numbers.unit);
+        let steps = InputSteps::of(settings.model, self.numbers.unit)
+            .not_finer(settings.rules.input_step_mm, settings.model);
         let unit = match self.numbers.unit {
             Unit::Mm => "mm",
             Unit::Inch => "inch",

@@ -231,6 +231,8 @@ pub struct Rules {
     pub paraxial_inhibited: bool,
     /// MP7240, MP7250, MP7251: cycles of the machine builder.
     pub oem_cycles: OemCycleRules,
+    /// Step of lengths in programs, mm, where it is coarser than that of the model: MP65 of a TNC 151/155 [001:1612-1614].
+    pub input_step_mm: Option<f64>,
     /// Options and software of the control.
     pub equipment: Equipment,
     /// MP7680 bit 6: in LN blocks the length contains DR2 [000:9179-9192].
@@ -311,6 +313,7 @@ impl Rules {
                 .find(|axis| list.axis_index(*axis) == Some(4)),
             oem_cycles: OemCycleRules::of(list),
             equipment: list.equipment(),
+            input_step_mm: list.input_step_mm(),
             ..Rules::default()
         }
     }
@@ -351,6 +354,7 @@ impl Default for Rules {
         Rules {
             arc_tolerance_mm: 0.016,
             equipment: Equipment::default(),
+            input_step_mm: None,
             scaling_in_plane_only: false,
             probe_keeps_tool: true,
             contour_pocket: ContourPocketRules::default(),

@@ -4,6 +4,9 @@
 //! that is finer: its numbers are rounded, half steps away from zero *(inferred)*. Q parameters are calculated with
 //! and keep what they have.
 //!
+//! Decision: With MP65 = 1 of a TNC 151/155 lengths have steps of 5 µm, or 0.0005 inch, where they are entered and in
+//! programs; angles keep the step of the control
+//!
 //! Decision: Numbers finer than the input step of the control are rounded, half steps away from zero, and said once
 //! for each program; F has the step of lengths; Q parameters keep what they have
 
@@ -50,6 +53,15 @@ impl InputSteps {
             },
             angle: steps(limits.resolution_deg),
             orientation: steps(limits.orientation_step_deg),
+        }
+    }
+
+    /// The same with a step of lengths of so many mm, where that is coarser: MP65 of a TNC 151/155 [001:1612-1614].
+    pub fn not_finer(self, step_mm: Option<f64>, model: ControlModel) -> InputSteps {
+        let coarser = step_mm.map_or(1.0, |step| step / model.limits().resolution_mm);
+        InputSteps {
+            length: self.length / coarser.round().max(1.0),
+            ..self
         }
     }
 
@@ -294,6 +306,19 @@ mod tests {
             let finer = InputSteps::of(ControlModel::Tnc360, unit).round(&mut rounded);
             assert_eq!(rounded, operation(expected).0, "{text}");
             assert_eq!(finer, text != expected, "{text}");
+        }
+    }
+
+    /// MP65 = 1: 5 µm, ten times as fine in an inch; a degree keeps its steps. Without it the step is that of the model.
+    #[test]
+    fn a_coarser_step_is_that_of_lengths() {
+        let model = ControlModel::Tnc155;
+        for (unit, step, coarse) in [(Unit::Mm, 0.001, 0.005), (Unit::Inch, 0.0001, 0.0005)] {
+            let steps = InputSteps::of(model, unit);
+            assert_eq!(steps.not_finer(None, model), steps);
+            let coarser = steps.not_finer(Some(0.005), model);
+            assert!((steps.length() - step).abs() < 1e-12 && (coarser.length() - coarse).abs() < 1e-12);
+            assert_eq!(coarser.angle(), steps.angle());
         }
     }
 

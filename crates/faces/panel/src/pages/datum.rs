@@ -13,6 +13,10 @@ use crate::status;
 
 /// Millimetres of an inch.
 const INCH_MM: f64 = 25.4;
+/// Steps of an inch are a tenth of those of a mm.
+const INCH_STEPS: f64 = 0.1;
+/// A number that is so far from a whole step is finer, mm or inches.
+const FINER: f64 = 1e-6;
 
 /// Keys of the axes, in the order of their indices.
 const KEYS: [Key; 5] = [Key::X, Key::Y, Key::Z, Key::Iv, Key::V];
@@ -83,6 +87,13 @@ fn ask(axis: Axis, site: &Site) -> Turn {
 
 fn set(axis: Axis, value: f64, site: &mut Site) -> bool {
     let inch = site.settings.inch && !axis.is_rotary();
+    // What is finer than the resolution of the control is no value, as in a block.
+    let step = site.parameters().input_step_mm();
+    let finer = |step: f64| ((value / step).round() * step - value).abs() > FINER;
+    let step = step.map(|step| if inch { step * INCH_STEPS } else { step });
+    if !axis.is_rotary() && step.is_some_and(finer) {
+        return false;
+    }
     let value = if inch { value * INCH_MM } else { value };
     // The display becomes the value, which shows the nose of the spindle with MP7285 = 0.
     let snapshot = site.control().snapshot();

@@ -110,19 +110,22 @@ fn mp217_is_the_language_of_new_programs() {
     );
 }
 
-/// MP65 = 1 shows positions in steps of 5 µm [001:1612-1614].
+/// MP65 = 1 takes and shows positions in steps of 5 µm; what is finer is no value [001:1612-1614].
 #[test]
-fn mp65_shows_steps_of_5_micrometres() {
-    let shown = |line: &'static str| {
+fn mp65_has_steps_of_5_micrometres() {
+    let entered = |line: &'static str, value: &str| {
         let mut trainee = Trainee::with_tnc155(Tnc155, &[line]);
         trainee.ready();
-        trainee.press("X").number("12.344").press("ENT").wait(0.2);
-        trainee.position('X')
+        trainee.press("X").number(value).press("ENT").wait(0.2);
+        (trainee.position('X'), trainee.messages())
     };
     // The axis may tremble by a step of its encoder.
-    let fine: f64 = shown("MP65 : 0").parse().unwrap();
-    assert!((fine - 12.344).abs() < 0.0011, "{fine}");
-    assert_eq!(shown("MP65 : 1"), "+12.345");
+    let (fine, messages) = entered("MP65 : 0", "12.344");
+    let fine: f64 = fine.parse().unwrap();
+    assert!((fine - 12.344).abs() < 0.0011 && messages.is_empty(), "{fine}");
+    assert_eq!(entered("MP65 : 1", "12.345"), ("+12.345".to_owned(), Vec::new()));
+    let (_, messages) = entered("MP65 : 1", "12.344");
+    assert_eq!(messages, ["ENTRY VALUE INCORRECT"]);
 }
 
 /// ME, FE and EXT [001:1137-1148]; 110 to 9600 baud [001:1162].

@@ -76,7 +76,8 @@ pub struct ProbeSettings {
     /// The data of the last tool stay in use, the calibrated data of the probe do not replace them: MP7411
     /// [003:7365-7369]. TNC 151/155: replaced (inferred).
     pub keeps_tool_data: bool,
-    /// The probe sends without a cable and is on standby between probings, a TS 511: MP6010 [000:7654].
+    /// The probe sends without a cable and is on standby between probings, a TS 511: MP6010 = 1 [000:7654]; old MP171 = 0 or
+    /// 1, a TS 510 [001:2208-2221].
     pub on_standby: bool,
     /// How the spindle turns the probe by 180°: MP6160.
     pub turn: ProbeTurn,
@@ -162,6 +163,8 @@ pub enum Decimal {
     Point,
 }
 
+/// The coarser of both resolutions of a TNC 151/155, mm [001:1612-1614].
+const FIVE_MICROMETRES_MM: f64 = 0.005;
 /// Tolerance of controls that have no MP7431, mm [003:2801]; TNC 151/155 (inferred).
 const ARC_TOLERANCE_MM: f64 = 0.016;
 
@@ -279,7 +282,10 @@ impl ParameterList {
             clearance_mm: self.value((6140, 0), (235, 0)),
             rapid_mm_min: measuring.map_or_else(|| self.value((6150, 0), (251, 0)), |of| of.rapid_mm_min),
             keeps_tool_data: self.get(7411, 0) == Some(1.0),
-            on_standby: self.get_new(6010, 0) == Some(1.0),
+            on_standby: match self.has_old_numbers() {
+                true => self.old(171) < 2.0,
+                false => self.get_new(6010, 0) == Some(1.0),
+            },
             turn: match self.get_new(6160, 0) {
                 Some(-1.0) => ProbeTurn::ByControl,
                 Some(code) if code >= 1.0 => ProbeTurn::ByPlc(code as u8),
@@ -344,6 +350,12 @@ impl ParameterList {
             blank_follows_datum: bits_2_and_3 && self.bit(number, old, 2),
             cursor_shown: bits_2_and_3 && self.bit(number, old, 3),
         }
+    }
+
+    /// The step of lengths that are entered or stand in programs, mm, where it is coarser than that of the model: old
+    /// MP65 = 1 [001:1612-1614].
+    pub fn input_step_mm(&self) -> Option<f64> {
+        (self.old(65) == 1.0).then_some(FIVE_MICROMETRES_MM)
     }
 
     /// The decimal sign that listings show; both are read.

@@ -47,8 +47,8 @@ pub struct OperationParameters {
     pub tool_length_shown: bool,
     /// The programmed speed is shown before the spindle runs: old MP191; else yes [001:1577].
     pub speed_shown_at_rest: bool,
-    /// The angle of the spindle is shown while it stands: MP40 bit 5 [000:3418-3432]; old: no.
-    pub spindle_shown: bool,
+    /// How the angle of the spindle is shown.
+    pub spindle_display: SpindleDisplay,
     /// Characters of a file name without its type: MP7222 [000:6847-6852], not more than the model has.
     pub file_name_max: u8,
     /// The working plane can be tilted: MP7500 = 1, TNC 415/425 only [000:4264-4400].
@@ -76,6 +76,17 @@ pub struct OemCycleParameters {
     /// By how much the numbers of the dialogue texts in force lie above those of the program: old MP259 in the English
     /// dialogue [001:2801-2823].
     pub text_offset: u8,
+}
+
+/// How the angle of the spindle is shown among the axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpindleDisplay {
+    /// Not at all.
+    None,
+    /// As S while it stands: MP40 bit 5 [000:3418-3432].
+    Standing,
+    /// In place of axis IV, whether it stands or turns, with this letter: MP237 = 2 as V, 3 to 5 as A, B, C [001:3109].
+    AsFourth(char),
 }
 
 /// Whether there is a machine [000:6949-6954].
@@ -299,7 +310,7 @@ impl ParameterList {
             handwheel: self.handwheel_parameters(),
             tool_length_shown: is_one(7285),
             speed_shown_at_rest: !old || self.old(191) == 1.0,
-            spindle_shown: bit_of(self.get_new(40, 0).unwrap_or_default(), 5),
+            spindle_display: self.spindle_display(),
             file_name_max: match self.get_new(7222, 0) {
                 Some(0.0) => 8,
                 Some(1.0) => 12,
@@ -384,13 +395,30 @@ impl ParameterList {
         }
     }
 
+    fn spindle_display(&self) -> SpindleDisplay {
+        match self.old(237) as u8 {
+            2 => SpindleDisplay::AsFourth('V'),
+            3 => SpindleDisplay::AsFourth('A'),
+            4 => SpindleDisplay::AsFourth('B'),
+            5 => SpindleDisplay::AsFourth('C'),
+            _ if bit_of(self.get_new(40, 0).unwrap_or_default(), 5) => SpindleDisplay::Standing,
+            _ => SpindleDisplay::None,
+        }
+    }
+
     fn tool_parameters(&self) -> ToolParameters {
+        // Without a central tool memory there are no pockets to put out [001:1605-1607].
+        let without_pockets = self.has_old_numbers() && self.old(225) == 0.0;
+        let put_out = |value: f64| match tool_output(value) {
+            output if without_pockets && output.what == ToolOutputKind::Pocket => tool_output(0.0),
+            output => output,
+        };
         ToolParameters {
             table_size: self.tool_table_size(),
             pockets: self.value((7261, 0), (225, 0)) as u32,
             reserved_pockets: self.get_new(7264, 0).unwrap_or_default() as u8,
-            call: tool_output(self.value((7480, 0), (61, 0))),
-            definition: tool_output(self.value((7480, 1), (157, 0))),
+            call: put_out(self.value((7480, 0), (61, 0))),
+            definition: put_out(self.value((7480, 1), (157, 0))),
             probe: self.tool_probe(),
         }
     }

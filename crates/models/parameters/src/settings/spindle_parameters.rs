@@ -8,7 +8,7 @@ use bahn_servo::spindle_settings::{
 use super::bit_of;
 use crate::ParameterList;
 
-/// Bit of the spindle in MP31 and MP32.
+/// Bit of the spindle in MP31 and MP32, and of axis V in MP76.
 const ENCODER_BIT: u32 = 5;
 /// Gear ranges that the TNC 151/155 have beside comparator speeds [001:1514-1536].
 const OLD_GEARS: usize = 4;
@@ -27,6 +27,9 @@ pub struct SpindleParameters {
     /// The spindle can be position controlled, for orientation and rigid tapping: MP3010 of 6 to 8 (old
     /// MP237 = 1, 2) [000:5444-5472] [001:3082-3115].
     pub controlled: bool,
+    /// Its encoder input, from 0: X6; TNC 151/155 the one that MP253 to MP257 = 5 give to axis V, else X5
+    /// [001:2434-2454].
+    pub input: u8,
     /// What output S is for when the spindle does not use it: MP3011 [000:9819-9860]; old: nothing.
     pub free_output: FreeOutput,
     /// Limits of the coded speed: MP3020 (old MP63) [000:5718-5745] [001:1497-1499].
@@ -159,14 +162,20 @@ impl ParameterList {
         let (gears, comparator_rpm) = self.gears();
         let old = self.has_old_numbers();
         let rigid = |number| self.get_new(number, 0).unwrap_or_default();
-        let encoder_bit = |number| bit_of(self.get_new(number, 0).unwrap_or_default(), ENCODER_BIT);
+        let controlled = if old {
+            matches!(self.old(237) as u8, 1 | 2)
+        } else {
+            kind >= 6
+        };
+        // Where axis V is active its encoder is checked unless MP76 says otherwise [001:1366-1375].
+        let encoder_bit = |number| match old {
+            true => controlled && !self.old_bit(76, ENCODER_BIT),
+            false => bit_of(self.get_new(number, 0).unwrap_or_default(), ENCODER_BIT),
+        };
         SpindleParameters {
             output: output(kind),
-            controlled: if old {
-                matches!(self.old(237) as u8, 1 | 2)
-            } else {
-                kind >= 6
-            },
+            controlled,
+            input: self.spindle_input(),
             free_output: self.free_output(kind),
             codes: codes(self.value((3020, 0), (63, 0))),
             axes_run_on: !self.m_functions().axes_wait_for_speed,
@@ -235,6 +244,11 @@ impl ParameterList {
             gear.max_rpm = gear.rated_rpm * factor;
         }
         (gears, comparator)
+    }
+
+    fn spindle_input(&self) -> u8 {
+        let axis_v = |input: &u8| self.old(253 + u16::from(*input)) == 5.0;
+        (0..5).find(axis_v).unwrap_or(self.model().limits().spindle_input)
     }
 
     fn free_output(&self, kind: u8) -> FreeOutput {

@@ -131,12 +131,17 @@ pub(super) fn frame(image: &mut Image, drawing: &Area, page: &Page) {
 pub(super) fn rulers(image: &mut Image, part: &Part, drawing: &Area, size: f64, pens: Pens) {
     let [first, second, _] = part.axes();
     let (min, max) = (part.min(), part.max());
+    let [left, right] = part.left_and_right();
+    let [from, to] = match left < right {
+        true => [drawing.min[0], drawing.max[0]],
+        false => [drawing.max[0], drawing.min[0]],
+    };
     Ruler {
         name: &first.to_string(),
-        low: min[0],
-        high: max[0],
-        from: drawing.min[0],
-        to: drawing.max[0],
+        low: left.min(right),
+        high: left.max(right),
+        from,
+        to,
         line: drawing.max[1],
         text_size: size,
         pens,

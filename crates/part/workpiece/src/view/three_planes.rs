@@ -307,7 +307,17 @@ impl<'a> Sheet<'a> {
             pens: self.pens,
         };
         let (plan, front, side) = (&self.plan, &self.front, &self.side);
-        ruler(0, plan.min[0], plan.max[0], plan.max[1].max(front.max[1])).below(image);
+        let [left, right] = self.part.left_and_right();
+        let [from, to] = match left < right {
+            true => [plan.min[0], plan.max[0]],
+            false => [plan.max[0], plan.min[0]],
+        };
+        let across = Ruler {
+            low: left.min(right),
+            high: left.max(right),
+            ..ruler(0, from, to, plan.max[1].max(front.max[1]))
+        };
+        across.below(image);
         ruler(1, plan.max[1], plan.min[1], plan.min[0]).left(image);
         ruler(2, front.max[1], front.min[1], front.min[0]).left(image);
         let (low, high) = match self.projection {
@@ -322,10 +332,10 @@ impl<'a> Sheet<'a> {
         let size = self.text_size;
         let centre = self.corner.centre();
         let [first, second, _] = self.part.axes();
-        let position = |k: usize| number(self.part.setup.min[k] + self.sections[k], 0.001);
+        let [across, up] = [0, 1].map(|k: usize| self.part.setup.min[k] + self.sections[k]);
         let lines = [
-            format!("{first} {:>10}", position(0)),
-            format!("{second} {:>10}", position(1)),
+            format!("{first} {:>10}", number(self.part.across(across), 0.001)),
+            format!("{second} {:>10}", number(up, 0.001)),
         ];
         for (k, line) in lines.iter().enumerate() {
             let y = centre[1] + (1.5 + 1.6 * k as f64) * size;

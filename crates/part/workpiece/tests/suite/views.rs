@@ -108,6 +108,27 @@ fn projection_decides_the_arrangement() {
     assert!(plan_rows(Projection::FirstAngle) > plan_rows(Projection::ThirdAngle) + 20);
 }
 
+/// Turned by +90 degrees X points up and Y to the left: what is at (x, y) is drawn at (-y, x) [000:6386-6396].
+#[test]
+fn a_turned_part_lies_on_its_side() {
+    let part = pocketed();
+    let turned = part.turned();
+    let [min, max] = [part.min(), part.max()];
+    assert_eq!(turned.axes(), [Axis::Y, Axis::X, Axis::Z]);
+    assert_eq!((turned.min()[0], turned.max()[0]), (-max[1], -min[1]));
+    assert_eq!((turned.min()[1], turned.max()[1]), (min[0], max[0]));
+    assert!((turned.removed_mm3() - part.removed_mm3()).abs() < 1e-6);
+    for (x, y) in [(25.1, 20.1), (25.1, 60.1), (30.3, 40.2), (80.2, 40.2), (0.3, 0.3)] {
+        assert_eq!(turned.height_at([-y, x]), part.height_at([x, y]), "{x} {y}");
+    }
+    // The pocket is in the left half; turned it is in the lower one.
+    let dark = |part: &Part| {
+        let image = part.plan_view(&page(), &PlanView::default());
+        image.pixels().to_vec()
+    };
+    assert_ne!(dark(&part), dark(&turned));
+}
+
 #[test]
 fn the_3d_view_turns() {
     let part = pocketed();
