@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use bahn_tnc::{AxisSignal, ChannelView, Control, Signal, SignalError, split_channel};
 
+use crate::of_module::of_module;
 use crate::operable::Operable;
 
 /// What only the plant knows of an axis.
@@ -187,6 +188,8 @@ impl Observable {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Observed {
+    /// It is of the positioning module beside the machine: `module:X.actual`.
+    pub module: bool,
     /// Which channel, from 0.
     pub channel: usize,
     /// What of it; operands of the PLC are those of its window.
@@ -197,12 +200,23 @@ impl FromStr for Observed {
     type Err = SignalError;
 
     fn from_str(text: &str) -> Result<Observed, SignalError> {
+        if let Some(of_it) = of_module(text) {
+            let of_it: Observed = of_it.parse()?;
+            return match of_it.module {
+                true => Err(SignalError::of(text)),
+                false => Ok(Observed {
+                    module: true,
+                    ..of_it
+                }),
+            };
+        }
         let (channel, of_it) = split_channel(text);
         let what = of_it.parse()?;
         match (channel, what) {
             // That is no signal of a channel.
             (Some(_), Observable::Truth(..) | Observable::Magazine(_)) => Err(SignalError::of(text)),
             (channel, what) => Ok(Observed {
+                module: false,
                 channel: channel.unwrap_or(0),
                 what,
             }),
@@ -212,6 +226,9 @@ impl FromStr for Observed {
 
 impl fmt::Display for Observed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.module {
+            write!(f, "module:")?;
+        }
         if self.channel > 0 {
             write!(f, "{}:", self.channel + 1)?;
         }

@@ -217,6 +217,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "tnc",
             "host",
             "trials",
+            "link",
             "panel",
             "nc",
             "technology",
