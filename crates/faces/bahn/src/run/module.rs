@@ -31,13 +31,10 @@ pub(super) fn load(
             "it is no positioning module: [module] in its machine.toml makes it one".to_owned(),
         ));
     };
-    for (model, who) in [
-        (module.parameters.model(), "the module"),
-        (machine.parameters.model(), "the control"),
-    ] {
-        if !model.limits().rs_422 {
-            return Err(wrong(format!("{who}, {model}, has no RS-422")));
-        }
+    // The logic unit of a module has RS-422 at X25, whatever the control has whose software runs on it [000:18023-18029].
+    let model = machine.parameters.model();
+    if !model.limits().rs_422 {
+        return Err(wrong(format!("the control, {model}, has no RS-422")));
     }
     let simulated = machine.simulated()?;
     let operand = wiring.voltage.map(|input| format!("I{input}"));
