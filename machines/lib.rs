@@ -35,7 +35,7 @@ pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "pockets.tsv", "plc/MAIN.PLC",
     "plc/MAIN.ER1", "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "plc355/MAIN.PLC",
     "plc/DIALOG.TXT", "programs/BRACKET.H", "programs/CIRCLE.H", "programs/DATUM.H", "programs/FLANGE.H",
-    "programs/INDEX.H", "programs/KNOB.H", "programs/MEASURE.H", "programs/SADDLE.H", "programs/eprom/99999968.H",
+    "programs/INDEX.H", "programs/KNOB.H", "programs/MEASURE.H", "programs/PALLET.H", "programs/SADDLE.H", "programs/eprom/99999968.H",
     "lessons/01-power-on.lesson", "lessons/02-datum.lesson", "lessons/03-limit.lesson",
     "lessons/04-door.lesson", "lessons/05-lag.lesson", "lessons/06-drive.lesson",
     "lessons/07-tool-change.lesson", "lessons/08-lubricant.lesson",
@@ -74,7 +74,14 @@ pub const GANTRY: ShippedMachine = machine!("gantry" for "tnc415b":
     "plc/start.txt", "programs/ROOF.H", "programs/THREADS.H", "programs/NOSE.H",
 );
 
-/// All of them; the first one that has a model is the start for it.
+/// A loader as positioning module beside another machine; its control is a TNC 360. It runs no programs of its own, and is no
+/// start for a machine.
+pub const MODULE_TNC360: ShippedMachine = machine!("module-tnc360" for "tnc360":
+    "README.md", "machine.toml", "parameters.mp", "plant.toml", "plc/MAIN.PLC", "plc/MAIN.ER1", "scripts/stop.txt",
+    "scripts/refused.txt",
+);
+
+/// All of them but the module; the first one that has a model is the start for it.
 pub const ALL: [ShippedMachine; 6] = [MILL, MILL_TNC360, MILL_TNC155, DIG425, TWIN, GANTRY];
 
 impl ShippedMachine {
@@ -104,7 +111,7 @@ mod tests {
             }
         }
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        for machine in ALL {
+        for machine in ALL.into_iter().chain([MODULE_TNC360]) {
             let mut found = Vec::new();
             files(&root.join(machine.name), "", &mut found);
             found.sort();

@@ -17,6 +17,7 @@
 //! - a [`Monitor`] says in words what passes;
 //! - [`HardCopy`] speaks to the printer of a TNC 155, [`PrintOut`] brings it what is printed;
 //! - [`PlcLine`] is the PLC at a line, [`Resting`] a line that nobody uses;
+//! - a [`PositioningModule`] is a second control at the RS-422 of the first one;
 //! - [`lsv2`] are the telegrams of LSV/2.
 
 #![allow(
@@ -33,6 +34,7 @@ mod files;
 mod frame;
 mod hard_copy;
 pub mod lsv2;
+mod module;
 mod monitor;
 mod passive;
 mod plc_line;
@@ -52,6 +54,7 @@ pub use characters::{AFTER_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use files::{Files, Listed, Memory, NewFile, OfKinds};
 pub use hard_copy::HardCopy;
+pub use module::{ModuleWiring, PositioningModule};
 pub use monitor::Monitor;
 pub use passive::{Passive, peripheral};
 pub use plc_line::PlcLine;

@@ -188,6 +188,7 @@ fn split_time(line: &str) -> Option<(&str, &str)> {
     let condition = line.trim_start().strip_prefix("when ").map(str::trim_start);
     let before = condition.map_or(0, |condition| match condition.as_bytes() {
         [b'1'..=b'9', b':', ..] => line.len() - condition.len() + 2,
+        [b'm', b'o', b'd', b'u', b'l', b'e', b':', ..] => line.len() - condition.len() + 7,
         _ => 0,
     });
     let mut quoted = false;

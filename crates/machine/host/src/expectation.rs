@@ -5,6 +5,7 @@ use bahn_path::Switch;
 use bahn_tnc::{ChannelView, Control, Mode, RunState, Signal, TestState, split_channel};
 
 use crate::observable::Observable;
+use crate::of_module::{NO_MODULE, of_module};
 use crate::operable::Operable;
 
 /// So near counts as equal when a script does not say how near, for values that are no whole numbers: the
@@ -32,6 +33,8 @@ pub enum Expectation {
     Lamp(String, Switch),
     /// `2:X.actual=100`, `2: run ended`: of a channel, from 0; signal, message, mode, run or tool.
     Of(usize, Box<Expectation>),
+    /// `module:X.actual=100`, `module: no message`: of the positioning module beside the machine.
+    Module(Box<Expectation>),
 }
 
 /// Whether something is to be there.
@@ -136,6 +139,7 @@ expect M2045=1, W260=3              several: all must be so
 expect test finished                the test run beside: running, interrupted, finished, failed
 expect lamp NC_START=1              a lamp of the panel
 expect 2:X.actual=100               of the second channel; also 2: message, 2: mode, 2: run, 2: tool
+expect module:X.actual=100          of the positioning module (--with); also module: message and the like
 ";
 
     /// Reads what stands after `expect`: one, or several with commas between. Without a machine only operands of the
@@ -144,9 +148,27 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
     /// # Errors
     /// In words, when one of them is none.
     pub fn parse_all(text: &str, machine: Option<&dyn Operable>) -> Result<Vec<Expectation>, String> {
-        parts(text)
-            .map(|text| Expectation::parse(text.trim(), machine))
-            .collect()
+        Expectation::parse_all_with(text, machine, None)
+    }
+
+    /// The same of a machine that has a positioning module beside it.
+    ///
+    /// # Errors
+    /// As [`Expectation::parse_all`].
+    pub fn parse_all_with(
+        text: &str,
+        machine: Option<&dyn Operable>,
+        module: Option<&dyn Operable>,
+    ) -> Result<Vec<Expectation>, String> {
+        let parse = |text: &str| match of_module(text) {
+            Some(of_it) => {
+                let module = module.ok_or_else(|| NO_MODULE.to_owned())?;
+                let what = Expectation::parse(of_it, Some(module))?;
+                Ok(Expectation::Module(Box::new(what)))
+            }
+            None => Expectation::parse(text.trim(), machine),
+        };
+        parts(text).map(parse).collect()
     }
 
     fn parse(text: &str, machine: Option<&dyn Operable>) -> Result<Expectation, String> {
@@ -290,6 +312,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                 Some(channel) => what.check_in(channel, Some(*number), control, machine),
                 None => Some(format!("the machine has no channel {}", number + 1)),
             },
+            Expectation::Module(_) => Some(NO_MODULE.to_owned()),
             Expectation::Value(signal, relation, value) => {
                 relation.check(signal, signal.value(channel, machine), *value)
             }

@@ -71,6 +71,7 @@ mod moment;
 mod notice;
 mod observable;
 pub mod oem_cycles;
+mod of_module;
 mod operable;
 mod operator;
 mod orders;

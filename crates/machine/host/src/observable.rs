@@ -6,6 +6,7 @@ use std::str::FromStr;
 use bahn_parameters::{ControlModel, Numbering};
 use bahn_tnc::{AxisSignal, ChannelView, Control, Signal, SignalError, split_channel};
 
+use crate::of_module::of_module;
 use crate::operable::Operable;
 
 /// What only the plant knows of an axis.
@@ -188,6 +189,8 @@ impl Observable {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Observed {
+    /// It is of the positioning module beside the machine: `module:X.actual`.
+    pub module: bool,
     /// Which channel, from 0.
     pub channel: usize,
     /// What of it; operands of the PLC are those of its window.
@@ -198,12 +201,23 @@ impl FromStr for Observed {
     type Err = SignalError;
 
     fn from_str(text: &str) -> Result<Observed, SignalError> {
+        if let Some(of_it) = of_module(text) {
+            let of_it: Observed = of_it.parse()?;
+            return match of_it.module {
+                true => Err(SignalError::of(text)),
+                false => Ok(Observed {
+                    module: true,
+                    ..of_it
+                }),
+            };
+        }
         let (channel, of_it) = split_channel(text);
         let what = of_it.parse()?;
         match (channel, what) {
             // That is no signal of a channel.
             (Some(_), Observable::Truth(..) | Observable::Magazine(_)) => Err(SignalError::of(text)),
             (channel, what) => Ok(Observed {
+                module: false,
                 channel: channel.unwrap_or(0),
                 what,
             }),
@@ -213,6 +227,9 @@ impl FromStr for Observed {
 
 impl fmt::Display for Observed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.module {
+            write!(f, "module:")?;
+        }
         if self.channel > 0 {
             write!(f, "{}:", self.channel + 1)?;
         }
@@ -225,7 +242,7 @@ impl Observed {
     pub fn name(&self, model: ControlModel) -> String {
         let old = model.limits().numbering == Numbering::Old;
         match &self.what {
-            Observable::Signal(signal) if self.channel == 0 => signal.name(old),
+            Observable::Signal(signal) if self.channel == 0 && !self.module => signal.name(old),
             _ => self.to_string(),
         }
     }

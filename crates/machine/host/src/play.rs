@@ -9,6 +9,7 @@ use crate::action::{Action, Answer, Source};
 use crate::error::HostError;
 use crate::expectation::{Expectation, Presence};
 use crate::host::Host;
+use crate::of_module::NO_MODULE;
 use crate::operable::Operable;
 use crate::script::{Line, Script, ScriptAction};
 use bahn_script::Base;
@@ -62,6 +63,37 @@ pub struct Play {
     expected: Vec<String>,
     /// What did not hold.
     pub failed: Vec<FailedExpectation>,
+}
+
+/// `None` when it is so on a machine, or on the module beside it; otherwise what is.
+fn check<P: Operable, M: Operable>(
+    expectation: &Expectation,
+    host: &Host<P>,
+    module: Option<&Host<M>>,
+) -> Option<String> {
+    match (expectation, module) {
+        (Expectation::Module(what), Some(module)) => what.check(module.control(), module.plant()),
+        _ => expectation.check(host.control(), host.plant()),
+    }
+}
+
+/// Does something to a machine.
+fn act<P: Operable>(action: ScriptAction, host: &mut Host<P>) -> Result<(), HostError> {
+    let actions = match action {
+        ScriptAction::Do(action) => vec![action],
+        ScriptAction::Set(assignments) => {
+            let commands = assignments.into_iter().map(Command::Set);
+            commands.map(|command| Action::Command(0, command)).collect()
+        }
+        ScriptAction::Expect(_) | ScriptAction::End | ScriptAction::Module(_) => Vec::new(),
+    };
+    for action in actions {
+        let text = action.to_string();
+        if let Answer::Impossible(error) = host.act(Source::Script, action)? {
+            return Err(HostError::new(format!("{text}: {error}")));
+        }
+    }
+    Ok(())
 }
 
 /// The place of a base among all.
@@ -147,29 +179,30 @@ impl Play {
     /// # Errors
     /// When the machine has not what it names, or the log cannot be written.
     pub fn perform<P: Operable>(&mut self, line: Line, host: &mut Host<P>) -> Result<bool, HostError> {
-        let actions = match line.action {
-            ScriptAction::End => return Ok(true),
-            ScriptAction::Do(action) => vec![action],
-            ScriptAction::Set(assignments) => {
-                let commands = assignments.into_iter().map(Command::Set);
-                commands.map(|command| Action::Command(0, command)).collect()
-            }
-            ScriptAction::Expect(expectations) => {
-                let (control, plant) = (host.control(), host.plant());
+        self.perform_with(line, host, None::<&mut Host<P>>)
+    }
+
+    fn perform_with<P: Operable, M: Operable>(
+        &mut self,
+        line: Line,
+        host: &mut Host<P>,
+        module: Option<&mut Host<M>>,
+    ) -> Result<bool, HostError> {
+        match (line.action, module) {
+            (ScriptAction::End, _) => return Ok(true),
+            (ScriptAction::Expect(expectations), module) => {
                 for expectation in &expectations {
-                    match expectation.check(control, plant) {
-                        Some(actual) => self.fail(line.number, actual, control.time_us() as f64 * 1e-6),
+                    match check(expectation, host, module.as_deref()) {
+                        Some(actual) => {
+                            self.fail(line.number, actual, host.control().time_us() as f64 * 1e-6);
+                        }
                         None => self.expect(expectation),
                     }
                 }
-                return Ok(false);
             }
-        };
-        for action in actions {
-            let text = action.to_string();
-            if let Answer::Impossible(error) = host.act(Source::Script, action)? {
-                return Err(HostError::new(format!("{text}: {error}")));
-            }
+            (ScriptAction::Module(_), None) => return Err(HostError::new(NO_MODULE.to_owned())),
+            (ScriptAction::Module(action), Some(module)) => act(*action, module)?,
+            (action, _) => act(action, host)?,
         }
         Ok(false)
     }
@@ -179,15 +212,26 @@ impl Play {
     /// # Errors
     /// As [`Play::perform`].
     pub fn follow<P: Operable>(&mut self, host: &mut Host<P>) -> Result<bool, HostError> {
+        self.follow_with(host, None::<&mut Host<P>>)
+    }
+
+    /// The same on a machine that may have a positioning module beside it; times are those of the machine.
+    ///
+    /// # Errors
+    /// As [`Play::perform`].
+    pub fn follow_with<P: Operable, M: Operable>(
+        &mut self,
+        host: &mut Host<P>,
+        mut module: Option<&mut Host<M>>,
+    ) -> Result<bool, HostError> {
         let now = host.control().time_us();
         let mut ends = false;
         loop {
-            let (control, plant) = (host.control(), host.plant());
-            let holds = |condition: &Expectation| condition.check(control, plant).is_none();
+            let holds = |condition: &Expectation| check(condition, host, module.as_deref()).is_none();
             let Some(line) = self.due(now, holds) else {
                 return Ok(ends);
             };
-            ends |= self.perform(line, host)?;
+            ends |= self.perform_with(line, host, module.as_deref_mut())?;
         }
     }
 

@@ -14,6 +14,7 @@ use bahn_tnc::{Command, split_channel};
 use crate::action::{Action, ActionError};
 use crate::any_plant::AnyPlant;
 use crate::expectation::{Expectation, Presence};
+use crate::of_module::{NO_MODULE, of_module};
 use crate::operable::Operable;
 use bahn_text::{Diagnostic, decode};
 
@@ -49,6 +50,8 @@ pub enum ScriptAction {
     Expect(Vec<Expectation>),
     /// The run ends, whatever is still to come.
     End,
+    /// Something is done to the positioning module beside the machine.
+    Module(Box<ScriptAction>),
 }
 
 /// What a script is played on.
@@ -59,6 +62,8 @@ pub struct Stage<'a> {
     copy: Option<AnyPlant>,
     parameters: &'a ParameterList,
     cycle_us: u32,
+    /// The positioning module beside it.
+    module: Option<Box<Stage<'a>>>,
 }
 
 impl<'a> Stage<'a> {
@@ -72,6 +77,16 @@ impl<'a> Stage<'a> {
             copy: plant.copied().map(AnyPlant::new),
             parameters,
             cycle_us: parameters.model().timing().contour_us(),
+            module: None,
+        }
+    }
+
+    /// With a positioning module beside it.
+    #[must_use]
+    pub fn with_module(self, module: Stage<'a>) -> Stage<'a> {
+        Stage {
+            module: Some(Box::new(module)),
+            ..self
         }
     }
 
@@ -82,6 +97,16 @@ impl<'a> Stage<'a> {
             copy: None,
             parameters,
             cycle_us: parameters.model().limits().plc_cycle_us,
+            module: None,
+        }
+    }
+
+    fn known(&self) -> Known<'_> {
+        Known {
+            plant: self.plant,
+            tried: self.copy.as_ref().and_then(AnyPlant::copied),
+            parameters: self.parameters.clone(),
+            module: self.module.as_ref().map(|module| Box::new(module.known())),
         }
     }
 
@@ -90,11 +115,7 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// All faults of the script.
     pub fn script(&self, path: &Path, bytes: &[u8]) -> Result<Script, Vec<Diagnostic>> {
-        let mut known = Known {
-            plant: self.plant,
-            tried: self.copy.as_ref().and_then(AnyPlant::copied),
-            parameters: self.parameters.clone(),
-        };
+        let mut known = self.known();
         let times = Times::of_cycle(self.cycle_us).up_to(SECONDS_MAX);
         let (script, faults) = Script::read(path, &decode(bytes), times, &mut known);
         if faults.is_empty() {
@@ -113,6 +134,8 @@ struct Known<'a> {
     tried: Option<AnyPlant>,
     /// What it does to machine parameters is tried on them.
     parameters: ParameterList,
+    /// What is known of the positioning module beside it.
+    module: Option<Box<Known<'a>>>,
 }
 
 impl Verbs for Known<'_> {
@@ -124,11 +147,19 @@ impl Verbs for Known<'_> {
         let (word, rest) = what.split_once(char::is_whitespace).unwrap_or((what, ""));
         match word {
             "expect" => {
-                let all = Expectation::parse_all(rest, self.plant);
+                let all = self.expectations(rest);
                 return all.map(ScriptAction::Expect).map_err(wrong);
             }
             "end" if rest.trim().is_empty() => return Ok(ScriptAction::End),
             _ => {}
+        }
+        if let Some(of_it) = of_module(what) {
+            let module = self.module.as_mut().ok_or_else(|| wrong(NO_MODULE.to_owned()))?;
+            return match module.action(of_it)? {
+                ScriptAction::Expect(_) => Err(wrong("it is written `expect module: ..`".to_owned())),
+                ScriptAction::End => Err(wrong("`end` is of the run, not of the module".to_owned())),
+                action => Ok(ScriptAction::Module(Box::new(action))),
+            };
         }
         if split_channel(what).0.is_none() && Assignment::is_meant(what) {
             return self.assignments(what).map(ScriptAction::Set).map_err(wrong);
@@ -177,7 +208,8 @@ impl Verbs for Known<'_> {
     }
 
     fn condition<'a>(&mut self, text: &'a str) -> Result<Vec<Expectation>, Fault<'a>> {
-        Expectation::parse_all(text, self.plant).map_err(|message| Fault::new(text, message))
+        self.expectations(text)
+            .map_err(|message| Fault::new(text, message))
     }
 
     fn message(&mut self, text: &str) -> Result<Vec<Expectation>, String> {
@@ -189,6 +221,11 @@ impl Verbs for Known<'_> {
 }
 
 impl Known<'_> {
+    fn expectations(&self, text: &str) -> Result<Vec<Expectation>, String> {
+        let module = self.module.as_ref().and_then(|module| module.plant);
+        Expectation::parse_all_with(text, self.plant, module)
+    }
+
     /// Values of operands and parameters: `I4=1, W6=100, MP4110.2=4`.
     fn assignments(&mut self, text: &str) -> Result<Vec<Assignment>, String> {
         let all = Assignment::parse_all(text)?;

@@ -3,6 +3,10 @@
 //! The relay holds as long as the supply is there, the button is not pressed, no limit switch of the chain
 //! is actuated and the control has switched "control is ready" on. Its contact is the acknowledgement I3
 //! and feeds the drives and the outputs that an EMERGENCY STOP switches off.
+//!
+//! Decision: The chains of a control and its positioning module, whose circuit is lost [000:18093-18099], open each other:
+//! button, limit switches and supply of one at once, its "control is ready" after a delay, so that the test at power-on,
+//! which drops it for some 60 ms, does not reach the other
 
 use bahn_servo::{INPUTS, OUTPUTS};
 
@@ -41,6 +45,29 @@ impl ContactFault {
     }
 }
 
+/// What one machine puts into the EMERGENCY STOP chain of another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interlock {
+    /// Supply, button and limit switches let its chain close.
+    pub path: bool,
+    /// Its control has switched "control is ready" on.
+    pub ready: bool,
+    /// Its relay has closed: it has control voltage.
+    pub voltage: bool,
+}
+
+/// How the other machine is wired to this one.
+#[derive(Clone, Copy, Debug)]
+struct Coupled {
+    other: Interlock,
+    /// How long its control may be not ready until this chain opens.
+    delay_ms: u32,
+    /// How long it has been.
+    missing_ms: u32,
+    /// The input that tells of its control voltage.
+    input: Option<usize>,
+}
+
 /// The chains of contacts; the module describes them.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
@@ -61,6 +88,7 @@ pub(crate) struct Chain {
     pub fault: Option<RelayFault>,
     relay: bool,
     changing_ms: u32,
+    coupled: Option<Coupled>,
 }
 
 impl Chain {
@@ -80,6 +108,7 @@ impl Chain {
             fault: None,
             relay: false,
             changing_ms: 0,
+            coupled: None,
         };
         let Some(section) = root.section("emergency_stop") else {
             root.fault("the machine needs [emergency_stop] with its acknowledgement, usually I3".to_owned());
@@ -145,14 +174,43 @@ impl Chain {
         self.limit_switches
     }
 
+    /// What the chain of another machine gets to know; `limits_clear`: no limit switch is actuated.
+    pub fn interlock(&self, limits_clear: bool) -> Interlock {
+        Interlock {
+            path: self.supply && !self.button && (limits_clear || !self.limit_switches),
+            ready: self.control_ready,
+            voltage: self.relay,
+        }
+    }
+
+    /// The contacts of another machine stand so from now on.
+    pub fn couple(&mut self, other: Interlock, delay_ms: u32, input: Option<usize>) {
+        let missing_ms = self.coupled.map_or(0, |coupled| coupled.missing_ms);
+        self.coupled = Some(Coupled {
+            other,
+            delay_ms,
+            missing_ms,
+            input,
+        });
+    }
+
+    /// Lets a millisecond pass at the contacts of another machine; whether they are closed.
+    fn is_let(&mut self) -> bool {
+        let Some(coupled) = &mut self.coupled else {
+            return true;
+        };
+        coupled.missing_ms = match coupled.other.ready {
+            true => 0,
+            false => coupled.missing_ms.saturating_add(1),
+        };
+        coupled.other.path && coupled.missing_ms <= coupled.delay_ms
+    }
+
     /// Lets a millisecond pass; whether the relay has switched.
     pub fn advance(&mut self, limits_clear: bool, key_pressed: bool) -> bool {
         let held = self.key.is_none() || self.relay || key_pressed;
-        let closed = self.supply
-            && !self.button
-            && self.control_ready
-            && held
-            && (limits_clear || !self.limit_switches);
+        let let_by_other = self.is_let();
+        let closed = self.interlock(limits_clear).path && self.control_ready && held && let_by_other;
         let wanted = match self.fault {
             Some(RelayFault::Welded) => self.supply && (closed || self.relay),
             Some(RelayFault::Open) => false,
@@ -200,6 +258,11 @@ impl Chain {
     pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
         if let Some(contact) = self.acknowledgement {
             contact.set(inputs, self.relay);
+        }
+        if let Some(coupled) = self.coupled
+            && let Some(input) = coupled.input.and_then(|input| inputs.get_mut(input))
+        {
+            *input = coupled.other.voltage;
         }
     }
 }

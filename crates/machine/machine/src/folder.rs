@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use bahn_servo::INPUTS;
 use bahn_text::Diagnostic;
 
 use crate::equipment::EquipmentFolder;
@@ -67,6 +68,17 @@ pub struct MachineFolder {
     pub functions: Vec<FunctionFolder>,
     /// Boards, options and software of the control.
     pub equipment: EquipmentFolder,
+    /// How it is wired as positioning module of another control; none where it is no module.
+    pub module: Option<ModuleFolder>,
+}
+
+/// How a positioning module is wired to the control that it belongs to: `[module]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModuleFolder {
+    /// The input of that control's PLC that is 1 while the module has control voltage.
+    pub voltage: Option<usize>,
+    /// How long the control of one machine may be not ready until the EMERGENCY STOP chain of the other one opens, ms.
+    pub ready_delay_ms: u32,
 }
 
 /// A channel beside the first one: `[[channel]]`.
@@ -214,6 +226,7 @@ impl MachineFolder {
             hand_overs: root.list("hand_over").into_iter().map(read_hand_over).collect(),
             functions: root.list("function").into_iter().map(read_function).collect(),
             equipment: EquipmentFolder::read(&root),
+            module: root.section("module").map(read_module),
         };
         root.finish();
         (folder, reader.faults())
@@ -226,6 +239,27 @@ fn needed_text(section: &Section, key: &'static str) -> String {
         section.fault(format!("[[{}]] needs {key}", section.name));
     }
     section.text(key).unwrap_or_default().to_owned()
+}
+
+/// Longer than "control is ready" is off in a test of the EMERGENCY STOP circuit: a relay with 114 ms and 18 ms.
+const READY_DELAY_MS: u32 = 250;
+
+fn read_module(section: Section) -> ModuleFolder {
+    let voltage = section.text("voltage").and_then(|text| {
+        let number = text.strip_prefix('I').and_then(|number| number.parse().ok());
+        let input = number.filter(|input: &usize| *input < INPUTS);
+        if input.is_none() {
+            section.fault_at("voltage", format!("`{text}` is no input of a PLC, as \"I26\""));
+        }
+        input
+    });
+    let delay = section.number("ready_delay_ms", 0.0..=10_000.0);
+    let module = ModuleFolder {
+        voltage,
+        ready_delay_ms: delay.map_or(READY_DELAY_MS, |delay| delay as u32),
+    };
+    section.finish();
+    module
 }
 
 fn read_channel(section: Section) -> ChannelFolder {

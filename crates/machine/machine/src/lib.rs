@@ -64,12 +64,12 @@ mod spindle;
 mod tool_probe;
 
 pub use axis::{AxisState, DriveFault};
-pub use chain::{ContactFault, RelayFault};
+pub use chain::{ContactFault, Interlock, RelayFault};
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
 pub use equipment::{EquipmentFolder, Said};
 pub use event::{Button, Event, EventError, Fault, KeyAction, Put};
-pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, OperatorKeys};
+pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, ModuleFolder, OperatorKeys};
 pub use machine::Machine;
 pub use magazine::MagazineState;
 pub use mechanics::{AxisPlace, DevicePlace, MagazinePlace, Mechanics, SpindlePlace};

@@ -8,7 +8,7 @@ use bahn_text::Diagnostic;
 use crate::axis::{Axis, AxisState};
 use crate::by_hand::ByHand;
 use crate::cabinet;
-use crate::chain::Chain;
+use crate::chain::{Chain, Interlock};
 use crate::clock::{Clock, TICK_US};
 use crate::device::{Device, DeviceState};
 use crate::magazine::{Magazine, MagazineState};
@@ -320,6 +320,18 @@ impl Machine {
     /// The relay of the EMERGENCY STOP chain has closed: the control voltage is on.
     pub fn control_voltage(&self) -> bool {
         self.chain.voltage()
+    }
+
+    /// What it puts into the EMERGENCY STOP chain of another machine.
+    pub fn interlock(&self) -> Interlock {
+        let limits_clear = !self.chain.watches_limits() || self.limit_switches_clear();
+        self.chain.interlock(limits_clear)
+    }
+
+    /// Another machine is in its EMERGENCY STOP chain, with contacts that stand so from now on. The chain opens `delay_ms`
+    /// after the other control is not ready, and `input` is 1 while the other has control voltage.
+    pub fn couple(&mut self, other: Interlock, delay_ms: u32, input: Option<usize>) {
+        self.chain.couple(other, delay_ms, input);
     }
 
     /// Contacts, relays and things: once in a millisecond.

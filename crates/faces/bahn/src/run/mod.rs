@@ -1,9 +1,11 @@
 //! `bahn run`: a part program on the simulated machine.
 //!
-//! - `options`: options and help text; `oscilloscope`: what is asked of the control's oscilloscope.
+//! - `options`: options and help text; `oscilloscope`: what is asked of the control's oscilloscope; `module`: the positioning
+//!   module that goes along.
 //!
 //! What is seen of the run and said in the end is [`bahn_report::run`].
 
+mod module;
 mod options;
 mod oscilloscope;
 
@@ -18,7 +20,9 @@ use bahn_host::{
 };
 use bahn_panel::Waits;
 use bahn_report::record::ErrorReport;
-use bahn_report::run::{Ended, Executed, Patience, Recording, Reported, Session, Table, usual_signals};
+use bahn_report::run::{
+    Ended, Executed, ModuleRun, Patience, Recording, Reported, Session, Table, usual_signals,
+};
 use bahn_report::test_run::Outputs;
 use bahn_report::{Follower, junit, solid};
 use bahn_tnc::{Checking, Control, Mode, Signal};
@@ -44,7 +48,11 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     files::keep_inputs(&inputs, &options.written())?;
     let mut programs = all_programs(options, &machine)?;
-    let script = match load_script(options, &machine)? {
+    let beside = match module::load(options, &machine)? {
+        Ok(beside) => beside,
+        Err(faults) => return refused(&faults),
+    };
+    let script = match load_script(options, &machine, beside.as_ref())? {
         Ok(script) => script,
         Err(faults) => return refused(&faults),
     };
@@ -85,7 +93,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             settings::left_hand(machine.tools.as_ref()),
         )
     });
-    let recording = recording(options, &machine, host.control())?;
+    let module = module::switch_on(options, beside.as_ref(), &host)?;
+    let recording = recording(options, &machine, host.control(), module.as_ref())?;
     let oscilloscope = oscilloscope::scoped(&options.oscilloscope, host.control())?;
     let outputs = Outputs::create(&options.output.path, options.output.print.as_deref())?;
     let executed = Executed::new(0, cutting, outputs);
@@ -104,6 +113,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let mut session = Session::new(host, Play::new(script), executed, recording, patience);
     session.oscilloscope = oscilloscope;
     session.table = table;
+    session.module = module;
     session.waits = Some(Waits::new(&machine, session.host.plant()));
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(&interrupt);
@@ -113,9 +123,13 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let ended = ended.unwrap_or_else(|error| Ended::Failed(error.to_string()));
     drop(progress);
     let switched_off = session.host.store();
+    let module_off = session
+        .module
+        .as_mut()
+        .map_or(Ok(()), |beside| beside.module.host.store());
     // What could not be stored loses no report.
     let outcome = finish(session, ended, &machine, &programs, options, &interrupt)?;
-    switched_off?;
+    switched_off.and(module_off)?;
     Ok(outcome)
 }
 
@@ -149,6 +163,7 @@ fn refused(faults: &[bahn_text::Diagnostic]) -> Result<Outcome, UsageError> {
 fn load_script(
     options: &RunMachineOptions,
     machine: &LoadedMachine,
+    module: Option<&LoadedMachine>,
 ) -> Result<Result<Script, Vec<bahn_text::Diagnostic>>, UsageError> {
     let (path, is_log) = match (&options.run.script, &options.run.replay) {
         (Some(path), _) => (path, false),
@@ -162,7 +177,10 @@ fn load_script(
             path.display()
         ));
     }
-    let stage = Stage::machine(machine.simulated()?, &machine.parameters);
+    let mut stage = Stage::machine(machine.simulated()?, &machine.parameters);
+    if let Some(module) = module {
+        stage = stage.with_module(Stage::machine(module.simulated()?, &module.parameters));
+    }
     Ok(stage.script(path, &bytes))
 }
 
@@ -265,12 +283,22 @@ fn recording(
     options: &RunMachineOptions,
     machine: &LoadedMachine,
     control: &Control,
+    module: Option<&ModuleRun>,
 ) -> Result<Option<Recording>, UsageError> {
     let wanted = &options.recording;
     let Some(path) = &wanted.record else {
         return Ok(None);
     };
+    let of_module = module.map(|beside| beside.module.host.control());
     for signal in &wanted.signals {
+        let control = match signal.module {
+            true => of_module.ok_or_else(|| {
+                UsageError::new(format!(
+                    "--signals {signal}: there is no module; --with says which"
+                ))
+            })?,
+            false => control,
+        };
         let Some(channel) = control.channel(signal.channel) else {
             return Err(UsageError::new(format!(
                 "--signals {signal}: the machine has no channel {}",

@@ -29,6 +29,8 @@ Examples:
       `probe insert` in the script puts the touch probe into the spindle.
   bahn run --machine machines/twin --record twin.csv --signals X.actual,2:X.actual
       Two channels, each with the program that machine.toml names; LEFT.H RIGHT.H before --machine would name them.
+  bahn run PALLET.H --machine machines/mill --with machines/module-tnc360 --fresh
+      A positioning module beside the machine, with a control of its own; docs/positioning-module.md tells of it.
 
 FILE is a path, or a program in the folder of programs of the machine. Where the machine has several channels, the
 first FILE is that of the first channel and so on; a channel without stands by.
@@ -49,6 +51,7 @@ the program was started (start+3), `+20 cycles` of the control, or a condition: 
   start+20: expect X.actual=100±0.01
   +0: expect message \"DOOR IS OPEN\"
 A number before a colon is a channel: `+1: 2: mode manual`, `+1: expect 2:X.actual=100`, `when 2: run ended: end`.
+With --with a line speaks of the module so: `+1: module: emergency press`, `+1: expect module:X.actual=350`.
 `bahn machine list` names all events, commands, keys and lamps.
 
 State: what survives power-off is read from the state folder of the machine and kept there, with where the
@@ -65,7 +68,8 @@ plc (max_percent, mean_percent of the nominal time); messages (time_s, text, pla
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
 channels (only where there are several, those beside the first: channel, the fields of `bahn test`, axes,
 contour_deviation_mm, _cause, _block, threads); failed_expectations (line, text, actual); test_run (null, or program, completed, message, place of the last
-TEST RUN of a script); realtime (null, or cycles, late_cycles, worst_lateness_ms,
+TEST RUN of a script); module (only with --with: machine, model, ready_s, axes with position, referenced, max_lag, characters,
+plc_max_percent, plc_mean_percent, messages); realtime (null, or cycles, late_cycles, worst_lateness_ms,
 late_by, overrun_cycles, longest_ms).
 
 Exit codes: 0 fine, 1 the program or the machine has an error, the run hangs or takes longer than allowed,
@@ -84,6 +88,9 @@ pub(crate) struct RunMachineOptions {
     /// Folder of the machine.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub machine: PathBuf,
+    /// Folder of a positioning module ([module] in its machine.toml) that goes along at RS-422 and in the EMERGENCY STOP chain.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath, conflicts_with_all = ["log", "replay"])]
+    pub with: Option<PathBuf>,
     /// How the report is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
@@ -225,7 +232,7 @@ pub(crate) struct RecordingOptions {
     /// X.n-actual, X.n-nominal, X.n-int (digital speed controller), X.table and X.force (what only the plant knows), path.speed,
     /// path.block, path.distance, S.rpm, S.volts, S.angle, output.1 to output.5, output.S, mode, run, tool, probe.length,
     /// probe.radius, probe.angle, probe.touches, probe.circle, Q5, X41/34, X42/4, operands of the PLC like M2045, I4, W260, of
-    /// the second channel as 2:X.actual; by
+    /// the second channel as 2:X.actual, of the module as module:X.actual; by
     /// default speeds, positions, lags, and the handshake of M functions. `bahn machine list` says what each is.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
     pub signals: Vec<Observed>,

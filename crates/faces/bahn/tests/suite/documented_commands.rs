@@ -338,6 +338,7 @@ fn of_the_documents() {
         "docs/digitizing.md",
         "docs/dnc.md",
         "docs/lsv2.md",
+        "docs/positioning-module.md",
         "docs/technology.md",
         "docs/torture.md",
     ] {
@@ -433,7 +434,15 @@ fn nothing_else_is_needed() {
 #[test]
 fn of_the_readmes_of_machines() {
     let folder = desk();
-    for machine in ["mill", "mill-tnc360", "mill-tnc155", "dig425", "twin", "gantry"] {
+    for machine in [
+        "mill",
+        "mill-tnc360",
+        "mill-tnc155",
+        "module-tnc360",
+        "dig425",
+        "twin",
+        "gantry",
+    ] {
         let place = folder.path(&format!("machines/{machine}"));
         let text = fs::read_to_string(place.join("README.md")).unwrap();
         run_all(&folder, &place, &commands(&text));

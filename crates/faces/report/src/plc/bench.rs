@@ -151,7 +151,7 @@ impl Bench {
             }
             ScriptAction::End => self.ended = true,
             // Without a machine no script has any.
-            ScriptAction::Do(_) => {}
+            ScriptAction::Do(_) | ScriptAction::Module(_) => {}
         }
     }
 
@@ -322,7 +322,7 @@ pub fn last_cycle(script: &Script, cycle_time: Duration) -> u64 {
     let cycles = script.lines.iter().filter(|line| line.base == Base::PowerOn);
     let cycles = cycles.map(|line| match line.action {
         ScriptAction::Expect(_) | ScriptAction::End => line.offset_us.div_ceil(cycle_us),
-        ScriptAction::Set(_) | ScriptAction::Do(_) => line.offset_us / cycle_us + 1,
+        ScriptAction::Set(_) | ScriptAction::Do(_) | ScriptAction::Module(_) => line.offset_us / cycle_us + 1,
     });
     cycles.max().unwrap_or(0)
 }
@@ -346,7 +346,7 @@ pub fn operands(script: &Script) -> Vec<Operand> {
                     }
                 }
             }
-            ScriptAction::Do(_) | ScriptAction::End => {}
+            ScriptAction::Do(_) | ScriptAction::End | ScriptAction::Module(_) => {}
         }
         for expectation in expected {
             match expectation {

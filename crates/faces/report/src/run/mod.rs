@@ -2,7 +2,7 @@
 //!
 //! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it; `standstill`: whether it
 //!   comes on;
-//! - `beside`: the channels beside the first one; `executed`: what was done of the path, with `turning`, how the spindle
+//! - `beside`: the channels beside the first one, `module`: the positioning module beside the machine; `executed`: what was done of the path, with `turning`, how the spindle
 //!   turned there; `table`: what lies on the table of the machine;
 //! - `measured`: `deviation` from the contour with its `cause`, `threads` and `times`; `listed`: messages and keys;
 //! - `recording`: signals over time; `scoped`: the control's oscilloscope;
@@ -14,6 +14,7 @@ mod deviation;
 mod executed;
 mod listed;
 mod measured;
+mod module;
 mod recording;
 mod report;
 mod reported;
@@ -26,6 +27,7 @@ mod times;
 mod turning;
 
 pub use executed::Executed;
+pub use module::ModuleRun;
 pub use recording::{Recording, usual_signals};
 pub use report::RunReport;
 pub use reported::Reported;

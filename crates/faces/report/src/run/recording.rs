@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use bahn_host::{Edges, Observable, Observed, Operand};
-use bahn_machine::Machine;
+use bahn_host::{Edges, Host, Observable, Observed, Operand};
 use bahn_parameters::ControlModel;
 use bahn_plc::Tracer;
 use bahn_tnc::{AxisSignal, ChannelView, Control, RunState, Signal};
@@ -108,7 +107,8 @@ impl Recording {
     }
 
     /// Takes a row when it is time.
-    pub fn cycle(&mut self, control: &Control, plant: &Machine, started: bool) -> Result<(), ReportError> {
+    pub fn cycle(&mut self, host: &Host, module: Option<&Host>, started: bool) -> Result<(), ReportError> {
+        let control = host.control();
         self.watch(control, started);
         let mut pulses = String::new();
         for (pulsed, count) in self.edges.take_pulses() {
@@ -134,7 +134,11 @@ impl Recording {
         // Writing to a string cannot fail.
         let _ = write!(self.row, "{:.4}", now as f64 * 1e-6);
         for signal in &self.signals {
-            let value = signal.value(control, plant);
+            let of = match signal.module {
+                true => module,
+                false => Some(host),
+            };
+            let value = of.map_or(0.0, |of| signal.value(of.control(), of.plant()));
             let _ = write!(self.row, ",{}", signal.what.decimals(value));
         }
         if self.events.contains([',', '"']) {
@@ -173,6 +177,7 @@ pub fn usual_signals(control: &Control) -> Vec<Observed> {
         signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_ACK));
         let channel = channel.number();
         signals.into_iter().map(move |signal| Observed {
+            module: false,
             channel,
             what: Observable::Signal(signal),
         })
@@ -182,8 +187,8 @@ pub fn usual_signals(control: &Control) -> Vec<Observed> {
 
 /// The operand of the PLC that a signal is.
 fn operand(signal: &Observed) -> Option<Operand> {
-    if signal.channel > 0 {
-        // The scan knows the memory of the PLC, not what stands where in the window of a channel.
+    if signal.channel > 0 || signal.module {
+        // The scan knows the memory of its PLC, not what stands where in the window of a channel.
         return None;
     }
     match &signal.what {

@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::beside::Beside;
 use super::deviation::Deviation;
 use super::listed::{Confirmed, Said};
+use super::module::{ModuleReport, ModuleRun};
 use super::session::Session;
 use super::threads::Thread;
 use super::times::Share;
@@ -125,6 +126,9 @@ pub struct RunReport {
     pub(super) channels: Vec<ChannelReport>,
     failed_expectations: Vec<FailedExpectation>,
     test_run: Option<TestRunReport>,
+    /// The positioning module beside the machine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    module: Option<ModuleReport>,
     realtime: Option<Lateness>,
 }
 
@@ -167,6 +171,7 @@ impl RunReport {
                 .control()
                 .test_report()
                 .map(|report| TestRunReport::of(session, report)),
+            module: session.module.as_ref().map(ModuleRun::report),
             realtime: session.host.lateness(),
             program,
         }
@@ -229,6 +234,9 @@ impl RunReport {
         }
         for channel in &self.channels {
             channel.text(&mut row);
+        }
+        if let Some(module) = &self.module {
+            module.text(&mut row);
         }
         if let Some(test) = &self.test_run {
             row("Test run", &test.text());

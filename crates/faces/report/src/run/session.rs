@@ -15,6 +15,7 @@ use super::beside::{Beside, is_idle};
 use super::executed::Executed;
 use super::listed::Listed;
 use super::measured::Measured;
+use super::module::ModuleRun;
 use super::recording::Recording;
 use super::scoped::Scoped;
 use super::standstill::Standstill;
@@ -70,6 +71,8 @@ pub struct Session {
     pub oscilloscope: Option<Scoped>,
     /// What lies on the table of the machine.
     pub table: Table,
+    /// The positioning module beside it.
+    pub module: Option<ModuleRun>,
     patience: Patience,
     notices: Reader<Stamped>,
     /// When the program was started.
@@ -103,6 +106,7 @@ impl Session {
             recording,
             oscilloscope: None,
             table: Table::default(),
+            module: None,
             patience,
             notices: host.notices(),
             start_us: None,
@@ -143,6 +147,9 @@ impl Session {
             let scope = self.oscilloscope.as_mut();
             let sampler = scope.map(|scope| scope.sampler(started, keys));
             let stored = self.host.cycle_watched(tracer, sampler);
+            if let Some(module) = &mut self.module {
+                module.cycle(&mut self.host)?;
+            }
             self.watch(follower)?;
             if let Some(list) = self.host.restart() {
                 return Ok(Ended::Restart(list.to_owned()));
@@ -187,7 +194,8 @@ impl Session {
 
     /// Everything that is due, in the order of time and of the file.
     fn follow_script(&mut self) -> Result<(), ReportError> {
-        if self.play.follow(&mut self.host)? {
+        let module = self.module.as_mut().map(|beside| &mut beside.module.host);
+        if self.play.follow_with(&mut self.host, module)? {
             self.ended = Some(self.ended_by_script());
         }
         Ok(())
@@ -271,11 +279,14 @@ impl Session {
         if let Some(waits) = &mut self.waits {
             waits.follow(control);
         }
-        let moves = !control.stands() || self.is_dwelling();
+        let moves =
+            !control.stands() || self.is_dwelling() || self.module.as_ref().is_some_and(ModuleRun::moves);
         self.standstill.cycle(&self.host, moves);
-        let control = self.host.control();
         match &mut self.recording {
-            Some(recording) => recording.cycle(control, self.host.plant(), self.start_us.is_some()),
+            Some(recording) => {
+                let module = self.module.as_ref().map(|beside| &beside.module.host);
+                recording.cycle(&self.host, module, self.start_us.is_some())
+            }
             None => Ok(()),
         }
     }

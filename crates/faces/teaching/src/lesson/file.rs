@@ -321,6 +321,7 @@ impl Reader<'_> {
                 ScriptAction::Do(_) | ScriptAction::Set(_) => continue,
                 ScriptAction::Expect(_) => "what is expected stands in [checks]",
                 ScriptAction::End => "a lesson ends with its checks",
+                ScriptAction::Module(_) => "a lesson has no positioning module",
             };
             self.faults
                 .push(script.failure(line.number, "the lesson is wrong", wrong.to_owned()));

@@ -89,6 +89,6 @@ fn actions(action: &ScriptAction) -> Vec<Action> {
             let commands = all.iter().cloned().map(Command::Set);
             commands.map(|command| Action::Command(0, command)).collect()
         }
-        ScriptAction::Expect(_) | ScriptAction::End => Vec::new(),
+        ScriptAction::Expect(_) | ScriptAction::End | ScriptAction::Module(_) => Vec::new(),
     }
 }

@@ -218,6 +218,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "tnc",
             "host",
             "trials",
+            "link",
             "panel",
             "nc",
             "technology",
