@@ -15,8 +15,8 @@ pub(super) fn warnings(programs: &Path, dialogues: &[String], list: &ParameterLi
     let faults = cycles.iter().flat_map(|cycle| {
         let faults = cycle.faults(cycle.in_eprom).into_iter();
         faults.map(|fault| {
-            let fault = Diagnostic::warning(Span::FILE, fault).at(&cycle.path, "");
-            fault.under(format!("cycle {} of the machine builder is wrong", cycle.number))
+            let message = format!("cycle {} of the machine builder: {fault}", cycle.number);
+            Diagnostic::warning(Span::FILE, message).at(&cycle.path, "")
         })
     });
     faults.collect()

@@ -123,7 +123,7 @@ fn a_machine_says_what_is_wrong_with_its_macros() {
         .iter()
         .map(|warning| (warning.file.clone(), warning.message.clone()))
         .collect();
-    let no_block = "no dialogue block DLG-DEF or DLG-CALL";
-    let repeat = "line 3: CALL LBL REP must not stand in the EPROM";
+    let no_block = "cycle 68 of the machine builder: no dialogue block DLG-DEF or DLG-CALL";
+    let repeat = "cycle 69 of the machine builder: line 4: CALL LBL REP must not stand in the EPROM";
     assert_eq!(said, [(of_68, no_block.to_owned()), (of_69, repeat.to_owned())]);
 }
