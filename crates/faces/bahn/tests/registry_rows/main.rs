@@ -2,13 +2,12 @@
 //! differs from the unchanged one as the manual says, or not at all where the registry says `none`.
 #![allow(
     clippy::unwrap_used,
+    clippy::panic,
     reason = "what panics in a probe is the verdict of its row"
 )]
 
 mod axes;
 mod bench;
-#[path = "../../../../machine/host/tests/support/copy.rs"]
-mod copy;
 mod manual;
 mod mill;
 mod plc;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use bahn_host::LoadedMachine;
 
-use crate::copy::copy;
+use crate::trainee::copy::copy;
 
 /// What is seen of the mill, some of whose files have another text in place of one, or behind what they have.
 pub fn mill<T>(changes: &[(&str, &str, &str)], seen: impl FnOnce(&LoadedMachine) -> Option<T>) -> Option<T> {

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test uses a part")]
 
 #[path = "../../../../machine/host/tests/support/copy.rs"]
-mod copy;
+pub mod copy;
 mod tnc155;
 
 use std::path::{Path, PathBuf};
