@@ -49,6 +49,11 @@ impl Cell {
     }
 }
 
+/// A number as people read it, `--` for none.
+pub(crate) fn number_or_none(number: Option<f64>) -> String {
+    number.map_or("--".to_owned(), |number| number.to_string())
+}
+
 /// The system parameters by their numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Array(Vec<Cell>);

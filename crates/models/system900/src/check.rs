@@ -10,8 +10,9 @@
 mod axes;
 mod blocks;
 
+pub use axes::{Channel, ChannelAxis};
+
 use bahn_text::{Diagnostic, Severity};
-use serde::Serialize;
 
 use crate::array::{PARAMETERS_MAX, PARAMETERS_MIN};
 use crate::file::DataFile;
@@ -33,28 +34,6 @@ impl Checked {
         let faults = self.faults.iter();
         faults.filter(|fault| fault.severity == Severity::Error)
     }
-}
-
-/// The axes of a channel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Channel {
-    /// Its number, from 1 on.
-    pub channel: u8,
-    /// Its axes that are there.
-    pub axes: Vec<ChannelAxis>,
-}
-
-/// An axis of a channel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ChannelAxis {
-    /// Its logical number, from 1 on.
-    pub logical: u8,
-    /// What programs call it; empty for one whose position is not shown.
-    pub name: String,
-    /// The physical axis, from 1 on.
-    pub physical: u8,
-    /// The key that chooses it; 0 for none.
-    pub key: u8,
 }
 
 /// Looks for everything that is wrong with a data file.

@@ -11,6 +11,17 @@
 //! - [`Explanation`], [`Mapped`], [`Held`], [`differences`]: what is said of parameters by their names;
 //! - [`ZeroPoints`], [`Tools`], [`MFunction`]: what parameters of a channel say together.
 //!
+//! ```
+//! use bahn_system900::{DataFile, check, row};
+//!
+//! let file = DataFile::read(b"q102: 10000\nq103: 5000\nq110: $01010058\nP12020: 1.5\nP12220: 2\n");
+//! assert_eq!(row("q2020".parse()?).map(|row| row.title), Some("Kv factor"));
+//! assert_eq!(file.memory().cell("q2020".parse()?)?.number(), Some(1.5));
+//! let faults = check(&file).faults;
+//! assert_eq!(faults[0].to_string(), "5:1: P12220: logical axis 2 of channel 1 is no physical axis, q111");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! The table is the control: whoever wants to know what a number means asks its row, and no number stands outside of this room.
 //! Nothing here moves an axis.
 

@@ -7,6 +7,8 @@
 //! Decision: A function whose number is not above 30 calls no cycle [002:5500], and one that goes out neither before nor
 //! after the path does not stop it, since nothing acknowledges it
 
+use std::fmt;
+
 use serde::Serialize;
 
 use crate::memory::Memory;
@@ -29,8 +31,7 @@ const RESTART: u8 = 1 << 5;
 const CYCLE: u8 = 1 << 6;
 
 /// How an M function acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acts {
     /// It does not go out.
     None,
@@ -42,6 +43,25 @@ pub enum Acts {
     Branch,
     /// It calls the cycle of its number at the end of the block.
     Cycle,
+}
+
+impl Acts {
+    /// As reports write it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Acts::None => "none",
+            Acts::Flying => "flying",
+            Acts::Stop => "stop",
+            Acts::Branch => "branch",
+            Acts::Cycle => "cycle",
+        }
+    }
+}
+
+impl Serialize for Acts {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.id())
+    }
 }
 
 /// The definition of an M function.
@@ -141,5 +161,24 @@ fn acts(m: u16, bits: u8) -> Acts {
         bits if bits & (BEFORE | AFTER) == 0 => Acts::None,
         bits if bits & STOP != 0 => Acts::Stop,
         _ => Acts::Flying,
+    }
+}
+
+/// In a line.
+impl fmt::Display for MFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let MFunction { m, byte, bits, .. } = self;
+        let (parameter, acts) = (&self.parameter, self.acts.id());
+        write!(f, "M{m:<4} {parameter} byte {byte} ${bits:02X}  {acts}")?;
+        let when = [
+            (self.before, " before the path"),
+            (self.after, " after the path"),
+            (self.sync, ", the look-ahead waits"),
+            (self.restart, ", also in the simulation of a restart"),
+        ];
+        for (_, word) in when.iter().filter(|(is_so, _)| *is_so) {
+            f.write_str(word)?;
+        }
+        Ok(())
     }
 }

@@ -4,10 +4,11 @@
 //! ones. Status bytes are not compared
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 use serde::Serialize;
 
-use crate::array::Cell;
+use crate::array::{Cell, number_or_none};
 use crate::memory::{Memory, SpaceError};
 use crate::name::Name;
 use crate::status::Status;
@@ -177,7 +178,7 @@ impl Flags {
     }
 
     /// What is set, in words for people.
-    pub fn words(&self) -> String {
+    fn words(&self) -> String {
         let set = [
             (self.loaded, "loaded"),
             (self.real_time, "real time"),
@@ -196,8 +197,10 @@ impl Flags {
         let set = set.iter().filter(|(is_set, _)| *is_set);
         let mut words: Vec<String> = set.map(|(_, word)| (*word).to_owned()).collect();
         words.extend(self.locks.iter().map(|lock| format!("lock {lock}")));
-        if self.decimals > 0 {
-            words.push(format!("{} decimals", self.decimals));
+        match self.decimals {
+            0 => {}
+            1 => words.push("1 decimal".to_owned()),
+            decimals => words.push(format!("{decimals} decimals")),
         }
         words.join(", ")
     }
@@ -222,6 +225,18 @@ impl Held {
     }
 }
 
+/// In a line.
+impl fmt::Display for Held {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let q = self.q.map(|q| format!("  q{q}")).unwrap_or_default();
+        let flags = match self.flags.words() {
+            words if words.is_empty() => words,
+            words => format!("  {words}"),
+        };
+        write!(f, "{}{q}  {}  {}{flags}", self.name, self.written, self.status)
+    }
+}
+
 /// A parameter that is not the same in two memories.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
@@ -235,6 +250,18 @@ pub struct Difference {
     pub b: Option<f64>,
     /// What the change needs.
     pub needs: &'static str,
+}
+
+/// In a line.
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [a, b] = [self.a, self.b].map(number_or_none);
+        write!(f, "{}  {a} -> {b}", self.name)?;
+        match self.needs {
+            "nothing" => Ok(()),
+            needs => write!(f, "  needs {needs}"),
+        }
+    }
 }
 
 /// The parameters whose values are not the same in two memories, by their names.

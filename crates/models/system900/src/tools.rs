@@ -1,7 +1,10 @@
 //! The tools of a channel: where each lies [002:1149-1158] [002:1999-2048].
 
+use std::fmt;
+
 use serde::Serialize;
 
+use crate::array::number_or_none;
 use crate::memory::Memory;
 use crate::name::Name;
 use crate::numbers::TOOLS;
@@ -126,5 +129,22 @@ impl Tools {
                 .map(|(record, p)| layout.record(memory, channel, record, p))
                 .collect(),
         }
+    }
+}
+
+/// A line for each record that has a group.
+impl fmt::Display for Tools {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = self.records.iter().filter(|tool| tool.group.is_some());
+        for tool in named {
+            let p = tool.p;
+            let [group, radius, length, place] =
+                [tool.group, tool.radius, tool.length, tool.place].map(number_or_none);
+            writeln!(
+                f,
+                "P{p:<6} T{group:<6} radius {radius:<8} length {length:<8} place {place}"
+            )?;
+        }
+        Ok(())
     }
 }

@@ -1,7 +1,10 @@
 //! The zero points of a channel: where each lies [002:978-1144].
 
+use std::fmt;
+
 use serde::Serialize;
 
+use crate::array::number_or_none;
 use crate::memory::Memory;
 use crate::name::Name;
 use crate::numbers::ZERO_POINTS;
@@ -146,5 +149,24 @@ impl ZeroPoints {
                 .map(|p| layout.cell(memory, channel, p))
                 .collect(),
         }
+    }
+}
+
+/// A line for each.
+impl fmt::Display for ZeroPoints {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for cell in &self.cells {
+            let (p, area, point, axis) = (cell.p, cell.area, &cell.point, cell.axis);
+            let group = match cell.group {
+                0 => "sum".to_owned(),
+                group => format!("shift {group}"),
+            };
+            let value = number_or_none(cell.value);
+            writeln!(
+                f,
+                "P{p:<6} area {area}  {point:<5} {group:<8} axis {axis:<2}  {value}"
+            )?;
+        }
+        Ok(())
     }
 }

@@ -204,6 +204,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "text",
             "path",
             "parameters",
+            "system900",
             "program",
             "reader",
             "interpreter",

@@ -3,8 +3,8 @@
 use std::collections::{BTreeSet, HashMap};
 
 use bahn_text::Diagnostic;
+use serde::Serialize;
 
-use super::ChannelAxis;
 use crate::file::DataFile;
 use crate::name::Name;
 use crate::numbers::{
@@ -14,6 +14,28 @@ use crate::numbers::{
 
 /// The highest key of an axis [002:718-825].
 const KEY_MAX: u8 = 79;
+
+/// The axes of a channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Channel {
+    /// Its number, from 1 on.
+    pub channel: u8,
+    /// Its axes that are there.
+    pub axes: Vec<ChannelAxis>,
+}
+
+/// An axis of a channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChannelAxis {
+    /// Its logical number, from 1 on.
+    pub logical: u8,
+    /// What programs call it; empty for one whose position is not shown.
+    pub name: String,
+    /// The physical axis, from 1 on.
+    pub physical: u8,
+    /// The key that chooses it; 0 for none.
+    pub key: u8,
+}
 
 /// The axes of a channel that are there.
 pub(super) fn named(file: &DataFile, channel: u8) -> Vec<ChannelAxis> {
