@@ -74,10 +74,12 @@ JSON: an array of name, q, value, written, status, flags; the value of a cleared
 const SET_EXAMPLES: &str = "\
 Examples:
   bahn q set two-channels.q P12020=2.5 -o faster.q
-  bahn q set two-channels.q P1000=$1F --status P1000=$30000001 P7001=-- -o changed.q
+  bahn q set two-channels.q 'P1000=$1F' P7001=-- --status 'P1000=$30000001' -o changed.q
 
-Values are decimal, $ and up to eight hexadecimal digits, or -- for a cleared parameter. A value that
-is refused writes nothing.";
+Values are decimal, $ and up to eight hexadecimal digits (in quotes, as shells read $ otherwise), or --
+for a cleared parameter. A value that is refused writes nothing.
+JSON: as `bahn q get` of the parameters that were given. Exit codes: 0 fine, 1 a value or a name that
+is refused, or a file with faults, 2 wrong use.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
