@@ -20,6 +20,7 @@ use crate::options::{
 };
 use crate::panel::PanelOptions;
 use crate::plc::PlcOptions;
+use crate::q::QOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
 use crate::table::TableOptions;
@@ -86,6 +87,8 @@ pub(crate) enum Command {
     Technology(Box<TechnologyOptions>),
     /// Check, explain and write lists of channel parameters: when M, H and spindle functions reach the PLC.
     Channel(ChannelOptions),
+    /// Check, explain, compare and change parameters of a System 900: data files with q and P numbers.
+    Q(Box<QOptions>),
     /// List the cycles of the machine builder, and write EPROMs with them.
     Oem(OemOptions),
     /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.

@@ -16,11 +16,11 @@
 //!   checks folders of machines;
 //! - `convert`: programs in another language, with the proof that they do the same;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
-//!   groups `bahn plc`, `bahn mp`, `bahn table`, `channel` is `bahn channel`; `link`: the data interfaces;
+//!   groups `bahn plc`, `bahn mp`, `bahn table`, `channel` is `bahn channel`, `q` is `bahn q`; `link`: the data interfaces;
 //!   `lsp`: the language server;
 //! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
-//! - `paragraph`: labelled text in 80 columns, `style`: its colours; `progress`: how far a run is;
+//! - `style`: colours; `progress`: how far a run is;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close;
 //!   `refused` and `reports`: what cannot be done, as JSON.
 //!
@@ -51,9 +51,9 @@ mod oem;
 mod options;
 mod outcome;
 mod panel;
-mod paragraph;
 mod plc;
 mod progress;
+mod q;
 mod refused;
 mod reports;
 mod run;
@@ -109,6 +109,7 @@ fn execute(command: cli::Command) -> Outcome {
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Channel(options) => channel::command(&options),
+        cli::Command::Q(options) => q::command(&options),
         cli::Command::Lsp(options) => lsp::command(&options),
         cli::Command::Technology(options) => technology::command(&options),
         cli::Command::Oem(options) => oem::command(&options),

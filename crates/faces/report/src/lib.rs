@@ -7,7 +7,8 @@
 //! - [`scope`]: recorded signals, drawn and summed up;
 //! - [`record`]: what is collected of a run, and its report; [`text`]: the report for people;
 //! - [`technology`], [`tune`], [`convert`]: what is told of a run with M functions, of a commissioning, of a conversion;
-//! - [`count`]: numbers of things in words;
+//! - [`explain`], [`conformance`], [`faults`]: what is told of messages, functions and faults of the controls;
+//! - [`count`]: numbers of things in words; [`paragraph`]: labelled text in 80 columns;
 //! - [`junit`]: expectations for build servers; [`solid`]: what a stylus feels.
 //!
 //! ```
@@ -20,11 +21,15 @@
 //! and a [`Stop`] that ends it; what cannot be done is a [`ReportError`].
 
 mod block_time;
+pub mod conformance;
 pub mod convert;
 mod count;
 mod error;
+pub mod explain;
+pub mod faults;
 mod follower;
 pub mod junit;
+pub mod paragraph;
 mod path_csv;
 mod path_svg;
 pub mod plc;

@@ -9,9 +9,10 @@ use std::sync::OnceLock;
 const CHAPTERS: &str = include_str!("../data/chapters.tsv");
 
 /// The manuals by the number that citations give them.
-const MANUALS: [(&str, &str); 4] = [
+const MANUALS: [(&str, &str); 5] = [
     ("000", "Technical manual TNC 407/415/425"),
     ("001", "Interface manual TNC 151/155"),
+    ("002", "Parameter manual System 900"),
     ("003", "User's manual TNC 360"),
     ("004", "Functional description TF5200 M/H functions"),
 ];

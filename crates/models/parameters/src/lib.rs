@@ -10,8 +10,6 @@
 //!   model, grouped by who reads them: [`axis`], [`spindle`], [`operation`], [`machining`], [`interfaces`],
 //!   [`tables`], [`plc`];
 //! - [`PerPlcAxis`]: what there is of each axis of a list, by its index;
-//! - [`space`]: what machine parameters have in common with other kinds, as the system and channel parameters of a
-//!   System 900;
 //! - [`ListText`]: the text of a list, whose values change in their places;
 //! - [`fault`]: what the control does about each fault;
 //! - [`conformance`]: what each function of a control does here, and what it does not;
@@ -32,7 +30,7 @@
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits/models.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
-//! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `002` the parameter manual of the System 900, `003` the user's manual
+//! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `003` the user's manual
 //! of the TNC 360. A getter says what values mean: numbers with units, or the settings of a loop of `bahn_servo`. Nothing
 //! here acts on them.
 
@@ -63,7 +61,6 @@ mod model;
 pub mod own_functions;
 mod plc_axes;
 mod settings;
-pub mod space;
 pub mod technology;
 pub mod terminals;
 mod text;

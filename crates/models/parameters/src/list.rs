@@ -2,9 +2,7 @@
 
 use std::fmt;
 
-use crate::definition::parse_id;
 use crate::equipment::Equipment;
-use crate::space::{Content, ParameterSpace};
 use crate::text::{USERS_MAX, read_assignment};
 use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
 
@@ -158,6 +156,13 @@ impl ParameterList {
         Ok(list)
     }
 
+    /// The parameters whose values are not the same in another list of the model, in ascending order.
+    pub fn differences(&self, other: &ParameterList) -> Vec<ParameterId> {
+        let ids = Definition::all(self.model).iter().map(|definition| definition.id);
+        let of = |list: &ParameterList, id: ParameterId| list.get(id.number, id.index.unwrap_or(0));
+        ids.filter(|id| of(self, *id) != of(other, *id)).collect()
+    }
+
     /// Those that the operator may change by the letter P in the list, in ascending order [001:1299-1334].
     pub(crate) fn given(&self) -> &[ParameterId] {
         &self.users
@@ -184,37 +189,6 @@ impl ParameterList {
         if let Some(slot) = position.and_then(|position| self.values.get_mut(position)) {
             *slot = value;
         }
-    }
-}
-
-impl ParameterSpace for ParameterList {
-    type Name = ParameterId;
-    type Error = ParameterError;
-
-    fn name(&self, text: &str) -> Result<ParameterId, ParameterError> {
-        let id = parse_id(text.trim()).ok_or(ParameterError::NoNumber)?;
-        Definition::named(self.model, id).map(|definition| definition.id)
-    }
-
-    fn names(&self) -> impl Iterator<Item = ParameterId> {
-        Definition::all(self.model).iter().map(|definition| definition.id)
-    }
-
-    fn content(&self, name: ParameterId) -> Result<Content, ParameterError> {
-        let value = self.get(name.number, name.index.unwrap_or(0));
-        value
-            .map(Content::Number)
-            .ok_or(ParameterError::UnknownNumber(name))
-    }
-
-    fn written(&self, name: ParameterId) -> Result<String, ParameterError> {
-        let definition = Definition::named(self.model, name)?;
-        let value = self.get(name.number, name.index.unwrap_or(0));
-        Ok(definition.format_value(value.ok_or(ParameterError::UnknownNumber(name))?))
-    }
-
-    fn enter(&mut self, name: ParameterId, value: &str) -> Result<(), ParameterError> {
-        self.assign(&format!("{name}={value}")).map(|_| ())
     }
 }
 

@@ -1,13 +1,13 @@
 //! `bahn channel explain`: what a parameter, a type or a value means.
 
 use bahn_parameters::chapters;
+use bahn_report::paragraph::{labelled, labelled_lines};
 use bahn_technology::Synch;
 use bahn_technology::list::{Definition, Owner, SynchRow};
 use serde::Serialize;
 
 use super::options::ExplainOptions;
 use crate::options::Format;
-use crate::paragraph::{labelled, labelled_lines};
 use crate::style::Style;
 use crate::{Outcome, UsageError, console};
 

@@ -10,7 +10,7 @@ use crate::diagnostics::Item;
 
 /// What is wrong with a list, for programs.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(crate) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     ok: bool,

@@ -10,7 +10,7 @@ mod faults;
 mod new;
 mod options;
 
-pub(crate) use faults::faults;
+pub(crate) use faults::{Report, faults};
 pub(crate) use options::ChannelOptions;
 
 use crate::{Outcome, UsageError};

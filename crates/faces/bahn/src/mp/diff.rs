@@ -1,6 +1,5 @@
 //! `bahn mp diff`: in which parameters two lists differ.
 
-use bahn_parameters::space::differences;
 use bahn_parameters::{Definition, ParameterList};
 use serde::Serialize;
 
@@ -21,7 +20,8 @@ pub(super) fn command(options: &DiffOptions) -> Result<Outcome, UsageError> {
         Some(path) => (a, source::values(path, &source::read(path, Some(model))?)?),
         None => (ParameterList::reference(model), a),
     };
-    let differences: Vec<Difference> = differences(&a, &b)
+    let differences: Vec<Difference> = a
+        .differences(&b)
         .into_iter()
         .filter_map(|name| Definition::named(model, name).ok())
         .map(|definition| Difference::new((Row::new(definition, &a), Row::new(definition, &b))))

@@ -1,12 +1,12 @@
 //! `bahn mp explain`: what a parameter means.
 
 use bahn_parameters::{Definition, chapters, with_chapters};
+use bahn_report::paragraph::{labelled, labelled_lines};
 
 use super::list::Row;
 use super::options::ExplainOptions;
 use super::source;
 use crate::options::Format;
-use crate::paragraph::{labelled, labelled_lines};
 use crate::style::Style;
 use crate::{Outcome, UsageError, console};
 

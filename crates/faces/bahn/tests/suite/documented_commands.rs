@@ -67,6 +67,8 @@ fn desk() -> Folder {
     }
     folder.write("changes.mp", "MP1010.0 : 12000\n");
     folder.write("tool.t", "T L R R2 NAME\n1 80.5 10 0 END MILL\n2 62 4 4 BALL\n");
+    let data = root().join("crates/models/system900/tests/data/two-channels.q");
+    fs::copy(data, folder.path("two-channels.q")).unwrap();
     folder.write("MAIN.PLC", "       LN    I4\n       =     O2\n       EM\n");
     folder.write("EPROM.TXT", "IDENT 123 456 99\nLOAD MAIN.PLC /M\nLOAD MAIN.ER1\n");
     fs::create_dir(folder.path("eprom")).unwrap();
@@ -339,6 +341,7 @@ fn of_the_documents() {
         "docs/dnc.md",
         "docs/lsv2.md",
         "docs/positioning-module.md",
+        "docs/system900.md",
         "docs/technology.md",
         "docs/torture.md",
     ] {

@@ -55,6 +55,24 @@ const COMMANDS: &[(&str, &[&str])] = &[
     ),
     ("channel check", &["FILE", "glue.lis FILE"]),
     ("channel explain", &["nothing-of-this-name"]),
+    ("q explain", &["P500", "nothing"]),
+    ("q map", &["FILE P7000", "data.q P5000", "data.q nothing"]),
+    ("q get", &["FILE P7000", "data.q P5000", "data.q nothing"]),
+    (
+        "q set",
+        &[
+            "FILE q5=1 -o out.q",
+            "data.q q5=far -o out.q",
+            "data.q q5=1 --status q5=1 -o out.q",
+            "data.q q5 -o out.q",
+            "data.q q5=1 -o data.q",
+        ],
+    ),
+    ("q check", &["FILE"]),
+    ("q diff", &["FILE data.q", "data.q FILE"]),
+    ("q zero", &["FILE", "data.q --channel 2"]),
+    ("q tools", &["FILE", "data.q --channel 2"]),
+    ("q m", &["FILE", "data.q M1000", "data.q --channel 9"]),
     ("oem list", &["FILE"]),
     ("table show", &["FILE"]),
     ("table check", &["FILE", "mill/tools.tsv FILE"]),
@@ -162,6 +180,7 @@ fn wrong_with(run: &Run) -> String {
 fn desk() -> Folder {
     let folder = Folder::with_mill("L X+10 R0 FMAX");
     folder.write("part.nc", "%PART\nN10 G00 X0 Y0\nN20 G01 X40 F2000 M3\nM30\n");
+    folder.write("data.q", "q102: 10000\nq103: 5000\n");
     folder.write("glue.lis", "# nothing\n");
     folder.write("good.csv", "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
     folder.write("bytes", [0x80, 0x00, 0xc3, 0x28, 0x0a, 0xff]);

@@ -9,7 +9,6 @@ mod consistency;
 mod every_number;
 mod list_text;
 mod plc_and_operation;
-mod q_parameters;
 mod reference_lists;
 mod swivels;
 mod technology;

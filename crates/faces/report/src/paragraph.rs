@@ -6,7 +6,7 @@ const WIDTH: usize = 80;
 const INDENT: usize = 15;
 
 /// A labelled text; nothing for an empty one.
-pub(crate) fn labelled(label: &str, content: &str) -> String {
+pub fn labelled(label: &str, content: &str) -> String {
     if content.is_empty() {
         return String::new();
     }
@@ -28,7 +28,7 @@ pub(crate) fn labelled(label: &str, content: &str) -> String {
 }
 
 /// Labelled lines, the label before the first one only.
-pub(crate) fn labelled_lines(label: &str, lines: &[String]) -> String {
+pub fn labelled_lines(label: &str, lines: &[String]) -> String {
     let labels = std::iter::once(label).chain(std::iter::repeat(""));
     lines
         .iter()

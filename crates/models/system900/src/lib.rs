@@ -1,0 +1,62 @@
+//! The parameters of a System 900, as data: the table of what each number means, the memory that holds them, the files that
+//! give them values.
+//!
+//! The face of this room:
+//! - [`Name`], [`Value`], [`Status`]: how people write a parameter, what it is given, what its status bytes say;
+//! - [`rows`] and [`row`]: the table, [`Row`], with what each parameter does here, [`Effect`], and what a change
+//!   [`Needs`];
+//! - [`Memory`]: system parameters, and the channel parameters that are places among them;
+//! - [`DataFile`]: a file with a line for each parameter, its faults, and its [`Change`]s; [`check`] says what of it does
+//!   not go together;
+//! - [`Explanation`], [`Mapped`], [`Held`], [`differences`]: what is said of parameters by their names;
+//! - [`ZeroPoints`], [`Tools`], [`MFunction`]: what parameters of a channel say together.
+//!
+//! ```
+//! use bahn_system900::{DataFile, check, row};
+//!
+//! let file = DataFile::read(b"q102: 10000\nq103: 5000\nq110: $01010058\nP12020: 1.5\nP12220: 2\n");
+//! assert_eq!(row("q2020".parse()?).map(|row| row.title), Some("Kv factor"));
+//! assert_eq!(file.memory().cell("q2020".parse()?)?.number(), Some(1.5));
+//! let faults = check(&file).faults;
+//! assert_eq!(faults[0].to_string(), "5:1: P12220: logical axis 2 of channel 1 is no physical axis, q111");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The table is the control: whoever wants to know what a number means asks its row, and no number stands outside of this room.
+//! Nothing here moves an axis.
+
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "citations as [002:403] look like links"
+)]
+
+mod array;
+mod check;
+mod descriptor;
+mod edit;
+mod file;
+mod m_functions;
+mod memory;
+mod name;
+mod numbers;
+mod reports;
+mod status;
+mod table;
+mod tools;
+mod value;
+mod zero;
+
+pub use array::{Cell, PARAMETERS_MAX, PARAMETERS_MIN};
+pub use check::{Channel, ChannelAxis, Checked, check};
+pub use descriptor::AxisWord;
+pub use edit::Change;
+pub use file::DataFile;
+pub use m_functions::{Acts, M_MAX, MFunction, m_number};
+pub use memory::{Memory, Place, SpaceError};
+pub use name::{Name, NoName};
+pub use reports::{Difference, Explanation, Flags, Held, Mapped, differences};
+pub use status::{LOCKS, NoStatus, Receivers, Status};
+pub use table::{Effect, Needs, Row, row, rows};
+pub use tools::{Tool, Tools};
+pub use value::{DECIMALS_MAX, Value, ValueError};
+pub use zero::{ZeroPoint, ZeroPoints};

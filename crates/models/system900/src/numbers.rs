@@ -1,0 +1,64 @@
+//! Numbers of parameters with a meaning of their own. Everything else asks the [table](crate::row); nobody outside this
+//! room needs a bare number.
+
+/// Number of valid channel descriptors [002:381-382].
+pub const CHANNELS: u32 = 2;
+/// Number of system parameters [002:384-385].
+pub const PARAMETERS: u32 = 3;
+/// FLASH and special functions [002:403-534].
+pub const FUNCTION: u32 = 10;
+/// The function of [`FUNCTION`] that data files may call: the channel descriptors become active [002:409-430].
+pub const ACTIVATE: i64 = 99;
+/// Channels, each with a descriptor of its own [002:629-661].
+pub const CHANNELS_MAX: u8 = 8;
+/// Axes of a channel, and physical ones [002:718-825].
+pub const AXES: u8 = 32;
+
+/// Parameters of a descriptor: the first is 100 times the channel [002:629-661].
+pub const DESCRIPTOR: u32 = 100;
+/// In it: the word of the first logical axis [002:718-855].
+pub const AXIS_WORDS: u32 = 10;
+/// In it: the spindle blocks of the words S, S2 to S8 [002:858-881].
+pub const SPINDLE_WORDS: u32 = 42;
+/// In it: the planes of G17, G18, G19 [002:887-934].
+pub const PLANES: u32 = 52;
+/// In it: which block defines M0 to M199 [002:950-953].
+pub const M_BLOCK: u32 = 58;
+/// In it: first zero point, then areas, groups, axes, points [002:978-1022].
+pub const ZERO_POINTS: u32 = 70;
+/// In it: first tool, then records, sub records, length, places [002:1149-1158].
+pub const TOOLS: u32 = 75;
+
+/// The fixed parameters of a channel, after its user block 1 [002:61] [002:693-694].
+pub const FIXED: u32 = 7000;
+/// How many there are.
+pub const FIXED_COUNT: u32 = 3000;
+/// Parameters that all channels share: the first, and its system parameter [002:61] [002:145-147].
+pub const SHARED: (u32, u32) = (11_000, 1000);
+/// How many there are.
+pub const SHARED_COUNT: u32 = 1000;
+/// Parameters of axes: the first of logical axis 1, and the system parameter of physical axis 1 [002:68-111].
+pub const AXIS: (u32, u32) = (12_000, 2000);
+/// Parameters of each axis.
+pub const AXIS_BLOCK: u32 = 200;
+/// Parameters of an axis that each channel has for itself, from its first one [002:8350-8360].
+pub const AXIS_OWN: std::ops::Range<u32> = 153..158;
+/// Below it no user block may lie: system, descriptors, shared and axis parameters.
+pub const BLOCKS_FROM: u32 = 8400;
+
+/// Planes of G117, G118, G119 [002:4319-4366].
+pub const FURTHER_PLANES: u32 = 8840;
+/// Definitions of the M functions of a channel, four in each parameter [002:2088-2100].
+pub const M_OF_CHANNEL: u32 = 8250;
+/// Definitions of the M functions of the system, four in each parameter [002:5503-5530].
+pub const M_OF_SYSTEM: u32 = 11_050;
+/// A P number that is written here is looked for, and the next parameter holds its q number [002:3453-3457].
+pub const MAPPING_TEST: u32 = 8553;
+/// Couplings: master and slave of the first [002:6293-6360].
+pub const COUPLINGS: u32 = 11_480;
+/// Spindles: the axis of the first.
+pub const SPINDLES: u32 = 11_640;
+/// Parameters of each coupling, and of each spindle.
+pub const COUPLING_BLOCK: u32 = 20;
+/// Couplings, and spindles.
+pub const COUPLINGS_MAX: u32 = 8;
