@@ -56,6 +56,31 @@ impl DinLanguage {
             help: Some(self.help()),
         }
     }
+
+    /// Where the number of a block stands: its `N`, its digits, and the byte after them.
+    fn number_at(self, text: &[u8]) -> Option<(usize, usize, usize)> {
+        let after_blanks = |from: usize| {
+            let blanks = text.get(from..)?.iter().take_while(|byte| is_blank(**byte));
+            Some(from + blanks.count())
+        };
+        let start = match after_blanks(0)? {
+            // The block may be skipped.
+            skip if self == DinLanguage::System900 && text.get(skip) == Some(&b'/') => {
+                after_blanks(skip + 1)?
+            }
+            start => start,
+        };
+        if !text.get(start)?.eq_ignore_ascii_case(&b'N') {
+            return None;
+        }
+        let digits = after_blanks(start + 1)?;
+        let count = text
+            .get(digits..)?
+            .iter()
+            .take_while(|byte| byte.is_ascii_digit())
+            .count();
+        (count > 0).then_some((start, digits, digits + count))
+    }
 }
 
 impl Language for DinLanguage {
@@ -98,7 +123,7 @@ impl Language for DinLanguage {
 
     fn words(&self, text: BlockText<'_>) -> Vec<WordSpan> {
         let end = text.bytes.len();
-        let number = number_at(text.bytes).map(|(start, digits, after)| WordSpan {
+        let number = self.number_at(text.bytes).map(|(start, digits, after)| WordSpan {
             kind: WordKind::Number,
             span: start..after,
             value: digits..after,
@@ -133,7 +158,7 @@ impl Language for DinLanguage {
     fn write_line_number(&self, _number: u32, _block: &Block, _options: FormatOptions, _text: &mut String) {}
 
     fn number(&self, text: BlockText<'_>) -> Option<u32> {
-        let (_, digits, after) = number_at(text.bytes)?;
+        let (_, digits, after) = self.number_at(text.bytes)?;
         let digits = std::str::from_utf8(text.bytes.get(digits..after)?).ok()?;
         digits.parse().ok()
     }
@@ -163,27 +188,4 @@ impl Language for DinLanguage {
             DinLanguage::System900 => ["N10", "M30"],
         }
     }
-}
-
-/// Where the number of a block stands: its `N`, its digits, and the byte after them.
-fn number_at(text: &[u8]) -> Option<(usize, usize, usize)> {
-    let after_blanks = |from: usize| {
-        let blanks = text.get(from..)?.iter().take_while(|byte| is_blank(**byte));
-        Some(from + blanks.count())
-    };
-    let start = match after_blanks(0)? {
-        // The block may be skipped.
-        skip if text.get(skip) == Some(&b'/') => after_blanks(skip + 1)?,
-        start => start,
-    };
-    if !text.get(start)?.eq_ignore_ascii_case(&b'N') {
-        return None;
-    }
-    let digits = after_blanks(start + 1)?;
-    let count = text
-        .get(digits..)?
-        .iter()
-        .take_while(|byte| byte.is_ascii_digit())
-        .count();
-    (count > 0).then_some((start, digits, digits + count))
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::bulk::Bulk;
 use crate::file_types::bulk_language_of;
-use crate::language::{Landmark, Language};
+use crate::language::Landmark;
 use crate::lines::RawBlock;
 use crate::plain::PlainLanguage;
 use crate::rope::{PIECE_BLOCKS, Rope, pieces};
