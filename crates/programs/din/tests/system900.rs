@@ -445,3 +445,23 @@ fn the_listing_is_tidy() {
         assert_eq!(Program::from_bytes("P1.900", listed.as_bytes()).listing(), listed);
     }
 }
+
+/// The page of the language has each row of the table with its source.
+#[test]
+fn the_page_has_every_word() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/system900-language.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    for row in bahn_din::system900::meanings() {
+        let unit = [", ", row.unit].concat();
+        let rule = [". ", row.rule].concat();
+        let said = format!(
+            "| `{}` | {}{}{} | {} |",
+            row.word,
+            row.title,
+            if row.unit.is_empty() { "" } else { &unit },
+            if row.rule.is_empty() { "" } else { &rule },
+            row.source
+        );
+        assert!(page.contains(&said), "{said}");
+    }
+}
