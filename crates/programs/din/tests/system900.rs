@@ -465,3 +465,14 @@ fn the_page_has_every_word() {
         assert!(page.contains(&said), "{said}");
     }
 }
+
+/// Nothing is wrong with the shipped example and its cycle, which are tidy.
+#[test]
+fn the_example_is_fine() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../examples/system900/");
+    for name in ["P1000.900", "Z71.900"] {
+        let text = std::fs::read_to_string([folder, name].concat()).unwrap();
+        assert_eq!(faults(&text), [""; 0], "{name}");
+        assert_eq!(warnings(&text), [""; 0], "{name}");
+    }
+}
