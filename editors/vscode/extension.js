@@ -2,7 +2,7 @@
 const { workspace } = require('vscode')
 const { LanguageClient, TransportKind } = require('vscode-languageclient/node')
 
-const LANGUAGES = ['tnc-plain', 'tnc-iso', 'din-66025', 'tnc-plc', 'tnc-parameters', 'tf-channel']
+const LANGUAGES = ['tnc-plain', 'tnc-iso', 'din-66025', 'system-900', 'tnc-plc', 'tnc-parameters', 'tf-channel']
 let client
 
 /** The settings that the server knows. */

@@ -4,6 +4,7 @@ vim.filetype.add({
     H = 'tnc_plain',
     I = 'tnc_iso',
     nc = 'din_66025',
+    ['900'] = 'system_900',
     PLC = 'tnc_plc', plc = 'tnc_plc',
     MP = 'tnc_parameters', mp = 'tnc_parameters',
     lis = 'tf_channel',

@@ -59,8 +59,11 @@ pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
 /// Checks a file and prints what is wrong.
 pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
     // What cannot be read is said by whoever reads it next.
-    if std::fs::read(path).is_ok_and(|bytes| files::is_din(path, &bytes)) {
-        return din::check(path, how.format, interrupt);
+    let dialect = std::fs::read(path)
+        .ok()
+        .and_then(|bytes| files::dialect(path, &bytes));
+    if let Some(dialect) = dialect {
+        return din::check(path, dialect, how.format, interrupt);
     }
     let examination = match files::load_program(path)? {
         Loaded::Program(program) => examined(program, &how.settings, interrupt),

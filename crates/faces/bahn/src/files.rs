@@ -13,8 +13,8 @@ use crate::{UsageError, console};
 
 /// Endings of files that commands read and none of these options writes: programs, PLC programs, lists and
 /// descriptions of machines, tables of tools, pallets, datums and compensation, memories.
-const KEPT: [&str; 13] = [
-    "h", "i", "nc", "plc", "mp", "q", "toml", "tsv", "p", "d", "cma", "com", "mem",
+const KEPT: [&str; 14] = [
+    "h", "i", "nc", "900", "plc", "mp", "q", "toml", "tsv", "p", "d", "cma", "com", "mem",
 ];
 
 /// Refuses outputs, given with their options, that would overwrite an input or each other, or a file of a kind

@@ -4,7 +4,8 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_program::{FormatOptions, Program, format_program};
+use bahn_din::system900;
+use bahn_program::{DinLanguage, FormatOptions, Program, format_program};
 
 use crate::files::{self, Loaded, NewFile};
 use crate::options::FmtOptions;
@@ -18,8 +19,8 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
     for path in &options.files {
         // Read once: a pipe gives its bytes once.
         let bytes = files::read_program(path)?;
-        if let Some(program) = din(path, bytes.as_deref()) {
-            match format_din(path, &program, bytes.unwrap_or_default(), options)? {
+        if let Some(listing) = din(path, bytes.as_deref()) {
+            match format_din(path, &listing, bytes.unwrap_or_default(), options)? {
                 Outcome::Fine => {}
                 other => outcome = other,
             }
@@ -59,27 +60,43 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
     Ok(outcome)
 }
 
-/// A file as one of DIN 66025, if it is one.
-fn din(path: &Path, bytes: Option<&[u8]>) -> Option<bahn_din::Program> {
-    let bytes = bytes.filter(|bytes| files::is_din(path, bytes))?;
+/// A listing as text, and in the bytes that its file is written in.
+struct Listing {
+    text: String,
+    bytes: Vec<u8>,
+}
+
+/// The listing of a file of DIN 66025, if it is one.
+fn din(path: &Path, bytes: Option<&[u8]>) -> Option<Listing> {
+    let bytes = bytes?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    Some(bahn_din::Program::from_bytes(&name, bytes))
+    let (text, bytes) = match files::dialect(path, bytes)? {
+        DinLanguage::Tf5200 => {
+            let program = bahn_din::Program::from_bytes(&name, bytes);
+            let listing = program.listing();
+            (listing.clone(), program.encoded(&listing))
+        }
+        DinLanguage::System900 => {
+            let program = system900::Program::from_bytes(&name, bytes);
+            let listing = program.listing();
+            (listing.clone(), program.encoded(&listing))
+        }
+    };
+    Some(Listing { text, bytes })
 }
 
 /// Prints, writes or compares the listing of a DIN 66025 program.
 fn format_din(
     path: &Path,
-    program: &bahn_din::Program,
+    listing: &Listing,
     bytes: Vec<u8>,
     options: &FmtOptions,
 ) -> Result<Outcome, UsageError> {
-    let listing = program.listing();
     if !options.write && !options.check {
-        console::print_display(&listing)?;
+        console::print_display(&listing.text)?;
         return Ok(Outcome::Fine);
     }
-    let written = program.encoded(&listing);
-    if written == bytes {
+    if listing.bytes == bytes {
         return Ok(Outcome::Fine);
     }
     if options.check {
@@ -87,12 +104,12 @@ fn format_din(
         return Ok(Outcome::ProgramError);
     }
     if bytes.contains(&0) {
-        // Other things are named .nc, too.
+        // Other things are named .nc or .900, too.
         let reason = "it holds bytes that are no text, so it may be no program";
         diagnostics::print_usage_error(&format!("{} stays as it is: {reason}", path.display()));
         return Ok(Outcome::WrongUse);
     }
-    write(path, &written)?;
+    write(path, &listing.bytes)?;
     diagnostics::print_text(&format!("formatted {}", path.display()));
     Ok(Outcome::Fine)
 }

@@ -12,6 +12,7 @@ use crate::language::{Analysis, Examined, Kind};
 use crate::list::ParameterText;
 use crate::part::PartProgram;
 use crate::plc::PlcSource;
+use crate::system900::System900Program;
 use crate::text::Text;
 use crate::world::{BYTES_MAX, World};
 
@@ -78,6 +79,7 @@ fn analyse(kind: Kind, path: &Path, text: Arc<Text>, world: &World) -> Arc<dyn A
     match kind {
         Kind::Plain | Kind::Iso => Arc::new(PartProgram::new(path, text, world)),
         Kind::Din => Arc::new(DinProgram::new(path, text)),
+        Kind::System900 => Arc::new(System900Program::new(path, text)),
         Kind::Plc => Arc::new(PlcSource::new(path, text, world)),
         Kind::Parameters => Arc::new(ParameterText::new(path, text, world)),
         Kind::Channel => Arc::new(ChannelText::new(text)),

@@ -45,6 +45,7 @@ mod plc;
 mod requests;
 mod server;
 mod settings;
+mod system900;
 mod text;
 mod transport;
 mod uri;

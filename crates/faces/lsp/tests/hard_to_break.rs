@@ -104,6 +104,8 @@ fn text() -> impl Strategy<Value = String> {
         "V.G.X = ",
         "[",
         "G00 X1 M5\n",
+        "P7960<10.110",
+        "M24.1.5 {",
     ]);
     prop_oneof![
         prop::collection::vec(words, 0..40).prop_map(|words| words.concat()),
@@ -113,7 +115,7 @@ fn text() -> impl Strategy<Value = String> {
     ]
 }
 
-const LANGUAGES: [&str; 5] = ["a.H", "a.I", "a.PLC", "a.MP", "a.nc"];
+const LANGUAGES: [&str; 6] = ["a.H", "a.I", "a.PLC", "a.MP", "a.nc", "a.900"];
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]

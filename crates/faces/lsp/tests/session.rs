@@ -43,6 +43,70 @@ fn din_66025() {
     client.end().ended().unwrap();
 }
 
+/// Faults and warnings of a program and of the cycle that it calls, what words mean, where blocks and parameters are.
+#[test]
+fn of_a_system_900() {
+    let (mut client, folder) = session();
+    std::fs::write(folder.path().join("Z71.900"), "N10 X1 FOO7\n").unwrap();
+    let text = "{ Prüfung }\nn100  p7950 : 1 { 𝄞 }\nN110 M1\nN120 P7960<10.110\nN130 P7960=10.200\n; Tasche\nN140 G71\n\
+                N150 M24.110.5\nN200 G41 X:P7961 BAR1\n";
+    let mut document = client.open_text(&folder.path().join("P1.900"), "system-900", text);
+    let found = client.diagnostics(&document);
+    let marked: Vec<&str> = found
+        .iter()
+        .map(|fault| document.marked(&fault["range"]))
+        .collect();
+    assert_eq!(marked, ["BAR1", "G71"], "{found:?}");
+    assert!(
+        found[1]["message"]
+            .as_str()
+            .unwrap()
+            .contains("Z71.900, block N10: unknown word FOO7")
+    );
+    client.edit(&mut document, " BAR1", " H1");
+    let found = client.diagnostics(&document);
+    assert_eq!(found[0]["severity"], 2, "{found:?}");
+    std::fs::write(folder.path().join("Z71.900"), "N10 X1\n").unwrap();
+    client.edit(&mut document, " H1", "");
+    assert_eq!(client.diagnostics(&document), [] as [Value; 0]);
+
+    for (place, said) in [
+        ("G41", "Radius correction, tool to the left"),
+        ("M24", "jumps back"),
+        ("X:P7961", "q110"),
+        ("G71", "Milling cycles"),
+        ("M1\n", "look-ahead"),
+    ] {
+        let hover = client.hover(&document, place, 1);
+        assert!(hover.contains(said), "{place}: {hover}");
+    }
+    let hover = client.hover(&document, "P7960<", 2);
+    assert!(
+        hover.contains("P7960: Parameter") && hover.contains("*Read in lines:* 4, 5"),
+        "{hover}"
+    );
+    let hover = client.hover(&document, "N110 M1", 2);
+    assert!(
+        hover.contains("*Stands in line:* 3") && hover.contains("*Jumps in lines:* 4, 8"),
+        "{hover}"
+    );
+    let definition = client.places(&document, "textDocument/definition", "200\n;", 1);
+    assert_eq!(definition, ["N200 G41 X:P7961"]);
+    let outline = client.request("textDocument/documentSymbol", document.id());
+    assert_eq!(
+        (&outline[0]["name"], &outline[1]["name"]),
+        (&json!("Prüfung"), &json!("Tasche"))
+    );
+    let words = client.completions(&document, "G71", 1);
+    assert!(words.iter().any(|(label, _)| label == "G147"), "{words:?}");
+    let mut params = document.id();
+    params["options"] = json!({"tabSize": 2, "insertSpaces": true});
+    let edits = client.request("textDocument/formatting", params);
+    let listed = document.text.replace("n100  p7950 : 1", "N100 P7950:1");
+    assert_eq!(client.edited(&document, &edits), listed);
+    client.end().ended().unwrap();
+}
+
 #[test]
 fn plc_programs() {
     let (mut client, folder) = session();

@@ -18,7 +18,7 @@ use crate::{HostError, called};
 pub use crate::called::{below, named};
 pub use bahn_reader::EPROM;
 
-pub use nc::{NcFolder, is_din, nc_reader};
+pub use nc::{NcFolder, dialect, nc_reader};
 
 /// Largest program file, 1 GiB. A larger one is FURTHER PROGRAM ENTRY IMPOSSIBLE: the run holds the file in
 /// memory.

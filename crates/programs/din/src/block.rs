@@ -92,7 +92,7 @@ const G_FUNCTIONS: [(u16, u8); 15] = [
 ];
 
 /// Most words of a block.
-const MAX_WORDS: usize = 200;
+pub(crate) const MAX_WORDS: usize = 200;
 
 /// The programmed number of a block without leading zeros, taken off the line. `None` without one.
 pub(crate) fn number(line: &[Glyph]) -> (Option<Arc<str>>, &[Glyph]) {

@@ -11,10 +11,25 @@ use bahn_text::nearest;
 impl Fault {
     /// As people and programs get it; `program` is the one it is in, `file` where that lies.
     pub fn diagnostic(&self, program: &Program, file: &Path) -> Diagnostic {
-        Diagnostic::error(self.span, self.message.as_str())
-            .in_block(&*self.block)
-            .with_help(program.cure(self))
-            .at(file, program.line(self.span.line))
+        let wrong = Diagnostic::error(self.span, self.message.as_str());
+        self.placed(wrong, program.line(self.span.line), program.cure(self), file)
+    }
+
+    /// The diagnostic of a fault in its file, with its line.
+    pub(crate) fn placed(
+        &self,
+        diagnostic: Diagnostic,
+        line: &str,
+        help: Option<String>,
+        file: &Path,
+    ) -> Diagnostic {
+        diagnostic.in_block(&*self.block).with_help(help).at(file, line)
+    }
+
+    /// A number that is meant where a letter stands in it.
+    pub(crate) fn meant_number(&self, line: &str) -> Option<String> {
+        let line: Vec<char> = line.chars().collect();
+        digit(&line, (self.span.column as usize).checked_sub(1)?)
     }
 }
 

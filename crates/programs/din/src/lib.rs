@@ -58,6 +58,9 @@ mod expression;
 mod line;
 mod listing;
 mod program;
+mod rewriting;
+mod source;
+pub mod system900;
 mod unit;
 mod words;
 

@@ -110,18 +110,32 @@ fn bracketed(line: &[char], start: usize) -> Comment {
 /// The characters of a line without its comments, each of which parts words as a blank does.
 pub(crate) fn glyphs(line: &str) -> Vec<Glyph> {
     let characters: Vec<char> = line.chars().collect();
+    without(&characters, &comments(&characters))
+}
+
+/// The characters of a line without these comments, which are in their order.
+pub(crate) fn without(characters: &[char], comments: &[Comment]) -> Vec<Glyph> {
     let mut result = Vec::with_capacity(characters.len());
     let mut at = 0;
-    for comment in comments(&characters) {
-        append(&mut result, &characters, at..comment.start);
+    for comment in comments {
+        append(&mut result, characters, at..comment.start);
         result.push(Glyph {
             character: ' ',
             column: column(comment.start),
         });
         at = comment.end;
     }
-    append(&mut result, &characters, at..characters.len());
+    append(&mut result, characters, at..characters.len());
     result
+}
+
+/// The text of each comment with its column.
+pub(crate) fn said(characters: &[char], comments: &[Comment]) -> Vec<(u32, String)> {
+    let text = |comment: &Comment| {
+        let own = characters.get(comment.start..comment.end)?;
+        Some((column(comment.start), own.iter().collect()))
+    };
+    comments.iter().filter_map(text).collect()
 }
 
 /// Where a command stands in a line outside of other comments and quotes, in characters.

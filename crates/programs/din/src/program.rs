@@ -4,19 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_path::{Axis, AxisSet};
-use bahn_text::{Encoding, LineIndex, Span};
+use bahn_text::Span;
 
 use crate::block::{self, WordKind};
 use crate::line::{self, Glyph, LineFault, Macros};
+use crate::source::{MAX_LINES, Source};
 use crate::words::{SpanKind, words};
 
 /// A file that was read.
 #[derive(Clone, Debug)]
 pub struct Program {
-    name: Arc<str>,
-    text: String,
-    encoding: Encoding,
-    lines: LineIndex,
+    source: Source,
     /// Lines that comments of several lines touch, with blanks in their place.
     uncommented: BTreeMap<u32, String>,
     sections: Vec<Section>,
@@ -98,9 +96,6 @@ pub enum LandmarkKind {
 /// Most faults of a file that are told.
 pub const MAX_FAULTS: usize = 1000;
 
-/// Most lines of a file.
-const MAX_LINES: usize = 10_000_000;
-
 /// What a line is before its words are read.
 enum Line<'a> {
     Blank,
@@ -112,20 +107,15 @@ impl Program {
     /// Reads a file; whatever is wrong with it is told by [`Program::faults`]. A file that is no UTF-8 has one
     /// character for each byte.
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Program {
-        let (text, encoding) = Encoding::read(bytes);
-        let lines = LineIndex::up_to(&text, MAX_LINES);
         let mut program = Program {
-            name: name.into(),
-            text,
-            encoding,
-            lines,
+            source: Source::from_bytes(name, bytes),
             uncommented: BTreeMap::new(),
             sections: Vec::new(),
             heads: Vec::new(),
         };
         program.find_comments();
         program.find_sections();
-        if program.line_count() as usize >= MAX_LINES {
+        if program.source.is_too_long() {
             let message = format!("more than {MAX_LINES} lines in a file");
             let last = program.line_count();
             program
@@ -137,7 +127,7 @@ impl Program {
 
     /// Name of the file, as calls name it.
     pub fn name(&self) -> &Arc<str> {
-        &self.name
+        self.source.name()
     }
 
     /// The axes that its blocks name.
@@ -154,25 +144,22 @@ impl Program {
 
     /// Number of its lines.
     pub fn line_count(&self) -> u32 {
-        u32::try_from(self.lines.count(&self.text)).unwrap_or(u32::MAX)
+        self.source.line_count()
     }
 
     /// A line without its ending, from 1; empty where there is none.
     pub fn line(&self, number: u32) -> &str {
-        self.lines.line(&self.text, number as usize)
+        self.source.line(number)
     }
 
-    /// What stands after a line before the next one: its ending.
-    pub(crate) fn ending(&self, number: u32) -> &str {
-        let whole = self.lines.whole(&self.text, number as usize);
-        let own = self.lines.range(&self.text, number as usize);
-        self.text.get(own.end..whole.end).unwrap_or_default()
+    /// Its text by lines.
+    pub(crate) fn source(&self) -> &Source {
+        &self.source
     }
 
     /// A text in the bytes that the file is written in, as one that takes its place has them.
     pub fn encoded(&self, text: &str) -> Vec<u8> {
-        // What has no byte there is not written by the listing.
-        self.encoding.write(text)
+        self.source.encoded(text)
     }
 
     /// Whether comments of several lines touch a line.

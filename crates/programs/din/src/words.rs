@@ -3,7 +3,7 @@
 use crate::block;
 use crate::cursor::Cursor;
 use crate::expression::{is_function, variable_begins};
-use crate::line::{self, Glyph};
+use crate::line::{self, Comment, Glyph};
 
 /// A part of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,24 +44,34 @@ pub enum SpanKind {
 /// The words of a line in their order; blanks, brackets and operators are none.
 pub fn words(text: &str) -> Vec<Span> {
     let characters: Vec<char> = text.chars().collect();
-    let mut spans: Vec<Span> = line::comments(&characters)
-        .into_iter()
+    marked(&characters, &line::comments(&characters), |code, spans| {
+        if code.first().is_some_and(|glyph| glyph.character == '%') {
+            spans.extend(span(code, SpanKind::Head));
+        } else {
+            read(code, spans);
+        }
+    })
+}
+
+/// The comments of a line and what `read` finds in the code between its first and its last character, in their order.
+pub(crate) fn marked(
+    characters: &[char],
+    comments: &[Comment],
+    read: impl Fn(&[Glyph], &mut Vec<Span>),
+) -> Vec<Span> {
+    let mut spans: Vec<Span> = comments
+        .iter()
         .map(|comment| Span {
             column: number(comment.start) + 1,
             length: number(comment.end - comment.start),
             kind: SpanKind::Comment,
         })
         .collect();
-    let glyphs = line::glyphs(text);
+    let glyphs = line::without(characters, comments);
     let start = glyphs.iter().position(|glyph| !glyph.character.is_whitespace());
     let end = glyphs.iter().rposition(|glyph| !glyph.character.is_whitespace());
     if let (Some(start), Some(end)) = (start, end) {
-        let code = glyphs.get(start..=end).unwrap_or_default();
-        if code.first().is_some_and(|glyph| glyph.character == '%') {
-            spans.extend(span(code, SpanKind::Head));
-        } else {
-            read(code, &mut spans);
-        }
+        read(glyphs.get(start..=end).unwrap_or_default(), &mut spans);
     }
     spans.sort_by_key(|span| span.column);
     // A command goes on after a comment; what is marked of it ends before.
@@ -76,7 +86,8 @@ fn number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX - 1)
 }
 
-fn span(glyphs: &[Glyph], kind: SpanKind) -> Option<Span> {
+/// All of some characters.
+pub(crate) fn span(glyphs: &[Glyph], kind: SpanKind) -> Option<Span> {
     let (first, last) = (glyphs.first()?, glyphs.last()?);
     Some(Span {
         column: first.column,
@@ -88,12 +99,19 @@ fn span(glyphs: &[Glyph], kind: SpanKind) -> Option<Span> {
 fn read(code: &[Glyph], spans: &mut Vec<Span>) {
     let (name, rest) = block::number(code);
     if name.is_some() {
-        spans.extend(span(
-            code.get(..code.len() - rest.len()).unwrap_or_default(),
-            SpanKind::Number,
-        ));
+        let digits = code.len() - rest.len();
+        spans.extend(span(code.get(..digits).unwrap_or_default(), SpanKind::Number));
     }
-    let mut cursor = Cursor::new(rest);
+    each_word(rest, spans, word);
+}
+
+/// Marks the words of a code, each taken by `word`; `None` of a character that is none.
+pub(crate) fn each_word(
+    code: &[Glyph],
+    spans: &mut Vec<Span>,
+    word: impl Fn(&mut Cursor) -> Option<SpanKind>,
+) {
+    let mut cursor = Cursor::new(code);
     while !cursor.is_done() {
         let mark = cursor.mark();
         if let Some(kind) = word(&mut cursor) {

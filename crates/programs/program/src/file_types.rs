@@ -45,14 +45,14 @@ pub fn language_of(file_name: &str) -> Option<&'static dyn Language> {
 /// The language of a file by its name and, where shops name two languages alike, by its text; plain language where
 /// neither says it.
 pub(crate) fn bulk_language_of(file_name: &str, text: &[u8]) -> &'static dyn Bulk {
-    let is = |ending: &str| {
-        let own = file_name.rsplit_once('.');
-        own.is_some_and(|(_, own)| own.eq_ignore_ascii_case(ending))
-    };
-    match () {
-        () if is("I") => &IsoLanguage,
-        () if is("NC") && !begins_as_plain(text) => &DinLanguage,
-        () => &PlainLanguage,
+    let ending = file_name
+        .rsplit_once('.')
+        .map(|(_, ending)| ending.to_ascii_uppercase());
+    match ending.as_deref() {
+        Some("I") => &IsoLanguage,
+        Some("NC") if !begins_as_plain(text) => &DinLanguage::Tf5200,
+        Some("900") => &DinLanguage::System900,
+        _ => &PlainLanguage,
     }
 }
 

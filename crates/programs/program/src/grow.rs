@@ -5,9 +5,8 @@ mod growth;
 use std::ops::Range;
 
 use crate::bulk::Bulk;
-use crate::din::DinLanguage;
 use crate::file_types::bulk_language_of;
-use crate::language::{Landmark, Language};
+use crate::language::Landmark;
 use crate::lines::RawBlock;
 use crate::plain::PlainLanguage;
 use crate::rope::{PIECE_BLOCKS, Rope, pieces};
@@ -21,8 +20,8 @@ pub(crate) use growth::Growth;
 const LEADING_MAX: usize = 1 << 16;
 
 impl Program {
-    /// A program in plain language of which nothing has come yet. One that is named `.nc` and turns out to be of DIN 66025
-    /// is [refused](Program::refused).
+    /// A program in plain language of which nothing has come yet. One that is named `.nc` or `.900` and turns out to
+    /// be of DIN 66025 is [refused](Program::refused).
     ///
     /// ```
     /// use bahn_program::Program;
@@ -131,8 +130,11 @@ impl Program {
             let block = raw.text(text.get(start..).unwrap_or_default());
             !self.language.stands_alone(block)
         };
-        if settled.iter().any(begins) && self.language_by(&text).name() == DinLanguage.name() {
-            return self.turned_out_din(text.split_off(start));
+        if settled.iter().any(begins) {
+            let language = self.language_by(&text);
+            if language.dialect().is_some() {
+                return self.turned_out_din(language, text.split_off(start));
+            }
         }
         let begin = settled.iter().find_map(|raw| {
             let block = raw.text(text.get(start..)?);
@@ -170,7 +172,7 @@ impl Program {
     }
 
     /// The program once its first block shows that it is none of plain language: whoever executes it learns why not.
-    fn turned_out_din(&self, text: Vec<u8>) -> Program {
+    fn turned_out_din(&self, language: &'static dyn Bulk, text: Vec<u8>) -> Program {
         let first = RawBlock {
             start: 0,
             end: text.len(),
@@ -178,11 +180,11 @@ impl Program {
             joined: false,
         };
         let frame = Frame {
-            refused: DinLanguage.refuses(first.text(&text)),
+            refused: language.refuses(first.text(&text)),
             ..Frame::default()
         };
         let rope = Rope::new(Vec::new(), 1, 1);
-        let mut program = Program::of(self.name.clone(), &DinLanguage, rope, frame, self.line_end);
+        let mut program = Program::of(self.name.clone(), language, rope, frame, self.line_end);
         program.growth.clone_from(&self.growth);
         program.appended(text, false)
     }
@@ -190,9 +192,9 @@ impl Program {
     /// DIN 66025 where name and text say so, else plain language.
     fn language_by(&self, text: &[u8]) -> &'static dyn Bulk {
         let language = bulk_language_of(&self.name, text);
-        match language.name() == DinLanguage.name() {
-            true => language,
-            false => self.language,
+        match language.dialect() {
+            Some(_) => language,
+            None => self.language,
         }
     }
 

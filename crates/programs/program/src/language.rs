@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use bahn_parameters::Limits;
 
+use crate::din::DinLanguage;
 use crate::format::FormatOptions;
 use crate::lines::{BlockText, Lines, RawBlock};
 use crate::{Block, BlockError, Header, Operation};
@@ -84,6 +85,12 @@ pub trait Language: fmt::Debug + Send + Sync {
 
     /// Most characters of a block, where the control counts them.
     fn characters_max(&self, _limits: &Limits) -> Option<u32> {
+        None
+    }
+
+    /// The dialect of DIN 66025 that it is, whose blocks no language of the control reads; `None` for a language of the
+    /// control.
+    fn dialect(&self) -> Option<DinLanguage> {
         None
     }
 

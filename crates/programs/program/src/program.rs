@@ -72,7 +72,7 @@ impl Program {
     pub const MAX_BYTES: u64 = u32::MAX as u64 - 1;
 
     /// Takes a file of any bytes in the language of its name: ISO where that ends with `.I`, DIN 66025 with `.nc` unless
-    /// the file begins with BEGIN PGM, plain language else. What cannot be read becomes [`Operation::Invalid`] when it is
+    /// the file begins with BEGIN PGM, and with `.900`, plain language else. What cannot be read becomes [`Operation::Invalid`] when it is
     /// decoded; bytes beyond [`Program::MAX_BYTES`] are cut off.
     pub fn from_bytes(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
         let name = name.into();
@@ -81,9 +81,9 @@ impl Program {
         Program::of_file(name, file, language)
     }
 
-    /// Takes a file of DIN 66025, whatever its name: subroutines have other endings, or none.
+    /// Takes a file of DIN 66025 as a TF5200 reads it, whatever its name: subroutines have other endings, or none.
     pub fn of_din(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
-        Program::of_file(name.into(), as_utf8(bytes), &DinLanguage)
+        Program::of_file(name.into(), as_utf8(bytes), &DinLanguage::Tf5200)
     }
 
     pub(crate) fn of_file(name: Box<str>, mut file: Vec<u8>, language: &'static dyn Bulk) -> Program {
@@ -117,9 +117,9 @@ impl Program {
         self.language
     }
 
-    /// Whether it is a program of DIN 66025, whose blocks no language of the control reads.
-    pub fn is_din(&self) -> bool {
-        self.language.name() == DinLanguage.name()
+    /// The dialect of DIN 66025 that it is written in, whose blocks no language of the control reads.
+    pub fn dialect(&self) -> Option<DinLanguage> {
+        self.language.dialect()
     }
 
     /// The name that the program was opened by.

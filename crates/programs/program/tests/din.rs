@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
 
 use bahn_parameters::MessageId;
-use bahn_program::{Operation, Program};
+use bahn_program::{DinLanguage, Operation, Program};
 
 /// Lines 1 to 7 with an empty one; `N 30` may have blanks, a number may stand in a subroutine, too, numbers have no order.
 const TEXT: &str = "%L SUB\nn20 X1\n\n%MAIN\n  N0030 G01 X5\nG00 X0\nN 20 M30\n";
@@ -48,7 +48,8 @@ fn numbers() {
 fn no_block_has_a_meaning_of_plain_language() {
     // Both lines are blocks of plain language, too.
     let program = Program::from_bytes("SUB.nc", b"M30\n;L X+5\n".to_vec());
-    assert!(program.is_din() && program.refused().unwrap().contains("DIN 66025"));
+    assert_eq!(program.dialect(), Some(DinLanguage::Tf5200));
+    assert!(program.refused().unwrap().contains("DIN 66025"));
     for block in &program.decode(0).blocks[1..3] {
         let Operation::Invalid(invalid) = &block.operation else {
             panic!("{block:?}")
@@ -67,9 +68,16 @@ fn plain_language_with_this_ending() {
         "; of 1987\n0 BEGIN PGM 1 MM\n1 END PGM 1 MM\n",
     ] {
         let program = Program::from_bytes("1.NC", text.into());
-        assert!(!program.is_din() && program.begins_with_header(), "{text}");
+        assert!(
+            program.dialect().is_none() && program.begins_with_header(),
+            "{text}"
+        );
     }
-    assert!(Program::of_din("side.sub", b"N10 M17".to_vec()).is_din());
+    assert!(
+        Program::of_din("side.sub", b"N10 M17".to_vec())
+            .dialect()
+            .is_some()
+    );
 }
 
 /// While it is transferred its first block says what it is; a comment and half a block do not yet.
@@ -78,12 +86,36 @@ fn transferred() {
     let begun = Program::growing("1.NC").more(b"; part\nN10 G0");
     assert!(begun.refused().is_none());
     let din = begun.more(b"1 X5 F500\nN20 M30\n");
-    assert!(din.is_din() && din.refused().is_some() && din.is_growing());
+    assert!(din.dialect().is_some() && din.refused().is_some() && din.is_growing());
     assert_eq!(din.number_of(2), 10);
-    assert!(din.completed().is_din());
-    assert!(Program::growing("1.NC").more(b"N10 M30").completed().is_din());
+    assert!(din.completed().dialect().is_some());
+    assert!(
+        Program::growing("1.NC")
+            .more(b"N10 M30")
+            .completed()
+            .dialect()
+            .is_some()
+    );
     let plain = Program::growing("1.NC")
         .more(b"; part\n")
         .more(b"BEGIN PGM 1 MM\nL X+5\nEND PGM 1 MM\n");
-    assert!(!plain.is_din() && plain.block_count() == 3);
+    assert!(plain.dialect().is_none() && plain.block_count() == 3);
+}
+
+/// A program of a System 900 is called by its numbers, too, which `/` may stand before; `{` opens a comment. It has no heads,
+/// and is never plain language.
+#[test]
+fn of_a_system_900() {
+    let text = "{ part }\n/ N0020 X1\n%L SUB\nN30 M30\n";
+    let program = Program::from_bytes("P1000.900", text.into());
+    assert_eq!(program.dialect(), Some(DinLanguage::System900));
+    assert!(program.refused().unwrap().contains("System 900"));
+    let called: Vec<u32> = (1..=4).map(|block| program.number_of(block)).collect();
+    assert_eq!(called, [1, 20, 3, 30]);
+    assert_eq!(program.block_of(30), Some(4));
+    let found = program.diagnostics(None);
+    assert_eq!(found.len(), 1, "one line says all: {found:?}");
+    assert_eq!(found[0].span.line, 1);
+    let growing = Program::growing("P1.900").more(b"{ part\nBEGIN PGM 1 MM\nL X+5\n");
+    assert_eq!(growing.dialect(), Some(DinLanguage::System900));
 }

@@ -63,12 +63,12 @@ fn add(
             )));
         }
     };
-    if files::extension(&source) == "nc" && !program.begins_with_header() {
+    if program.dialect().is_some() {
         // One of a folder is left out, as one in the language that is wanted.
         if options.input.is_dir() {
             return Ok(());
         }
-        let why = "a program of DIN 66025 (.nc) has its own axes and functions: it is not converted";
+        let why = "a program of DIN 66025 (.nc, .900) has its own axes and functions: it is not converted";
         return Err(UsageError::new(format!("{}: {why}", source.display())));
     }
     let already = match Target::from(options.to) {

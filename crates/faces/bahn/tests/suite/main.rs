@@ -30,6 +30,7 @@ mod plc;
 mod plc_diagram;
 mod plc_examples;
 mod plc_machine;
+mod positioning_module;
 mod power_off;
 mod recording;
 mod run;

@@ -1,5 +1,6 @@
 //! DIN 66025 programs, `.nc`.
 
+mod marked;
 mod words;
 
 use std::ops::Range;
@@ -8,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use bahn_din::{Landmark, LandmarkKind, Program, SpanKind};
-use bahn_text::{Diagnostic, Files, NamedFile};
+use bahn_text::Files;
 
 use crate::language::{
     Analysis, Completion, Elsewhere, Examined, Fold, Hover, Mention, Role, Symbol, SymbolKind, Thing, Token,
@@ -18,13 +19,14 @@ use crate::markdown::Markdown;
 use crate::text::Text;
 use crate::world::World;
 
+pub(crate) use marked::{Beside, Marked};
+
 /// A program as the editor has it.
 pub(crate) struct DinProgram {
     path: PathBuf,
     text: Arc<Text>,
     program: Arc<Program>,
-    /// The bytes of each line, from line 1 on.
-    lines: Vec<Range<usize>>,
+    marked: Marked,
     mentions: OnceLock<Vec<Mention>>,
 }
 
@@ -32,54 +34,14 @@ impl DinProgram {
     pub(crate) fn new(path: &Path, text: Arc<Text>) -> DinProgram {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let program = Arc::new(Program::from_bytes(&name, text.text.as_bytes()));
-        let mut from = 0;
-        let lines = (1..=program.line_count()).map(|number| {
-            // Each line stands after the one before it.
-            let line = program.line(number);
-            let found = text.text.get(from..).and_then(|rest| rest.find(line));
-            let start = from + found.unwrap_or_default();
-            from = start + line.len();
-            start..from
-        });
+        let lines = (1..=program.line_count()).map(|number| program.line(number));
         DinProgram {
             path: path.to_owned(),
-            lines: lines.collect(),
+            marked: Marked::new(text.clone(), lines, bahn_din::words),
             program,
             text,
             mentions: OnceLock::new(),
         }
-    }
-
-    /// The bytes of a line, from 1.
-    fn line(&self, number: u32) -> Range<usize> {
-        let end = self.text.text.len();
-        let index = (number as usize).checked_sub(1);
-        index
-            .and_then(|index| self.lines.get(index).cloned())
-            .unwrap_or(end..end)
-    }
-
-    /// All words with their places.
-    fn words(&self) -> impl Iterator<Item = (Range<usize>, SpanKind)> {
-        self.lines.iter().flat_map(|line| self.words_of(line.clone()))
-    }
-
-    fn words_of(&self, line: Range<usize>) -> Vec<(Range<usize>, SpanKind)> {
-        let spans = bahn_din::words(self.text.get(line.clone()));
-        let bytes = |span: &bahn_din::Span| {
-            self.text
-                .characters(line.clone(), span.column as usize, span.length as usize)
-        };
-        spans.iter().map(|span| (bytes(span), span.kind)).collect()
-    }
-
-    /// The word at a place, and the code of its line in front of it.
-    fn word_at(&self, at: usize) -> Option<(Range<usize>, SpanKind)> {
-        let words = self.words_of(self.text.line_at(at));
-        let inside = words.iter().find(|(range, _)| range.contains(&at));
-        inside
-            .or_else(|| words.iter().find(|(range, _)| range.end == at))
-            .cloned()
     }
 
     fn named(&self, kinds: &[LandmarkKind]) -> Vec<Landmark> {
@@ -90,8 +52,8 @@ impl DinProgram {
     fn find_mentions(&self) -> Vec<Mention> {
         let subroutines = self.named(&[LandmarkKind::Subroutine]);
         let mut found = Vec::new();
-        for line in &self.lines {
-            let words = self.words_of(line.clone());
+        for line in self.marked.lines() {
+            let words = self.marked.words_of(line.clone());
             for (range, kind) in &words {
                 let word = self.text.get(range.clone());
                 let rest = self.text.get(range.end..line.end);
@@ -173,48 +135,23 @@ fn first_word(text: &str) -> &str {
     text.split([' ', '\t', ';', '(']).next().unwrap_or_default()
 }
 
-/// Subroutines beside a program, as the editor shows them, else from the disk.
-struct Beside {
-    folder: PathBuf,
-    world: World,
-}
-
-impl Files for Beside {
-    fn read(&self, name: &str) -> Option<NamedFile> {
-        let path = self.world.below(&self.folder, name)?;
-        let bytes = self.world.read(&path)?;
-        let name = path.strip_prefix(&self.folder).ok()?.to_str()?.to_owned();
-        Some(NamedFile { name, bytes })
-    }
-}
-
 impl Analysis for DinProgram {
     fn examine(&self, world: &World, interrupt: &AtomicBool) -> Examined {
         if self.text.text.trim().is_empty() {
             return Examined::default();
         }
-        let folder = self.path.parent().unwrap_or(Path::new("")).to_owned();
-        let beside: Arc<dyn Files> = Arc::new(Beside {
-            folder: folder.clone(),
-            world: world.clone(),
-        });
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let beside: Arc<dyn Files> = Arc::new(Beside::of(&self.path, world));
         let examined = bahn_din::examine(&self.program, &beside, interrupt);
         let faults = examined.found.into_iter().map(|found| {
             let name = found.program.name().to_string();
             let fault = found.fault.diagnostic(&found.program, &folder.join(&name));
             if found.program.name() == self.program.name() {
-                let (line, span) = (self.line(fault.span.line), fault.span);
-                let place = self
-                    .text
-                    .characters(line, span.column as usize, span.length as usize);
-                return Diagnostic {
-                    span: self.text.span(&place),
-                    ..fault
-                };
+                return self.marked.placed(fault);
             }
             let file = Thing::File(name);
             let call = mentions_of(self.mentions(), &file).next();
-            let place = call.map_or_else(|| self.line(1), |call| call.range.clone());
+            let place = call.map_or_else(|| self.marked.line(1), |call| call.range.clone());
             led_to(fault, self.text.span(&place))
         });
         Examined {
@@ -234,11 +171,7 @@ impl Analysis for DinProgram {
         if let Some(mention) = mention_at(self.mentions(), at) {
             let lines = |role: Role| {
                 let places = mentions_of(self.mentions(), &mention.thing).filter(|other| other.role == role);
-                let lines: Vec<String> = places
-                    .take(12)
-                    .map(|other| (self.text.lines.line_of(other.range.start) + 1).to_string())
-                    .collect();
-                lines.join(", ")
+                self.marked.line_numbers(places.map(|other| other.range.start))
             };
             let name = self.text.get(mention.range.clone());
             let (title, rule) = match &mention.thing {
@@ -260,7 +193,7 @@ impl Analysis for DinProgram {
                 text: text.text(),
             });
         }
-        let (range, kind) = self.word_at(at)?;
+        let (range, kind) = self.marked.word_at(at)?;
         Some(Hover {
             text: words::meaning(self.text.get(range.clone()), kind)?,
             range,
@@ -283,13 +216,13 @@ impl Analysis for DinProgram {
         let ends = heads
             .iter()
             .skip(1)
-            .map(|next| self.line(next.line).start)
+            .map(|next| self.marked.line(next.line).start)
             .chain([end]);
         heads
             .iter()
             .zip(ends)
             .map(|(head, end)| {
-                let line = self.line(head.line);
+                let line = self.marked.line(head.line);
                 let (name, kind) = match head.kind {
                     LandmarkKind::Subroutine => (format!("%L {}", head.name), SymbolKind::Label),
                     _ => (format!("%{}", head.name), SymbolKind::Program),
@@ -399,16 +332,6 @@ impl Analysis for DinProgram {
     }
 
     fn tokens(&self) -> Vec<(Range<usize>, Token)> {
-        let token = |kind: SpanKind| match kind {
-            SpanKind::Comment => Token::Comment,
-            SpanKind::Head | SpanKind::Function | SpanKind::Command => Token::Keyword,
-            SpanKind::Number => Token::Label,
-            SpanKind::Address => Token::Parameter,
-            SpanKind::Value => Token::Number,
-            SpanKind::Variable => Token::Variable,
-            SpanKind::Text => Token::Text,
-            SpanKind::Calculation => Token::Function,
-        };
-        self.words().map(|(range, kind)| (range, token(kind))).collect()
+        self.marked.tokens()
     }
 }

@@ -11,6 +11,8 @@ pub(crate) enum Kind {
     Iso,
     /// DIN 66025 programs, `.nc`.
     Din,
+    /// Programs and cycles of a System 900, `.900`.
+    System900,
     /// A program of the PLC, `.PLC`.
     Plc,
     /// A list of machine parameters, `.MP`.
@@ -20,10 +22,11 @@ pub(crate) enum Kind {
 }
 
 /// Names that editors give to the languages, and endings of files.
-const NAMES: [(&str, &str, Kind); 6] = [
+const NAMES: [(&str, &str, Kind); 7] = [
     ("tnc-plain", "h", Kind::Plain),
     ("tnc-iso", "i", Kind::Iso),
     ("din-66025", "nc", Kind::Din),
+    ("system-900", "900", Kind::System900),
     ("tnc-plc", "plc", Kind::Plc),
     ("tnc-parameters", "mp", Kind::Parameters),
     ("tf-channel", "lis", Kind::Channel),

@@ -16,6 +16,8 @@ pub(crate) enum Thing {
     File(String),
     /// A subroutine of the file.
     Subroutine(String),
+    /// A block by its number.
+    Block(u32),
     /// A variable or parameter of DIN 66025.
     Variable(String),
     /// A label of a PLC program.

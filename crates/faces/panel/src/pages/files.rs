@@ -114,7 +114,12 @@ impl Directory {
             Purpose::Edit if !there => return create(name, site),
             Purpose::Edit if table::is_table(&name) => return table::open(&name, site),
             // The dialogue writes the control's own languages alone.
-            Purpose::Edit if site.programs.read(&name).is_some_and(|own| own.is_din()) => {
+            Purpose::Edit
+                if site
+                    .programs
+                    .read(&name)
+                    .is_some_and(|own| own.dialect().is_some()) =>
+            {
                 return Turn::Say(site.message(MessageId::BlockNotSupported));
             }
             Purpose::Edit => {

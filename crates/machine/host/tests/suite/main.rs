@@ -13,6 +13,7 @@ mod nc_memory;
 mod oem_texts;
 mod own_functions;
 mod power_off;
+mod refused_blocks;
 mod replay;
 mod rules_of_a_run;
 mod scripts;

@@ -106,7 +106,7 @@ pub(super) fn command(options: &DncSendOptions) -> Result<Outcome, UsageError> {
 /// Whether a program of the folder is in none of the control's languages.
 fn is_din(options: &DncSendOptions, name: &str) -> bool {
     let program = files::named(&options.dir, name).and_then(|path| files::load_program(&path).ok());
-    matches!(program, Some(Loaded::Program(program)) if program.is_din())
+    matches!(program, Some(Loaded::Program(program)) if program.dialect().is_some())
 }
 
 /// Tells how far a program is.

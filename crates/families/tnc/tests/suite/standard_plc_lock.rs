@@ -1,10 +1,7 @@
 //! Output A6 of the standard PLC program of a TNC 151/155, the lock for "spindle on".
 
-mod support;
-#[path = "support/terminals.rs"]
-mod terminals;
 
-use terminals::*;
+use crate::terminals::*;
 
 /// A6 opens with a programmed spindle stop and a programmed stop together, is closed in Manual [001:1046-1053], in each mode in
 /// which programs run: NC start leads to the stop, in single block once for each block before it.

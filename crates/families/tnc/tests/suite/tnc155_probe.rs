@@ -1,9 +1,8 @@
 //! The markers of the touch probe of a TNC 155 [001:2258-2286].
 
-mod support;
 
-use support::knee::*;
-use support::*;
+use crate::support::knee::*;
+use crate::support::*;
 
 const PROBE: &str = "
 [probe]
