@@ -361,7 +361,7 @@ fn the_list_of_a_machine_is_checked_as_the_machine_has_it() {
     );
     let steep = "MP54 = 2 is there from software level 08 on; this control has level 07";
     folder.write("steep.mp", "MP54 : 2\n");
-    folder.write("steep.txt", "at 1s: MP54=2\n");
+    folder.write("steep.txt", "1: MP54=2\n");
     for (command, code, expected) in [
         ("mp check m", 0, "0 errors"),
         ("test m/programs/BLOCK.H --machine m --mp 54=1.5", 0, ""),
@@ -372,7 +372,7 @@ fn the_list_of_a_machine_is_checked_as_the_machine_has_it() {
             steep,
         ),
         ("run BLOCK.H --machine m --fresh --mp 54=2", 2, steep),
-        ("run BLOCK.H --machine m --fresh --script steep.txt", 2, steep),
+        ("run BLOCK.H --machine m --fresh --script steep.txt", 1, steep),
         ("tune m X --mp 54=2", 2, steep),
         (
             "run BLOCK.H --machine m --fresh --mp 237=1",

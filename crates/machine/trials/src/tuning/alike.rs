@@ -19,6 +19,7 @@ const DAMPINGS: [f64; 3] = [0.3, 0.6, 0.9];
 const PRECONTROL_MONITORS_MM: [f64; 2] = [0.5, 10.0];
 /// Steps down that are tried at most, from whatever an entry is.
 const STEPS_DOWN: u8 = 20;
+
 /// The linear axes that get the same kv as those of a circle: where acceleration and monitoring are one for all.
 pub(super) fn beside(list: &ParameterList, axes: &[AxisParameters]) -> Vec<AxisParameters> {
     if !list.is_common(Adjustment::LagMonitor) || axes.len() == 1 {
@@ -39,7 +40,7 @@ impl Assistant<'_> {
         let method = self.value(Adjustment::ServoLag, self.first()).unwrap_or(1.0);
         let entry = (self.list.clone(), self.best.clone());
         if self.takes_method(1.0) {
-            self.equalize(Adjustment::KvLag);
+            self.equalize(Adjustment::KvLag, STEPS_DOWN);
             self.accelerate();
             self.servo_lag();
         }
@@ -50,8 +51,9 @@ impl Assistant<'_> {
             (self.list, self.best) = entry;
             return;
         }
-        // The two characteristics have the acceleration in common.
-        self.equalize(Adjustment::KvPrecontrol);
+        // A higher kv overshoots less here. The two characteristics have the acceleration in common.
+        self.equalize(Adjustment::KvPrecontrol, 1);
+        self.precontrol();
         self.brake();
         self.precontrol();
         for damping in DAMPINGS {
@@ -66,7 +68,7 @@ impl Assistant<'_> {
 
     /// One kv for all axes, the least, since the worst one determines it [000:9696-9698], and less where stops overshoot
     /// with it; with the monitoring that goes with it. MP55 is half of MP54 from here on [001:2701].
-    fn equalize(&mut self, what: Adjustment) {
+    fn equalize(&mut self, what: Adjustment, steps: u8) {
         let axes = self.kv_axes();
         let values = axes.iter().filter_map(|axis| self.value(what, *axis));
         let mut kv = values.filter(|kv| *kv > 0.0).fold(f64::INFINITY, f64::min);
@@ -75,7 +77,7 @@ impl Assistant<'_> {
         }
         let acceleration = self.value(Adjustment::Acceleration, self.first());
         let radial = acceleration.map(|value| (Adjustment::RadialAcceleration, self.first(), value / 2.0));
-        for _ in 0..STEPS_DOWN {
+        for _ in 0..steps {
             let mut entries: Try = axes.iter().map(|axis| (what, *axis, kv)).collect();
             entries.extend(radial);
             let taken = self.takes(&entries);
