@@ -378,7 +378,9 @@ fn a_tnc_155_is_commissioned_under_its_own_numbers() {
     let greatest = lag(10.0, kv).max(lag(8.0, entry(&list, "MP179")));
     for name in ["MP175", "MP174"] {
         let part = entry(&list, name) / greatest;
-        assert!((1.0999..=1.2001).contains(&part), "{name}: {part}");
+        // Entries have steps of 0.001 mm.
+        let step = 0.0005 / greatest;
+        assert!((1.1 - step..=1.2 + step).contains(&part), "{name}: {part}");
     }
     if factor < 1.0 {
         // Above 3000 mm/min of the slowest axis, 8000 mm/min.
@@ -449,8 +451,10 @@ fn all_axes_of_a_tnc_155_get_one_kv() {
     let list = folder.read("m/parameters.mp");
     let kv = ["MP177", "MP178", "MP179"].map(|name| entry(&list, name));
     assert!(kv[0] > 1.5 && kv == [kv[0]; 3], "{kv:?}");
+    // Where stiction lets go of an axis after a positioning move differs by some 20 µm between lists that differ by a hair;
+    // another kv in one of the axes was 1.9 mm.
     let after_mm = off_mm();
-    assert!(after_mm <= before_mm, "{before_mm} {after_mm}");
+    assert!(after_mm <= before_mm + 0.02, "{before_mm} {after_mm}");
 }
 
 /// With the square-root characteristic its own entries follow: MP32 to MP35 with one kv, 3.6864 kv / rapid traverse, and the
@@ -472,10 +476,17 @@ fn the_square_root_characteristic_has_entries_of_its_own() {
     for other in &kv[1..] {
         assert!((other - kv[0]).abs() < 0.003, "{kv:?}");
     }
-    assert_eq!(
-        (entry(&list, "MP60"), entry(&list, "MP56"), entry(&list, "MP57")),
-        (0.0, 0.5, 10.0)
-    );
+    assert_eq!(entry(&list, "MP60"), 0.0);
+    // What the list of the machine does not name it has from the reference list.
+    for (number, wanted) in [("56", "MP56      0.5 "), ("57", "MP57      10 ")] {
+        let whole = folder.bahn(&format!("mp list {number} --list m/parameters.mp"));
+        assert!(
+            whole.out().contains(wanted),
+            "{number}: {}{}",
+            whole.out(),
+            whole.err()
+        );
+    }
     let overshoot = number(&run.json(), "/after/overshoot_mm");
     assert!(overshoot <= 0.005, "{overshoot}");
 }

@@ -78,8 +78,8 @@ Examples:
   bahn mp diff mill.mp               against the reference list of its control
   bahn mp diff old.mp new.mp --format json
 
-Parameters that a list does not define have the value of the list that the control makes by
-itself.
+Parameters that a list does not define have the value of the list that the control makes by itself;
+in the list of a machine (machine.toml beside it) that of the reference list.
 Exit codes: 0 no difference, 1 differences, 2 wrong use or a list with faults.";
 
 const NEW_EXAMPLES: &str = "\

@@ -54,7 +54,7 @@ pub(super) fn of_machine(path: &Path, text: &ListText) -> Option<ParameterList> 
     Some(list)
 }
 
-/// The values of a list over those of the list that the control makes by itself.
+/// The values of a list over those of the list that the control makes by itself, or as the machine has them whose list it is.
 ///
 /// # Errors
 /// When the list has faults; `bahn mp check` names them.
@@ -67,9 +67,11 @@ pub(super) fn values(path: &Path, text: &ListText) -> Result<ParameterList, Usag
             count(faults.len(), "fault"),
         )));
     }
-    let mut list = ParameterList::smallest(text.model());
-    list.take(text);
-    Ok(list)
+    Ok(of_machine(path, text).unwrap_or_else(|| {
+        let mut list = ParameterList::smallest(text.model());
+        list.take(text);
+        list
+    }))
 }
 
 /// The list whose values are shown, and its name.
