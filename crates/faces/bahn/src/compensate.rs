@@ -22,22 +22,27 @@ const ASSIGNMENT: &str = "compensation.CMA";
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   bahn compensate machines/mill-tnc360
-      Measures X, Y and Z against where their tables stand in truth; proposes MP710, MP720 or a table; measures again.
+      Measures X, Y and Z against where their tables stand in truth; proposes MP710, MP720 or a
+      table; measures again.
   bahn compensate machines/mill-tnc155 --axes X
       The same with the numbers of a TNC 155: MP36 and MP40.
   bahn compensate mill --axes X --warm-up 10 --write
-      X of a machine that was on for ten minutes; the entries go into the list, tables beside machine.toml.
+      X of a machine that was on for ten minutes; the entries go into the list, tables beside
+      machine.toml.
 
-Each axis goes through its travel upwards and downwards and rests at every point; what the first point has moved by in the
-end is drift, and taken out of the readings in proportion to the time. Half the difference of the directions to either side
-is backlash (MP710); a straight line is the linear error (MP720); what that leaves, when it is more than 0.1 µm and a
-counting step of the encoder, is a table (.COM, named LASER-X and so on, with MP730 and the assignment .CMA). A TNC 151/155
-has MP36 to MP39 and MP40 to MP43, and no tables. When an axis gets no better, nothing is written.
+Each axis goes through its travel upwards and downwards and rests at every point; what the first
+point has moved by in the end is drift, and taken out of the readings in proportion to the time.
+Half the difference of the directions to either side is backlash (MP710); a straight line is the
+linear error (MP720); what that leaves, when it is more than 0.1 µm and a counting step of the
+encoder, is a table (.COM, named LASER-X and so on, with MP730 and the assignment .CMA). A TNC
+151/155 has MP36 to MP39 and MP40 to MP43, and no tables. When an axis gets no better, nothing is
+written.
 
-JSON: written, axes (axis, points, resolution_um, before_um, after_um: greatest error of both directions; backlash_mm,
-linear_mm_m, by_table, drift_um; entries: parameter, from, to; errors: at_mm, up_um, down_um, and residual_up_um,
-residual_down_um after it).
-Exit codes: 0 fine, 1 the machine is wrong, a run was broken off or an axis gets no better, 2 wrong use.";
+JSON: written, axes (axis, points, resolution_um, before_um, after_um: greatest error of both
+directions; backlash_mm, linear_mm_m, by_table, drift_um; entries: parameter, from, to; errors:
+at_mm, up_um, down_um, and residual_up_um, residual_down_um after it).
+Exit codes: 0 fine, 1 the machine is wrong, a run was broken off or an axis gets no better, 2
+wrong use.";
 
 /// Options of `bahn compensate`.
 #[derive(Args, Debug)]
@@ -63,6 +68,9 @@ pub(crate) struct CompensateOptions {
 struct Report {
     written: bool,
     axes: Vec<Row>,
+    /// Whether the control has tables.
+    #[serde(skip)]
+    has_tables: bool,
 }
 
 #[derive(Serialize)]
@@ -177,6 +185,10 @@ pub(crate) fn command(options: &CompensateOptions) -> Result<Outcome, UsageError
     let report = Report {
         written,
         axes: found.axes.iter().map(row).collect(),
+        has_tables: machine
+            .parameters
+            .adjustment_id(Adjustment::Nonlinear, 0)
+            .is_some(),
     };
     match options.format {
         Format::Json => console::print_json(&report)?,
@@ -308,10 +320,13 @@ fn text(report: &Report) -> String {
     }
     let mut entries = report.axes.iter().flat_map(|row| &row.entries);
     let proposed = entries.any(|entry| entry.from != entry.to) || report.axes.iter().any(|row| row.by_table);
-    text.push_str(match (report.written, proposed && worse().next().is_none()) {
-        (true, _) => "written into the list of machine parameters and the tables\n",
-        (false, true) => "nothing is changed; --write puts it into the list and the tables\n",
-        (false, false) => "nothing is changed\n",
-    });
-    text
+    let tables = match report.has_tables {
+        true => " and the tables",
+        false => "",
+    };
+    text + &match (report.written, proposed && worse().next().is_none()) {
+        (true, _) => format!("written into the list of machine parameters{tables}\n"),
+        (false, true) => format!("nothing is changed; --write puts it into the list{tables}\n"),
+        (false, false) => "nothing is changed\n".to_owned(),
+    }
 }

@@ -144,10 +144,18 @@ fn read_list(list: &mut ParameterList, path: &Path) -> Result<(), UsageError> {
 /// Puts the lines of a list over the values of another.
 pub(crate) fn read_lines(list: &mut ParameterList, path: &Path, bytes: &[u8]) -> Result<(), UsageError> {
     let errors = list.read(bytes);
-    if errors.is_empty() {
-        return Ok(());
+    if !errors.is_empty() {
+        return Err(UsageError::new(list_errors(path, &errors)));
     }
-    Err(UsageError::new(list_errors(path, &errors)))
+    let lacking = ListText::from_bytes(list.model(), bytes).lacking(list, path);
+    let lacking: Vec<String> = lacking
+        .iter()
+        .map(|fault| format!("line {}: {}", fault.span.line, fault.message))
+        .collect();
+    match lacking.is_empty() {
+        true => Ok(()),
+        false => Err(UsageError::new(list_errors(path, &lacking))),
+    }
 }
 
 fn list_errors(path: &Path, errors: &[impl std::fmt::Display]) -> String {

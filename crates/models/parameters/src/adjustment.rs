@@ -50,6 +50,16 @@ pub enum Adjustment {
     Linear,
     /// MP730: 1 lets tables act in place of the linear error.
     Nonlinear,
+    /// MP1060, m/s²: acceleration on the path.
+    Acceleration,
+    /// MP1070, m/s²: radial acceleration, half of the other on the TNC 151/155.
+    RadialAcceleration,
+    /// MP1530: damping of the transient response when an axis accelerates.
+    Damping,
+    /// MP1410, mm: distance at which POSITIONING ERROR comes with pre-control, recommended 0.5.
+    PrecontrolMonitor,
+    /// MP1420, mm: distance at which the gross error comes with pre-control, recommended 10.
+    PrecontrolEmergency,
 }
 
 /// U_limit of the speed controller, V, and what a counting step gives for 1 in MP1920, V [000:18387-18391].
@@ -58,7 +68,7 @@ const STEP_VOLTS: f64 = 9.7e-6;
 
 impl Adjustment {
     /// Every adjustment, in the order of the variants.
-    pub const ALL: [Adjustment; 22] = [
+    pub const ALL: [Adjustment; 27] = [
         Adjustment::ServoLag,
         Adjustment::Transient,
         Adjustment::KvPrecontrol,
@@ -81,6 +91,11 @@ impl Adjustment {
         Adjustment::Backlash,
         Adjustment::Linear,
         Adjustment::Nonlinear,
+        Adjustment::Acceleration,
+        Adjustment::RadialAcceleration,
+        Adjustment::Damping,
+        Adjustment::PrecontrolMonitor,
+        Adjustment::PrecontrolEmergency,
     ];
 
     /// Its numbers: that of the TNC 360 and later, and that of the TNC 151/155, if they have it.
@@ -109,6 +124,11 @@ impl Adjustment {
             Adjustment::Backlash => (710, Some(EachAxis(36))),
             Adjustment::Linear => (720, Some(EachAxis(40))),
             Adjustment::Nonlinear => (730, None),
+            Adjustment::Acceleration => (1060, Some(Common(54))),
+            Adjustment::RadialAcceleration => (1070, Some(Common(55))),
+            Adjustment::Damping => (1530, Some(Common(64))),
+            Adjustment::PrecontrolMonitor => (1410, Some(Common(56))),
+            Adjustment::PrecontrolEmergency => (1420, Some(Common(57))),
         }
     }
 
@@ -251,6 +271,11 @@ mod tests {
             (KinkPoint, 2, 40.0, "MP181"),
             (LagMonitor, 0, 8.0, "MP175"),
             (ServoLag, 1, 1.0, "MP60"),
+            (Adjustment::Acceleration, 2, 1.25, "MP54"),
+            (Adjustment::RadialAcceleration, 0, 0.625, "MP55"),
+            (Adjustment::Damping, 1, 0.5, "MP64"),
+            (Adjustment::PrecontrolMonitor, 0, 0.5, "MP56"),
+            (Adjustment::PrecontrolEmergency, 3, 10.0, "MP57"),
         ] {
             let (id, entry) = list.adjust(what, axis, value).unwrap();
             assert_eq!((id.to_string().as_str(), entry), (name, value));

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use bahn_text::{Diagnostic, Related, Severity, Span};
 
-use crate::equipment::Use;
 use crate::{Definition, Inconsistency, ListError, ListText, ParameterError, ParameterList, chapters};
 
 impl ListError {
@@ -66,14 +65,14 @@ impl ListText {
     /// that the control gives it by itself asks for nothing.
     pub fn lacking(&self, list: &ParameterList, file: &Path) -> Vec<Diagnostic> {
         let lacking = self.entries().iter().filter_map(|entry| {
-            let id = entry.id.to_string();
-            let standard =
-                Definition::find(self.model(), entry.id.number, entry.id.index.unwrap_or(0))?.standard();
-            let wanted = Use::parameter(&id, entry.value, entry.value == standard);
-            let why = list.equipment().lacks(list.model(), wanted)?;
+            let why = list.lacks(entry.id, entry.value)?;
             let span = self.span_of(entry);
-            let fault = Diagnostic::error(span, format!("{id} = {} is {why}", entry.value));
-            Some(fault.with_code(id).at(file, self.line(span.line as usize)))
+            let fault = Diagnostic::error(span, format!("{} = {} is {why}", entry.id, entry.value));
+            Some(
+                fault
+                    .with_code(entry.id.to_string())
+                    .at(file, self.line(span.line as usize)),
+            )
         });
         lacking.collect()
     }

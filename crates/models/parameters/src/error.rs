@@ -49,6 +49,16 @@ pub enum ParameterError {
     /// More parameters are given to the operator than there can be: the 17th of a TNC 151/155 [001:1309-1313].
     #[error("{0}: TOO MANY USER PARAMETERS")]
     TooManyUserParameters(ParameterId),
+    /// An option or a later software has the parameter, or its value.
+    #[error("{id} = {value} is {why}")]
+    Lacking {
+        /// The parameter that the entry names.
+        id: ParameterId,
+        /// The value of the entry, in the parameter's unit.
+        value: f64,
+        /// What the control lacks.
+        why: String,
+    },
     /// The list gives the parameter twice; the first value counts.
     #[error("{id} is already defined in line {first_line}")]
     DoublyDefined {
@@ -64,7 +74,9 @@ impl ParameterError {
     pub fn number(&self) -> u8 {
         match self {
             ParameterError::NoNumber => 0,
-            ParameterError::UnknownNumber(_) | ParameterError::IndexMissing(_) => 1,
+            ParameterError::UnknownNumber(_)
+            | ParameterError::IndexMissing(_)
+            | ParameterError::Lacking { .. } => 1,
             ParameterError::NoSeparator(..) => 2,
             ParameterError::NotANumber(..)
             | ParameterError::OutOfRange { .. }
@@ -101,6 +113,7 @@ impl ParameterError {
             | ParameterError::NoSeparator(id, _)
             | ParameterError::NotANumber(id, _)
             | ParameterError::OutOfRange { id, .. }
+            | ParameterError::Lacking { id, .. }
             | ParameterError::NotWhole(id, _)
             | ParameterError::NoChoice(id, _)
             | ParameterError::NotStorable(id, _)
@@ -117,6 +130,7 @@ impl ParameterError {
             ParameterError::NoSeparator(id, _)
             | ParameterError::NotANumber(id, _)
             | ParameterError::OutOfRange { id, .. }
+            | ParameterError::Lacking { id, .. }
             | ParameterError::NotWhole(id, _)
             | ParameterError::NoChoice(id, _)
             | ParameterError::NotStorable(id, _) => Some(id),

@@ -2,7 +2,13 @@
 
 use std::fmt;
 
+<<<<<<< HEAD
 use crate::equipment::Equipment;
+=======
+use crate::definition::parse_id;
+use crate::equipment::{Equipment, Use};
+use crate::space::{Content, ParameterSpace};
+>>>>>>> owner
 use crate::text::{USERS_MAX, read_assignment};
 use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
 
@@ -101,16 +107,33 @@ impl ParameterList {
     /// Sets one value from text: `7420=4`, `1010.0=5000`, `MP7440=%00110`. Returns which.
     ///
     /// # Errors
-    /// When it is no assignment, the model has no such parameter, or the value is outside its range.
+    /// When it is no assignment, the model has no such parameter, the value is outside its range, or the control lacks the
+    /// option or the software that has it.
     pub fn assign(&mut self, assignment: &str) -> Result<ParameterId, ParameterError> {
         let found = read_assignment(self.model, assignment, 0).map_err(|(error, _)| error)?;
         let is_user = found.user_at.is_some();
         if is_user && self.users.len() >= USERS_MAX && !self.users.contains(&found.id) {
             return Err(ParameterError::TooManyUserParameters(found.id));
         }
-        self.set_id(found.id, found.value)?;
+        let place = (found.id.number, found.id.index.unwrap_or(0));
+        let before = self.get(place.0, place.1);
+        let value = self.set_id(found.id, found.value)?;
+        if let Some((why, before)) = self.lacks(found.id, value).zip(before) {
+            self.put(place, before);
+            let id = found.id;
+            return Err(ParameterError::Lacking { id, value, why });
+        }
         self.give(found.id, is_user || self.users.contains(&found.id));
         Ok(found.id)
+    }
+
+    /// What the control lacks for a value: an option, or a later software. The value that the control gives a parameter by
+    /// itself asks for nothing.
+    pub(crate) fn lacks(&self, id: ParameterId, value: f64) -> Option<String> {
+        let standard = Definition::find(self.model, id.number, id.index.unwrap_or(0))?.standard();
+        let name = id.to_string();
+        let wanted = Use::parameter(&name, value, value == standard);
+        self.equipment.lacks(self.model, wanted)
     }
 
     /// Reads the text of a list over the values of this one. Parsing never fails: what can be read is

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use bahn_host::files;
 use bahn_link::{HardCopy, PrintOut, Protocol};
+use bahn_parameters::Numbering;
 use bahn_parameters::equipment::Behaviour;
 use bahn_picture::Image;
 use clap::{Args, ValueHint};
@@ -20,10 +21,11 @@ Examples:
   bahn link print part.png --machine mill155 --output part.prn
   bahn link print part.png --machine mill155 --port serial:/dev/ttyUSB0,mode=ext1,baud=9600
 
-Machine parameters 226 to 233 of a TNC 155 say what sets the printer up and what stands before each line; without them
-nothing is printed. A picture becomes 512 dots wide, what shines on the screen is black. A TNC 151
-has no graphics. Exit codes: 0 printed, 1 the machine has no graphics or describes no printer, or the device is not
-ready, 2 wrong use.";
+Machine parameters 226 to 233 of a TNC 155 say what sets the printer up and what stands before
+each line; without them nothing is printed. A picture becomes 512 dots wide, what shines on the
+screen is black. A TNC 151 has no graphics, and later controls make no hard copy. Exit codes: 0
+printed, 1 the control makes no hard copy or the machine describes no printer, or the device is
+not ready, 2 wrong use.";
 
 /// Options of `bahn link print`.
 #[derive(Args, Debug)]
@@ -48,16 +50,23 @@ pub(super) fn command(options: &PrintOptions) -> Result<Outcome, UsageError> {
         return Ok(Outcome::ProgramError);
     };
     let model = machine.list.model();
-    if !model.has_graphics() {
+    // MP226 to MP233, and a screen with graphics: the TNC 155 and its versions [001:2157].
+    if model.limits().numbering != Numbering::Old || !model.has_graphics() {
+        let why = match model.has_graphics() {
+            true => "its machine parameters describe no printer",
+            false => "it has no graphics",
+        };
         diagnostics::print_line(&format!(
-            "error: the {} has no graphics, so no hard copy; those of the TNC 155 have",
+            "error: the {} makes no hard copy: {why}; a TNC 155 does",
             model.name()
         ));
         return Ok(Outcome::ProgramError);
     }
     let printer = HardCopy::of(&machine.list);
     if !printer.is_set_up() {
-        diagnostics::print_line("error: MP230 to MP233 of the machine describe no printer");
+        diagnostics::print_line(
+            "error: MP230 to MP233 of the machine describe no printer, as 1290, 6990, 2, 0 for a TI 850",
+        );
         return Ok(Outcome::ProgramError);
     }
     let bytes = files::read_table(&options.picture)?;

@@ -85,15 +85,18 @@ struct Item {
 
 fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     let text = source::read(path, options.model)?;
-    let faults = if options.partial {
-        text.faults().to_vec()
-    } else {
-        text.all_faults()
+    let of_machine = source::of_machine(path, &text);
+    let faults = match options.partial || of_machine.is_some() {
+        true => text.faults().to_vec(),
+        false => text.all_faults(),
     };
-    let inconsistent = match options.partial || !faults.is_empty() {
-        true => Vec::new(),
-        false => text.inconsistencies(),
+    let inconsistent = match &of_machine {
+        _ if !faults.is_empty() => Vec::new(),
+        Some(list) => list.inconsistencies(),
+        None if options.partial => Vec::new(),
+        None => text.inconsistencies(),
     };
+    let lacking = of_machine.map_or_else(Vec::new, |list| text.lacking(&list, path));
     let (impossible, doubtful): (Vec<Inconsistency>, Vec<_>) =
         inconsistent.into_iter().partition(|found| found.impossible);
     let marked = |found: &Inconsistency| found.diagnostic(&text, path);
@@ -118,6 +121,7 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
             .iter()
             .map(error_item)
             .chain(items(&impossible, &impossible_at))
+            .chain(lacking.iter().map(lacking_item))
             .collect(),
         not_listed: text.not_listed(),
         warnings: items(&doubtful, &warnings),
@@ -135,6 +139,7 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         }
         impossible_at
             .iter()
+            .chain(&lacking)
             .chain(&warnings)
             .for_each(diagnostics::print_fault);
         diagnostics::print_line(&format!(
@@ -185,6 +190,19 @@ fn inconsistent_item(found: &Inconsistency, fault: &Diagnostic) -> Item {
         number: None,
         text: fault.message.clone(),
         parameter: Some(found.id.to_string()),
+        line: fault.span.line,
+        column: fault.span.column.max(1),
+        length: fault.span.length,
+        detail: fault.detail.clone(),
+    }
+}
+
+/// What the control of the machine has not: an option, or a later software.
+fn lacking_item(fault: &Diagnostic) -> Item {
+    Item {
+        number: None,
+        text: fault.message.clone(),
+        parameter: Some(fault.code.clone()),
         line: fault.span.line,
         column: fault.span.column.max(1),
         length: fault.span.length,

@@ -37,25 +37,27 @@ pub(crate) enum MpCommand {
 const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn mp check mill.mp
-  bahn mp check machines/mill                all lists (*.mp) of a folder
+  bahn mp check machines/mill-tnc155         list of a machine; all lists (*.mp) of a folder
   bahn mp check --partial changes.mp         a list that holds changes only
   bahn mp check mill.mp --format json
 
-A line of a list: `MP1060.0 : 1.5   ;comment`. Values are decimal, %binary or $hexadecimal; lines that
-start with ; or * are comments. Faults have the numbers of the control's editor:
+A line of a list: `MP1060.0 : 1.5   ;comment`. Values are decimal, %binary or $hexadecimal; lines
+that start with ; or * are comments. Faults have the numbers of the control's editor:
   0 No MP number found      1 Invalid MP number    2 No separator \";\" found
   3 Entry value incorrect   4 MP doubly defined    5 MP not defined   6 MP can not be stored
-The control refuses a list that has faults. A list without any entry is that which the control makes by
-itself. The control model is that of --model, otherwise that of the machine in whose folder the list lies
-(machine.toml), otherwise the one named in the comments at the beginning of the list (`TNC 415 B`),
-otherwise tnc415b.
+The control refuses a list that has faults. A list without any entry is that which the control
+makes by itself. The list of a machine (machine.toml beside it) may leave parameters out: they
+have the values of the reference list; what takes an option or a software that the machine has not
+is an error. The control model is that of --model, otherwise that of the machine in whose folder
+the list lies (machine.toml), otherwise the one named in the comments at the beginning of the list
+(`TNC 415 B`), otherwise tnc415b.
 
 JSON: for each file file, model, entries, without_effect, acting_partly, errors and warnings (number,
 text, parameter, line, column, length, detail). Exit codes: 0 no error, 1 errors, 2 wrong use.";
 
 const LIST_EXAMPLES: &str = "\
 Examples:
-  bahn mp list                       all parameters of a TNC 415 B with the values of its reference list
+  bahn mp list                       all parameters of a TNC 415 B, values of its reference list
   bahn mp list acceleration          those with a word in name or group
   bahn mp list 1060 33               those whose number is 1060 or 33..
   bahn mp list --user --model tnc360
@@ -76,7 +78,8 @@ Examples:
   bahn mp diff mill.mp               against the reference list of its control
   bahn mp diff old.mp new.mp --format json
 
-Parameters that a list does not define have the value of the list that the control makes by itself.
+Parameters that a list does not define have the value of the list that the control makes by itself;
+in the list of a machine (machine.toml beside it) that of the reference list.
 Exit codes: 0 no difference, 1 differences, 2 wrong use or a list with faults.";
 
 const NEW_EXAMPLES: &str = "\

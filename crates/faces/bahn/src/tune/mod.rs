@@ -6,6 +6,7 @@ mod spindle;
 
 use std::fmt::Write as _;
 
+use bahn_parameters::Adjustment;
 use bahn_trials::tuning::{AxisTest, Circle, Task, Tuned, tune};
 
 use serde::Serialize;
@@ -23,35 +24,50 @@ use changes::{ChangeRow, change_rows, change_text, write};
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   bahn tune machines/mill X
-      Circle tests and stops of X with its partner Y on the plant; proposes kv, kink point, pre-control, speed controller,
-      backlash, reversal peaks, stiction and integral factor, and shows what they bring. Nothing is changed.
+      Circle tests and stops of X with its partner Y on the plant; proposes kv, kink point, pre-control,
+      speed controller, backlash, reversal peaks, stiction and integral factor, and shows what they
+      bring. Nothing is changed.
   bahn tune mill X,Y --picture tuned.png --write
-      The same with a picture of the circle and of a stop, before and after, and what it proposes in the list.
+      The same with a picture of the circle and of a stop, before and after, and what it proposes in
+      the list.
   bahn tune mill Z --machining-feed 4000
       Circles in the plane Z/X; a kink point lies above 4000 mm/min. Y,Z is the plane Y/Z.
+  bahn tune machines/mill-tnc155 X
+      X and Y of a TNC 155, with the entries that all its axes have in common.
   bahn tune machines/gantry B --radius 30 --feed 3000
-      A rotary axis, or one without a partner, alone: 30 degrees to both sides at 3000 degrees/min, and stops.
+      A rotary axis, or one without a partner, alone: 30 degrees to both sides at 3000 degrees/min,
+      and stops.
   bahn tune mill X --radius 50 --feed 5000 --format json
   bahn tune machines/mill S
-      The spindle: threads of cycles 17 and 18 in the middle of Z, in each gear range at its rated speed. Proposes the ramp MP3410.3,
-      the steepest with which threads end within 0.01 mm of their depth, and MP3440, kv with which it is oriented soonest.
+      The spindle: threads of cycles 17 and 18 in the middle of Z, in each gear range at its rated
+      speed. Proposes the ramp MP3410.3, the steepest with which threads end within 0.01 mm of their
+      depth, and MP3440, kv with which it is oriented soonest. Not on a TNC 151/155, which has no
+      cycle 17.
 
-The machine is switched on for every trial, passes its reference marks and describes a circle in each direction in the
-middle of its travel, or goes to and fro there; then each axis stops from rapid traverse and from the feed. What counts is
-where the tables of the plant stand, which no encoder sees. The parameters are tried in the order of the manual: speed
-controller (MP1940, MP1920, MP1910, MP1945); with servo lag kv (MP1810, with MP1710, MP1720) and, where only stops from
-rapid traverse overshoot, the kink point (MP1820, MP1830); with pre-control kv (MP1510) and MP1520; MP1390, the better of
-both; MP710, reversal peaks (MP711, MP712; MP1960), stiction (MP1511 to MP1513); MP1080. kv is the same for both axes, and a
-slave (MP850) gets what its master gets. A proposal is taken when the contour error falls by 2 % and stops overshoot no more
-than 5 µm, or than before. An axis alone leaves MP1390 and MP1520, which are common to all, and its MP1810 does not go above
-that of the others. A TNC 151/155 has MP177 to MP180 (kv), MP176 and MP181 (kink point), MP175 and MP174 (monitoring), MP60,
-MP32 to MP35 and MP53 (pre-control), MP36 to MP39, MP28 to MP31.
+The machine is switched on for every trial, passes its reference marks and describes a circle in each
+direction in the middle of its travel, or goes to and fro there; then each axis stops from rapid
+traverse and from the feed. What counts is where the tables of the plant stand, which no encoder sees.
+The parameters are tried in the order of the manual: speed controller (MP1940, MP1920, MP1910,
+MP1945); with servo lag kv (MP1810, with MP1710, MP1720) and, where only stops from rapid traverse
+overshoot, the kink point (MP1820, MP1830); with pre-control kv (MP1510) and MP1520; MP1390, the
+better of both; MP710, reversal peaks (MP711, MP712; MP1960), stiction (MP1511 to MP1513); MP1080. kv
+is the same for both axes, and a slave (MP850) gets what its master gets. A proposal is taken when the
+contour error falls by 2 % and stops overshoot no more than 5 µm, or than before. An axis alone leaves
+MP1390 and MP1520, which are common to all, and its MP1810 does not go above that of the others.
 
-JSON: axes, radius_mm, feed_mm_min, trials, written; before and after (contour_mm, of an axis alone from its nominal value;
-roundness_mm, overshoot_mm, standstill_mm of each axis); changes (parameter, name, from, to); kv_lag, kv with servo lag of each axis.
-Of the spindle: trials, written, changes; before and after (beyond_mm the depth, off_mm from where the spindle's angle says,
-threads_s, orientation_s before two threads of each gear range).
-Exit codes: 0 fine, also without a proposal; 1 the machine is wrong or does not get through the trial; 2 wrong use.";
+On a TNC 151/155 other axes change, too: all that programs move get the same kv (MP177 to MP180), and
+MP54, MP55, half of it, MP176 and MP181 (kink point), MP175 and MP174 (10 and 20 % above the greatest
+lag at rapid traverse) are one for all. The other linear axes stop in each trial, too, and contour
+error and roundness count together. MP60 stays. Where it is 0, MP32 to MP35 (the same kv again), MP53,
+MP64, MP56 and MP57 follow. Then MP36 to MP39 and MP28 to MP31 of the axes named.
+
+JSON: axes, radius_mm, feed_mm_min, trials, written; before and after (contour_mm, of an axis alone
+from its nominal value; roundness_mm, overshoot_mm, standstill_mm of each axis); changes (parameter,
+name, from, to); kv_lag, kv with servo lag of each axis. Of the spindle: trials, written, changes;
+before and after (beyond_mm the depth, off_mm from where the spindle's angle says, threads_s,
+orientation_s before two threads of each gear range).
+Exit codes: 0 fine, also without a proposal; 1 the machine is wrong or does not get through the trial;
+2 wrong use.";
 
 #[derive(Serialize)]
 struct Report {
@@ -64,6 +80,9 @@ struct Report {
     after: Figures,
     changes: Vec<ChangeRow>,
     kv_lag: Vec<Kv>,
+    /// Whether all axes of the path get the same.
+    #[serde(skip)]
+    for_all: bool,
 }
 
 #[derive(Serialize)]
@@ -162,6 +181,7 @@ fn report(tuned: &Tuned, circle: Circle, list: &bahn_parameters::ParameterList, 
             .iter()
             .map(|(axis, kv)| Kv { axis: *axis, kv: *kv })
             .collect(),
+        for_all: list.is_common(Adjustment::LagMonitor) && tuned.axes.len() > 1,
     }
 }
 
@@ -212,6 +232,14 @@ fn text(report: &Report) -> String {
         let _ = writeln!(text, "{name:<34}{:>10.2}{:>10.2}", um(before), um(after));
     }
     text.push_str(&change_text(&report.changes, report.written));
+    if report.for_all && !report.changes.is_empty() {
+        let axes: Vec<String> = report.kv_lag.iter().map(|kv| kv.axis.to_string()).collect();
+        let _ = writeln!(
+            text,
+            "{} have one kv, acceleration and monitoring: these are for all of them",
+            axes.join(", ")
+        );
+    }
     let first = report.kv_lag.first().map_or(0.0, |first| first.kv);
     if report.kv_lag.iter().any(|other| other.kv != first) {
         let each: Vec<String> = report

@@ -344,3 +344,51 @@ fn a_list_in_the_folder_of_a_machine_is_for_its_control() {
     let alone = folder.bahn("mp check alone.mp --format json");
     assert_eq!(alone.json()[0]["model"], "tnc415b");
 }
+
+/// The list of a machine leaves to the reference list what it does not name. What takes an option or a later software is an
+/// error there, and wherever else a parameter is set.
+#[test]
+fn the_list_of_a_machine_is_checked_as_the_machine_has_it() {
+    let folder = Folder::new();
+    assert_eq!(folder.bahn("machine new m --model tnc155").code(), 0);
+    let whole = folder.bahn("mp check m");
+    assert_eq!(whole.code(), 0, "{}", whole.err());
+    let (machine, list) = (folder.read("m/machine.toml"), folder.read("m/parameters.mp"));
+    folder.write(
+        "m/machine.toml",
+        machine.replacen("plc = ", "software = 7\noptions = []\nplc = ", 1),
+    );
+    let steep = "MP54 = 2 is there from software level 08 on; this control has level 07";
+    folder.write("steep.mp", "MP54 : 2\n");
+    folder.write("steep.txt", "1: MP54=2\n");
+    for (command, code, expected) in [
+        ("mp check m", 0, "0 errors"),
+        ("test m/programs/BLOCK.H --machine m --mp 54=1.5", 0, ""),
+        ("test m/programs/BLOCK.H --machine m --mp 54=2", 2, steep),
+        (
+            "test m/programs/BLOCK.H --machine m --parameters steep.mp",
+            2,
+            steep,
+        ),
+        ("run BLOCK.H --machine m --fresh --mp 54=2", 2, steep),
+        ("run BLOCK.H --machine m --fresh --script steep.txt", 1, steep),
+        ("tune m X --mp 54=2", 2, steep),
+        (
+            "run BLOCK.H --machine m --fresh --mp 237=1",
+            2,
+            "only with the option spindle-orientation",
+        ),
+    ] {
+        let run = folder.bahn(command);
+        assert_eq!(run.code(), code, "{command}: {}", run.err());
+        assert!(run.err().contains(expected), "{command}: {}", run.err());
+    }
+    folder.write(
+        "m/parameters.mp",
+        list.replacen("MP54     : 1 ", "MP54     : 2 ", 1),
+    );
+    let run = folder.bahn("mp check m");
+    assert!(run.code() == 1 && run.err().contains(steep), "{}", run.err());
+    let run = folder.bahn("mp check m --format json").json();
+    assert_eq!(run[0]["errors"][0]["parameter"], "MP54");
+}

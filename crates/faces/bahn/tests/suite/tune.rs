@@ -27,7 +27,9 @@ fn reference(model: ControlModel) -> String {
         "1720.1=300",
         "1720.2=300",
     ];
-    entries.retain(|entry| !entry.starts_with("17"));
+    // Acceleration, damping and pre-control monitoring are those of the machine.
+    let others = ["17", "1060", "1070", "1410", "1420", "1530"];
+    entries.retain(|entry| others.iter().all(|other| !entry.starts_with(other)));
     entries.extend(monitors.map(str::to_owned));
     entries.join(",")
 }
@@ -113,16 +115,8 @@ fn the_contour_error_is_halved_on_three_plants() {
 
 /// Every axis of a machine can be tuned: Z with a partner, a swivel head and a table alone, X of a gantry with its slave, the
 /// axes of the first channel of a twin. Nothing is proposed for others but what is common to all.
-#[test]
-fn every_axis_of_a_machine_is_tuned() {
-    for (machine, argument, axes, indices) in [
-        ("mill", "Z", "ZX", &[0, 2][..]),
-        ("mill", "C", "C", &[3]),
-        ("gantry", "X", "XY", &[0, 1, 4]),
-        ("gantry", "B", "B", &[3]),
-        ("dig425", "Y,Z", "YZ", &[1, 2]),
-        ("twin", "X", "XY", &[0, 1]),
-    ] {
+fn axes_are_tuned(cases: &[(&str, &str, &str, &[u8])]) {
+    for (machine, argument, axes, indices) in cases {
         let folder = Folder::new();
         copy(&machines().join(machine), &folder.path("m"));
         let kv: Vec<String> = indices.iter().map(|index| format!("1510.{index}=1")).collect();
@@ -132,7 +126,7 @@ fn every_axis_of_a_machine_is_tuned() {
         ));
         assert_eq!(run.code(), 0, "{machine} {argument}: {}", run.err());
         let report = run.json();
-        assert_eq!(report["axes"], axes, "{machine}");
+        assert_eq!(report["axes"], *axes, "{machine}");
         let (before, after) = (
             number(&report, "/before/contour_mm"),
             number(&report, "/after/contour_mm"),
@@ -160,6 +154,21 @@ fn every_axis_of_a_machine_is_tuned() {
         );
         assert!(folder.path("p.png").exists());
     }
+}
+
+#[test]
+fn axes_of_a_mill_are_tuned() {
+    axes_are_tuned(&[("mill", "Z", "ZX", &[0, 2]), ("mill", "C", "C", &[3])]);
+}
+
+#[test]
+fn axes_of_a_gantry_are_tuned() {
+    axes_are_tuned(&[("gantry", "X", "XY", &[0, 1, 4]), ("gantry", "B", "B", &[3])]);
+}
+
+#[test]
+fn digital_axes_and_those_of_a_channel_are_tuned() {
+    axes_are_tuned(&[("dig425", "Y,Z", "YZ", &[1, 2]), ("twin", "X", "XY", &[0, 1])]);
 }
 
 /// How far X goes beyond a stop from rapid traverse, mm, or the message with which that ends.
@@ -272,6 +281,7 @@ fn what_is_written_is_what_was_proposed() {
 #[test]
 fn wrong_use_says_what_is_right() {
     let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("t"));
     copy(&machines().join("mill-tnc360"), &folder.path("m"));
     for (arguments, code, expected) in [
         ("m X,Y,Z", 2, "an axis, or two that describe a circle"),
@@ -287,6 +297,7 @@ fn wrong_use_says_what_is_right() {
         ("m X --picture a.gif", 2, ".svg or .png"),
         ("nowhere X", 2, "nowhere"),
         ("m X --mp 9999=1", 2, "9999"),
+        ("t S", 1, "the TNC 155 has no cycle 17"),
         // A machine that does not get through its circle.
         ("m X --mp 1710.0=0.001", 1, "POSITIONING ERROR"),
     ] {
@@ -341,17 +352,23 @@ fn a_tnc_155_is_commissioned_under_its_own_numbers() {
         number(&report, "/before/contour_mm"),
         number(&report, "/after/contour_mm"),
     );
-    // Lag 2000 mm/min / kv 1 = 2 mm: the circle of 20 mm gets smaller by 2^2 / (2 * 20) = 0.1 mm.
-    assert!(
-        (before - 0.1).abs() < 0.03 && after <= 0.5 * before,
-        "{before} {after}"
-    );
+    // Lag 2000 mm/min / kv 1 = 2 mm: the circle of 20 mm gets smaller by 2^2 / (2 * 20) = 0.1 mm; what is left with kv 2.5 is
+    // 0.016 mm and the peaks where stiction holds the axes.
+    assert!((before - 0.1).abs() < 0.03 && after < before, "{before} {after}");
+    let round = |moment: &str| number(&report, &format!("/{moment}/roundness_mm"));
+    assert!(round("after") <= 0.6 * round("before"), "{report}");
     let list = folder.read("m/parameters.mp");
     let kv = entry(&list, "MP177");
-    assert_eq!(entry(&list, "MP178"), kv, "axes that interpolate");
+    for name in ["MP178", "MP179"] {
+        assert_eq!(entry(&list, name), kv, "axes that interpolate");
+    }
     assert!(kv > 1.0 && kv <= 3.75, "{kv}");
-    // Lag at rapid traverse, 10 m/min, by the slower kv of Z, which is not tuned: 8 m/min / 1 = 8 mm; and by hand of X with
-    // the kink [001:1715-1725]. MP175 and MP174 lie 10 to 20 % above the greater one [001:2689].
+    // The drives follow more than 0.2 m/s², and MP55 is half of it [001:2701].
+    let acceleration = entry(&list, "MP54");
+    assert!(acceleration > 0.2 && acceleration <= 3.0, "{acceleration}");
+    assert_near(entry(&list, "MP55"), acceleration / 2.0);
+    // Lag at rapid traverse, 10 m/min of X and 8 m/min of Z, by hand with the kink [001:1715-1725]. MP175 and MP174 lie 10 to
+    // 20 % above the greatest one [001:2689].
     let (factor, point) = (entry(&list, "MP176"), entry(&list, "MP181"));
     let lag = |rapid: f64, kv: f64| {
         let kink = point / 100.0 * rapid;
@@ -360,7 +377,9 @@ fn a_tnc_155_is_commissioned_under_its_own_numbers() {
     let greatest = lag(10.0, kv).max(lag(8.0, entry(&list, "MP179")));
     for name in ["MP175", "MP174"] {
         let part = entry(&list, name) / greatest;
-        assert!((1.0999..=1.2001).contains(&part), "{name}: {part}");
+        // Entries have steps of 0.001 mm.
+        let step = 0.0005 / greatest;
+        assert!((1.1 - step..=1.2 + step).contains(&part), "{name}: {part}");
     }
     if factor < 1.0 {
         // Above 3000 mm/min of the slowest axis, 8000 mm/min.
@@ -399,4 +418,74 @@ fn a_tnc_155_is_commissioned_under_its_own_numbers() {
         text.out(),
         text.err()
     );
+}
+
+/// Axes that interpolate need one kv [001:2634] [000:4780]: what is found for X holds for Z, too, and which of the two axes of a
+/// circle is named does not matter. With it a part is milled no worse than before.
+#[test]
+fn all_axes_of_a_tnc_155_get_one_kv() {
+    let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("m"));
+    let off_mm = || {
+        let run = folder.bahn("run BLOCK.H --machine m --fresh --no-graphics --format json");
+        assert_eq!(run.code(), 0, "{}", run.err());
+        number(&run.json(), "/contour_deviation_mm")
+    };
+    let before_mm = off_mm();
+    let of = |axes: &str| folder.bahn(&format!("tune m {axes} --format json")).json()["changes"].clone();
+    let changes = of("Z");
+    assert_eq!(changes, of("X,Z"));
+    let to = |name: &str| {
+        let changes = changes.as_array().unwrap();
+        changes.iter().find(|change| change["parameter"] == name).unwrap()["to"].clone()
+    };
+    assert_eq!((to("MP178"), to("MP179")), (to("MP177"), to("MP177")));
+    let written = folder.bahn("tune m X --write");
+    assert!(
+        written.out().contains("X, Y, Z have one kv"),
+        "{}{}",
+        written.out(),
+        written.err()
+    );
+    let list = folder.read("m/parameters.mp");
+    let kv = ["MP177", "MP178", "MP179"].map(|name| entry(&list, name));
+    assert!(kv[0] > 1.5 && kv == [kv[0]; 3], "{kv:?}");
+    // Where stiction lets go of an axis after a positioning move differs by some 20 µm between lists that differ by a hair;
+    // another kv in one of the axes was 1.9 mm.
+    let after_mm = off_mm();
+    assert!(after_mm <= before_mm + 0.02, "{before_mm} {after_mm}");
+}
+
+/// With the square-root characteristic its own entries follow: MP32 to MP35 with one kv, 3.6864 kv / rapid traverse, and the
+/// monitoring that the manual recommends [001:1746-1762] [001:2742-2752].
+#[test]
+fn the_square_root_characteristic_has_entries_of_its_own() {
+    let folder = Folder::new();
+    copy(&machines().join("mill-tnc155"), &folder.path("m"));
+    let run = folder.bahn("tune m X --write --format json --mp 60=0");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let list = folder.read("m/parameters.mp");
+    let factors = ["MP32", "MP33", "MP34"].map(|name| entry(&list, name));
+    // Rapid traverse 10, 10 and 8 m/min.
+    let kv = [10.0, 10.0, 8.0].map(|rapid| rapid / 3.6864);
+    let kv: Vec<f64> = std::iter::zip(factors, kv)
+        .map(|(factor, per)| factor * per)
+        .collect();
+    assert!(kv[0] > 1.0, "{kv:?}");
+    for other in &kv[1..] {
+        assert!((other - kv[0]).abs() < 0.003, "{kv:?}");
+    }
+    assert_eq!(entry(&list, "MP60"), 0.0);
+    // What the list of the machine does not name it has from the reference list.
+    for (number, wanted) in [("56", "MP56      0.5 "), ("57", "MP57      10 ")] {
+        let whole = folder.bahn(&format!("mp list {number} --list m/parameters.mp"));
+        assert!(
+            whole.out().contains(wanted),
+            "{number}: {}{}",
+            whole.out(),
+            whole.err()
+        );
+    }
+    let overshoot = number(&run.json(), "/after/overshoot_mm");
+    assert!(overshoot <= 0.005, "{overshoot}");
 }

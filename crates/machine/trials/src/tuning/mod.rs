@@ -8,6 +8,7 @@
 //! tried where kv alone overshoots; nothing goes over from pre-control to servo lag; the slave of an axis gets its
 //! loop
 
+mod alike;
 mod proof;
 mod spindle;
 
@@ -15,6 +16,7 @@ use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::{Adjustment, Definition, ParameterId, ParameterList, PerPlcAxis};
 use bahn_servo::Characteristic;
 
+use alike::beside;
 use bahn_host::LoadedMachine;
 use proof::Subject;
 pub use proof::{AxisTest, Circle};
@@ -125,6 +127,7 @@ fn axes(list: &ParameterList, task: &Task) -> Result<Vec<AxisParameters>, String
         Ok(axis)
     };
     let axis = named(task.axis)?;
+    let is_pair_of_all = list.is_common(Adjustment::LagMonitor);
     let partner = match (task.partner, task.axis) {
         (Some(partner), _) if partner == task.axis => {
             return Err(format!("a circle needs two axes, not {partner} twice"));
@@ -134,7 +137,11 @@ fn axes(list: &ParameterList, task: &Task) -> Result<Vec<AxisParameters>, String
         (None, 'Y' | 'Z') => find('X'),
         (None, _) => None,
     };
-    let pair: Vec<AxisParameters> = std::iter::once(axis).chain(partner).collect();
+    let mut pair: Vec<AxisParameters> = std::iter::once(axis).chain(partner).collect();
+    // What is found for all axes does not depend on which one is named first.
+    if is_pair_of_all {
+        pair.sort_by_key(|axis| axis.index);
+    }
     let rotary = pair
         .iter()
         .find(|axis| axis.letter.is_some_and(|letter| letter.is_rotary()));
@@ -152,9 +159,11 @@ fn axes(list: &ParameterList, task: &Task) -> Result<Vec<AxisParameters>, String
 /// # Errors
 /// When the machine has no such axes, or its list does not get it through the trial.
 pub fn tune(machine: &LoadedMachine, list: &ParameterList, task: &Task) -> Result<Tuned, String> {
+    let axes = axes(list, task)?;
     let subject = Subject {
         machine,
-        axes: axes(list, task)?,
+        beside: beside(list, &axes),
+        axes,
         circle: task.circle,
     };
     let before = subject.prove(list)?;
@@ -166,7 +175,10 @@ pub fn tune(machine: &LoadedMachine, list: &ParameterList, task: &Task) -> Resul
         trials: 1,
     };
     assistant.speed_controllers();
-    assistant.position_loops();
+    match assistant.are_all_alike() {
+        true => assistant.common_loops(),
+        false => assistant.position_loops(),
+    }
     assistant.mechanics();
     assistant.integral();
     let masters = path_axes(&assistant.list).filter(|axis| axis.synchronization.master.is_none());
@@ -223,6 +235,31 @@ impl Assistant<'_> {
         self.subject.axes.len() == 1
     }
 
+    fn first(&self) -> u8 {
+        self.subject.axes.first().map_or(0, |axis| axis.index)
+    }
+
+    /// Whether all axes of the path get the same: they have acceleration and monitoring in common.
+    fn are_all_alike(&self) -> bool {
+        self.list.is_common(Adjustment::LagMonitor) && !self.is_alone()
+    }
+
+    /// The axes that get the kv of the trial.
+    fn kv_axes(&self) -> Vec<u8> {
+        match self.are_all_alike() {
+            true => path_axes(&self.list).map(|axis| axis.index).collect(),
+            false => self.indices(),
+        }
+    }
+
+    /// What a trial is judged by, mm.
+    fn judge(&self) -> fn(&AxisTest) -> f64 {
+        match self.are_all_alike() {
+            true => |test| test.contour_mm + test.roundness_mm,
+            false => |test| test.contour_mm,
+        }
+    }
+
     /// The list with adjustments; what belongs to the position loop of an axis its slaves get, too.
     fn adjusted(&self, adjustments: &Try) -> ParameterList {
         use Adjustment::{KinkFactor, KinkPoint, KvLag, KvPrecontrol};
@@ -248,9 +285,8 @@ impl Assistant<'_> {
 
     /// Tries adjustments; keeps them when the contour gets better and stops do not overshoot. Whether it did.
     fn attempt(&mut self, adjustments: &Try) -> bool {
-        self.attempt_by(adjustments, |test, best| {
-            test.contour_mm < best.contour_mm * BETTER
-        })
+        let error_mm = self.judge();
+        self.attempt_by(adjustments, |test, best| error_mm(test) < error_mm(best) * BETTER)
     }
 
     fn attempt_by(&mut self, adjustments: &Try, better: impl Fn(&AxisTest, &AxisTest) -> bool) -> bool {
@@ -318,7 +354,7 @@ impl Assistant<'_> {
     /// with servo lag, then with pre-control [000:9667-9788]. Two axes that run with servo lag go over to pre-control when
     /// that is better; one that is tuned alone leaves MP1390, which is common to all, and nothing goes back to servo lag.
     fn position_loops(&mut self) {
-        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
+        let first = self.first();
         let Some(method) = self.value(Adjustment::ServoLag, first) else {
             self.servo_lag();
             return;
@@ -346,7 +382,7 @@ impl Assistant<'_> {
 
     /// Goes over to servo lag (1) or pre-control (0): what is better counts from there. Whether the machine bears it.
     fn takes_method(&mut self, servo_lag: f64) -> bool {
-        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
+        let first = self.first();
         let mut entries = vec![(Adjustment::ServoLag, first, servo_lag)];
         // The same kv as before, with its monitoring.
         for axis in self.indices() {
@@ -359,7 +395,12 @@ impl Assistant<'_> {
         for axis in path_axes(&self.list).filter(|axis| servo_lag == 0.0 && axis.precontrol.kv <= 0.0) {
             entries.push((Adjustment::KvPrecontrol, axis.index, axis.lag.kv));
         }
-        let list = self.adjusted(&entries);
+        self.takes(&entries)
+    }
+
+    /// Adjusts what is not a matter of better or worse. Whether the machine bears it.
+    fn takes(&mut self, adjustments: &Try) -> bool {
+        let list = self.adjusted(adjustments);
         if changes(&self.list, &list).is_empty() {
             return true;
         }
@@ -400,7 +441,7 @@ impl Assistant<'_> {
         if self.is_alone() {
             return;
         }
-        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
+        let first = self.first();
         for transient in [1.0, 2.0] {
             self.attempt(&vec![(Adjustment::Transient, first, transient)]);
         }
@@ -422,7 +463,7 @@ impl Assistant<'_> {
     /// The greatest kv of the axes times a factor. With servo lag an axis alone goes no higher than those with which it
     /// interpolates: the worst one determines the entry [000:9696-9698].
     fn kv(&self, what: Adjustment, factor: f64) -> Try {
-        let axes = self.indices();
+        let axes = self.kv_axes();
         let greatest = |axes: &[u8]| {
             let values = axes.iter().filter_map(|axis| self.value(what, *axis));
             values.fold(0.0, f64::max)
@@ -491,7 +532,7 @@ impl Assistant<'_> {
                 self.attempt(&stiction);
             }
         }
-        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
+        let first = self.first();
         // Higher kv may bear what the mechanics spoiled before.
         let what = match self.list.axis_parameters(first).precontrol_in_automatic {
             true => Adjustment::KvPrecontrol,

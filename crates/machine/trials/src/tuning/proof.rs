@@ -20,6 +20,10 @@ const MARGIN_MM: f64 = 1.0;
 const AT_RAPID_S: f64 = 0.3;
 /// An axis alone goes a part of its way slower by this: play is the same then, what the loop lags is not.
 const SLOWER: f64 = 3.0;
+/// Axes whose tables are watched in a trial: those of a circle, and others that stop beside it.
+const WATCHED_MAX: usize = 4;
+/// So near to its end a stop is over, mm.
+const STOPPED_MM: f64 = 0.01;
 /// Time around a stop that is kept before the nominal value stands, µs.
 const BEFORE_STOP_US: u64 = 60_000;
 
@@ -42,6 +46,8 @@ pub struct AxisTest {
     pub roundness_mm: f64,
     /// How far an axis goes beyond a stop after rapid traverse or the feed.
     pub overshoot_mm: f64,
+    /// Time for the stops, each from its first movement until the axis stays within 0.01 of its end, s.
+    pub stops_s: f64,
     /// How far each axis stands from its nominal value when it rests.
     pub standstill_mm: Vec<f64>,
     /// Angle, degrees, and distance from the circle, in the order of time; of an axis alone time, s, and distance.
@@ -57,6 +63,8 @@ pub(super) struct Subject<'a> {
     pub machine: &'a LoadedMachine,
     /// One, or the two of a circle.
     pub axes: Vec<AxisParameters>,
+    /// Those that share entries with them: they stop, too.
+    pub beside: Vec<AxisParameters>,
     pub circle: Circle,
 }
 
@@ -76,9 +84,9 @@ struct Blocks {
 struct Sample {
     time_us: u64,
     block: u32,
-    table: [f64; 2],
-    nominal: [f64; 2],
-    actual: [f64; 2],
+    table: [f64; WATCHED_MAX],
+    nominal: [f64; WATCHED_MAX],
+    actual: [f64; WATCHED_MAX],
 }
 
 impl Blocks {
@@ -101,26 +109,29 @@ impl Blocks {
 }
 
 impl Subject<'_> {
+    /// The axes of the path, then those beside it.
+    fn watched(&self) -> impl Iterator<Item = &AxisParameters> {
+        self.axes.iter().chain(&self.beside).take(WATCHED_MAX)
+    }
+
     fn letters(&self) -> Vec<char> {
-        let letters = self.axes.iter();
-        letters
+        self.watched()
             .map(|axis| axis.letter.map_or('X', |letter| letter.letter()))
             .collect()
     }
 
     /// The middle of the travel of an axis: in the coordinates of programs and of the machine, and the room to both sides.
-    fn middle(&self, axis: &AxisParameters) -> Result<[f64; 3], String> {
+    fn middle(&self, axis: &AxisParameters, least_room: f64) -> Result<[f64; 3], String> {
         let letter = axis.letter.ok_or_else(|| "an axis without letter".to_owned())?;
         let [least, greatest] = axis.travel.ranges_mm[0];
         let room = (greatest - least) / 2.0 - MARGIN_MM;
-        if room < self.circle.radius_mm {
+        if room < least_room {
             let what = match self.axes.len() {
                 1 => "a way to both sides",
                 _ => "a circle",
             };
             return Err(format!(
-                "{what} of {} mm has no place in the travel of {}",
-                self.circle.radius_mm,
+                "{what} of {least_room} mm has no place in the travel of {}",
                 letter.letter()
             ));
         }
@@ -135,8 +146,9 @@ impl Subject<'_> {
         let (letters, r, feed) = (self.letters(), self.circle.radius_mm, self.circle.feed_mm_min);
         let mut middles = Vec::new();
         for axis in &self.axes {
-            middles.push(self.middle(axis)?);
+            middles.push(self.middle(axis, r)?);
         }
+        let path = middles.len();
         let mut blocks = Blocks {
             text: String::new(),
             count: 0,
@@ -144,7 +156,7 @@ impl Subject<'_> {
             stops: Vec::new(),
             centre: middles.iter().map(|middle| middle[1]).collect(),
         };
-        match (letters.as_slice(), middles.as_slice()) {
+        match (letters.get(..path).unwrap_or_default(), middles.as_slice()) {
             (&[a, b], &[[x, ..], [y, ..]]) => {
                 blocks.push(&format!("L {a}{:+.4} {b}{y:+.4} R0 FMAX", x + r));
                 blocks.dwell();
@@ -166,8 +178,10 @@ impl Subject<'_> {
             }
             _ => return Err("one axis is tuned, or two that describe a circle".to_owned()),
         }
-        for (place, ((axis, letter), [x, _, room])) in
-            self.axes.iter().zip(&letters).zip(&middles).enumerate()
+        for axis in &self.beside {
+            middles.push(self.middle(axis, 0.0)?);
+        }
+        for (place, ((axis, letter), [x, _, room])) in self.watched().zip(&letters).zip(&middles).enumerate()
         {
             // As long as it takes to reach rapid traverse, mm/s, with the acceleration, mm/s².
             let (v, a) = (
@@ -195,7 +209,10 @@ impl Subject<'_> {
                 .collect()
         };
         let (nominal, actual) = (signals("nominal"), signals("actual"));
-        let pair = |of: &dyn Fn(usize) -> f64| [of(0), if letters.len() > 1 { of(1) } else { 0.0 }];
+        let watched = letters.len();
+        let places = |of: &dyn Fn(usize) -> f64| {
+            std::array::from_fn(|place| if place < watched { of(place) } else { 0.0 })
+        };
         let mut samples: Vec<Sample> = Vec::new();
         let mut block = 0;
         trial::run(
@@ -217,9 +234,9 @@ impl Subject<'_> {
                 samples.push(Sample {
                     time_us: control.time_us(),
                     block,
-                    table: pair(&table),
-                    nominal: pair(&|place| observe(&nominal, place)),
-                    actual: pair(&|place| observe(&actual, place)),
+                    table: places(&table),
+                    nominal: places(&|place| observe(&nominal, place)),
+                    actual: places(&|place| observe(&actual, place)),
                 });
             },
         )?;
@@ -257,6 +274,7 @@ impl Subject<'_> {
             contour_mm: greatest.abs().max(least.abs()),
             roundness_mm: greatest - least,
             overshoot_mm: stops.iter().map(|stop| stop.beyond).fold(0.0, f64::max),
+            stops_s: stops.iter().map(|stop| stop.seconds).sum(),
             standstill_mm: places.clone().map(rest).collect(),
             backlash_mm: places.map(|place| play(&path, place)).collect(),
             stop: stops
@@ -319,6 +337,7 @@ fn line(path: &[&Sample]) -> Vec<[f64; 2]> {
 struct Stop {
     place: usize,
     beyond: f64,
+    seconds: f64,
     rest: f64,
     points: Vec<[f64; 2]>,
 }
@@ -340,6 +359,8 @@ fn stop(samples: &[Sample], block: u32, place: usize) -> Stop {
     let beyond = all()
         .map(|sample| (sample.table[place] - end) * direction)
         .fold(0.0, f64::max);
+    let mut outside = all().filter(|sample| (sample.table[place] - end).abs() > STOPPED_MM);
+    let stopped_us = outside.next_back().map_or(first.time_us, |sample| sample.time_us);
     let from = arrived_us.saturating_sub(BEFORE_STOP_US);
     let points = all().filter(|sample| sample.time_us >= from).map(|sample| {
         [
@@ -350,6 +371,7 @@ fn stop(samples: &[Sample], block: u32, place: usize) -> Stop {
     Stop {
         place,
         beyond,
+        seconds: (stopped_us - first.time_us) as f64 * 1e-6,
         rest: (last.nominal[place] - last.actual[place]).abs(),
         points: points.collect(),
     }

@@ -118,6 +118,34 @@ fn single_assignments() {
     ));
 }
 
+/// MP54 goes above 1.5 m/s² from software level 08 on [001:1678]; MP237 takes the option. What is out of range on every control
+/// is said first, and a refused value changes nothing.
+#[test]
+fn what_the_control_lacks_is_not_assigned() {
+    use bahn_parameters::equipment::{Equipment, Release};
+    let model = ControlModel::Tnc155;
+    let equipment = Equipment {
+        release: Some(Release::read(model, "7").unwrap()),
+        ..Equipment::with_options(&[])
+    };
+    let mut list = ParameterList::reference(model).with_equipment(equipment);
+    let before = list.clone();
+    assert_eq!(
+        list.assign("54=2").unwrap_err().to_string(),
+        "MP54 = 2 is there from software level 08 on; this control has level 07"
+    );
+    assert_eq!(
+        list.assign("237=1").unwrap_err().to_string(),
+        "MP237 = 1 is only with the option spindle-orientation"
+    );
+    assert!(matches!(
+        list.assign("54=4"),
+        Err(ParameterError::OutOfRange { .. })
+    ));
+    assert_eq!(list, before);
+    assert_eq!(list.assign("54=1.5").err(), None);
+}
+
 #[test]
 fn values_are_rounded_to_what_is_stored() {
     let mut list = ParameterList::reference(ControlModel::Tnc415b);

@@ -1,9 +1,8 @@
 //! `bahn check` and `bahn fmt` of programs of a System 900, which nobody runs yet.
 
-mod support;
 
 use serde_json::json;
-use support::Folder;
+use crate::support::Folder;
 
 #[test]
 fn every_fault_of_a_program_and_of_its_cycle_has_its_place() {

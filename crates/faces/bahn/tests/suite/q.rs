@@ -1,12 +1,11 @@
 //! `bahn q`: parameters of a System 900.
 #![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
-mod support;
 
 use std::path::Path;
 
 use serde_json::{Value, json};
-use support::{Folder, Run};
+use crate::support::{Folder, Run};
 
 /// The sample of the documents, and what is made of it.
 fn desk() -> Folder {
