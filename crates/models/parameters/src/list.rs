@@ -2,13 +2,8 @@
 
 use std::fmt;
 
-<<<<<<< HEAD
-use crate::equipment::Equipment;
-=======
 use crate::definition::parse_id;
 use crate::equipment::{Equipment, Use};
-use crate::space::{Content, ParameterSpace};
->>>>>>> owner
 use crate::text::{USERS_MAX, read_assignment};
 use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
 
