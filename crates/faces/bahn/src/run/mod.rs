@@ -48,12 +48,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     files::keep_inputs(&inputs, &options.written())?;
     let mut programs = all_programs(options, &machine)?;
-    let beside = match module::load(options, &machine)? {
-        Ok(beside) => beside,
-        Err(faults) => return refused(&faults),
-    };
-    let script = match load_script(options, &machine, beside.as_ref())? {
-        Ok(script) => script,
+    let (beside, script) = match load_beside(options, &machine)? {
+        Ok(found) => found,
         Err(faults) => return refused(&faults),
     };
     let mut power_on = power_on(options, &machine)?;
@@ -102,14 +98,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         time_us: (options.run.max_time * 1e6) as u64,
         wait_us: (options.run.max_wait * 1e6) as u64,
     };
-    if options.run.realtime {
-        host.set_clock(Clock::Wall(1.0));
-        let q = |signal: &Observed| matches!(signal.what, Observable::Signal(Signal::Q(_)));
-        let looks = options.recording.signals.iter().any(q) || !script.lines.is_empty();
-        if looks || executed.needs_programs() {
-            host.watch_programs();
-        }
-    }
+    keep_pace(options, &script, executed.needs_programs(), &mut host);
     let mut session = Session::new(host, Play::new(script), executed, recording, patience);
     session.oscilloscope = oscilloscope;
     session.table = table;
@@ -131,6 +120,31 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let outcome = finish(session, ended, &machine, &programs, options, &interrupt)?;
     switched_off.and(module_off)?;
     Ok(outcome)
+}
+
+/// In real time the programs are watched where somebody looks into them.
+fn keep_pace(options: &RunMachineOptions, script: &Script, needs_programs: bool, host: &mut Host) {
+    if options.run.realtime {
+        host.set_clock(Clock::Wall(1.0));
+        let q = |signal: &Observed| matches!(signal.what, Observable::Signal(Signal::Q(_)));
+        let looks = options.recording.signals.iter().any(q) || !script.lines.is_empty();
+        if looks || needs_programs {
+            host.watch_programs();
+        }
+    }
+}
+
+/// The module that goes along, and the script, which may speak of it.
+fn load_beside(
+    options: &RunMachineOptions,
+    machine: &LoadedMachine,
+) -> Result<Result<(Option<LoadedMachine>, Script), Vec<bahn_text::Diagnostic>>, UsageError> {
+    let beside = match module::load(options, machine)? {
+        Ok(beside) => beside,
+        Err(faults) => return Ok(Err(faults)),
+    };
+    let script = load_script(options, machine, beside.as_ref())?;
+    Ok(script.map(|script| (beside, script)))
 }
 
 /// What lies on the table: the solid of the command or of machine.toml, at the datum of machine.toml.

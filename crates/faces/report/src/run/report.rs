@@ -235,9 +235,7 @@ impl RunReport {
         for channel in &self.channels {
             channel.text(&mut row);
         }
-        if let Some(module) = &self.module {
-            module.text(&mut row);
-        }
+        self.module.iter().for_each(|module| module.text(&mut row));
         if let Some(test) = &self.test_run {
             row("Test run", &test.text());
         }
