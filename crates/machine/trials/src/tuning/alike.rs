@@ -5,10 +5,9 @@
 //! that shrinks hides its peaks. MP60 stays as it is; MP54 goes up while stops get 1 % shorter, and with the square-root
 //! characteristic down until they do not overshoot; MP56 and MP57 are 0.5 and 10 mm, as the manual recommends
 
-use bahn_parameters::axis::AxisParameters;
-use bahn_parameters::{Adjustment, ParameterList};
+use bahn_parameters::Adjustment;
 
-use super::{Assistant, BETTER, KV_FACTOR, OVERSHOOT_MM, Try, path_axes};
+use super::{Assistant, BETTER, KV_FACTOR, OVERSHOOT_MM, Try};
 
 /// So much shorter must stops get for a steeper acceleration.
 const SOONER: f64 = 0.99;
@@ -19,18 +18,6 @@ const DAMPINGS: [f64; 3] = [0.3, 0.6, 0.9];
 const PRECONTROL_MONITORS_MM: [f64; 2] = [0.5, 10.0];
 /// Steps down that are tried at most, from whatever an entry is.
 const STEPS_DOWN: u8 = 20;
-
-/// The linear axes that get the same kv as those of a circle: where acceleration and monitoring are one for all.
-pub(super) fn beside(list: &ParameterList, axes: &[AxisParameters]) -> Vec<AxisParameters> {
-    if !list.is_common(Adjustment::LagMonitor) || axes.len() == 1 {
-        return Vec::new();
-    }
-    let is_linear = |axis: &AxisParameters| axis.letter.is_some_and(|letter| !letter.is_rotary());
-    let others = path_axes(list).filter(|axis| is_linear(axis));
-    others
-        .filter(|other| axes.iter().all(|axis| axis.index != other.index))
-        .collect()
-}
 
 impl Assistant<'_> {
     /// The loops of all axes that have their acceleration and monitoring in common, in the order of the manual: the linear

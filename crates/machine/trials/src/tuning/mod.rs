@@ -16,7 +16,6 @@ use bahn_parameters::axis::AxisParameters;
 use bahn_parameters::{Adjustment, Definition, ParameterId, ParameterList, PerPlcAxis};
 use bahn_servo::Characteristic;
 
-use alike::beside;
 use bahn_host::LoadedMachine;
 use proof::Subject;
 pub use proof::{AxisTest, Circle};
@@ -190,6 +189,18 @@ pub fn tune(machine: &LoadedMachine, list: &ParameterList, task: &Task) -> Resul
         after: assistant.best,
         trials: assistant.trials,
     })
+}
+
+/// The linear axes that get the same kv as those of a circle: where acceleration and monitoring are one for all.
+fn beside(list: &ParameterList, axes: &[AxisParameters]) -> Vec<AxisParameters> {
+    if !list.is_common(Adjustment::LagMonitor) || axes.len() == 1 {
+        return Vec::new();
+    }
+    let is_linear = |axis: &AxisParameters| axis.letter.is_some_and(|letter| !letter.is_rotary());
+    let others = path_axes(list).filter(|axis| is_linear(axis));
+    others
+        .filter(|other| axes.iter().all(|axis| axis.index != other.index))
+        .collect()
 }
 
 /// The entries in which two lists differ.
