@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use crate::definition::parse_id;
 use crate::equipment::{Equipment, Use};
 use crate::text::{USERS_MAX, read_assignment};
 use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};

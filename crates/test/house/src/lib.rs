@@ -3,7 +3,10 @@
 //! ```
 //! assert!(bahn_house::rooms().iter().any(|room| bahn_house::name(room) == "motion"));
 //! ```
-#![allow(clippy::unwrap_used, reason = "tests alone ask, and what fails here fails the test")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "tests alone ask, and what fails here fails the test"
+)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -95,7 +98,11 @@ pub fn has_test(room: &str, file: &str, test: &str) -> bool {
 }
 
 fn sources_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for path in fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
+    for path in fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.unwrap().path())
+    {
         if path.is_dir() {
             sources_below(&path, found);
         } else if path.extension().is_some_and(|end| end == "rs") {

@@ -2,7 +2,6 @@
 //! file: paragraphs that end with an empty line of the comment. `(also ..)` at the end names further files.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,6 @@
 //! The documents lead where they say, and the index knows them all.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -97,7 +96,10 @@ fn the_map_names_the_tests_of_its_promises() {
         let [room, file, test] = parts[..] else {
             panic!("no test is named: {row}");
         };
-        assert!(house::has_test(room, file, test), "there is no test {named}: {row}");
+        assert!(
+            house::has_test(room, file, test),
+            "there is no test {named}: {row}"
+        );
         count += 1;
     }
     assert!(count >= PROMISES, "{count}");

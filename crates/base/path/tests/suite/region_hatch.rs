@@ -1,9 +1,8 @@
 //! Clearing passes: complete, inside, and linked inside.
 
-
+use crate::common::region;
 use bahn_path::region::{Contour, HatchPattern, Pass, Region, Segment};
 use bahn_path::{Point2, Sense};
-use crate::common::region;
 use proptest::prelude::*;
 
 const PATTERNS: [HatchPattern; 2] = [HatchPattern::Zigzag, HatchPattern::OneWay];

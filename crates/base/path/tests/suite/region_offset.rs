@@ -1,9 +1,8 @@
 //! Laws and examples of offsets.
 
-
+use crate::common::{jittered, region, shape, turned};
 use bahn_path::Sense;
 use bahn_path::region::{Contour, Location, Region, Segment};
-use crate::common::{jittered, region, shape, turned};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 

@@ -1,9 +1,8 @@
 //! Examples with values computed by hand beside them.
 
-
+use crate::common::{Path, limits, plan, time_s};
 use bahn_motion::Limits;
 use bahn_path::{Arc, Axis, Curve, FeedRate, OverrideLaw, PerAxis, Plane, Position, Sense};
-use crate::common::{Path, limits, plan, time_s};
 
 const X: Axis = Axis::X;
 const Y: Axis = Axis::Y;

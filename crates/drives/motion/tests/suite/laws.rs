@@ -1,11 +1,12 @@
 //! Laws that hold for every path.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::common::random::{
+    Block, Random, check_axes, polyline, random_path, regular_corners, window_cycles,
+};
+use crate::common::{plan, planner_of, reversed, time_s};
 use bahn_motion::{Identity, Limits, Planned, Sample, Sampler};
 use bahn_path::{Axis, Curve, FeedRate, PathElement, PerAxis, Position};
-use crate::common::random::{Block, Random, check_axes, polyline, random_path, regular_corners, window_cycles};
-use crate::common::{plan, planner_of, reversed, time_s};
 use proptest::prelude::*;
 
 /// Samples at every contour cycle; long runs are cut off.

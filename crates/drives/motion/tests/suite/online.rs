@@ -1,13 +1,12 @@
 //! The interpolator: the path in contour cycles with overrides, stops and gates.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
+use crate::common::{List, Path, limits, list, plan, time_s};
 use bahn_motion::{Drive, Gate, Interpolator, Limits, Place, Prepared, State, Stop};
 use bahn_path::{
     At, Axis, Barrier, Function, LiveData, PathElement, Position, Sense, Step, Synchronisation,
     TechnologyFunction,
 };
-use crate::common::{List, Path, limits, list, plan, time_s};
 
 const T: f64 = 0.003;
 

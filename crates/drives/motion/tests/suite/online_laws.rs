@@ -1,10 +1,11 @@
 //! Laws of the interpolator, for every path and whatever is done to it.
 
-
+use crate::common::random::{
+    Random, check_axes, decades, polyline, random_path, regular_corners, window_cycles,
+};
+use crate::common::{List, list, plan, planner_of, time_s};
 use bahn_motion::{Drive, Identity, Interpolator, Limits, Sample, Sampler, State};
 use bahn_path::{Axis, PathElement, Position, Step};
-use crate::common::random::{Random, check_axes, decades, polyline, random_path, regular_corners, window_cycles};
-use crate::common::{List, list, plan, planner_of, time_s};
 use proptest::prelude::*;
 
 /// Cycles after which a run is cut off.

@@ -1,12 +1,11 @@
 //! Paths that do not stand upright: the limits of the axes hold with cycle 19 and M114.
 #![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
 
-
 use std::sync::Arc;
 
+use crate::common::*;
 use bahn_motion::{Drive, Interpolator, Limits, Prepared};
 use bahn_path::{Axis, Cylinder, FeedRate, Link, PathElement, PerAxis, Placement, Position, Step, Swivels};
-use crate::common::*;
 use proptest::prelude::*;
 
 const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];

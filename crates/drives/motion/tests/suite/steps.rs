@@ -1,6 +1,6 @@
 //! Barriers, stops and the times beside the movement.
 
-
+use crate::common::{Path, function, limits, list, plan};
 use bahn_motion::{
     AuxiliaryTimes, Identity, Kinematics, MAX_LOOK_AHEAD, PlannedStep, Planner, Sample, Sampler,
 };
@@ -8,7 +8,6 @@ use bahn_path::{
     At, Axis, Barrier, BlockRef, Function, LiveData, PathElement, Position, Step, Synchronisation, ToolCall,
     ToolShape,
 };
-use crate::common::{Path, function, limits, list, plan};
 
 const X: Axis = Axis::X;
 

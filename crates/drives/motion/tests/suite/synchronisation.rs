@@ -1,12 +1,11 @@
 //! When functions go out and where the path waits for them, type by type [004:54-90].
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
+use crate::common::{List, Path, limits, list};
 use bahn_motion::{Drive, Interpolator, Limits, State};
 use bahn_path::{
     Ahead, At, Axis, FeedRate, Function, PathElement, Position, Step, Synchronisation, TechnologyFunction,
 };
-use crate::common::{List, Path, limits, list};
 use proptest::prelude::*;
 
 const T: f64 = 0.003;

@@ -1,10 +1,9 @@
 //! Synchronized axes [000:4451-4539].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
+use crate::common::Bench;
 use bahn_parameters::{ControlModel::Tnc415b, ParameterList};
 use bahn_servo::{Fault, Gantry, GrossFault};
-use crate::common::Bench;
 
 /// X and its slave IV: MP850 = 0, 0, 0, 1, 0 [000:4457-4463].
 struct Pair {

@@ -1,10 +1,9 @@
 //! Operation with servo lag [000:4735-4925].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
+use crate::common::Bench;
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
 use bahn_servo::Method;
-use crate::common::Bench;
 
 /// kv 2, rapid traverse 5000 mm/min at 9 V [000:4881-4891].
 const MANUAL: &[&str] = &[

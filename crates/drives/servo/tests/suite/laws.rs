@@ -1,10 +1,9 @@
 //! Laws of the position loop.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
+use crate::common::Bench;
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
 use bahn_servo::Method;
-use crate::common::Bench;
 use proptest::prelude::*;
 
 /// Feeds of 50 cycles each, mm/min.

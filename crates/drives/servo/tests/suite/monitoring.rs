@@ -1,12 +1,11 @@
 //! Monitoring: each fault at its edge [000:5160-5300].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
+use crate::common::Bench;
 use bahn_parameters::ControlModel::Tnc415b;
 use bahn_parameters::MessageId;
 use bahn_parameters::fault::FaultId;
 use bahn_servo::{EncoderFault, Fault, GrossFault, Method};
-use crate::common::Bench;
 
 /// kv 1 and wide limits; 10 m/min at 10/1 V so that only the monitoring under test answers.
 const WIDE: &[&str] = &[

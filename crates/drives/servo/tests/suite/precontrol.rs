@@ -1,12 +1,11 @@
 //! Operation with feed pre-control [000:4929-4975].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::f64::consts::TAU;
 
+use crate::common::Bench;
 use bahn_parameters::ControlModel::{self, Tnc407, Tnc415b};
 use bahn_servo::Method;
-use crate::common::Bench;
 
 const BASE: &[&str] = &[
     "1010.0=30000",

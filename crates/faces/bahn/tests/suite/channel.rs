@@ -1,8 +1,7 @@
 //! `bahn channel`: lists of channel parameters on the command line.
 
-
-use serde_json::{Value, json};
 use crate::support::{Folder, Run};
+use serde_json::{Value, json};
 
 /// Line and column of errors or warnings.
 fn places(report: &Value, kind: &str) -> Vec<(u64, u64)> {

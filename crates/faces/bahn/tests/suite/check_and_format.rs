@@ -1,8 +1,7 @@
 //! `bahn check`, `bahn fmt`, `bahn explain`, `bahn completions`.
 
-
-use serde_json::json;
 use crate::support::Folder;
+use serde_json::json;
 
 #[test]
 fn check_shows_all_errors_of_all_files_in_one_pass() {

@@ -1,8 +1,7 @@
 //! `bahn check` of DIN 66025 programs.
 
-
-use serde_json::json;
 use crate::support::Folder;
+use serde_json::json;
 
 #[test]
 fn every_fault_of_a_program_and_of_what_it_calls_is_shown() {

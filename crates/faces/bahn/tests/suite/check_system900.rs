@@ -1,8 +1,7 @@
 //! `bahn check` and `bahn fmt` of programs of a System 900, which nobody runs yet.
 
-
-use serde_json::json;
 use crate::support::Folder;
+use serde_json::json;
 
 #[test]
 fn every_fault_of_a_program_and_of_its_cycle_has_its_place() {
@@ -31,7 +30,7 @@ fn every_fault_of_a_program_and_of_its_cycle_has_its_place() {
 #[test]
 fn the_example_is_fine_and_tidy() {
     let folder = Folder::new();
-    support::copy(
+    crate::support::copy(
         &std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/system900"),
         folder.as_ref(),
     );

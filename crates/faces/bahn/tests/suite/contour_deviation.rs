@@ -1,9 +1,8 @@
 //! Why the axes left the contour: each cause is provoked on the simulated mill, and the report names it.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use serde_json::Value;
 use crate::support::{Folder, number};
+use serde_json::Value;
 
 /// The reports of programs of the mill, whose plant is changed by replacing texts of its file.
 struct Mill {

@@ -1,11 +1,10 @@
 //! `bahn convert`: programs in another language, with the proof that they do the same.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
 use std::fs;
 
-use serde_json::Value;
 use crate::support::{Folder, copy, machines};
+use serde_json::Value;
 
 const PLAIN: &str = "BEGIN PGM A MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+60 Y+40 Z+0\n\
     TOOL DEF 1 L+0 R+4\nTOOL CALL 1 Z S1200\nL Z+20 R0 FMAX M3 ; up\nL X-10 Y-10 FMAX\nL Z-4 FMAX\n\

@@ -1,9 +1,8 @@
 //! What is said of the spindle, the tool and the place of the cut, in `bahn test` and `bahn run`.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
-use serde_json::Value;
 use crate::support::Folder;
+use serde_json::Value;
 
 const BLANK: &str =
     "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+100 Y+50 Z+0\nTOOL DEF 1 L+0 R+5\nTOOL DEF 2 L+0 R+0\n";

@@ -1,11 +1,10 @@
 //! TCH PROBE 5 to 7 in a test run: a part is machined, digitized, and machined again from its points.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::collections::BTreeMap;
 
-use serde_json::json;
 use crate::support::*;
+use serde_json::json;
 
 /// The ball of tool 1 is larger than the stylus and cutter 2: it leaves no corner that those do not reach.
 const TOOLS: &str = "T L R R2 NAME\n1 100 4 4 BALL 8\n2 100 3 3 BALL 6\n";

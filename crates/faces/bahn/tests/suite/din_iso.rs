@@ -1,6 +1,5 @@
 //! Programs in DIN/ISO on the command line: what reports call their blocks.
 
-
 use crate::support::{Folder, copy, machines};
 
 #[test]

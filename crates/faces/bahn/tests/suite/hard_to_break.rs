@@ -5,14 +5,13 @@
     reason = "what fails in the helpers of tests fails the test"
 )]
 
-
 use std::fs::File;
 use std::io::Read;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use serde_json::json;
 use crate::support::{Folder, number, program};
+use serde_json::json;
 
 #[test]
 fn a_missing_called_program_is_an_error() {

@@ -1,10 +1,9 @@
 //! What is fitted to a control: terminals, boards, versions, options, software.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
+use crate::support::Folder;
 use bahn_parameters::ControlModel;
 use serde_json::Value;
-use crate::support::Folder;
 
 fn new(model: &str) -> Folder {
     let folder = Folder::new();
@@ -253,7 +252,10 @@ fn analogue_inputs_take_the_place_of_others() {
 #[test]
 fn export_versions_move_no_line_in_space() {
     let folder = Folder::new();
-    folder.write("3.h", crate::support::program("L X+1 Y+1 R0 F100\nL X+2 Y+2 Z+2 R0"));
+    folder.write(
+        "3.h",
+        crate::support::program("L X+1 Y+1 R0 F100\nL X+2 Y+2 Z+2 R0"),
+    );
     for (model, allowed) in [
         ("tnc151f", false),
         ("tnc155w", false),
@@ -385,7 +387,10 @@ fn a_later_release_is_named() {
     let folder = with("tnc415b", "software = \"280 540 06\"");
     assert_eq!(folder.bahn("machine check m").code(), 0);
     edit(&folder, "m/machine.toml", "280 540 06", "280 54 02");
-    folder.write("m/programs/ROTARY.H", crate::support::program("L C+10 R0 F100 M126"));
+    folder.write(
+        "m/programs/ROTARY.H",
+        crate::support::program("L C+10 R0 F100 M126"),
+    );
     let run = folder.bahn("machine check m");
     assert_eq!(run.code(), 1);
     let m126 = "M126 is there from software 280 54 04 on; this control has 280 54 02";

@@ -2,9 +2,8 @@
 //! option that does not exist, and with files that are missing, are a folder, or are no text.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use serde_json::Value;
 use crate::support::*;
+use serde_json::Value;
 
 /// Nobody listens there.
 const NOBODY: &str = "127.0.0.1:1";

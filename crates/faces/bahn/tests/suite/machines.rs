@@ -1,13 +1,12 @@
 //! The machines under machines/: everything in a folder can be read, and does what it should.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use bahn_machine::{Machine, MachineFolder};
 use crate::support::Folder;
+use bahn_machine::{Machine, MachineFolder};
 
 fn machines() -> Vec<(PathBuf, MachineFolder)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines");

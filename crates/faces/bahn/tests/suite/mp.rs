@@ -1,8 +1,7 @@
 //! `bahn mp`: check, list, explain, diff, new.
 
-
-use serde_json::{Value, json};
 use crate::support::Folder;
+use serde_json::{Value, json};
 
 const MODELS: [&str; 6] = ["tnc151", "tnc155", "tnc360", "tnc407", "tnc415b", "tnc425"];
 

@@ -2,9 +2,8 @@
 //! [000:11388-11412].
 #![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
 
-
-use serde_json::Value;
 use crate::support::Folder;
+use serde_json::Value;
 
 /// The bolt hole circle with its dialogues; cycle 69 in the EPROM, 70 in both.
 fn machine() -> Folder {

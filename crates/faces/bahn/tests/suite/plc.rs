@@ -1,8 +1,7 @@
 //! `bahn plc`: check, run, trace, list, xref, signals.
 
-
-use serde_json::json;
 use crate::support::Folder;
+use serde_json::json;
 
 /// O2 follows I4 AND I5; W8 counts cycles.
 const DOOR: &str = "L I4\nA I5 ; door\n= O2\nINC W8\nEM\n";

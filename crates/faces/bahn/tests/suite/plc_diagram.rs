@@ -1,8 +1,7 @@
 //! `bahn plc diagram`.
 
-
-use serde_json::json;
 use crate::support::Folder;
+use serde_json::json;
 
 fn folder() -> Folder {
     let folder = Folder::new();

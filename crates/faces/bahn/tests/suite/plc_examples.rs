@@ -1,6 +1,5 @@
 //! The example programs under examples/plc/ with their stimuli scripts.
 
-
 use std::path::Path;
 
 use crate::support::Folder;

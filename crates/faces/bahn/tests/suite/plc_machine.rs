@@ -1,9 +1,8 @@
 //! `bahn plc trace` and `diagram` on a machine that runs.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use serde_json::Value;
 use crate::support::Folder;
+use serde_json::Value;
 
 const BLOCKS: &str =
     "TOOL CALL 1 Z S1000\nL Z+50 R0 FMAX M3\nL X+0 Y+0 R0 FMAX\nL X+20 F1500 M8\nL Z+100 R0 FMAX M5";

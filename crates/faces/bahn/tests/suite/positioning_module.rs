@@ -1,9 +1,8 @@
 //! `bahn run --with`: the mill with a positioning module beside it.
 #![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
 
-
-use serde_json::Value;
 use crate::support::{Folder, machines};
+use serde_json::Value;
 
 /// Runs PALLET.H of the mill with the loader and further arguments; the JSON report and the exit code.
 fn pair(folder: &Folder, arguments: &[&str]) -> (Value, Option<i32>, String) {

@@ -6,7 +6,6 @@
     reason = "what fails in the helpers of tests fails the test"
 )]
 
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Child, Stdio};

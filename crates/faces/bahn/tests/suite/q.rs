@@ -1,11 +1,10 @@
 //! `bahn q`: parameters of a System 900.
 #![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
-
 use std::path::Path;
 
-use serde_json::{Value, json};
 use crate::support::{Folder, Run};
+use serde_json::{Value, json};
 
 /// The sample of the documents, and what is made of it.
 fn desk() -> Folder {

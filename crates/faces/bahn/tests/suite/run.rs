@@ -1,9 +1,8 @@
 //! `bahn run`: programs on the shipped machines.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use serde_json::{Value, json};
 use crate::support::{Folder, Run, machines, number, rows};
+use serde_json::{Value, json};
 
 /// A pocket corner with a programmed stop: 40 mm in X, 20 mm deep arc, up again.
 const CORNER: &str = "

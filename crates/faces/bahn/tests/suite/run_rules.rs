@@ -1,11 +1,10 @@
 //! `bahn run`: what is reported when something is not as it should be, and what goes on beside the run.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
 use crate::support::{Folder, Run, number, program};
+use serde_json::{Value, json};
 
 const PROGRAM: &str = "TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+0 Y+0 FMAX\nL X+40 F1000\nL X+0 F1000";
 

@@ -1,13 +1,12 @@
 //! `bahn test` with many programs: which ones, the table, its files, comparisons.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::fs;
 use std::io::Write;
 use std::process::Stdio;
 
-use serde_json::Value;
 use crate::support::{Folder, Run, assert_near, number, program};
+use serde_json::Value;
 
 /// A slot of 40 mm along X with a tool of radius 5, 2 mm deep; times and lengths follow from it.
 fn slot(tool: u32, feed: u32) -> String {

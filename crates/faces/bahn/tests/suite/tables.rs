@@ -1,9 +1,8 @@
 //! `bahn table`, and tables of a machine against its parameters.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use serde_json::Value;
 use crate::support::{Folder, number};
+use serde_json::Value;
 
 /// As a later control writes it: columns under their names, values of several kinds.
 const TOOL_T: &str = "\

@@ -1,11 +1,10 @@
 //! `bahn technology`: programs with functions that the path waits for, on the command line.
 #![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
-
 use std::path::Path;
 
-use serde_json::{Value, json};
 use crate::support::{Folder, Run, copy};
+use serde_json::{Value, json};
 
 /// Rapid traverse of 10 m/min, mm/s, and acceleration, mm/s².
 const RAPID: f64 = 10_000.0 / 60.0;

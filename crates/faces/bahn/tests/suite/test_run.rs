@@ -1,8 +1,7 @@
 //! `bahn test`: report, files and every option.
 
-
-use serde_json::json;
 use crate::support::{Folder, assert_near, number, program, rows};
+use serde_json::json;
 
 /// A square of 40 mm around the origin at Z-5 with a tool of radius 5, from the outside.
 const SQUARE: &str = "

@@ -1,9 +1,8 @@
 //! `bahn tune`: the commissioning assistant on three plants.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_parameters::{Adjustment, ControlModel, ParameterList};
 use crate::support::*;
+use bahn_parameters::{Adjustment, ControlModel, ParameterList};
 
 /// What the assistant adjusts, as the reference list of a model has it, for X, Y and Z.
 fn reference(model: ControlModel) -> String {

@@ -1,11 +1,10 @@
 //! `bahn run` on a machine of two channels: each runs its program, is reported, recorded and drawn.
 #![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
 
-
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
 use crate::support::Folder;
+use serde_json::Value;
 
 fn twin() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/twin")

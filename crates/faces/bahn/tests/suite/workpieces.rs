@@ -2,9 +2,8 @@
 //! each runs on its machine to the end, and is what its drawing says.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use serde_json::Value;
 use crate::support::{Folder, copy, machines, number, rows};
+use serde_json::Value;
 
 /// A spindle overshoots where it is to stand, and with it the tap, mm: the lists leave less than a fifth of a pitch of 1.25.
 const OVERSHOOT_MM: f64 = 0.02;

@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
+use crate::support::Trainee;
 use bahn_panel::{Key, Screen, Star};
 use bahn_tnc::RunState;
-use crate::support::Trainee;
 
 /// Random numbers that are the same on every run.
 struct Dice(u64);

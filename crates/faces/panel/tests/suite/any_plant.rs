@@ -5,16 +5,15 @@
     reason = "what fails in a helper fails the test"
 )]
 
-
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::cross_table::{CrossTable, Folder, folder, load};
 use bahn_host::{
     Action, Answer, Attendance, FolderPrograms, HostError, Operable, Operator, Phase, Play, PowerOn, Source,
     Stage,
 };
 use bahn_panel::{Input, InputText, KeyAction, Station};
-use crate::cross_table::{CrossTable, Folder, folder, load};
 
 /// What stands of an axis on the screen, mm.
 fn shown(station: &mut Station, letter: char) -> f64 {

@@ -3,9 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::Star;
 use crate::support::Trainee;
+use bahn_panel::Star;
 
 /// The probe is in the spindle, its ball 30 mm over the block of the machine, in the middle: machine X 200 to 300, Y 100 to
 /// 180, Z 0 to 40; the probe is 120 mm long.

@@ -3,9 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::{Input, InputText, Replay, Screen};
 use crate::support::Trainee;
+use bahn_panel::{Input, InputText, Replay, Screen};
 
 const INPUTS: usize = 300;
 

@@ -3,12 +3,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
 use std::path::Path;
 
+use crate::support::Trainee;
 use bahn_host::backup::Restore;
 use bahn_panel::{Input, TransferAction, TransferFiles};
-use crate::support::Trainee;
 
 /// The mill with something else in its list.
 fn with(change: impl Fn(&str) -> String) -> Trainee {

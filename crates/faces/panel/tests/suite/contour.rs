@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
 use std::time::Instant;
 
-use bahn_panel::GraphicsView;
 use crate::support::Trainee;
+use bahn_panel::GraphicsView;
 
 const PLATE: &str = "BEGIN PGM PLATE MM
 BLK FORM 0.1 Z X+0 Y+0 Z-20

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::Star;
 use crate::support::Trainee;
+use bahn_panel::Star;
 
 /// The third line is empty, and no block.
 const PROGRAM: &str = "%FRAME\nN10 G00 X0 Y0\n\nN20 G01 X40 F3000 M8\nN30 Y30\nN40 M30\n";

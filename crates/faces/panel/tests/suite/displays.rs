@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::{Screen, Star};
 use crate::support::Trainee;
+use bahn_panel::{Screen, Star};
 
 /// A machine whose list says something else.
 fn with(machine: &str, changes: &[(&str, &str)]) -> Trainee {

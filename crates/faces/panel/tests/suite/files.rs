@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
+use crate::support::Trainee;
 use bahn_panel::{Mark, Star, WindowKind};
 use bahn_parameters::{ControlModel, ListText};
-use crate::support::Trainee;
 
 /// What is highlighted in the window.
 fn current(trainee: &mut Trainee) -> String {

@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
 use std::collections::BTreeSet;
 
+use crate::support::Trainee;
 use bahn_interpreter::{Interpreter, NoPrograms, Rules, Settings};
 use bahn_panel::{GraphicsView, Star};
 use bahn_parameters::ParameterList;
 use bahn_path::{BlockRef, ElementSource, LiveData, Step};
 use bahn_workpiece::{Columns, Cutting, Hears, Memory, Remark};
-use crate::support::Trainee;
 
 /// A groove of 10 mm width and 5 mm depth through the whole of a blank of 40 x 30 x 10 mm.
 const GROOVE: &str = "BEGIN PGM GROOVE MM

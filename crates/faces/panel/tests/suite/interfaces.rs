@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
 use crate::support::Trainee;
 
 fn menu(trainee: &mut Trainee) {

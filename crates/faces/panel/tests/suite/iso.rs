@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::Star;
 use crate::support::Trainee;
+use bahn_panel::Star;
 
 /// The mill with a block scan: MP7680 [000:6804-6808]. Its block numbers go up in steps of 10.
 fn mill() -> Trainee {

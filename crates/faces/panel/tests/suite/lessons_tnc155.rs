@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::LessonState;
 use crate::support::Trainee;
+use bahn_panel::LessonState;
 
 /// A trainee whose task has begun.
 fn begin(name: &str) -> Trainee {

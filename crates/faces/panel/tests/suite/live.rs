@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
 use std::time::{Duration, Instant};
 
-use bahn_panel::{Input, InputText, Link, Live, Replay, Screen, Star};
 use crate::support::Trainee;
+use bahn_panel::{Input, InputText, Link, Live, Replay, Screen, Star};
 
 fn give(link: &Link, json: &str) {
     let text: InputText = serde_json::from_str(json).unwrap();

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::{Star, WindowKind};
 use crate::support::Trainee;
+use bahn_panel::{Star, WindowKind};
 
 /// In MANUAL and ELECTRONIC HANDWHEEL the tool table is called by simply pressing ENT [003:1897].
 #[test]

@@ -1,9 +1,8 @@
 //! The oscilloscope at the panel: its main display, a recording that is seen while it goes on, cursors and scales.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::{GraphicsView, Screen};
 use crate::support::Trainee;
+use bahn_panel::{GraphicsView, Screen};
 
 fn open(trainee: &mut Trainee) {
     trainee.press("MOD");

@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
+use crate::support::Trainee;
 use bahn_host::eprom::LoadList;
 use bahn_host::s_records::Image;
 use bahn_panel::{TransferAction, TransferFiles};
-use crate::support::Trainee;
 
 /// The main menu of the PLC mode.
 fn plc_mode(trainee: &mut Trainee) {

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_exchange::Operand;
 use crate::support::Trainee;
+use bahn_exchange::Operand;
 
 const HIGH: char = '\u{2580}';
 

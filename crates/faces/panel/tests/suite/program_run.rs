@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::Star;
 use crate::support::Trainee;
+use bahn_panel::Star;
 
 /// The line that is marked as the current one.
 fn current(trainee: &mut Trainee) -> String {

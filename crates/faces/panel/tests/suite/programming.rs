@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::Star;
 use crate::support::Trainee;
+use bahn_panel::Star;
 
 fn new_program(trainee: &mut Trainee) {
     trainee.write("programs/4711.H", "0 BEGIN PGM 4711 MM\n1 END PGM 4711 MM\n");

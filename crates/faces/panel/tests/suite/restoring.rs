@@ -3,10 +3,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
+use crate::support::Trainee;
 use bahn_host::backup::back_up;
 use bahn_panel::Station;
-use crate::support::Trainee;
 
 /// A backup of the machine as it would be with something else in one of its files.
 fn backup_with(trainee: &mut Trainee, name: &str, text: &str) -> String {

@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
 use std::path::PathBuf;
 
-use bahn_panel::{Ending, Replay, Screen, Station};
 use crate::support::Trainee;
+use bahn_panel::{Ending, Replay, Screen, Station};
 
 /// Moments that are compared.
 const MOMENTS: u64 = 20;

@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
+use crate::support::Trainee;
 use bahn_host::Operable;
 use bahn_panel::Star;
-use crate::support::Trainee;
 
 /// A machine whose description has another line first, on anew.
 fn described(machine: &str, line: &str, files: &[(&str, &str)]) -> Trainee {

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::{MarkKind, Refusal, Screen, Star};
 use crate::support::Trainee;
+use bahn_panel::{MarkKind, Refusal, Screen, Star};
 
 /// What is to be seen of the control and its machine; the time line itself has more moments later.
 fn seen(screen: &Screen) -> String {

@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
+use crate::support::Trainee;
 use bahn_parameters::ControlModel::{Tnc151, Tnc155};
 use serde_json::json;
-use crate::support::Trainee;
 
 fn screen(trainee: &mut Trainee) -> serde_json::Value {
     serde_json::to_value(trainee.screen()).unwrap()

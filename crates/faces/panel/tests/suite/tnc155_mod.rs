@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_parameters::ControlModel::Tnc155;
 use crate::support::Trainee;
+use bahn_parameters::ControlModel::Tnc155;
 
 fn lines(trainee: &mut Trainee) -> Vec<String> {
     let lines = trainee.screen().program.lines;

@@ -2,12 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
 use std::sync::mpsc::Receiver;
 
+use crate::support::Trainee;
 use bahn_panel::{Star, TransferAction, TransferOrder};
 use bahn_parameters::interfaces::Mode;
-use crate::support::Trainee;
 
 /// A trainee with RS-232-C connected, at the menu of EXT.
 fn connected() -> (Trainee, Receiver<TransferOrder>) {

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-
-use bahn_panel::{Reason, Urgency};
 use crate::support::Trainee;
+use bahn_panel::{Reason, Urgency};
 
 fn ready() -> Trainee {
     let mut trainee = Trainee::at("mill");

@@ -1,9 +1,8 @@
 //! Functions that are output ahead, and those with a time stamp: rows T13 to T16 of the acceptance.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_technology::{EventKind, Report};
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
+use bahn_technology::{EventKind, Report};
 
 const PROGRAM: &str = "%T\nN10 G01 X10 G90 F5000\nN20 X20\nN30 X30\nN40 X40\nN50 M96\nN55 X80\nN60 X0\nM30\n";
 

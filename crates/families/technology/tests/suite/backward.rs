@@ -1,10 +1,9 @@
 //! Functions that are output ahead, in backward motion and forward again.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
+use crate::common::{A, Asked, Bench, T, at, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report};
-use crate::common::{A, Asked, Bench, T, at, when, x};
 
 /// F6000, mm/s, and the distance to that speed and from it, mm.
 const V: f64 = 100.0;

@@ -1,9 +1,8 @@
 //! Functions that are output and waited for at block limits: rows T1 to T12 of the acceptance.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_technology::EventKind;
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
+use bahn_technology::EventKind;
 
 const PROGRAM: &str = "%T\nN20 G00 X25\nN30 X50\nN40 X75 M25\nN50 G01 X100 F2000\nN60 X125 Z100\nM30\n";
 

@@ -2,11 +2,10 @@
 //! it, and the order of output is that of the program in every range, but for what is output ahead.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
 use std::collections::HashMap;
 
-use bahn_technology::{EventKind, Report};
 use crate::common::{Asked, Bench, T};
+use bahn_technology::{EventKind, Report};
 use proptest::prelude::*;
 
 /// Types in the order in which they are drawn.

@@ -3,11 +3,10 @@
 //! Beside it stands a MOS_TS function, whose time stamp tells when the path was there [004:93].
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
 use std::fmt::Write as _;
 
-use bahn_technology::Report;
 use crate::common::{A, Asked, Bench, T, at, x};
+use bahn_technology::Report;
 use proptest::prelude::*;
 
 /// Channel parameters of M96 with a lead, ms, and of M25 that tells when the path is at its place. The look-ahead is as

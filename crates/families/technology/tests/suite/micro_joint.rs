@@ -1,9 +1,8 @@
 //! Micro Joints: rows T27 to T34 and T38 of the acceptance.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_technology::{Event, EventKind, Report};
 use crate::common::{A, Asked, Bench, at, x, y};
+use bahn_technology::{Event, EventKind, Report};
 
 /// The first two lines of every list here.
 const ENABLED: &str = "configuration.path_preparation.function FCT_DEFAULT | FCT_M_PRE_OUTPUT\n";

@@ -1,10 +1,9 @@
 //! What the script does beside acknowledging, several programs, and how runs end.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
+use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{ChannelList, EventKind, Report, Script};
-use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 
 const LINE: &str = "%T\nN10 G01 X100 F6000\nN20 M7\nM30\n";
 /// F6000, mm/s.

@@ -1,10 +1,9 @@
 //! Block search: a run that begins at a block, and what it says of the functions before that.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
+use crate::common::{Asked, Bench, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report, Value};
-use crate::common::{Asked, Bench, at, ramp_s, when, x};
 
 /// F6000, mm/s.
 const V: f64 = 100.0;

@@ -1,9 +1,8 @@
 //! Single block: the path stops at the end of each programmed block with a motion until the operator starts the next one.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_technology::{EventKind, Report};
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
+use bahn_technology::{EventKind, Report};
 
 /// F6000, mm/s.
 const V: f64 = 100.0;

@@ -1,9 +1,8 @@
 //! A PLC that serves the ranges in its window of bytes.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_technology::{EventKind, PlcMemory, Report, WINDOW_BYTES};
 use crate::common::{Bench, T};
+use bahn_technology::{EventKind, PlcMemory, Report, WINDOW_BYTES};
 
 /// Time from the start of a run of the PLC to the next one, s.
 const RUN_S: f64 = 0.02;

@@ -1,9 +1,8 @@
 //! Axis enable, feed enable, clamping [000:5326-5434].
 
-
-use bahn_tnc::RunState;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// A run over a path, begun in full sequence.
 fn running(build: Build) -> Rig {

@@ -2,10 +2,9 @@
 //! [000:3288-3328].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
-use bahn_tnc::RunState;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// A bench on which X is braked when its drive has no power: 1 m/s².
 fn braked() -> Build {

@@ -1,9 +1,8 @@
 //! What goes on beside the run: test run, what survives power-off.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_tnc::{RunState, TestState};
 use crate::support::*;
+use bahn_tnc::{RunState, TestState};
 
 /// While one program runs, another one is tested; its error names the block and moves nothing.
 #[test]

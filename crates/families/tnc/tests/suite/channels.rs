@@ -1,9 +1,10 @@
 //! Two channels on one machine: one clock, one PLC, one EMERGENCY STOP; each with its axes, its panel, its program.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::sync::Arc;
 
+use crate::support::bench::{bench, close, fourth};
+use crate::support::{Build, Rig, Shelf};
 use bahn_machine::Machine;
 use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Curve, PerAxis, Position};
@@ -11,8 +12,6 @@ use bahn_tnc::{
     AxisId, Cartesian, ChannelError, ChannelSetup, Command, Control, HandOver, Kinematics, Mode, Offsets,
     Remembered, RunState, Setup, Shares, Snapshot, SpindleWiring, Window,
 };
-use crate::support::bench::{bench, close, fourth};
-use crate::support::{Build, Rig, Shelf};
 
 /// Panel, transfers and cam of the second channel: its window lies from M300 on. M50 is a wait mark: it is
 /// acknowledged in both channels when both have come to it. At M60 of both, or with I30, Z goes to the second channel, at

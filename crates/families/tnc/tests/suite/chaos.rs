@@ -3,9 +3,8 @@
 //! axis passes its software limits, and after EMERGENCY STOP all comes to rest.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_tnc::{Command, Mode};
 use crate::support::*;
+use bahn_tnc::{Command, Mode};
 
 /// A generator of its own, so that every run is the same: xorshift.
 struct Dice(u64);

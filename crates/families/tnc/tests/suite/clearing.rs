@@ -1,10 +1,9 @@
 //! What is cancelled when a program is selected, and at its end: MP7300 [000:6589-6601].
 
-
-use bahn_path::ToolShape;
-use bahn_tnc::Tool;
 use crate::stand::*;
 use crate::support::*;
+use bahn_path::ToolShape;
+use bahn_tnc::Tool;
 
 /// The display of Z at the start, and the tool.
 const Z: f64 = 50.0;

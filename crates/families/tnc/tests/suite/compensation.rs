@@ -1,13 +1,12 @@
 //! Non-linear axis errors: the manual's tables on the bench [000:3785-3865].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
+use crate::support::bench::*;
+use crate::support::*;
 use bahn_tnc::{
     CompensationAssignment, CompensationFiles, CompensationTable, Control, CorrectionTables, Remembered,
     Renewed,
 };
-use crate::support::bench::*;
-use crate::support::*;
 
 /// Pitch error of Y, and Z over Y (the sag) and over itself; the points stand 6.5536 mm apart.
 const Y: &str = "ACHSE-Y MM DATUM 0 DIST 16 Y Z\n0 Y=0 Z=-0.01\n2 Y=0.005 Z=-0.02\n9 Y=0.01 Z=-0.02\n";

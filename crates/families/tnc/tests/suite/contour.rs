@@ -1,10 +1,9 @@
 //! The path through the whole kernel: lag, feed pre-control, exact stops, corners.
 
-
-use bahn_machine::Machine;
-use bahn_servo::{Commands, Measured, Plant, Step};
 use crate::stand::*;
 use crate::support::*;
+use bahn_machine::Machine;
+use bahn_servo::{Commands, Measured, Plant, Step};
 
 fn lag(build: Build) -> Build {
     build

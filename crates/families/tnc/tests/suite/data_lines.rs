@@ -1,11 +1,10 @@
 //! The PLC at its data interfaces: modules 9100 to 9107 with a line, 9110 and 9111 with a host [000:15587-15905].
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_plc::HostMessage;
-use bahn_tnc::{DataLineOrder, LineSetup, OrderedLines};
 use crate::stand::*;
 use crate::support::*;
+use bahn_plc::HostMessage;
+use bahn_tnc::{DataLineOrder, LineSetup, OrderedLines};
 
 /// A machine whose key A lets the PLC do the first job, and key B the second one. B410 is what was pulled.
 struct Bench {

@@ -1,10 +1,9 @@
 //! The same run twice, and a run that is disturbed at random.
 
-
-use bahn_tnc::{Command, RunState};
-use proptest::prelude::*;
 use crate::stand::*;
 use crate::support::*;
+use bahn_tnc::{Command, RunState};
+use proptest::prelude::*;
 
 const PROGRAM: &str = "TOOL CALL 0 Z S1000\nL X+60 Y+55 R0 F6000 M3\nCC X+60 Y+75\nC X+80 Y+75 DR+\nRND R3\nL X+80 Y+100 M8\nL IX+25 IY-10 FMAX\nCYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 0.1\nL X+70 Y+60 Z+40 F9000 M9\nL IY-7 M5";
 

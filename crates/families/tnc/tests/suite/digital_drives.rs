@@ -1,10 +1,9 @@
 //! The mill with digital drives: a TNC 425 whose speed loops run in servo steps of 0.6 ms.
 
-
-use bahn_parameters::ControlModel;
-use bahn_tnc::Mode;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_parameters::ControlModel;
+use bahn_tnc::Mode;
 
 fn dig425() -> Build {
     Build::of("dig425", ControlModel::Tnc425)

@@ -2,11 +2,10 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_servo::Plant;
-use bahn_tnc::{Digitized, RunState};
 use crate::stand::*;
 use crate::support::*;
+use bahn_servo::Plant;
+use bahn_tnc::{Digitized, RunState};
 
 /// PLC: the probing is enabled while contact A is open.
 fn plc() -> String {

@@ -1,11 +1,10 @@
 //! A program that is executed while it is transferred: however its text comes, the path is that of the whole program.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
+use crate::support::*;
 use bahn_parameters::ControlModel;
 use bahn_path::{Axis, PathElement};
 use bahn_tnc::{Command, Dnc, DripFeedLine, DripFeedState, RunState};
-use crate::support::*;
 
 /// Lines, arcs and roundings under RL, a jump ahead, Q parameters, a dwell, a cycle and M functions.
 const BLOCKS: &str = "TOOL DEF 1 L+0 R+3

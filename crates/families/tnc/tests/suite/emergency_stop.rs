@@ -1,11 +1,10 @@
 //! The "control is ready" circuit: test at power-on, EMERGENCY STOP from outside [000:6149-6228]
 //! [000:7033-7040].
 
-
-use bahn_parameters::ControlModel;
-use bahn_tnc::{Mode, RunState};
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_parameters::ControlModel;
+use bahn_tnc::{Mode, RunState};
 
 /// A bench whose relay takes so long to fall, as a model.
 fn relay(model: ControlModel, drop_out_ms: u32) -> Rig {

@@ -1,8 +1,7 @@
 //! A program that leads nowhere ends as such, in bounded memory and with the control free for other things.
 
-
-use bahn_tnc::RunState;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// Memory that a run may take beyond that of its start, bytes.
 const MEMORY: u64 = 4_000_000;

@@ -3,12 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_path::Axis;
-use bahn_tnc::{AxisLimit, Command, RunState};
 use crate::stand::*;
 use crate::support::Rig;
 use crate::support::bench as by_hand;
+use bahn_path::Axis;
+use bahn_tnc::{AxisLimit, Command, RunState};
 
 fn state(rig: &Rig) -> RunState {
     rig.control.snapshot().run

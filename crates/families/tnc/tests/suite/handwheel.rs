@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_tnc::HANDWHEEL_STEPS;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_tnc::HANDWHEEL_STEPS;
 
 /// The bench in the mode, with rapid traverse 12 000 so that all factors are there.
 fn wheel(instructions: &str) -> Rig {

@@ -1,9 +1,8 @@
 //! A rotary axis with Hirth coupling: the whole PLC program of it on the running control [000:8560-8906].
 
-
-use bahn_tnc::RunState;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// The coupling: O3 releases it, I10 says that it is released, I11 that it is locked.
 const COUPLING: &str = r#"

@@ -1,10 +1,9 @@
 //! Single rules of program run: messages with their block, refusals, stops, what the PLC learns.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use bahn_tnc::RunState;
 use crate::stand::*;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// The blocks that the shown messages name.
 fn blocks(rig: &Rig) -> Vec<Option<u32>> {

@@ -1,9 +1,8 @@
 //! M functions: strobe and acknowledgement, begin and end of block, stops [000:7076-7306].
 
-
-use bahn_tnc::RunState;
 use crate::stand::*;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// The pattern of the manual with the M function by a CASE, M03 acknowledged when the spindle has its speed
 /// [000:7208-7247]; M04 is left without answer.

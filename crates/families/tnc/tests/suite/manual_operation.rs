@@ -1,9 +1,8 @@
 //! MANUAL OPERATION: direction keys, rapid traverse, overrides, limits and ranges, datum, M and S
 //! [000:7539-7611] [000:3436-3561] [003:1031-1191].
 
-
-use bahn_tnc::Command;
 use crate::support::bench::*;
+use bahn_tnc::Command;
 
 /// The axis runs as long as its key is pressed, with MP1020 = 1200 mm/min; two axes at once [003:1031-1041].
 /// Both keys of one axis stop it.

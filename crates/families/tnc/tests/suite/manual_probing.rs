@@ -1,11 +1,10 @@
 //! The functions of the TOUCH PROBE menu in MANUAL and HANDWHEEL [003:1217-1512].
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_path::Axis;
-use bahn_tnc::{Calibration, RunState};
 use crate::stand::*;
 use crate::support::*;
+use bahn_path::Axis;
+use bahn_tnc::{Calibration, RunState};
 
 /// PLC: probing is enabled as soon as the spindle stands in its position; M2499 lets the control orient it.
 /// Keys A to D move X and Y.

@@ -1,7 +1,6 @@
 //! Messages, simulated keys, markers of input edges, faults of the PLC program [000:6619-6649]
 //! [000:7309-7440] [000:11870-11892].
 
-
 use crate::support::bench::*;
 
 /// M2924 ff. bring up the PLC's messages; CE steps through them and the NC resets their markers; the PLC may

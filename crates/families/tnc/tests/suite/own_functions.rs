@@ -1,9 +1,8 @@
 //! M functions that the machine builder synchronises as on a TF5200: M40 goes out where its type says, and the path
 //! waits only where it has to [004:54-90].
 
-
-use bahn_tnc::RunState;
 use crate::stand::*;
+use bahn_tnc::RunState;
 
 /// M functions are acknowledged when key A lets them.
 const BY_HAND: &str = "

@@ -2,11 +2,10 @@
 //! 9094 and cycle 7 work with that table [000:15328-15545].
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
-use bahn_tnc::{NcFiles, Remembered};
 use crate::stand::*;
 use crate::support::*;
+use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
+use bahn_tnc::{NcFiles, Remembered};
 
 /// Keys A and C: module 9090 with lines 0 and 1 of the pallet file, D with a line that is missing; the answer in
 /// W92. Key B: X of line 7 of the datum table is read and written 12.5 mm, and a line with Y = 30 mm is looked for. Key E:

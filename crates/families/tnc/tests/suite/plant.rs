@@ -1,10 +1,9 @@
 //! The seam to the machine: another plant than the simulated one, and what a drive says of itself.
 
-
+use crate::stand::*;
 use bahn_machine::Machine;
 use bahn_servo::{Commands, IdealAxes, Measured, Plant, Step};
 use bahn_tnc::{Control, Mode};
-use crate::stand::*;
 
 /// Counting steps of a millimetre: 1024 in 20 µm.
 const STEPS_MM: f64 = 51_200.0;

@@ -1,10 +1,9 @@
 //! Data between program and PLC: FN14, FN15, FN19, Q100 to Q107, datum correction, PLC positioning, module
 //! 9150, inch programs.
 
-
+use crate::stand::*;
 use bahn_path::ToolShape;
 use bahn_tnc::{RunState, Tool};
-use crate::stand::*;
 
 fn m_functions(lines: &str) -> String {
     format!("{ACKNOWLEDGE_BUT_M}{lines}")

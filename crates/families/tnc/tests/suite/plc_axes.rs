@@ -1,10 +1,9 @@
 //! What the PLC moves: positioning of NC axes, PLC axes, free rotation [000:4005-4240] [000:6494-6517].
 
-
-use bahn_path::Axis;
-use bahn_tnc::RunState;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_path::Axis;
+use bahn_tnc::RunState;
 
 /// X to 120 mm, Y to 20 mm, Z to 60 mm of the machine at 1500, 900, 600 mm/min: each by an input. M90 keeps
 /// the PLC's wish until it was granted.

@@ -2,10 +2,9 @@
 //! changes that are broken off.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_tnc::Signal;
 use crate::stand::*;
 use crate::support::*;
+use bahn_tnc::Signal;
 
 /// M2614 = I20: after the block whose strobe is acknowledged nothing is executed until it falls, whether the
 /// function comes at the begin or at the end of its block [000:10835].

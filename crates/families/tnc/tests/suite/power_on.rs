@@ -1,9 +1,8 @@
 //! Power-on, EMERGENCY STOP, reference run.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_tnc::Mode;
 use crate::support::*;
+use bahn_tnc::Mode;
 
 /// POWER INTERRUPTED waits for CE and the PLC with it; then voltage, test of the output, reference run of
 /// all axes; the position of each axis is that of the machine.

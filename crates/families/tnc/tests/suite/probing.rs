@@ -1,9 +1,8 @@
 //! TCH PROBE in the program on the machine [000:7613-7718].
 
-
-use bahn_tnc::RunState;
 use crate::stand::*;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// PLC: the probing is enabled while contact A is open, as in the manual's example [000:7696-7704].
 fn plc() -> String {

@@ -1,8 +1,7 @@
 //! Program run on the mill: paths, functions, stops.
 
-
-use bahn_tnc::RunState;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// Three axes move along the path of a program and end where it says; the datum is that of the machine.
 #[test]

@@ -1,9 +1,8 @@
 //! Part programs are read on another thread: the path is the same, and what comes meanwhile is not lost.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use bahn_tnc::{ReadAhead, RunState};
 use crate::support::*;
+use bahn_tnc::{ReadAhead, RunState};
 
 /// Lines, arcs and roundings under RL, with a loop, a Q parameter, a dwell, M functions and a programmed stop.
 const PROGRAM: &str = "TOOL DEF 1 L+0 R+3

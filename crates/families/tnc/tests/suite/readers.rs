@@ -1,9 +1,10 @@
 //! A control runs whatever is a [`Reader`]: here a program in no language at all, a list of places with their M function.
 
-
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use crate::stand::*;
+use crate::support::{Build, Rig, machine};
 use bahn_path::{
     At, Axis, BlockRef, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Position, Step,
     Synchronisation, TechnologyFunction,
@@ -11,8 +12,6 @@ use bahn_path::{
 use bahn_program::Program;
 use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Start, Warning};
 use bahn_tnc::{Control, Programs, RunState};
-use crate::stand::*;
-use crate::support::{Build, Rig, machine};
 
 /// Where X goes in each block, mm, and the M function that goes out before it.
 const BLOCKS: [(f64, Option<u16>); 2] = [(60.0, None), (70.0, Some(40))];

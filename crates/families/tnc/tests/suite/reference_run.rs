@@ -1,9 +1,8 @@
 //! PASS OVER REFERENCE MARKS: the four kinds, their order and what the PLC sees [000:4543-4691].
 
-
-use bahn_tnc::Mode;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_tnc::Mode;
 
 /// Power-on until the control asks for the reference run.
 fn asked(build: Build) -> Rig {

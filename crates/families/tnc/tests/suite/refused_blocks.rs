@@ -1,11 +1,10 @@
 //! A block that is refused is refused whole: tool, length and axis stay as they were, and what comes after it in the program is
 //! not executed. The run goes on with that block again, or elsewhere, from where the axes are.
 
-
-use bahn_path::ToolShape;
-use bahn_tnc::{RunState, Tool};
 use crate::stand::*;
 use crate::support::*;
+use bahn_path::ToolShape;
+use bahn_tnc::{RunState, Tool};
 
 /// The bench with tools 1 and 2, 60 and 80 mm long, and a program in full sequence. Its spindle turns 9000 rpm in no gear.
 fn bench_of(parameters: &[&str], blocks: &str) -> Rig {

@@ -1,6 +1,5 @@
 //! Single rows of the registry of functions that no other test is about.
 
-
 use crate::support::Build;
 
 /// MP110 and MP120: X and Y change their encoder inputs and their nominal value outputs, in the machine and in the

@@ -1,9 +1,8 @@
 //! Return to the contour and block scan [000:6765-6832].
 
-
-use bahn_tnc::RunState;
 use crate::stand::*;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// Contact A moves X in positive direction, B Z, while MANUAL OPERATION is on (M2018).
 fn plc() -> String {

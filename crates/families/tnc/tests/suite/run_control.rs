@@ -1,9 +1,8 @@
 //! Program run: single block, stops, restart, errors, limits, feed enable, EMERGENCY STOP.
 
-
-use bahn_tnc::{Mode, RunState};
 use crate::stand::*;
 use crate::support::*;
+use bahn_tnc::{Mode, RunState};
 
 fn state(rig: &Rig) -> RunState {
     rig.control.snapshot().run

@@ -1,10 +1,9 @@
 //! The small mill with a TNC 360: power-on, reference run, by hand, EMERGENCY STOP, a program.
 
-
-use bahn_parameters::ControlModel;
-use bahn_servo::Rotation;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_parameters::ControlModel;
+use bahn_servo::Rotation;
 
 fn small_mill() -> Build {
     let folder = folder("mill-tnc360");

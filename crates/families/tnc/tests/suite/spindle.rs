@@ -1,9 +1,8 @@
 //! The spindle through the kernel: gears, diagram, S codes, orientation [000:5438-6043].
 
-
-use bahn_tnc::RunState;
 use crate::stand::*;
 use crate::support::Rig;
+use bahn_tnc::RunState;
 
 /// Example 12: the diagram of the manual, speed by speed [000:5596-5610].
 #[test]
@@ -457,7 +456,8 @@ LBL ORIENT
     let build = diagram(&plc).mp("3440.0=5").mp("3520.1=60").mp("3410.1=0.05");
     let mut rig = ready(build.program("1.H", "TOOL CALL 0 Z S100\nM3"));
     run(&mut rig, 2.0);
-    let values = |rig: &crate::support::Rig| [100, 104, 108, 112, 116].map(|at| rig.number(&format!("D{at}")));
+    let values =
+        |rig: &crate::support::Rig| [100, 104, 108, 112, 116].map(|at| rig.number(&format!("D{at}")));
     let turn = |thousandths: i32| thousandths.rem_euclid(360_000);
     rig.seconds(0.5);
     let open = values(&rig);

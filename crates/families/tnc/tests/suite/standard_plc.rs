@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
-use bahn_tnc::RunState;
 use crate::support::{Build, Rig};
 use crate::terminals::terminals;
+use bahn_tnc::RunState;
 
 /// Codes on A7 to A14 and decoded lines A15 to A19 while a strobe is on, with the strobe lines A20 to A22.
 type Seen = (String, String, String);

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use crate::support::Rig;
 use crate::terminals::terminals;
 

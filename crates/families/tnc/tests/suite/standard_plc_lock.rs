@@ -1,6 +1,5 @@
 //! Output A6 of the standard PLC program of a TNC 151/155, the lock for "spindle on".
 
-
 use crate::terminals::*;
 
 /// A6 opens with a programmed spindle stop and a programmed stop together, is closed in Manual [001:1046-1053], in each mode in

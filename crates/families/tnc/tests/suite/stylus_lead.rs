@@ -3,11 +3,10 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_servo::Plant;
-use bahn_tnc::{Command, RunState};
 use crate::stand::*;
 use crate::support::*;
+use bahn_servo::Plant;
+use bahn_tnc::{Command, RunState};
 
 /// Of the bench: MP6310, mm, and MP6360, mm/min.
 const DEPTH: f64 = 0.5;

@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-
-use bahn_path::Axis;
-use bahn_tnc::{AxisWatch, HANDWHEEL_STEPS, RunState};
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_path::Axis;
+use bahn_tnc::{AxisWatch, HANDWHEEL_STEPS, RunState};
 
 /// Acceleration of Z, m/s²: MP1060.2; and the contour cycle, s.
 const ACCELERATION: f64 = 0.5;

@@ -1,9 +1,8 @@
 //! Synchronized axes: the 4th axis V is the slave of X [000:4451-4539].
 
-
-use bahn_tnc::Mode;
 use crate::support::bench::*;
 use crate::support::*;
+use bahn_tnc::Mode;
 
 fn gantry(more: &str) -> Build {
     bench("")

@@ -1,9 +1,8 @@
 //! Threads in which something fails: what the tool axis, its spindle and the path do then [000:6115-6139].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
-use bahn_tnc::{RunState, Signal};
 use crate::support::*;
+use bahn_tnc::{RunState, Signal};
 
 const PITCH: f64 = 1.5;
 const RPM: f64 = 600.0;

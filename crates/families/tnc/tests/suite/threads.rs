@@ -2,10 +2,9 @@
 //! [000:6047-6145].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
+use crate::support::*;
 use bahn_exchange::Bit;
 use bahn_parameters::{ControlModel, ParameterList};
-use crate::support::*;
 
 const PITCH: f64 = 1.5;
 const DEPTH: f64 = 20.0;

@@ -1,9 +1,8 @@
 //! Swivel axes on a machine: cycle 19 and M114 with a head that swivels about B.
 #![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use bahn_tnc::RunState;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 #[track_caller]
 fn assert_near(a: [f64; 3], b: [f64; 3]) {

@@ -1,10 +1,9 @@
 //! Axis IV of a TNC 155 in the place of an internal axis: M2590 and M2591 [001:2456-2467].
 
-
-use bahn_tnc::Mode;
 use crate::support::bench::close;
 use crate::support::knee::*;
 use crate::support::*;
+use bahn_tnc::Mode;
 
 /// A fourth linear axis U like the others, with its cam at E3.
 const FOURTH: &str = r#"

@@ -1,11 +1,10 @@
 //! Feed rate release E18 of a TNC 151/155: opening it ramps the feed to zero with MP54, closing it lets the movement go
 //! on [001:509-516].
 
-
-use bahn_tnc::{Mode, RunState};
 use crate::support::bench::close;
 use crate::support::knee::*;
 use crate::support::*;
+use bahn_tnc::{Mode, RunState};
 
 /// MP54 = 0.5 m/s² in mm/s².
 const RAMP: f64 = 500.0;

@@ -1,6 +1,5 @@
 //! Offset adjustment of a TNC 151/155: steps of 2.44 mV each MP252 times 20 ms [001:2573-2610].
 
-
 use crate::support::bench::close;
 use crate::support::knee::*;
 use crate::support::*;

@@ -1,6 +1,5 @@
 //! Machine parameters of a TNC 151/155 that act on motion and display.
 
-
 use crate::support::bench::close;
 use crate::support::knee::*;
 use crate::support::*;

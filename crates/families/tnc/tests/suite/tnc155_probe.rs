@@ -1,6 +1,5 @@
 //! The markers of the touch probe of a TNC 155 [001:2258-2286].
 
-
 use crate::support::knee::*;
 use crate::support::*;
 

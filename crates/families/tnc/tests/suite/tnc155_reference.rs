@@ -1,11 +1,10 @@
 //! The reference run of a TNC 151/155: a mark counts under the closed end cam where the pulse is not inhibited
 //! [001:951-995].
 
-
-use bahn_tnc::Mode;
 use crate::support::bench::{TABLE, close};
 use crate::support::knee::*;
 use crate::support::*;
+use bahn_tnc::Mode;
 
 /// Only X is there: its machine parameters, plant keys beside it, encoder and start.
 fn only_x(keys: &str, marks: &str, start: f64) -> Build {

@@ -1,10 +1,9 @@
 //! Programming station, MP170 = 1 or 2 of a TNC 151/155: it requires no transducers or external circuitry [001:1637-1641].
 
-
-use bahn_tnc::Mode;
 use crate::support::bench::close;
 use crate::support::knee::*;
 use crate::support::*;
+use bahn_tnc::Mode;
 
 /// A control without a machine: no relay of the control voltage, no axis, buttons alone.
 fn desktop(mp170: u8) -> Rig {

@@ -1,11 +1,10 @@
 //! PLC programs in the form of the TNC 355: M2719 = 0, numbers in markers [000:16162-16293].
 
-
 use std::collections::BTreeMap;
 
-use bahn_tnc::{RunState, Tool};
 use crate::stand::*;
 use crate::support::{Build, Rig};
+use bahn_tnc::{RunState, Tool};
 
 /// The bench with M2719 = 0.
 fn old_form(plc: &str) -> Build {

@@ -1,10 +1,9 @@
 //! TOOL CALL and TOOL DEF through the kernel [000:9194-9410].
 
-
-use bahn_path::ToolShape;
-use bahn_tnc::Tool;
 use crate::stand::*;
 use crate::support::*;
+use bahn_path::ToolShape;
+use bahn_tnc::Tool;
 
 fn build(parameters: &[&str], plc: &str, program: &str) -> Rig {
     let mut build = bench(plc).program("1.H", program);

@@ -1,8 +1,7 @@
 //! The magazine of the mill with its double arm: what the control hands to the PLC, and where the tools are then.
 
-
-use bahn_tnc::Tool;
 use crate::support::*;
+use bahn_tnc::Tool;
 
 /// N are tools 1 and 2, M 3 and 5, S 4 and 6; the number of the pocket is that of the tool.
 fn mill(output: u8, kind: u8) -> Rig {

@@ -1,9 +1,8 @@
 //! Tool life [000:9160-9192]: what is counted, when, and what its end leads to.
 
-
+use crate::support::{Build, Rig};
 use bahn_plc::TableKind;
 use bahn_tnc::{Remembered, ToolLife};
-use crate::support::{Build, Rig};
 
 /// Element of the tool table: current tool life [000:15440].
 const CURRENT_TIME: usize = 7;

@@ -1,11 +1,10 @@
 //! Tools are measured with the tool probe of the mill: TCH PROBE 31 and 32 [000:7960-8058].
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::support::*;
 use bahn_path::ToolShape;
 use bahn_plc::TableKind;
 use bahn_tnc::{Edges, Tool};
-use crate::support::*;
 
 /// Tool 2 is 95 mm long with a radius of 10 mm in the table; the one in the spindle is 94.96 and 9.985 mm.
 const DIFFERENCES: [f64; 2] = [-0.04, -0.015];

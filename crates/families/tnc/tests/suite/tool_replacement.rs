@@ -1,9 +1,8 @@
 //! M101: the automatic change to the replacement tool [000:9175-9177].
 
-
+use crate::support::{Build, Rig};
 use bahn_plc::TableKind;
 use bahn_tnc::{RunState, Tool, ToolLife};
-use crate::support::{Build, Rig};
 
 /// Element of the tool table: current tool life [000:15440].
 const CURRENT_TIME: usize = 7;

@@ -1,9 +1,8 @@
 //! A contour that takes long to compute does not hold the machine: whoever drives it computes beside.
 #![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
 
-
-use bahn_tnc::RunState;
 use crate::support::*;
+use bahn_tnc::RunState;
 
 /// A square of 20 mm to be cleared by cycle 6.
 const PROGRAM: &str = "TOOL DEF 1 L+0 R+3

@@ -1,6 +1,5 @@
 //! The worked accumulator tables of the manual's chapter on commands.
 
-
 use crate::common::example;
 
 #[test]

@@ -1,9 +1,8 @@
 //! The worked examples of the manual's chapters on PLC functions: what NC and machine do stands in the test.
 
-
+use crate::common::{Bench, lines};
 use bahn_parameters::PerPlcAxis;
 use bahn_plc::{CoordinateKind, PlcAxisCommand, StatusChange};
-use crate::common::{Bench, lines};
 
 #[test]
 fn two_numbers_come_with_fn19() {

@@ -1,11 +1,10 @@
 //! Every error of the compiler, with its line; several in one pass.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-
+use crate::common::compile;
 use bahn_parameters::ControlModel;
 use bahn_plc::{Compilation, Memories, MemoryFiles, Options, ProgramMemory};
 use bahn_text::{Files, NamedFile};
-use crate::common::compile;
 use proptest::prelude::*;
 
 /// Numbers and lines of the errors.

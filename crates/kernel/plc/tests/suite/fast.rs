@@ -2,13 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "the programs of these tests are valid")]
 
-
 use std::fmt::Write;
 use std::sync::Arc;
 
+use crate::common::Bench;
 use bahn_exchange::{Bit, BitArea, Exchange, Number, Size};
 use bahn_plc::{Compilation, Machine, Op, Options, PlcError, RuntimeError, Start, Target, TraceStep, Tracer};
-use crate::common::Bench;
 use proptest::prelude::*;
 
 /// Kinds of statements that [`statement`] writes.

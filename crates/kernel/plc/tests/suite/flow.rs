@@ -1,10 +1,9 @@
 //! Jumps, modules, structures, tables, submit jobs, timers, counters, edges; run-time errors.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-
+use crate::common::{Bench, compile, example};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{InterfaceUser, PlcError, Start, TestNc};
-use crate::common::{Bench, compile, example};
 
 /// Runs one scan that must fail; number and line of the error.
 fn failing(before: &str, program: &str) -> (u8, u32) {

@@ -1,6 +1,5 @@
 //! The tool changer macros that replace those of the TNC 355 [000:16299-16430].
 
-
 use crate::common::{Bench, lines};
 
 /// The macros 200, 210, 220 and 230; the main program calls the one of W0. Their commands are the

@@ -1,6 +1,5 @@
 //! The worked tables of the manual's chapters on data stack, strings and index register.
 
-
 use crate::common::example;
 
 #[test]

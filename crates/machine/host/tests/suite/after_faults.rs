@@ -1,12 +1,11 @@
 //! What the fault campaign found, each as the few things that lead to it.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::support::{host, machine, mill, old_mill, seconds};
 use bahn_host::{Action, Host, PowerOn, Source};
 use bahn_parameters::fault::FaultId;
 use bahn_path::Axis;
 use bahn_tnc::{Control, RunState, Signal};
-use crate::support::{host, machine, mill, old_mill, seconds};
 
 fn give(host: &mut Host, what: &str) {
     host.act(Source::Script, Action::parse(what).unwrap()).unwrap();

@@ -1,12 +1,11 @@
 //! What the fault campaign found where the machine leads the path: a probe, or a spindle.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::support::{host, machine, mill, seconds};
 use bahn_exchange::signal;
 use bahn_host::{Action, Host, PowerOn, Source};
 use bahn_path::Axis;
 use bahn_tnc::{AxisWatch, Control, RunState, Signal};
-use crate::support::{host, machine, mill, seconds};
 
 fn give(host: &mut Host, what: &str) {
     host.act(Source::Script, Action::parse(what).unwrap()).unwrap();

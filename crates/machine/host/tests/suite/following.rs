@@ -1,12 +1,11 @@
 //! Orders, notices and snapshots of a machine that is on.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::support::*;
 use bahn_host::{
     Action, Answer, Attendance, Clock, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source, When,
 };
 use bahn_tnc::{Mode, RunState};
-use crate::support::*;
 
 fn action(text: &str) -> Action {
     Action::parse(text).unwrap()

@@ -1,13 +1,12 @@
 //! Module 9150 while a program of DIN 66025 runs, which has no tools.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
 use std::sync::Arc;
 
+use crate::support::*;
 use bahn_host::{Attendance, FolderPrograms, Host, Job, LoadedMachine, Observed, Operator, PowerOn};
 use bahn_parameters::MessageId;
 use bahn_tnc::RunState;
-use crate::support::*;
 
 /// A module of the PLC program that inserts TOOL CALL 2 with the strobe of an M function [000:16063-16118].
 fn inserts_at(code: u32) -> String {

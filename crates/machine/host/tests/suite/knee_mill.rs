@@ -1,10 +1,9 @@
 //! The reference run of the knee mill with a TNC 155, by its cams [001:951-995].
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::support::*;
 use bahn_host::{Host, LoadedMachine, PowerOn};
 use bahn_tnc::Mode;
-use crate::support::*;
 
 /// The axes with their reference marks as they stand in plant.toml: X and Y have one, Z that of its screw which the open cam E6
 /// chooses.

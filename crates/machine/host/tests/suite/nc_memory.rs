@@ -6,12 +6,11 @@
     reason = "what fails in the helpers of tests fails the test"
 )]
 
-
 use std::fs;
 
+use crate::support::*;
 use bahn_host::{Action, Answer, Attendance, FolderPrograms, Host, LoadedMachine, Operator, PowerOn, Source};
 use bahn_tnc::Command;
-use crate::support::*;
 
 /// Names, what stands in them, and whether that is said at power-on.
 fn kinds() -> Vec<(&'static str, Vec<u8>, bool)> {

@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
 
-mod support;
-
 use std::path::PathBuf;
 
 use bahn_host::LoadedMachine;
@@ -107,7 +105,7 @@ fn texts_keep_to_their_limits() {
 /// at the files what `bahn oem list` says.
 #[test]
 fn a_machine_says_what_is_wrong_with_its_macros() {
-    let copy = support::Copy::of("mill-tnc155", "macros");
+    let copy = crate::support::Copy::of("mill-tnc155", "macros");
     let programs = copy.path().join("programs");
     std::fs::create_dir_all(programs.join("eprom")).unwrap();
     let program =

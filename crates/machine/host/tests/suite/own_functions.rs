@@ -1,11 +1,10 @@
 //! `[[function]]` of machine.toml: M functions with a synchronisation of the machine builder's own.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::support::*;
 use bahn_host::LoadedMachine;
 use bahn_parameters::own_functions::OwnFunction;
 use bahn_path::{Ahead, At, Synchronisation};
-use crate::support::*;
 
 fn load(what: &str, functions: &str) -> Result<LoadedMachine, Vec<(String, String)>> {
     let copy = Copy::of("mill", what);

@@ -6,13 +6,12 @@
     reason = "what fails in the helpers of tests fails the test"
 )]
 
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::*;
 use bahn_host::{Attendance, Host, Job, LoadedMachine, Operator, PowerOn};
 use bahn_tnc::{Mode, Signal};
-use crate::support::*;
 
 /// What is kept, in the order in which it is written.
 const FILES: [&str; 3] = ["mechanics.toml", "plc.mem", "control.toml"];

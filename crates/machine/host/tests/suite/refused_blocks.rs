@@ -1,9 +1,8 @@
 //! TOOL CALL with a speed that the spindle of a machine does not have is refused whole: no axis moves.
 
-
+use crate::support::*;
 use bahn_host::{Host, PowerOn};
 use bahn_tnc::RunState;
-use crate::support::*;
 
 /// Where the axes are commanded to be, mm of the machine.
 fn commanded(host: &Host) -> Vec<f64> {

@@ -1,10 +1,9 @@
 //! Any moment of a run is reached again, to the bit.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
+use crate::support::*;
 use bahn_host::{Action, Answer, Host, HostError, Log, Next, Notice, PowerOn, Sink, Source, Timeline, When};
 use bahn_tnc::{Command, Signal};
-use crate::support::*;
 
 const BLOCKS: &str = "TOOL CALL 1 Z S1000\nL Z+50 R0 FMAX M3\nL X+20 Y+10 R0 FMAX\nLBL 1\nL IX+10 F3000 M8\nCC IX+0 IY+5\n\
     C IX+0 IY+10 DR+\nL IX-5 IY-8 M9\nQ1=Q1+1\nCALL LBL 1 REP 6\nL Z+100 R0 FMAX M5";

@@ -1,14 +1,13 @@
 //! Machine parameters that are changed while a program of DIN 66025 runs.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
 use std::sync::Arc;
 
+use crate::support::*;
 use bahn_host::{
     Action, Answer, Attendance, FolderPrograms, Host, Job, LoadedMachine, Observed, Operator, PowerOn, Source,
 };
 use bahn_tnc::RunState;
-use crate::support::*;
 
 fn give(host: &mut Host, what: &str) {
     let done = host.act(Source::Script, Action::parse(what).unwrap());

@@ -1,12 +1,11 @@
 //! Scripts on the whole machine: power, wires, faults, parameters and operands of the running control, every command.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
 use std::path::Path;
 
+use crate::support::*;
 use bahn_host::{Host, Next, Notice, Play, Stage, Verdict};
 use bahn_tnc::{Command, Signal};
-use crate::support::*;
 
 /// Machine time in which a script must have come to its end, s.
 const PATIENCE_S: f64 = 400.0;

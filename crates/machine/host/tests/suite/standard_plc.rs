@@ -1,11 +1,10 @@
 //! `plc = "standard"` and MP77: which PLC program a TNC 155 runs; the knee mill with the standard one.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use bahn_host::{Action, Host, LoadedMachine, PowerOn, Source};
 use crate::support::*;
+use bahn_host::{Action, Host, LoadedMachine, PowerOn, Source};
 
 /// A copy of a machine with edited files.
 fn edited(name: &str, edits: &[(&str, &str, &str)]) -> (Copy, Result<LoadedMachine, String>) {

@@ -2,9 +2,8 @@
 //! positioning, orientation, datum shift and Q parameters of a part program, all in markers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
-use bahn_host::{Host, PowerOn};
 use crate::support::*;
+use bahn_host::{Host, PowerOn};
 
 const PROGRAM: &str = "TOOL CALL 1 Z S1000
 L Z+100 R0 FMAX M3

@@ -1,15 +1,14 @@
 //! The twin: two channels on one machine, loaded from its folder, driven, stopped, handed an axis, kept over power-off.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-
 use std::sync::{Arc, Mutex};
 
+use crate::support::*;
 use bahn_host::{
     Action, Answer, Attendance, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Observed,
     Operator, PowerOn, Sink, Source, Stage, Timeline,
 };
 use bahn_tnc::{AxisId, ChannelError, ChannelView, RunState, Shown};
-use crate::support::*;
 
 fn twin() -> Host {
     let machine = machine("twin");

@@ -1,9 +1,8 @@
 //! Feed axes: drives, mechanics, encoders, switches.
 #![allow(clippy::unwrap_used, reason = "a test that panics fails")]
 
-
-use bahn_servo::Encoder;
 use crate::common::{BASE, IDEAL_X, input, milliseconds, running};
+use bahn_servo::Encoder;
 
 fn x(keys: &str) -> String {
     format!("{BASE}\n[axis.X]\noutput = \"1\"\nspeed = 15000\nvolts = 9\n{keys}\n")

@@ -1,9 +1,8 @@
 //! The description of a machine is read or refused, fault by fault.
 #![allow(clippy::unwrap_used, reason = "a test that panics fails")]
 
-
-use bahn_machine::Machine;
 use crate::common::{BASE, IDEAL_X};
+use bahn_machine::Machine;
 
 fn faults(text: &str) -> Vec<String> {
     Machine::from_toml(text)

@@ -1,12 +1,11 @@
 //! Axes whose speed loop the control closes (MP1900, TNC 425): servo and current drive together, step by step.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics fails")]
 
-
+use crate::common::BASE;
 use bahn_machine::Machine;
 use bahn_parameters::fault::FaultId;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_servo::{Axis, Commands, Fault, GrossFault, Measured, Method, Plant, Step, Timing};
-use crate::common::BASE;
 
 /// A table of 100 kg on a screw of 10 mm pitch whose rotor counts 0.0002533 kg m² · (2π / 10 mm)² = 100 kg: 200 kg in all.
 /// 0.5 N m/A · 6.366 A · 2π / 10 mm = 2000 N at 10 V: 10 m/s², so 1 V for each m/s².

@@ -1,9 +1,8 @@
 //! The tool magazine: chain, shuttle and arm, and what goes wrong with them.
 #![allow(clippy::unwrap_used, reason = "a test that panics fails")]
 
-
-use bahn_machine::Machine;
 use crate::common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
+use bahn_machine::Machine;
 
 /// Every movement takes 100 ms, a pocket 50 ms. Outputs: 8 clamp opens, 9 shuttle, 10 grip, 11 draw, 12 turn, 13 chain forward,
 /// 14 backward.

@@ -1,9 +1,8 @@
 //! The main spindle.
 #![allow(clippy::unwrap_used, reason = "a test that panics fails")]
 
-
-use bahn_machine::Machine;
 use crate::common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
+use bahn_machine::Machine;
 
 const SPINDLE: &str = r#"
 [spindle]

@@ -1,7 +1,6 @@
 //! Outputs as the terminals of a control have them: their supply, and bipolar ones.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
 use crate::common::{IDEAL_X, input, machine, outputs};
 
 /// The plant of the other tests, without `switched_outputs`.

@@ -2,14 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::{Readings, changed, readings};
 use bahn_parameters::conformance::{Effect, Entry, Kind, all, find};
 use bahn_parameters::{ControlModel, Definition, ParameterList};
-use crate::support::{Readings, changed, readings};
 
 fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/conformance")

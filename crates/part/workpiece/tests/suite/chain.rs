@@ -2,10 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
+use crate::common::*;
 use bahn_path::{Axis, PathElement, Position, ToolShape};
 use bahn_workpiece::{Part, Resolution, Workpiece};
-use crate::common::*;
 use proptest::prelude::*;
 
 const MM: f64 = 0.2;

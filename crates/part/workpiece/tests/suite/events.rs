@@ -2,10 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
+use crate::common::*;
 use bahn_path::{Axis, BlockRef, PathElement, Plane, Position};
 use bahn_workpiece::{EventKind, Workpiece};
-use crate::common::*;
 
 fn events(elements: &[PathElement], tool_axis: Axis) -> Vec<(EventKind, u64)> {
     let mut workpiece = workpiece(0.2);

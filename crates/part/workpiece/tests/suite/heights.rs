@@ -2,10 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
+use crate::common::*;
 use bahn_path::{Axis, Blank, Plane, ToolShape};
 use bahn_workpiece::{Resolution, Workpiece};
-use crate::common::*;
 use proptest::prelude::*;
 
 type Point = [f64; 3];

@@ -2,13 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 
+use crate::common::*;
 use bahn_path::{Axis, Blank, Plane};
 use bahn_workpiece::{MeshError, Part, Resolution, Workpiece};
-use crate::common::*;
 use proptest::prelude::*;
 
 type Triangle = [[f32; 3]; 3];

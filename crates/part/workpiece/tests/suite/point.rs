@@ -2,12 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
 use std::f64::consts::PI;
 
+use crate::common::*;
 use bahn_path::Axis;
 use bahn_workpiece::EventKind;
-use crate::common::*;
 
 #[track_caller]
 fn close(actual: f64, expected: f64, relative: f64) {

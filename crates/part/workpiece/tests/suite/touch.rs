@@ -2,10 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
+use crate::common::*;
 use bahn_path::{Axis, Blank, Plane, Position};
 use bahn_workpiece::{Part, Resolution, Workpiece};
-use crate::common::*;
 
 /// [`BLANK`] with a slot along X: Y 30 to 50, 7.3 mm deep, open at both ends.
 fn slotted() -> Part {

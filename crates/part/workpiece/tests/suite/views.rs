@@ -2,17 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::common::*;
 use bahn_path::{Axis, Blank, Plane};
 use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
     Colouring, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
 };
-use crate::common::*;
 
 fn page() -> Page {
     Page::new(320, 240, "PGM 7", "test").unwrap()

@@ -6,12 +6,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop")]
 
-
 use std::f64::consts::PI;
 
+use crate::common::*;
 use bahn_path::{Axis, Blank, Plane};
 use bahn_workpiece::{Resolution, Workpiece};
-use crate::common::*;
 use proptest::prelude::*;
 
 const MM: f64 = 0.1;

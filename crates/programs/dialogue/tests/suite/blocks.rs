@@ -1,9 +1,8 @@
 //! Every block and cycle by dialogue: keys in, block out, with the prompts in their order.
 
-
+use crate::desk::Desk;
 use bahn_dialogue::{Key, Reaction};
 use bahn_parameters::{ControlModel, MessageId};
-use crate::desk::Desk;
 
 /// The block that keys give on a control.
 fn block_on(model: ControlModel, keys: &str) -> String {

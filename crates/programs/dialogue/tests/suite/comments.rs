@@ -1,9 +1,8 @@
 //! The word that is highlighted is asked for; after the last one stands the comment of the block.
 
-
+use crate::desk::Desk;
 use bahn_parameters::ControlModel::{Tnc360, Tnc415b};
 use bahn_parameters::MessageId::{KeyNonFunctional, ProtectedPgm};
-use crate::desk::Desk;
 
 /// The highlighted word.
 fn word(desk: &Desk) -> String {

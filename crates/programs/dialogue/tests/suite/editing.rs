@@ -1,6 +1,6 @@
 //! Editing a program that stands there [003:1744-1790].
 
-
+use crate::desk::Desk;
 use bahn_dialogue::{Key, Reaction, Wanted};
 use bahn_parameters::ControlModel::{Tnc155, Tnc360, Tnc415b};
 use bahn_parameters::MessageId::{
@@ -8,7 +8,6 @@ use bahn_parameters::MessageId::{
     LabelNumberAllocated, ProtectedPgm, WrongSignProgrammed,
 };
 use bahn_path::Axis;
-use crate::desk::Desk;
 
 const POCKET: &str = "CYCL DEF 4.0 POCKET MILLING
 CYCL DEF 4.1 SET UP -2

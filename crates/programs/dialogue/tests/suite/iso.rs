@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::sync::Arc;
 
+use crate::desk::{Desk, setting};
 use bahn_dialogue::{Draft, Editor, Key, Reaction, Wanted};
 use bahn_parameters::ControlModel::{self, Tnc360, Tnc415b};
 use bahn_parameters::MessageId::{self, *};
 use bahn_path::Axis;
 use bahn_program::Program;
-use crate::desk::{Desk, setting};
 
 /// Blocks that are complete, as they are written.
 fn complete() -> String {

@@ -1,12 +1,11 @@
 //! Laws: whatever keys are pressed, the program can be read, undo goes back, and nothing that is open is lost.
 
-
 use std::sync::Arc;
 
+use crate::desk::setting;
 use bahn_dialogue::{Draft, Editor, Key, KeyGroup, Reaction};
 use bahn_parameters::ControlModel;
 use bahn_program::{Operation, Program};
-use crate::desk::setting;
 use proptest::prelude::*;
 use proptest::sample::select;
 

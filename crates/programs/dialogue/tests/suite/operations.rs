@@ -1,9 +1,9 @@
 //! Every block that the dialogue makes does what was entered; every block that stands in a program can be opened.
 
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::desk::Desk;
 use bahn_dialogue::Reaction;
 use bahn_parameters::ControlModel;
 use bahn_path::{Axis, Sense};
@@ -11,7 +11,6 @@ use bahn_program::{
     Block, Compensation, Coordinates, CycleBlock, CycleWord, Feed, MFunctions, Motion, MotionKind,
     NumberedBlock, Operation, Program, Value, Word,
 };
-use crate::desk::Desk;
 use proptest::prelude::*;
 use proptest::sample::select;
 

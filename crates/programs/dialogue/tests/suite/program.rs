@@ -1,12 +1,11 @@
 //! A whole program, key by key, with wrong entries on the way.
 
-
+use crate::desk::Desk;
 use bahn_parameters::ControlModel;
 use bahn_parameters::MessageId::{
     EntryValueIncorrect, KeyNonFunctional, LabelNumberAllocated, WrongSignProgrammed,
 };
 use bahn_program::Program;
-use crate::desk::Desk;
 
 /// Keys, and the blocks that they give.
 const PROGRAM: &[(&str, &str)] = &[

@@ -1,13 +1,12 @@
 //! Words that are added to blocks, words that only some models have, and the cycles of the machine builder.
 
-
 use std::sync::Arc;
 
+use crate::desk::Desk;
 use bahn_dialogue::{BuilderCycle, Draft, Editor, Reaction};
 use bahn_parameters::ControlModel::{self, Tnc360, Tnc415b, Tnc425};
 use bahn_parameters::MessageId::KeyNonFunctional;
 use bahn_program::Program;
-use crate::desk::Desk;
 
 fn at_first(blocks: &str, model: ControlModel) -> Desk {
     let mut desk = Desk::with(blocks, model);

@@ -1,12 +1,11 @@
 //! Functions that have no effect here, or only part of it: nothing is passed over in silence.
 
-
+use crate::support::*;
 use bahn_interpreter::{Settings, ToolState, WarningKind};
 use bahn_parameters::ControlModel::{self, Tnc155, Tnc360, Tnc407, Tnc415b, Tnc425};
 use bahn_parameters::MessageId::{BlockNotKnown, MaxToolLifeExpired, ToolLocked, WrongAxisProgrammed};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Function, ToolShape};
-use crate::support::*;
 
 fn with(blocks: &str, change: impl FnOnce(&mut Settings)) -> Run {
     Job::new(program(blocks)).with(change).run()

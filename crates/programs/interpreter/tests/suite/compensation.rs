@@ -1,11 +1,10 @@
 //! Radius compensation: corners, M functions that change them, paraxial blocks.
 
-
 use std::f64::consts::PI;
 
+use crate::support::*;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Curve, FeedRate};
-use crate::support::*;
 
 const TOOL: &str = "TOOL DEF 1 L+0 R+10\nTOOL CALL 1 Z S1000\nL X-20 Y-20 R0 FMAX";
 

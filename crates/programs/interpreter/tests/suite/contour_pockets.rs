@@ -1,13 +1,12 @@
 //! Laws of rough-out (cycle 6) on random pockets and islands, for every setting of MP7420.
 
-
 use std::fmt::Write;
 
+use crate::support::Job;
 use bahn_interpreter::ContourPocketRules;
 use bahn_path::{Axis, Plane};
 use bahn_workpiece::EventKind;
 use proptest::prelude::*;
-use crate::support::Job;
 
 const BLANK: f64 = 100.0;
 const DEPTH: f64 = 6.0;

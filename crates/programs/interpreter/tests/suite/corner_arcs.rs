@@ -1,9 +1,8 @@
 //! M112: arcs at the corners of uncompensated lines, and M124: points that are left out for them [000:5128-5158].
 #![allow(clippy::expect_used, reason = "what fails here fails the test")]
 
-
-use bahn_path::{Axis, Curve, Plane};
 use crate::support::*;
+use bahn_path::{Axis, Curve, Plane};
 
 /// M112 T0.05 puts an arc of 0.1207 mm at a corner of 90 degrees, tangent to both lines; M113 ends it;
 /// lines that lie in another main plane have arcs, too [000:5128-5158].

@@ -2,13 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
-
 use std::f64::consts::PI;
 
+use crate::support::*;
 use bahn_interpreter::{Rules, Settings};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{At, Axis, Curve, FeedRate, Function, OverrideLaw, PathElement, Sense, Thread};
-use crate::support::*;
 
 /// Feed and end height of movements in the tool axis.
 fn heights(elements: &[&PathElement]) -> Vec<(FeedRate, f64)> {

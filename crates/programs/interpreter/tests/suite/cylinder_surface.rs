@@ -2,14 +2,13 @@
 //! on a table that has turned.
 #![allow(clippy::expect_used, reason = "what fails here fails the test")]
 
-
+use crate::support::*;
 use bahn_parameters::MessageId::{
     self, BlockNotKnown, CyclIncomplete, EntryValueIncorrect, PlaneWronglyDefined, WrongAxisProgrammed,
     WrongSignProgrammed,
 };
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, Curve, FeedRate, PathElement, PerAxis, Position};
-use crate::support::*;
 
 const CENTRE: [f64; 3] = [400.0, 150.0, -300.0];
 /// The workpiece datum of the tests lies here in the machine.

@@ -1,6 +1,5 @@
 //! The same part in plain language and in DIN/ISO has the same path, functions and feeds, so the same time.
 
-
 use crate::support::*;
 
 /// A program in ISO from its blocks.

@@ -1,13 +1,12 @@
 //! Cycles of DIN/ISO that need more than a program: tables, contours, swivel axes, cycles of the machine builder. Each does what
 //! it does in plain language.
 
-
 use std::sync::Arc;
 
+use crate::support::*;
 use bahn_interpreter::{DatumTable, Rules, Settings};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{Axis, PerAxis, Position};
-use crate::support::*;
 
 /// What a run says, without its blocks.
 fn reported(run: &Run) -> Vec<String> {

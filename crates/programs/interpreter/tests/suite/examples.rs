@@ -1,13 +1,12 @@
 //! The shipped example programs run to their end and mill what they say.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-use bahn_path::ToolShape;
 use crate::support::*;
+use bahn_path::ToolShape;
 
 fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../examples")

@@ -1,9 +1,8 @@
 //! M functions, stops, tool calls and what goes to the PLC: where on the path they are output.
 
-
+use crate::support::*;
 use bahn_parameters::ControlModel;
 use bahn_path::{At, Axis, Barrier, Function, Position, Synchronisation};
-use crate::support::*;
 
 /// The output of M functions with their place on the element of a block.
 fn places(blocks: &str, block: u32) -> Vec<(Function, At, Synchronisation)> {

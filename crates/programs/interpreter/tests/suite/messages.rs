@@ -1,11 +1,10 @@
 //! Messages of contours, compensation and cycles, raised by a small program at the block that causes them
 //! [003:7889-8033].
 
-
-use bahn_interpreter::WarningKind;
-use bahn_parameters::{ControlModel, MessageId};
 use crate::cases::{TOOL, check, check_with_tool};
 use crate::support::*;
+use bahn_interpreter::WarningKind;
+use bahn_parameters::{ControlModel, MessageId};
 
 /// A cycle 1 whose lines can be changed.
 const DRILL: &str = "CYCL DEF 1.0 PECKING

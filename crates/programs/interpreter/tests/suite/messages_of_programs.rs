@@ -1,11 +1,10 @@
 //! Messages of program flow, input values and calculations, raised by a small program at the block that
 //! causes them [003:7866-8033].
 
-
-use bahn_interpreter::{Message, WarningKind};
-use bahn_parameters::{ControlModel, MessageId};
 use crate::cases::{TOOL, check, check_with_tool, check_with_tool_on};
 use crate::support::*;
+use bahn_interpreter::{Message, WarningKind};
+use bahn_parameters::{ControlModel, MessageId};
 
 #[test]
 fn arithmetical_error() {

@@ -1,13 +1,12 @@
 //! Cycles of the machine builder, 68 to 99: programs with a dialogue block [000:17691-17984].
 
-
+use crate::support::*;
 use bahn_interpreter::Settings;
 use bahn_parameters::MessageId::{
     BlockNotKnown, CyclIncomplete, EntryValueIncorrect, ExcessiveSubprogramming,
 };
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::Axis;
-use crate::support::*;
 
 /// The program of a cycle.
 fn cycle(number: u32, blocks: &str) -> (String, String) {

@@ -1,12 +1,11 @@
 //! Path programs of the TNC 360 manual: straight lines, arcs, roundings, polar coordinates, helix. The tool
 //! radius is compensated; expected tool-centre paths follow from the contour by hand.
 
-
 use std::f64::consts::{PI, SQRT_2};
 
+use crate::support::*;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::{Axis, Curve, FeedRate, Function};
-use crate::support::*;
 
 /// Hand calculations below are exact; programs give coordinates to 0.001 mm.
 const EXACT: f64 = 1e-9;

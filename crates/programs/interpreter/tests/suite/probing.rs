@@ -2,10 +2,9 @@
 
 #![allow(clippy::panic, reason = "what fails here fails the test")]
 
-
+use crate::support::*;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, MeasuredPart, Position, ScanPattern};
-use crate::support::*;
 
 /// P17: the height of an island as the difference of two measured coordinates [003:4452-4487].
 #[test]

@@ -1,13 +1,12 @@
 //! Laws that hold for every program.
 
-
+use crate::contour::{Contour, Spelling, contours, convex_contours};
+use crate::support::{Job, Run};
 use bahn_interpreter::{Interpreter, NoPrograms, Settings};
 use bahn_path::{Axis, Curve, ElementSource, Frame, LiveData, PathElement, PerAxis, Plane, Position, Step};
 use bahn_program::Program;
-use crate::contour::{Contour, Spelling, contours, convex_contours};
 use proptest::prelude::*;
 use std::sync::Arc;
-use crate::support::{Job, Run};
 
 /// Positions of laws that compare two calculations of the same path, mm.
 const SAME_MM: f64 = 1e-6;

@@ -1,9 +1,8 @@
 //! Programs with Q parameters: the manual's examples and the rules of single functions.
 
-
+use crate::support::*;
 use bahn_interpreter::WarningKind;
 use bahn_path::{Axis, Curve, FeedRate};
-use crate::support::*;
 
 /// P18: rectangular pocket by Q parameters, with RND at the corners, at the start and at the end
 /// [003:4499-4552].

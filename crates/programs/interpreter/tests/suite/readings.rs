@@ -3,11 +3,10 @@
 //! Decision: A subprogram within another one: the LBL 0 that is reached leads back, one that is jumped over does
 //! nothing
 
-
+use crate::support::*;
 use bahn_interpreter::{Message, WarningKind, tool_key};
 use bahn_parameters::MessageId;
 use bahn_path::ToolShape;
-use crate::support::*;
 
 /// A blank without size, as programs write it that want no graphics, is no error.
 #[test]

@@ -1,13 +1,12 @@
 //! A rehearsal finds all faults of a program, and none that is only the consequence of another.
 
-
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use crate::support::*;
 use bahn_interpreter::{NoPrograms, Rehearsal, Settings, rehearse};
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_program::Program;
-use crate::support::*;
 
 fn rehearsed(text: String) -> Rehearsal {
     let program = Arc::new(Program::from_bytes("TEST.H", text.into_bytes()));

@@ -1,10 +1,9 @@
 //! Numbers finer than the input resolution of a control [003:7825] [000:6419-6424].
 
-
+use crate::support::*;
 use bahn_interpreter::{Settings, WarningKind};
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::{Axis, FeedRate};
-use crate::support::*;
 
 const PATH: &str = "L X+1.00006 Y-2.0004 R0 F100.0006\nL X+3.1234\nL IX+0.00049";
 

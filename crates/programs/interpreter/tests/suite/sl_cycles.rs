@@ -1,12 +1,11 @@
 //! SL cycles: pockets and islands superimposed. Expected areas are those of the contours, less what a round
 //! tool cannot reach in corners.
 
-
 use std::f64::consts::PI;
 
+use crate::support::*;
 use bahn_path::{Axis, Curve, FeedRate, PathElement};
 use bahn_workpiece::EventKind;
-use crate::support::*;
 
 /// Resolution of the removed volumes, and what that makes of them.
 const RESOLUTION_MM: f64 = 0.1;

@@ -2,15 +2,14 @@
 //! areas are those of the contours less what a round tool leaves in inside corners; expected points are computed by
 //! hand.
 
-
 use std::f64::consts::PI;
 
+use crate::support::*;
 use bahn_parameters::MessageId::{
     self, CyclIncomplete, EntryValueIncorrect, RoundingRadiusTooLarge, ToolRadiusTooLarge,
 };
 use bahn_path::{Axis, Curve, FeedRate, PathElement};
 use bahn_workpiece::EventKind;
-use crate::support::*;
 
 /// A pocket X 0..80, Y 0..60 from (0,30), and an island X 30..50, Y 25..35 from (30,30).
 const CONTOURS: &str = "LBL 1\nL X+0 Y+30 RL\nL Y+0\nL X+80\nL Y+60\nL X+0\nL Y+30\nLBL 0\n\

@@ -1,6 +1,5 @@
 //! One program in many spellings has one path.
 
-
 use crate::support::*;
 
 /// A program with a bit of everything whose spelling varies between files.

@@ -1,8 +1,7 @@
 //! Labels, section repeats, program calls: the manual's programs and its lists of executed steps.
 
-
-use bahn_path::{Axis, Function};
 use crate::support::*;
+use bahn_path::{Axis, Function};
 
 /// Where holes are drilled: X, Y and lowest Z of each plunge that goes below zero, once per place.
 fn holes(run: &Run, blocks: impl Fn(u32) -> bool) -> Vec<[f64; 3]> {

@@ -1,7 +1,7 @@
 //! LN: lines with the normal of the surface. The tool in the spindle touches the surface at the same point as the one
 //! that the program was computed with. Expected positions are those of a tool of its own radii.
 
-
+use crate::support::*;
 use bahn_interpreter::Settings;
 use bahn_parameters::ControlModel::{Tnc360, Tnc407, Tnc425};
 use bahn_parameters::MessageId::{
@@ -9,7 +9,6 @@ use bahn_parameters::MessageId::{
 };
 use bahn_parameters::ParameterList;
 use bahn_path::{Axis, FeedRate, Oversize, ToolShape};
-use crate::support::*;
 
 /// The tip of a tool of radius R and corner radius R2 that touches a point with this normal.
 fn tip(point: [f64; 3], n: [f64; 3], [r, r2]: [f64; 2]) -> [f64; 3] {

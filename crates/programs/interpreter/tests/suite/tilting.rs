@@ -1,15 +1,14 @@
 //! Swivel axes: cycle 19, M114 to M117, M126 and M127.
 #![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
 
-
 use std::sync::Arc;
 
+use crate::support::*;
 use bahn_parameters::MessageId::{
     BlockNotKnown, EntryValueIncorrect, PlaneWronglyDefined, WrongAxisProgrammed,
 };
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, FeedRate, Placement, Position};
-use crate::support::*;
 
 const TOOL: &str = "TOOL DEF 1 L+100 R+5\nTOOL CALL 1 Z S1000\n";
 

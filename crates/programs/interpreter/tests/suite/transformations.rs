@@ -1,9 +1,8 @@
 //! Datum shift, mirror image, rotation and scaling: the same contour at another place.
 
-
+use crate::support::*;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Curve, PerAxis, Position};
-use crate::support::*;
 
 /// The contour of P33 to P36, from corner to corner, and its first and last point once more.
 const CONTOUR: [[f64; 2]; 6] = [

@@ -14,12 +14,12 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use bahn_house as house;
-use bahn_house::root;
 use crate::names::{Files, Texts};
 use crate::rooms::ROOMS;
 use crate::source::{code_of, has_word, source_files};
 use crate::uses::Uses;
+use bahn_house as house;
+use bahn_house::root;
 
 /// The crate of the shipped machines, data alone: it uses no room.
 const DATA: &str = "machines";

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use bahn_house as house;
 use crate::source::{code_of, is_of_name, source_files};
+use bahn_house as house;
 
 /// Variants with a bare truth value, and why it says enough.
 const PLAIN: &[(&str, &str)] = &[

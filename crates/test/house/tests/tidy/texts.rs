@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use bahn_house as house;
 use crate::source::{code_of, source_files};
+use bahn_house as house;
 
 /// Byte order marks: who knows them decodes files by itself.
 const MARKS: &[&str] = &["\\u{feff}", "\\xef\\xbb\\xbf", "\\xEF\\xBB\\xBF"];
