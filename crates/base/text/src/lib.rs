@@ -13,6 +13,7 @@
 
 mod diagnostic;
 mod encoding;
+mod escapes;
 mod files;
 mod lines;
 mod nearest;
@@ -22,6 +23,7 @@ mod span;
 
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use encoding::{Encoding, MARK, MARK_BYTES, as_utf8, decode, utf8_or_latin, without_mark};
+pub use escapes::{quoted, unescaped};
 pub use files::{Files, MemoryFiles, NamedFile, meant, name_alone, path_below};
 pub use lines::LineIndex;
 pub use nearest::nearest;

@@ -46,7 +46,7 @@ struct End {
     /// Time of the cable that no character has used, µs.
     free_us: u64,
     /// The control was told that the other side is there.
-    told: bool,
+    reported: bool,
 }
 
 /// How a PLC has a line.
@@ -63,7 +63,7 @@ impl End {
             line: PlcLine::default(),
             used: None,
             free_us: 0,
-            told: false,
+            reported: false,
         }
     }
 
@@ -125,10 +125,10 @@ impl End {
 
     /// The other side has gone on or off.
     fn is_there(&mut self, there: bool, host: &mut Host) -> Result<(), HostError> {
-        if self.told == there {
+        if self.reported == there {
             return Ok(());
         }
-        self.told = there;
+        self.reported = there;
         if !there {
             self.line.unplugged();
         }

@@ -1,6 +1,7 @@
 //! What the operator chooses for himself and the control keeps: display, dimensions, language, axes of L blocks, data
 //! interfaces.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 
@@ -160,6 +161,9 @@ pub(crate) struct Settings {
     pub edited: Option<String>,
     /// What was typed of a block when the station ended.
     pub draft: Option<serde_json::Value>,
+    /// Files whose protection by their type was taken away, until the control is switched off.
+    #[serde(skip)]
+    pub unprotected: BTreeSet<String>,
 }
 
 impl Settings {

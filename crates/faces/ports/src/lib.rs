@@ -4,6 +4,7 @@
 //! The face of this room:
 //! - [`open`]: ports as they are written, opened and set up as machine parameters say;
 //! - [`serial_ports`]: RS-232-C and RS-422 of a machine that answers; [`PlcLines`]: its PLC at them;
+//! - [`PanelPorts`]: the interfaces of a machine with a panel, where a transfer begins when the operator wants it;
 //! - [`MachineDevice`]: a machine that is on as a host with LSV/2 sees it;
 //! - [`screen_picture`]: its screen as pixels;
 //! - [`dnc`]: a machine that executes a program while it is transferred, cycle by cycle; [`Trace`]: what passes over a line.
@@ -22,6 +23,7 @@ pub mod dnc;
 mod error;
 mod lsv2_device;
 pub mod open;
+mod panel_ports;
 mod plc_lines;
 pub mod screen_picture;
 pub mod serial_ports;
@@ -29,5 +31,6 @@ mod trace;
 
 pub use error::{PortError, Tell};
 pub use lsv2_device::MachineDevice;
+pub use panel_ports::{PanelPorts, RunningPorts};
 pub use plc_lines::{PlcLines, PlcPort};
 pub use trace::Trace;

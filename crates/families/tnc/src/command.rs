@@ -10,9 +10,8 @@ use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
 use bahn_path::{Axis, Switch};
-use bahn_plc::TableKind;
+use bahn_plc::{DataLineEvent, TableKind};
 
-use crate::data_line::DataLineEvent;
 use crate::dnc::Dnc;
 use crate::plane_command::PlaneCommand;
 use crate::probe_command::ProbeCommand;

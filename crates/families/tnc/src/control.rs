@@ -15,7 +15,7 @@ use bahn_motion::Limits;
 use bahn_parameters::code_numbers::ERASE_MEMORY;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::{PathElement, Switch};
-use bahn_plc::{HostMessage, Tracer};
+use bahn_plc::{DataLineOrder, HostMessage, OrderedLines, Tracer};
 use bahn_reader::{Reader, Warning};
 use bahn_servo::Plant;
 
@@ -23,7 +23,6 @@ use crate::alteration::{self, Altered};
 use crate::beside::ReadAhead;
 use crate::channel::Channel;
 use crate::command::{Command, Mode};
-use crate::data_line::{DataLineOrder, OrderedLines};
 use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
 use crate::key_code::KeyCode;

@@ -6,8 +6,6 @@ use std::sync::Arc;
 use bahn_interpreter::DripFeed;
 use bahn_parameters::MessageId;
 
-use crate::escapes;
-
 /// What happens on the line of a program that is executed while it is transferred.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dnc {
@@ -28,7 +26,7 @@ impl Dnc {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         match word {
             "begin" if !rest.trim().is_empty() => Ok(Dnc::Begin(rest.trim().to_owned())),
-            "text" => escapes::unescaped(rest)
+            "text" => bahn_text::unescaped(rest)
                 .map(|bytes| Dnc::Text(bytes.into()))
                 .ok_or_else(|| {
                     "`dnc text` takes text with the escapes of a byte string, as `L X+5\\n`".to_owned()

@@ -70,13 +70,11 @@ mod command;
 mod compensation;
 mod control;
 mod cycle;
-mod data_line;
 mod datum_tables;
 mod datums;
 mod demands;
 mod desk;
 mod dnc;
-mod escapes;
 mod hand_over;
 mod handshake;
 mod handwheel;
@@ -143,14 +141,13 @@ pub use bahn_parameters::compensation::{
     CompensationAssignment, CompensationError, CompensationTable, CorrectionTables,
 };
 pub use bahn_path::Switch;
+pub use bahn_plc::{DataLineEvent, DataLineOrder, HostEvent, LineEvent, LineSetup, OrderedLines};
 /// Where the programs of a control come from.
 pub use bahn_reader::Programs;
 pub use beside::ReadAhead;
 pub use command::{Command, CommandError, Mode};
 pub use control::Control;
-pub use data_line::{DataLineEvent, DataLineOrder, HostEvent, LineEvent, LineSetup, OrderedLines};
 pub use dnc::Dnc;
-pub use escapes::unescaped;
 pub use hand_over::HandOver;
 pub use handshake::{Handshake, Transfer, Waiting};
 pub use handwheel::HANDWHEEL_STEPS;

@@ -11,13 +11,12 @@ use bahn_parameters::compensation::{CompensationAssignment, CompensationTable, C
 use bahn_parameters::{ParameterId, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::{
-    CompensationSize, CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable,
+    CompensationSize, CoordinateKind, DataInterface, DataLines, HostLink, JogLimit, LineFault, MemoryTable,
     NcInterfaces, NcMemory, NcMotion, NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault,
     ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition,
     StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
-use crate::data_line::DataLines;
 use crate::markers::AXES;
 use crate::screen_command::ScreenCommand;
 

@@ -7,6 +7,7 @@
 //!   jobs, nominal processing time; [`Tracer`] sees every executed line, [`CodeTrace`] is a scan as the instruction list shows it;
 //! - [`modules`] lists the modules 9000 to 9171; [`Nc`] is what they need from the control, with the types
 //!   that it speaks in; with the feature `desk`, `TestNc` stands in for it;
+//! - [`DataLines`] is what comes over the data interfaces to it, [`OrderedLines`] what it wants of them;
 //! - [`mirror_parameters`] puts the machine parameters of the PLC into its words and markers;
 //! - [`Instruction`] and [`Op`] are the compiled form, for tools that list, cross-reference or translate it; [`accesses`]
 //!   are the operands of an instruction; [`line_words`] are the words of a line, [`instructions`] what they mean.
@@ -37,6 +38,7 @@
 
 mod access;
 mod compile;
+mod data_line;
 mod error;
 mod fast;
 mod fault;
@@ -52,6 +54,7 @@ mod syntax;
 pub use access::{Access, Memory, Subject, accesses};
 pub use bahn_text::MemoryFiles;
 pub use compile::{Compilation, Options};
+pub use data_line::{DataLineEvent, DataLineOrder, DataLines, HostEvent, LineEvent, LineSetup, OrderedLines};
 pub use error::{Detection, PlcError};
 pub use fault::Fault;
 pub use modules::{Module, modules};

@@ -22,7 +22,7 @@ use std::fs;
 use std::io::{self, BufRead, Read as _, Write as _};
 use std::path::{Component, Path, PathBuf};
 
-use bahn_tnc::unescaped;
+use bahn_text::unescaped;
 use thiserror::Error;
 
 use crate::HostError;

@@ -7,20 +7,12 @@
 
 use bahn_parameters::{Limits, MessageId};
 
+use crate::dialect::DinLanguage;
 use crate::format::FormatOptions;
 use crate::language::{Landmark, Language, WordKind, WordSpan};
 use crate::lines::{BlockText, Lines, RawBlock};
 use crate::text::{character_count, is_blank, to_text};
 use crate::{Block, BlockError, InvalidBlock, Operation};
-
-/// Whose dialect of DIN 66025 a program is in: each line with text is a block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DinLanguage {
-    /// `.nc`, subroutines of any name.
-    Tf5200,
-    /// `.900`.
-    System900,
-}
 
 impl DinLanguage {
     /// Why no block of it is executed as one of the control's own languages.

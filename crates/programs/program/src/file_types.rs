@@ -1,7 +1,7 @@
 //! Which language a file is written in, by its name.
 
 use crate::bulk::Bulk;
-use crate::din::DinLanguage;
+use crate::dialect::DinLanguage;
 use crate::iso::IsoLanguage;
 use crate::language::{Landmark, Language};
 use crate::lines::Lines;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use bahn_parameters::Limits;
 
-use crate::din::DinLanguage;
+use crate::dialect::DinLanguage;
 use crate::format::FormatOptions;
 use crate::lines::{BlockText, Lines, RawBlock};
 use crate::{Block, BlockError, Header, Operation};

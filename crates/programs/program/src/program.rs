@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use bahn_text::as_utf8;
 
 use crate::bulk::Bulk;
-use crate::din::DinLanguage;
+use crate::dialect::DinLanguage;
 use crate::file_types::bulk_language_of;
 use crate::grow::Growth;
 use crate::labels::Labels;

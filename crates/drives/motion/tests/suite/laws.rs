@@ -1,6 +1,4 @@
 //! Laws that hold for every path.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::common::random::{
     Block, Random, check_axes, polyline, random_path, regular_corners, window_cycles,
 };

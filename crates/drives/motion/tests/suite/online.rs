@@ -1,6 +1,4 @@
 //! The interpolator: the path in contour cycles with overrides, stops and gates.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{List, Path, limits, list, plan, time_s};
 use bahn_motion::{Drive, Gate, Interpolator, Limits, Place, Prepared, State, Stop};
 use bahn_path::{

@@ -1,6 +1,4 @@
 //! Paths that do not stand upright: the limits of the axes hold with cycle 19 and M114.
-#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
-
 use std::sync::Arc;
 
 use crate::common::*;

@@ -1,6 +1,4 @@
 //! When functions go out and where the path waits for them, type by type [004:54-90].
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{List, Path, limits, list};
 use bahn_motion::{Drive, Interpolator, Limits, State};
 use bahn_path::{

@@ -1,6 +1,4 @@
 //! Paths that follow the spindle.
-#![allow(clippy::panic, reason = "a helper that panics fails its test")]
-
 use crate::common::{List, Path, function, list, plan, time_s};
 use bahn_motion::{Cycle, Drive, Gate, Interpolator, Limits, Master, SpindleGear, State};
 use bahn_path::{At, Axis, Curve, Function, OverrideLaw, Position, Sense, Step, Synchronisation, Thread};

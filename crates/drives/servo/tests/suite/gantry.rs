@@ -1,6 +1,4 @@
 //! Synchronized axes [000:4451-4539].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::common::Bench;
 use bahn_parameters::{ControlModel::Tnc415b, ParameterList};
 use bahn_servo::{Fault, Gantry, GrossFault};

@@ -1,6 +1,4 @@
 //! Laws of the position loop.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::common::Bench;
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
 use bahn_servo::Method;

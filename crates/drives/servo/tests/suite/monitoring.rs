@@ -1,6 +1,4 @@
 //! Monitoring: each fault at its edge [000:5160-5300].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::common::Bench;
 use bahn_parameters::ControlModel::Tnc415b;
 use bahn_parameters::MessageId;

@@ -1,6 +1,4 @@
 //! Offset adjustment in all its forms [000:5002-5072].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::common::Bench;
 use bahn_parameters::ControlModel::{self, Tnc407, Tnc415b};
 use bahn_servo::{Fault, GrossFault, OffsetInterval};

@@ -1,6 +1,4 @@
 //! Operation with feed pre-control [000:4929-4975].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::f64::consts::TAU;
 
 use crate::common::Bench;

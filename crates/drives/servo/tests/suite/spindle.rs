@@ -1,6 +1,4 @@
 //! The main spindle [000:5438-5945].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use bahn_parameters::{
     ControlModel::{Tnc407, Tnc415b},
     ParameterList,

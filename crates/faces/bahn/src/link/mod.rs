@@ -6,7 +6,6 @@
 //! - `dnc`: programs that are executed while they are transferred, from both sides;
 //! - `backup`: all of a machine as one file; `print`: a picture on a printer;
 //! - `serve`: a machine that answers on its interfaces, `serial_ports` the serial ones;
-//! - `panel_ports`: the interfaces of an operating panel;
 //! - `lsv2`: a host that asks a control by LSV/2.
 //!
 //! What a machine that is on does at its interfaces is [`bahn_ports`].
@@ -18,7 +17,6 @@ mod dnc;
 mod lsv2;
 mod monitor;
 mod options;
-mod panel_ports;
 mod port;
 mod print;
 mod serial_ports;
@@ -26,7 +24,9 @@ mod serve;
 mod transfer;
 
 pub(crate) use options::LinkOptions;
-pub(crate) use panel_ports::{PanelPorts, RunningPorts};
+
+use bahn_parameters::ParameterList;
+use bahn_ports::PanelPorts;
 
 use crate::{Outcome, UsageError};
 use options::LinkCommand;
@@ -46,4 +46,10 @@ pub(crate) fn command(options: &LinkOptions) -> Result<Outcome, UsageError> {
         LinkCommand::Print(options) => print::command(options),
         LinkCommand::Lsv2(options) => lsv2::command(options),
     }
+}
+
+/// The data interfaces of a panel; `None` when one cannot be opened: why is printed.
+pub(crate) fn panel_ports(named: [Option<&String>; 2], list: &ParameterList) -> Option<PanelPorts> {
+    let opened = PanelPorts::open(named, list, port::tell());
+    opened.map_err(port::Refused::from).ok()
 }

@@ -12,12 +12,12 @@ use std::time::Duration;
 use bahn_host::files::NewFile;
 use bahn_host::{HostError, LoadedMachine, PowerOn};
 use bahn_panel::{Input, Live, Replay, Station};
+use bahn_ports::{PanelPorts, RunningPorts};
 use bahn_server::{Server, ServerOptions, Tokens};
 use bahn_service::MachineService;
 
 use crate::interrupt::Interrupt;
-use crate::link::{PanelPorts, RunningPorts};
-use crate::{Outcome, UsageError, diagnostics, files, machine_folder};
+use crate::{Outcome, UsageError, diagnostics, files, link, machine_folder};
 
 /// How often Ctrl-C is looked for.
 const LOOK: Duration = Duration::from_millis(50);
@@ -62,7 +62,7 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     };
     let name = machine.folder.name.clone();
     let named = [options.rs232.as_ref(), options.rs422.as_ref()];
-    let Some(ports) = PanelPorts::open(named, &machine.parameters) else {
+    let Some(ports) = link::panel_ports(named, &machine.parameters) else {
         return Ok(Outcome::ProgramError);
     };
     let power_on = PowerOn::kept(&machine).map_err(in_use)?;

@@ -134,11 +134,14 @@ fn keep_pace(options: &RunMachineOptions, script: &Script, needs_programs: bool,
     }
 }
 
+/// What files hold, or what is wrong with them.
+type Loaded<T> = Result<T, Vec<bahn_text::Diagnostic>>;
+
 /// The module that goes along, and the script, which may speak of it.
 fn load_beside(
     options: &RunMachineOptions,
     machine: &LoadedMachine,
-) -> Result<Result<(Option<LoadedMachine>, Script), Vec<bahn_text::Diagnostic>>, UsageError> {
+) -> Result<Loaded<(Option<LoadedMachine>, Script)>, UsageError> {
     let beside = match module::load(options, machine)? {
         Ok(beside) => beside,
         Err(faults) => return Ok(Err(faults)),
@@ -178,7 +181,7 @@ fn load_script(
     options: &RunMachineOptions,
     machine: &LoadedMachine,
     module: Option<&LoadedMachine>,
-) -> Result<Result<Script, Vec<bahn_text::Diagnostic>>, UsageError> {
+) -> Result<Loaded<Script>, UsageError> {
     let (path, is_log) = match (&options.run.script, &options.run.replay) {
         (Some(path), _) => (path, false),
         (None, Some(path)) => (path, true),

@@ -398,7 +398,7 @@ fn coded_marks(number: u16) -> Verdict {
 
 /// How far each axis counts, and the spindle turns, when the table of an axis is pushed up by hand, in parts of its way;
 /// all axes are inhibited. The counts are those of the cycle before.
-fn counted(build: Build, pushed: usize) -> [f64; 5] {
+fn counted(build: Build, pushed: usize) -> Vec<f64> {
     let mut rig = build.mps("72=15 76=63 75=2 237=1").with(SPINDLE).rig();
     rig.command("ce");
     rig.seconds(2.0);
@@ -411,7 +411,10 @@ fn counted(build: Build, pushed: usize) -> [f64; 5] {
     rig.seconds(0.2);
     let way = rig.table(AXES[pushed]) - from;
     let after = look(&rig);
-    [0, 1, 2, 3, 4].map(|axis: usize| ((after[axis] - before[axis]) / way * 10.0).round() / 10.0)
+    let parts = before.iter().zip(&after);
+    parts
+        .map(|(before, after)| ((after - before) / way * 10.0).round() / 10.0)
+        .collect()
 }
 
 /// MP253 to MP256 name the axis that counts what comes at an input: beside its own axis Y, for Y's input Z, and for 5 the
@@ -422,7 +425,7 @@ fn inputs(number: u16) -> Verdict {
     let own = counted(bench(&format!("{number}=0")), input);
     let named = counted(bench(&format!("{number}={}", other + 1)), input);
     let of_v = counted(bench(&format!("{number}=5")), input);
-    let mut wanted = [0.0; 5];
+    let mut wanted = vec![0.0; own.len()];
     wanted[input] = 1.0;
     same(own, wanted)?;
     same([named[other], named[4]], [1.0, 0.0])?;

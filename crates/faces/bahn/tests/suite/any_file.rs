@@ -1,8 +1,6 @@
 //! Whatever stands in the files of a machine: it is read, or refused with its place. The targets under `fuzz/`
 //! try the same for longer.
 
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use bahn_machine::{Machine, MachineFolder};
 use bahn_tnc::{CompensationAssignment, CompensationTable, CorrectionTables};
 use proptest::prelude::*;

@@ -1,6 +1,4 @@
 //! `bahn compensate`: the residual error of machines with pitch error, backlash and thermal drift.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 
 /// The mill with an encoder of 100 µm on the screw of X: pitch error, 12 µm of backlash, and 15 µm of drift in some minutes.

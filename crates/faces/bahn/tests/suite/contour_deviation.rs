@@ -1,6 +1,4 @@
 //! Why the axes left the contour: each cause is provoked on the simulated mill, and the report names it.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::{Folder, number};
 use serde_json::Value;
 

@@ -1,6 +1,4 @@
 //! `bahn convert`: programs in another language, with the proof that they do the same.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use std::fs;
 
 use crate::support::{Folder, copy, machines};

@@ -1,6 +1,4 @@
 //! What is said of the spindle, the tool and the place of the cut, in `bahn test` and `bahn run`.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::Folder;
 use serde_json::Value;
 

@@ -1,6 +1,4 @@
 //! TCH PROBE 5 to 7 in a test run: a part is machined, digitized, and machined again from its points.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::collections::BTreeMap;
 
 use crate::support::*;

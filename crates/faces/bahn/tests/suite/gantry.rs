@@ -1,6 +1,4 @@
 //! `bahn run` on the gantry: synchronized axes, a tilted plane, a spindle that leans.
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use crate::support::{Folder, assert_near, machines, number};
 
 fn run(folder: &Folder, arguments: &str) -> serde_json::Value {

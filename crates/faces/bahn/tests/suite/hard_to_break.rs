@@ -1,10 +1,5 @@
 //! Programs and situations that would break a weaker command.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "what fails in the helpers of tests fails the test"
-)]
-
 use std::fs::File;
 use std::io::Read;
 use std::process::{Command, Stdio};

@@ -1,6 +1,4 @@
 //! What is fitted to a control: terminals, boards, versions, options, software.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::Folder;
 use bahn_parameters::ControlModel;
 use serde_json::Value;

@@ -1,6 +1,4 @@
 //! `bahn machine`: folders of machines, whole and broken.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::Folder;
 
 const MODELS: [&str; 6] = ["tnc151", "tnc155", "tnc360", "tnc407", "tnc415b", "tnc425"];

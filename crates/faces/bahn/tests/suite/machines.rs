@@ -1,6 +1,4 @@
 //! The machines under machines/: everything in a folder can be read, and does what it should.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;

@@ -1,6 +1,4 @@
 //! Programs of DIN 66025 in `bahn test` and, on a machine, in `bahn run`.
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use std::f64::consts::PI;
 use std::fs;
 

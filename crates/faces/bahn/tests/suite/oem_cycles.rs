@@ -1,7 +1,5 @@
 //! Programs with the later functions in the product: cycles of the machine builder from files, thread cutting, contour
 //! data, surface normals; read, checked, formatted and executed.
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use crate::support::Folder;
 
 /// A program with every one of them, and two cycles of the machine builder: 68 in the program memory, 69 in the EPROM.

@@ -1,7 +1,5 @@
 //! `bahn oem`: cycles of the machine builder with their dialogues, and EPROMs with them [000:17691-17984]
 //! [000:11388-11412].
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use crate::support::Folder;
 use serde_json::Value;
 

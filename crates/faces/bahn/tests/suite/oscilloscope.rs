@@ -1,6 +1,4 @@
 //! `bahn run --oscilloscope`: the memory of the control's oscilloscope.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 
 fn dig425(blocks: &str) -> Folder {

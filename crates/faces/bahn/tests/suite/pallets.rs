@@ -1,6 +1,4 @@
 //! Pallet file and datum tables in the folder of a machine: modules 9090 and 9094 and cycle 7 in the product.
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 

@@ -1,6 +1,4 @@
 //! `bahn plc trace` and `diagram` on a machine that runs.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::Folder;
 use serde_json::Value;
 

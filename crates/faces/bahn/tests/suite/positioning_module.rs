@@ -1,6 +1,4 @@
 //! `bahn run --with`: the mill with a positioning module beside it.
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use crate::support::{Folder, machines};
 use serde_json::Value;
 

@@ -1,11 +1,5 @@
 //! What survives power-off: nothing is lost that the PLC has seen done, damage is said and starts nothing.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "what fails in the helpers of tests fails the test"
-)]
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Child, Stdio};

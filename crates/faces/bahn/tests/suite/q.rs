@@ -1,6 +1,4 @@
 //! `bahn q`: parameters of a System 900.
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
-
 use std::path::Path;
 
 use crate::support::{Folder, Run};

@@ -1,6 +1,4 @@
 //! Everything that can be recorded has the value that it must have.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 
 /// The columns of a recording by their names, without units; what happened is the last one.

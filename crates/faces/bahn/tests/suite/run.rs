@@ -1,6 +1,4 @@
 //! `bahn run`: programs on the shipped machines.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::{Folder, Run, machines, number, rows};
 use serde_json::{Value, json};
 

@@ -1,6 +1,4 @@
 //! `bahn run`: what is reported when something is not as it should be, and what goes on beside the run.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use std::path::{Path, PathBuf};
 
 use crate::support::{Folder, Run, number, program};

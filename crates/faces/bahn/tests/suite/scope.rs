@@ -1,6 +1,4 @@
 //! `bahn scope`: summaries and drawings of recordings.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::{Folder, number};
 
 /// A ramp of 100 mm/s for a second, then still; the marker is set from 0.4 to 0.7 s.

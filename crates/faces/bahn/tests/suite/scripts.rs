@@ -1,6 +1,4 @@
 //! Scripts: conditions, times, what goes on after an error, and what the end makes of it all.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use std::path::Path;
 
 use crate::support::*;

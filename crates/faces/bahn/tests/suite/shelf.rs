@@ -1,6 +1,4 @@
 //! `bahn test` with many programs: which ones, the table, its files, comparisons.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::fs;
 use std::io::Write;
 use std::process::Stdio;

@@ -1,6 +1,4 @@
 //! `bahn table`, and tables of a machine against its parameters.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::{Folder, number};
 use serde_json::Value;
 

@@ -1,6 +1,4 @@
 //! `bahn technology`: programs with functions that the path waits for, on the command line.
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
-
 use std::path::Path;
 
 use crate::support::{Folder, Run, copy};

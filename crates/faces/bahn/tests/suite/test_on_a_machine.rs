@@ -1,6 +1,4 @@
 //! `bahn test` on the control of a machine, and with parameters of the command line.
-#![allow(clippy::panic, reason = "a helper that panics fails its test")]
-
 use crate::support::Folder;
 
 /// FN14 shows the texts of the machine: 300 is PLC message 0, 400 dialogue 0 [003:4364-4367].

@@ -1,6 +1,4 @@
 //! What `bahn run` says of threads: how deep they are, and how far the tool was from its spindle.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::{Folder, copy, machines, number, program, rows};
 
 const PITCH: f64 = 1.25;

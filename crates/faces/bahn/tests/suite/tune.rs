@@ -1,6 +1,4 @@
 //! `bahn tune`: the commissioning assistant on three plants.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_parameters::{Adjustment, ControlModel, ParameterList};
 

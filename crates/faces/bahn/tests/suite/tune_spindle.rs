@@ -1,6 +1,4 @@
 //! `bahn tune DIR S`: the ramp of the spindle in a thread, and kv of its orientation.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::{Folder, copy, machines, number, program};
 
 /// Threads of another depth, pitch and speed than those of the trial.

@@ -1,6 +1,4 @@
 //! `bahn run` on a machine of two channels: each runs its program, is reported, recorded and drawn.
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
-
 use std::path::{Path, PathBuf};
 
 use crate::support::Folder;

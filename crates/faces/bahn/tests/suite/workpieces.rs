@@ -1,7 +1,5 @@
 //! The workpieces of the shipped machines that have threads, a touch probe, a tool probe or a cycle of the machine builder:
 //! each runs on its machine to the end, and is what its drawing says.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::{Folder, copy, machines, number, rows};
 use serde_json::Value;
 

@@ -6,6 +6,9 @@
 //!
 //! Decision: What MP7224.0 disables is hidden on the panel and not erased
 //!
+//! Decision: Code number 86357 takes the protection by MP7224.1 from one file, until the control is switched off: the manual has one
+//! code for protected files and does not say that it passes over those of a type [000:6938]
+//!
 //! Decision: A name without a type is the program that is there, else one in the language of PROGRAM INPUT; the
 //! control knows a program in DIN/ISO by its name with type
 
@@ -108,7 +111,12 @@ impl Directory {
                 };
             }
             Purpose::ReadOut => false,
-            Purpose::Unprotect => return unprotect(&name, site),
+            Purpose::Unprotect => {
+                return match unprotect(&name, site) {
+                    Ok(()) => Turn::Done,
+                    Err(denial) => Turn::Say(said(denial, site)),
+                };
+            }
             Purpose::Edit if self.typed == "0" => return table::tools(site),
             Purpose::Edit if table::is_of_machine(&name, site) => return table::open(&name, site),
             Purpose::Edit if !there => return create(name, site),
@@ -201,7 +209,8 @@ impl Directory {
             if code.parse() != Ok(CANCEL_PROTECTION) {
                 return Turn::Say(site.message(MessageId::EntryValueIncorrect));
             }
-            done(site.programs.protect(&name, false), site)
+            let unprotected = unprotect(&name, site);
+            done(unprotected, site)
         }))
     }
 }
@@ -334,10 +343,15 @@ fn erase(name: String, site: &mut Site) -> Turn {
     }))
 }
 
-fn unprotect(name: &str, site: &mut Site) -> Turn {
+/// Takes away the protection by the type of a file, and that of a program by its first block.
+fn unprotect(name: &str, site: &mut Site) -> Result<(), Denial> {
+    let by_type = table::is_protected(name, site);
+    if by_type {
+        site.settings.unprotected.insert(name.to_owned());
+    }
     match site.programs.protect(name, false) {
-        Ok(()) => Turn::Done,
-        Err(denial) => Turn::Say(said(denial, site)),
+        Err(_) if by_type => Ok(()),
+        result => result,
     }
 }
 

@@ -1,7 +1,5 @@
 //! Whatever is pressed: nothing panics, every screen is whole, and the machine can be switched on again.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{Key, Screen, Star};
 use bahn_tnc::RunState;

@@ -1,10 +1,4 @@
 //! A plant that is no simulated machine, at the operator's panel: docs/plant.md, "With the panel".
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "what fails in a helper fails the test"
-)]
-
 use std::path::Path;
 use std::sync::Arc;
 

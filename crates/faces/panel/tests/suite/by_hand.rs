@@ -1,8 +1,6 @@
 //! What is done by hand: the touch probe menu, the handwheel, M and S, Q parameters of an interrupted run; and the flags
 //! of the status display.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::Star;
 

@@ -1,7 +1,5 @@
 //! Actual position capture [003:2260-2321]: what is captured is what the display shows, and the block is taken.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 
 /// A new program is edited, its cursor at BEGIN.

@@ -1,8 +1,6 @@
 //! Random inputs by seed: keys, axes, faults and repairs, power, the past and its branches. Nothing panics, the time line
 //! stays in order, and the session comes out the same when it is seen again.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{Input, InputText, Replay, Screen};
 

@@ -1,7 +1,5 @@
 //! Graphics while programming: what is being written is drawn beside the program.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::time::Instant;
 
 use crate::support::Trainee;

@@ -1,7 +1,5 @@
 //! Programs of DIN 66025 at the panel: chosen, run block by block, tested with graphics.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::Star;
 

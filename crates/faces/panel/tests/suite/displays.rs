@@ -1,7 +1,5 @@
 //! The status display: which axes it has, the tool length in it, the feed and its highlight.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{Screen, Star};
 

@@ -1,7 +1,5 @@
 //! Program management by keys [003:981-1023], and the tables of the machine.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{Mark, Star, WindowKind};
 use bahn_parameters::{ControlModel, ListText};

@@ -1,7 +1,5 @@
 //! From power-on to a running program, by keys.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::Star;
 

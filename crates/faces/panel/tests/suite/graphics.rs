@@ -1,7 +1,5 @@
 //! Graphics of TEST RUN and program run: the part that is cut, and how it is looked at.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::collections::BTreeSet;
 
 use crate::support::Trainee;

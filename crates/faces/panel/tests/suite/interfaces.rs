@@ -1,7 +1,5 @@
 //! MOD: the data interfaces, DIN/ISO, and types of files that are disabled.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 
 fn menu(trainee: &mut Trainee) {
@@ -222,7 +220,19 @@ fn programs_of_a_protected_type_are_not_edited() {
         trainee.messages()
     );
     assert_eq!(trainee.file("programs/9.H"), before);
-    trainee.press("CE CE CE PGM_NR 8 POINT I ENT");
+    // The code number takes the protection from this file.
+    trainee
+        .press("CE CE CE PGM_NR 9 SK6")
+        .number("86357")
+        .press("ENT");
+    trainee.press("PGM_NR 9 ENT STOP END").wait(0.1);
+    assert_eq!(trainee.messages(), [""; 0]);
+    assert!(
+        trainee.file("programs/9.H").contains("STOP"),
+        "{}",
+        trainee.file("programs/9.H")
+    );
+    trainee.press("PGM_NR 8 POINT I ENT");
     assert_eq!(trainee.screen().program.title, "8.I");
     trainee.give(r#"{"text":"M3"}"#).press("END").wait(0.1);
     assert_eq!(trainee.messages(), [""; 0]);

@@ -1,7 +1,5 @@
 //! A program in DIN/ISO is written, tested and run at the panel.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::Star;
 

@@ -1,7 +1,5 @@
 //! The lessons of the mill: solved key by key, and failed by who does nothing or the wrong thing.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{Input, LessonState, Refusal};
 

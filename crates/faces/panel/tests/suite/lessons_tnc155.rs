@@ -1,7 +1,5 @@
 //! The lessons of the knee mill with a TNC 155: commissioning in the order of its check list, and what can fail in a cabinet.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::LessonState;
 

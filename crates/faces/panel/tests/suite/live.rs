@@ -1,7 +1,5 @@
 //! A station in real time: what is recorded there is seen again, and the past is reached while it runs.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::time::{Duration, Instant};
 
 use crate::support::Trainee;

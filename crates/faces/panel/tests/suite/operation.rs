@@ -1,7 +1,5 @@
 //! Small things that an operator expects of the keys.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{Star, WindowKind};
 

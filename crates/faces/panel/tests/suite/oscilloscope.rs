@@ -1,6 +1,4 @@
 //! The oscilloscope at the panel: its main display, a recording that is seen while it goes on, cursors and scales.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{GraphicsView, Screen};
 

@@ -1,7 +1,5 @@
 //! What single pages show, and which soft keys they have.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 
 /// The texts of the soft keys that are shown.

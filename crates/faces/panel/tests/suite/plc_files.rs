@@ -1,7 +1,5 @@
 //! The PLC mode by keys: other forms of a program, the binary code of an EPROM, the files of messages.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_host::eprom::LoadList;
 use bahn_host::s_records::Image;

@@ -1,7 +1,5 @@
 //! The PLC mode by keys: table, editor, compiler, trace and logic diagram of the machine that runs.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_exchange::Operand;
 

@@ -1,7 +1,5 @@
 //! What the screen shows of a program that runs, is interrupted and broken off.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::Star;
 

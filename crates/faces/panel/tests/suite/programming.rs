@@ -1,7 +1,5 @@
 //! A program is written by dialogue, kept, tested and run.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::Star;
 

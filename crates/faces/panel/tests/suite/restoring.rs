@@ -1,8 +1,6 @@
 //! RESTORE DATA and commissioning where something fails: the machine stays on, and what it keeps is kept
 //! [000:463-467] [000:10011].
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_host::backup::back_up;
 use bahn_panel::Station;

@@ -1,7 +1,5 @@
 //! A session is recorded, and seen again on another machine of its kind.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::path::PathBuf;
 
 use crate::support::Trainee;

@@ -1,7 +1,5 @@
 //! MOD by keys: display, units, language, limits, code numbers, machine parameters, help.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 
 fn code(trainee: &mut Trainee, code: &str) {

@@ -1,7 +1,5 @@
 //! Tables that the machine uses count at once; correction tables; the plane of 3D ROT; German messages.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_host::Operable;
 use bahn_panel::Star;

@@ -1,7 +1,5 @@
 //! TEST RUN by keys [003:1514-1535].
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 
 /// A program is tested, from a machine that is ready.

@@ -1,7 +1,5 @@
 //! Every text of the panel and of the rooms that it is made of has its translation.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::path::Path;
 
 use bahn_screen::texts::{Language, translation};

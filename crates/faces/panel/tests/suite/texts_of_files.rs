@@ -1,7 +1,5 @@
 //! Whatever stands in a file of the panel is read, or its fault has a line.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::sync::LazyLock;
 
 use bahn_machine::Machine;

@@ -1,7 +1,5 @@
 //! Back to any moment since power-on, and from there another way.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{MarkKind, Refusal, Screen, Star};
 

@@ -1,7 +1,5 @@
 //! Keyboard, screen and MOD of a TNC 151 and a TNC 155 [001:186] [001:1293-1334].
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_parameters::ControlModel::{Tnc151, Tnc155};
 use serde_json::json;

@@ -1,7 +1,5 @@
 //! MOD of a TNC 155: what the machine builder gives to the operator, and the offsets of the drives [001:1299-1334] [001:2573-2585].
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_parameters::ControlModel::Tnc155;
 

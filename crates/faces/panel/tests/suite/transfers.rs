@@ -1,7 +1,5 @@
 //! EXT at the panel: orders go out, and what happens at the line comes back.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::sync::mpsc::Receiver;
 
 use crate::support::Trainee;

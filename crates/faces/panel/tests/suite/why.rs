@@ -1,7 +1,5 @@
 //! A machine that stands says why: the marker that is missing, and what keeps it from being there.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use crate::support::Trainee;
 use bahn_panel::{Reason, Urgency};
 

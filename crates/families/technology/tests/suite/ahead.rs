@@ -1,6 +1,4 @@
 //! Functions that are output ahead, and those with a time stamp: rows T13 to T16 of the acceptance.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_technology::{EventKind, Report};
 

@@ -1,6 +1,4 @@
 //! Whatever a program says: its run ends, with a report that holds together.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{Asked, Bench};
 use bahn_technology::EventKind;
 use proptest::prelude::*;

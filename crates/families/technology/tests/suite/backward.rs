@@ -1,6 +1,4 @@
 //! Functions that are output ahead, in backward motion and forward again.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{A, Asked, Bench, T, at, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report};

@@ -1,6 +1,4 @@
 //! Functions that are output and waited for at block limits: rows T1 to T12 of the acceptance.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_technology::EventKind;
 

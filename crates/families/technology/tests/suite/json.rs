@@ -1,6 +1,4 @@
 //! The report as JSON, key by key.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::Bench;
 use serde_json::{Value, json};
 

@@ -1,7 +1,5 @@
 //! Laws of random programs with random acknowledgements: no gate opens without its acknowledgement, none stays shut with
 //! it, and the order of output is that of the program in every range, but for what is output ahead.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use std::collections::HashMap;
 
 use crate::common::{Asked, Bench, T};

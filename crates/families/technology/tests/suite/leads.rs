@@ -1,8 +1,6 @@
 //! MET_MOS keeps its lead: the time between its output and the path at its place [004:87-90].
 //!
 //! Beside it stands a MOS_TS function, whose time stamp tells when the path was there [004:93].
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use std::fmt::Write as _;
 
 use crate::common::{A, Asked, Bench, T, at, x};

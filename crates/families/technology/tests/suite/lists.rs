@@ -1,6 +1,4 @@
 //! Lists in all the spellings of the manual [004:57] [004:111-126] [004:162-174] [004:192-234].
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
-
 use bahn_technology::{ChannelList, ChannelSettings, Synch, Synchronisation};
 
 fn settings(text: &str) -> ChannelSettings {

@@ -1,6 +1,4 @@
 //! Micro Joints: rows T27 to T34 and T38 of the acceptance.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{A, Asked, Bench, at, x, y};
 use bahn_technology::{Event, EventKind, Report};
 

@@ -1,6 +1,4 @@
 //! Targets, values, spindles and lists of active functions: rows T7, T17 to T26 and T35 to T37 of the acceptance.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report, Value};

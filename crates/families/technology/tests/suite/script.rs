@@ -1,6 +1,4 @@
 //! What the script does beside acknowledging, several programs, and how runs end.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{ChannelList, EventKind, Report, Script};

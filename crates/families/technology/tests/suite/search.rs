@@ -1,6 +1,4 @@
 //! Block search: a run that begins at a block, and what it says of the functions before that.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{Asked, Bench, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report, Value};

@@ -1,6 +1,4 @@
 //! Single block: the path stops at the end of each programmed block with a motion until the operator starts the next one.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_technology::{EventKind, Report};
 

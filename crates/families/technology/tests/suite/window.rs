@@ -1,6 +1,4 @@
 //! A PLC that serves the ranges in its window of bytes.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::common::{Bench, T};
 use bahn_technology::{EventKind, PlcMemory, Report, WINDOW_BYTES};
 

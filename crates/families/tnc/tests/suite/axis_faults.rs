@@ -1,7 +1,5 @@
 //! Monitoring of the axes: which message, what the machine does, what clears it [000:5160-5318]
 //! [000:3288-3328].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::bench::*;
 use crate::support::*;
 use bahn_tnc::RunState;

@@ -1,6 +1,4 @@
 //! What goes on beside the run: test run, what survives power-off.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_tnc::{RunState, TestState};
 

@@ -1,6 +1,4 @@
 //! Two channels on one machine: one clock, one PLC, one EMERGENCY STOP; each with its axes, its panel, its program.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::sync::Arc;
 
 use crate::support::bench::{bench, close, fourth};

@@ -1,6 +1,4 @@
 //! Non-linear axis errors: the manual's tables on the bench [000:3785-3865].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::bench::*;
 use crate::support::*;
 use bahn_tnc::{

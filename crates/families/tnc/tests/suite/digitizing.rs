@@ -1,7 +1,5 @@
 //! TCH PROBE 5 to 7 on the machine: the axes scan what the probe touches [003:6532-6882] [000:7722-7958].
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a test may fail")]
-
 use crate::stand::*;
 use crate::support::*;
 use bahn_servo::Plant;

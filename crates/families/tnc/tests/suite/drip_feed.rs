@@ -1,6 +1,4 @@
 //! A program that is executed while it is transferred: however its text comes, the path is that of the whole program.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::*;
 use bahn_parameters::ControlModel;
 use bahn_path::{Axis, PathElement};

@@ -1,8 +1,6 @@
 //! What the operator enters beside a run: AXIS LIMIT, Q parameters, elements of tables; and what the status display shows
 //! of transformations.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::stand::*;
 use crate::support::Rig;
 use crate::support::bench as by_hand;

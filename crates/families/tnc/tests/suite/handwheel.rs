@@ -1,7 +1,5 @@
 //! ELECTRONIC HANDWHEEL: interpolation factors, threshold, jog increment [000:8060-8170] [000:8494-8556].
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::bench::*;
 use crate::support::*;
 use bahn_tnc::HANDWHEEL_STEPS;

@@ -1,6 +1,4 @@
 //! Single rules of program run: messages with their block, refusals, stops, what the PLC learns.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::stand::*;
 use crate::support::*;
 use bahn_tnc::RunState;

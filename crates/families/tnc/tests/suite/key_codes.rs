@@ -1,7 +1,5 @@
 //! `key CODE` of scripts takes what W516 takes [000:7406-7436].
 
-#![allow(clippy::unwrap_used, reason = "tests fail by panic")]
-
 use bahn_tnc::{Command, Mode};
 
 /// "Code for soft key functions: 0000 INTERNAL STOP, 0100 M, 0200 S, 0300 TOUCH PROBE, 0400 PASS OVER REFERENCE,

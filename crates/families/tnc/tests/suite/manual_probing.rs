@@ -1,6 +1,4 @@
 //! The functions of the TOUCH PROBE menu in MANUAL and HANDWHEEL [003:1217-1512].
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::stand::*;
 use crate::support::*;
 use bahn_path::Axis;

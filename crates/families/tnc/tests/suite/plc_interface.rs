@@ -1,7 +1,5 @@
 //! Between NC and PLC: read-in inhibit, queues, the free analogue output, modules of status and spindle, tool
 //! changes that are broken off.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::stand::*;
 use crate::support::*;
 use bahn_tnc::Signal;

@@ -1,6 +1,4 @@
 //! Power-on, EMERGENCY STOP, reference run.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_tnc::Mode;
 

@@ -1,6 +1,4 @@
 //! Part programs are read on another thread: the path is the same, and what comes meanwhile is not lost.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::*;
 use bahn_tnc::{ReadAhead, RunState};
 

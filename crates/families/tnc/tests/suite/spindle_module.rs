@@ -1,6 +1,4 @@
 //! Module 9171 orients the spindle: its directions, and what it refuses [000:16120-16160].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::stand::*;
 use crate::support::Rig;
 

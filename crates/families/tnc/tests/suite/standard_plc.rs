@@ -1,7 +1,5 @@
 //! The standard PLC program of the TNC 151 and 155 at the terminals: codes, strobes, decoded functions [001:458-900].
 
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::{Build, Rig};
 use crate::terminals::terminals;
 use bahn_tnc::RunState;

@@ -1,7 +1,5 @@
 //! EMERGENCY STOP within a code of the standard PLC program.
 
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::Rig;
 use crate::terminals::terminals;
 

@@ -1,8 +1,6 @@
 //! PNT: in POSITIONING WITH MDI the machine moves in the direction in which the stylus of a TM 110 is deflected
 //! [000:7907].
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a test may fail")]
-
 use crate::stand::*;
 use crate::support::*;
 use bahn_servo::Plant;

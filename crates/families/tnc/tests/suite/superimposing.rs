@@ -1,7 +1,5 @@
 //! M118: the handwheel leads axes beside the path of a program [000:742].
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
 use crate::support::bench::*;
 use crate::support::*;
 use bahn_path::Axis;

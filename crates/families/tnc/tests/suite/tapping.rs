@@ -1,6 +1,4 @@
 //! Tapping on the mill: cycles 17 and 18, in which Z follows the spindle, and cycle 2 [000:6047-6145].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::*;
 use bahn_exchange::Bit;
 use bahn_machine::Machine;

@@ -1,6 +1,4 @@
 //! Threads in which something fails: what the tool axis, its spindle and the path do then [000:6115-6139].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::*;
 use bahn_tnc::{RunState, Signal};
 

@@ -1,7 +1,5 @@
 //! How deep a thread is, and how well the tool axis follows the spindle: what the plant does, not what the encoders say
 //! [000:6047-6145].
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use crate::support::*;
 use bahn_exchange::Bit;
 use bahn_parameters::{ControlModel, ParameterList};

@@ -1,6 +1,4 @@
 //! Swivel axes on a machine: cycle 19 and M114 with a head that swivels about B.
-#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::*;
 use bahn_tnc::RunState;
 

@@ -1,6 +1,4 @@
 //! Tools are measured with the tool probe of the mill: TCH PROBE 31 and 32 [000:7960-8058].
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_path::ToolShape;
 use bahn_plc::TableKind;

@@ -1,6 +1,4 @@
 //! Output S for lasers and water jets: M200 to M204 with MP3011 = 3 [000:9841-9909].
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::stand::*;
 use crate::support::Rig;
 use bahn_tnc::RunState;

@@ -1,6 +1,4 @@
 //! A contour that takes long to compute does not hold the machine: whoever drives it computes beside.
-#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::*;
 use bahn_tnc::RunState;
 

@@ -1,6 +1,4 @@
 //! Every error of the compiler, with its line; several in one pass.
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::common::compile;
 use bahn_parameters::ControlModel;
 use bahn_plc::{Compilation, Memories, MemoryFiles, Options, ProgramMemory};

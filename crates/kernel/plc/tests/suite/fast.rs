@@ -1,7 +1,5 @@
 //! The fast form does what the reference interpreter does: random programs, random inputs, the whole memory.
 
-#![expect(clippy::unwrap_used, reason = "the programs of these tests are valid")]
-
 use std::fmt::Write;
 use std::sync::Arc;
 

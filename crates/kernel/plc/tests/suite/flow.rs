@@ -1,6 +1,4 @@
 //! Jumps, modules, structures, tables, submit jobs, timers, counters, edges; run-time errors.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use crate::common::{Bench, compile, example};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{InterfaceUser, PlcError, Start, TestNc};

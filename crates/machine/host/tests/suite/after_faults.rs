@@ -1,6 +1,4 @@
 //! What the fault campaign found, each as the few things that lead to it.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::{host, machine, mill, old_mill, seconds};
 use bahn_host::{Action, Host, PowerOn, Source};
 use bahn_parameters::fault::FaultId;

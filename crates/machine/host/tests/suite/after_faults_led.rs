@@ -1,6 +1,4 @@
 //! What the fault campaign found where the machine leads the path: a probe, or a spindle.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::{host, machine, mill, seconds};
 use bahn_exchange::signal;
 use bahn_host::{Action, Host, PowerOn, Source};

@@ -1,6 +1,4 @@
 //! Elements of the path are handed out when they are executed, each once and in their order.
-#![allow(clippy::unwrap_used, reason = "tests fail by panic")]
-
 use bahn_host::{Action, Answer, ElementId, ExecutedPath, Host, Source};
 use bahn_tnc::{Command, RunState};
 

@@ -1,6 +1,4 @@
 //! Orders, notices and snapshots of a machine that is on.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_host::{
     Action, Answer, Attendance, Clock, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source, When,

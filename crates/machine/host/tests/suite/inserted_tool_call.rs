@@ -1,6 +1,4 @@
 //! Module 9150 while a program of DIN 66025 runs, which has no tools.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use std::sync::Arc;
 
 use crate::support::*;

@@ -1,6 +1,4 @@
 //! The reference run of the knee mill with a TNC 155, by its cams [001:951-995].
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_host::{Host, LoadedMachine, PowerOn};
 use bahn_tnc::Mode;

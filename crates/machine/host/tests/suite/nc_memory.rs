@@ -1,11 +1,5 @@
 //! Whatever lies in the folder of programs, the machine can be switched on: a file that cannot be used is said at power-on, and
 //! refused by what uses it.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "what fails in the helpers of tests fails the test"
-)]
-
 use std::fs;
 
 use crate::support::*;

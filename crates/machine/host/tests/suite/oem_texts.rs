@@ -1,7 +1,5 @@
 //! The dialogue texts of customized macros of a TNC 155 [001:2764-2823] [001:2895-2925].
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
-
 use std::path::PathBuf;
 
 use bahn_host::LoadedMachine;

@@ -1,6 +1,4 @@
 //! `[[function]]` of machine.toml: M functions with a synchronisation of the machine builder's own.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_host::LoadedMachine;
 use bahn_parameters::own_functions::OwnFunction;

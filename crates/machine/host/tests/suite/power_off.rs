@@ -1,11 +1,5 @@
 //! The process ends at any moment of a tool change and begins again: the simulated mechanics stand where they stood, and the PLC
 //! program brings every tool to where the control has it.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "what fails in the helpers of tests fails the test"
-)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 

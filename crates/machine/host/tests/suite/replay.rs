@@ -1,6 +1,4 @@
 //! Any moment of a run is reached again, to the bit.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use crate::support::*;
 use bahn_host::{Action, Answer, Host, HostError, Log, Next, Notice, PowerOn, Sink, Source, Timeline, When};
 use bahn_tnc::{Command, Signal};

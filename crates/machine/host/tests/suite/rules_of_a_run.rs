@@ -1,6 +1,4 @@
 //! Machine parameters that are changed while a program of DIN 66025 runs.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use std::sync::Arc;
 
 use crate::support::*;

@@ -1,6 +1,4 @@
 //! Scripts on the whole machine: power, wires, faults, parameters and operands of the running control, every command.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use std::path::Path;
 
 use crate::support::*;

@@ -1,6 +1,4 @@
 //! `plc = "standard"` and MP77: which PLC program a TNC 155 runs; the knee mill with the standard one.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::support::*;

@@ -1,6 +1,4 @@
 //! The twin: two channels on one machine, loaded from its folder, driven, stopped, handed an axis, kept over power-off.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use std::sync::{Arc, Mutex};
 
 use crate::support::*;

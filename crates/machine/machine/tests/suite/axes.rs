@@ -1,6 +1,4 @@
 //! Feed axes: drives, mechanics, encoders, switches.
-#![allow(clippy::unwrap_used, reason = "a test that panics fails")]
-
 use crate::common::{BASE, IDEAL_X, input, milliseconds, running};
 use bahn_servo::Encoder;
 

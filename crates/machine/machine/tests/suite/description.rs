@@ -1,6 +1,4 @@
 //! The description of a machine is read or refused, fault by fault.
-#![allow(clippy::unwrap_used, reason = "a test that panics fails")]
-
 use crate::common::{BASE, IDEAL_X};
 use bahn_machine::Machine;
 

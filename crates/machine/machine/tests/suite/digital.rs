@@ -1,6 +1,4 @@
 //! Axes whose speed loop the control closes (MP1900, TNC 425): servo and current drive together, step by step.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics fails")]
-
 use crate::common::BASE;
 use bahn_machine::Machine;
 use bahn_parameters::fault::FaultId;

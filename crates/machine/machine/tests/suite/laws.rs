@@ -1,6 +1,4 @@
 //! Laws that hold for every machine and every course of events.
-#![allow(clippy::unwrap_used, reason = "a test that panics fails")]
-
 use crate::common::{BASE, milliseconds, running};
 use bahn_machine::{Event, Machine, MachineFolder};
 use bahn_servo::Encoder;

@@ -1,6 +1,4 @@
 //! The tool magazine: chain, shuttle and arm, and what goes wrong with them.
-#![allow(clippy::unwrap_used, reason = "a test that panics fails")]
-
 use crate::common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
 use bahn_machine::Machine;
 

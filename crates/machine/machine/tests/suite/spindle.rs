@@ -1,6 +1,4 @@
 //! The main spindle.
-#![allow(clippy::unwrap_used, reason = "a test that panics fails")]
-
 use crate::common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
 use bahn_machine::Machine;
 

@@ -1,6 +1,4 @@
 //! Outputs as the terminals of a control have them: their supply, and bipolar ones.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use crate::common::{IDEAL_X, input, machine, outputs};
 
 /// The plant of the other tests, without `switched_outputs`.

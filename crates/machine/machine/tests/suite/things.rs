@@ -1,6 +1,4 @@
 //! Panel, EMERGENCY STOP chain, things with two states, probe, analogue inputs, events.
-#![allow(clippy::unwrap_used, reason = "a test that panics fails")]
-
 use crate::common::{BASE, IDEAL_X, input, machine, milliseconds, outputs, running};
 use bahn_machine::{Event, EventError, Machine};
 use bahn_servo::{Commands, Measured, Plant, Step};

@@ -1,7 +1,5 @@
 //! The parameters of axes and spindle as servo and control see them, for every model.
 
-#![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
-
 use bahn_parameters::spindle::{GearSignal, SpindleOutput};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, Direction};

@@ -1,7 +1,5 @@
 //! The registry of what each function does: its form, and whether machine parameters that act are read.
 
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,5 @@
 //! Values that do not go together, each rule with an example.
 
-#![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
-
 use bahn_parameters::{ControlModel, ParameterList};
 
 /// Where and what is wrong with the reference list with these values.

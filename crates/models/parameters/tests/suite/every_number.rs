@@ -1,6 +1,4 @@
 //! Machine parameters by their numbers: each reaches the getter that is meant.
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
-
 use std::collections::BTreeMap;
 
 use bahn_parameters::{ControlModel, Definition, ParameterId, ParameterList};

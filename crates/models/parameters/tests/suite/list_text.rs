@@ -1,7 +1,5 @@
 //! The text of a list keeps its lines; faults say where they are; a list that lacks something is refused.
 
-#![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
-
 use bahn_parameters::{ControlModel, Definition, ListText, ParameterError, ParameterId, ParameterList};
 use proptest::prelude::*;
 

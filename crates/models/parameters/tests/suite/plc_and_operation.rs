@@ -1,7 +1,5 @@
 //! What PLC and operating modes get from the list.
 
-#![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
-
 use bahn_parameters::operation::{
     Handwheel, OverrideSteps, Station, ToolOutput, ToolOutputKind, UserParameter, UserText,
 };

@@ -1,6 +1,4 @@
 //! The machine geometry of MP7510 to MP7592: the chains of the manual [000:4303-4437].
-#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
-
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, Position};
 

@@ -1,6 +1,4 @@
 //! The terminals against the tables of the manuals.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use std::collections::BTreeSet;
 
 use bahn_parameters::ControlModel::{self, Tnc151b, Tnc151q, Tnc155fr, Tnc155w, Tnc407, Tnc415b};

@@ -124,10 +124,8 @@ fn single_assignments() {
 fn what_the_control_lacks_is_not_assigned() {
     use bahn_parameters::equipment::{Equipment, Release};
     let model = ControlModel::Tnc155;
-    let equipment = Equipment {
-        release: Some(Release::read(model, "7").unwrap()),
-        ..Equipment::with_options(&[])
-    };
+    let mut equipment = Equipment::with_options(&[]);
+    equipment.release = Some(Release::read(model, "7").unwrap());
     let mut list = ParameterList::reference(model).with_equipment(equipment);
     let before = list.clone();
     assert_eq!(

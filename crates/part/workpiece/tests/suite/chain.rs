@@ -1,7 +1,5 @@
 //! Tracks that follow one another share the work at their ends, and leave what each of them leaves alone.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use crate::common::*;
 use bahn_path::{Axis, PathElement, Position, ToolShape};
 use bahn_workpiece::{Part, Resolution, Workpiece};

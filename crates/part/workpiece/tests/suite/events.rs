@@ -1,7 +1,5 @@
 //! The events of the cut that the operator gets.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use crate::common::*;
 use bahn_path::{Axis, BlockRef, PathElement, Plane, Position};
 use bahn_workpiece::{EventKind, Workpiece};

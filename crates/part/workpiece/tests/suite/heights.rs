@@ -1,7 +1,5 @@
 //! Heights of whole chains of movements against the lowest height of the tool, column by column.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use crate::common::*;
 use bahn_path::{Axis, Blank, Plane, ToolShape};
 use bahn_workpiece::{Resolution, Workpiece};

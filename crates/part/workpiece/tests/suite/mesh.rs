@@ -1,7 +1,5 @@
 //! The mesh of the finished part is closed and has the right volume.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 

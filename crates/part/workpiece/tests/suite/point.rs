@@ -1,7 +1,5 @@
 //! Drills with a point: what their cone leaves, and what the spindle and the radius have to do with a cut.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use std::f64::consts::PI;
 
 use crate::common::*;

@@ -1,7 +1,5 @@
 //! Probing: heights and touch positions.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use crate::common::*;
 use bahn_path::{Axis, Blank, Plane, Position};
 use bahn_workpiece::{Part, Resolution, Workpiece};

@@ -1,7 +1,5 @@
 //! The pictures show what they should. How they look is for people: see the example `pictures`.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

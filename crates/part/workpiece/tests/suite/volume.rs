@@ -4,8 +4,6 @@
 //! wrong, each by half a column at most, with either sign. So an outline of length `p` errs by less
 //! than `p * resolution / 2` times the depth.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use std::f64::consts::PI;
 
 use crate::common::*;

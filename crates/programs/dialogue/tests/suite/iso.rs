@@ -1,7 +1,5 @@
 //! DIN/ISO: blocks are text, entered word by word, with numbers, checks and messages of the control.
 
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::sync::Arc;
 
 use crate::desk::{Desk, setting};

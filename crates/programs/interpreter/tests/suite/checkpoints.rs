@@ -1,6 +1,4 @@
 //! States to go back to: kept where something is on its way, and nowhere else.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
-
 use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, Message, NoPrograms, STATE_COST, Settings};

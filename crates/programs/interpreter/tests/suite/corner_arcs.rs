@@ -1,6 +1,4 @@
 //! M112: arcs at the corners of uncompensated lines, and M124: points that are left out for them [000:5128-5158].
-#![allow(clippy::expect_used, reason = "what fails here fails the test")]
-
 use crate::support::*;
 use bahn_path::{Axis, Curve, Plane};
 

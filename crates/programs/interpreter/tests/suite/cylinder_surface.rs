@@ -1,7 +1,5 @@
 //! Cycle 27 CYLINDER SURFACE. What the tool does to the workpiece is computed here by rotation matrices: where the tip is
 //! on a table that has turned.
-#![allow(clippy::expect_used, reason = "what fails here fails the test")]
-
 use crate::support::*;
 use bahn_parameters::MessageId::{
     self, BlockNotKnown, CyclIncomplete, EntryValueIncorrect, PlaneWronglyDefined, WrongAxisProgrammed,

@@ -1,6 +1,4 @@
 //! The shipped example programs run to their end and mill what they say.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::PathBuf;

@@ -1,6 +1,4 @@
 //! Programs that are executed while they are still being transferred.
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
-
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -1,6 +1,4 @@
 //! SL contours that take long to compute, or cannot be computed at all.
-#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
-
 use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,7 +1,5 @@
 //! TCH PROBE 0: measuring in the program.
 
-#![allow(clippy::panic, reason = "what fails here fails the test")]
-
 use crate::support::*;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, MeasuredPart, Position, ScanPattern};

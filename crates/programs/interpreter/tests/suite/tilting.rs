@@ -1,6 +1,4 @@
 //! Swivel axes: cycle 19, M114 to M117, M126 and M127.
-#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
-
 use std::sync::Arc;
 
 use crate::support::*;

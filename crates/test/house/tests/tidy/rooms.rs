@@ -30,7 +30,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("workpiece", &["path", "picture"]),
     ("viewer", &["path", "workpiece"]),
     ("exchange", &[]),
-    ("plc", &["text", "exchange", "parameters"]),
+    ("plc", &["text", "path", "exchange", "parameters"]),
     ("convert", &["path", "parameters", "program", "interpreter"]),
     (
         "lsp",
@@ -53,6 +53,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "tnc",
         &[
+            "text",
             "path",
             "parameters",
             "program",

@@ -65,10 +65,10 @@ pub(super) fn form_of(name: &str) -> Option<TableForm> {
     TableForm::ALL.into_iter().find(is_meant)
 }
 
-/// MP7224.1 protects the files of a type [000:6870-6880].
+/// MP7224.1 protects the files of a type [000:6870-6880]; the code number took that of this file away.
 pub(crate) fn is_protected(name: &str, site: &Site) -> bool {
     let types = site.parameters().table_parameters().types;
-    types.is_protected(type_of(name))
+    types.is_protected(type_of(name)) && !site.settings.unprotected.contains(name)
 }
 
 /// MP7224.0 lets nobody see the files of a type [000:6857-6868].

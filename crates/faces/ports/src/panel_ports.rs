@@ -15,18 +15,20 @@ use bahn_link::{
     SharedPort, Spec, drive, standard,
 };
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_ports::PlcLines;
 use bahn_service::{Input, MachineService, TransferAction, TransferFiles, TransferNews, TransferOrder};
 
-use super::port::{self, Refused};
-use super::serial_ports::{self, Port};
-use crate::{UsageError, diagnostics};
+use crate::open::Refused;
+use crate::serial_ports::{self, Port};
+use crate::{PlcLines, PortError, Tell};
 
 /// How often orders of the panel and of the PLC are looked for.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// The interfaces of a machine that is about to be switched on.
-pub(crate) struct PanelPorts(Vec<Port>);
+/// The interfaces of a machine with a panel that is about to be switched on.
+pub struct PanelPorts {
+    ports: Vec<Port>,
+    tell: Tell,
+}
 
 /// The files among which an order is carried out; of those of the PLC and of lists each knows its own types alone.
 fn files_of(machine: &MachineService, files: TransferFiles) -> Box<dyn Files> {
@@ -39,26 +41,27 @@ fn files_of(machine: &MachineService, files: TransferFiles) -> Box<dyn Files> {
 }
 
 impl PanelPorts {
-    /// Opens the ports that are named; `None` when one cannot be opened, which is told.
-    pub(crate) fn open(named: [Option<&String>; 2], list: &ParameterList) -> Option<PanelPorts> {
-        let ports: Result<Vec<Port>, Refused> =
-            serial_ports::specs(named).and_then(|specs| serial_ports::open(&specs, list));
-        ports.ok().map(PanelPorts)
+    /// Opens the ports that are named, RS-232-C and RS-422; lines for people go to `tell`.
+    ///
+    /// # Errors
+    /// When one is not written as a port, or cannot be opened.
+    pub fn open(
+        named: [Option<&String>; 2],
+        list: &ParameterList,
+        tell: Tell,
+    ) -> Result<PanelPorts, Refused> {
+        let ports = serial_ports::open(&serial_ports::specs(named)?, list, &tell)?;
+        Ok(PanelPorts { ports, tell })
     }
 
     /// Connects the panel and the PLC of a machine that runs, and lets the interfaces run beside it.
     ///
     /// # Errors
     /// When FN15 is to print at a port that is not open, or the system gives no thread.
-    pub(crate) fn start(
-        self,
-        machine: &MachineService,
-        print: Option<&str>,
-    ) -> Result<RunningPorts, UsageError> {
-        let PanelPorts(ports) = self;
-        let mut lines = PlcLines::new(machine, serial_ports::of_plc(&ports), print, port::tell())?;
-        let orders = machine.transfer_orders();
-        let orders = orders.map_err(|error| UsageError::new(error.to_string()))?;
+    pub fn start(self, machine: &MachineService, print: Option<&str>) -> Result<RunningPorts, PortError> {
+        let PanelPorts { ports, tell } = self;
+        let mut lines = PlcLines::new(machine, serial_ports::of_plc(&ports), print, Arc::clone(&tell))?;
+        let orders = machine.transfer_orders()?;
         let stop = Arc::new(AtomicBool::new(false));
         let mut desks: [Option<Arc<Desk>>; 2] = [None, None];
         let mut threads = Vec::new();
@@ -71,6 +74,7 @@ impl PanelPorts {
                 machine: machine.clone(),
                 stop: Arc::clone(&stop),
                 desk,
+                tell: Arc::clone(&tell),
             };
             threads.push(spawn("interface", move || worker.work(port))?);
         }
@@ -92,20 +96,20 @@ impl PanelPorts {
     }
 }
 
-fn spawn(name: &str, what: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, UsageError> {
+fn spawn(name: &str, what: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, PortError> {
     let thread = std::thread::Builder::new().name(name.to_owned()).spawn(what);
-    thread.map_err(|error| UsageError::new(format!("{name}: {error}")))
+    thread.map_err(|error| PortError::Failed(format!("{name}: {error}")))
 }
 
 /// Interfaces that run; they end before the machine does.
-pub(crate) struct RunningPorts {
+pub struct RunningPorts {
     stop: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
 }
 
 impl RunningPorts {
     /// Ends them; what is being transferred is broken off.
-    pub(crate) fn end(self) {
+    pub fn end(self) {
         self.stop.store(true, Ordering::Relaxed);
         for thread in self.threads {
             // What has panicked has told so.
@@ -172,6 +176,7 @@ struct Worker {
     machine: MachineService,
     stop: Arc<AtomicBool>,
     desk: Arc<Desk>,
+    tell: Tell,
 }
 
 impl Worker {
@@ -191,7 +196,7 @@ impl Worker {
                 }
             };
             if let Err(error) = driven {
-                diagnostics::print_line(&format!("error: {}: {error}", port.spec.line));
+                (self.tell)(&format!("error: {}: {error}", port.spec.line));
                 return;
             }
         }

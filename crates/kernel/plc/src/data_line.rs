@@ -5,9 +5,9 @@
 use std::fmt;
 
 use bahn_path::Switch;
-use bahn_plc::{DataInterface, HostLink, HostMessage, InterfaceUser};
+use bahn_text::quoted;
 
-use crate::escapes;
+use crate::{DataInterface, HostLink, HostMessage, InterfaceUser};
 
 /// The two interfaces by their number for the modules of the PLC: RS-232-C/V.24 is 0, RS-422/V.11 is 1 [000:15629].
 const NAMES: [&str; 2] = ["rs232", "rs422"];
@@ -19,10 +19,10 @@ const MESSAGES_MAX: usize = HostLink::CAPACITY;
 /// Something happens at an interface of the PLC.
 ///
 /// ```
-/// use bahn_tnc::{Command, DataLineEvent, LineEvent};
+/// use bahn_plc::{DataLineEvent, LineEvent};
 ///
 /// let event = DataLineEvent::Line(1, LineEvent::Received(b"FA81".to_vec()));
-/// assert_eq!(Command::DataLine(event).to_string(), "rs422 received \"FA81\"");
+/// assert_eq!(event.to_string(), "rs422 received \"FA81\"");
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DataLineEvent {
@@ -114,7 +114,7 @@ struct Known {
 
 impl OrderedLines {
     /// Tells the orders since the last call. A line that has nothing new costs a comparison.
-    pub(crate) fn news(&mut self, interfaces: &[DataInterface; 2], mut tell: impl FnMut(DataLineOrder)) {
+    pub fn news(&mut self, interfaces: &[DataInterface; 2], mut tell: impl FnMut(DataLineOrder)) {
         for (line, (known, interface)) in self.0.iter_mut().zip(interfaces).enumerate() {
             let is_of_plc = interface.user == Some(InterfaceUser::Plc);
             let setup = is_of_plc.then_some(LineSetup {
@@ -142,10 +142,10 @@ impl OrderedLines {
 
 impl DataLineEvent {
     /// Words with which the texts of such events begin.
-    pub(crate) const WORDS: [&'static str; 3] = ["rs232", "rs422", "lsv2"];
+    pub const WORDS: [&'static str; 3] = ["rs232", "rs422", "lsv2"];
 
     /// Reads what stands after such a word.
-    pub(crate) fn parse(word: &str, rest: &str) -> Option<DataLineEvent> {
+    pub fn parse(word: &str, rest: &str) -> Option<DataLineEvent> {
         if word == "lsv2" {
             return HostEvent::parse(rest).map(DataLineEvent::Host);
         }
@@ -161,7 +161,7 @@ impl LineEvent {
             ("ready", switch) => on_off(switch).map(LineEvent::Ready),
             ("taken", switch) => on_off(switch).map(LineEvent::Taken),
             ("baud", rate) => rate.parse().ok().map(LineEvent::ModeBaud),
-            ("received", text) => escapes::quoted(text).map(LineEvent::Received),
+            ("received", text) => quoted(text).map(LineEvent::Received),
             ("sent", "") => Some(LineEvent::Sent),
             ("not-sent", "") => Some(LineEvent::NotSent),
             ("faulty", "") => Some(LineEvent::Faulty),
@@ -180,7 +180,7 @@ impl HostEvent {
             ("taken", "") => Some(HostEvent::Taken),
             ("message", value) => {
                 let number = value.parse().ok().map(HostMessage::Double);
-                let message = number.or_else(|| escapes::quoted(value).map(HostMessage::Text));
+                let message = number.or_else(|| quoted(value).map(HostMessage::Text));
                 message.map(HostEvent::Message)
             }
             _ => None,
@@ -236,8 +236,10 @@ impl fmt::Display for DataLineEvent {
 
 /// The lines to the PLC and the host that is connected.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct DataLines {
+pub struct DataLines {
+    /// By their number: 0 RS-232-C/V.24, 1 RS-422/V.11.
     pub interfaces: [DataInterface; 2],
+    /// The host that is connected by LSV/2.
     pub host: Option<HostLink>,
 }
 
@@ -321,16 +323,16 @@ fn at_line(interface: &mut DataInterface, event: LineEvent) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Command;
 
     #[test]
     fn any_byte_goes_through_the_log() {
         let all: Vec<u8> = (0..=255).collect();
         let event = DataLineEvent::Line(0, LineEvent::Received(all));
-        let text = Command::DataLine(event.clone()).to_string();
-        assert_eq!(text.parse(), Ok(Command::DataLine(event)));
+        let text = event.to_string();
+        let (word, rest) = text.split_once(' ').unwrap();
+        assert_eq!(DataLineEvent::parse(word, rest), Some(event));
         for wrong in ["\"A", "A", "\"A\"B\"", "\"\\x1\"", "\"\\q\"", "\"A\\\""] {
-            assert_eq!(escapes::quoted(wrong), None, "{wrong}");
+            assert_eq!(quoted(wrong), None, "{wrong}");
         }
     }
 

@@ -4,8 +4,8 @@
 /// it has others.
 ///
 /// ```
-/// assert_eq!(bahn_tnc::unescaped("L X+5\\x20;\\n"), Some(b"L X+5 ;\n".to_vec()));
-/// assert_eq!(bahn_tnc::unescaped("\\q"), None);
+/// assert_eq!(bahn_text::unescaped("L X+5\\x20;\\n"), Some(b"L X+5 ;\n".to_vec()));
+/// assert_eq!(bahn_text::unescaped("\\q"), None);
 /// ```
 pub fn unescaped(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len());
@@ -35,7 +35,7 @@ pub fn unescaped(text: &str) -> Option<Vec<u8>> {
 }
 
 /// The bytes that a text in quotes stands for, `None` when it is not quoted or holds a wrong escape.
-pub(crate) fn quoted(text: &str) -> Option<Vec<u8>> {
+pub fn quoted(text: &str) -> Option<Vec<u8>> {
     let inner = text.strip_prefix('"')?.strip_suffix('"')?;
     let read = unescaped(inner)?;
     // A quote that is no escape would end the text.
