@@ -140,13 +140,13 @@ fn files_go_to_a_disk_and_come_back() {
         "link receive --machine empty {port} --all --format json"
     ));
     assert_eq!(received.code(), 0, "{}", received.err());
-    assert_eq!(received.json()["received"].as_array().unwrap().len(), 8);
+    assert_eq!(received.json()["received"].as_array().unwrap().len(), 9);
     same(&folder.path("mill/programs"), &folder.path("empty/programs"));
     // The directory, by both ways.
     let listed = folder.bahn(&format!("link list --machine mill {port}"));
     assert_eq!(
         listed.out(),
-        "BRACKET.H\nCIRCLE.H\nDATUM.H\nFLANGE.H\nINDEX.H\nKNOB.H\nMEASURE.H\nSADDLE.H\n"
+        "BRACKET.H\nCIRCLE.H\nDATUM.H\nFLANGE.H\nINDEX.H\nKNOB.H\nMEASURE.H\nPALLET.H\nSADDLE.H\n"
     );
     let listed = folder.bahn(&format!(
         "link list --machine mill --port connect:{},mode=fe1 --format json",

@@ -2,7 +2,7 @@
 
 use crate::terminals::*;
 
-/// A6 opens with a programmed spindle stop and a programmed stop together, is closed in Manual [001:1046-1053], in each mode in
+/// A6 opens with a programmed spindle stop and a programmed stop (M2189) together, is closed in Manual [001:1046-1053], in each mode in
 /// which programs run: NC start leads to the stop, in single block once for each block before it.
 #[test]
 fn lock_for_spindle_on() {

@@ -56,7 +56,7 @@ fn ways(rig: &mut Rig, internal: char) -> [f64; 2] {
     [to[0] - from[0], to[1] - from[1]]
 }
 
-/// 00 is X, 01 Y, 10 Z: what is programmed as that axis moves the table of axis IV by its 10 mm, and U the other one by 5 mm. With 11,
+/// M2590 and M2591: 00 is X, 01 Y, 10 Z. What is programmed as that axis moves the table of axis IV by its 10 mm, and U the other one by 5 mm. With 11,
 /// before and after, each axis is itself.
 #[test]
 fn axis_iv_takes_the_place_of_an_internal_axis() {
