@@ -309,7 +309,12 @@ fn what_versions_lack_is_named() {
     folder.write("part.png", "");
     let run = folder.bahn("link print part.png --machine m --output part.prn");
     assert_eq!(run.code(), 1);
-    assert!(run.err().contains("the TNC 151 has no graphics"), "{}", run.err());
+    assert!(
+        run.err()
+            .contains("the TNC 151 makes no hard copy: it has no graphics"),
+        "{}",
+        run.err()
+    );
 
     let run = folder.bahn("machine new n --model tnc151x");
     assert_eq!(run.code(), 2);
